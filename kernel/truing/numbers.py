@@ -6,6 +6,8 @@ import math
 import re
 from typing import Any
 
+import numpy as np
+
 from truing.units import difference_unit, from_si, unit_text
 from truing.units.names import PURE
 
@@ -75,6 +77,15 @@ def format_value(si: Any, unit: str, digits: int = RESULT_DIGITS) -> tuple[str, 
     if si is None:
         return ABSENT, unit_text(unit)
     return format_number(_plain(si) if _is_bare(unit, si) else from_si(_plain(si), unit), digits), unit_text(unit)
+
+
+def format_ends(values: Any, unit: str) -> tuple[str, str, str]:
+    """Write the least and the largest of numbers in SI, and the unit; empty texts where none is finite."""
+    numbers = np.asarray(values, dtype=float)
+    finite = numbers[np.isfinite(numbers)]
+    if not finite.size:
+        return "", "", unit_text(unit)
+    return format_value(finite.min(), unit)[0], *format_value(finite.max(), unit)
 
 
 def format_difference(si: float, unit: str, digits: int = RESULT_DIGITS) -> tuple[str, str]:

@@ -3,98 +3,84 @@
 from __future__ import annotations
 
 import ast
-import hashlib
 import importlib
 import os
 import sys
 import sysconfig
 import time
 import tomllib
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
 
+from watchfiles import watch
+
+from truing.inputs_file.files import digest_of
 from truing.kernel import Offer
 
 PATIENCE = 1.0
 """How long a file may be away or empty, in seconds: editors put a new one in its place, or empty it before writing."""
-
-Stamp = tuple[int, int, int] | None
-"""Time of change in nanoseconds, size, and the number of the file; None where there is none."""
+LONGEST_GROUP = 1600
+"""So many milliseconds of changes without a pause are told at once."""
 
 
 @dataclass
 class WatchedFiles:
     """A set of files and what was in them; a file counts as changed when its content is another.
 
-    ``every`` is the time between two looks in seconds; ``sleep`` waits so long.
+    ``still`` is for how long, in seconds, all must have been still before a change counts.
     """
 
-    every: float
-    sleep: Callable[[float], None] = time.sleep
-    _stamps: dict[Path, Stamp] = field(default_factory=dict, init=False)
+    still: float
     _contents: dict[Path, str] = field(default_factory=dict, init=False)
+    _folders: dict[Path, int] = field(default_factory=dict, init=False)
+    _events: Iterator[Any] = field(default_factory=lambda: iter(()), init=False)
 
     def add(self, files: Iterable[Path]) -> None:
         """Watch these files besides, from what is in them now."""
-        for file in files:
-            path = Path(file).absolute()
-            if path not in self._stamps:
-                self._stamps[path] = stamp_of(path)
+        for path in (Path(file).absolute() for file in files):
+            if path not in self._contents:
                 self._contents[path] = content_of(path)
 
     def changed(self) -> list[Path]:
-        """Wait until a file has another content and all have been still for one look; return which, in order."""
+        """Wait until a file has another content and all have been still; return which, in order.
+
+        What changed before this is called counts too. Raises KeyboardInterrupt.
+        """
+        self._listen()
+        is_settled, whole_at = False, time.monotonic()
         while True:
-            self.sleep(self.every)
-            if self._looked() == self._stamps:
+            if not next(self._events) and is_settled:
                 continue
-            self._stamps = self._stilled()
-            found = []
-            for path, before in self._contents.items():
-                self._contents[path] = now = content_of(path)
-                if now != before:
-                    found.append(path)
-            if found:
-                return found
+            now = {path: content_of(path) for path in self._contents}
+            changed = [path for path, content in now.items() if content != self._contents[path]]
+            is_whole = all(now[path] for path in changed)
+            whole_at = time.monotonic() if is_whole else whole_at
+            if changed and (is_whole or time.monotonic() - whole_at >= PATIENCE):
+                self._contents = now
+                return changed
+            is_settled = is_whole and not self._listen()
 
-    def _looked(self) -> dict[Path, Stamp]:
-        return {path: stamp_of(path) for path in self._stamps}
-
-    def _stilled(self) -> dict[Path, Stamp]:
-        """Look until two looks are alike; what is away, or empty and was not, has some time to come back."""
-        waited, last = 0.0, self._looked()
-        while True:
-            self.sleep(self.every)
-            waited += self.every
-            now = self._looked()
-            if now == last and (waited >= PATIENCE or not any(self._is_half(path, now[path]) for path in now)):
-                return now
-            last = now
-
-    def _is_half(self, path: Path, stamp: Stamp) -> bool:
-        """Tell whether a file that had content has none at the moment."""
-        return bool(self._contents[path]) and (stamp is None or stamp[1] == 0)
-
-
-def stamp_of(path: Path) -> Stamp:
-    """Return what tells at a glance whether a file was written: nothing is read."""
-    try:
-        found = path.stat()
-    except OSError:
-        return None
-    return found.st_mtime_ns, found.st_size, found.st_ino
+    def _listen(self) -> bool:
+        """Listen to the folders of all files, or the nearest above; tell whether they are others than before."""
+        places = {place for path in self._contents for place in (path, path.resolve())}  # what a link leads to, too
+        near = {next(folder for folder in place.parents if folder.is_dir()) for place in places}
+        folders = {folder: folder.stat().st_ino for folder in near}
+        if folders == self._folders:
+            return False
+        step = max(1, round(self.still * 1000))
+        how: dict[str, Any] = {"debounce": max(step, LONGEST_GROUP), "step": step, "rust_timeout": step}
+        self._folders = folders
+        self._events = watch(*folders, watch_filter=None, recursive=False, yield_on_timeout=True, **how)
+        return True
 
 
 def content_of(path: Path) -> str:
     """Return the SHA-256 of a file; nothing where it is empty, or cannot be read."""
     try:
-        if not path.is_file() or not path.stat().st_size:
-            return ""
-        with path.open("rb") as stream:
-            return hashlib.file_digest(stream, "sha256").hexdigest()
+        return digest_of(path) if path.is_file() and path.stat().st_size else ""
     except OSError:
         return ""
 

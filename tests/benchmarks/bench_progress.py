@@ -14,6 +14,8 @@ from progress_seen import Seen, watched
 from shared import ROOT
 from truing import Kernel
 from truing.calculation import calculate
+from truing.diagnosis.engine import diagnose
+from truing.diagnosis.reading import read_records
 from truing.example_file import example_text
 from truing.inputs_file import read_setup, setup_from_text
 
@@ -58,9 +60,6 @@ def test_long_studies_speak(name: str, asked: str, monkeypatch: pytest.MonkeyPat
     ],
 )
 def test_a_diagnosis_speaks(name: str, files: list[str]) -> None:
-    from truing.diagnosis.engine import diagnose
-    from truing.diagnosis.reading import read_records
-
     offer, places = OFFERS[name], [ROOT / "docs" / "examples" / file for file in files]
     setup = read_setup(places[0].parent / "inputs.toml", offer)
     records = read_records(places, offer, setup)

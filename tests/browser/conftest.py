@@ -19,8 +19,8 @@ from truing.calculation import calculate
 from truing.inputs_file import read_setup
 from truing.kernel import Kernel
 from truing.published import compare_published
+from truing.report.html_printer import html_of
 from truing.report.pdf import find_browser, sandbox_arguments
-from truing.report.render import html_of
 from truing.report.sheet import make_sheet
 from truing.runs.provenance import provenance_of
 from truing.setup import SheetOptions

@@ -29,7 +29,8 @@ from test_sheet import (  # noqa: F401
 
 from truing.diagnosis.records import SuspectedUnit
 from truing.diagnosis.result import Alternative, DiagnosisResult, ResidualFinding, VisibleSize
-from truing.report.diagnosis_sheet import diagnosis_html, make_diagnosis_sheet
+from truing.report.diagnosis_sheet import make_diagnosis_sheet
+from truing.report.html_printer import html_of
 from truing.runs.provenance import provenance_of
 
 LONG = "wear_of_the_third_joint_of_the_left_knee_drive_in_micrometres_per_million_strokes"
@@ -56,7 +57,7 @@ def hostile() -> DiagnosisResult:
 def sheet(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The sheet of a diagnosis on disk, one of every kind of verdict and a hostile one."""
     made = {**SAMPLES, "hostile": hostile}[request.param]()
-    text = diagnosis_html(make_diagnosis_sheet(made, provenance=provenance_of(made.setup, date="2026-11-21")))
+    text = html_of(make_diagnosis_sheet(made, provenance=provenance_of(made.setup, date="2026-11-21")))
     file = tmp_path_factory.mktemp("Größe ü") / f"{request.param} sheet.html"
     file.write_text(text, encoding="utf-8")
     return file

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import shutil
 import subprocess
+from html import unescape
 from pathlib import Path
 
 import pytest
@@ -47,8 +48,6 @@ def test_the_print_is_complete(sheet: Path, printed: Path) -> None:
 
 
 def unescaped(text: str) -> str:
-    from html import unescape
-
     return re.sub(r"\s+", " ", unescape(text))
 
 

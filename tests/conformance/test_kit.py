@@ -1,6 +1,7 @@
 """The kit itself: for every check a model that breaks just this promise, because a check that cannot fail is none."""
 
 import itertools
+import multiprocessing
 import re
 from collections.abc import Callable
 from dataclasses import replace
@@ -40,7 +41,8 @@ from truing.declare.checks import PROMISES
 from truing.describe import description
 from truing.errors import DeclarationError
 from truing.kernel.loading import load_file
-from truing.report.render import html_of, markdown_of
+from truing.report.html_printer import html_of
+from truing.report.markdown_printer import markdown_of
 from truing.report.sheet import make_sheet
 from truing.runs.provenance import provenance_of
 from truing.setup import default_setup
@@ -127,8 +129,6 @@ def forgetful_draw(rng: np.random.Generator, rows: int) -> dict[str, Any]:
 
 def elsewhere(it: Spring) -> Force:
     """Give another answer in another process."""
-    import multiprocessing
-
     answer = spring(it)
     return answer if multiprocessing.parent_process() is None else replace(answer, energy=answer.energy * 2)
 

@@ -5,6 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+import jsonschema
+
+from truing.units import same_dimension
+
 Document = Mapping[str, Any]
 TEXT = {"type": "string", "minLength": 1}
 NAMES = {"type": "array", "items": TEXT}
@@ -76,8 +80,6 @@ def demand_contract(document: Document, described: Document) -> None:
 
     Another unit of the same kind than the declared one is as good.
     """
-    import jsonschema
-
     jsonschema.validate(document, SCHEMA)
     _demand_agreement(document)
     units = {item["name"]: item["unit"] for item in described["results"]}
@@ -139,6 +141,4 @@ def _demand_unknowns(cause: Mapping[str, Any], effects: Mapping[str, Mapping[str
 
 
 def _is_same_kind(unit: str, other: str) -> bool:
-    from truing.units import same_dimension
-
     return same_dimension(unit, other)

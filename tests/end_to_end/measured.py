@@ -15,6 +15,7 @@ from hidden_effects.asking import INPUTS, write_case
 from hidden_effects.making import Wish, make_case
 from hidden_effects.press_machine import POSITION
 from shared import Answer
+from truing.cli import main
 
 Columns = dict[str, list[str]]
 Document = dict[str, Any]
@@ -78,8 +79,6 @@ def heated_press(folder: Path) -> Columns:
 
 def calc_here(folder: Path, *arguments: str | Path) -> Answer:
     """Run ``calc`` in this process and in this folder, wherever a fixture lives long."""
-    from truing.cli import main
-
     said, beside = io.StringIO(), io.StringIO()
     with chdir(folder), redirect_stdout(said), redirect_stderr(beside):
         code = main([str(argument) for argument in arguments])

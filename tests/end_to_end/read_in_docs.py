@@ -22,6 +22,13 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
+import typer.main
+
+from truing.cli.app import app
+from truing.errors import TruingError
+from truing.inputs_file import read_setup
+from truing.kernel import Kernel
+
 if TYPE_CHECKING:
     from shown_in_docs import Block, Desk
 
@@ -114,10 +121,6 @@ def _given_above(block: Block, page: Path) -> Iterator[str]:
 
 
 def _read_inputs(block: Block, desk: Desk) -> None:
-    from truing.errors import TruingError
-    from truing.inputs_file import read_setup
-    from truing.kernel import Kernel
-
     name = block.marked("inputs")
     file = desk.folder / "of_the_page.toml"
     file.write_text(block.text, encoding="utf-8")
@@ -136,10 +139,6 @@ def _shown(name: str, desk: Desk) -> str:
 
 def _demand_options(text: str) -> None:
     """Fail unless a summary names a verb and just the options that it has."""
-    import typer.main
-
-    from truing.cli.app import app
-
     group: Any = typer.main.get_command(app)
     words = text.split()
     assert words[1] in group.commands, f"there is no verb '{words[1]}'"

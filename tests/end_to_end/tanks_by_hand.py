@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import least_squares
 
 Array = NDArray[np.float64]
 STEP = 4.0
@@ -76,8 +77,6 @@ def fitted(start: Mapping[str, float], high: Mapping[str, float], known: Mapping
     ``known`` holds the relative standard deviation of constants about where the fit starts, whose innovations are
     NOISE; without it nothing is known beforehand.
     """
-    from scipy.optimize import least_squares
-
     voltage, measured = record("estimation")
     names, begin = list(start), np.array(list(start.values()))
     sd = np.array([known.get(name, np.inf) * start[name] for name in names])

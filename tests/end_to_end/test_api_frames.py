@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -121,6 +122,17 @@ def test_a_record_is_refused_what_a_measured_file_is(pin: truing.LoadedModel, fr
 def test_a_column_of_a_record_that_may_be_misspelt_is_told(pin: truing.LoadedModel) -> None:
     with pytest.warns(UserWarning, match=r"column 'lod' is neither input, result nor condition\. Did you mean 'load'"):
         truing.record(rows(depth_of_um=[1.0, 2.0], lod_of_N=[1.0, 2.0]), pin)
+
+
+def test_a_record_gives_its_rows_back_however_the_file_is_written(pin: truing.LoadedModel, tmp_path: Path) -> None:
+    (tmp_path / "rig.csv").write_text("# rig 7\ndepth [um];load [N];who\n1,5;50;a\n2;;b\n", encoding="utf-8")
+    frame = truing.read(tmp_path / "rig.csv", pin).frame()
+    assert frame.to_dict("list") == {"depth [um]": ["1.5", "2"], "load [N]": ["50", ""], "who": ["a", "b"]}
+
+
+def test_a_text_that_looks_like_a_remark_is_a_cell(pin: truing.LoadedModel) -> None:
+    made = pin.evaluate(pd.DataFrame({"who": ["# a", "b"], "load [N]": [56.0, 84.0]}))
+    assert made["pressure [MPa]"].tolist() == pytest.approx([2, 3])
 
 
 ALONE = """

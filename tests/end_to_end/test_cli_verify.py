@@ -5,9 +5,11 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import pytest
 from block import write_block
 
 from shared import Calc
+from truing import Kernel
 
 RIGHT = 'published=[Published(name="drag", result="drag", value=20.0, unit="N", where="p. 3")]'
 STATED = 'published=[Published(name="drag", result="drag", value=25.0, unit="N", verdict="differs", why="a misprint")]'
@@ -54,3 +56,30 @@ def test_a_plugin_without_printed_numbers(calc: Calc, tmp_path: Path) -> None:
     answer = calc("verify", "./block.py")
     assert (answer.code, answer.out) == (0, "block states no published numbers\n")
     assert json.loads(calc("verify", "./block.py", "--json").out) == {"rows": [], "rules": {}, "findings": []}
+
+
+TITLES = {
+    "press_linkage": ("Misprint: the ground pivot angle", "Misprint: the unit of the tilt limit"),
+    "rv_wear": ("The cost functions are read as powers", "A reliability of 100 % is no number that can be met"),
+    "rv_gearing": ("",),
+    "roller_screw_shift": ("Table 1", "Indices 1 and 2", "printed weights", "contact ratio"),
+    "harmonic_fractal": ("clearance", "weakest", "missing", "straight line"),
+}
+
+
+@pytest.mark.parametrize("plugin", TITLES)
+def test_a_shipped_plugin_is_verified_row_by_row(calc: Calc, plugin: str) -> None:
+    """What our numbers in the rows are is tested in tests/published, on the model."""
+    answer = calc("verify", plugin, "--json")
+    assert (answer.code, answer.err) == (0, "")
+    document = json.loads(answer.out)
+    model = Kernel.installed().offers[plugin].model
+    rows = {row["name"]: row for row in document["rows"]}
+    stated = {row.name: [row.value, dict(row.settings), row.obtained] for row in model.published}
+    assert {name: [row["paper"], row["settings"], row["obtained"]] for name, row in rows.items()} == stated
+    assert len(rows) > 10
+    assert all(row["as_stated"] for row in rows.values())
+    assert all(row["why"] for row in rows.values() if row["verdict"] == "differs")
+    titles = " ".join(finding["title"] for finding in document["findings"])
+    assert titles == " ".join(finding.title for finding in model.findings)
+    assert all(words in titles for words in TITLES[plugin])

@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 
 from shared import Calc
+from truing.cli import main
 from truing.cli.changes import styles_of
 from truing.runs.change_words import amount_of, words_of
 from truing.runs.comparison import Change, changes, differing
@@ -22,8 +23,6 @@ PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Make three runs: two alike, and one with another load."""
-    from truing.cli import main
-
     folder = tmp_path_factory.mktemp("runs")
     for name, more in (("first", ()), ("again", ()), ("heavy", ("--set", "load=2300 N"))):
         assert main(["run", str(PIN), "-q", "-o", str(folder / name), *more]) in {0, 1}
@@ -185,8 +184,6 @@ class Terminal(io.StringIO):
 
 def shown(monkeypatch: pytest.MonkeyPatch, **environment: str) -> str:
     """What a terminal of 120 columns shows of the first run beside the heavy one."""
-    from truing.cli import main
-
     screen = Terminal()
     for name in ("NO_COLOR", "FORCE_COLOR", "TERM", "COLORTERM"):
         monkeypatch.delenv(name, raising=False)

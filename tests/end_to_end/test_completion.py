@@ -81,12 +81,14 @@ def test_names_on_the_line(ask: Ask, line: str, offered: list[str]) -> None:
 def test_everything_that_can_be_set(ask: Ask) -> None:
     begin = f"calc run {PIN} --set "
     top = ask(begin)
-    assert top["load="] == "normal load on the pin, N"
+    assert top["load="] == "F: normal load on the pin; above 0 N"
     assert {"area=", "probe_temperature=", "seed=", "tolerances.", "effects.", "studies.", "units."} <= set(top)
     assert set(ask(begin + "tolerances.")) == {"tolerances.load=", "tolerances.hardness="}
     assert "friction in the guide" in ask(begin + "tolerances.l")["tolerances.load="]
     assert {"effects.running_in.", "effects.sensor_offset."} <= set(ask(begin + "effects."))
-    assert list(ask(begin + "effects.running_in.")) == ["effects.running_in.extra=", "effects.running_in.length="]
+    inside = [f"effects.running_in.{name}=" for name in ("extra", "length", "covariance")]
+    assert list(ask(begin + "effects.running_in.")) == inside
+    assert list(ask(begin + "sheet.detail=")) == ["sheet.detail=short", "sheet.detail=normal", "sheet.detail=full"]
     assert "studies.reliability.draws=" in ask(begin + "area=1 --set studies.reliability.d")
     assert "units.depth=" in ask(begin + "units.")
     assert "studies.diagnose.hold_out=" in ask(begin + "studies.diagnose.")

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import getpass
 import json
+import platform
 from pathlib import Path
 
 from shared import Calc
@@ -25,9 +27,6 @@ def test_press_linkage_is_the_same_with_one_worker_and_with_two(calc_process: Ca
 
 
 def test_nothing_of_the_place_or_the_time_is_in_the_results(calc_process: Calc, tmp_path: Path) -> None:
-    import getpass
-    import platform
-
     for folder in ("here", "elsewhere far away"):
         (tmp_path / folder).mkdir()
         answer = calc_process("run", PIN, "-q", "-o", "run", cwd=tmp_path / folder)

@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import random
-import re
-from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,24 +13,21 @@ from measured import (
     FORCE,
     HEIGHT,
     SPEED,
+    TIME,
     WARMTH,
     Columns,
     Diagnosed,
-    Document,
     calc_here,
     diagnose_here,
     heated_press,
     names,
-    read_document,
     renamed,
     taken,
     text_of,
     with_cells,
 )
-from unusable_records import REFUSED
 
-from hidden_effects.asking import table
-from hidden_effects.press_machine import POSITION, Rows, shown
+from shared import Calc
 
 pytestmark = pytest.mark.filterwarnings("error::RuntimeWarning")
 COMMAND = ("diagnose", "press_linkage", "--inputs", "inputs.toml")
@@ -83,16 +76,22 @@ def refused(folder: Path, *arguments: str) -> list[str]:
 # What is refused
 
 
-@pytest.mark.parametrize("what", REFUSED)
-def test_what_cannot_be_used_is_refused(bench: Path, press: Columns, what: str) -> None:
-    change, expected = REFUSED[what]
-    text = change(press)
-    (bench / "m.csv").write_bytes(text if isinstance(text, bytes) else text.encode())
-    found = refused(bench, "--data", "m.csv")
-    assert len(found) == len(expected), found
-    for line, beginning in zip(found, expected, strict=True):
-        assert line.startswith(beginning)
-        assert re.match(r"m\.csv:\d+: \S", line) or "can be used; " in line
+def test_the_faults_of_a_file_are_said_at_once_and_safely(bench: Path, press: Columns) -> None:
+    wrong = renamed(renamed(press, FORCE, "forming_force [mm]"), SPEED, "\x1b[31mspeed [rpm]")
+    (bench / "m.csv").write_text(text_of(with_cells(wrong, TIME, {5: "late"})) + "1,2,3\n", encoding="utf-8")
+    assert refused(bench, "--data", "m.csv") == [
+        "m.csv:1: the header '\\x1b[31mspeed [rpm]' cannot be read; write it like 'load [N]'",
+        "m.csv:1: column 'forming_force [mm]': 'mm' is a length (mm), expected a force (kN)",
+        "m.csv:7: time: 'late' is no number",
+        "m.csv:92: this row has 3 cells, expected 8 as in the header",
+    ]
+
+
+def test_a_record_that_no_machine_could_show(bench: Path, press: Columns) -> None:
+    (bench / "m.csv").write_text(text_of({**press, "rod_length [m]": ["0.5"] * 90}), encoding="utf-8")
+    (sentence,) = refused(bench, "--data", "m.csv")
+    assert sentence.startswith("m.csv: no row can be used; a diagnosis needs 3 rows at the very least, better fifty (")
+    assert "90 rows are left out where the model fails; the first is m.csv:2: " in sentence
 
 
 def test_the_faults_of_every_file_are_said_at_once(bench: Path, press: Columns) -> None:
@@ -132,17 +131,9 @@ def test_a_folder_that_is_something_else_is_left_alone(bench: Path, press: Colum
     (bench / "m.csv").write_text(text_of(press), encoding="utf-8")
     (bench / "letters").mkdir()
     (bench / "letters" / "to the mill.txt").write_text("Dear Sirs", encoding="utf-8")
-    (bench / "notes").write_text("a file", encoding="utf-8")
     left_alone = "so it is left alone; name another folder or remove this one"
     assert refused(bench, "--data", "m.csv", "-o", "letters") == [
         f"calc: letters: is an existing folder but no diagnosis of ours, {left_alone}"
-    ]
-    assert refused(bench, "--data", "m.csv", "-o", "notes") == [
-        "calc: notes: is a file; a diagnosis is a folder, name another place"
-    ]
-    assert calc_here(bench, "run", "press_linkage", "--set", "studies.run=[]", "-o", "run").code in {0, 1}
-    assert refused(bench, "--data", "m.csv", "-o", "run") == [
-        f"calc: run: is an existing run of ours but no diagnosis, {left_alone}"
     ]
 
 
@@ -171,13 +162,6 @@ def said(found: Diagnosed, sentence: str) -> bool:
     )
 
 
-def same_findings(found: Document, other: Document) -> None:
-    """Everything is the same number by number, apart from the name of the file and what was said of it."""
-    for name in found.keys() | other.keys():
-        if name not in {"files", "notes"}:
-            assert found[name] == other[name], name
-
-
 def test_what_never_changed_is_not_excited(desk: Path, press: Columns) -> None:
     found = diagnose_here(desk, "constant", text_of({**press, SPEED: ["30"] * 90, FORCE: ["0"] * 90}))
     assert said(found, "2 columns never change, so nothing can be seen of what depends on it: ")
@@ -189,44 +173,11 @@ def test_what_never_changed_is_not_excited(desk: Path, press: Columns) -> None:
     assert "slider inertia" in found.answer.out
 
 
-def test_a_block_that_repeats_is_read_once(desk: Path, press: Columns, plain: Diagnosed) -> None:
-    rows = [*range(50), *range(30, 50), *range(50, 90)]
-    found = diagnose_here(desk, "repeated", text_of(taken(press, rows)))
-    reason = "in a block that repeats an earlier one in every cell, times included"
-    assert said(found, f"20 rows are left out: {reason}")
-    left = [{"reason": reason, "lines": list(range(52, 72))}]
-    assert found.document["files"] == [
-        {"file": "repeated.csv", "in_file": 110, "used": 90, "left_out": left, "runs": 1}
-    ]
-    same_findings(found.document, plain.document)
-
-
 def test_one_row_many_times_names_nothing(desk: Path, press: Columns) -> None:
     """A gauge that stands still: 80 times the same row are 80 readings, and no cause."""
     found = diagnose_here(desk, "still", text_of(taken(press, [7] * 80)))
     assert found.document["rows"] == 80
     assert found.document["verdict"] in {"none", "undecided"}
-
-
-def test_rows_out_of_order_give_the_identical_answer(desk: Path, press: Columns, plain: Diagnosed) -> None:
-    rows = list(range(90))
-    random.Random(3).shuffle(rows)
-    found = diagnose_here(desk, "shuffled", text_of(taken(press, rows)))
-    late = sum(row < max(rows[:place], default=0) for place, row in enumerate(rows))
-    assert said(found, f"{late} rows were out of order and sorted by time inside the run")
-    same_findings(found.document, plain.document)
-
-
-def test_rows_where_something_is_missing_or_impossible(desk: Path, press: Columns) -> None:
-    """Two rows without a reading, one without a temperature, two that no linkage can reach."""
-    radius = with_cells({"ground_pivot_radius [m]": ["1.393"] * 90}, "ground_pivot_radius [m]", {3: "9", 50: "9"})
-    gaps = with_cells(with_cells(press, HEIGHT, {5: "", 70: "NaN"}), WARMTH, {20: "n/a"})
-    found = diagnose_here(desk, "gaps", text_of({**radius, **gaps}))
-    assert said(found, "2 rows are left out where nothing was measured")
-    assert said(found, "1 row is left out where 'link_temperature' is empty")
-    assert said(found, "2 rows are left out where the model fails; the first is gaps.csv:5: loop II, side 1 does not")
-    assert found.document["rows"] == 85
-    assert names(found.document) == ["link_heating"]
 
 
 def test_some_readings_of_one_result_may_be_missing(desk: Path, press: Columns) -> None:
@@ -249,28 +200,6 @@ def test_a_condition_that_no_column_gives_is_not_measured(desk: Path, press: Col
     }  # fmt: skip
     assert not set(names(found.document)) & set(found.document["not_measured"])
     assert "not measured: " in found.answer.out
-
-
-def test_angles_at_a_turn_are_joined(desk: Path) -> None:
-    """A slow sweep from 300 through 360 to 430 degrees, as a counter writes it that begins anew with every turn."""
-    rng = np.random.default_rng(5)
-    angle, time = np.radians(np.linspace(300, 430, 90)), np.linspace(0, 6 * 3600, 90)
-    rows = Rows(
-        crank_angle=angle, forming_force=rng.uniform(0, 900e3, 90), link_temperature=rng.uniform(20, 45, 90), time=time,
-        strokes=np.round(np.linspace(0, 2e5, 90)), speed=rng.uniform(10, 50, 90) / 60, direction=np.ones(90),
-    )  # fmt: skip
-    true = shown(rows, {}, {"elastic_deflection": {"compliance": 1e-11}})[POSITION]
-    readings = {POSITION: true + rng.normal(0, 1.5e-6, 90)}
-    whole = diagnose_here(desk, "whole", table(rows, readings))
-    counter = replace(rows, crank_angle=np.remainder(angle, 2 * np.pi))
-    found = diagnose_here(desk, "counter", table(counter, readings))
-    assert said(found, "'crank_angle' jumps by a turn at 1 place of a sweep and was joined there")
-    assert whole.document["notes"] == [note for note in found.document["notes"] if "jumps" not in note]
-    for document in (whole.document, found.document):
-        assert names(document) == ["elastic_deflection"]
-    one, other = (item.document["causes"][0]["unknowns"]["compliance"] for item in (whole, found))
-    assert other["value"] == pytest.approx(one["value"], rel=1e-6)
-    assert other["interval95"][0] < 0.01 < other["interval95"][1]
 
 
 def test_what_a_budget_of_calls_leaves_out_is_said(desk: Path, press: Columns, plain: Diagnosed) -> None:
@@ -315,53 +244,29 @@ def test_hostile_words_are_shown_and_obeyed_nowhere(desk: Path, press: Columns) 
     }
 
 
-# Units that were probably written wrong
+# Units that were probably written wrong, other ways to write the same file
 
 
-SLIPS: dict[str, tuple[str, str, float, str]] = {
-    "metres over millimetres": (HEIGHT, "slider_position [m]", 1e-3, "multiply it by 0.001; "),
-    "radians over degrees": (
-        ANGLE, "crank_angle [rad]", np.pi / 180, "multiply it by pi/180 (degrees, not radians); ",
-    ),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("what", SLIPS)
-def test_a_unit_that_is_probably_wrong_is_named_and_nothing_is_changed(desk: Path, press: Columns, what: str) -> None:
-    column, header, factor, words = SLIPS[what]
-    found = diagnose_here(desk, what, text_of(renamed(press, column, header)))
+def test_a_unit_that_is_probably_wrong_is_named_and_nothing_is_changed(desk: Path, press: Columns) -> None:
+    found = diagnose_here(desk, "metres", text_of(renamed(press, HEIGHT, "slider_position [m]")))
     (unit_error,) = found.document["unit_slips"]
-    assert unit_error["column"] == header.split()[0]
-    assert unit_error["factor"] == pytest.approx(factor, rel=1e-12)
-    assert unit_error["text"].startswith(f"the unit of column '{header}' is probably wrong: {words}")
+    assert unit_error["column"] == "slider_position"
+    assert unit_error["factor"] == pytest.approx(1e-3, rel=1e-12)
+    told = "the unit of column 'slider_position [m]' is probably wrong: multiply it by 0.001; "
+    assert unit_error["text"].startswith(told)
     assert f"warning: suspected unit slip: {unit_error['text']} (nothing was changed)" in found.answer.err
     assert "probably wrong" in (found.folder / "sheet.md").read_text(encoding="utf-8")
     measured = np.load(found.folder / "arrays.npz")["slider_position.measured"]
-    scale = 1e3 if column == HEIGHT else 1.0  # as the header says
-    assert measured == pytest.approx([scale * float(cell) for cell in press[HEIGHT]], rel=1e-12)
+    assert measured == pytest.approx([1e3 * float(cell) for cell in press[HEIGHT]], rel=1e-12)  # as the header says
 
 
-# Other ways to write the same file
-
-
-def german(press: Columns) -> str:
-    """Semicolons between cells, commas in numbers."""
-    return text_of(press).replace(",", ";").replace(".", ",")
-
-
-WRITTEN: dict[str, Callable[[Columns], bytes]] = {
-    "semicolons and decimal commas": lambda press: german(press).encode(),
-    "byte order mark and CRLF": lambda press: b"\xef\xbb\xbf" + text_of(press).replace("\n", "\r\n").encode(),
-    "all of it, empty lines, spaces": lambda press: (
-        b"\xef\xbb\xbf" + german(press).replace(";", " ; ").replace("\n", "\r\n\r\n").encode()
-    ),
-}
-
-
-@pytest.mark.parametrize("how", WRITTEN)
-def test_every_way_to_write_a_file_gives_the_same_bytes(
-    bench: Path, desk: Path, press: Columns, plain: Diagnosed, how: str
-) -> None:
-    found = diagnose_here(bench, "plain", WRITTEN[how](press))
-    assert (found.folder / "diagnosis.json").read_bytes() == (plain.folder / "diagnosis.json").read_bytes()
-    assert read_document(desk / plain.folder.name) == found.document
+def test_another_way_to_write_a_file_gives_the_same_bytes(calc_process: Calc, bench: Path, press: Columns) -> None:
+    """A byte order mark, semicolons and decimal commas, spaces around them, other line ends and empty lines."""
+    plain = text_of(press)
+    german = plain.replace(",", " ; ").replace(".", ",").replace("\n", "\r\n\r\n")
+    for output, content in {"plain": plain.encode(), "german": b"\xef\xbb\xbf" + german.encode()}.items():
+        (bench / "m.csv").write_bytes(content)
+        answer = calc_process(*COMMAND, "--data", "m.csv", "-o", output, "-q")
+        assert answer.code == 0, answer.err
+    first, second = ((bench / output / "diagnosis.json").read_bytes() for output in ("plain", "german"))
+    assert first == second

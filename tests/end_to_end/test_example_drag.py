@@ -5,50 +5,22 @@ What every example without its record must keep is tested in ``test_opt_in_examp
 
 from __future__ import annotations
 
-import csv
-import os
-import shutil
 from pathlib import Path
 
 import numpy as np
 import pytest
-from measured import Document, calc_here, read_document
+from measured import Document
 from numpy.typing import NDArray
-from shown_in_docs import EXAMPLES
+from prepared import PreparedExample, Table, table_of, write
 
-from truing.kernel.loading import load_file
-
-EXAMPLE = EXAMPLES / "cycloid_drag"
-RECORD = Path(os.environ.get("TRUING_MEASURED", "nowhere")) / "cycloid_speed_friction" / "data.csv"
-pytestmark = pytest.mark.skipif(not RECORD.is_file(), reason="the record is not shipped")
-Table = list[list[str]]
+EXAMPLE = PreparedExample("cycloid_drag", "cycloid_speed_friction")
+pytestmark = EXAMPLE.needs_the_record
 Values = NDArray[np.float64]
 
 
 @pytest.fixture(scope="module")
 def desk(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The example beside the record, prepared."""
-    folder = tmp_path_factory.mktemp("drag") / "desk"
-    shutil.copytree(EXAMPLE, folder, ignore=shutil.ignore_patterns("__pycache__", "runs", "*.csv"))
-    shutil.copyfile(RECORD, folder / "data.csv")
-    write(folder / "measured.csv", load_file(EXAMPLE / "prepare.py").prepared(folder / "data.csv"))
-    return folder
-
-
-def write(file: Path, table: Table) -> None:
-    with file.open("w", encoding="utf-8", newline="") as lines:
-        csv.writer(lines, lineterminator="\n").writerows(table)
-
-
-def table_of(file: Path) -> Table:
-    with file.open(encoding="utf-8", newline="") as lines:
-        return list(csv.reader(lines))
-
-
-def diagnosed(desk: Path, name: str) -> Document:
-    answer = calc_here(desk, "diagnose", "./cycloid_drag.py", "--inputs", "inputs.toml", "--data", f"{name}.csv")
-    assert answer.code == 0, answer.err
-    return read_document(desk / "runs" / name)
+    return EXAMPLE.desk(tmp_path_factory.mktemp("drag") / "desk", "measured.csv")
 
 
 def fitted(table: Table, *, inertia: bool) -> tuple[Values, float]:
@@ -68,7 +40,7 @@ def dry_friction(document: Document) -> dict[str, float]:
 
 
 def test_the_page_prints_what_least_squares_say(desk: Path) -> None:
-    page = (EXAMPLE / "README.md").read_text(encoding="utf-8")
+    page = (EXAMPLE.folder / "README.md").read_text(encoding="utf-8")
     table = table_of(desk / "measured.csv")
     sizes, error = fitted(table, inertia=False)
     assert f"| dry and viscous | {sizes[0]:.2f} N m | {sizes[1]:.3f} N m s/rad | | {error:.2f} N m |" in page
@@ -78,7 +50,7 @@ def test_the_page_prints_what_least_squares_say(desk: Path) -> None:
 
 
 def test_dry_friction_is_in_every_explanation(desk: Path) -> None:
-    document = diagnosed(desk, "measured")
+    document = EXAMPLE.diagnosed(desk, "measured")
     assert document["verdict"] in {"named", "one_of"}
     assert all("dry_friction" in names for names in document["explanations"])
     assert {frozenset(names) for names in document["explanations"]} <= {
@@ -95,18 +67,18 @@ def test_dry_friction_is_in_every_explanation(desk: Path) -> None:
 
 def test_the_viscous_part_is_calibrated_to_what_is_left(desk: Path) -> None:
     sizes, _ = fitted(table_of(desk / "measured.csv"), inertia=False)
-    viscosity = diagnosed(desk, "measured")["calibrated"]["viscosity"]["value"]
+    viscosity = EXAMPLE.diagnosed(desk, "measured")["calibrated"]["viscosity"]["value"]
     assert viscosity == pytest.approx(sizes[1], abs=0.02)
 
 
 @pytest.mark.parametrize("first", [0, 1])
 def test_every_second_row_says_the_same(desk: Path, first: int) -> None:
     head, *rows = table_of(desk / "measured.csv")
-    write(desk / "half.csv", [head, *rows[first::2]])
-    document = diagnosed(desk, "half")
+    write(desk / f"half_{first}.csv", [head, *rows[first::2]])
+    document = EXAMPLE.diagnosed(desk, f"half_{first}")
     assert document["verdict"] in {"named", "one_of"}
     assert all("dry_friction" in names for names in document["explanations"])
-    sizes, _ = fitted(table_of(desk / "half.csv"), inertia=False)
+    sizes, _ = fitted(table_of(desk / f"half_{first}.csv"), inertia=False)
     assert dry_friction(document)["value"] == pytest.approx(sizes[0], abs=0.2)
 
 
@@ -114,6 +86,6 @@ def test_one_way_alone_dry_friction_is_not_taken_for_an_offset(desk: Path) -> No
     """Where the speed never changes its sign, dry friction is one curve with whatever adds a constant torque."""
     head, *rows = table_of(desk / "measured.csv")
     write(desk / "forward.csv", [head, *(row for row in rows if float(row[1]) > 0)])
-    document = diagnosed(desk, "forward")
+    document = EXAMPLE.diagnosed(desk, "forward")
     assert document["verdict"] != "named"
     assert any("dry_friction" in names for names in document["explanations"])

@@ -2,60 +2,32 @@
 
 from __future__ import annotations
 
-import csv
-import os
 import random
-import shutil
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from measured import Document, calc_here, read_document
+from measured import Document
 from numpy.typing import NDArray
+from prepared import PreparedExample, Table, table_of, write
 from scipy.optimize import minimize
 from scipy.stats import norm
-from shown_in_docs import EXAMPLES
 
-from truing.kernel.loading import load_file
 from truing.testing import failures
 
-EXAMPLE = EXAMPLES / "panel_fatigue"
-HOME = Path(os.environ.get("TRUING_MEASURED", "nowhere"))
-RECORD = HOME / "panel_fatigue_sn" / "data.csv"
-needs_the_record = pytest.mark.skipif(not RECORD.is_file(), reason="the record is not shipped")
-Rows = list[dict[str, str]]
+EXAMPLE = PreparedExample("panel_fatigue", "panel_fatigue_sn")
+needs_the_record = EXAMPLE.needs_the_record
 
 
 @pytest.fixture(scope="module")
 def panel() -> Any:
-    return load_file(EXAMPLE / "panel_fatigue.py")
+    return EXAMPLE.plugin()
 
 
-@pytest.fixture
-def desk(tmp_path: Path) -> Path:
-    """The example beside the record, prepared."""
-    folder = tmp_path / "desk"
-    shutil.copytree(EXAMPLE, folder, ignore=shutil.ignore_patterns("__pycache__", "runs", "*.csv"))
-    shutil.copyfile(RECORD, folder / "data.csv")
-    write(folder / "lives.csv", load_file(EXAMPLE / "prepare.py").prepared(folder / "data.csv"))
-    return folder
-
-
-def write(file: Path, table: list[list[str]]) -> None:
-    with file.open("w", encoding="utf-8", newline="") as lines:
-        csv.writer(lines, lineterminator="\n").writerows(table)
-
-
-def table_of(file: Path) -> list[list[str]]:
-    with file.open(encoding="utf-8", newline="") as lines:
-        return list(csv.reader(lines))
-
-
-def diagnosed(desk: Path, name: str) -> Document:
-    answer = calc_here(desk, "diagnose", "./panel_fatigue.py", "--inputs", "inputs.toml", "--data", f"{name}.csv")
-    assert answer.code == 0, answer.err
-    return read_document(desk / "runs" / name)
+@pytest.fixture(scope="module")
+def desk(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return EXAMPLE.desk(tmp_path_factory.mktemp("panel") / "desk", "lives.csv")
 
 
 def stated(document: Document) -> dict[str, float]:
@@ -66,7 +38,7 @@ def stated(document: Document) -> dict[str, float]:
     return {"value": unknown["value"], "low": unknown["interval95"][0], "high": unknown["interval95"][1]}
 
 
-def likeliest_limit(table: list[list[str]]) -> float:
+def likeliest_limit(table: Table) -> float:
     """The limit of Basquin's line over S - S_L in normal scatter, run-outs as what they are; in MPa."""
     stress, life = np.array([[float(cell) for cell in row[:2]] for row in table[1:]]).T
     is_cut = np.array([row[2] == "runout" for row in table[1:]])
@@ -94,7 +66,7 @@ def test_a_limit_is_the_stress_that_counts_as_none(panel: Any, stress: float, li
 
 @needs_the_record
 def test_the_record_is_the_published_one() -> None:
-    rows = table_of(RECORD)[1:]
+    rows = table_of(EXAMPLE.record)[1:]
     stresses = [row[0] for row in rows]
     assert {stress: stresses.count(stress) for stress in stresses} == dict.fromkeys(
         ["380", "340", "300", "280", "270"], 25
@@ -105,7 +77,7 @@ def test_the_record_is_the_published_one() -> None:
 
 @needs_the_record
 def test_a_fatigue_limit_is_among_the_explanations_and_its_size_the_likeliest(desk: Path) -> None:
-    document = diagnosed(desk, "lives")
+    document = EXAMPLE.diagnosed(desk, "lives")
     assert document["verdict"] in {"one_of", "named"}
     assert ["fatigue_limit"] in document["explanations"]
     size = stated(document)
@@ -119,12 +91,13 @@ def test_a_fatigue_limit_is_among_the_explanations_and_its_size_the_likeliest(de
 
 
 @needs_the_record
-def test_a_run_out_is_no_failure_at_its_last_cycle(desk: Path) -> None:
+def test_a_run_out_is_no_failure_at_its_last_cycle(desk: Path, tmp_path: Path) -> None:
     """Taken for failures the ten put the limit lower: 201 MPa by least squares."""
-    broken = (desk / "inputs.toml").read_text(encoding="utf-8").replace("at_least", "# at_least")
-    honest = stated(diagnosed(desk, "lives"))["value"]
-    (desk / "inputs.toml").write_text(broken, encoding="utf-8")
-    assert stated(diagnosed(desk, "lives"))["value"] < honest - 5
+    other = EXAMPLE.desk(tmp_path / "desk", "lives.csv")
+    broken = (other / "inputs.toml").read_text(encoding="utf-8").replace("at_least", "# at_least")
+    (other / "inputs.toml").write_text(broken, encoding="utf-8")
+    honest = stated(EXAMPLE.diagnosed(desk, "lives"))["value"]
+    assert stated(EXAMPLE.diagnosed(other, "lives"))["value"] < honest - 5
 
 
 @needs_the_record
@@ -132,8 +105,8 @@ def test_a_run_out_is_no_failure_at_its_last_cycle(desk: Path) -> None:
 def test_the_order_of_the_rows_does_not_matter(desk: Path, seed: int) -> None:
     head, *rows = table_of(desk / "lives.csv")
     random.Random(seed).shuffle(rows)
-    write(desk / "again.csv", [head, *rows])
-    first, again = diagnosed(desk, "lives"), diagnosed(desk, "again")
+    write(desk / f"again_{seed}.csv", [head, *rows])
+    first, again = EXAMPLE.diagnosed(desk, "lives"), EXAMPLE.diagnosed(desk, f"again_{seed}")
     assert again["verdict"] == first["verdict"]
     assert again["explanations"] == first["explanations"]
     assert stated(again)["value"] == pytest.approx(stated(first)["value"], rel=0.05)
@@ -143,7 +116,7 @@ def test_the_order_of_the_rows_does_not_matter(desk: Path, seed: int) -> None:
 def test_a_table_sorted_by_life_has_no_other_cause(desk: Path) -> None:
     head, *rows = table_of(desk / "lives.csv")
     write(desk / "sorted.csv", [head, *sorted(rows, key=lambda row: (-float(row[0]), float(row[1])))])
-    document = diagnosed(desk, "sorted")
+    document = EXAMPLE.diagnosed(desk, "sorted")
     assert document["remainder"] is None or "order" not in document["remainder"]["depends_on"]
     assert document["verdict"] != "unknown"
 
@@ -151,31 +124,25 @@ def test_a_table_sorted_by_life_has_no_other_cause(desk: Path) -> None:
 @needs_the_record
 def test_a_load_cell_is_not_hundreds_of_megapascals_off(desk: Path) -> None:
     """It is declared to be off by 10 MPa at the most, and would have to be by 300."""
-    assert ["load_cell_zero"] not in diagnosed(desk, "lives")["explanations"]
+    assert ["load_cell_zero"] not in EXAMPLE.diagnosed(desk, "lives")["explanations"]
 
 
 @needs_the_record
 def test_every_second_row_says_nothing_against_the_limit(desk: Path) -> None:
     head, *rows = table_of(desk / "lives.csv")
     write(desk / "half.csv", [head, *rows[::2]])
-    document = diagnosed(desk, "half")
+    document = EXAMPLE.diagnosed(desk, "half")
     assert ["fatigue_limit"] in document["explanations"] or document["verdict"] in {"none", "undecided"}
 
 
 # Preparation
 
 
-def prepared(folder: Path, text: str) -> list[list[str]]:
-    (folder / "data.csv").write_text(text, encoding="utf-8")
-    made: list[list[str]] = load_file(EXAMPLE / "prepare.py").prepared(folder / "data.csv")
-    return made
-
-
 HEAD = "stress [MPa],life [kcycles],outcome [-]\n"
 
 
 def test_run_outs_are_marked_at_their_last_cycle(tmp_path: Path) -> None:
-    made = prepared(tmp_path, HEAD + "380,100,failed\n270,10000,runout\n300,1000,failed\n")
+    made = EXAMPLE.prepared(tmp_path, HEAD + "380,100,failed\n270,10000,runout\n300,1000,failed\n")
     assert made[1:] == [["380", "5", "failed"], ["270", "7", "runout"], ["300", "6", "failed"]]
 
 
@@ -189,4 +156,4 @@ def test_run_outs_are_marked_at_their_last_cycle(tmp_path: Path) -> None:
 )
 def test_another_file_is_refused_in_one_sentence(text: str, sentence: str, tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=sentence):
-        prepared(tmp_path, text)
+        EXAMPLE.prepared(tmp_path, text)

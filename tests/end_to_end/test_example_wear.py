@@ -2,27 +2,21 @@
 
 from __future__ import annotations
 
-import csv
-import os
 import random
-import shutil
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from measured import Document, calc_here, read_document
+from measured import Document
 from numpy.typing import NDArray
+from prepared import PreparedExample, table_of, write
 from scipy.optimize import least_squares
-from shown_in_docs import EXAMPLES
 
-from truing.kernel.loading import load_file
 from truing.testing import failures
 
-EXAMPLE = EXAMPLES / "sliding_wear"
-RECORD = Path(os.environ.get("TRUING_MEASURED", "nowhere")) / "metal_sliding_wear" / "data.csv"
-needs_the_record = pytest.mark.skipif(not RECORD.is_file(), reason="the record is not shipped")
-Table = list[list[str]]
+EXAMPLE = PreparedExample("sliding_wear", "metal_sliding_wear")
+needs_the_record = EXAMPLE.needs_the_record
 CYCLES, LOAD = 0.191, 0.649
 """Exponents of wear over cycles and load: least squares on the logarithms of all rows, apart from the project."""
 OF_SIX = (0.50, 0.71)
@@ -31,34 +25,12 @@ OF_SIX = (0.50, 0.71)
 
 @pytest.fixture(scope="module")
 def wear() -> Any:
-    return load_file(EXAMPLE / "sliding_wear.py")
+    return EXAMPLE.plugin()
 
 
-@pytest.fixture
-def desk(tmp_path: Path) -> Path:
-    """The example beside the record, prepared."""
-    folder = tmp_path / "desk"
-    shutil.copytree(EXAMPLE, folder, ignore=shutil.ignore_patterns("__pycache__", "runs", "*.csv"))
-    shutil.copyfile(RECORD, folder / "data.csv")
-    for name, table in load_file(EXAMPLE / "prepare.py").prepared(folder / "data.csv").items():
-        write(folder / name, table)
-    return folder
-
-
-def write(file: Path, table: Table) -> None:
-    with file.open("w", encoding="utf-8", newline="") as lines:
-        csv.writer(lines, lineterminator="\n").writerows(table)
-
-
-def table_of(file: Path) -> Table:
-    with file.open(encoding="utf-8", newline="") as lines:
-        return list(csv.reader(lines))
-
-
-def diagnosed(desk: Path, name: str) -> Document:
-    answer = calc_here(desk, "diagnose", "./sliding_wear.py", "--inputs", "inputs.toml", "--data", f"{name}.csv")
-    assert answer.code == 0, answer.err
-    return read_document(desk / "runs" / name)
+@pytest.fixture(scope="module")
+def desk(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return EXAMPLE.desk(tmp_path_factory.mktemp("wear") / "desk")
 
 
 def causes_of(document: Document) -> list[set[str]]:
@@ -93,17 +65,17 @@ def test_a_width_that_slows_is_a_load_that_is_shared(wear: Any, load: float, cyc
 
 @needs_the_record
 def test_the_powers_of_the_record_are_those_that_the_page_prints() -> None:
-    _, load, cycles, worn = np.array(table_of(RECORD)[1:], dtype=float).T
+    _, load, cycles, worn = np.array(table_of(EXAMPLE.record)[1:], dtype=float).T
     columns = np.stack([np.ones(96), np.log(cycles), np.log(load)], axis=1)
     fitted = np.linalg.lstsq(columns, np.log(worn), rcond=None)[0]
     assert fitted[1:] == pytest.approx([CYCLES, LOAD], abs=5e-4)
-    page = (EXAMPLE / "README.md").read_text(encoding="utf-8")
+    page = (EXAMPLE.folder / "README.md").read_text(encoding="utf-8")
     assert f"| {fitted[1]:.3f} | {fitted[2]:.3f} |" in page
 
 
 @needs_the_record
 def test_both_powers_are_found_and_what_they_mean_is_left_open(desk: Path) -> None:
-    document = diagnosed(desk, "logarithms")
+    document = EXAMPLE.diagnosed(desk, "logarithms")
     assert document["verdict"] == "one_of"
     assert any({"slowing_rate", "load_sharing"} <= names for names in causes_of(document))
     assert any({"slowing_rate", "scar_geometry"} <= names for names in causes_of(document))
@@ -120,7 +92,7 @@ def test_both_powers_are_found_and_what_they_mean_is_left_open(desk: Path) -> No
 def test_every_second_reading_says_the_same(desk: Path) -> None:
     head, *rows = table_of(desk / "logarithms.csv")
     write(desk / "half.csv", [head, *rows[::2]])
-    document = diagnosed(desk, "half")
+    document = EXAMPLE.diagnosed(desk, "half")
     assert document["verdict"] == "one_of"
     assert {"slowing_rate", "load_sharing"} in causes_of(document)
 
@@ -128,7 +100,7 @@ def test_every_second_reading_says_the_same(desk: Path) -> None:
 @needs_the_record
 @pytest.mark.xfail(strict=False, reason="what differs between runs is noise of a random walk; the visible size is not")
 def test_in_micrometres_a_power_of_the_load_is_seen_or_said_to_be_invisible(desk: Path) -> None:
-    document = diagnosed(desk, "measured")
+    document = EXAMPLE.diagnosed(desk, "measured")
     rows = [row for row in table_of(desk / "measured.csv")[1:] if row[-1] == "fit"]
     load, cycles, worn = np.array([[float(cell) for cell in row[1:4]] for row in rows]).T
 
@@ -147,7 +119,7 @@ def test_without_specimens_none_of_equal_explanations_is_called_the_only_one(des
     head, *rows = [row[1:4] for row in table_of(desk / "logarithms.csv")]
     random.Random(1).shuffle(rows)
     write(desk / "flat.csv", [head, *rows])
-    document = diagnosed(desk, "flat")
+    document = EXAMPLE.diagnosed(desk, "flat")
     tied = [set(item["causes"]) for item in document["ranking"] if item["behind"] < 1e-6]
     assert len(causes_of(document)) >= len([names for number, names in enumerate(tied) if names not in tied[:number]])
 
@@ -158,14 +130,8 @@ def test_without_specimens_none_of_equal_explanations_is_called_the_only_one(des
 HEAD = "specimen [-],load [gf],cycles [-],wear [um]\n"
 
 
-def prepared(folder: Path, text: str) -> dict[str, Table]:
-    (folder / "data.csv").write_text(text, encoding="utf-8")
-    made: dict[str, Table] = load_file(EXAMPLE / "prepare.py").prepared(folder / "data.csv")
-    return made
-
-
 def test_the_last_two_specimens_of_a_load_judge(tmp_path: Path) -> None:
-    made = prepared(tmp_path, HEAD + "".join(f"{name},10,2,100\n" for name in (7, 8, 9)))
+    made = EXAMPLE.prepared(tmp_path, HEAD + "".join(f"{name},10,2,100\n" for name in (7, 8, 9)))
     assert [row[-1] for row in made["measured.csv"]] == ["record", "fit", "validation", "validation"]
     assert made["logarithms.csv"][1] == ["7", "10", "2", "2.000000", "fit"]
 
@@ -180,4 +146,4 @@ def test_the_last_two_specimens_of_a_load_judge(tmp_path: Path) -> None:
 )
 def test_another_file_is_refused_in_one_sentence(text: str, sentence: str, tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=sentence):
-        prepared(tmp_path, text)
+        EXAMPLE.prepared(tmp_path, text)

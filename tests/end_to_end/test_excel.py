@@ -17,7 +17,8 @@ from hypothesis import settings as drawing
 from hypothesis import strategies as st
 
 from shared import Calc
-from truing.measurements import EXCEL, read_table, write_table
+from truing.atomic import write_files
+from truing.measurements import EXCEL, read_table, table_text
 from truing.units import from_si
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
@@ -85,8 +86,8 @@ FORMULAS = st.builds(str.__add__, st.sampled_from(["=", "＝", "'=", "''+", "-",
 def test_anything_reads_back_as_it_was(tmp_path_factory: pytest.TempPathFactory, rows: list[tuple[str, float]]) -> None:
     path = tmp_path_factory.getbasetemp() / "sheet.csv"
     words, numbers = (list(column) for column in zip(*rows, strict=True))
-    write_table(path, ["run", "x [mm]"], [words, numbers], form=EXCEL)
-    found = read_table(path, {})
+    write_files({path: table_text(["run", "x [mm]"], [words, numbers], form=EXCEL)})
+    found, _ = read_table(path, {})
     assert found.columns["run"] == tuple(re.sub(r"[\r\n]+", " ", word).strip() for word in words)
     read = from_si(found.columns["x"], "mm")
     assert [float(one) for one in read] == pytest.approx(numbers, rel=1e-15, nan_ok=True)
@@ -98,8 +99,8 @@ def test_anything_reads_back_as_it_was(tmp_path_factory: pytest.TempPathFactory,
 
 def test_a_single_column_keeps_its_commas(tmp_path: Path) -> None:
     values = [0.5, 1 / 3, -2e-7]
-    write_table(tmp_path / "one.csv", ["x"], [values], form=EXCEL)
-    assert list(read_table(tmp_path / "one.csv", {}).columns["x"]) == values
+    write_files({tmp_path / "one.csv": table_text(["x"], [values], form=EXCEL)})
+    assert list(read_table(tmp_path / "one.csv", {})[0].columns["x"]) == values
 
 
 def test_every_number_of_a_run_stands_in_its_table(calc: Calc, tmp_path: Path) -> None:
@@ -113,7 +114,7 @@ def test_every_number_of_a_run_stands_in_its_table(calc: Calc, tmp_path: Path) -
     said = {(row[0], row[1], row[2]): (row[head.index("value")], row[head.index("unit")]) for row in rows}
     load = document["inputs"]["load"]
     assert (number(said["input", "load", ""][0]), said["input", "load", ""][1]) == (load["value"], "N")
-    assert read_table(folder / "results.csv", {}).columns["part"] == tuple(row[0] for row in rows)
+    assert read_table(folder / "results.csv", {})[0].columns["part"] == tuple(row[0] for row in rows)
 
 
 def _is_number(cell: str) -> bool:

@@ -15,9 +15,16 @@ from shared import ROOT, TESTS, Calc
 
 sys.path += [str(ROOT / "docs" / "site"), str(TESTS / "unit")]
 
+import jsonschema
+import typer.main
 from diagnosis_samples import SAMPLES
 
 from manual.formats import FORMATS, with_table
+from truing.cli.app import app
+from truing.describe import description
+from truing.inputs_file import json_schema
+from truing.kernel import Kernel
+from truing.runs.diagnosis_document import diagnosis_document
 
 NAMES = sorted(file.name.removesuffix(".schema.json") for file in FORMATS.glob("*.schema.json"))
 SPRING = ROOT / "docs" / "examples" / "coil_spring.py"
@@ -27,8 +34,6 @@ PRINTED = {"run": "results", "diagnose": "diagnosis", "index": "listing", "expla
 
 @cache
 def schema_of(name: str) -> Any:
-    import jsonschema
-
     schema = json.loads((FORMATS / f"{name}.schema.json").read_text(encoding="utf-8"))
     jsonschema.Draft202012Validator.check_schema(schema)
     return jsonschema.Draft202012Validator(schema)
@@ -55,9 +60,6 @@ def test_every_format_is_in_the_list_of_files() -> None:
 
 
 def test_every_section_of_an_inputs_file_is_explained() -> None:
-    from truing.inputs_file import json_schema
-    from truing.kernel import Kernel
-
     kernel = Kernel()
     kernel.add_file(SPRING)
     text = (FORMATS.parent / "inputs_file.md").read_text(encoding="utf-8")
@@ -87,10 +89,6 @@ def test_a_schema_lets_no_field_pass_that_it_does_not_name(name: str) -> None:
 
 
 def test_every_verb_that_prints_json_has_a_format() -> None:
-    import typer.main
-
-    from truing.cli.app import app
-
     group: Any = typer.main.get_command(app)
     printing = {name for name, item in group.commands.items() if any("--json" in one.opts for one in item.params)}
     assert {PRINTED.get(name, name) for name in printing} - {""} | {"run"} == set(NAMES)
@@ -119,15 +117,10 @@ def test_a_document_with_a_field_that_is_not_described_is_found() -> None:
 
 @pytest.mark.parametrize("sample", SAMPLES)
 def test_a_diagnosis_is_described(sample: str) -> None:
-    from truing.runs.diagnosis_document import diagnosis_document
-
     demand("diagnosis", json.loads(json.dumps(diagnosis_document(SAMPLES[sample]()))))
 
 
 def test_every_model_is_described_in_the_described_form() -> None:
-    from truing.describe import description
-    from truing.kernel import Kernel
-
     kernel = Kernel.installed()
     kernel.add_file(SPRING)
     for offer in kernel.offers.values():

@@ -1,4 +1,7 @@
-"""The harmonic drive through the command line: the example, four measured surfaces, made ones, rows and a diagnosis."""
+"""The harmonic drive through the command line: the example, a measured surface, rows and a diagnosis.
+
+What it calculates is tested in tests/published and in tests/unit, on the model.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +11,7 @@ import json
 from collections.abc import Callable
 from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -16,10 +20,9 @@ import pytest
 
 from harmonic_fractal.structure import structure_function
 from shared import Calc
+from truing.cli import main
 
 SURFACES = Path(__file__).parents[1] / "data" / "surfaces"
-OPTIONS = {"matrix-4.txt": 'spacing = "0.369862 um", height_unit = "2.91818e-8 m"'}
-BINARY = (".al3d", ".dat")
 Table = Callable[..., list[dict[str, float]]]
 
 
@@ -35,8 +38,6 @@ class Ran:
 
 def ran(folder: Path, *words: str | Path) -> Ran:
     """Run a command in this process and read its folder."""
-    from truing.cli import main
-
     said = io.StringIO()
     with redirect_stdout(said), redirect_stderr(said):
         code = main([*map(str, words), "-o", str(folder), "-q"])
@@ -56,37 +57,19 @@ def desk(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def example(desk: Path) -> Ran:
     """The shipped example, with fewer draws."""
-    from truing.cli import main
-
     assert main(["init", "harmonic_fractal", "-o", str(desk / "drive.toml"), "-q"]) == 0
     few = ("--set", "studies.reliability.draws=2000")
     return ran(desk / "example", "run", "harmonic_fractal", "--inputs", desk / "drive.toml", *few)
 
 
 @pytest.fixture(scope="module")
-def measured(desk: Path) -> Callable[[str], Ran]:
-    """A run on one of the four measured surfaces, once each."""
-    done: dict[str, Ran] = {}
-
-    def run(file: str) -> Ran:
-        if file.endswith(BINARY):
-            pytest.importorskip("SurfaceTopography")
-        if file not in done:
-            more = f", {OPTIONS[file]}" if file in OPTIONS else ""
-            path = (SURFACES / file).as_posix()
-            inputs = desk / f"{Path(file).stem}.toml"
-            inputs.write_text(
-                f'plugin = "harmonic_fractal"\n[inputs]\nsurface = {{ file = "{path}"{more} }}\n'
-                '[studies]\nrun = ["validity"]\n'
-            )
-            done[file] = ran(desk / Path(file).stem, "run", "harmonic_fractal", "--inputs", inputs)
-        return done[file]
-
-    return run
-
-
-def directions(run: Ran) -> dict[str, Any]:
-    return dict(run.found["studies"]["validity"]["flanks"]["surface"]["directions"])
+def refused(desk: Path) -> Ran:
+    """A run on a measured profile that is not self-affine."""
+    inputs = desk / "profile.toml"
+    file = (SURFACES / "hfm-1.hfm").as_posix()
+    text = f'plugin = "harmonic_fractal"\n[inputs]\nsurface = {{ file = "{file}" }}\n[studies]\nrun = ["validity"]\n'
+    inputs.write_text(text, encoding="utf-8")
+    return ran(desk / "profile", "run", "harmonic_fractal", "--inputs", inputs)
 
 
 def test_the_example_runs_and_keeps_its_limits(example: Ran) -> None:
@@ -103,164 +86,34 @@ def test_the_example_says_where_it_extrapolates(example: Ran) -> None:
     assert any("extrapolated below resolution" in text for text in example.found["warnings"])
 
 
-REFUSED = {"al3d-1.al3d": ("x", "y"), "hfm-1.hfm": ("x",)}
-
-
-@pytest.mark.parametrize("file", REFUSED)
-def test_a_surface_that_is_not_self_affine_is_refused_with_its_slopes(
-    measured: Callable[[str], Ran], file: str
-) -> None:
-    run = measured(file)
-    assert run.code == 1
-    assert value(run, "surface_accepted") == 0
-    (check,) = (each for each in run.found["checks"] if each["name"] == "surface_accepted")
+def test_a_surface_that_is_not_self_affine_is_refused_with_its_slopes(refused: Ran) -> None:
+    assert refused.code == 1
+    assert value(refused, "surface_accepted") == 0
+    (check,) = (each for each in refused.found["checks"] if each["name"] == "surface_accepted")
     assert check["passed"] is False
-    assert "1 of" in run.said
-    assert "surface_accepted" in run.said
-    assert any("surface is refused" in text and "no self-affine range" in text for text in run.found["warnings"])
-    assert f"{file}: local slopes" in run.sheet
-    assert set(directions(run)) == set(REFUSED[file])
-    for found in directions(run).values():
-        assert found["r_squared"] > 0.92
-        assert found["accepted"] is False
-        assert max(found["local_dimensions"]) - min(found["local_dimensions"]) > 0.6
-        for slope in found["local_dimensions"]:
-            assert f"{slope:.5g}" in run.sheet
+    assert "1 of" in refused.said
+    assert "surface_accepted" in refused.said
+    warnings = refused.found["warnings"]
+    assert any("surface is refused" in text and "no self-affine range" in text for text in warnings)
+    assert "hfm-1.hfm: local slopes" in refused.sheet
+    (found,) = refused.found["studies"]["validity"]["flanks"]["surface"]["directions"].values()
+    assert found["r_squared"] > 0.92
+    assert found["accepted"] is False
+    assert max(found["local_dimensions"]) - min(found["local_dimensions"]) > 0.6
+    for slope in found["local_dimensions"]:
+        assert f"{slope:.5g}" in refused.sheet
+    assert str(SURFACES) not in refused.sheet  # no trace of this machine
 
 
-@pytest.mark.parametrize("file", REFUSED)
-def test_what_is_stated_stands_for_a_refused_surface(measured: Callable[[str], Ran], example: Ran, file: str) -> None:
-    run = measured(file)
+def test_what_is_stated_stands_for_a_refused_surface(refused: Ran, example: Ran) -> None:
     for name in ("dimension", "roughness", "stiffness", "torsion"):
-        assert value(run, name) == pytest.approx(value(example, name), rel=1e-12)
-
-
-def test_a_surface_with_a_lay_is_taken_along_the_one_direction_that_has_a_range(measured: Callable[[str], Ran]) -> None:
-    run = measured("matrix-4.txt")
-    assert run.code == 0, run.said
-    assert value(run, "surface_accepted") == 1
-    found = directions(run)
-    assert run.found["studies"]["validity"]["flanks"]["surface"]["chosen"] == "y"
-    assert found["y"]["accepted"] is True
-    assert found["x"]["accepted"] is False
-    assert found["x"]["r_squared"] > found["y"]["r_squared"]
-    low, high = found["y"]["range"]["values"]
-    assert high / low >= 10
-    assert value(run, "profile_dimension") == pytest.approx(1.803, abs=0.005)  # independent, spikes kept
-    assert value(run, "profile_dimension") == found["y"]["profile_dimension"]
-    assert any("the direction y alone is used; along x: no self-affine range" in text for text in run.found["warnings"])
-
-
-def test_a_surface_in_counts_has_its_scale(measured: Callable[[str], Ran]) -> None:
-    run = measured("metropro-1.dat")
-    assert run.code in {0, 1}
-    heights = run.found["studies"]["validity"]["flanks"]["surface"]["sq"]
-    assert heights["raw"] == pytest.approx(0.07529, rel=5e-3)
-    assert heights["plane"] == pytest.approx(0.01333, rel=5e-3)
-    assert value(run, "surface_accepted") == float(run.code == 0)
-
-
-def test_no_surface_leaves_a_trace_of_this_machine(measured: Callable[[str], Ran]) -> None:
-    run = measured("matrix-4.txt")
-    assert str(SURFACES) not in run.sheet
-
-
-TRUTH = """plugin = "harmonic_fractal.made_flank"
-[inputs]
-kind = "brownian"
-fractal_dimension = 2.4
-fractal_roughness = "1e-11 m"
-convention = "areal"
-length = "160 um"
-width = "40 um"
-spacing = "0.4 um"
-seed = {seed}
-"""
-
-
-@pytest.fixture(scope="module")
-def made(desk: Path) -> Ran:
-    """One made flank, written."""
-    (desk / "truth.toml").write_text(TRUTH.format(seed=3))
-    return ran(desk / "made", "run", "harmonic_fractal.made_flank", "--inputs", desk / "truth.toml")
-
-
-@pytest.fixture(scope="module")
-def both(desk: Path, made: Ran) -> Ran:
-    """Made flank against made flank."""
-    assert made.code == 0
-    pair = 'surface = { file = "made/flank.csv" }\nmating_surface = { file = "made/flank.csv" }\n'
-    (desk / "both.toml").write_text(f'plugin = "harmonic_fractal"\n[inputs]\n{pair}[studies]\nrun = ["validity"]\n')
-    return ran(desk / "both", "run", "harmonic_fractal", "--inputs", desk / "both.toml")
-
-
-def test_a_made_flank_is_written_and_read_back(desk: Path, made: Ran, both: Ran) -> None:
-    lines = (desk / "made" / "flank.csv").read_text(encoding="utf-8").splitlines()
-    head = [line for line in lines if line.startswith("#")]
-    assert "# height_unit = um" in head
-    assert len(lines) - len(head) == value(made, "lines") == 101
-    assert {len(line.split(",")) for line in lines[len(head) :]} == {401}
-    again = directions(both)["x"]
-    assert again["accepted"] is True
-    assert 1 + again["profile_dimension"] == pytest.approx(2.4, abs=0.08)
-    assert value(made, "accepted") == 1
-    assert abs(value(made, "dimension_error")) < 0.08
-
-
-def test_two_flanks_add_their_roughness(desk: Path, both: Ran) -> None:
-    """Alike, they are one flank of 2^(1/(2(D-2))) the roughness and twice the structure function."""
-    assert both.code == 0, both.said
-    dimension = value(both, "dimension")
-    used = both.found["studies"]["validity"]["flanks"]["surface"]
-    single = used["directions"][used["chosen"]]
-    assert dimension - 1 == pytest.approx(single["profile_dimension"], rel=1e-9)
-    ratio = value(both, "roughness") / single["roughness"]["value"]
-    assert ratio == pytest.approx(2 ** (1 / (2 * (dimension - 2))), rel=1e-6)
-
-
-def test_a_roughness_without_its_convention_is_refused(calc: Calc, tmp_path: Path) -> None:
-    (tmp_path / "drive.toml").write_text('plugin = "harmonic_fractal"\n[inputs]\nfractal_roughness = "1e-11 m"\n')
-    answer = calc("run", "harmonic_fractal", "--inputs", "drive.toml")
-    assert (answer.code, answer.out) == (2, "")
-    assert answer.err.startswith("drive.toml:3: fractal_roughness means nothing without convention; state convention")
-    assert [path.name for path in tmp_path.iterdir()] == ["drive.toml"]
-
-
-@pytest.mark.parametrize(("convention", "areal"), [("areal", 1.0), ("one_direction", 1.891), ("profile", 5.844)])
-def test_every_convention_arrives_as_the_areal_one(calc: Calc, tmp_path: Path, convention: str, areal: float) -> None:
-    """At D_s = 1.4 and density 1.5, by hand from the constants."""
-    (tmp_path / "drive.toml").write_text(
-        'plugin = "harmonic_fractal"\n[inputs]\nfractal_dimension = 2.4\nfractal_roughness = "1e-12 m"\n'
-        f'convention = "{convention}"\n'
-    )
-    (tmp_path / "rows.csv").write_text("torque [N*m]\n10\n")
-    answer = calc("table", "harmonic_fractal", "--inputs", "drive.toml", "--rows", "rows.csv")
-    (row,) = rows_of(answer.out)
-    assert row["roughness"] == pytest.approx(areal * 1e-12, rel=1e-3)
-
-
-def rows_of(text: str) -> list[dict[str, float]]:
-    head, *found = csv.reader(io.StringIO(text))
-    names = [name.split(" [")[0] for name in head]
-    return [
-        {name: float(cell) for name, cell in zip(names, row, strict=True) if cell and cell[0] in "-.0123456789"}
-        for row in found
-    ]
+        assert value(refused, name) == pytest.approx(value(example, name), rel=1e-12)
 
 
 @pytest.fixture
-def table(calc: Calc, tmp_path: Path) -> Table:
-    """Print results row by row for a CSV, with settings on the command line."""
-
-    def run(rows: str, *settings: str) -> list[dict[str, float]]:
-        (tmp_path / "drive.toml").write_text('plugin = "harmonic_fractal"\n')
-        (tmp_path / "rows.csv").write_text(rows)
-        words = [word for setting in settings for word in ("--set", setting)]
-        answer = calc("table", "harmonic_fractal", "--inputs", "drive.toml", "--rows", "rows.csv", *words)
-        assert answer.code == 0, answer.err
-        return rows_of(answer.out)
-
-    return run
+def table(tabled: Table) -> Table:
+    """Print results of the plugin row by row for a CSV of inputs."""
+    return partial(tabled, "harmonic_fractal")
 
 
 def test_a_column_of_lags_is_calculated_just_there(table: Table) -> None:
@@ -271,34 +124,9 @@ def test_a_column_of_lags_is_calculated_just_there(table: Table) -> None:
     assert [row["structure_function"] for row in rows] == pytest.approx(list(exact), rel=1e-9)
 
 
-def test_torsion_is_odd_and_none_below_its_reference(table: Table) -> None:
-    back, idle, little, forth = table("torque [N*m]\n-25\n0\n0.0005\n25\n", "drive_compliance=40 urad/(N*m)")
-    assert forth["torsion"] == pytest.approx(-back["torsion"], rel=1e-12)
-    assert idle["torsion"] == little["torsion"] == 0
-    assert forth["torsion"] == pytest.approx(forth["rough_torsion"] + 40 * (25 - 0.001), rel=1e-9)
-
-
-def test_a_batch_of_loads_is_stiffer_the_larger(table: Table) -> None:
-    rows = table("pair_load [N]\n0.001\n0.1\n1\n5\n25\n100\n")
-    printed = [2.49e5, 1.59e7, 1.19e8, 4.82e8, 1.95e9, 6.50e9]  # by quadrature
-    assert [row["stiffness"] for row in rows] == pytest.approx(printed, rel=4e-3)
-
-
-def test_a_load_below_the_plastic_limit_has_no_stiffness_and_says_so(calc: Calc, tmp_path: Path) -> None:
-    (tmp_path / "drive.toml").write_text(
-        'plugin = "harmonic_fractal"\n[inputs]\npair_load = "1 uN"\n[studies]\nrun = ["validity"]\n'
-    )
-    answer = calc("run", "harmonic_fractal", "--inputs", "drive.toml", "--json", "-o", "run")
-    found = json.loads(answer.out)
-    assert found["results"]["stiffness"]["value"] == 0
-    assert any("all contacts of the pair are plastic" in text for text in found["warnings"])
-
-
 @pytest.fixture(scope="module")
 def diagnosed(desk: Path) -> tuple[int, dict[str, Any]]:
     """A structure function with 12 nm of white noise in every height, measured at lags of its own."""
-    from truing.cli import main
-
     rng = np.random.default_rng(11)
     lags = np.geomspace(0.4, 20.0, 40)
     clean = structure_function(lags * 1e-6, 1.4, 1e-11) * 1e12
@@ -325,38 +153,6 @@ def test_noise_of_the_instrument_is_named_from_its_structure_function(diagnosed:
     low, high = unknown["interval95"]
     assert low <= true <= high
     assert unknown["value"] == pytest.approx(true, rel=0.03)
-
-
-def test_describe_names_what_is_declared(calc: Calc) -> None:
-    answer = calc("describe", "harmonic_fractal", "--json")
-    assert answer.code == 0
-    found = json.loads(answer.out)
-    inputs, results, effects = ({item["name"] for item in found[kind]} for kind in ("inputs", "results", "effects"))
-    assert {
-        "surface", "mating_surface", "fractal_dimension", "fractal_roughness", "convention", "drive_compliance",
-        "critical_rule", "tip_rule", "catalogue_size",
-    } <= inputs  # fmt: skip
-    assert {
-        "lag", "structure_function", "dimension", "roughness", "stiffness", "mesh_stiffness", "torsion", "clearance",
-        "closing_clearance", "free_play", "resolved_share", "rough_share", "surface_accepted",
-    } <= results  # fmt: skip
-    assert {
-        "hysteresis", "series_compliance", "ellipticity", "eccentricity", "engaged_pairs", "lost_motion", "oil_film",
-        "viscous_hysteresis", "first_load_set", "asperity_smoothing", "flank_wear", "modulus_temperature",
-        "thermal_preload", "creep", "rig_drift", "waviness", "instrument_noise", "lateral_filter",
-    } == effects  # fmt: skip
-
-
-def test_verify_states_every_row_as_it_is(calc: Calc) -> None:
-    answer = calc("verify", "harmonic_fractal", "--json")
-    assert answer.code == 0, answer.err
-    found = json.loads(answer.out)
-    assert len(found["rows"]) > 10
-    assert all(row["as_stated"] for row in found["rows"])
-    assert all(row["why"] for row in found["rows"] if row["verdict"] == "differs")
-    titles = " ".join(finding["title"] for finding in found["findings"]).lower()
-    for words in ("clearance", "weakest", "missing", "straight line"):
-        assert words in titles
 
 
 @pytest.mark.parametrize(

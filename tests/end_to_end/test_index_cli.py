@@ -13,6 +13,8 @@ import pytest
 
 sys.path.append(str(Path(__file__).parents[1] / "unit"))
 
+from urllib.parse import unquote
+
 from diagnosis_samples import SAMPLES
 from made_runs import check, made_runs, run, written
 
@@ -83,8 +85,6 @@ def test_newest_first_whatever_the_zone(calc: Calc, tmp_path: Path) -> None:
 
 
 def test_the_page_is_written_beside_the_runs_and_its_links_arrive(calc: Calc, tmp_path: Path) -> None:
-    from urllib.parse import unquote
-
     made_runs(tmp_path / "runs")
     answer = calc("index", "runs")
     assert answer.code == 0

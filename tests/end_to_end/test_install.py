@@ -3,6 +3,7 @@
 import json
 import os
 import sys
+import sysconfig
 import zipfile
 from pathlib import Path
 
@@ -44,15 +45,19 @@ def wheel(wheels: list[Path]) -> Path:
 
 @pytest.fixture(scope="module")
 def fresh(wheels: list[Path], tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Make a fresh environment with all of them, the new project with its tests; returns its folder of commands."""
+    """Make a fresh environment with all of them; returns its folder of commands.
+
+    What they need comes from the environment of the tests, behind the wheels; that it is declared is checked.
+    """
     folder = tmp_path_factory.mktemp("fresh")
     environment = folder / "environment"
     assert process([sys.executable, "-m", "venv", "--without-pip", str(environment)], folder).code == 0
     commands = environment / ("Scripts" if os.name == "nt" else "bin")
     pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "--python", str(commands / "python")]
-    wanted = [str(wheel) + ("[test]" if wheel.name.startswith(ARM.name) else "") for wheel in wheels]
-    done = process([*pip, "install", "--quiet", "--no-compile", *wanted], folder)
+    done = process([*pip, "install", "--quiet", "--no-compile", "--no-deps", *map(str, wheels)], folder)
     assert done.code == 0, done.err
+    own = Path(sysconfig.get_path("purelib", vars={"base": str(environment), "platbase": str(environment)}))
+    (own / "needed.pth").write_text(sysconfig.get_path("purelib") + "\n", encoding="utf-8")
     check = process([*pip, "check"], folder)
     assert check.code == 0, check.out
     return commands
@@ -161,7 +166,7 @@ def _writes_a_project(fresh: Path, folder: Path) -> None:
 
 def _passes_its_own_tests(fresh: Path, folder: Path) -> None:
     """A project of ``calc new``, as written: conformance, the effect found, run and diagnosed from the command line."""
-    done = command(fresh, folder, "pytest", "-q", "-p", "no:cacheprovider")
+    done = command(fresh, folder, "python", "-m", "pytest", "-q", "-p", "no:cacheprovider")
     assert done.code == 0, done.out
     assert " passed" in done.out
     assert not any(word in done.out for word in ("skipped", "warning", "xfailed"))

@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 
 import pytest
-from test_bad_input import listing
+from refusals import listing
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="a console signal there stops the test too")
 

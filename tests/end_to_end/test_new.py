@@ -11,8 +11,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import typer.main
 
 from shared import ROOT, Answer, Calc, process
+from truing.cli.app import app
 from truing.kernel.loading import load_file
 from truing.new_project import NewPlugin, project, single_file, write_project, write_single_file
 from truing.new_project.names import LONGEST_NAME, WIDEST_TITLE
@@ -83,10 +85,6 @@ def test_a_project_is_written_where_one_stands(calc: Calc, tmp_path: Path) -> No
 
 
 def test_the_readme_names_verbs_and_files_that_are_there() -> None:
-    import typer.main
-
-    from truing.cli.app import app
-
     files = project(PLANS[1])
     group: Any = typer.main.get_command(app)
     named = set(re.findall(r"calc (\w+)", files["README.md"]))

@@ -8,9 +8,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import typer.main
 from shown_in_docs import ROOT, blocks, check_page, commands, desk_in
 
 from truing.cli import main
+from truing.cli.app import app
+from truing.kernel import Kernel
 
 README = ROOT / "README.md"
 
@@ -81,11 +84,6 @@ NUMBERS = {11: "eleven", 16: "sixteen", 17: "seventeen", 18: "eighteen"}
 
 
 def test_it_lists_every_verb_and_every_plugin_with_its_effects() -> None:
-    import typer.main
-
-    from truing.cli.app import app
-    from truing.kernel import Kernel
-
     text = re.sub(r"\s+", " ", README.read_text(encoding="utf-8"))
     (listed,) = re.findall(r"and the verbs `([a-z ]+)`", text)
     group: Any = typer.main.get_command(app)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -14,6 +15,9 @@ from gated import BATCHES, FREE, PATIENCE, Gated, run_of, wait_until
 from test_interrupt import children_of, hearing_interrupts, is_alive
 
 from shared import Calc
+from truing.errors import OutputError
+from truing.report import run
+from truing.studies import sampling
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="a console signal there stops the test too")
 
@@ -57,9 +61,6 @@ def test_a_killed_run_goes_on_where_it_was(calc_process: Calc, tmp_path: Path) -
 @pytest.fixture
 def unfinished(calc: Calc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A run that failed at the very end, when every batch was finished."""
-    from truing.errors import OutputError
-    from truing.report import run
-
     with monkeypatch.context() as broken:
 
         def full(*_: object, **__: object) -> None:
@@ -74,8 +75,6 @@ def unfinished(calc: Calc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> P
 def test_all_batches_are_taken_up_and_none_is_computed(
     calc: Calc, unfinished: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from truing.studies import sampling
-
     assert calc(*SMALL, "-o", "whole").code == 0
     monkeypatch.setattr(sampling, "_unpacked", None)  # computing a batch would call it
     answer = calc(*(word for word in SMALL if word != "-q"), "-o", "run", "--resume")
@@ -95,8 +94,6 @@ def test_all_batches_are_taken_up_and_none_is_computed(
     ],
 )
 def test_batches_of_another_run_are_refused(calc: Calc, unfinished: Path, changed: tuple[str, ...], said: str) -> None:
-    import re
-
     before = (unfinished / "run.partial/batches.log").read_bytes()
     answer = calc(*SMALL, *changed, "-o", "run", "--resume")
     assert answer.code == 2
@@ -121,8 +118,6 @@ def test_batches_of_another_run_are_refused(calc: Calc, unfinished: Path, change
     ],
 )
 def test_batches_of_other_versions_are_refused(calc: Calc, unfinished: Path, where: str, name: str, said: str) -> None:
-    import re
-
     header = unfinished / "run.partial" / "partial.json"
     content = json.loads(header.read_text(encoding="utf-8"))
     assert name in content[where]

@@ -1,23 +1,18 @@
-"""The roller screw through the command line: the example, its optimum, cases, and the numbers of the paper."""
+"""The roller screw through the command line: the example, its optimum, and cases.
+
+What it calculates is tested in tests/published, on the model.
+"""
 
 from __future__ import annotations
 
-import csv
-import io
 import json
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 from measured import calc_here
 
-from shared import ROUNDING, Calc
-from truing import Kernel
-from truing.calculation import Calculation, calculate
-from truing.inputs_file import setup_from_settings
-
-Table = Callable[..., list[dict[str, float]]]
+from shared import Calc
 
 
 @pytest.fixture(scope="module")
@@ -29,31 +24,6 @@ def example(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, A
     told = calc_here(folder, "run", "roller_screw_shift", "--inputs", "screw.toml", "-o", "run", "--json", *few)
     assert told.code == 0, told.err
     return folder / "run", json.loads(told.out)
-
-
-@pytest.fixture
-def table(calc: Calc, tmp_path: Path) -> Table:
-    """Print results row by row for a CSV of inputs, with settings on the command line."""
-
-    def run(rows: str, *settings: str) -> list[dict[str, float]]:
-        (tmp_path / "screw.toml").write_text('plugin = "roller_screw_shift"\n')
-        (tmp_path / "rows.csv").write_text(rows)
-        words = [word for setting in settings for word in ("--set", setting)]
-        answer = calc("table", "roller_screw_shift", "--inputs", "screw.toml", "--rows", "rows.csv", *words)
-        assert answer.code == 0, answer.err
-        head, *found = csv.reader(io.StringIO(answer.out))
-        names = [name.split(" [")[0] for name in head]
-        return [dict(zip(names, map(float, row), strict=True)) for row in found]
-
-    return run
-
-
-def shifted(*settings: str) -> Calculation:
-    """Calculate with settings as of ``--set``, and only the choice of the shift; no sheet."""
-    offer = Kernel.installed().offers["roller_screw_shift"]
-    pairs = dict(text.split("=", 1) for text in settings)
-    quick = {"studies.run": '["shift"]', "studies.shift.points": "501"}
-    return calculate(setup_from_settings(offer, {**pairs, **quick}))
 
 
 def value(found: dict[str, Any], name: str) -> Any:
@@ -105,39 +75,6 @@ def test_no_design_of_the_front_beats_another(example: tuple[Path, dict[str, Any
         assert not any(other != one and all(a <= b for a, b in zip(other, one, strict=True)) for other in goals)
 
 
-def test_where_no_shift_keeps_every_limit_the_sentence_says_what_is_missed() -> None:
-    found = shifted("least_contact_ratio=2.5")
-    assert any("keeps every limit" in text and "margin_contact_ratio" in text for text in found.warnings)
-
-
-def test_an_objective_without_a_range_is_left_out_and_said() -> None:
-    found = shifted("axial_load=0 N")
-    assert any("difference of the root stresses is the same for every shift" in text for text in found.warnings)
-    assert found.answers["weight_stress"] == 0
-    assert found.answers["optimal_contact_ratio"] >= 1.4 - 1e-6
-
-
-@pytest.mark.parametrize(
-    ("setting", "words"),
-    [
-        ("span=[1.0, -1.0]", "span"),
-        ("points=3", "points = 3"),
-        ("ratios=[0.5]", "ratios"),
-        ("vertices=2", "vertices = 2"),
-        ("reflection=0.9", "reflection"),
-        ("spread=0", "spread"),
-    ],
-)
-def test_a_study_that_cannot_be(calc: Calc, tmp_path: Path, setting: str, words: str) -> None:
-    name, text = setting.split("=")
-    (tmp_path / "screw.toml").write_text(f'plugin = "roller_screw_shift"\n[studies.shift]\n{name} = {text}\n')
-    answer = calc("run", "roller_screw_shift", "--inputs", "screw.toml")
-    assert (answer.code, answer.out) == (2, "")
-    assert answer.err.startswith("screw.toml:")
-    assert words in answer.err
-    assert [path.name for path in tmp_path.iterdir()] == ["screw.toml"]
-
-
 def test_cases_over_shifts_name_the_one_that_is_too_large(calc: Calc, tmp_path: Path) -> None:
     (tmp_path / "shifts.csv").write_text("roller_shift\n0\n0.21\n0.4\n-0.5\n")
     few = ("--set", "studies.run=[]", "--set", "sheet.detail=short", "--json", "-o", "run")
@@ -150,66 +87,3 @@ def test_cases_over_shifts_name_the_one_that_is_too_large(calc: Calc, tmp_path: 
     (failed,) = found["failed"]
     assert failed["row"] == 4
     assert "involute interference" in failed["reason"]
-
-
-def test_loads_of_both_signs_and_none(table: Table) -> None:
-    """Stresses are in proportion to the load, of whatever sign."""
-    back, idle, forth, double = table("axial_load [N]\n-10000\n0\n10000\n20000\n")
-    for name in ("root_stress_roller", "root_stress_ring"):
-        assert idle[name] == 0
-        assert back[name] == pytest.approx(forth[name], rel=ROUNDING)
-        assert forth[name] > 50
-        assert double[name] == pytest.approx(2 * forth[name], rel=1e-12)
-
-
-def test_centres_farther_apart_jam_a_pair_without_backlash(table: Table) -> None:
-    """First order: -2 tan(alpha_w) of the change."""
-    near, far = table("centre_distance_deviation [um]\n-10\n10\n")
-    assert near["backlash"] == pytest.approx(2 * 0.33288 * 10, rel=0.01)
-    assert far["backlash"] == pytest.approx(-2 * 0.33288 * 10, rel=0.01)
-
-
-def test_a_neutral_factor_acts_on_its_stress_alone(table: Table) -> None:
-    plain, soft, shared = table("rim_factor,sharing_factor\n1,1\n1.5,1\n1,1.25\n")
-    assert soft["root_stress_ring"] == pytest.approx(1.5 * plain["root_stress_ring"])
-    assert soft["root_stress_roller"] == pytest.approx(plain["root_stress_roller"], rel=ROUNDING)
-    assert shared["root_stress_roller"] == pytest.approx(1.25 * plain["root_stress_roller"])
-    for changed in (soft, shared):
-        assert changed["stress_difference"] == pytest.approx(plain["stress_difference"], rel=ROUNDING)
-
-
-def test_describe_names_what_is_declared(calc: Calc) -> None:
-    answer = calc("describe", "roller_screw_shift", "--json")
-    assert answer.code == 0
-    found = json.loads(answer.out)
-    inputs, results, effects = ({item["name"] for item in found[kind]} for kind in ("inputs", "results", "effects"))
-    assert {"roller_teeth", "ring_teeth", "roller_shift", "axial_load", "centre_distance", "weights"} <= inputs
-    assert {
-        "root_stress_roller", "root_stress_ring", "transmission_error", "wear_depth", "axial_shift", "friction_torque",
-        "backlash", "ring_shift", "shift_sum", "margin_undercut",
-    } <= results  # fmt: skip
-    assert {
-        "face_misalignment", "mesh_resonance", "roller_load_sharing", "thermal_centre_distance", "rim_compliance",
-        "roller_runout", "carrier_runout", "interrupted_tooth", "flank_wear", "mesh_friction", "axial_migration",
-    } <= effects  # fmt: skip
-    assert {"shift", "optimise"} <= set(found["studies"])
-
-
-def test_verify_prints_every_row_with_its_verdict(calc: Calc) -> None:
-    answer = calc("verify", "roller_screw_shift", "--json")
-    assert answer.code == 0, answer.err
-    found = json.loads(answer.out)
-    assert all(row["as_stated"] for row in found["rows"])
-    assert all(row["why"] for row in found["rows"] if row["verdict"] == "differs")
-    rows = {row["name"]: row for row in found["rows"]}
-    for name in ("sum of the shifts", "stress difference", "sliding difference"):
-        assert rows[f"weight of the {name}"]["verdict"] == "differs"
-    assert rows["largest stress difference"]["ratio"] == pytest.approx(1, abs=2e-3)
-    near = rows["optimal shift of the roller, contact ratio 1.42"]
-    assert near["ratio"] == pytest.approx(1, abs=0.03)
-    assert near["obtained"] == "calibrated"
-    for name in ("", ", contact ratio 1.2", ", printed weights"):
-        assert rows[f"optimal shift of the roller{name}"]["verdict"] == "differs"
-    titles = " ".join(finding["title"] for finding in found["findings"])
-    for words in ("Table 1", "Indices 1 and 2", "printed weights", "contact ratio"):
-        assert words in titles

@@ -1,11 +1,11 @@
-"""The gearing through the command line: the example, groups and teeth, stated factors, and the numbers of others."""
+"""The gearing through the command line: the example and its list of groups, as results and as cases.
+
+What it calculates is tested in tests/published, on the model.
+"""
 
 from __future__ import annotations
 
-import csv
-import io
 import json
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -13,11 +13,7 @@ import pytest
 from measured import calc_here
 
 from shared import Calc
-from truing import Kernel
-from truing.calculation import Calculation, calculate
-from truing.inputs_file import setup_from_settings
 
-Table = Callable[..., list[dict[str, float]]]
 GROUP_5 = {"root_stress_sun": 230.83, "root_stress_planet": 214.75, "contact_stress_sun": 977.37,
            "contact_stress_planet": 924.18}  # fmt: skip
 
@@ -35,23 +31,6 @@ def example(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, A
 
 def value(found: dict[str, Any], name: str) -> Any:
     return found["results"][name]["value"]
-
-
-@pytest.fixture
-def table(calc: Calc, tmp_path: Path) -> Table:
-    """Print results row by row for a CSV of inputs, with settings on the command line; far quicker than a sheet."""
-
-    def run(rows: str, *settings: str) -> list[dict[str, float]]:
-        (tmp_path / "gearing.toml").write_text('plugin = "rv_gearing"\n')
-        (tmp_path / "rows.csv").write_text(rows)
-        words = [word for setting in settings for word in ("--set", setting)]
-        answer = calc("table", "rv_gearing", "--inputs", "gearing.toml", "--rows", "rows.csv", *words)
-        assert answer.code == 0, answer.err
-        head, *found = csv.reader(io.StringIO(answer.out))
-        names = [name.split(" [")[0] for name in head]
-        return [dict(zip(names, map(float, row), strict=True)) for row in found]
-
-    return run
 
 
 def test_the_example_has_the_published_set_up_and_its_reference_stresses(example: tuple[Path, dict[str, Any]]) -> None:
@@ -99,60 +78,6 @@ def test_the_list_of_groups_is_a_result(example: tuple[Path, dict[str, Any]]) ->
     assert "| 25 | 36 | 99 | 40 | 111 |" in sheet
 
 
-@pytest.mark.parametrize(
-    ("settings", "count"), [(("ratio_tolerance=0.04",), 102), (("fewest_pins=30", "most_pins=60"), 422)]
-)
-def test_wider_readings_of_the_search(calc: Calc, settings: tuple[str, ...], count: int) -> None:
-    short = ("sheet.detail=short", 'studies.run=["search"]')
-    words = [word for setting in (*settings, *short) for word in ("--set", setting)]
-    found = json.loads(calc("run", "rv_gearing", "-o", "run", "--json", *words).out)
-    assert value(found, "group_count") == found["studies"]["search"]["count"] == count
-
-
-def searched(*settings: str) -> Calculation:
-    """Calculate with settings as of ``--set``, and only the search; no sheet."""
-    offer = Kernel.installed().offers["rv_gearing"]
-    pairs = dict(text.split("=", 1) for text in settings)
-    return calculate(setup_from_settings(offer, {**pairs, "studies.run": '["search"]'}))
-
-
-def test_one_pin_circle_leaves_few_groups() -> None:
-    assert searched("window=one_pin_circle").outcomes["search"].as_json()["count"] == 5
-
-
-def test_a_search_that_finds_nothing_is_an_answer_where_the_teeth_are_stated() -> None:
-    found = searched("target_ratio=3000", "sun_teeth=20", "planet_teeth=55")
-    assert found.outcomes["search"].as_json()["count"] == 0
-    assert any("no group of tooth numbers" in text for text in found.warnings)
-    assert found.answers["ratio"] == pytest.approx(111)
-
-
-def test_stated_teeth_that_are_no_group_are_said() -> None:
-    found = searched("sun_teeth=15", "planet_teeth=60", "shift_sun=0.15")
-    assert found.answers["ratio"] == pytest.approx(161)
-    assert any("none of the 25 groups" in text for text in found.warnings)
-
-
-def test_a_sorted_list_of_the_groups_with_just_the_ratio(calc: Calc) -> None:
-    found = searched("studies.search.sort_by=contact_safety_sun", "studies.search.descending=true",
-                     "studies.search.exact_only=true")  # fmt: skip
-    groups = found.outcomes["search"].as_json()["groups"]
-    assert groups["group"]["values"] == [25, 18, 11, 6, 1]
-    assert groups["deviation"]["values"] == [0] * 5
-    wrong = calc("run", "rv_gearing", "-o", "wrong", "--set", "studies.search.sort_by=colour")
-    assert wrong.code == 2
-    assert "colour" in wrong.err
-
-
-def test_a_group_is_its_teeth(table: Table) -> None:
-    (by_number,) = table("group\n5\n")
-    by_teeth, others = table("sun_teeth,planet_teeth\n23,63\n24,63\n")
-    for name, number in GROUP_5.items():
-        assert by_number[name] == pytest.approx(number, rel=1e-4), name
-        assert by_teeth[name] == pytest.approx(by_number[name], rel=1e-12), name
-    assert others["ratio"] == pytest.approx(106)
-
-
 def test_the_strength_of_all_groups_as_cases(calc: Calc, tmp_path: Path) -> None:
     """Larger gears carry more; a number beyond the list fails alone, and the others go on."""
     (tmp_path / "groups.csv").write_text("group\n" + "".join(f"{number}\n" for number in range(1, 27)))
@@ -167,73 +92,3 @@ def test_the_strength_of_all_groups_as_cases(calc: Calc, tmp_path: Path) -> None
     (failed,) = found["failed"]
     assert failed["row"] == 26
     assert "the search finds 25 groups" in failed["reason"]
-
-
-def test_a_stated_factor_is_used_as_it_stands_and_what_is_behind_it_follows(table: Table) -> None:
-    (plain,) = table("group\n1\n")
-    (stated,) = table("group\n1\n", "stated_face_factor=1.2", "stated_form_factor_sun=3")
-    assert (stated["face_factor"], stated["form_factor_sun"]) == (1.2, 3)
-    assert stated["form_factor_planet"] == plain["form_factor_planet"]
-    assert stated["face_factor_bending"] == pytest.approx(1.2 ** plain["face_exponent"], rel=1e-12)
-    assert stated["root_stress_planet"] < plain["root_stress_planet"]
-
-
-def test_the_paper_leaves_out_the_single_contact_factor(table: Table) -> None:
-    ((with_factor,), (without,)) = (table("group\n1\n", f"single_contact={word}") for word in ("true", "false"))
-    factor = with_factor["single_contact_factor_sun"]
-    assert factor > 1
-    assert without["single_contact_factor_sun"] == 1
-    assert with_factor["contact_stress_sun"] == pytest.approx(factor * without["contact_stress_sun"])
-
-
-def test_the_two_readings_of_the_helix_factor_are_reciprocal(table: Table) -> None:
-    helix = "helix_angle [deg]\n15.8\n"
-    ((iso,), (older,)) = (table(helix, f"helix_reading={word}") for word in ("iso", "gb_1997"))
-    assert iso["helix_factor"] == pytest.approx(1.01944, rel=1e-5)  # ISO/TR 6336-30, example 1
-    assert iso["helix_factor"] * older["helix_factor"] == pytest.approx(1, rel=1e-12)
-
-
-def test_a_table_over_torques_of_both_signs(table: Table) -> None:
-    """Stresses are even in the torque, and none where there is none."""
-    back, idle, forth = table("load_torque [N*m],input_speed [rpm]\n-800,1000\n0,1000\n800,1000\n")
-    for name in ("root_stress_sun", "root_stress_planet", "contact_stress"):
-        assert idle[name] == 0, name
-        assert back[name] == forth[name] > 100, name
-    for row in (back, idle, forth):
-        assert row["transmission_error"] == 0
-        assert row["flank_temperature"] == pytest.approx(40)
-
-
-def test_describe_names_what_is_declared(calc: Calc) -> None:
-    answer = calc("describe", "rv_gearing", "--json")
-    assert answer.code == 0
-    found = json.loads(answer.out)
-    inputs, results, effects = ({item["name"] for item in found[kind]} for kind in ("inputs", "results", "effects"))
-    assert {
-        "power", "output_speed", "target_ratio", "sun_teeth", "planet_teeth", "pin_teeth", "group", "load_torque",
-        "input_speed", "application_factor", "stated_dynamic_factor", "stated_form_factor_sun",
-    } <= inputs  # fmt: skip
-    assert {
-        "root_stress_sun", "root_stress_planet", "contact_stress", "transmission_error", "efficiency",
-        "flank_temperature", "backlash", "root_stress_outer_sun",
-    } <= results  # fmt: skip
-    assert {
-        "face_misalignment", "structural_resonance", "planet_load_sharing", "centre_distance_growth", "sun_runout",
-        "planet_runout", "mesh_ripple", "output_eccentricity", "speed_dependent_loss", "flash_temperature", "wind_up",
-        "lost_motion", "crowned_contact", "wear_drift", "ratio_drift", "mesh_stiffening", "relief_error",
-    } <= effects  # fmt: skip
-    assert {"search", "sensitivity", "reliability"} <= set(found["studies"])
-
-
-def test_verify_prints_every_row_with_its_verdict(calc: Calc) -> None:
-    answer = calc("verify", "rv_gearing", "--json")
-    assert answer.code == 0, answer.err
-    found = json.loads(answer.out)
-    assert len(found["rows"]) > 20
-    assert all(row["as_stated"] for row in found["rows"])
-    assert all(row["why"] for row in found["rows"] if row["verdict"] == "differs")
-    assert found["findings"]
-    of_iso = [row for row in found["rows"] if "6336-30" in row["where"]]
-    assert len(of_iso) >= 15
-    for row in of_iso:
-        assert row["ratio"] == pytest.approx(1, abs=1e-3), row["name"]

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 import sys
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
-from shared import Answer, Calc, process
+from shared import Answer, process
 
 STUDIES = (
     "validity", "modifications", "sweep", "sensitivity", "reliability", "costs", "surrogate", "new_machines",
@@ -101,8 +100,6 @@ def test_no_design_of_the_front_beats_another_and_each_reaches_the_goal(
 
 def test_the_search_finds_the_front_that_is_found_without_it(example: tuple[Answer, Path, dict[str, Any]]) -> None:
     """Nothing lies below the front of least costs, and the search comes within two percent of its cost."""
-    import numpy as np
-
     _, _, found = example
     front = next(each for each in found["studies"]["least_costs"]["fronts"] if each["goal"] == 0.95)
     wear, cost = np.array(front["max_wear"]["values"]), np.array(front["cost"]["values"])
@@ -112,52 +109,3 @@ def test_the_search_finds_the_front_that_is_found_without_it(example: tuple[Answ
     assert inside.sum() > 20
     assert over.min() > 0.99  # the chords of the convex front lie a little above it
     assert np.median(over) < 1.02
-
-
-def test_a_table_of_working_times(calc: Calc, tmp_path: Path) -> None:
-    """Reference values of the wear over the time, um."""
-    reference = {1000: 0.788, 2000: 1.419, 3000: 1.943, 4000: 2.391, 5000: 2.783, 6000: 3.129}
-    (tmp_path / "reducer.toml").write_text("[inputs]\n")
-    (tmp_path / "rows.csv").write_text("working_time [h]\n" + "".join(f"{hours}\n" for hours in reference))
-    answer = calc("table", "rv_wear", "--inputs", "reducer.toml", "--rows", "rows.csv")
-    assert answer.code == 0, answer.err
-    head, *rows = csv.reader(io.StringIO(answer.out))
-    place = head.index("max_wear [um]")
-    assert [float(row[place]) for row in rows] == pytest.approx(list(reference.values()), abs=1.1e-3)
-
-
-def test_describe_names_inputs_results_errors_and_goals(calc: Calc) -> None:
-    answer = calc("describe", "rv_wear", "--json")
-    assert answer.code == 0
-    for name in (
-        "output_torque", "output_speed", "working_time", "equidistant_modification", "shift_modification",
-        "pin_circle_radius", "pin_radius", "eccentricity", "pin_count", "disc_width", "composite_roughness",
-        "pressure_viscosity", "max_force", "max_wear", "backlash", "normal_force", "wear_depth", "wear_history",
-        "accuracy_reliability", "manufacturing_cost", "tolerance_price", "modification_error",
-    ):  # fmt: skip
-        assert f'"{name}"' in answer.out, name
-
-
-def test_verify_prints_every_row_with_its_verdict(calc: Calc) -> None:
-    answer = calc("verify", "rv_wear", "--json")
-    assert (answer.code, answer.err) == (0, "")
-    found = json.loads(answer.out)
-    rows = {row["name"]: row for row in found["rows"]}
-    assert all(row["as_stated"] for row in found["rows"])
-    bounds = {
-        "largest equidistant modification": 0.010, "smallest equidistant modification": 0.015,
-        "deepest wear after 6000 h": 0.001, "deepest wear at optimum 1": 0.001, "deepest wear at optimum 2": 0.0012,
-        "mean backlash, unworn": 0.003, "reliability after 6000 h": 0.0078, "cost before optimisation": 0.001,
-        "least cost at optimum 1": 0.036,
-    }  # fmt: skip
-    for name, apart in bounds.items():
-        assert rows[name]["ratio"] == pytest.approx(1, abs=apart), name
-    for number in range(1, 17):
-        assert rows[f"sensitivity index {number}"]["ratio"] == pytest.approx(1, abs=0.0095)
-    differing = [name for name, row in rows.items() if row["verdict"] == "differs"]
-    assert all(rows[name]["why"] for name in differing)
-    assert {name for name in rows if "knee" in name} <= set(differing)
-    assert rows["deepest wear after 6000 h"]["obtained"] == "calibrated"
-    titles = [finding["title"] for finding in found["findings"]]
-    assert "The cost functions are read as powers" in titles
-    assert "A reliability of 100 % is no number that can be met" in titles

@@ -5,13 +5,17 @@ from __future__ import annotations
 import json
 import re
 import sys
+from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
+from urllib.parse import unquote
 
 import pytest
 
 from built_site import site  # noqa: F401
 from shared import ROOT, process
+from truing.describe import description
+from truing.kernel import Kernel
 
 DOCS = ROOT / "docs"
 
@@ -61,7 +65,6 @@ def test_nothing_is_loaded_from_outside(site: Path, ending: str) -> None:  # noq
 
 
 def test_every_link_inside_the_site_arrives(site: Path) -> None:  # noqa: F811
-    from urllib.parse import unquote
 
     for page in pages(site):
         if page.parent.parent.name == "gallery":
@@ -78,7 +81,6 @@ def test_no_formula_is_left_as_it_was_typed(site: Path) -> None:  # noqa: F811
 
 
 def test_every_page_is_in_the_navigation(site: Path) -> None:  # noqa: F811
-    from html.parser import HTMLParser
 
     class Sidebar(HTMLParser):
         found: set[Path] = set()  # noqa: RUF012
@@ -114,8 +116,6 @@ def test_the_json_of_a_study_has_the_keys_that_its_chapter_shows(site: Path) -> 
 
 
 def test_every_model_has_a_page_with_all_that_it_declares(site: Path) -> None:  # noqa: F811
-    from truing.describe import description
-    from truing.kernel import Kernel
 
     effects = (site / "reference" / "effects.html").read_text(encoding="utf-8")
     for name, offer in Kernel.installed().offers.items():

@@ -1,7 +1,6 @@
 """A stranger's plugin beside ours: every verb takes it, it adds to ours, and a broken one disturbs nobody."""
 
 import json
-import shutil
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -24,7 +23,9 @@ def stranger(calc_process: Calc, strangers: Path) -> Callable[..., Answer]:
     return run
 
 
-def test_plugins_lists_the_stranger_and_what_it_adds(stranger: Callable[..., Answer]) -> None:
+def test_plugins_lists_the_stranger_and_names_the_broken_guest_once(
+    stranger: Callable[..., Answer], strangers: Path
+) -> None:
     answer = stranger("plugins")
     assert answer.code == 0
     row = next(line for line in answer.out.splitlines() if line.startswith("screw_joint"))
@@ -33,10 +34,6 @@ def test_plugins_lists_the_stranger_and_what_it_adds(stranger: Callable[..., Ans
     assert "A preloaded screw joint" in row
     assert "press_linkage: screw_joint 2.3.0 adds 'frame_settling'" in answer.out
     assert "broken_guest" not in answer.out
-
-
-def test_the_broken_guest_is_named_once_with_file_and_line(stranger: Callable[..., Answer], strangers: Path) -> None:
-    answer = stranger("plugins")
     named = [line for line in answer.err.splitlines() if "broken_guest" in line]
     assert named == [f"warning: {strangers / 'broken_guest' / 'tables.py'}:6: {BROKEN}"]
 
@@ -141,15 +138,6 @@ def test_verify(stranger: Callable[..., Answer]) -> None:
     answer = stranger("verify", "screw_joint")
     assert answer.code == 0, answer.err
     assert "Preload" in answer.out
-
-
-def test_a_single_file_needs_no_packaging(calc: Calc, tmp_path: Path) -> None:
-    shutil.copy(TESTS / "data" / "pin_wear.py", tmp_path / "my_calculation.py")
-    (tmp_path / "pin.toml").write_text('[inputs]\nload = "130 N"\n', encoding="utf-8")
-    answer = calc("run", "./my_calculation.py", "--inputs", "pin.toml", "--set", "studies.reliability.draws=2000")
-    assert answer.code == 0, answer.err
-    results = json.loads((tmp_path / "runs" / "pin" / "results.json").read_text(encoding="utf-8"))
-    assert results["results"]["pressure"]["value"] == pytest.approx(130 / 28, rel=1e-12)
 
 
 def test_a_single_file_with_a_mistake_is_named_with_its_line(calc: Calc, tmp_path: Path) -> None:

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import csv
 import io
+import json
+import math
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -46,8 +49,6 @@ def test_the_columns_of_the_file_come_first_and_units_stand_in_the_header(table:
 
 def test_numbers_read_back_exactly(table: Table, tmp_path: Path) -> None:
     """0.1 N and its neighbours differ in the seventeenth digit; every one of them comes through."""
-    import math
-
     loads = [0.1, math.nextafter(0.1, 1), 1 / 3, 2 / 3 * 1e-7, 123456.78901234567]
     rows = "load [N]\n" + "".join(f"{value!r}\n" for value in loads)
     text = '[inputs]\narea = "1 m^2"\n[units]\npressure = "Pa"\n'
@@ -69,8 +70,6 @@ def test_readings_act_and_conditions_are_columns(table: Table) -> None:
 
 def test_a_plugin_that_declares_nothing_of_the_kind_has_a_gauge_that_may_be_off(calc: Calc, tmp_path: Path) -> None:
     """30 um of the kernel's own offset: seen by the gauge, and no part of what is calculated."""
-    import json
-
     offset = '[effects.sensor_offset]\ndepth = "30 um"\n'
     depths = {}
     for name, text in (("plain", "[inputs]\n"), ("off", offset)):
@@ -136,8 +135,6 @@ def test_words_and_empty_cells(table: Table) -> None:
 
 
 def test_many_rows_are_one_call(table: Table) -> None:
-    import time
-
     rows = "load [N]\n" + "".join(f"{100 + k / 1000}\n" for k in range(50_000))
     begin = time.perf_counter()
     answer = table(rows)

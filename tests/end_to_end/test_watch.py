@@ -244,52 +244,63 @@ def test_what_can_never_run_ends_at_once(calc: Calc, tmp_path: Path, words: list
     assert answer.err.count("\n") == 1
 
 
-class Clock:
-    """Time that passes only while somebody sleeps; what is to happen then happens in order."""
+@contextmanager
+def editor(*savings: Callable[[], object]) -> Iterator[None]:
+    """Edit files in the background, a moment between two savings, until all are done."""
 
-    def __init__(self, *happenings: Callable[[], None]) -> None:
-        self.happenings = list(happenings)
-        self.slept = 0.0
+    def edit() -> None:
+        for saving in savings:
+            time.sleep(0.25)
+            saving()
 
-    def sleep(self, seconds: float) -> None:
-        self.slept += seconds
-        assert self.slept < 60, "nothing was found to have changed"
-        if self.happenings:
-            self.happenings.pop(0)()
+    hand = threading.Thread(target=edit)
+    hand.start()
+    yield
+    hand.join(LONGEST)
 
 
-def nothing() -> None:
-    """Let time pass."""
+def watched(*files: Path) -> WatchedFiles:
+    made = WatchedFiles(0.05)
+    made.add(files)
+    return made
 
 
 def test_a_half_written_file_is_waited_for(tmp_path: Path) -> None:
     file = tmp_path / "pin.toml"
     saved(file, "load = 1")
-    clock = Clock(lambda: saved(file, ""), nothing, lambda: saved(file, "lo"), lambda: saved(file, "load = 2"))
-    watched = WatchedFiles(0.1, clock.sleep)
-    watched.add([file])
-    assert watched.changed() == [file]
-    assert file.read_text() == "load = 2"
-    assert clock.happenings == []
+    files = watched(file)
+    with editor(lambda: saved(file, ""), lambda: saved(file, "load = 2")):
+        assert files.changed() == [file]
+        assert file.read_text() == "load = 2"
 
 
 def test_a_file_that_is_taken_away_for_good_has_changed(tmp_path: Path) -> None:
     file = tmp_path / "pin.toml"
     saved(file, "load = 1")
-    clock = Clock(file.unlink)
-    watched = WatchedFiles(0.1, clock.sleep)
-    watched.add([file])
-    assert watched.changed() == [file]
-    assert clock.slept >= PATIENCE
+    files, begin = watched(file), time.monotonic()
+    with editor(file.unlink):
+        assert files.changed() == [file]
+    assert time.monotonic() - begin >= PATIENCE
 
 
 def test_the_same_content_is_no_change(tmp_path: Path) -> None:
     file, other = tmp_path / "pin.toml", tmp_path / "new.csv"
     saved(file, "load = 1")
-    clock = Clock(
-        lambda: os.utime(file), nothing, nothing, lambda: saved(file, "load = 1"), nothing, nothing,
-        lambda: saved(other, "1"),
-    )  # fmt: skip
-    watched = WatchedFiles(0.1, clock.sleep)
-    watched.add([file, other])
-    assert watched.changed() == [other]
+    files = watched(file, other)
+    with editor(lambda: os.utime(file), lambda: saved(file, "load = 1"), lambda: saved(other, "1")):
+        assert files.changed() == [other]
+
+
+def test_what_changed_during_a_run_is_not_missed(tmp_path: Path) -> None:
+    """Behind a link too, and in a folder that was not there."""
+    real, file, late = tmp_path / "kept" / "pin.toml", tmp_path / "pin.toml", tmp_path / "data" / "new.csv"
+    real.parent.mkdir()
+    saved(real, "load = 1")
+    file.symlink_to(real)
+    files = watched(file, late)
+    saved(real, "load = 2")
+    assert files.changed() == [file]
+    with editor(late.parent.mkdir, lambda: saved(late, "1")):
+        assert files.changed() == [late]
+    with editor(lambda: saved(real, "load = 3")):
+        assert files.changed() == [file]

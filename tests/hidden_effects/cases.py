@@ -7,8 +7,9 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from hidden_effects.candidates import columns, stacked
-from hidden_effects.designs import Design, Kind
+from hidden_effects.designs import Design
 from hidden_effects.information import Lens, Rival, beside_groups, other_groups, over_results, rivals
+from hidden_effects.noises import Kind
 from hidden_effects.press_machine import Array, Hidden, Rows, shown
 from hidden_effects.record import Record
 from hidden_effects.shapes import Shape, family_of

@@ -6,13 +6,13 @@ from math import pi, radians
 from typing import Literal, TypeAlias
 
 import numpy as np
+from scipy.linalg import block_diag
 
+from hidden_effects.noises import Kind
 from hidden_effects.press_machine import POSITION, TILT, Array, Rows
 
 Design: TypeAlias = Literal["wide", "narrow", "warm-up"]
-Kind: TypeAlias = Literal["gaussian", "heavy", "autocorrelated", "growing"]
 DESIGNS: tuple[Design, ...] = ("wide", "narrow", "warm-up")
-KINDS: tuple[Kind, ...] = ("gaussian", "heavy", "autocorrelated", "growing")
 HOUR = 3600.0
 
 
@@ -137,6 +137,4 @@ def turns(angle: Array) -> Array:
 
 def covariance(noise: Noise, rows: Rows, results: Sequence[str]) -> Array:
     """Covariance of all rows of all results, one result after another."""
-    from scipy.linalg import block_diag
-
     return np.asarray(block_diag(*(noise.covariance(rows, result) for result in results)))

@@ -5,13 +5,10 @@ the line of action um. What an effect does is not the formula of the effect: ano
 the contact, wear step by step, counts one by one, waves that are not quite round.
 """
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from math import cos, hypot, pi, sqrt
-from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import erf
 
 from hidden_effects.gearing_stage import ANGLE, BASE, MODULE, PINS, PLANET, SUN, Array, Stage, pair_of, play_between
@@ -25,8 +22,7 @@ from hidden_effects.gearing_stress import (
     swinging,
     touched,
 )
-
-Hidden: TypeAlias = Mapping[str, Mapping[str, float]]  # effect -> unknown, in the units of the registry
+from hidden_effects.rows import Hidden, MeasuredRows, of
 
 RATIO, MESHES = 111.0, 0.920941
 VOGEL = 95  # degC, of mineral oils
@@ -35,31 +31,18 @@ STEPS = 2000
 
 
 @dataclass(frozen=True)
-class Rows:
+class Rows(MeasuredRows):
     """What was set and measured beside the results, arrays (n,): h, N m, r/min, degC, deg."""
 
-    time: Array
     load_torque: Array
     input_speed: Array
     oil_temperature: Array
     input_angle: Array
 
-    def __len__(self) -> int:
-        return len(self.time)
-
-    def taken(self, places: "NDArray[np.intp] | slice") -> "Rows":
-        """Some of the rows."""
-        return Rows(**{name: values[places] for name, values in vars(self).items()})
-
     @property
     def side(self) -> Array:
         """To which the torque lays the teeth."""
         return np.where(self.load_torque < 0, -1.0, 1.0)
-
-
-def of(hidden: Hidden, effect: str, unknown: str) -> float:
-    """An unknown of an effect, in the unit of the registry; 0 where the effect is not hidden."""
-    return float(hidden.get(effect, {}).get(unknown, 0.0))
 
 
 def efficiency(stage: Stage) -> float:

@@ -1,14 +1,15 @@
 """Harmonic drives with something wrong, or nothing: how they were measured, and with what noise."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hidden_effects.harmonic_machine import MESH, TORSION, Array, Hidden, Rows, shown
-from hidden_effects.noises import Kind, noise_of, title_of
+from hidden_effects.harmonic_machine import MESH, TORSION, Array, Rows, shown
+from hidden_effects.noises import noise_of
+from hidden_effects.rig_cases import RigWish
 
 Design: TypeAlias = Literal["loops", "climb", "points"]
 Strange: TypeAlias = Callable[[Rows], Array]
@@ -18,17 +19,13 @@ PEAKS = (8.0, 16.0, 24.0, 32.0, 12.0, 40.0)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Wish:
-    """What a case is to be like: hidden unknowns in the units of the registry, and what nobody registered."""
+class Wish(RigWish):
+    """What a case is to be like; what is strange is added to the first result, in its unit."""
 
-    seed: int
-    hidden: Hidden = field(default_factory=dict)
     design: Design = "loops"
-    kind: Kind = "gaussian"
     results: tuple[str, ...] = (TORSION,)
     count: int = 60
     strange: Strange | None = None
-    """Added to the first result, in its unit."""
     tooth: float = np.inf
     """Stiffness of a tooth in bending, N/m."""
     logs: tuple[str, ...] = ("time", "wave_angle", "temperature", "cycles", "speed")
@@ -37,11 +34,6 @@ class Wish:
     def noise(self, result: str) -> float:
         """Root mean square of the noise; a mesh that bends is ten times as soft."""
         return NOISE[result] * (0.1 if result == MESH and np.isfinite(self.tooth) else 1.0)
-
-    @property
-    def title(self) -> str:
-        """What the case is called in the list of tests."""
-        return title_of(self.hidden, self.strange, self.design, self.kind, "+".join(self.results))
 
 
 @dataclass(frozen=True, kw_only=True)

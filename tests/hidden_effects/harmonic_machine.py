@@ -4,19 +4,16 @@ Nothing of the plugin is imported. Friction is a row of sliders behind springs, 
 tooth by tooth, runout is the reach of a circle about a point. Torques N m, angles urad, times h, degC, r/min.
 """
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 from scipy.special import ndtr
 
 from hidden_effects.harmonic_contact import FIRST_TORQUE, Array, Flanks, torques, torsion_of
+from hidden_effects.rows import Hidden, MeasuredRows, of
 
-Hidden: TypeAlias = Mapping[str, Mapping[str, float]]  # effect -> unknown, in the units of the registry
 TORSION, MESH = "torsion", "mesh_stiffness"
 COMPLIANCE = 36.0  # urad/(N m), of all that is in series with the mesh, as the inputs have it
 RATED, PITCH, ALPHA = 25.0, 25.4e3, np.radians(20)  # N m, um
@@ -25,10 +22,9 @@ SCATTER = 0.056  # of asperities, over the film at 1000 rpm: their load falls by
 
 
 @dataclass(frozen=True)
-class Rows:
+class Rows(MeasuredRows):
     """What was set and measured beside the results, arrays (n,), in the order of the clock."""
 
-    time: Array
     torque: Array
     reversal_torque: Array
     peak_torque: Array
@@ -37,18 +33,6 @@ class Rows:
     temperature: Array
     cycles: Array
     speed: Array
-
-    def __len__(self) -> int:
-        return len(self.time)
-
-    def taken(self, places: NDArray[np.intp]) -> "Rows":
-        """Some of the rows."""
-        return Rows(**{name: values[places] for name, values in vars(self).items()})
-
-
-def of(hidden: Hidden, effect: str, unknown: str, otherwise: float = 0.0) -> float:
-    """An unknown of an effect, in the unit of the registry."""
-    return float(hidden.get(effect, {}).get(unknown, otherwise))
 
 
 def scale_of(hidden: Hidden, effect: str) -> float:

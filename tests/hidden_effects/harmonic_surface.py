@@ -13,8 +13,8 @@ from typing import TypeAlias
 import numpy as np
 
 from hidden_effects.harmonic_contact import Array
-from hidden_effects.harmonic_machine import Hidden, of
 from hidden_effects.noises import title_of
+from hidden_effects.rows import Hidden, of
 
 STRUCTURE = "structure_function"
 DIMENSION, ROUGHNESS = 2.4, 1e-5  # um, of a surface with ridges in all directions: the defaults

@@ -12,7 +12,8 @@ import numpy as np
 
 from hidden_effects.candidates import HOUR, Candidate, changes, columns
 from hidden_effects.cases import Case, Stratum
-from hidden_effects.designs import DESIGNS, KINDS, Design, Kind, drawn_noise, measured, parted
+from hidden_effects.designs import DESIGNS, Design, drawn_noise, measured, parted
+from hidden_effects.noises import KINDS, Kind
 from hidden_effects.press_machine import POSITION, SCATTER, TILT, Array, Hidden, Rows, shown
 from hidden_effects.record import Record
 from hidden_effects.shapes import MAKERS, Shape

@@ -15,6 +15,7 @@ from hidden_effects.candidates import HOUR, Candidate, columns, stacked, toleran
 from hidden_effects.cases import Case
 from hidden_effects.outcome import FIRST, is_alternative, is_exact, names_of
 from hidden_effects.press_machine import Array, Rows, shown
+from truing.units import to_si
 
 POINTS = 4
 SETS = 200
@@ -78,8 +79,6 @@ def open_rival(case: Case, document: Mapping[str, Any]) -> tuple[str, ...] | Non
 
 def _points(case: Case, proposed: Sequence[Mapping[str, Any]]) -> Rows:
     """The settings that were proposed; what they leave open stays at the middle of the record."""
-    from truing.units import to_si
-
     rows = {name: np.full(len(proposed), float(np.median(values))) for name, values in vars(case.record.rows).items()}
     for at, point in enumerate(proposed):
         for name, amount in point["settings"].items():

@@ -12,6 +12,7 @@ from hidden_effects.information import Lens, beside_groups, over_results
 from hidden_effects.oracle import calibrated, judged, oracle, rms, scale
 from hidden_effects.press_machine import SCATTER, Array, shown
 from hidden_effects.shapes import family_of, groups
+from truing.units import to_si
 
 Document = Mapping[str, Any]
 FIRST = 4
@@ -186,8 +187,6 @@ def _meant(case: Case, cause: Mapping[str, Any]) -> list[Candidate]:
 
 def covered(case: Case, document: Document) -> dict[str, bool]:
     """Whether the 95 % interval of every unknown of a rightly named effect holds the true value."""
-    from truing.units import to_si
-
     found = {}
     for candidate in true_candidates(case):
         for cause in document["causes"]:

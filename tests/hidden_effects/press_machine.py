@@ -15,10 +15,10 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-Array: TypeAlias = NDArray[np.float64]
+from hidden_effects.rows import Array, Hidden, MeasuredRows
+
 Complex: TypeAlias = NDArray[np.complex128]
 Sizes: TypeAlias = "dict[str, float | Array]"
-Hidden: TypeAlias = Mapping[str, Mapping[str, float]]  # effect -> unknown -> SI
 
 POSITION, TILT = "slider_position", "slider_tilt"
 REFERENCE_TEMPERATURE = 20.0  # degC
@@ -50,7 +50,7 @@ SCATTER: dict[str, float] = {
 
 
 @dataclass(frozen=True)
-class Rows:
+class Rows(MeasuredRows):
     """What was set and measured beside the slider: SI arrays (n,); temperature in degC, speed in turns per second.
 
     Time and strokes count from the first row of the file.
@@ -59,17 +59,9 @@ class Rows:
     crank_angle: Array
     forming_force: Array
     link_temperature: Array
-    time: Array
     strokes: Array
     speed: Array
     direction: Array
-
-    def __len__(self) -> int:
-        return len(self.time)
-
-    def taken(self, places: "NDArray[np.intp] | slice") -> "Rows":
-        """Some of the rows."""
-        return Rows(**{name: values[places] for name, values in vars(self).items()})
 
 
 def built(off: Mapping[str, float]) -> Sizes:

@@ -1,7 +1,7 @@
 """A reducer's record as files, and what Truing says to it."""
 
-from hidden_effects.plugin_asking import Answer, Rig
-from hidden_effects.rv_cases import UNIT, Case
+from hidden_effects.plugin_asking import Rig
+from hidden_effects.rv_cases import UNIT
 
 WRITTEN = {
     "time": "h", "working_time": "h", "output_torque": "N*m", "output_speed": "r/min", "housing_temperature": "degC",
@@ -9,8 +9,4 @@ WRITTEN = {
     "measuring_torque": "N*m", "direction": "1",
 }  # fmt: skip
 REDUCER = Rig(plugin="rv_wear", inputs='plugin = "rv_wear"\n', written=WRITTEN, measured=UNIT)
-
-
-def diagnosed(case: Case) -> Answer:
-    """Ask for a diagnosis of the record and predict the rows that were held out."""
-    return REDUCER.diagnosed(case)
+diagnosed = REDUCER.diagnosed

@@ -1,74 +1,38 @@
 """Reducers with something wrong, or nothing: how they were measured, with what noise, and what a user would have."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 import numpy as np
 
-from hidden_effects.noises import Kind, held_out, noise_of, title_of
-from hidden_effects.rv_machine import LIFE, RATED, ROUGHNESS_SCATTER, SPEED, ZONES, Array, Hidden, Rows, shown
+from hidden_effects.rig_cases import RigCase, RigCases, RigWish
+from hidden_effects.rv_machine import LIFE, RATED, ROUGHNESS_SCATTER, SPEED, ZONES, Array, Rows, shown
 
 Design: TypeAlias = Literal["endurance", "fleet"]
 Strange: TypeAlias = Callable[[Rows], Array]
 BACKLASH, WEAR = "backlash", "max_wear"
 UNIT = {BACKLASH: "arcmin", WEAR: "um"}
-NOISE = {BACKLASH: 0.01, WEAR: 0.1}
-HELD_OUT = 300
 
 
 @dataclass(frozen=True, kw_only=True)
-class Wish:
-    """What a case is to be like: hidden unknowns in the units of the registry, and what nobody registered."""
+class Wish(RigWish):
+    """What a case is to be like; what is strange is added to the backlash, arcmin."""
 
-    seed: int
-    hidden: Hidden = field(default_factory=dict)
     design: Design = "endurance"
-    kind: Kind = "gaussian"
     results: tuple[str, ...] = (BACKLASH,)
     count: int = 100
     strange: Strange | None = None
-    """Added to the backlash, arcmin."""
-
-    @property
-    def title(self) -> str:
-        """What the case is called in the list of tests."""
-        return title_of(self.hidden, self.strange, self.design, self.kind, "+".join(self.results))
 
 
-@dataclass(frozen=True, kw_only=True)
-class Case:
-    """A record with its readings, rows held out with theirs, and what is true of both."""
-
-    wish: Wish
-    rows: Rows
-    held: Rows
-    off: Mapping[str, float]
-    readings: Mapping[str, Array]
-    held_readings: Mapping[str, Array]
-
-    def true_readings(self, rows: Rows) -> dict[str, Array]:
-        """What the gauges would show without noise."""
-        return _true(self.wish, rows, self.off)
-
-
-def make_case(wish: Wish) -> Case:
-    """Draw a machine within its zones, measure it, and put the noise on."""
-    rng = np.random.default_rng([wish.seed, 74])
-    every = measured(wish.design, wish.count + HELD_OUT, rng)
-    rows, held = (every.taken(places) for places in held_out(len(every), HELD_OUT, rng))
+def machine(rng: np.random.Generator) -> Mapping[str, float]:
+    """Draw a reducer within its zones."""
     off = {name: float(width / 6 * rng.standard_normal()) for name, width in ZONES.items()}
-    off["roughness"] = float(ROUGHNESS_SCATTER * rng.standard_normal())
-    parts = []
-    for part in (rows, held):
-        true = _true(wish, part, off)
-        spread = 0.4 + 1.6 * part.working_time / LIFE
-        noise = {name: noise_of(wish.kind, spread, NOISE[name], rng) for name in wish.results}
-        parts.append({name: true[name] + noise[name] for name in wish.results})
-    return Case(wish=wish, rows=rows, held=held, off=off, readings=parts[0], held_readings=parts[1])
+    return {**off, "roughness": float(ROUGHNESS_SCATTER * rng.standard_normal())}
 
 
-def _true(wish: Wish, rows: Rows, off: Mapping[str, float]) -> dict[str, Array]:
+def true_readings(wish: Wish, rows: Rows, off: Mapping[str, float]) -> dict[str, Array]:
+    """What the gauges would show without noise."""
     read = shown(rows, off, wish.hidden)
     if wish.strange is not None:
         read[BACKLASH] = read[BACKLASH] + wish.strange(rows)
@@ -100,3 +64,10 @@ def measured(design: Design, count: int, rng: np.random.Generator) -> Rows:
         measuring_torque=rng.uniform(0, 300, count),
         direction=rng.choice([-1.0, 1.0], count),
     )
+
+
+Case: TypeAlias = RigCase[Rows]
+make_case = RigCases(
+    stream=74, held=300, measured=measured, machine=machine, true=true_readings,
+    spread=lambda rows: 0.4 + 1.6 * rows.working_time / LIFE, noise={BACKLASH: 0.01, WEAR: 0.1},
+).made  # fmt: skip

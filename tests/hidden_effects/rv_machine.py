@@ -9,15 +9,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from math import acos, pi, sqrt
-from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hidden_effects.rows import Array, Hidden, MeasuredRows, of
 from hidden_effects.rv_play import Mesh, ends_of_play
-
-Array: TypeAlias = NDArray[np.float64]
-Hidden: TypeAlias = Mapping[str, Mapping[str, float]]  # effect -> unknown, in the units of the registry
 
 PINS, TEETH = 40, 39
 CIRCLE, PIN, THROW, WIDTH = 114.5, 5.0, 2.2, 20.0
@@ -49,10 +45,9 @@ ROUGHNESS_SCATTER = 0.0126
 
 
 @dataclass(frozen=True)
-class Rows:
+class Rows(MeasuredRows):
     """What was set and measured beside the backlash, arrays (n,): h, N m, r/min, degC, deg."""
 
-    time: Array
     working_time: Array
     output_torque: Array
     output_speed: Array
@@ -63,13 +58,6 @@ class Rows:
     crank_angle: Array
     measuring_torque: Array
     direction: Array
-
-    def __len__(self) -> int:
-        return len(self.time)
-
-    def taken(self, places: "NDArray[np.intp] | slice") -> "Rows":
-        """Some of the rows."""
-        return Rows(**{name: values[places] for name, values in vars(self).items()})
 
 
 # The mesh: pins over phases, (PHASES, PINS / 2)
@@ -182,11 +170,6 @@ def wear_after(wearing: Wearing, turns: Array) -> Array:
 
 
 # The whole reducer, row by row
-
-
-def of(hidden: Hidden, effect: str, unknown: str) -> float:
-    """An unknown of an effect, in the unit of the registry; 0 where the effect is not hidden."""
-    return float(hidden.get(effect, {}).get(unknown, 0.0))
 
 
 def made_turns(rows: Rows, hidden: Hidden) -> Array:

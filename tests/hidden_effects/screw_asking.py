@@ -1,7 +1,7 @@
 """A roller screw's record as files, and what Truing says to it."""
 
-from hidden_effects.plugin_asking import Answer, Rig
-from hidden_effects.screw_cases import UNIT, Case
+from hidden_effects.plugin_asking import Rig
+from hidden_effects.screw_cases import UNIT
 
 INPUTS = """plugin = "roller_screw_shift"
 
@@ -12,8 +12,4 @@ WRITTEN = {
     "time": "h", "axial_load": "kN", "screw_speed": "r/min", "temperature": "degC", "screw_angle": "deg", "cycles": "1",
 }  # fmt: skip
 SCREW = Rig(plugin="roller_screw_shift", inputs=INPUTS, written=WRITTEN, measured=UNIT)
-
-
-def diagnosed(case: Case) -> Answer:
-    """Ask for a diagnosis of the record and predict the rows that were held out."""
-    return SCREW.diagnosed(case)
+diagnosed = SCREW.diagnosed

@@ -8,13 +8,10 @@ path; friction is integrated along it; backlash is what is left between tooth an
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import acos, cos, pi, radians, tan
-from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array: TypeAlias = NDArray[np.float64]
-Hidden: TypeAlias = Mapping[str, Mapping[str, float]]  # effect -> unknown, in the units of the registry
+from hidden_effects.rows import Array, Hidden, MeasuredRows, of
 
 TEETH, RING_TEETH, MODULE, ALPHA = 20, 100, 0.5, radians(20)
 CENTRES, ADDENDUM, SHIFT, RING_SHIFT = 19.80778, 0.8, 0.21, -0.16
@@ -28,27 +25,14 @@ SECOND = 0.02  # second harmonic of the error of the teeth over the first
 
 
 @dataclass(frozen=True)
-class Rows:
+class Rows(MeasuredRows):
     """What was set and measured beside the results, arrays (n,): h, kN, r/min, degC, deg, cycles."""
 
-    time: Array
     axial_load: Array
     screw_speed: Array
     temperature: Array
     screw_angle: Array
     cycles: Array
-
-    def __len__(self) -> int:
-        return len(self.time)
-
-    def taken(self, places: "NDArray[np.intp] | slice") -> "Rows":
-        """Some of the rows."""
-        return Rows(**{name: values[places] for name, values in vars(self).items()})
-
-
-def of(hidden: Hidden, effect: str, unknown: str) -> float:
-    """An unknown of an effect, in the unit of the registry; 0 where the effect is not hidden."""
-    return float(hidden.get(effect, {}).get(unknown, 0.0))
 
 
 def inv(angle: Array | float) -> Array:

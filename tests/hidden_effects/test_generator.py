@@ -6,13 +6,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from hidden_effects.asking import press_offer, write_case
 from hidden_effects.candidates import columns, registered, stacked, tolerance_columns
 from hidden_effects.cases import Case
-from hidden_effects.designs import DESIGNS, KINDS, Design, Kind, Noise, covariance, measured
+from hidden_effects.designs import DESIGNS, Design, Noise, covariance, measured
 from hidden_effects.information import Lens, rivals
 from hidden_effects.making import SCHEDULE, Wish, make_case
+from hidden_effects.noises import KINDS, Kind
 from hidden_effects.press_machine import BOTTOM, POSITION, SCATTER, TILT, Array, Rows, built, shown, slider
 from published import press_by_hand as by_hand
+from truing.evaluate import evaluate_rows
+from truing.inputs_file import setup_from_settings
 
 BOTH = (POSITION, TILT)
 ANGLES = (-150.0, -90.0, -35.0, 0.0, 20.0, 75.0, 160.0)
@@ -48,10 +52,6 @@ def test_the_scatter_of_the_parts_is_that_of_every_tolerance() -> None:
 
 def test_the_plugin_has_the_same_machine_without_deviations() -> None:
     """The kernel's answer at every angle, through the inputs file as a case writes it."""
-    from hidden_effects.asking import press_offer
-    from truing.evaluate import evaluate_rows
-    from truing.inputs_file import setup_from_settings
-
     angles = np.radians(np.linspace(-180, 180, 49))
     setup = setup_from_settings(press_offer(), {"reading": "complete"})
     theirs = evaluate_rows(setup, {"crank_angle": angles}, len(angles)).results
@@ -243,8 +243,6 @@ def test_sizes_are_half_the_noise_to_three_times() -> None:
 
 def test_a_case_is_written_as_a_user_would_have_it(tmp_path: Path) -> None:
     """Both files begin with the same row, so that time and strokes count from the same moment."""
-    from hidden_effects.asking import write_case
-
     case = make_case(3)
     write_case(case, tmp_path)
     record, held = (

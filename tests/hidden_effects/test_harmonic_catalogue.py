@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from harmonic_fractal.model import HARMONIC_FRACTAL
 from hidden_effects.plugin_asking import model_of
 from truing.testing import recorded
 
@@ -45,8 +46,6 @@ def test_the_record_is_the_catalogue_with_its_scatter() -> None:
 
 
 def test_roughness_alone_explains_less_than_a_hundredth() -> None:
-    from harmonic_fractal.model import HARMONIC_FRACTAL
-
     torque, torsion = measured()
     rough = HARMONIC_FRACTAL.function(HARMONIC_FRACTAL.inputs(torque=torque)).rough_torsion
     assert rms(1e6 * rough) < 0.01 * rms(torsion)

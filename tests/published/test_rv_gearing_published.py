@@ -14,7 +14,8 @@ from rv_gearing.rating import rv_gearing
 from truing import Kernel
 from truing.calculation import calculate
 from truing.published import ComparedRow, compare_published
-from truing.report.render import html_of, markdown_of
+from truing.report.html_printer import html_of
+from truing.report.markdown_printer import markdown_of
 from truing.report.sheet import make_sheet
 from truing.runs.provenance import provenance_of
 from truing.setup import default_setup

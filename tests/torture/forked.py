@@ -13,6 +13,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO
 
+from truing.watching import WatchedFiles
+
 POLL = 0.05
 LONGEST = 60
 """Seconds that a forked command may take."""
@@ -112,3 +114,12 @@ def _stream(descriptor: int | None, number: int, encoding: str) -> IO[str]:
     os.dup2(descriptor, number)
     raw = io.BufferedWriter(io.FileIO(number, "w", closefd=False))
     return io.TextIOWrapper(raw, encoding=encoding, errors="strict" if number == 1 else "backslashreplace")
+
+
+def stop_watching() -> None:
+    """Let ``calc watch`` end as by Ctrl+C when it looks for changes for the first time; called in the fork."""
+
+    def stop(watched: WatchedFiles) -> None:
+        raise KeyboardInterrupt
+
+    WatchedFiles.changed = stop  # type: ignore[assignment, method-assign]

@@ -7,15 +7,18 @@ import io
 import os
 import random
 import shutil
+import subprocess
 import sys
 import warnings
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from forked import End, Redirection, forked
+from forked import End, Redirection, forked, stop_watching
 
 from shared import Calc
+from truing.cli import main
+from truing.cli.app import app
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="needs os.fork, which Windows has not")
 
@@ -98,8 +101,6 @@ def prepared(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def _warm(folder: Path) -> None:
-    from truing.cli import main
-
     before = Path.cwd()
     os.chdir(folder)
     try:
@@ -129,22 +130,11 @@ def ended(
     encoding: str = "utf-8",
 ) -> End:
     """Run a verb; a watch, which goes on until somebody ends it, is interrupted after its first run."""
-    before: Callable[[], object] = (lambda: None) if not verb.startswith("watch") else _stop_watching
+    before: Callable[[], object] = (lambda: None) if not verb.startswith("watch") else stop_watching
     return forked(VERBS[verb].split(), place, stdout=stdout, stderr=stderr, encoding=encoding, before=before)
 
 
-def _stop_watching() -> None:
-    from truing.watching import WatchedFiles
-
-    def stop(watched: WatchedFiles) -> None:
-        raise KeyboardInterrupt
-
-    WatchedFiles.changed = stop  # type: ignore[assignment, method-assign]
-
-
 def test_every_verb_is_here() -> None:
-    from truing.cli.app import app
-
     names = {command.name for command in app.registered_commands}
     assert names == {words.split()[0] for words in VERBS.values()} & names
     assert set(FAILING) | SILENT <= set(VERBS)
@@ -183,8 +173,6 @@ def _anew(place: Path) -> Path:
 
 def test_a_pipe_whose_reader_has_gone_hides_no_check(calc_process: Calc, place: Path) -> None:
     """As processes, with the shell's own pipe."""
-    import subprocess
-
     command = f"set -o pipefail; '{sys.executable}' -m truing run bar.py --set load=13kN -o x | true"
     done = subprocess.run(["bash", "-c", command], cwd=place, capture_output=True, text=True, check=False)
     assert done.returncode == 1, done.stderr

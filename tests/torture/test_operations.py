@@ -20,9 +20,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
-from forked import End, forked
+from forked import End, forked, stop_watching
 
 from shared import ROOT
+from truing import atomic
+from truing.atomic import recover
+from truing.cli import main
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="needs os.fork, which Windows has not")
 
@@ -62,18 +65,7 @@ def _older(*names: str) -> Callable[[Path], object]:
 
 
 def _without_exchange() -> None:
-    from truing import atomic
-
     atomic._exchange = lambda: None
-
-
-def _stop_watching() -> None:
-    from truing.watching import WatchedFiles
-
-    def stop(watched: WatchedFiles) -> None:
-        raise KeyboardInterrupt
-
-    WatchedFiles.changed = stop  # type: ignore[assignment, method-assign]
 
 
 CASES = {
@@ -82,7 +74,7 @@ CASES = {
     "run again without exchange": Case("run bar.py -q", ("runs/bar",), _older("runs/bar"), _without_exchange),
     "run, resume": Case("run bar.py -q --resume", ("runs/bar",), _older("runs/bar")),
     "run, cases, excel": Case("run bar.py -q --cases rows.csv --excel", ("runs/bar",)),
-    "watch": Case("watch bar.py -i bar.toml -q", ("runs/bar",), _older("runs/bar"), _stop_watching),
+    "watch": Case("watch bar.py -i bar.toml -q", ("runs/bar",), _older("runs/bar"), stop_watching),
     "diagnose": Case("diagnose bar.py --data measured.csv -q", ("runs/measured",), _older("runs/measured")),
     "init": Case("init bar.py -q -o deep/made.toml", ("deep/made.toml", "deep/bar.schema.json")),
     "init again": Case("init bar.py -q -o made.toml --force", ("made.toml", "bar.schema.json"),
@@ -246,8 +238,6 @@ def prepared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Prepared]:
 
 def _warm(template: Path) -> None:
     """Make the older runs, and import by the way all that the verbs need."""
-    from truing.cli import main
-
     said = io.StringIO()
     with contextlib.chdir(template), contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
         for words in (
@@ -308,8 +298,6 @@ def judge(prepared: Prepared, name: str, inject: Callable[[], None], what: str) 
 
 
 def _recover(place: Path, case: Case) -> None:
-    from truing.atomic import recover
-
     for name in case.results:
         recover(place / name)
 

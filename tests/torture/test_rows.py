@@ -101,7 +101,8 @@ SETUP = default_setup(PIN_WEAR, PIN_OFFER.origin)
 
 
 def data_read(path: Path) -> Read:
-    table = read_table(path, {"load": "N", "speed": "m/s", "probe_temperature": "degC"})
+    table, found = read_table(path, {"load": "N", "speed": "m/s", "probe_temperature": "degC"})
+    found.raise_any()
     return list(table.lines), table.count
 
 

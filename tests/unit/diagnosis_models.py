@@ -98,6 +98,11 @@ def lead_error(screw: Drive, base: Deflection, *, lead: Float) -> Deflection:
     return replace(base, deflection=base.deflection + lead * screw.travel)
 
 
+def skewed(screw: Drive, base: Deflection, *, along: Float, across: Float) -> Deflection:
+    """Follow the travel, and something that never moves."""
+    return replace(base, deflection=base.deflection + along * screw.travel + across * 0 * screw.travel)
+
+
 @inputs
 class DriveInSi:
     """The screw drive in N, m and rad."""
@@ -142,6 +147,10 @@ EFFECTS: Mapping[str, Effect[Any, Any]] = {
     )
 }  # fmt: skip
 ALL_EFFECTS = tuple(EFFECTS)
+SKEWED = Effect(
+    "skewed", on_results=skewed, unknowns=[Unknown("along", -1, 1, "um/mm"), Unknown("across", -1, 1, "um/mm")]
+)
+"""An effect that the drive does not declare: one of its unknowns no record can tell."""
 
 
 def _in_si(effect: Effect[Any, Any]) -> Effect[Any, Any]:

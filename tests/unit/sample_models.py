@@ -7,55 +7,18 @@ from pathlib import Path
 from typing import Literal
 
 import numpy as np
+import pin_wear
+import pytest
 
-from truing.declare.batch import feasible
 from truing.declare.fields import Float, axis, found, given, inputs, loaded, part, results
 from truing.declare.goals import Require
 from truing.declare.model import Model
-from truing.declare.sources import Condition, Effect, Tolerance, Unknown
-from truing.declare.spreads import by_choice, grade, lognormal, normal, plus_minus, zone
+from truing.declare.sources import Tolerance
+from truing.declare.spreads import by_choice, grade, normal, plus_minus, zone
+from truing.errors import InputError
+from truing.inputs_file import setup_from_text
 from truing.kernel import Offer, Origin
-
-
-@inputs
-class Pin:
-    """What must be known before the calculation starts."""
-
-    load: Float = given(120.0, "N", symbol="F", note="normal load on the pin", above=0)
-    area: Float = given(28.0, "mm^2", symbol="A", note="contact area", above=0)
-    speed: Float = given(0.5, "m/s", symbol="v", note="sliding speed")
-    time: Float = given(200.0, "h", symbol="t", note="running time")
-    hardness: Float = given(2.1, "GPa", symbol="H", note="softer body", above=0)
-    rate: Float = given(3e-8, "", symbol="k", note="wear coefficient", source="test 14")
-    early_depth: Float = given(0.0, "um", symbol="h_0", note="depth lost before the law holds")
-
-
-@results
-class Wear:
-    """What the calculation answers."""
-
-    pressure: Float = found("MPa", symbol="p", formula="load / area", note="contact pressure")
-    distance: Float = found("km", symbol="s", formula="speed * time", note="sliding distance")
-    depth: Float = found("um", symbol="h", note="worn depth")
-
-
-def wear(pin: Pin) -> Wear:
-    """Archard's law."""
-    feasible(pin.load < pin.hardness * pin.area, "the contact flows: load exceeds hardness times area")
-    pressure = pin.load / pin.area
-    distance = pin.speed * pin.time
-    depth = pin.early_depth + pin.rate * pressure * distance / pin.hardness
-    return Wear(pressure=pressure, distance=distance, depth=depth)
-
-
-def running_in(pin: Pin, *, extra: Float, length: Float) -> Pin:
-    """Fresh asperities go first."""
-    return replace(pin, early_depth=pin.early_depth + extra * (1 - np.exp(-pin.speed * pin.time / length)))
-
-
-def warm_probe(pin: Pin, base: Wear, *, slope: Float, probe_temperature: Float) -> Wear:
-    """The displacement probe reads deeper when warm."""
-    return replace(base, depth=base.depth + slope * (probe_temperature - PROBE.zero))
+from truing.setup import Setup
 
 
 @dataclass(frozen=True)
@@ -81,31 +44,26 @@ class Census:
         """Do nothing."""
 
 
-PROBE = Condition("probe_temperature", "degC", reference=20)
 RENAMED = {"k_wear": "rate"}
-PIN_WEAR = Model(
-    name="pin_wear",
-    title="Sliding wear of a pin",
+"""Old names of inputs, which the kernel looks for in the module of the model's function."""
+
+
+def wear(pin: pin_wear.Pin) -> pin_wear.Wear:
+    """Archard's law, in the module that renames an input."""
+    return pin_wear.wear(pin)
+
+
+PIN_WEAR = replace(
+    pin_wear.PIN_WEAR,
     function=wear,
+    cites=[],
     errors=[
         Tolerance("load", normal(sd="3 %"), why="friction in the guide of the dead weight"),
-        Tolerance("hardness", lognormal(sd="6 %"), why="batch scatter on the certificate"),
-        Effect(
-            "running_in",
-            on_inputs=running_in,
-            looks_like="early surplus, then parallel",
-            unknowns=[Unknown("extra", 0, 50, "um"), Unknown("length", 10, 5e3, "m")],
-        ),
-        Effect(
-            "warm_probe",
-            on_reading=warm_probe,
-            needs=[PROBE],
-            looks_like="follows the probe, not the wear",
-            unknowns=[Unknown("slope", -2, 2, "um/K")],
-        ),
+        *pin_wear.PIN_WEAR.errors[1:],
     ],
     objectives=[Require("pressure", at_most="80 MPa")],
     studies=[Census(), Census(name="second")],
+    sheet=[],
 )
 
 
@@ -172,3 +130,15 @@ STAGE = Model(
 
 PIN_OFFER = Offer("pin_wear", PIN_WEAR, Origin("pin_wear", "1.2.0", "pins", "pins.py", "entry:pin_wear"))
 STAGE_OFFER = Offer("gears.stage", STAGE, Origin("gears", "0.1", "gears", "gears.py", "entry:gears"))
+
+
+def pin(text: str) -> Setup:
+    """Read the text of an inputs file of the pin, wear.toml."""
+    return setup_from_text(text, PIN_OFFER, file="wear.toml", folder=Path())
+
+
+def faults(text: str) -> list[str]:
+    """Return what is said of such a text, which must be refused: a sentence each."""
+    with pytest.raises(InputError) as caught:
+        pin(text)
+    return str(caught.value).splitlines()

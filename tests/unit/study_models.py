@@ -1,5 +1,7 @@
 """Small calculations with known answers, importable by worker processes."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from truing import (
@@ -60,8 +62,6 @@ def chain(sizes: Chain) -> Gap:
 
 def grow(sizes: Chain, *, strain: Float, warmth: Float) -> Chain:
     """All lengths grow alike."""
-    from dataclasses import replace
-
     factor = 1 + strain * (warmth - WARMTH.zero)
     return replace(sizes, first=sizes.first * factor, second=sizes.second * factor, third=sizes.third * factor)
 

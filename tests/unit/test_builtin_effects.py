@@ -10,7 +10,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pin_wear
 import pytest
+from jsonschema import Draft202012Validator
 from pin_wear import PIN_WEAR
 
 from truing import (
@@ -597,8 +599,6 @@ def truing_models() -> list[Model[Shaft, Runout]]:
 
 
 def test_the_schema_knows_them() -> None:
-    from jsonschema import Draft202012Validator
-
     judge = Draft202012Validator(json_schema(OFFER))
     effects = {"sensor_offset": {"warmth": "1 K"}, "step": {"warmth": "1 K", "warmth_after": "1 h"}}
     assert not list(judge.iter_errors({"effects": effects, "conditions": {"time": "2 h"}}))
@@ -655,8 +655,6 @@ def _any(bar: Bar, base: Pull, **unknowns: Float) -> Pull:
 
 
 def test_the_stranger_of_the_style_page_has_them() -> None:
-    import pin_wear
-
     effects = Kernel([pin_wear], strict=True).offer("pin_wear").model.known_effects
     assert list(effects) == [
         "running_in", "warm_probe", "sensor_offset", "sensor_gain", "sensor_drift", "thermal_drift", "periodic_order",

@@ -18,7 +18,7 @@ from truing.executors import SerialExecutor, WorkerPool, open_executor
 from truing.kernel import Origin
 from truing.measurements import CasesFile, RowCount, StatedCase
 from truing.report.content import least_margin
-from truing.setup import Setup, default_setup
+from truing.setup import Setup, SwitchedOn, default_setup
 from truing.studies.checks import Check, Proposal
 from truing.studies.verdicts import Decided
 
@@ -132,8 +132,6 @@ def test_cases_without_limits_are_governed_by_the_first() -> None:
 
 
 def test_an_effect_that_is_on_acts_in_every_case() -> None:
-    from truing.setup import SwitchedOn
-
     worn = replace(
         default_setup(PLAIN), effects=(SwitchedOn(PLAIN.effects["running_in"], {"extra": 7e-6, "length": 10.0}),)
     )

@@ -351,6 +351,7 @@ def test_spreads_mean_what_they_say(spread: Any, sd: float, mean: float) -> None
     assert values.std() == pytest.approx(sd, rel=0.01)
     standard = np.random.default_rng(1).standard_normal(200_000)
     mapped = distribution.from_standard(standard)
+    assert mapped.mean() == pytest.approx(mean, abs=5 * sd / math.sqrt(200_000))
     assert mapped.std() == pytest.approx(sd, rel=0.01)
     assert np.all(np.diff(mapped[np.argsort(standard)]) >= 0)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -111,8 +112,6 @@ def test_a_column_that_is_not_there() -> None:
 
 
 def test_many_rows_are_quick() -> None:
-    import time
-
     travel = np.sin(np.linspace(0, 300, 200_000))
     begin = time.perf_counter()
     way = derive(Condition("way", "", derived="direction of travel"), {"travel": travel}, None, None)

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from diagnosis_models import (
     EFFECTS,
+    SKEWED,
     UM,
     Array,
     Asked,
@@ -34,11 +35,6 @@ from truing.diagnosis.records import Records
 from truing.setup import DiagnoseOptions
 
 
-def skewed(screw: Drive, base: Deflection, *, along: Float, across: Float) -> Deflection:
-    """Follow the travel, and something that never moves."""
-    return replace(base, deflection=base.deflection + along * screw.travel + across * 0 * screw.travel)
-
-
 def lead_again(screw: Drive, base: Deflection, *, pitch: Float) -> Deflection:
     """Follow the travel under another name."""
     return replace(base, deflection=base.deflection + pitch * screw.travel)
@@ -51,9 +47,7 @@ def eccentricity(screw: Drive, base: Deflection, *, sine: Float, cosine: Float) 
 
 
 MORE: Mapping[str, Effect[Drive, Deflection]] = {
-    "skewed": Effect(
-        "skewed", on_results=skewed, unknowns=[Unknown("along", -1, 1, "um/mm"), Unknown("across", -1, 1, "um/mm")]
-    ),
+    "skewed": SKEWED,
     "lead_again": Effect("lead_again", on_results=lead_again, unknowns=[Unknown("pitch", -1, 1, "um/mm")]),
     "eccentricity": Effect(
         "eccentricity",

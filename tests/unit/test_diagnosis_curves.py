@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from diagnosis_models import (
     KN,
+    SKEWED,
     UM,
     Array,
     Asked,
@@ -46,11 +47,6 @@ def bowed(screw: Drive, base: Deflection, *, bow: Float) -> Deflection:
     return replace(base, deflection=base.deflection + bow * screw.travel + 30 * bow**2 * screw.travel)
 
 
-def skewed(screw: Drive, base: Deflection, *, along: Float, across: Float) -> Deflection:
-    """Follow the travel, and something that never moves."""
-    return replace(base, deflection=base.deflection + along * screw.travel + across * 0 * screw.travel)
-
-
 def fading(screw: Drive, base: Deflection, *, start: Float, width: Float) -> Deflection:
     """Be largest at the beginning of the travel."""
     return replace(base, deflection=base.deflection + start * np.exp(-screw.travel / width))
@@ -65,9 +61,7 @@ START = Unknown("start", -9, 9, "um")
 MORE: Mapping[str, Effect[Drive, Deflection]] = {
     "rubbing": Effect("rubbing", on_results=rubbing, unknowns=[Unknown("drag", -2, 4, "um/mm")]),
     "bowed": Effect("bowed", on_results=bowed, unknowns=[Unknown("bow", -1, 1, "um/mm")]),
-    "skewed": Effect(
-        "skewed", on_results=skewed, unknowns=[Unknown("along", -1, 1, "um/mm"), Unknown("across", -1, 1, "um/mm")]
-    ),
+    "skewed": SKEWED,
     "fading": Effect("fading", on_results=fading, unknowns=[START, Unknown("width", 1, 300, "mm")]),
     "bump": Effect(
         "bump", on_results=bump, unknowns=[Unknown("height", -9, 9, "um"), Unknown("centre", 40, 300, "mm")]

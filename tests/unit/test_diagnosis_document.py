@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import subprocess
 import sys
 from collections.abc import Callable
@@ -48,7 +49,7 @@ from truing.kernel.loading import load_file
 from truing.runs.diagnosis_document import diagnosis_document, file_labels
 from truing.runs.diagnosis_folder import write_diagnosis
 from truing.runs.extension import extended_setup, extended_text
-from truing.runs.folder import demand_place, is_ours, is_run, json_text, write_folder
+from truing.runs.folder import demand_place, is_ours, json_text, write_folder
 from truing.runs.new_effect import code_name, new_effect_source, safe_expression
 from truing.runs.provenance import provenance_of
 from truing.setup import Setup, SwitchedOn, default_setup
@@ -412,7 +413,7 @@ def test_the_folder_holds_what_the_verdict_gives(sample: str, more: set[str], tm
     text = (tmp_path / "runs" / "x" / "diagnosis.json").read_text(encoding="utf-8")
     assert json.loads(text) == json.loads(json_text(document))
     assert is_ours(tmp_path / "runs" / "x", "diagnosis")
-    assert not is_run(tmp_path / "runs" / "x")
+    assert not is_ours(tmp_path / "runs" / "x", "run")
 
 
 def test_the_arrays_hold_the_curves_in_printed_units(tmp_path: Path) -> None:
@@ -445,8 +446,6 @@ def test_a_diagnosis_is_replaced_by_a_diagnosis_and_by_nothing_else(tmp_path: Pa
 
 
 def test_every_field_is_explained() -> None:
-    import re
-
     page = Path(__file__).parents[2] / "docs" / "reference" / "verbs" / "diagnose.md"
     rows = re.findall(r"^\| (`[^|]+`) \|(.*)\|$", page.read_text(encoding="utf-8"), re.MULTILINE)
     named = {name for cell, _ in rows for name in re.findall(r"`(\w+)`", cell)}

@@ -70,6 +70,8 @@ def test_of_many_blocks_some_signs_are_drawn() -> None:
     exact = float((every @ gain >= gain.sum() - 1e-12).mean())
     found = sign_flip_p(gain, np.arange(15), seed=1)
     assert_allclose(found, exact, rtol=0, atol=4 * np.sqrt(exact / 999) + 1e-3)
+    everywhere = sign_flip_p(np.ones(40), np.arange(40), seed=1)
+    assert everywhere == 1 / 1000  # the least that 999 draws can show: none of them is as good as what was found
 
 
 def test_a_loss_a_rounding_and_a_single_block_are_no_gain() -> None:
@@ -242,7 +244,9 @@ def test_a_gain_is_held_against_the_calibrated_model_and_the_noise_floor(tmp_pat
     assert gain.reducible_removed > 0.9
     assert gain.p_value <= 0.002
     assert found.stability == 1
-    before, after = gain.rmse_before.value, gain.rmse_after.value
+    before, after, floor = gain.rmse_before.value, gain.rmse_after.value, gain.noise_floor.value
+    removed = (before**2 - after**2) / (before**2 - floor**2)
+    assert_allclose(gain.reducible_removed, min(removed, 1.0), rtol=1e-9)
     assert_allclose(gain.log_score_gain, np.log(before / after), rtol=0.1)
     assert binom.ppf(0.001, 200, 0.9) <= 200 * gain.coverage90 <= binom.ppf(0.999, 200, 0.9)
 

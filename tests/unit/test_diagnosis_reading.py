@@ -150,21 +150,6 @@ def test_every_column_in_si_in_its_part(read: Read) -> None:
     assert records.unit_errors == ()
 
 
-@pytest.mark.parametrize(
-    "content",
-    [
-        "time [h];depth [1e-6 m];run\r\n1,5;2;a\r\n2;,5;a\r\n3;1;a\r\n",
-        "\ufefftime [h],depth [um],run\n1.5,2,a\n2,.5,a\n3,1,a\n",
-        "time [min]\tdepth [mm]\trun\n90\t2e-3\ta\n120\t5E-4\ta\n180\t1e-3\ta\n",
-        "# rig 7\n\ntime [h],depth [um],run\n1.5,2,a\n\n2,.5,a\n3,1,a\n",
-    ],
-)
-def test_every_way_to_write_the_same_file(read: Read, content: str) -> None:
-    records = read(PIN_WEAR, content)
-    np.testing.assert_allclose(records.rows.columns["time"], [5400, 7200, 10800])
-    np.testing.assert_allclose(records.measured["depth"], [2e-6, 0.5e-6, 1e-6])
-
-
 def test_choices_counts_and_switches_split_the_rows(read: Read) -> None:
     text = "kind,coils,is_wet,force [N],travel [mm]\nsoft,4,no,10,1\nhard,4,yes,10,0.5\nsoft,8,no,10,2\n"
     records = read(SPRING, text)

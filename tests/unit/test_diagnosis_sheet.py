@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import re
 import sys
@@ -30,14 +31,8 @@ from truing.diagnosis.result import (
     ResidualFinding,
     VisibleSize,
 )
-from truing.report.context import FigureView, TableView
 from truing.report.diagnosis_figures import main_covariates, thinned
-from truing.report.diagnosis_sheet import (
-    DiagnosisSheet,
-    diagnosis_html,
-    diagnosis_markdown,
-    make_diagnosis_sheet,
-)
+from truing.report.diagnosis_sheet import make_diagnosis_sheet
 from truing.report.diagnosis_words import (
     amount_text,
     certainty,
@@ -49,35 +44,42 @@ from truing.report.diagnosis_words import (
     p_text,
     percent,
     prose,
+    readable,
     score_text,
     spoken,
     verdict_word,
 )
+from truing.report.document import Document, FigureView, Items, Paragraph, TableView
+from truing.report.html_printer import html_of
+from truing.report.markdown_printer import markdown_of
 from truing.runs.provenance import provenance_of
 
 
-def sheet_of(made: DiagnosisResult) -> DiagnosisSheet:
+def sheet_of(made: DiagnosisResult) -> Document:
     return make_diagnosis_sheet(made, provenance=provenance_of(made.setup, date="2026-11-21"))
 
 
 @pytest.fixture(scope="module", params=list(SAMPLES))
-def sheet(request: pytest.FixtureRequest) -> DiagnosisSheet:
+def sheet(request: pytest.FixtureRequest) -> Document:
     return sheet_of(SAMPLES[request.param]())
 
 
-def texts_of(sheet: DiagnosisSheet) -> Iterator[str]:
+def texts_of(sheet: Document) -> Iterator[str]:
     """Every text that stands on the sheet, as it was said."""
-    yield from (sheet.head.title, sheet.verdict, sheet.data, *sheet.sentences, *sheet.unit_errors, *sheet.warnings)
+    yield from (sheet.head.title, sheet.banner.headline, sheet.summary, *sheet.alarms, *sheet.warnings)
+    yield from map(str, sheet.banner.sentences)
     for chapter in sheet.chapters:
         yield chapter.title
         for block in chapter.blocks:
             if isinstance(block, TableView):
-                yield from (block.title, *block.columns, block.note)
-                yield from (cell for row in block.rows for cell in row)
+                yield from (block.title, *(column.title for column in block.columns), str(block.note))
+                yield from (str(cell) for row in block.rows for cell in row)
             elif isinstance(block, FigureView):
                 yield block.caption
-            else:
-                yield block.text
+            elif isinstance(block, Paragraph):
+                yield str(block.text)
+            elif isinstance(block, Items):
+                yield from block.labels
 
 
 def plain(text: str) -> str:
@@ -88,24 +90,24 @@ def plain(text: str) -> str:
 # The sheet, in both languages
 
 
-def test_figures_can_all_be_drawn(sheet: DiagnosisSheet) -> None:
+def test_figures_can_all_be_drawn(sheet: Document) -> None:
     views = [block for chapter in sheet.chapters for block in chapter.blocks if isinstance(block, FigureView)]
     assert len(views) >= 3
     assert [view.number for view in views] == list(range(1, len(views) + 1))
     assert not [text for text in sheet.warnings if "figure" in text]
 
 
-def test_html_and_markdown_say_the_same(sheet: DiagnosisSheet) -> None:
-    html = plain(Page(diagnosis_html(sheet)).text)
-    markdown = plain(re.sub(r"\\(.)", r"\1", unescape(diagnosis_markdown(sheet))))
+def test_html_and_markdown_say_the_same(sheet: Document) -> None:
+    html = plain(Page(html_of(sheet)).text)
+    markdown = plain(re.sub(r"\\(.)", r"\1", unescape(markdown_of(sheet))))
     said = [plain(text) for text in texts_of(sheet) if text]
     assert len(said) > 80
     assert [text for text in said if text not in html and text.replace("-", "−") not in html] == []
     assert [text for text in said if text not in markdown and text.replace("-", "−") not in markdown] == []
 
 
-def test_the_page_cannot_act(sheet: DiagnosisSheet) -> None:
-    page = Page(diagnosis_html(sheet))
+def test_the_page_cannot_act(sheet: Document) -> None:
+    page = Page(html_of(sheet))
     names = {tag for tag, _ in page.tags}
     assert not names & {"script", "iframe", "object", "embed", "link", "form", "input", "base", "audio", "video", "img"}
     for tag, attributes in page.tags:
@@ -117,10 +119,10 @@ def test_the_page_cannot_act(sheet: DiagnosisSheet) -> None:
 
 
 def test_the_same_diagnosis_gives_the_same_sheet() -> None:
-    assert diagnosis_html(sheet_of(ambiguous())) == diagnosis_html(sheet_of(ambiguous()))
+    assert html_of(sheet_of(ambiguous())) == html_of(sheet_of(ambiguous()))
 
 
-def test_the_chapters_follow_the_questions(sheet: DiagnosisSheet) -> None:
+def test_the_chapters_follow_the_questions(sheet: Document) -> None:
     titles = [chapter.title for chapter in sheet.chapters]
     asked = ["What is wrong", "Cause", "Extended model", "Gain", "Next measurement", "Data"]
     assert titles[:6] == asked
@@ -128,9 +130,9 @@ def test_the_chapters_follow_the_questions(sheet: DiagnosisSheet) -> None:
 
 
 def test_a_unit_slip_stands_before_everything_else() -> None:
-    text = diagnosis_html(sheet_of(ambiguous()))
+    text = html_of(sheet_of(ambiguous()))
     assert 0 < text.index("Suspected unit slip.") < text.index("<h2")
-    assert "Suspected unit slip" not in diagnosis_html(sheet_of(named()))
+    assert "Suspected unit slip" not in html_of(sheet_of(named()))
 
 
 def test_hostile_texts_are_printed_and_do_nothing() -> None:
@@ -149,10 +151,10 @@ def test_hostile_texts_are_printed_and_do_nothing() -> None:
         seen=(VisibleSize(HOSTILE, None, "not excited", HOSTILE),), not_measured={HOSTILE: (HOSTILE,)},
     )  # fmt: skip
     sheet = sheet_of(made)
-    html = diagnosis_html(sheet)
+    html = html_of(sheet)
     assert "<script" not in html
     assert HOSTILE in plain(Page(html).text)
-    markdown = diagnosis_markdown(sheet)
+    markdown = markdown_of(sheet)
     assert "<script" not in markdown
     assert "](https://evil" not in markdown
     assert "**bold**" not in markdown
@@ -217,8 +219,6 @@ def test_words_are_listed_as_a_sentence_does(words: tuple[str, ...], expected: s
     ],
 )  # fmt: skip
 def test_sizes_are_written_in_a_unit_that_reads_well(amount: Amount, expected: str) -> None:
-    from truing.report.diagnosis_words import readable
-
     assert amount_text(readable(amount)) == expected
 
 
@@ -265,7 +265,7 @@ def test_the_sentence_for_a_colleague_holds_cause_size_gain_and_what_is_next(nam
     said = " ".join(headline(made))
     assert [words for words in SAID[name] if words not in said] == []
     assert verdict_word(made) == WORDS[name]
-    assert said in plain(Page(diagnosis_html(sheet_of(made))).text)
+    assert said in plain(Page(html_of(sheet_of(made))).text)
 
 
 def test_a_gain_that_may_be_chance_is_called_so() -> None:
@@ -392,8 +392,6 @@ def test_the_verb_prints_the_report_and_writes_the_folder(
 
 
 def test_the_verb_prints_one_document_with_json(calc: Calc, plugin: str, engine: list[Any], tmp_path: Path) -> None:
-    import json
-
     (tmp_path / "in.toml").write_text('[inputs]\nradius = "81 mm"\n', encoding="utf-8")
     answer = calc(
         "diagnose",

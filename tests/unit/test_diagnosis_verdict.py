@@ -27,7 +27,6 @@ from diagnosis_samples import (
 from hypothesis import HealthCheck, given, settings
 
 from truing.cli.diagnosis_printed import report
-from truing.declare.blocks import Words
 from truing.diagnosis.noise import SETTINGS
 from truing.diagnosis.result import (
     Alternative,
@@ -42,9 +41,9 @@ from truing.diagnosis.result import (
     shared_of,
 )
 from truing.report.chapters import Figures
-from truing.report.context import TableView
 from truing.report.diagnosis_chapters import diagnosis_chapters
 from truing.report.diagnosis_words import headline, prose, spoken, together, verdict_word
+from truing.report.document import Paragraph, TableView
 from truing.runs.diagnosis_document import diagnosis_document
 from truing.runs.index import _of_diagnosis
 
@@ -77,8 +76,8 @@ POINT = replace(ambiguous().next[0], needed=1)
 class NoFigures(Figures):
     """Draws nothing: this is about words."""
 
-    def view(self, title: str, what: Any, caption: str) -> Words:
-        return Words(caption)
+    def view(self, title: str, what: Any, caption: str) -> Paragraph:
+        return Paragraph(caption)
 
 
 @st.composite

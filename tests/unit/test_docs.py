@@ -7,12 +7,14 @@ import inspect
 import json
 import math
 import re
+import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 import pytest
+import typer.main
 
 import truing
 from truing import (
@@ -29,7 +31,10 @@ from truing import (
     errors,
     hookspecs,
 )
+from truing.cli.app import app
+from truing.declare.builtin import builtin_effects
 from truing.declare.sources import HISTORIES, SINCE_START
+from truing.declare.spreads import Target, off, read_spread
 from truing.errors import TruingError, UnitError
 from truing.evaluate import evaluate
 from truing.kernel.loading import load_file
@@ -63,10 +68,6 @@ def page(*names: str) -> str:
 
 def verbs() -> dict[str, list[str]]:
     """Every verb of the command line with the names of its options and arguments, as typer declares them."""
-    import typer.main
-
-    from truing.cli.app import app
-
     group: Any = typer.main.get_command(app)
     return {
         name: [spelling for parameter in command.params for spelling in spellings(parameter)]
@@ -249,8 +250,6 @@ def test_every_check_of_the_kit_is_listed_with_its_promise() -> None:
 
 
 def test_every_built_in_effect_and_condition_has_its_row() -> None:
-    from truing.declare.builtin import builtin_effects
-
     text = page("builtin_effects.md")
     model = load_file(DOCS / "examples" / "coil_spring.py").COIL_SPRING
     listed = re.findall(r"^\| `(\w+)` \|", text, re.MULTILINE)
@@ -321,8 +320,6 @@ SPREADS = [
 
 @pytest.mark.parametrize(("python", "file"), SPREADS)
 def test_a_spread_reads_the_same_in_python_and_in_a_file(python: str, file: str) -> None:
-    from truing.declare.spreads import Target, off, read_spread
-
     declared = eval(python, {name: getattr(truing, name) for name in truing.__all__})
     target = Target("length", 0.25, "m", lambda name: 0.25)
     assert read_spread(file.strip('"'), off()).resolve(target) == declared.resolve(target)
@@ -386,8 +383,6 @@ def test_python_on_a_page_can_be_parsed(file: Path) -> None:
 
 @pytest.mark.parametrize("file", PAGES, ids=lambda file: str(file.relative_to(ROOT)))
 def test_toml_on_a_page_can_be_parsed(file: Path) -> None:
-    import tomllib
-
     text = file.read_text(encoding="utf-8")
     for mark, code in re.findall(r"(<!-- file: wrong.toml -->\n)?```toml\n(.*?)```", text, re.DOTALL):
         if not mark:

@@ -7,22 +7,16 @@ from typing import Any
 import numpy as np
 import pytest
 from harmonic_by_quadrature import RoughPair
+from harmonic_drives import drive_of
 from scipy.integrate import quad
 
 from harmonic_fractal import clearance, micro
 from harmonic_fractal.contact import Contact, Rough, contact_of, interface_of, pressed
 from harmonic_fractal.model import HARMONIC_FRACTAL
-from harmonic_fractal.quantities import Drive
 
 SURFACES = [(2.1, 1e-22), (2.3, 1e-11), (2.4, 1e-11), (2.5 - 1e-7, 1e-9), (2.5, 1e-9), (2.5 + 1e-7, 1e-9),
             (2.6, 1e-9), (2.9, 1e-9)]  # fmt: skip
 LOADS = np.geomspace(1e-8, 1e3, 34)
-
-
-def drive_of(**changed: Any) -> Drive:
-    """A drive with the defaults but for these inputs, SI."""
-    made: Drive = replace(HARMONIC_FRACTAL.inputs(), **changed)
-    return made
 
 
 def contact(dimension: float = 2.4, roughness: float = 1e-11, **changed: Any) -> Contact:

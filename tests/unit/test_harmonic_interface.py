@@ -5,13 +5,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from harmonic_drives import drive_of
 
 from harmonic_fractal.calculation import harmonic_fractal
 from harmonic_fractal.contact import interface_of, range_of, spacing_of
 from harmonic_fractal.estimate import Estimate
 from harmonic_fractal.flank import Flank
 from harmonic_fractal.model import HARMONIC_FRACTAL
-from harmonic_fractal.quantities import Drive
 from harmonic_fractal.structure import structure_function
 from harmonic_fractal.surface import Surface
 from truing.errors import InfeasibleError
@@ -19,12 +19,6 @@ from truing.evaluate import answered, evaluate_rows
 from truing.setup import default_setup
 
 LAGS = np.geomspace(0.4e-6, 20e-6, 16)
-
-
-def drive_of(**changed: Any) -> Drive:
-    """A drive with the defaults but for these inputs, SI."""
-    made: Drive = replace(HARMONIC_FRACTAL.inputs(), **changed)
-    return made
 
 
 @pytest.mark.parametrize("dimension", [2.2, 2.4, 2.5, 2.8])
@@ -111,27 +105,6 @@ def test_two_measured_flanks_are_added_over_the_range_that_both_have() -> None:
 
 
 # What must hold
-
-REFUSED: list[tuple[dict[str, Any], str]] = [
-    ({"fractal_dimension": 2.04}, "below 2.05"),
-    ({"dimension_deviation": -0.36}, "below 2.05"),
-    ({"fractal_dimension": 2.96}, "above 2.95"),
-    ({"dimension_deviation": 0.56}, "above 2.95"),
-    ({"mating_dimension": 2.4}, "half stated"),
-    ({"mating_roughness": 1e-11}, "half stated"),
-    ({"mating_dimension": 2.4, "mating_roughness": 1e-11, "longest_lag": 0.4e-6}, "enlarge longest_lag"),
-    ({"engaged_factor": 3.4}, "more pairs are engaged"),
-    ({"engaged_pairs": 201}, "more pairs are engaged"),
-    ({"engaged_gain": 5.0}, "more pairs are engaged"),
-    ({"pair_load": 1e4}, "reduce pair_load"),
-    ({"torque": -1e4}, "reduce torque"),
-]
-
-
-@pytest.mark.parametrize(("changed", "sentence"), REFUSED, ids=[f"{index}" for index in range(len(REFUSED))])
-def test_what_cannot_be_is_refused_by_name(changed: dict[str, Any], sentence: str) -> None:
-    with np.errstate(all="ignore"), pytest.raises(InfeasibleError, match=sentence):
-        harmonic_fractal(drive_of(**changed))
 
 
 @pytest.mark.parametrize(

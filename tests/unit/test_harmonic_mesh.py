@@ -1,27 +1,15 @@
 """Engaged pairs together: shares, sums, and what stands around the rough contact of each."""
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
+from harmonic_drives import drive_of, mesh
 
 from harmonic_fractal.contact import contact_of, interface_of, pressed
-from harmonic_fractal.mesh import DriveMesh, arcs_of, engagement_of, load_of_largest, mesh_of, normal_stiffness
-from harmonic_fractal.model import HARMONIC_FRACTAL
-from harmonic_fractal.quantities import Drive
+from harmonic_fractal.mesh import arcs_of, engagement_of, load_of_largest, normal_stiffness
 
 RADIUS = 25.4e-3 * np.cos(np.radians(20.0))
-
-
-def drive_of(**changed: Any) -> Drive:
-    """A drive with the defaults but for these inputs, SI."""
-    made: Drive = replace(HARMONIC_FRACTAL.inputs(), **changed)
-    return made
-
-
-def mesh(drive: Drive) -> DriveMesh:
-    return mesh_of(drive, contact_of(drive, interface_of(drive)))
 
 
 def shares_one_by_one(pairs: int) -> "np.typing.NDArray[np.float64]":

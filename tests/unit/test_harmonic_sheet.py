@@ -27,7 +27,7 @@ from harmonic_fractal.surface import Direction, Lines, Surface, without_line
 from harmonic_fractal.uncertainty import SurfaceValidity
 from truing import Drawing, Table, Words
 from truing.calculation import Calculation, calculate
-from truing.report.content import input_rows
+from truing.report.content import input_value
 from truing.setup import default_setup
 
 SPACING = 0.5e-6
@@ -399,8 +399,10 @@ def test_a_sweep_shows_what_changes() -> None:
 
 
 def test_an_input_file_that_is_not_given_is_said_so() -> None:
-    rows = {row.name: row.value.text for row in input_rows(default_setup(HARMONIC_FRACTAL))}
-    assert rows["surface"] == rows["mating_surface"] == rows["mating_dimension"] == "not given"
+    setup = default_setup(HARMONIC_FRACTAL)
+    for name in ("surface", "mating_surface", "mating_dimension"):
+        value = getattr(setup.inputs, name)
+        assert input_value(setup, setup.model.input_fields[name], value).text == "not given"
 
 
 @pytest.mark.parametrize(

@@ -139,6 +139,7 @@ def test_a_million_numbers_with_a_header_of_words(tmp_path: Path) -> None:
     ("text", "words"),
     [
         ("", "empty"), ("  \n \n", "empty"), ("no numbers at all", "no line of the file holds numbers"),
+        ("five,2,3,4\n1,2,3,4\n", "line 1: 'five' is no number"), ("five,2,3,4\n1,2,3,4\n", "skip_lines = 1"),
         ("# only\n# comments\n", "no line of the file holds numbers"), ("1,2,3,4\n1,2,3\n", "line 2 has 3 cells"),
         ("1,2,3,4\n1,x7,3,4\n", "line 2: 'x7' is no number"), ("1;2;3;4\n1;1.234,5;3;4\n", "line 2"),
         ("1,2,3,4\n1,inf,3,4\n", "line 2: infinite"), ("1,2,3,4\n1,1_0,3,4\n", "line 2"),

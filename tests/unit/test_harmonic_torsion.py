@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from harmonic_drives import drive_of, mesh
 
 from harmonic_fractal import mesh as torsion_module
 from harmonic_fractal.calculation import around_of, harmonic_fractal
-from harmonic_fractal.contact import contact_of, interface_of
-from harmonic_fractal.mesh import DriveMesh, mesh_of, mesh_torsion, normal_stiffness
+from harmonic_fractal.mesh import mesh_torsion, normal_stiffness
 from harmonic_fractal.model import HARMONIC_FRACTAL
 from harmonic_fractal.quantities import Drive
 from truing.evaluate import evaluate_rows
@@ -35,16 +35,6 @@ CASES: list[tuple[dict[str, Any], float]] = [
     ({"engaged_gain": 2.0, "engaged_torque": 0.05, "fractal_dimension": 2.3, "reference_torque": 3e-3}, 25.0),
     ({"engaged_pairs": 201, "engaged_factor": 0.9, "flexspline_teeth": 400, "reference_torque": 2e-4}, 25.0),
 ]  # fmt: skip
-
-
-def drive_of(**changed: Any) -> Drive:
-    """A drive with the defaults but for these inputs, SI."""
-    made: Drive = replace(HARMONIC_FRACTAL.inputs(), **changed)
-    return made
-
-
-def mesh(drive: Drive) -> DriveMesh:
-    return mesh_of(drive, contact_of(drive, interface_of(drive)))
 
 
 def by_trapezoids(drive: Drive, torque: float) -> float:

@@ -9,6 +9,7 @@ import tomllib
 from collections import Counter
 from collections.abc import Iterator
 from graphlib import TopologicalSorter
+from importlib.metadata import packages_distributions
 from pathlib import Path
 
 import pytest
@@ -22,6 +23,8 @@ PACKAGES = sorted(path.parent.name for path in (ROOT / "plugins").glob("*/__init
 EXTRAS = {"harmonic_fractal": {"SurfaceTopography"}}  # optional: imported inside a function, missed with a sentence
 SHARED = {"gear_geometry"}  # what several gear papers share: no hooks, and every plugin may import it
 FOR_AUTHORS = {"truing"}
+NEVER_MISSED = {"IPython", "typing_extensions", "_typeshed"}  # there in a notebook, and for type checkers, alone
+FOR_OUR_WORK = {"test", "docs", "dev"}  # extras that nothing of ours imports
 
 
 def tool(*arguments: str) -> Answer:
@@ -89,6 +92,38 @@ def test_every_package_is_in_the_contracts_and_in_the_type_check() -> None:
     assert set(project["tool"]["mypy"]["packages"]) == {"truing", *PACKAGES}
     entries = project["project"]["entry-points"]["truing.plugins"]
     assert {value.split(":")[0] for value in entries.values()} == set(PACKAGES) - SHARED
+
+
+def test_every_library_that_is_imported_is_declared() -> None:
+    """Also what comes with another one, which may do without it some day."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    extras = project["optional-dependencies"]
+    lists = [project["dependencies"], *(extras[name] for name in extras if name not in FOR_OUR_WORK)]
+    declared = {canonical(word) for words in lists for word in words}
+    imported = {name for file in CODE for name in _libraries_of(ast.parse(file.read_text(encoding="utf-8")))}
+    imported -= NEVER_MISSED
+    homes = packages_distributions()
+    assert {"numpy", "pint", "sklearn"} <= imported
+    assert [name for name in sorted(imported) if declared.isdisjoint(map(canonical, homes.get(name, [name])))] == []
+
+
+def canonical(requirement: str) -> str:
+    """Return the name of the distribution that a requirement is for, as packaging compares names."""
+    name = re.split(r"[^A-Za-z0-9._-]", requirement, maxsplit=1)[0]
+    return re.sub(r"[-_.]+", "-", name).lower()
+
+
+def _libraries_of(tree: ast.Module) -> Iterator[str]:
+    for node in ast.walk(tree):
+        names: list[str] = []
+        if isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom) and not node.level:
+            names = [str(node.module)]
+        elif isinstance(node, ast.Call) and getattr(node.func, "id", "") == "Later":
+            names = [argument.value for argument in node.args if isinstance(argument, ast.Constant)]
+        tops = {name.split(".")[0] for name in names}
+        yield from tops - sys.stdlib_module_names - {"truing", *PACKAGES}
 
 
 @pytest.mark.parametrize("package", ["truing", *PACKAGES])

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from sample_models import PIN_OFFER, PIN_WEAR, STAGE_OFFER, Census
+from sample_models import PIN_OFFER, PIN_WEAR, STAGE_OFFER, Census, faults, pin
 
 from truing.declare.spreads import Band, Grade, Off, Zone
 from truing.errors import InputError
@@ -24,16 +24,6 @@ SURFACE = 'surface = { file = "flank.txt", spacing = "0.4 um" }'
 def folder(tmp_path: Path) -> Path:
     (tmp_path / "flank.txt").write_text("1\n2\n4\n")
     return tmp_path
-
-
-def pin(text: str) -> Setup:
-    return setup_from_text(text, PIN_OFFER, file="wear.toml", folder=Path())
-
-
-def faults(text: str) -> list[str]:
-    with pytest.raises(InputError) as caught:
-        pin(text)
-    return str(caught.value).splitlines()
 
 
 def stage(text: str, folder: Path) -> Setup:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import json
 
+from jsonschema import Draft202012Validator
 from sample_models import PIN_OFFER, STAGE_OFFER
 
 from truing.inputs_file import json_schema
 
 
 def test_the_schema_is_valid_and_says_what_editors_need() -> None:
-    from jsonschema import Draft202012Validator
-
     schema = json_schema(STAGE_OFFER)
     Draft202012Validator.check_schema(schema)
     assert schema["$schema"] == "https://json-schema.org/draft/2020-12/schema"
@@ -30,8 +29,6 @@ def test_the_schema_is_valid_and_says_what_editors_need() -> None:
 
 
 def test_the_schema_of_studies_and_effects() -> None:
-    from jsonschema import Draft202012Validator
-
     schema = json_schema(PIN_OFFER)
     Draft202012Validator.check_schema(schema)
     json.dumps(schema, allow_nan=False)

@@ -12,21 +12,10 @@ import pytest
 from hypothesis import given as drawn
 from hypothesis import settings as drawing
 from hypothesis import strategies as st
-from sample_models import PIN_OFFER
+from sample_models import PIN_OFFER, faults, pin
 
 from truing.errors import InputError
-from truing.inputs_file import read_setup, setup_from_settings, setup_from_text
-from truing.setup import Setup
-
-
-def pin(text: str) -> Setup:
-    return setup_from_text(text, PIN_OFFER, file="wear.toml", folder=Path())
-
-
-def faults(text: str) -> list[str]:
-    with pytest.raises(InputError) as caught:
-        pin(text)
-    return str(caught.value).splitlines()
+from truing.inputs_file import read_setup, setup_from_settings
 
 
 @pytest.mark.parametrize(

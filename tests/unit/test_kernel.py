@@ -1,5 +1,6 @@
 """The kernel: who offers what, who adds what, and who is left out with name, version, file, line and reason."""
 
+import json
 import sys
 import textwrap
 from collections.abc import Callable
@@ -10,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from truing import Kernel
+from truing import Kernel, hookspecs
 from truing.errors import PluginError, UnknownPluginError
 from truing.kernel import Broken, Origin, entry_points, kernel_for
 
@@ -406,8 +407,6 @@ def test_files_with_odd_names(tmp_path: Path, stem: str) -> None:
 
 
 def test_a_file_named_like_a_module_hides_nobody(tmp_path: Path) -> None:
-    import json
-
     file = tmp_path / "json.py"
     file.write_text(GOOD.format(name="pin"), encoding="utf-8")
     kernel = Kernel()
@@ -450,8 +449,6 @@ def test_broken_prints_without_a_line() -> None:
 
 
 def hooks_page() -> list[Any]:
-    from truing import hookspecs
-
     return [value for name, value in vars(hookspecs).items() if name.startswith("truing_")]
 
 

@@ -4,7 +4,9 @@ import re
 from typing import Any
 from xml.etree import ElementTree
 
+import matplotlib as mpl
 import pytest
+from matplotlib.figure import Figure
 
 from truing.errors import PluginError
 from truing.report.figures import draw
@@ -13,8 +15,6 @@ SVG = "{http://www.w3.org/2000/svg}"
 
 
 def line() -> Any:
-    from matplotlib.figure import Figure
-
     figure = Figure(figsize=(4, 2))
     axes = figure.subplots()
     axes.plot([0, 1, 2], [3, 1, 2], label="<b>&</b>")
@@ -28,8 +28,6 @@ def test_a_figure_is_the_same_bytes_every_time() -> None:
 
 
 def test_a_figure_does_not_follow_the_users_settings() -> None:
-    import matplotlib as mpl
-
     before = draw(line, title="a", ident="f1")
     with mpl.rc_context({"font.size": 30, "svg.hashsalt": "other", "axes.facecolor": "red"}):
         assert draw(line, title="a", ident="f1") == before

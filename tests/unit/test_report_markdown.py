@@ -7,7 +7,7 @@ from markdown_it import MarkdownIt
 from markdown_it.token import Token
 
 from truing.formulas.symbols import printable
-from truing.report.markdown import Raw, escaped
+from truing.report.markdown import escaped
 
 HOSTILE = [
     "<script>alert(1)</script>",
@@ -75,7 +75,3 @@ def test_a_hostile_text_stays_in_its_cell(text: str) -> None:
 @pytest.mark.parametrize("mark", ["<", ">", "$", "|", "{", "}", "https://", "mailto:", "www."])
 def test_marks_that_other_readers_obey_do_not_stand_in_the_source(mark: str) -> None:
     assert mark not in escaped(f"a {mark} b {mark}c")
-
-
-def test_what_we_wrote_ourselves_is_left_alone() -> None:
-    assert escaped(Raw("$x$")) == "$x$"

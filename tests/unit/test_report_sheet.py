@@ -11,8 +11,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from markdown_it import MarkdownIt
 
 from press_linkage.model import PRESS_LINKAGE
+from truing import Section, Table
 from truing.calculation import Calculation, calculate
 from truing.cases import run_cases
 from truing.executors import open_executor
@@ -21,7 +23,9 @@ from truing.kernel import Kernel, Offer
 from truing.measurements import read_cases
 from truing.published import compare_published
 from truing.report.columns import with_room
-from truing.report.render import css_text, html_of, markdown_of
+from truing.report.document import Document, ResultEntry, TableView
+from truing.report.html_printer import css_text, html_of
+from truing.report.markdown_printer import markdown_of
 from truing.report.sheet import logo_of, make_sheet
 from truing.report.templates import template_folder
 from truing.runs.provenance import Provenance, provenance_of
@@ -159,8 +163,6 @@ def test_markdown_holds_no_html_and_no_template_mark(markdown: str) -> None:
 
 
 def test_every_table_of_the_markdown_has_equal_rows(markdown: str) -> None:
-    from markdown_it import MarkdownIt
-
     tokens = MarkdownIt("commonmark").enable("table").parse(markdown)
     rows = sum(token.type == "tr_open" for token in tokens)
     lines = [line for line in markdown.splitlines() if line.startswith("|")]
@@ -202,7 +204,12 @@ def test_checks_are_told_by_words_and_not_by_colour(html: str) -> None:
     assert rows == ["passes", "fails", "passes"]
     text = Page(html).text
     assert text.count("✓ pass") == 2
-    assert text.count("✗ FAIL") == 1
+    assert text.count("✗ FAILS") == 1
+
+
+def test_a_long_name_may_break_behind_its_underscores(html: str) -> None:
+    assert "<code>early_<wbr>depth</code>" in html
+    assert "early_depth" in Page(html).text
 
 
 def test_a_tolerance_that_is_off_is_not_in_force(html: str) -> None:
@@ -250,14 +257,19 @@ def test_a_result_hidden_at_this_level_does_not_come_back_as_a_further_one(
     setup: Setup, provenance: Provenance
 ) -> None:
     sheet = make_sheet(calculate(setup), provenance=provenance)
-    names = [entry.name for chapter in sheet.chapters for entry in chapter.entries]
+    blocks = [block for chapter in sheet.chapters for block in chapter.blocks]
+    names = [block.name for block in blocks if isinstance(block, ResultEntry)]
     assert "root" not in names
     assert sorted(names) == sorted(set(names))
 
 
+def chapter_of(sheet: Document, title: str) -> Any:
+    return next(chapter for chapter in sheet.chapters if chapter.title == title)
+
+
 def test_a_full_sheet_shows_results_along_an_axis_as_a_thinned_table(setup: Setup, provenance: Provenance) -> None:
     sheet = make_sheet(calculate(replace(setup, sheet=SheetOptions(detail="full"))), provenance=provenance)
-    tables = [block for chapter in sheet.chapters for block in chapter.blocks if hasattr(block, "rows")]
+    tables = [block for chapter in sheet.chapters for block in chapter.blocks if isinstance(block, TableView)]
     table = next(table for table in tables if table.title == "Along moment")
     assert [len(table.rows), table.rows[0][0], table.rows[-1][0]] == [25, "0", "200"]
     assert table.note == "25 of 1201 rows"
@@ -276,13 +288,12 @@ def test_rows_that_this_run_reproduces_come_first(offer: Offer) -> None:
     setup = setup_from_text('[inputs]\nload = "240 N"', offer, file="x", folder=Path())
     calculation = calculate(setup)
     sheet = make_sheet(calculation, provenance=provenance_of(setup), verified=compare_published(offer))
-    assert [row.published.name for row in sheet.compared] == ["depth at double load"]
-    assert [row.published.name for row in sheet.compared_elsewhere] == ["pressure"]
+    own, elsewhere = (block for block in chapter_of(sheet, "Paper against this calculation").blocks[1:])
+    assert [row[0][0] for row in own.rows] == ["depth at double load"]
+    assert [row[0][0] for row in elsewhere.rows] == ["pressure"]
 
 
 def test_a_figure_that_fails_is_a_warning_and_not_the_end(offer: Offer, setup: Setup, provenance: Provenance) -> None:
-    from truing import Section
-
     def broken(record: Any) -> Any:
         raise ZeroDivisionError("nothing to divide by")
 
@@ -295,7 +306,6 @@ def test_a_figure_that_fails_is_a_warning_and_not_the_end(offer: Offer, setup: S
 
 def test_a_section_without_anything_to_show_has_no_heading(setup: Setup, provenance: Provenance) -> None:
     """Its study did not run; a section that is words and nothing else stays."""
-    from truing import Section
 
     def nothing(record: Any) -> Any:
         return []
@@ -309,7 +319,6 @@ def test_a_section_without_anything_to_show_has_no_heading(setup: Setup, provena
 @pytest.mark.parametrize("rows", [[["a"], ["a", 1.0, "too many"]], "no table at all"])
 def test_blocks_of_a_guest_do_not_take_the_sheet_away(setup: Setup, provenance: Provenance, rows: Any) -> None:
     """Rows too short or too long are printed as far as they go; what is no table is said to have failed."""
-    from truing import Section, Table
 
     def blocks(record: Any) -> Any:
         return [Table("T", ["one", "two"], rows)] if isinstance(rows, list) else rows
@@ -353,10 +362,10 @@ def test_cases_are_listed_and_the_governing_one_is_marked(offer: Offer, tmp_path
     with open_executor("serial") as executor:
         calculation, cases = run_cases(setup, read_cases(file, offer, setup), executor=executor)
     sheet = make_sheet(calculation, provenance=provenance_of(setup), cases=cases)
-    table = next(block for chapter in sheet.chapters if chapter.title == "Cases" for block in chapter.blocks)
-    assert [row[:2] for row in table.rows] == [("light", "60"), ("heavy <b>", "200"), ("middle", "120")]  # type: ignore[union-attr]
-    assert table.marked == 1  # type: ignore[union-attr]
-    assert sheet.banner.text == "3 of 3 cases fail; the governing case is heavy <b>."
+    (table,) = chapter_of(sheet, "Cases").blocks
+    assert [row[:2] for row in table.rows] == [("light", "60"), ("heavy <b>", "200"), ("middle", "120")]
+    assert table.states == ("", "marked", "")
+    assert sheet.banner.sentences == ("3 of 3 cases fail; the governing case is heavy <b>.",)
     assert "heavy &lt;b&gt;" in html_of(sheet)
     assert "**heavy &lt;b&gt;**" in markdown_of(sheet)
 
@@ -373,7 +382,7 @@ def test_the_same_run_gives_the_same_sheet(calculation: Calculation, provenance:
 
 def test_the_templates_are_found() -> None:
     names = {path.name for path in template_folder().iterdir()}
-    assert {"sheet.html.j2", "sheet.md.j2", "sheet.css", "parts"} <= names
+    assert {"sheet.html.j2", "blocks.html.j2", "sheet.css"} <= names
 
 
 @pytest.mark.parametrize(

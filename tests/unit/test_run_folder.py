@@ -21,7 +21,7 @@ from truing.errors import OutputError, PluginError, UnknownPluginError
 from truing.inputs_file import read_setup, setup_from_text
 from truing.kernel import Kernel, Offer
 from truing.runs.documents import clean, results_document
-from truing.runs.folder import demand_place, is_run, json_text, load_run, npz_bytes, write_folder, write_run
+from truing.runs.folder import demand_place, is_ours, json_text, load_either, npz_bytes, write_folder, write_run
 from truing.runs.inputs_written import complete_inputs, exact, input_hash
 from truing.runs.provenance import provenance_of
 from truing.units import read_quantity, to_si
@@ -41,11 +41,10 @@ def calculation(offer: Offer) -> Calculation:
     return calculate(read_setup(DATA / "hostile_pin.toml", offer))
 
 
-def write(folder: Path, calculation: Calculation, offer: Offer, **more: Any) -> dict[str, Any]:
+def write(folder: Path, calculation: Calculation, **more: Any) -> dict[str, Any]:
     return write_run(
         folder,
         calculation,
-        offer,
         provenance=provenance_of(calculation.setup, date="2026-11-21"),
         run_info={"date": "2026-11-21T10:00:00+0000", "duration_s": 1.5},
         sheets={"sheet.html": "<p>sheet</p>", "sheet.md": "# sheet\n"},
@@ -57,11 +56,11 @@ def leftovers(folder: Path) -> list[str]:
     return sorted(path.name for path in folder.iterdir())
 
 
-def test_a_run_folder_holds_everything(tmp_path: Path, calculation: Calculation, offer: Offer) -> None:
+def test_a_run_folder_holds_everything(tmp_path: Path, calculation: Calculation) -> None:
     folder = tmp_path / "runs" / "Größe 1"
-    document = write(folder, calculation, offer)
+    document = write(folder, calculation)
     assert leftovers(folder) == ["arrays.npz", "inputs.toml", "results.json", "run.json", "sheet.html", "sheet.md"]
-    assert load_run(folder) == document == json.loads((folder / "results.json").read_text(encoding="utf-8"))
+    assert load_either(folder) == document == json.loads((folder / "results.json").read_text(encoding="utf-8"))
     assert json.loads((folder / "run.json").read_text(encoding="utf-8"))["duration_s"] == 1.5
     assert leftovers(tmp_path / "runs") == ["Größe 1"]
 
@@ -83,18 +82,18 @@ def test_results_are_in_printed_units_with_signed_margins(calculation: Calculati
     assert document["conditions"]["frame"] == {"value": pytest.approx(35, abs=1e-9), "unit": "degC"}
 
 
-def test_large_results_stand_in_the_arrays(tmp_path: Path, calculation: Calculation, offer: Offer) -> None:
-    document = write(tmp_path / "run", calculation, offer, arrays={"drawn": np.arange(4.0)})
+def test_large_results_stand_in_the_arrays(tmp_path: Path, calculation: Calculation) -> None:
+    document = write(tmp_path / "run", calculation)
     entry = document["results"]["course"]
     assert entry == {"value": None, "unit": "um", "array": "course", "shape": [1201]}
     with np.load(tmp_path / "run" / "arrays.npz") as arrays:
-        assert sorted(arrays) == ["course", "drawn", "moment"]
+        assert sorted(arrays) == ["course", "moment"]
         assert arrays["course"] == pytest.approx(np.asarray(calculation.answers["course"]) * 1e6)
 
 
-def test_equal_runs_are_equal_files(tmp_path: Path, calculation: Calculation, offer: Offer) -> None:
-    write(tmp_path / "one", calculation, offer)
-    write(tmp_path / "two", calculate(calculation.setup), offer)
+def test_equal_runs_are_equal_files(tmp_path: Path, calculation: Calculation) -> None:
+    write(tmp_path / "one", calculation)
+    write(tmp_path / "two", calculate(calculation.setup))
     for name in ("results.json", "arrays.npz", "inputs.toml"):
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
 
@@ -114,9 +113,9 @@ class Left:
         return {}
 
 
-def test_a_study_leaves_files_beside_the_sheet(tmp_path: Path, calculation: Calculation, offer: Offer) -> None:
+def test_a_study_leaves_files_beside_the_sheet(tmp_path: Path, calculation: Calculation) -> None:
     left = replace(calculation, outcomes={"made": Left({"flank.csv": "1,2\n", "map.bin": b"\x00"})})
-    write(tmp_path / "one", left, offer)
+    write(tmp_path / "one", left)
     assert (tmp_path / "one" / "flank.csv").read_text() == "1,2\n"
     assert (tmp_path / "one" / "map.bin").read_bytes() == b"\x00"
 
@@ -134,14 +133,14 @@ def test_a_study_leaves_files_beside_the_sheet(tmp_path: Path, calculation: Calc
     ],
 )
 def test_a_file_that_cannot_be_left_is_the_fault_of_the_study(
-    tmp_path: Path, calculation: Calculation, offer: Offer, files: Mapping[str, Any], sentence: str
+    tmp_path: Path, calculation: Calculation, files: Mapping[str, Any], sentence: str
 ) -> None:
     with pytest.raises(PluginError, match=f"study 'made' .*{sentence}"):
-        write(tmp_path / "one", replace(calculation, outcomes={"made": Left(files)}), offer)
+        write(tmp_path / "one", replace(calculation, outcomes={"made": Left(files)}))
     assert leftovers(tmp_path) == []
 
 
-def test_results_hold_no_token_that_is_no_json(calculation: Calculation, offer: Offer) -> None:
+def test_results_hold_no_token_that_is_no_json(calculation: Calculation) -> None:
     document = results_document(calculation, provenance_of(calculation.setup))
     assert "NaN" not in json_text(document)
     with pytest.raises(ValueError, match="not JSON compliant"):
@@ -155,7 +154,7 @@ def test_studies_are_made_plain() -> None:
 
 def test_complete_inputs_give_the_run_again(tmp_path: Path, calculation: Calculation, offer: Offer) -> None:
     folder = tmp_path / "run"
-    document = write(folder, calculation, offer)
+    document = write(folder, calculation)
     again = calculate(read_setup(folder / "inputs.toml", offer))
     assert results_document(again, provenance_of(again.setup)) == document
     written = [complete_inputs(setup, folder).splitlines()[:9] for setup in (again.setup, calculation.setup)]
@@ -197,11 +196,11 @@ def test_a_tolerance_that_follows_a_choice_is_left_to_follow_it() -> None:
     assert again.distributions() == wanted.distributions() != setup.distributions()
 
 
-def test_an_earlier_run_is_replaced_whole(tmp_path: Path, calculation: Calculation, offer: Offer) -> None:
+def test_an_earlier_run_is_replaced_whole(tmp_path: Path, calculation: Calculation) -> None:
     folder = tmp_path / "run"
-    write(folder, calculation, offer)
+    write(folder, calculation)
     (folder / "notes.txt").write_text("left by the earlier run")
-    write(folder, calculation, offer)
+    write(folder, calculation)
     assert "notes.txt" not in leftovers(folder)
     assert leftovers(tmp_path) == ["run"]
 
@@ -222,7 +221,7 @@ def test_a_folder_that_is_no_run_of_ours_is_left_alone(tmp_path: Path, content: 
     folder.mkdir()
     for name, text in content.items():
         (folder / name).write_text(text)
-    assert not is_run(folder)
+    assert not is_ours(folder, "run")
     with pytest.raises(OutputError, match="so it is left alone"):
         write_folder(folder, {"results.json": "x"})
     assert {path.name: path.read_text() for path in folder.iterdir()} == content
@@ -250,10 +249,8 @@ def test_a_place_that_is_free_is_not_touched_by_asking(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(os.name == "nt", reason="permissions are another matter on Windows")
-def test_a_run_folder_can_be_read_by_whoever_may_read_its_neighbours(
-    tmp_path: Path, calculation: Calculation, offer: Offer
-) -> None:
-    write(tmp_path / "run", calculation, offer)
+def test_a_run_folder_can_be_read_by_whoever_may_read_its_neighbours(tmp_path: Path, calculation: Calculation) -> None:
+    write(tmp_path / "run", calculation)
     (tmp_path / "plain").mkdir()
     assert (tmp_path / "run").stat().st_mode == (tmp_path / "plain").stat().st_mode
 
@@ -270,7 +267,7 @@ def test_what_is_no_run_is_not_loaded(tmp_path: Path, content: str | None, sente
     if content is not None:
         (tmp_path / "results.json").write_text(content)
     with pytest.raises(UnknownPluginError, match=sentence):
-        load_run(tmp_path)
+        load_either(tmp_path)
 
 
 def test_what_guests_added_is_listed(calculation: Calculation) -> None:
@@ -294,7 +291,7 @@ def test_data_files_are_named_as_seen_from_the_run_folder(tmp_path: Path) -> Non
     stated = '{ file = "data/other.txt", factor = 3.0 }'
     for overrides, mean in (([], 4.0), ([f"profile={stated}"], 15.0)):
         calculation = calculate(read_setup(tmp_path / "in.toml", offer, overrides=overrides))
-        document = write(tmp_path / "runs" / "one", calculation, offer)
+        document = write(tmp_path / "runs" / "one", calculation)
         assert document["results"]["mean"]["value"] == mean
         again = read_setup(tmp_path / "runs" / "one" / "inputs.toml", offer)
         assert calculate(again).answers["mean"] == mean

@@ -214,7 +214,6 @@ def test_least_cost_is_what_trying_everything_finds(model, shift, loosen, goal_u
         priced = sum(prices[name](1e6 * width) for name, width in widths.items())
         cost = sum(1e-3 / width for width in widths.values()) if shift else priced
         best = cost if best is None else min(best, cost)
-    from truing import Require
 
     model = replace(model, objectives=[Require("height", within=f"{goal_um} um", reliability=0.95)])
     found = allotted(model, Allocation(draws=10, loosen=loosen))

@@ -43,6 +43,12 @@ def odds_of(setup, study=QUICK, executor=None):
     return calculate(replace(setup, studies=(study,)), executor=executor).outcomes["reliability"]
 
 
+@pytest.fixture(scope="module")
+def of_chain():
+    """The odds of the dimension chain as it is declared, which many tests look at."""
+    return odds_of(setup_of(CHAIN))
+
+
 def within_sampling_error(probability, expected, draws):
     return abs(probability - expected) <= 4 * sqrt(expected * (1 - expected) / draws)
 
@@ -50,14 +56,13 @@ def within_sampling_error(probability, expected, draws):
 # ---- first order --------------------------------------------------------------------------------------------------
 
 
-def test_a_linear_sum_of_normals_is_exact():
-    odds = odds_of(setup_of(CHAIN))
+def test_a_linear_sum_of_normals_is_exact(of_chain):
     gap, twice = 2 * norm.cdf(0.2 / 0.13) - 1, norm.cdf(0.3 / 0.26)
-    assert odds.analytic == pytest.approx({"gap": gap, "twice": twice}, rel=1e-12)
-    assert odds.form["gap"].probability == pytest.approx(gap, rel=1e-9)
-    assert odds.form["twice"].probability == pytest.approx(twice, rel=1e-9)
-    assert within_sampling_error(odds.probability["gap"], gap, odds.draws)
-    assert within_sampling_error(odds.probability["twice"], twice, odds.draws)
+    assert of_chain.analytic == pytest.approx({"gap": gap, "twice": twice}, rel=1e-12)
+    assert of_chain.form["gap"].probability == pytest.approx(gap, rel=1e-9)
+    assert of_chain.form["twice"].probability == pytest.approx(twice, rel=1e-9)
+    assert within_sampling_error(of_chain.probability["gap"], gap, of_chain.draws)
+    assert within_sampling_error(of_chain.probability["twice"], twice, of_chain.draws)
 
 
 def test_the_shift_of_a_zone_is_in_the_mean():
@@ -95,10 +100,9 @@ def test_the_interval_is_wilsons(hits, draws, low, high):
     assert wilson(draws - hits, draws) == pytest.approx((1 - high, 1 - low), abs=5e-5)
 
 
-def test_the_standard_error_is_that_of_a_share():
-    odds = odds_of(setup_of(CHAIN))
-    share = odds.probability["gap"]
-    assert odds.as_json()["gap"]["standard_error"] == pytest.approx(sqrt(share * (1 - share) / 40_000), rel=1e-12)
+def test_the_standard_error_is_that_of_a_share(of_chain):
+    share = of_chain.probability["gap"]
+    assert of_chain.as_json()["gap"]["standard_error"] == pytest.approx(sqrt(share * (1 - share) / 40_000), rel=1e-12)
 
 
 @pytest.mark.parametrize(("low", "high"), [(8.0, 9.0), (-9.0, -8.0)])
@@ -189,9 +193,9 @@ def test_two_tolerances_on_one_input_add_up():
     assert odds.sd["total"] == pytest.approx(5, rel=0.02)
 
 
-def test_a_reading_never_fails_a_machine():
+def test_a_reading_never_fails_a_machine(of_chain):
     on = SwitchedOn(CHAIN.effects["misread"], {"offset": 1.0}, {"offset": 1.0})
-    assert odds_of(replace(setup_of(CHAIN), effects=(on,))).probability == odds_of(setup_of(CHAIN)).probability
+    assert odds_of(replace(setup_of(CHAIN), effects=(on,))).probability == of_chain.probability
 
 
 def test_one_calibrated_machine_is_not_the_design():
@@ -313,16 +317,20 @@ def test_form_stands_only_beside_a_sampling():
 # ---- seeds and workers --------------------------------------------------------------------------------------------
 
 
+@pytest.fixture(scope="module")
+def two_processes():
+    with open_executor("processes:2") as executor:
+        yield executor
+
+
 @pytest.mark.parametrize("model", [CHAIN, ROOT, JOINT, WEAR])
-def test_two_processes_give_the_same_bytes(model):
+def test_two_processes_give_the_same_bytes(model, two_processes):
     study = Reliability(draws=10_001, batch=1024)
     serial = json.dumps(odds_of(setup_of(model), study).as_json())
-    with open_executor("processes:2") as executor:
-        spread = json.dumps(odds_of(setup_of(model), study, executor).as_json())
-    assert serial == spread
+    assert serial == json.dumps(odds_of(setup_of(model), study, two_processes).as_json())
 
 
-def test_overridden_spreads_effects_and_inputs_reach_the_workers():
+def test_overridden_spreads_effects_and_inputs_reach_the_workers(two_processes):
     on = SwitchedOn(CHAIN.effects["grow"], {"strain": 1e-4}, {"strain": 4e-4}, ((1.6e-7,),))
     setup = replace(
         setup_of(CHAIN, first="31 mm", gap_limit="0.4 mm"),
@@ -330,8 +338,7 @@ def test_overridden_spreads_effects_and_inputs_reach_the_workers():
     )  # fmt: skip
     study = Reliability(draws=3000, batch=1000)
     serial = json.dumps(odds_of(setup, study).as_json())
-    with open_executor("processes:2") as executor:
-        assert serial == json.dumps(odds_of(setup, study, executor).as_json())
+    assert serial == json.dumps(odds_of(setup, study, two_processes).as_json())
 
 
 def test_zero_is_a_seed():
@@ -379,39 +386,36 @@ def test_the_batch_is_no_part_of_the_reduction_error():
 # ---- what is said -------------------------------------------------------------------------------------------------
 
 
-def test_checks_compare_the_sampling_with_the_goal():
-    odds = odds_of(setup_of(CHAIN))
-    check = next(check for check in odds.checks() if check.name == "gap")
-    assert (check.value, check.limit, check.passed) == (odds.probability["gap"], 0.85, True)
+def test_checks_compare_the_sampling_with_the_goal(of_chain):
+    check = next(check for check in of_chain.checks() if check.name == "gap")
+    assert (check.value, check.limit, check.passed) == (of_chain.probability["gap"], 0.85, True)
     assert check.margin == pytest.approx((check.value - 0.85) / 0.85)
-    assert "take the Monte Carlo" in odds.blocks()[0].note
+    assert "take the Monte Carlo" in of_chain.blocks()[0].note
 
 
-def test_the_table_of_the_sheet_is_in_percent():
-    odds = odds_of(setup_of(CHAIN))
-    table = odds.blocks()[0]
+def test_the_table_of_the_sheet_is_in_percent(of_chain):
+    table = of_chain.blocks()[0]
     assert table.columns == ("limit kept", "goal", "Monte Carlo", "95 % from", "to", "first order", "FORM")
     assert table.units == ("", "%", "%", "%", "%", "%", "%")
     gap = 2 * norm.cdf(0.2 / 0.13) - 1
-    noise = 1.96 * sqrt(gap * (1 - gap) / odds.draws)
+    noise = 1.96 * sqrt(gap * (1 - gap) / of_chain.draws)
     _, goal, sampled, low, high, first, tangent = table.rows[0]
     assert (goal, first, tangent) == (pytest.approx(85), pytest.approx(100 * gap), pytest.approx(100 * gap))
     assert sampled == pytest.approx(100 * gap, abs=200 * noise)
     assert (high - sampled, sampled - low) == pytest.approx((100 * noise, 100 * noise), rel=0.05)
 
 
-def test_a_check_says_how_its_probability_was_found():
-    assert odds_of(setup_of(CHAIN)).checks()[0].method == "Monte Carlo, 40000 machines"
+def test_a_check_says_how_its_probability_was_found(of_chain):
+    assert of_chain.checks()[0].method == "Monte Carlo, 40000 machines"
     assert odds_of(setup_of(CHAIN), Reliability(method=("first_order",))).checks()[0].method == "first order"
 
 
-def test_the_sheet_tells_mean_and_extremes_from_the_nominal_result():
+def test_the_sheet_tells_mean_and_extremes_from_the_nominal_result(of_chain):
     """gap = 10 mm, sd 0.13 mm: in five digits the mean itself would say nothing."""
-    odds = odds_of(setup_of(CHAIN))
-    table = next(block for block in odds.blocks() if block.title == "Scatter of the results")
+    table = next(block for block in of_chain.blocks() if block.title == "Scatter of the results")
     name, unit, mean, spread, first, smallest, largest = table.rows[0]
     assert (name, unit) == ("gap", "mm")
-    assert abs(mean) < 4 * 0.13 / sqrt(odds.draws)
+    assert abs(mean) < 4 * 0.13 / sqrt(of_chain.draws)
     assert (spread, first) == (pytest.approx(0.13, rel=0.01), pytest.approx(0.13, rel=1e-9))
     assert 3.5 * 0.13 < -smallest < 6 * 0.13
     assert 3.5 * 0.13 < largest < 6 * 0.13

@@ -421,36 +421,35 @@ def test_every_kind_of_quantity_has_one_name():
 
 
 @pytest.mark.parametrize(
-    ("unit", "text", "latex"),
+    ("unit", "text"),
     [
-        ("N*m", "N·m", r"\mathrm{N\,m}"),
-        ("Nm", "N·m", r"\mathrm{N\,m}"),
-        ("um", "µm", r"\mathrm{\mu{}m}"),
-        ("m/s**2", "m/s²", r"\mathrm{m/s^{2}}"),
-        ("m/s^2", "m/s²", r"\mathrm{m/s^{2}}"),
-        ("m s^-2", "m/s²", r"\mathrm{m/s^{2}}"),
-        ("degC", "°C", r"\mathrm{{}^{\circ}C}"),
-        ("deg", "°", r"\mathrm{{}^{\circ}}"),
-        ("arcmin", "′", r"\mathrm{{}^{\prime}}"),
-        ("", "", ""),
-        ("[-]", "", ""),
-        ("1", "", ""),
-        ("%", "%", r"\mathrm{\%}"),
-        ("W/(m*K)", "W/(m·K)", r"\mathrm{W/(m\,K)}"),
-        ("K^-1", "1/K", r"\mathrm{1/K}"),
-        ("1e-6/K", "10⁻⁶/K", r"\mathrm{10^{-6}/K}"),
-        ("10^3 N", "10³·N", r"\mathrm{10^{3}\,N}"),
-        ("MPa*m^0.5", "MPa·m^0.5", r"\mathrm{MPa\,m^{0.5}}"),
-        ("kohm", "kΩ", r"\mathrm{k\Omega{}}"),
-        ("delta_degC", "K", r"\mathrm{K}"),
-        ("mm^4", "mm⁴", r"\mathrm{mm^{4}}"),
-        ("rpm", "rpm", r"\mathrm{rpm}"),
-        ("€", "EUR", r"\mathrm{EUR}"),
+        ("N*m", "N·m"),
+        ("Nm", "N·m"),
+        ("um", "µm"),
+        ("m/s**2", "m/s²"),
+        ("m/s^2", "m/s²"),
+        ("m s^-2", "m/s²"),
+        ("degC", "°C"),
+        ("deg", "°"),
+        ("arcmin", "′"),
+        ("", ""),
+        ("[-]", ""),
+        ("1", ""),
+        ("%", "%"),
+        ("W/(m*K)", "W/(m·K)"),
+        ("K^-1", "1/K"),
+        ("1e-6/K", "10⁻⁶/K"),
+        ("10^3 N", "10³·N"),
+        ("MPa*m^0.5", "MPa·m^0.5"),
+        ("kohm", "kΩ"),
+        ("delta_degC", "K"),
+        ("mm^4", "mm⁴"),
+        ("rpm", "rpm"),
+        ("€", "EUR"),
     ],
 )
-def test_printed_units(unit, text, latex):
+def test_printed_units(unit, text):
     assert units.unit_text(unit) == text
-    assert units.unit_latex(unit) == latex
 
 
 @pytest.mark.parametrize("unit", [text for text, _ in names.KINDS] + ["um/degC", "1e-6/K", "N/mm²", "kN*m/deg"])
@@ -582,7 +581,6 @@ def test_any_unit_text_is_a_unit_or_one_sentence(unit):
         return
     assert units.unit_factor(unit) > 0
     assert units.same_dimension(units.unit_text(unit), unit)
-    assert units.unit_latex(unit).count("{") == units.unit_latex(unit).count("}")
     assert units.human_dimension(unit)
 
 

@@ -18,7 +18,7 @@ from truing.formulas.write_mathml import MathMLWriter
 from truing.inputs_file import json_schema
 from truing.kernel import Kernel, Offer
 from truing.report import equations
-from truing.report.context import Equation
+from truing.report.document import Equation
 from truing.units import unit_text
 
 BOUNDLESS = 1e5

@@ -8,11 +8,12 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from truing.api.notebook import html_table, plotted
+from truing.api.notebook import plotted, table_html
 from truing.api.quantities import quantity_of
 from truing.api.tables import frame_of
 from truing.diagnosis import result as found
 from truing.errors import UsageError
+from truing.report.diagnosis_chapters import ranking_table
 from truing.report.diagnosis_figures import (
     against_simulated,
     main_covariates,
@@ -21,7 +22,7 @@ from truing.report.diagnosis_figures import (
     shown_curves,
 )
 from truing.report.diagnosis_words import explanation
-from truing.units import from_si, unit_text
+from truing.units import from_si
 
 
 @dataclass(frozen=True)
@@ -32,12 +33,6 @@ class Fitted:
     interval95: tuple[float | None, float | None]
     unit: str
     quantity: Any
-
-    @property
-    def texts(self) -> tuple[str, str]:
-        """The value with its unit, and the interval."""
-        low, high = ("open" if end is None else f"{end:.4g}" for end in self.interval95)
-        return f"{self.value:.4g} {unit_text(self.unit)}".rstrip(), f"{low} … {high} {unit_text(self.unit)}".rstrip()
 
 
 @dataclass(frozen=True)
@@ -75,8 +70,7 @@ class Ranking:
         return plotted(lambda: ranking_bars(self.result))
 
     def _repr_html_(self) -> str:
-        rows = [(explanation(each), f"{each.behind:.1f}", f"{each.separation:.1f}") for each in self.result.ranking]
-        return html_table(rows, ("explanation", "behind", "separation"))
+        return table_html(ranking_table(self.result))
 
 
 @dataclass(frozen=True)

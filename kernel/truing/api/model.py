@@ -6,7 +6,7 @@ import time
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from types import NoneType
 from typing import Any
@@ -15,12 +15,12 @@ from matplotlib.figure import Figure
 
 from truing.api.comparison import Differences, comparison_of
 from truing.api.findings import NamedCause, Ranking, Residuals, causes_of
-from truing.api.notebook import bullets, fold, folds, heading, html_table, joined, paragraphs, picture
+from truing.api.notebook import bullets, fold, folds, heading, html_table, joined, paragraphs, picture, table_html
 from truing.api.records import MeasuredRecord
 from truing.api.run import Order, Run, performed
 from truing.api.settings import settings_of, text_of
 from truing.api.study import StudyResult
-from truing.api.tables import LABEL, as_file, beside
+from truing.api.tables import LABEL, beside, frame_text
 from truing.api.writing import write_sheet
 from truing.declare.model import Study
 from truing.declare.near_miss import near_miss
@@ -39,9 +39,8 @@ from truing.kernel import Offer
 from truing.measurements import RowsFile, read_rows
 from truing.progress import progress_bar
 from truing.published import ComparedRow, compare_published
-from truing.report.diagnosis_lines import questions
-from truing.report.diagnosis_run import diagnosis_sheet_of, write_diagnosed
-from truing.report.diagnosis_sheet import data_words, diagnosis_html, diagnosis_markdown
+from truing.report.diagnosis_chapters import fitted_table
+from truing.report.diagnosis_sheet import data_words, diagnosis_sheet_of, questions, write_diagnosed
 from truing.report.diagnosis_words import headline, verdict_word
 from truing.runs.diagnosis_document import diagnosis_document
 from truing.runs.extension import extended_text
@@ -172,8 +171,7 @@ class LoadedModel:
         ``fault``. Raises InputError with every fault of the dataframe.
         """
         setup = self.setup(inputs, set=set, **values)
-        with as_file(frame, units or {}) as path:
-            rows = read_rows(path, self.offer, setup)
+        rows = read_rows(frame_text(frame, units or {}), self.offer, setup)
         _demand_known(rows, setup)
         with told_by_line(setup):
             shown_rows = shown_by_gauge(setup, rows)
@@ -343,8 +341,7 @@ class Diagnosis:
 
     def sheet(self, path: str | Path) -> Path:
         """Write the sheet as HTML, Markdown or PDF, as the name ends. Raises OutputError."""
-        make = lambda: diagnosis_sheet_of(self.result, self.started)  # noqa: E731
-        return write_sheet(path, make, diagnosis_html, diagnosis_markdown)
+        return write_sheet(path, partial(diagnosis_sheet_of, self.result, self.started))
 
     def save(self, folder: str | Path, *, pdf: bool = False) -> Path:
         """Write the folder that ``calc diagnose`` writes; an earlier diagnosis there goes. Raises OutputError."""
@@ -367,10 +364,7 @@ class Diagnosis:
         """Show the verdict, the causes, the residuals before and after, and the rest folded away."""
         said = [f"{verdict_word(self.result)}. {' '.join(self.sentences)}"]
         warned = [f"Warning: {text}" for text in self.warnings]
-        causes = [
-            (cause.effect, name, *unknown.texts) for cause in self.causes for name, unknown in cause.unknowns.items()
-        ]
-        table = html_table(causes, ("cause", "unknown", "size", "95 % interval")) if causes else ""
+        table = table_html(fitted_table(self.result)) if self.causes else ""
         lines = {**questions(self.result), **({"Record": list(self.notes)} if self.notes else {})}
         rest = "".join(fold(title, bullets(texts)) for title, texts in lines.items())
         head = heading(f"Diagnosis of {self.result.setup.model.title}, {data_words(self.result)}")

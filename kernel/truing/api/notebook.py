@@ -11,6 +11,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+from truing.report.document import TableView, plain_text
 from truing.report.figures import styled
 from truing.texts import one_line
 
@@ -68,6 +69,14 @@ def html_table(rows: Sequence[Sequence[object]], head: Sequence[str] = ()) -> st
     lines = "".join(f"<tr>{''.join(_cell('td', cell) for cell in row)}</tr>" for row in rows[:MOST_ROWS])
     more = f"<p>{len(rows) - MOST_ROWS} further rows</p>" if len(rows) > MOST_ROWS else ""
     return f"<table>{titles}<tbody>{lines}</tbody></table>{more}"
+
+
+def table_html(table: TableView) -> str:
+    """Return a table of a document, with its title and its note."""
+    heads = [f"{column.title} [{column.unit}]" if column.unit else column.title for column in table.columns]
+    rows = [[plain_text(cell) for cell in row] for row in table.rows]
+    note = paragraphs([plain_text(table.note)]) if table.note else ""
+    return (heading(table.title) if table.title else "") + html_table(rows, heads) + note
 
 
 def _cell(tag: str, content: object) -> str:

@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-import csv
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any, Protocol
 
 import numpy as np
 
 from truing.api.notebook import heading, html_table, joined, paragraphs
-from truing.api.tables import frame_of, write_frame
+from truing.api.tables import frame_of, frame_text
 from truing.declare.near_miss import near_miss
-from truing.diagnosis.data_file import DataRows, read_data_file
-from truing.errors import Fault, InputError, UsageError
+from truing.diagnosis.data_file import DataRows, read_data_files
+from truing.errors import UsageError
 from truing.kernel import Offer
+from truing.measurements import TableSource, read_table
 from truing.numbers import counted, format_number
 from truing.units import from_si, unit_text
 from truing.units.grammar import shown
@@ -54,13 +53,12 @@ class RecordColumn:
 
 @dataclass(frozen=True)
 class MeasuredRecord:
-    """Measured rows of one machine: one file, or several. A dataframe stands in a file that goes with the record.
+    """Measured rows of one machine: one file, or several, or a dataframe.
 
     ``rows`` counts them; ``columns`` holds, file by file, what each column is to the model.
     """
 
-    files: tuple[Path, ...]
-    folder: TemporaryDirectory[str] | None = field(default=None, compare=False)
+    files: tuple[TableSource, ...]
     rows: int = 0
     columns: tuple[tuple[RecordColumn, ...], ...] = ()
 
@@ -72,11 +70,10 @@ class MeasuredRecord:
         columns: dict[str, list[str]] = {}
         count = 0
         for file in self.files:
-            with file.open(encoding="utf-8-sig", newline="") as stream:
-                rows = list(csv.DictReader(stream))
-            for name in dict.fromkeys([*columns, *(rows[0] if rows else ())]):
-                columns.setdefault(name, [""] * count).extend(row.get(name, "") or "" for row in rows)
-            count += len(rows)
+            table, _ = read_table(file, {}, is_measured=False)
+            for name in {**columns, **table.cells}:
+                columns.setdefault(name, [""] * count).extend(table.cells.get(name, ("",) * len(table)))
+            count += len(table)
         return frame_of(columns)
 
     def _repr_html_(self) -> str:
@@ -111,28 +108,15 @@ def record(
     """
     if Path(name).name != name or not name:
         raise UsageError(f"'{name}' is no name for a record; write a word without a folder")
-    folder = TemporaryDirectory()
-    path = Path(folder.name) / f"{name}.csv"
-    write_frame(frame, path, units or {}, gaps=True)
-    return _known((path,), model, folder)
+    return _known((frame_text(frame, units or {}, gaps=True, name=name),), model)
 
 
-def _known(paths: tuple[Path, ...], model: HasOffer, folder: TemporaryDirectory[str] | None = None) -> MeasuredRecord:
-    faults: list[Fault] = []
-    files: list[DataRows] = []
-    for path in paths:
-        try:
-            rows, found = read_data_file(path, model.offer)
-            found.raise_any()
-            files.append(rows)
-        except InputError as error:
-            faults += [Fault(each.message, path.stem if folder else each.file, each.line) for each in error.faults]
-    if faults:
-        raise InputError(faults)
+def _known(sources: tuple[TableSource, ...], model: HasOffer) -> MeasuredRecord:
+    files = read_data_files(sources, model.offer)
     columns = tuple(tuple(_columns(file)) for file in files)
     for text in dict.fromkeys(text for each in columns for text in _misspelt(each, model)):
         warnings.warn(text, stacklevel=4)
-    return MeasuredRecord(paths, folder, sum(map(len, files)), columns)
+    return MeasuredRecord(sources, sum(map(len, files)), columns)
 
 
 def _misspelt(columns: tuple[RecordColumn, ...], model: HasOffer) -> Iterator[str]:

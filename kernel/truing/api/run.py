@@ -8,15 +8,15 @@ from collections.abc import Iterator, Mapping
 from concurrent.futures import Executor
 from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
 from truing.api.comparison import Differences, comparison_of
-from truing.api.notebook import fold, heading, html_table, joined, paragraphs
+from truing.api.notebook import MOST_ROWS, fold, heading, html_table, joined, paragraphs, table_html
 from truing.api.quantities import quantity_of
 from truing.api.study import StudyResult
-from truing.api.tables import LABEL, as_file, frame_of
+from truing.api.tables import frame_of, frame_text
 from truing.api.writing import write_sheet
 from truing.calculation import Calculation, calculate
 from truing.cases import CaseResult, CasesTable, run_cases
@@ -29,18 +29,17 @@ from truing.kernel import Offer
 from truing.measurements import CasesFile, read_cases
 from truing.numbers import format_value, with_unit
 from truing.progress import progress_bar
-from truing.report.content import check_rows, least_margin
-from truing.report.render import html_of, markdown_of
+from truing.report.content import check_table
+from truing.report.document import plain_text
 from truing.report.run import UNDISTURBED, sheet_of, write_calculation
-from truing.report.sheet import sentence_of_cases
+from truing.report.sheet import banner_of, cases_table
 from truing.runs.documents import results_document
 from truing.runs.folder import demand_place
 from truing.runs.partial import code_of, identity_of, kept_batches
 from truing.runs.provenance import provenance_of
 from truing.setup import Setup
 from truing.studies.bench import Progress, silent
-from truing.studies.checks import HEADLINES, SHORT, Check, State
-from truing.studies.verdicts import sentence_of
+from truing.studies.checks import Check, State
 from truing.units import from_si
 
 FIRST = 12
@@ -164,12 +163,8 @@ class Run:
 
     def sheet(self, path: str | Path) -> Path:
         """Write the calculation sheet as HTML, Markdown or PDF, as the name ends. Raises OutputError."""
-        return write_sheet(
-            path,
-            lambda: sheet_of(self.calculation, self.offer, started=self.started, cases=self.cases),
-            html_of,
-            markdown_of,
-        )
+        make = partial(sheet_of, self.calculation, self.offer, started=self.started, cases=self.cases)
+        return write_sheet(path, make)
 
     def save(self, folder: str | Path, *, pdf: bool = False, excel: bool = False) -> Path:
         """Write the folder that ``calc run`` writes: inputs, results, sheets, arrays; an earlier run there goes.
@@ -198,21 +193,16 @@ class Run:
 
     def _repr_html_(self) -> str:
         """Show the verdict, the limits, the results, and what is to be known beside them."""
-        head = HEADLINES[self.verdict] + "." if self.checks else "No limits are declared."
-        said = sentence_of(self.calculation.decided) if self.cases is None else sentence_of_cases(self.cases)
-        checks = [
-            (row.compared, with_unit(row.value.text, row.value.unit), row.relation,
-             with_unit(row.limit.text, row.limit.unit), with_unit(row.margin.text, row.margin.unit), SHORT[row.state])
-            for row in check_rows(self.calculation)
-        ]  # fmt: skip
-        limits = html_table(checks, ("check", "value", "", "limit", "margin", "")) if checks else ""
+        banner = banner_of(self.calculation, self.cases)
+        limits = table_html(check_table(self.calculation)) if self.checks else ""
         rows = [(row["name"], row["symbol"], row["text"], row["note"]) for row in self._rows()]
         results = html_table(rows[:FIRST], ("result", "symbol", "value", ""))
         more = fold(f"{len(rows) - FIRST} further results", html_table(rows[FIRST:])) if len(rows) > FIRST else ""
         warned = paragraphs(f"Warning: {text}" for text in self.warnings)
-        cases = fold(f"cases ({len(self.cases.cases)})", _case_table(self.cases)) if self.cases is not None else ""
-        title = heading(self._setup.model.title) + paragraphs([f"{head} {said}"])
-        return joined(title, warned, limits, results, more, cases)
+        every = table_html(cases_table(self.calculation, self.cases, MOST_ROWS)) if self.cases is not None else ""
+        said = " ".join(map(plain_text, banner.sentences))
+        title = heading(self._setup.model.title) + paragraphs([f"{banner.headline}. {said}"])
+        return joined(title, warned, limits, results, more, fold("All cases", every))
 
     @property
     def _setup(self) -> Setup:
@@ -270,11 +260,7 @@ def _with_cases(
 
 def _cases_of(cases: Any, offer: Offer, setup: Setup) -> CasesFile:
     """Read cases from a file, or from a dataframe, which goes by that name."""
-    if isinstance(cases, (str, Path)):
-        return read_cases(Path(cases), offer, setup)
-    with as_file(cases, {}) as path:
-        read = read_cases(path, offer, setup)
-    return CasesFile(tuple(replace(case, file=LABEL) for case in read.cases), replace(read.count, file=LABEL))
+    return read_cases(Path(cases) if isinstance(cases, (str, Path)) else frame_text(cases, {}), offer, setup)
 
 
 def _computed(place: WorkerPool) -> dict[str, Any]:
@@ -309,15 +295,3 @@ def _answer(case: CaseResult, name: str, setup: Setup) -> float:
 
 def _in_unit(value: Any, unit: str) -> Any:
     return value if isinstance(value, (str, bool)) else float(from_si(value, unit))
-
-
-def _case_table(cases: CasesTable) -> str:
-    rows = [
-        (case.row, case.name, with_unit((margin := least_margin(case.checks)).text, margin.unit), _state(case))
-        for case in cases.cases
-    ]
-    return html_table(rows, ("row", "case", "margin", ""))
-
-
-def _state(case: CaseResult) -> str:
-    return case.reason or SHORT[case.verdict]

@@ -9,17 +9,16 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from truing.api.notebook import fold, heading, html_table, joined, paragraphs, picture, plotted
+from truing.api.notebook import MOST_ROWS, fold, heading, joined, paragraphs, picture, plotted, table_html
 from truing.api.tables import frame_of
 from truing.declare.blocks import Drawing, Table, Words
 from truing.declare.near_miss import near_miss
 from truing.errors import UsageError
-from truing.numbers import format_number
+from truing.report.chapters import table_view
 from truing.studies.bench import Outcome
 from truing.studies.sweep import Swept, curves
 from truing.units import from_si
 
-DIGITS = 5
 MOST_CURVES = 6
 
 
@@ -65,25 +64,16 @@ class StudyResult:
         blocks = [block for block in self.outcome.blocks() if not isinstance(block, Drawing)]
         said = [*self.warnings, *(block.text for block in blocks if isinstance(block, Words))]
         tables = [block for block in blocks if isinstance(block, Table)]
-        shown = "".join(_table(table) for table in tables[:1])
-        rest = "".join(_table(table) for table in tables[1:])
-        return joined(heading(self.title), self._first_picture(), shown, paragraphs(said), fold("more", rest))
+        first, *others = [table_html(table_view(table, MOST_ROWS)) for table in tables] or [""]
+        return joined(
+            heading(self.title), self._first_picture(), first, paragraphs(said), fold("more", "".join(others))
+        )
 
     def _first_picture(self) -> str:
         try:
             return picture(self._drawing(()), self.title)
         except UsageError:  # a study need not draw
             return ""
-
-
-def _table(table: Table) -> str:
-    rows = [[_written(cell) for cell in row] for row in table.rows]
-    return heading(table.title) + html_table(rows, _headers(table)) + paragraphs([table.note] if table.note else [])
-
-
-def _written(cell: Any) -> str:
-    is_number = isinstance(cell, (int, float)) and not isinstance(cell, bool)
-    return format_number(cell, DIGITS) if is_number else "" if cell is None else str(cell)
 
 
 def _chosen(title: str, blocks: dict[str, Any], kind: str) -> Any:

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-import csv
 import sys
-from collections.abc import Collection, Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from dataclasses import replace
+from collections.abc import Collection, Mapping, Sequence
 from importlib.util import find_spec
 from numbers import Number
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import narwhals as nw
 
-from truing.errors import InputError, UsageError
+from truing.errors import UsageError
+from truing.measurements import TableText, table_text
 
 LIBRARIES = ("pandas", "polars", "pyarrow")
 LABEL = "dataframe"
@@ -47,20 +43,8 @@ def name_in(header: str) -> str:
     return header.partition("[")[0].strip()
 
 
-@contextmanager
-def as_file(frame: Any, units: Mapping[str, str]) -> Iterator[Path]:
-    """Give a dataframe as a file that the readers of files read; faults speak of the dataframe. See ``write_frame``."""
-    with TemporaryDirectory() as folder:
-        path = Path(folder) / f"{LABEL}.csv"
-        write_frame(frame, path, units, gaps=False)
-        try:
-            yield path
-        except InputError as error:
-            raise InputError([replace(fault, file=_label(fault.file, path)) for fault in error.faults]) from None
-
-
-def write_frame(frame: Any, path: Path, units: Mapping[str, str], *, gaps: bool) -> None:
-    """Write a dataframe as a file that the readers of files read.
+def frame_text(frame: Any, units: Mapping[str, str], *, gaps: bool = False, name: str = LABEL) -> TableText:
+    """Return a dataframe as the text that the readers of files read.
 
     A column is named "load [N]", or "load" with its unit in ``units``. With ``gaps`` NaN is an empty cell; without,
     it is a fault to the readers. Raises UsageError where the dataframe is none, or has no rows, or a row of nothing,
@@ -72,14 +56,12 @@ def write_frame(frame: Any, path: Path, units: Mapping[str, str], *, gaps: bool)
     if unknown:
         raise UsageError(f"units names '{unknown[0]}', which is no column; the columns are {', '.join(names)}")
     _demand_one_kind(table)
-    rows = [[_cell(cell, gaps=gaps) for cell in row] for row in table.iter_rows()]
-    empty = next((number for number, row in enumerate(rows, start=1) if not any(row)), 0)
-    if empty or not rows:
+    columns = [[_cell(cell, gaps=gaps) for cell in table[name].to_list()] for name in table.columns]
+    empty = next((number for number, row in enumerate(zip(*columns, strict=True), start=1) if not any(row)), 0)
+    if empty or not len(table):
         raise UsageError(f"row {empty} of the dataframe holds nothing" if empty else "the dataframe holds no rows")
-    with path.open("w", encoding="utf-8", newline="") as stream:
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow([f"{name} [{units[name]}]" if name in units else name for name in names])
-        writer.writerows(rows)
+    headers = [f"{name} [{units[name]}]" if name in units else name for name in names]
+    return TableText(name, table_text(headers, columns))
 
 
 def _table(frame: Any) -> Any:
@@ -123,7 +105,3 @@ def _cell(value: Any, *, gaps: bool) -> str:
         return ""
     plain = value.item() if hasattr(value, "item") else value
     return repr(plain) if isinstance(plain, float) else str(plain)
-
-
-def _label(file: str, path: Path) -> str:
-    return LABEL if file == str(path) else file

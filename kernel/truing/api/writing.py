@@ -4,18 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TypeVar
 
 from truing.atomic import write_files
 from truing.errors import OutputError
+from truing.report.document import Document
+from truing.report.html_printer import html_of
+from truing.report.markdown_printer import markdown_of
 from truing.report.pdf import pdf_bytes
 
-S = TypeVar("S")
 
-
-def write_sheet(
-    path: str | Path, make: Callable[[], S], html: Callable[[S], str], markdown: Callable[[S], str]
-) -> Path:
+def write_sheet(path: str | Path, make: Callable[[], Document]) -> Path:
     """Write a sheet as HTML, Markdown or PDF, as the name ends, and return its path.
 
     Raises OutputError for any other ending, for a PDF where no browser can print it, and where it cannot be written.
@@ -26,8 +24,8 @@ def write_sheet(
         raise OutputError(f"{file}: a sheet ends in .html, .md or .pdf")
     sheet = make()
     if ending == ".md":
-        write_files({file: markdown(sheet)})
+        write_files({file: markdown_of(sheet)})
     else:
-        page = html(sheet)
+        page = html_of(sheet)
         write_files({file: pdf_bytes(page) if ending == ".pdf" else page})
     return file

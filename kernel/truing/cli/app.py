@@ -145,7 +145,7 @@ def watch(
     output: RunFolder = None,
     excel: Excel = False,
     workers: Annotated[int, typer.Option("--workers", min=1, help="Processes that share the work.")] = 1,
-    every: Annotated[float, typer.Option("--every", min=0.02, help="Seconds between two looks at the files.")] = 0.5,
+    every: Annotated[float, typer.Option("--every", min=0.02, help="Seconds without a change before it runs.")] = 0.5,
 ) -> None:
     """Run, and run again whenever the inputs file, its data files or the plugin's code change; Ctrl-C ends it."""
 

@@ -192,27 +192,25 @@ def columns(rows: Sequence[Sequence[str]], *, right: Sequence[int] = ()) -> str:
     return "\n".join(aligned(rows, right=right))
 
 
-def aligned(rows: Sequence[Sequence[str]], *, right: Sequence[int] = ()) -> list[str]:
-    """Return each row of text with its columns aligned; those at the places ``right`` are flush right.
+def aligned(rows: Sequence[Sequence[str]], *, right: Sequence[int] = (), width: int = 0) -> list[str]:
+    """Return each row of text with its columns aligned; those at the indices ``right`` are flush right.
 
-    On a terminal the last column is broken to fit; elsewhere every row is one line.
+    The last column is broken to fit into ``width``; without one into a terminal's, and elsewhere every row is one line.
     """
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     indent = sum(widths[:-1]) + len(GAP) * (len(widths) - 1)
     lines = []
     for row in rows:
         sized = zip(row, widths, strict=True)
-        cells = [
-            cell.rjust(width) if index in right else cell.ljust(width) for index, (cell, width) in enumerate(sized)
-        ]
-        lines.append("\n".join(broken(GAP.join(cells).rstrip(), indent)))
+        cells = [cell.rjust(size) if index in right else cell.ljust(size) for index, (cell, size) in enumerate(sized)]
+        lines.append("\n".join(broken(GAP.join(cells).rstrip(), indent, width)))
     return lines
 
 
-def broken(line: str, indent: int) -> list[str]:
-    """Break a line that is wider than the terminal behind its indent; elsewhere than on a terminal leave it whole."""
-    width = shutil.get_terminal_size().columns if sys.stdout.isatty() else sys.maxsize
+def broken(line: str, indent: int, width: int = 0) -> list[str]:
+    """Break a line that is wider than ``width``, or the terminal, behind its indent; without either leave it whole."""
+    width = width or (shutil.get_terminal_size().columns if sys.stdout.isatty() else sys.maxsize)
     if len(line) <= width or width - indent < NARROWEST // 3 or width < NARROWEST:
         return [line]
-    parts = textwrap.wrap(line[indent:], width - indent) or [""]
+    parts = textwrap.wrap(line[indent:], width - indent, break_on_hyphens=False) or [""]
     return [line[:indent] + parts[0], *(" " * indent + part for part in parts[1:])]

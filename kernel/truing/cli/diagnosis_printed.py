@@ -7,7 +7,7 @@ from pathlib import Path
 
 from truing.cli.console import broken
 from truing.diagnosis.result import DiagnosisResult
-from truing.report.diagnosis_lines import data_line, questions
+from truing.report.diagnosis_sheet import data_line, questions
 from truing.report.diagnosis_words import headline, verdict_word
 from truing.texts import one_line
 

@@ -8,8 +8,9 @@ import typer
 
 from truing.api.model import LoadedModel
 from truing.cli.console import Settings, out, out_json, settings_of
-from truing.cli.explain_printed import lines_of, width_of_page
+from truing.cli.explain_printed import lines_of
 from truing.cli.load import LABEL, find_offer, say_example
+from truing.cli.terminal_printer import width_of_page
 from truing.errors import UsageError
 from truing.explain import SECTIONS, told
 from truing.inputs_file.culprit import told_by_line

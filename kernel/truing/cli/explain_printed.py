@@ -2,72 +2,59 @@
 
 from __future__ import annotations
 
-import shutil
-import sys
-import textwrap
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any
+from typing import Any, TypeAlias
 
-from truing.cli.console import GAP, NARROWEST
+from truing.cli.terminal_printer import INDENT, chapter_lines, wrapped
 from truing.formulas.write_text import HOLD, folded
 from truing.numbers import format_number, pretty
+from truing.report.document import Chapter, Items, Paragraph, TableView, table_of
 from truing.texts import one_line
 from truing.units import unit_text
 
-PAGE = 80
-WIDEST = 110
 MOST = 6
 LONGEST_CHAIN = 24
-INDENT = "  "
 PLACES = {"inputs": "on the inputs", "results": "on the results", "reading": "on the reading"}
 Told = dict[str, Any]
-
-
-def width_of_page() -> int:
-    """Return how wide lines may be: that of the terminal, within reason; elsewhere eighty columns."""
-    return min(max(shutil.get_terminal_size().columns, NARROWEST), WIDEST) if sys.stdout.isatty() else PAGE
+Parts: TypeAlias = Iterator[str | Chapter]
+"""Paragraphs, and chapters with a title."""
 
 
 def lines_of(document: Told, width: int) -> Iterator[str]:
     """Say everything that was told of one name."""
-    kinds: dict[str, Callable[[Told, int], Iterator[str]]] = {
+    kinds: dict[str, Callable[[Told], Parts]] = {
         "result": _result, "input": _input, "effect": _effect, "tolerance": _tolerance, "condition": _condition,
         "study": _study,
     }  # fmt: skip
-    yield from _head(document, width)
-    yield from kinds[document["kind"]](document, width)
-
-
-def _head(document: Told, width: int) -> Iterator[str]:
     symbol = f"  {document['symbol']}" if document.get("symbol") else ""
     value = f" = {document['text']}" if document.get("text") else ""
     yield one_line(document["name"]) + symbol + value
     article = "an" if document["kind"][0] in "aei" else "a"
-    yield from _wrapped(f"{article} {document['kind']} of {document['model']} ({one_line(document['title'])})", width)
-    if document.get("note"):
-        yield from _wrapped(document["note"], width)
+    yield from wrapped(f"{article} {document['kind']} of {document['model']} ({one_line(document['title'])})", width)
+    yield from wrapped(document.get("note") or "", width)
+    if document.get("formula"):
+        yield from _formula(document, width)
+    for part in kinds[document["kind"]](document):
+        yield from wrapped(part, width) if isinstance(part, str) else chapter_lines(part, width)
 
 
-def _result(told: Told, width: int) -> Iterator[str]:
-    yield from _formula(told, width)
+def _result(told: Told) -> Parts:
     if told["study"]:
         run = "" if told["text"] != "–" else "; this inputs file does not ask for it"
-        yield from _wrapped(f"Given by the study {told['study']}{run}", width)
-    yield from _said("Found by", told["method"], width)
-    yield from _said("Source", told["source"], width)
-    yield from _chain(told, width)
-    yield from _scatter(told, width)
-    yield from _slopes(told, width)
-    yield from _limits(told, width)
-    yield from _published(told, width)
-    yield from _effects("Effects that change it", told["effects"], width)
-    yield from _followed(told, width)
+        yield f"Given by the study {told['study']}{run}"
+    yield from _said("Found by", told["method"])
+    yield from _said("Source", told["source"])
+    yield from _chain(told)
+    yield from _scatter(told)
+    yield from _slopes(told)
+    yield from _limits([_limit_words(item) for item in told["limits"]])
+    yield from _published(told)
+    yield from _effects("Effects that change it", told["effects"])
+    yield from _followed(told)
 
 
 def _formula(told: Told, width: int) -> Iterator[str]:
     formula = told["formula"]
-    if formula is None:
-        return
     yield ""
     left = f"{formula['left']} = " if formula["left"] else ""
     steps = [formula["symbols"], *filter(None, [formula["numbers"]]), *formula["results"]]
@@ -79,7 +66,7 @@ def _formula(told: Told, width: int) -> Iterator[str]:
         for number, line in enumerate(folded(one_line_held(step), width - len(head))):
             yield ((head if not number else " " * len(head)) + line).replace(HOLD, " ")
     if formula["departs"]:
-        yield from _wrapped(
+        yield from wrapped(
             "An effect on the results is on: the calculation answers another value than the formula.", width
         )
 
@@ -89,7 +76,7 @@ def one_line_held(text: str) -> str:
     return "".join(c if c.isprintable() or c == HOLD else " " for c in text)
 
 
-def _chain(told: Told, width: int) -> Iterator[str]:
+def _chain(told: Told) -> Parts:
     """Say what the result is made from, down to the inputs, as far down as there is room."""
     chain = told["chain"]
     if not chain:
@@ -98,27 +85,23 @@ def _chain(told: Told, width: int) -> Iterator[str]:
     while deepest > 1 and sum(item["depth"] <= deepest for item in chain) > LONGEST_CHAIN:
         deepest -= 1
     shown = [item for item in chain if item["depth"] <= deepest]
-    yield from _title("Made from")
     rows = [
         (INDENT * (item["depth"] - 1) + item["name"], item["symbol"], "(see above)" if item["again"] else item["text"],
          item["note"])
         for item in shown
     ]  # fmt: skip
-    yield from table(rows, width)
     said = {item["name"] for item in shown}
     left = list(dict.fromkeys(item["name"] for item in chain if item["name"] not in said))
-    if left:
-        yield from _wrapped(f"and these further down: {', '.join(left)}", width, INDENT)
+    note = f"and these further down: {', '.join(left)}" if left else ""
+    yield Chapter("Made from", (_table(rows, note=note),))
 
 
-def _scatter(told: Told, width: int) -> Iterator[str]:
+def _scatter(told: Told) -> Parts:
     scatter = told["scatter"]
-    if scatter is None:
-        return
-    yield from _title(f"Scatter of the tolerances in force: standard deviation {scatter['sd']}, of which")
-    rows = [(item["name"], _percent(item["share"]), _tolerance_words(item)) for item in scatter["shares"][:MOST]]
-    yield from table(rows, width, right=(1,))
-    yield from _more(scatter["shares"])
+    if scatter is not None:
+        rows = [(item["name"], _percent(item["share"]), _tolerance_words(item)) for item in scatter["shares"]]
+        title = f"Scatter of the tolerances in force: standard deviation {scatter['sd']}, of which"
+        yield Chapter(title, (_table(rows, (1,), MOST),))
 
 
 def _tolerance_words(item: Told) -> str:
@@ -126,87 +109,77 @@ def _tolerance_words(item: Told) -> str:
     return item["spread"] if names in {"", item["name"]} else f"{item['spread']}, tolerance {names}"
 
 
-def _slopes(told: Told, width: int) -> Iterator[str]:
+def _slopes(told: Told) -> Parts:
+    remarks = tuple(map(Paragraph, told["remarks"]))
     if told["slopes"]:
-        yield from _title("One per cent more of an input (1 K of a temperature) changes it by")
-        rows = [(item["name"], _plus(item["change"]), _per_cent(item["percent"])) for item in told["slopes"][:MOST]]
-        yield from table(rows, width, right=(1, 2))
-        yield from _more(told["slopes"])
-    for text in told["remarks"]:
-        yield from _wrapped(text, width, INDENT)
+        rows = [(item["name"], _plus(item["change"]), _per_cent(item["percent"])) for item in told["slopes"]]
+        title = "One per cent more of an input (1 K of a temperature) changes it by"
+        yield Chapter(title, (_table(rows, (1, 2), MOST), *remarks))
+    else:
+        yield from told["remarks"]
 
 
-def _limits(told: Told, width: int) -> Iterator[str]:
-    if told["limits"]:
-        yield from _title("Limits that rest on it")
-        for item in told["limits"]:
-            words = _check_words(item)
-            yield from _wrapped(f"{item['says']}: {words}" if words else item["says"], width, INDENT, INDENT * 2)
+def _limits(sentences: Sequence[str]) -> Parts:
+    if sentences:
+        yield Chapter("Limits that rest on it", (Items("limits", tuple(sentences)),))
 
 
-def _check_words(limit: Told) -> str:
+def _limit_words(limit: Told) -> str:
     check = limit["check"]
     if check is None:
-        return ""
+        return str(limit["says"])
     if check["state"] == "undecided":
-        return "calc run decides it"
+        return f"{limit['says']}: calc run decides it"
     value = f"{format_number(check['value'], 5)} {unit_text(check['unit'])}".strip()
     verdict = "passes" if check["passed"] else "FAILS"
-    return f"{value} {verdict}, margin {format_number(check['margin'], 3)}"
+    return f"{limit['says']}: {value} {verdict}, margin {format_number(check['margin'], 3)}"
 
 
-def _published(told: Told, width: int) -> Iterator[str]:
-    if not told["published"]:
-        return
-    yield from _title("What the source prints, and ours")
-    for item in told["published"]:
-        unit = f" {item['unit']}" if item["unit"] else ""
-        ours = f"ours {format_number(item['ours'], 5)}" if item["ours"] is not None else "ours by calc verify"
-        with_ = ", ".join(f"{name} = {value}" for name, value in item["settings"].items())
-        settings = f"; with {with_}" if with_ else ""
-        where = item["where"] or item["name"]
-        said = f"{format_number(item['paper'], 6)}{unit}, {ours}: {item['verdict']} ({where}{settings})"
-        yield from _wrapped(said, width, INDENT, INDENT * 2)
+def _published(told: Told) -> Parts:
+    if told["published"]:
+        title = "What the source prints, and ours"
+        yield Chapter(title, (Items("published", tuple(map(_published_words, told["published"]))),))
 
 
-def _effects(title: str, effects: Sequence[Told], width: int) -> Iterator[str]:
+def _published_words(item: Told) -> str:
+    unit = f" {item['unit']}" if item["unit"] else ""
+    ours = f"ours {format_number(item['ours'], 5)}" if item["ours"] is not None else "ours by calc verify"
+    with_ = ", ".join(f"{name} = {value}" for name, value in item["settings"].items())
+    settings = f"; with {with_}" if with_ else ""
+    where = item["where"] or item["name"]
+    return f"{format_number(item['paper'], 6)}{unit}, {ours}: {item['verdict']} ({where}{settings})"
+
+
+def _effects(title: str, effects: Sequence[Told]) -> Parts:
     if effects:
-        yield from _title(title)
         rows = [
             (item["name"], PLACES[item["acts_on"]] + (", is on" if item["on"] else ""), item["looks_like"])
             for item in effects
         ]
-        yield from table(rows, width)
+        yield Chapter(title, (_table(rows),))
 
 
-def _followed(told: Told, width: int) -> Iterator[str]:
+def _followed(told: Told) -> Parts:
     direct, further = told["followed_by"], told["then"]
     if direct:
-        yield from _title("Results that follow from it")
-        yield from _wrapped(", ".join(direct), width, INDENT)
-        if further:
-            yield from _wrapped(f"and through these: {', '.join(further)}", width, INDENT)
+        more = [Paragraph(f"and through these: {', '.join(further)}")] if further else []
+        yield Chapter("Results that follow from it", (Paragraph(", ".join(direct)), *more))
 
 
-def _input(told: Told, width: int) -> Iterator[str]:
+def _input(told: Told) -> Parts:
     stated = "stated by the inputs file" if told["stated"] else "the default"
     allowed = " | ".join(told["choices"]) or told["bounds"]
-    yield from _wrapped(f"{stated}; {allowed}" if allowed else stated, width)
-    yield from _said("Source", told["source"], width)
-    for item in told["tolerances"]:
-        yield from _wrapped(_spread_words(item), width)
+    yield f"{stated}; {allowed}" if allowed else stated
+    yield from _said("Source", told["source"])
+    yield from map(_spread_words, told["tolerances"])
     if told["namesake"]:
         place = f"{told['model']}.tolerances.{told['name']}"
-        yield from _wrapped(f"the tolerance of this name scatters {', '.join(told['namesake'])}: see {place}", width)
-    for words in (*told["varied"], *(f"is the limit of {one}" for one in told["limit_of"])):
-        yield from _wrapped(words, width)
-    yield from _moves(told, width)
-    if told["limits"]:
-        yield from _title("Limits that rest on it")
-        for words in told["limits"]:
-            yield from _wrapped(words, width, INDENT, INDENT * 2)
-    yield from _followed(told, width)
-    yield from _effects("Effects that change it", told["effects"], width)
+        yield f"the tolerance of this name scatters {', '.join(told['namesake'])}: see {place}"
+    yield from (*told["varied"], *(f"is the limit of {result}" for result in told["limit_of"]))
+    yield from _moves(told)
+    yield from _limits(told["limits"])
+    yield from _followed(told)
+    yield from _effects("Effects that change it", told["effects"])
 
 
 def _spread_words(item: Told) -> str:
@@ -215,110 +188,91 @@ def _spread_words(item: Told) -> str:
     return f"scatters by the tolerance {item['name']}: {item['spread']}{sd}{why}"
 
 
-def _moves(told: Told, width: int) -> Iterator[str]:
+def _moves(told: Told) -> Parts:
     """Say which results an input or a tolerance moves: the largest share of their scatter first, then the steepest."""
     rows = told["moves"]
     if rows is None:
         return
     if not rows:
-        yield from _title("No result of the calculation moves with it, as things stand")
+        yield Chapter("No result of the calculation moves with it, as things stand", ())
         return
     slopes = any(row["change"] for row in rows)
-    yield from _title("Results it moves" + (": one per cent more of it (1 K), and its share of their scatter" if slopes
-                                            else ": its share of their scatter"))  # fmt: skip
+    by = ": one per cent more of it (1 K), and its share of their scatter" if slopes else ": its share of their scatter"
     cells = [
         (row["name"], *((_plus(row["change"]), _per_cent(row["percent"])) if slopes else ()), _percent(row["share"]),
          row["note"])
-        for row in rows[: 2 * MOST]
+        for row in rows
     ]  # fmt: skip
-    yield from table(cells, width, right=(1, 2, 3) if slopes else (1,))
-    yield from _more(rows, 2 * MOST)
+    yield Chapter(f"Results it moves{by}", (_table(cells, (1, 2, 3) if slopes else (1,), 2 * MOST),))
 
 
-def _tolerance(told: Told, width: int) -> Iterator[str]:
-    yield from _wrapped(_spread_words(told).removeprefix("scatters by the tolerance "), width)
-    yield from _said("Source", told["source"], width)
+def _tolerance(told: Told) -> Parts:
+    yield _spread_words(told).removeprefix("scatters by the tolerance ")
+    yield from _said("Source", told["source"])
     for price in told["price"]:
-        yield from _said("Price", price, width)
-    yield from _title("Inputs that scatter by it, each on its own")
-    yield from table([(item["name"], item["text"]) for item in told["on"]], width)
-    yield from _moves(told, width)
+        yield from _said("Price", price)
+    rows = [(item["name"], item["text"]) for item in told["on"]]
+    yield Chapter("Inputs that scatter by it, each on its own", (_table(rows),))
+    yield from _moves(told)
 
 
-def _effect(told: Told, width: int) -> Iterator[str]:
+def _effect(told: Told) -> Parts:
     state = "is on" if told["on"] else "is off"
-    yield from _wrapped(f"acts {PLACES[told['acts_on']]}; {state}; looks like: {told['looks_like'] or '–'}", width)
-    yield from _said("Why", told["why"], width)
-    yield from _said("Source", told["source"], width)
+    yield f"acts {PLACES[told['acts_on']]}; {state}; looks like: {told['looks_like'] or '–'}"
+    yield from _said("Why", told["why"])
+    yield from _said("Source", told["source"])
     if told["built_in"]:
-        yield from _wrapped(
-            "One of the kernel's own: it can act on the reading of any result, and never on a machine.", width
-        )
+        yield "One of the kernel's own: it can act on the reading of any result, and never on a machine."
     if told["unknowns"]:
-        yield from _title("Unknowns")
         rows = [
             (item["name"], f"{item['low']:g} .. {item['high']:g} {item['unit']}".strip(), item["text"], item["note"])
             for item in told["unknowns"]
         ]
-        yield from table(rows, width)
+        yield Chapter("Unknowns", (_table(rows),))
     if told["needs"]:
-        yield from _title("Conditions it needs")
-        yield from table([(one["name"], f"reference {one['reference']}", one["note"]) for one in told["needs"]], width)
-    yield from _tried(told, width)
+        needs = [(need["name"], f"reference {need['reference']}", need["note"]) for need in told["needs"]]
+        yield Chapter("Conditions it needs", (_table(needs),))
+    yield from _tried(told)
 
 
-def _tried(told: Told, width: int) -> Iterator[str]:
+def _tried(told: Told) -> Parts:
     """Say what changed when the effect was tried."""
     if not told["tried_at"]:
         return
     at = ", ".join(f"{item['name']} {item['text']}" for item in told["tried_at"])
-    yield from _title(f"Tried at {at}", width)
-    if not told["moves"]:
-        yield INDENT + "no result changes there"
-    rows = [(item["name"], _per_cent(item["percent"]) or "from 0", item["note"]) for item in told["moves"][: 2 * MOST]]
-    yield from table(rows, width, right=(1,))
-    yield from _more(told["moves"], 2 * MOST)
+    rows = [(item["name"], _per_cent(item["percent"]) or "from 0", item["note"]) for item in told["moves"]]
+    shown = _table(rows, (1,), 2 * MOST) if rows else Paragraph("no result changes there")
+    yield Chapter(f"Tried at {at}", (shown,))
     if told["inputs"]:
-        yield from _title("through these inputs")
-        pairs = [(item["name"], f"{item['before']} -> {item['after']}") for item in told["inputs"][: 2 * MOST]]
-        yield from table(pairs, width)
-        yield from _more(told["inputs"], 2 * MOST)
+        pairs = [(item["name"], f"{item['before']} -> {item['after']}") for item in told["inputs"]]
+        yield Chapter("through these inputs", (_table(pairs, most=2 * MOST),))
 
 
-def _condition(told: Told, width: int) -> Iterator[str]:
+def _condition(told: Told) -> Parts:
     yield f"reference {told['reference']}: there its effects vanish"
-    yield from _said("Range", told["range"], width)
-    yield from _said("Made", told["derived"], width)
-    yield from _effects("Effects that need it", told["effects"], width)
+    yield from _said("Range", told["range"])
+    yield from _said("Made", told["derived"])
+    yield from _effects("Effects that need it", told["effects"])
 
 
-def _study(told: Told, width: int) -> Iterator[str]:
+def _study(told: Told) -> Parts:
     yield "asked for by this inputs file" if told["asked"] else "not asked for by this inputs file"
     if told["gives"]:
-        yield from _title("Results it gives")
-        yield from _wrapped(", ".join(told["gives"]), width, INDENT)
+        yield Chapter("Results it gives", (Paragraph(", ".join(told["gives"])),))
 
 
-def _title(text: str, width: int = PAGE) -> Iterator[str]:
-    yield ""
-    yield from _wrapped(text, width)
-
-
-def _said(label: str, text: str, width: int) -> Iterator[str]:
+def _said(label: str, text: str) -> Iterator[str]:
     if text:
-        yield from _wrapped(f"{label}: {text}", width)
+        yield f"{label}: {text}"
 
 
-def _wrapped(text: str, width: int, first: str = "", later: str | None = None) -> Iterator[str]:
-    later = first if later is None else later
-    yield from textwrap.wrap(
-        one_line(text), width, initial_indent=first, subsequent_indent=later, break_on_hyphens=False
-    )
-
-
-def _more(items: Sequence[Any], most: int = MOST) -> Iterator[str]:
-    if len(items) > most:
-        yield f"{INDENT}and {len(items) - most} more (--json has all)"
+def _table(
+    rows: Sequence[Sequence[str]], right: Sequence[int] = (), most: int | None = None, note: str = ""
+) -> TableView:
+    """Return rows as a table without headings; where there are more than ``most``, how many is said."""
+    left = len(rows) - len(rows[:most])
+    more = f"and {left} more (--json has all)" if left else ""
+    return table_of("", ("",) * len(rows[0]), rows[:most], right, note or more)
 
 
 def _percent(share: float) -> str:
@@ -331,25 +285,3 @@ def _per_cent(percent: float | None) -> str:
 
 def _plus(text: str) -> str:
     return text if text.startswith(("−", "-", "–")) else f"+{text}"
-
-
-def table(rows: Sequence[Sequence[str]], width: int, *, right: Sequence[int] = ()) -> Iterator[str]:
-    """Give rows in aligned columns, indented; the last column is broken where the line would be too wide."""
-    cells = [[cell if not index else one_line(cell) for index, cell in enumerate(row)] for row in rows]
-    kept = [index for index in range(len(cells[0]) if cells else 0) if any(row[index] for row in cells)]
-    cells = [[row[index] for index in kept] for row in cells]
-    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
-    flush = [index in right for index in kept]
-    indent = len(INDENT) + sum(widths[:-1]) + len(GAP) * (len(widths) - 1)
-    room = width - indent
-    for row in cells:
-        sized = zip(row[:-1], widths, flush, strict=False)
-        front = [cell.rjust(size) if is_flush else cell.ljust(size) for cell, size, is_flush in sized]
-        last = row[-1].rjust(widths[-1]) if flush[-1] else row[-1]
-        head = GAP.join([INDENT + front[0], *front[1:], ""]) if front else INDENT
-        if len(head) + len(last) <= width or room < NARROWEST // 3:
-            yield (head + last).rstrip()
-            continue
-        first, *others = textwrap.wrap(last, room, break_on_hyphens=False)
-        yield head + first
-        yield from (" " * len(head) + part for part in others)

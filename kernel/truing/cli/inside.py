@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 import inspect
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,8 +12,8 @@ import typer
 
 from truing.cli.candidates import OfferedWord
 from truing.declare.model import Model
-from truing.inputs_file.file_model import HEAD
-from truing.inputs_file.study_options import diagnose_schema, options_of
+from truing.declare.specs import Loaded
+from truing.inputs_file.file_model import schemas
 from truing.kernel import Kernel, Offer
 
 
@@ -33,16 +34,49 @@ def names_inside(context: typer.Context) -> Iterator[OfferedWord]:
 def changes(context: typer.Context, incomplete: str) -> Iterator[OfferedWord]:
     """Offer what ``--set`` takes for the plugin that is typed already: NAME=, section by section, and choices."""
     model = _typed_model(context)
+    known = schemas(model)
+    direct: Mapping[str, Any] = {**known["inputs"], **known["conditions"], "seed": known["studies"]["seed"]}
     name, equals, _ = incomplete.partition("=")
-    section, point, _ = name.partition(".")
-    if equals:
-        yield from _choices(model, name)
-    elif point:
-        yield from _inside(model, section, name)
+    *above, last = name.split(".")
+    if not above:
+        inside = direct
+    elif len(above) == 1 and above[0] not in known:
+        inside = _options_of_reader(model, above[0])
     else:
-        yield from _inputs(model)
-        yield from ((f"{section}.", "a section of the inputs file") for section in _sections(model))
-        yield "seed=", "where the random numbers begin"
+        inside = functools.reduce(_inside, above, known)
+    if equals:
+        yield from ((f"{name}={word}", _words(inside[last])) for word in _choices(inside[last]))
+        return
+    for key, schema in inside.items():
+        yield f"{'.'.join([*above, key])}{'.' if 'properties' in schema else '='}", _words(schema)
+    if not above:
+        files = (key for key, item in model.input_fields.items() if item.kind == "file")
+        yield from ((f"{key}.", "how the data file is read") for key in files)
+        sections = (key for key, entries in known.items() if entries and key not in {"inputs", "conditions"})
+        yield from ((f"{key}.", "a section of the inputs file") for key in sections)
+
+
+def _inside(names: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    """Return what a name holds: a section its entries, an effect or a study its own."""
+    inner: Mapping[str, Any] = names[name]
+    inside: Mapping[str, Any] = inner.get("properties", inner)
+    return inside
+
+
+def _words(schema: Mapping[str, Any]) -> str:
+    return str(schema.get("description") or (f"now {schema['default']}" if "default" in schema else ""))
+
+
+def _choices(schema: Mapping[str, Any]) -> Sequence[Any]:
+    words: Sequence[Any] = schema.get("enum", ())
+    return ("true", "false") if schema.get("type") == "boolean" else words
+
+
+def _options_of_reader(model: Model[Any, Any], name: str) -> dict[str, Any]:
+    """Return the options of the reader of a data file, without a word of each."""
+    spec = model.input_fields[name].spec
+    options = list(inspect.signature(spec.reader).parameters)[1:] if isinstance(spec, Loaded) else []
+    return {"file": {"description": "the data file"}, **{option: {} for option in options}}
 
 
 def offers(word: str) -> list[Offer]:
@@ -86,79 +120,3 @@ def _declared(model: Model[Any, Any]) -> Iterator[OfferedWord]:
 
 def _with_unit(note: str, unit: str) -> str:
     return ", ".join(part for part in (note, unit) if part)
-
-
-def _inputs(model: Model[Any, Any]) -> Iterator[OfferedWord]:
-    """Give inputs and conditions; options of its reader stand behind one that is read from a file."""
-    for name, item in model.input_fields.items():
-        yield f"{name}=", _with_unit(item.spec.note, " or ".join(item.choices) or item.unit)
-        if item.kind == "file":
-            yield f"{name}.", "how the data file is read"
-    for name, condition in model.known_conditions.items():
-        if name not in model.input_fields:
-            yield f"{name}=", _with_unit(condition.note or "a condition", condition.unit)
-
-
-def _sections(model: Model[Any, Any]) -> Iterator[str]:
-    has = {"tolerances": model.tolerances, "effects": model.known_effects, "studies": model.studies}
-    yield from (name for name, content in has.items() if content)
-    yield from ("calibrated", "units", "sheet")
-
-
-def _inside(model: Model[Any, Any], section: str, name: str) -> Iterator[OfferedWord]:
-    """Give the names of one section of the inputs file, or the options of a data file."""
-    if section == "tolerances":
-        yield from ((f"tolerances.{one.name}=", f"{one.spread.text}; {one.why}") for one in model.tolerances.values())
-    elif section == "effects":
-        yield from _effects(model, name.split(".")[1], is_inside=name.count(".") > 1)
-    elif section == "studies":
-        yield from _studies(model, name.split(".")[1], is_inside=name.count(".") > 1)
-    elif section == "units":
-        yield from ((f"units.{one}=", item.spec.note) for one, item in model.result_fields.items())
-    elif section == "sheet":
-        yield from ((f"sheet.{one}=", "") for one in (*HEAD, "detail"))
-    elif section == "conditions":
-        yield from ((f"conditions.{one.name}=", one.note) for one in model.known_conditions.values())
-    elif section in {"inputs", "calibrated"}:
-        yield from ((f"{section}.{one}=", item.spec.note) for one, item in model.input_fields.items())
-    else:
-        yield from _reader(model, section)
-
-
-def _effects(model: Model[Any, Any], wanted: str, *, is_inside: bool) -> Iterator[OfferedWord]:
-    if not is_inside:
-        for effect in model.known_effects.values():
-            yield f"effects.{effect.name}.", effect.why or effect.looks_like
-        return
-    for unknown in model.known_effects[wanted].unknowns:
-        yield f"effects.{wanted}.{unknown.name}=", _with_unit(unknown.note, unknown.unit)
-
-
-def _studies(model: Model[Any, Any], wanted: str, *, is_inside: bool) -> Iterator[OfferedWord]:
-    if not is_inside:
-        for study in model.studies:
-            yield f"studies.{study.name}.", (type(study).__doc__ or "").strip().partition("\n")[0]
-        yield "studies.diagnose.", "what is asked of calc diagnose"
-        yield from (("studies.run=", "which studies run, in this order"), ("studies.seed=", ""))
-        return
-    if wanted == "diagnose":
-        options = diagnose_schema(model)["properties"].items()
-        yield from ((f"studies.diagnose.{name}=", str(words.get("description", ""))) for name, words in options)
-        return
-    study = next(one for one in model.studies if one.name == wanted)
-    for name in options_of(study):
-        yield f"studies.{wanted}.{name}=", f"now {getattr(study, name)}"
-
-
-def _reader(model: Model[Any, Any], name: str) -> Iterator[OfferedWord]:
-    """Give the options of the reader of a data file."""
-    reader = getattr(model.input_fields[name].spec, "reader", None)
-    if reader is not None:
-        yield f"{name}.file=", "the data file"
-        yield from ((f"{name}.{option}=", "") for option in list(inspect.signature(reader).parameters)[1:])
-
-
-def _choices(model: Model[Any, Any], name: str) -> Iterator[OfferedWord]:
-    item = model.input_fields[name]
-    words = ("true", "false") if item.kind == "switch" else item.choices
-    yield from ((f"{name}={word}", item.spec.note) for word in words)

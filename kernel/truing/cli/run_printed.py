@@ -5,17 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import islice
 from pathlib import Path
-from typing import Any
-
-import numpy as np
 
 from truing.api.run import Run
 from truing.calculation import Calculation
 from truing.cases import CaseResult, CasesTable
 from truing.cli.console import aligned, columns
-from truing.numbers import format_value, with_unit
+from truing.numbers import ABSENT, format_ends, format_value, with_unit
 from truing.report.content import check_rows, least_margin
-from truing.report.context import Value
+from truing.report.document import Value
 from truing.report.sheet import sentence_of_cases
 from truing.setup import Setup
 from truing.studies.bench import files_of
@@ -118,17 +115,9 @@ def _result_row(calculation: Calculation, name: str) -> tuple[str, ...]:
     item = calculation.setup.model.result_fields[name]
     value, print_unit = calculation.answers[name], calculation.setup.print_unit(name)
     if getattr(value, "ndim", 0):
-        return (name, *_range_words(value, print_unit), one_line(item.spec.note))
+        low, high, unit = format_ends(value, print_unit)
+        return (name, f"{low} .. {high}" if low else ABSENT, unit, one_line(item.spec.note))
     return (name, *format_value(value, print_unit, item.digits), one_line(item.spec.note))
-
-
-def _range_words(values: Any, print_unit: str) -> tuple[str, str]:
-    """Say an array by its count and range."""
-    finite = values[np.isfinite(values)]
-    if not finite.size:
-        return "–", format_value(None, print_unit)[1]
-    (low, unit), (high, _) = (format_value(edge, print_unit) for edge in (finite.min(), finite.max()))
-    return f"{low} .. {high}", unit
 
 
 def _checks(calculation: Calculation) -> str:

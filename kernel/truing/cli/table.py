@@ -7,6 +7,7 @@ from pathlib import Path
 
 import typer
 
+from truing.atomic import write_files
 from truing.cli.console import Settings, out, say, settings_of
 from truing.cli.load import find_offer
 from truing.declare.near_miss import near_miss
@@ -14,8 +15,8 @@ from truing.errors import OutputError, UsageError
 from truing.gauge import shown_by_gauge
 from truing.inputs_file import read_setup
 from truing.inputs_file.culprit import told_by_line
-from truing.measurements import EXCEL, PLAIN, RowsFile, read_rows, table_text, write_table
-from truing.measurements.cell_text import with_comma
+from truing.measurements import EXCEL, PLAIN, RowsFile, read_rows, table_text
+from truing.measurements.cells import with_comma
 from truing.measurements.overriding import NAMES, REMARKS
 from truing.setup import Setup
 from truing.texts import one_line
@@ -46,10 +47,11 @@ def table(
     headers = [*kept, *(f"{name} [{shown.units[name] or '1'}]" for name in shown.values)]
     cells = [_with_commas(text, column, setup) if excel else column for text, column in kept.items()]
     columns = [*cells, *shown.values.values()]
+    text = table_text(headers, columns, form=EXCEL if excel else PLAIN)
     if output is None:
-        out(table_text(headers, columns).removesuffix("\n"))
+        out(text.removesuffix("\n"))
     else:
-        write_table(output, headers, columns, form=EXCEL if excel else PLAIN)
+        write_files({output: text})
     for row, reason in shown.reasons.items():
         say(f"{rows}:{read.lines[row]}: {reason}")
     if read.count.unused:

@@ -13,8 +13,9 @@ from truing.declare.near_miss import near_miss
 from truing.diagnosis.causes import reading_of
 from truing.diagnosis.data_file import ColumnRole, DataRows
 from truing.diagnosis.records import Covariate, Role
-from truing.diagnosis.tidying import TIME, is_angle
+from truing.diagnosis.tidying import is_angle
 from truing.errors import Fault, InputError
+from truing.measurements.derived import TIME
 from truing.measurements.table import SIGMA
 from truing.numbers import counted
 from truing.setup import Setup, column_and_word

@@ -4,24 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from truing.arrays import Indices, Mask, Matrix
-from truing.declare.fields import Axis, InputField
+from truing.declare.fields import Axis
 from truing.declare.model import Model
 from truing.declare.near_miss import near_miss
-from truing.errors import UnitError
+from truing.errors import Fault, InputError, UnitError
 from truing.gauge import axis_of
-from truing.inputs_file.values import broken_bound
 from truing.kernel import Offer
-from truing.measurements.csv_text import Faults
-from truing.measurements.overriding import WORDS, read_word, word_header_fault
+from truing.measurements.csv_text import Faults, TableSource
 from truing.measurements.row_count import RowCount
-from truing.measurements.table import RUN, SIGMA, DataTable, gather_table
+from truing.measurements.table import RUN, SIGMA, WORDS, DataTable, Known, is_number, read_table
 from truing.units import check_unit
 from truing.units.grammar import shown
 
@@ -85,37 +82,47 @@ class DataRows:
         return replace(self.taken(~rows), counts=counts)
 
 
-def read_data_file(path: Path, offer: Offer) -> tuple[DataRows, Faults]:
-    """Read one file for this calculation, with the faults of its headers, cells and bounds.
+def read_data_files(paths: Iterable[TableSource], offer: Offer) -> list[DataRows]:
+    """Read files for this calculation. Raises InputError with every fault of every file: headers, cells, bounds."""
+    faults: list[Fault] = []
+    files: list[DataRows] = []
+    for path in paths:
+        try:
+            files.append(_read(path, offer))
+        except InputError as error:
+            faults += error.faults
+    if faults:
+        raise InputError(faults)
+    return files
 
-    Raises InputError where the file cannot be read at all.
-    """
+
+def _read(path: TableSource, offer: Offer) -> DataRows:
     model = offer.model
-    words = [name for name, item in model.input_fields.items() if item.kind in WORDS]
-    table, faults = gather_table(path, declared_units(model), words=words)
+    table, faults = read_table(path, _known(model))
     columns: dict[str, NDArray[Any]] = {}
     for name, values in table.columns.items():
-        is_run = name == RUN and name not in model.input_fields
-        if not is_run and (made := _column(name, values, table, model, faults)) is not None:
-            columns[name] = made
+        if sentence := _unknown_unit(name, table, model):
+            faults.add(sentence, table.header_line)
+        elif name != RUN or name in model.input_fields:
+            columns[name] = objects(values) if isinstance(values, tuple) else values
     parts = {name: part_of(name, model, is_number=values.dtype != object) for name, values in columns.items()}
     for sentence in (*_unfit(table, model), *_empty(columns, parts, faults)):
         faults.add(sentence, table.header_line)
     if not set(table.units) & set(model.measurable):
         faults.add(_nothing_measured(table, model), table.header_line)
+    faults.raise_any()
     runs = table.columns.get(RUN, ()) if RUN not in model.input_fields else ()
-    rows = DataRows(
+    return DataRows(
         files=(str(path),),
         columns=columns,
         parts=parts,
         units={name: table.units[name] for name in columns},
         file_of=np.zeros(len(table), dtype=np.intp),
         lines=np.array(table.lines, dtype=np.intp),
-        runs=objects(runs or ("",) * len(table)),
+        runs=objects(runs if isinstance(runs, tuple) and runs else ("",) * len(table)),
         held_out=np.zeros(len(table), dtype=bool),
         counts=(table.count,),
     )
-    return rows, faults
 
 
 def objects(values: Iterable[Any]) -> NDArray[Any]:
@@ -145,70 +152,34 @@ def part_of(name: str, model: Model[Any, Any], *, is_number: bool = True) -> Col
 
 
 def declared_units(model: Model[Any, Any]) -> dict[str, str]:
-    """Return the declared unit of every column of numbers that is known by name."""
+    """Return the declared unit of every column that is known by name."""
     conditions = model.known_conditions.values()
-    found = {item.made_from: item.unit for item in conditions if item.derived and item.history != "direction"}
-    found |= {name: item.unit for name, item in model.own_result_fields.items()}
-    found |= {name: condition.unit for name, condition in model.known_conditions.items()}
-    numbers = {"float", "whole", "series"}
-    return found | {name: item.unit for name, item in model.input_fields.items() if item.kind in numbers}
+    sources = {item.made_from: item.unit for item in conditions if item.derived and item.history != "direction"}
+    results = {name: item.unit for name, item in model.own_result_fields.items()}
+    inputs = {name: item.unit for name, item in model.input_fields.items()}
+    return sources | results | {item.name: item.unit for item in conditions} | inputs
 
 
-def _column(name: str, values: Any, table: DataTable, model: Model[Any, Any], faults: Faults) -> NDArray[Any] | None:
-    """Return one column as an array, its bounds checked; None where it cannot be used."""
-    item = model.input_fields.get(name)
-    if item is not None and item.kind in WORDS:
-        return _words(item, values, table, faults)
-    if isinstance(values, tuple):
-        return objects(values)
-    if item is not None:
-        _keep_bounds(item, values, table, faults)
-    elif part_of(name, model) == "other":
-        try:
-            check_unit(table.units[name])
-        except UnitError as error:
-            hint = "leave the brackets out where a number has no unit"
-            faults.add(f"column {shown(name)}: {error}; {hint}", table.header_line)
-            return None
-    return np.asarray(values)
+def _known(model: Model[Any, Any]) -> dict[str, Known]:
+    return {**declared_units(model), **model.input_fields}
 
 
-def _words(item: InputField, cells: tuple[str, ...], table: DataTable, faults: Faults) -> NDArray[Any] | None:
-    """Return the values of a choice, text, switch or whole number, None where a cell is empty."""
-    fault = word_header_fault(item.name, table.units[item.name])
-    if fault:
-        faults.add(fault, table.header_line)
-        return None
-    known: dict[str, Any] = {"": None}
-    found = np.empty(len(cells), dtype=object)
-    for row, cell in enumerate(cells):
-        try:
-            known[cell] = found[row] = known[cell] if cell in known else read_word(item, cell, decimal_comma=True)
-        except ValueError as error:
-            is_named = str(error).startswith(item.name)
-            faults.add(str(error) if is_named else f"{item.name}: {error}", table.lines[row])
-    return found
-
-
-def _keep_bounds(item: InputField, values: Matrix, table: DataTable, faults: Faults) -> None:
-    """Say which rows break a declared bound."""
-    distinct = np.unique(values[np.isfinite(values)]).tolist()
-    tried = distinct if getattr(item.spec, "whole", False) else [*distinct[:1], *distinct[-1:]]
-    if any(broken_bound(item, value) for value in tried):
-        broken = {value: broken_bound(item, value) for value in distinct}
-        for line, value in zip(table.lines, values.tolist(), strict=True):
-            if said := broken.get(value):
-                faults.add(said, line)
+def _unknown_unit(name: str, table: DataTable, model: Model[Any, Any]) -> str:
+    """Say which column of numbers, declared by nobody, has a unit that nobody knows."""
+    if part_of(name, model, is_number=is_number(table.columns[name])) != "other":
+        return ""
+    try:
+        check_unit(table.units[name])
+    except UnitError as error:
+        return f"column {shown(name)}: {error}; leave the brackets out where a number has no unit"
+    return ""
 
 
 def _unfit(table: DataTable, model: Model[Any, Any]) -> Iterator[str]:
-    """Say which columns cannot change from row to row, cannot be measured in rows, or need the place of their rows."""
+    """Say which columns cannot be measured in rows, or need the place of their rows."""
     for name in table.columns:
-        item = model.input_fields.get(name)
         result = model.own_result_fields.get(name)
-        if item is not None and (item.kind == "file" or (item.kind == "series" and not item.spec.along)):
-            yield f"{name} cannot change from row to row; state it in the inputs file"
-        elif result is not None and not isinstance(result.spec, Axis) and name not in model.measurable:
+        if result is not None and not isinstance(result.spec, Axis) and name not in model.measurable:
             yield f"{name} is a column of a table that the calculation makes; it cannot be compared row by row"
         axis = model.own_result_fields.get(axis_of(name, model)) if name in model.measurable else None
         if axis is not None and axis.name not in table.columns:

@@ -10,14 +10,16 @@ import numpy as np
 
 from truing.arrays import Matrix
 from truing.diagnosis.covariates import censored_rows, covariates_of, held_out_rows
-from truing.diagnosis.data_file import DataRows, objects, read_data_file
+from truing.diagnosis.data_file import DataRows, objects, read_data_files
 from truing.diagnosis.joining import complete_rows, join, measured_rows, rows_of, settle_conditions
 from truing.diagnosis.records import FEWEST_READINGS, Records
 from truing.diagnosis.tidying import numbered, tidy
 from truing.diagnosis.unit_errors import factor_that_works, suspected_unit_errors
 from truing.errors import Fault, InputError
 from truing.gauge import one_machine, read_by_gauge
+from truing.inputs_file.files import digest_of
 from truing.kernel import Offer
+from truing.measurements import TableSource, TableText
 from truing.measurements.table import SIGMA
 from truing.numbers import counted
 from truing.setup import Setup
@@ -29,7 +31,7 @@ MOST_FAILED = 0.5
 _FEW = ("no row", "one row", "two rows")
 
 
-def read_records(paths: Sequence[Path], offer: Offer, setup: Setup, *, with_unit_errors: bool = True) -> Records:
+def read_records(paths: Sequence[TableSource], offer: Offer, setup: Setup, *, with_unit_errors: bool = True) -> Records:
     """Read measured files as the records of one machine; everything odd is counted and said in ``notes``.
 
     ``with_unit_errors`` looks for units that were written wrong, which asks the model for every column and factor.
@@ -65,21 +67,16 @@ def read_records(paths: Sequence[Path], offer: Offer, setup: Setup, *, with_unit
         absent=joined.absent,
         sides=sides,
         counts=joined.counts,
+        digests={str(path): path.digest if isinstance(path, TableText) else digest_of(path) for path in paths},
     )
 
 
-def _read(paths: Sequence[Path], offer: Offer) -> list[DataRows]:
+def _read(paths: Sequence[TableSource], offer: Offer) -> list[DataRows]:
     """Read every file and put its rows in order, runs of several told apart; raises InputError with all faults."""
-    faults: list[Fault] = []
+    once = {path.resolve() if isinstance(path, Path) else path: path for path in reversed(paths)}
+    named = list(reversed(once.values()))
     files: list[DataRows] = []
-    once = {path.resolve(): path for path in reversed(paths)}
-    for path in reversed(once.values()):
-        try:
-            file, found = read_data_file(path, offer)
-            found.raise_any()
-        except InputError as error:
-            faults += error.faults
-            continue
+    for path, file in zip(named, read_data_files(named, offer), strict=True):
         file = tidy(file, offer.model)
         if len(once) > 1:
             runs = objects(f"{path}: {run}" if run else str(path) for run in file.runs.tolist())
@@ -88,8 +85,6 @@ def _read(paths: Sequence[Path], offer: Offer) -> list[DataRows]:
             twice = f"{counted(len(paths) - len(once), 'file is', 'files are')} given twice and read once"
             file = replace(file, notes=(twice, *file.notes))
         files.append(file)
-    if faults:
-        raise InputError(faults)
     return files
 
 

@@ -89,6 +89,8 @@ class Records:
     """Of results with censored rows."""
     counts: tuple[RowCount, ...] = ()
     """What became of every row of each file, in the order of ``files``."""
+    digests: Mapping[str, str] = field(default_factory=dict)
+    """The SHA-256 of each file when it was read."""
 
     @cached_property
     def readings(self) -> int:

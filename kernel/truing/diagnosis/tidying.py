@@ -15,13 +15,12 @@ from truing.arrays import Indices, Matrix, first_alike
 from truing.declare.model import Model
 from truing.diagnosis.data_file import ColumnRole, DataRows, declared_units
 from truing.inputs_file.values import broken_bound
-from truing.measurements.derived import derive
+from truing.measurements.derived import TIME, histories
+from truing.measurements.table import is_number
 from truing.numbers import counted
 from truing.units import same_dimension
 from truing.units.names import PURE
 
-TIME = "time"
-"""The column by which rows are sorted, whatever part it plays."""
 FEW_DEGREES = 90.0
 SWEEPING = 0.95
 MOST_JUMPS = 0.25
@@ -137,12 +136,7 @@ def is_angle(unit: str) -> bool:
 
 def with_histories(data: DataRows, model: Model[Any, Any]) -> DataRows:
     """Make the conditions that are derived from whole runs: what has been, since the first row of the file."""
-    made: dict[str, NDArray[Any]] = {}
-    runs = numbered(data.runs)
-    for condition in model.known_conditions.values():
-        source = data.columns.get(condition.made_from)
-        is_measured = condition.name in data.columns and condition.made_from != condition.name
-        if source is not None and source.dtype != object and not is_measured:
-            made[condition.name] = derive(condition, data.columns, runs, _time(data))
+    numbers = {name: values for name, values in data.columns.items() if is_number(values)}
+    made = histories(model.known_conditions.values(), numbers, numbered(data.runs), _time(data))
     parts: dict[str, ColumnRole] = dict.fromkeys(made, "condition")
     return replace(data, columns={**data.columns, **made}, parts={**data.parts, **parts})

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from truing.formulas import symbol_text
-from truing.numbers import ABSENT, format_difference, format_value, pretty, with_unit
+from truing.numbers import ABSENT, format_difference, format_ends, format_value, pretty, with_unit
 from truing.report.content import input_value
 from truing.runs.documents import clean
 from truing.setup import Setup
@@ -35,11 +35,8 @@ def text_of(setup: Setup, name: str, value: Any) -> str:
         return with_unit(pretty(shown.text), shown.unit)
     unit = setup.print_unit(name)
     if getattr(value, "ndim", 0):
-        finite = np.asarray(value, dtype=float)[np.isfinite(value)]
-        if not finite.size:
-            return ABSENT
-        (low, word), (high, _) = (format_value(float(end), unit) for end in (finite.min(), finite.max()))
-        return f"{with_unit(f'{pretty(low)} .. {pretty(high)}', word)} ({np.size(value)} values)"
+        low, high, word = format_ends(value, unit)
+        return f"{with_unit(f'{pretty(low)} .. {pretty(high)}', word)} ({np.size(value)} values)" if low else ABSENT
     result = setup.model.result_fields.get(name)
     number, word = format_value(value, unit, result.digits if result is not None else 10)
     return with_unit(pretty(number), word)

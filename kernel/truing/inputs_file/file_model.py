@@ -47,29 +47,57 @@ class SectionEntry:
     required: bool = False
 
 
+SECTIONS = {
+    "sheet": "What the head of the sheet says, and how much the sheet shows.",
+    "inputs": "The inputs of the calculation; what is left out is as declared.",
+    "tolerances": "How inputs scatter about their nominals.",
+    "conditions": "What is measured but no input of the model.",
+    "effects": "Effects that are on, by name, each with its unknowns.",
+    "calibrated": "Inputs as fitted to one machine.",
+    "studies": "Which studies run, in which order, and their options.",
+    "units": "The unit in which a result or input is printed.",
+}
+"""The sections of an inputs file, and what each holds."""
+
+
 @lru_cache(maxsize=16)
 def file_model(model: Model[Any, Any]) -> type[BaseModel]:
     """Make the pydantic model of this calculation's inputs files."""
-    sections: dict[str, tuple[Any, str]] = {
-        "sheet": (_section("Sheet", _sheet()), "What the head of the sheet says, and how much the sheet shows."),
-        "inputs": (
-            _section("Inputs", _inputs(model)),
-            "The inputs of the calculation; what is left out is as declared.",
-        ),
-        "tolerances": (_section("Tolerances", _tolerances(model)), "How inputs scatter about their nominals."),
-        "conditions": (_section("Conditions", _conditions(model)), "What is measured but no input of the model."),
-        "effects": (_effects(model), "Effects that are on, by name, each with its unknowns."),
-        "calibrated": (_section("Calibrated", _calibrated(model)), "Inputs as fitted to one machine."),
-        "studies": (_section("Studies", _studies(model)), "Which studies run, in which order, and their options."),
-        "units": (_section("Units", _units(model)), "The unit in which a result or input is printed."),
-    }
-    fields: dict[str, Any] = {
-        f"part_{index}": (section, Field(default_factory=dict, alias=name, title=name, description=words))
-        for index, (name, (section, words)) in enumerate(sections.items())
-    }
+    entries = _entries(model)
+    fields: dict[str, Any] = {}
+    for index, (name, words) in enumerate(SECTIONS.items()):
+        section = _effects(model) if name == "effects" else _section(name.capitalize(), entries[name])
+        fields[f"part_{index}"] = (section, Field(default_factory=dict, alias=name, title=name, description=words))
     plugin = {"type": "string", "description": "The calculation this file is for."}
     fields["part_plugin"] = _field("plugin", SectionEntry(checks.stored("plugin", checks.text), plugin))
     return create_model("InputsFile", __config__=_config(), __doc__=f"Inputs of {model.name}: {model.title}", **fields)
+
+
+def schemas(model: Model[Any, Any]) -> dict[str, dict[str, Mapping[str, Any]]]:
+    """Return the JSON Schema of every name by section; an effect holds those of its unknowns as ``properties``."""
+    known = {section: _schemas(entries) for section, entries in _entries(model).items()}
+    known["effects"] = {
+        name: {**effect_schema(effect), "properties": _schemas(_effect(effect))}
+        for name, effect in model.known_effects.items()
+    }
+    return known
+
+
+def _schemas(entries: Mapping[str, SectionEntry]) -> dict[str, Mapping[str, Any]]:
+    return {name: entry.schema for name, entry in entries.items()}
+
+
+def _entries(model: Model[Any, Any]) -> dict[str, dict[str, SectionEntry]]:
+    """Return the names of every section but that of effects."""
+    return {
+        "sheet": _sheet(),
+        "inputs": _inputs(model),
+        "tolerances": _tolerances(model),
+        "conditions": _conditions(model),
+        "calibrated": _calibrated(model),
+        "studies": _studies(model),
+        "units": _units(model),
+    }
 
 
 def _config() -> Any:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+from hashlib import file_digest
 from pathlib import Path
 
 from truing.declare.near_miss import near_miss
@@ -96,3 +97,12 @@ def read_text(path: Path, *, instead: str) -> str:
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
         raise InputError([Fault("is not UTF-8 text; save it as UTF-8", str(path), line)]) from None
+
+
+def digest_of(path: Path) -> str:
+    """Return the SHA-256 of a file; nothing where it cannot be read."""
+    try:
+        with path.open("rb") as stream:
+            return file_digest(stream, "sha256").hexdigest()
+    except OSError:
+        return ""

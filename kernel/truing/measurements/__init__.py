@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from truing.measurements.csv_text import TableSource, TableText
 from truing.measurements.overriding import CasesFile, RowsFile, StatedCase, read_cases, read_rows
 from truing.measurements.row_count import LeftOut, RowCount
-from truing.measurements.table import EXCEL, PLAIN, DataTable, TableStyle, read_table, table_text, write_table
+from truing.measurements.table import EXCEL, PLAIN, DataTable, TableStyle, read_table, table_text
 
 __all__ = [
     "EXCEL",
@@ -15,10 +16,11 @@ __all__ = [
     "RowCount",
     "RowsFile",
     "StatedCase",
+    "TableSource",
     "TableStyle",
+    "TableText",
     "read_cases",
     "read_rows",
     "read_table",
     "table_text",
-    "write_table",
 ]  # fmt: skip

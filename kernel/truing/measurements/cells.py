@@ -1,4 +1,4 @@
-"""Cells of a table to SI numbers, and the faults of the cells that are none."""
+"""What the text of a cell may be: a number, a word for none, or words that a spreadsheet would take for a formula."""
 
 from __future__ import annotations
 
@@ -9,13 +9,16 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from truing.errors import UnitError
-from truing.measurements.cell_text import MISSING_WORDS, NUMBER
-from truing.measurements.csv_text import CsvFile, Faults, Header
-from truing.units import demand_dimension, difference_unit, human_dimension, si_fault, to_si
 from truing.units.grammar import number, shown
-from truing.units.names import PURE
 
+MARK = "\ufeff"
+"""The byte order mark: by it a spreadsheet knows UTF-8, and we a table that was written for one."""
+
+NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
+EITHER = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}", re.ASCII)
+"""A comma that may be the decimal mark or part thousands: read where another number decides, written nowhere."""
+MISSING_WORDS = {"nan", "na", "n/a", "#n/a", "null", "none", "-"}
+_FORMULA = re.compile(r"'*(?P<words>\s*[=+\-@＝＋－＠].+)", re.DOTALL)
 _COMMA = re.compile(r"([+-]?\d*),(\d+(?:[eE][+-]?\d+)?|(?=[eE]|$))(?:[eE][+-]?\d+)?", re.ASCII)
 _INFINITE = re.compile(r"[+-]?(?:inf|infinity|∞)", re.IGNORECASE)
 
@@ -54,25 +57,7 @@ def _wrong(cell: str) -> str:
     return f"{shown(cell)} is no number"
 
 
-def read_cells(
-    cells: Sequence[str], lines: Sequence[int], header: Header, table: CsvFile, *, strict: bool
-) -> NDArray[np.float64]:
-    """Return the numbers of a column as they stand; what is none is a fault with its line."""
-    fast = _plain_numbers(cells)
-    if fast is not None and not (table.decimal_comma and any("." in cell for cell in cells)):
-        return fast
-    values = np.empty(len(cells))
-    for row, cell in enumerate(cells):
-        try:
-            values[row] = read_cell(cell, decimal_comma=table.decimal_comma, may_be_missing_word=not strict)
-            table.marks.take(header.name, cell.strip(), lines[row])
-        except ValueError as error:
-            values[row] = math.nan
-            table.faults.add(f"{header.name}: {error}", lines[row])
-    return values
-
-
-def _plain_numbers(cells: Sequence[str]) -> NDArray[np.float64] | None:
+def plain_numbers(cells: Sequence[str]) -> NDArray[np.float64] | None:
     """Return a column at once where every cell is a number that Python reads as we do; else None."""
     try:
         fast = np.array(list(map(float, cells)))
@@ -85,30 +70,29 @@ def _plain_numbers(cells: Sequence[str]) -> NDArray[np.float64] | None:
     return None if any(cell.strip(" +-0.") for cell in zeros) else fast
 
 
-def column_in_si(
-    values: NDArray[np.float64], lines: Sequence[int], header: Header, declared: str, faults: Faults
-) -> NDArray[np.float64]:
-    """Bring a column from the unit of its header to SI; a number that cannot be one of *declared* there is a fault."""
-    unit = header.unit or ""
-    with np.errstate(over="ignore"):
-        found = values if unit in PURE else to_si(values, unit)
-    odd = np.isfinite(values) & (~np.isfinite(found) | (found < 0) | ((found == 0) & (values != 0)))
-    for row in np.flatnonzero(odd).tolist() if declared not in PURE or unit not in PURE else ():
-        fault = si_fault(float(values[row]), float(found[row]), declared)
-        if fault:
-            faults.add(f"{header.name}: {shown(f'{values[row]:g} {unit}')} {fault}", lines[row])
-    return found
+def guarded(cell: str) -> str:
+    """Return a cell with an apostrophe before what would be a formula; numbers and other words stay."""
+    return f"'{cell}" if _may_be_formula(cell) else cell
 
 
-def header_fault(header: Header, declared: str, *, is_difference: bool = False) -> str:
-    """Return what is wrong with the unit in a header where ``declared`` is expected, or nothing."""
-    wanted = difference_unit(declared) if is_difference else declared
-    if header.unit is None:
-        if wanted in PURE:
-            return ""
-        return f"column '{header.name}' has no unit; it is {human_dimension(wanted)}: write '{header.name} [{wanted}]'"
-    try:
-        demand_dimension(header.unit, wanted)
-    except UnitError as error:
-        return f"column {shown(header.text)}: {error}"
-    return ""
+def unguarded(cell: str) -> str:
+    """Return a cell as it was before it was guarded."""
+    return cell[1:] if cell.startswith("'") and _may_be_formula(cell[1:]) else cell
+
+
+def all_unguarded(row: Sequence[str]) -> list[str]:
+    """Return the cells of a row as they were before they were guarded."""
+    return [unguarded(cell) for cell in row]
+
+
+def _may_be_formula(cell: str) -> bool:
+    found = _FORMULA.fullmatch(cell)
+    return found is not None and not NUMBER.fullmatch(found["words"].strip().replace(",", ".", 1))
+
+
+def with_comma(cells: Sequence[str]) -> Sequence[str]:
+    """Return a column of numbers as written with decimal commas; one that holds any other word stays as it is."""
+    plain = [cell.strip() for cell in cells]
+    if all(not cell or NUMBER.fullmatch(cell) or cell.lower() in MISSING_WORDS for cell in plain):
+        return [cell.replace(".", ",") for cell in cells]
+    return cells

@@ -11,13 +11,15 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import lru_cache
+from hashlib import sha256
+from io import StringIO
 from itertools import chain
 from pathlib import Path
 from typing import TextIO
 
 from truing.errors import Fault, InputError
 from truing.inputs_file.files import refuse_file
-from truing.measurements.cell_text import EITHER, MARK, all_unguarded
+from truing.measurements.cells import EITHER, MARK, all_unguarded
 from truing.measurements.row_count import LeftOut, RowCount
 from truing.numbers import counted
 from truing.units.grammar import shown
@@ -41,11 +43,10 @@ class RowError(ValueError):
 
 @dataclass(frozen=True)
 class Header:
-    """One cell of the header: a name, its unit (None where none is written) and its place in the row."""
+    """One cell of the header: a name, its unit (None where none is written), and the text of both."""
 
     name: str
     unit: str | None
-    place: int
     text: str
 
 
@@ -204,10 +205,32 @@ def _like_a_row(row: list[str]) -> str:
     return f"{what}; put {first} in quotation marks where it is one, and a remark above the header"
 
 
+@dataclass(frozen=True)
+class TableText:
+    """A table that stands in no file, and what sentences call it."""
+
+    name: str
+    text: str
+
+    def __str__(self) -> str:
+        return self.name
+
+    @property
+    def digest(self) -> str:
+        """The SHA-256 of the text."""
+        return sha256(self.text.encode()).hexdigest()
+
+
+TableSource = Path | TableText
+
+
 @contextmanager
-def opened(path: Path) -> Iterator[CsvFile]:
+def opened(path: TableSource) -> Iterator[CsvFile]:
     """Open a table. Raises InputError where it cannot be one, or has no header."""
     instead = "the first line of a table holds the names, with units such as 'load [N]'"
+    if isinstance(path, TableText):
+        yield _table(path, StringIO(path.text, newline=""), instead)
+        return
     refuse_file(path, largest=LARGEST_TABLE, instead=instead, is_table=True)
     try:
         with path.open(encoding="utf-8", newline="") as stream:
@@ -229,7 +252,7 @@ def _foreign_line(path: Path) -> int:
     return 1
 
 
-def _table(path: Path, stream: TextIO, instead: str) -> CsvFile:
+def _table(path: TableSource, stream: TextIO, instead: str) -> CsvFile:
     faults = Faults(str(path))
     beginning = stream.readline()
     lines = _lines(chain([beginning.removeprefix(MARK)], stream), faults)
@@ -299,7 +322,7 @@ def _headers(cells: list[str], line: int, faults: Faults) -> tuple[Header, ...]:
         elif name in seen:
             faults.add(f"the column {shown(name)} occurs twice", line)
         seen.add(name or "")
-        headers.append(Header(name or "", unit, index, text))
+        headers.append(Header(name or "", unit, text))
     return tuple(headers)
 
 

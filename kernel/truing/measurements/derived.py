@@ -13,7 +13,7 @@ has been so far stands; before the first X of a run it is missing too (the direc
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -21,6 +21,26 @@ from numpy.typing import NDArray
 
 from truing.declare.sources import SINCE_START, Condition
 from truing.errors import UsageError
+
+TIME = "time"
+"""The column by which rows are sorted, whatever part it plays."""
+
+
+def histories(
+    conditions: Iterable[Condition],
+    columns: Mapping[str, NDArray[Any]],
+    runs: NDArray[Any] | None,
+    time: NDArray[Any] | None,
+) -> dict[str, NDArray[np.float64]]:
+    """Return the conditions that can be made from columns of numbers; one that has a column of its own is not made.
+
+    Shapes and order are those of ``derive``.
+    """
+    return {
+        item.name: derive(item, columns, runs, time)
+        for item in conditions
+        if item.derived and item.made_from in columns and (item.made_from == item.name or item.name not in columns)
+    }
 
 
 def derive(

@@ -1,189 +1,351 @@
-"""Measured data: every column in SI, or as words where it holds words."""
+"""Tables: read with what is known of their columns by name, every fault at once; written to read back exactly."""
 
 from __future__ import annotations
 
 import csv
 import math
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from io import StringIO
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any, TypeGuard
 
 import numpy as np
 from numpy.typing import NDArray
 
-from truing.atomic import write_files
+from truing.declare.fields import InputField
 from truing.errors import UnitError
-from truing.measurements.cell_text import EITHER, MARK, guarded
-from truing.measurements.cells import column_in_si, header_fault, read_cell, read_cells
-from truing.measurements.csv_text import Chunk, CsvFile, Faults, Header, opened
+from truing.inputs_file.values import InputsRead, broken_bound, read_input
+from truing.measurements.cells import EITHER, MARK, guarded, plain_numbers, read_cell
+from truing.measurements.csv_text import CsvFile, Faults, Header, TableSource, opened
 from truing.measurements.row_count import UNCOUNTED, RowCount
-from truing.units import difference_unit, to_si
+from truing.units import demand_dimension, difference_unit, human_dimension, si_fault, to_si
+from truing.units.grammar import shown
 from truing.units.names import PURE
 
 SIGMA = "sigma_"
 RUN = "run"
+NUMBERS = frozenset({"float", "whole", "series"})
+"""The kinds of inputs that are quantities."""
+WORDS = frozenset({"switch", "integer", "choice", "text"})
+"""The kinds of inputs that are no quantities: their cells are read one by one."""
+SWITCHES = {"true": True, "yes": True, "1": True, "false": False, "no": False, "0": False}
+
+
+@dataclass(frozen=True)
+class Source:
+    """What is known of a column from which something is made: its unit (None for any), and what is made."""
+
+    unit: str | None
+    made: str
+
+
+Known = InputField | Source | str
+"""What is known of a column by its name: the input that it holds, what is made from it, or its declared unit."""
 
 
 @dataclass(frozen=True)
 class DataTable:
-    """A table of measured data: numbers in SI, shape (n,), NaN where a cell is empty; text columns are labels.
+    """A table by the names of its columns, n rows.
 
-    ``units`` holds what the header says ("" for pure numbers), ``lines`` the line of the file each row begins in and
-    ``header_line`` that of the header. ``count`` says how many rows the file holds, with those left out.
+    Numbers are in SI, (n,), NaN where a cell is empty; words of an input are an array of objects, None where a cell is
+    empty; other words are tuples. ``units`` holds what the header says ("" for pure numbers), ``lines`` the line of
+    the file each row begins in, ``header_line`` that of the header. ``cells`` are the columns as written, by the header
+    as written (in a column of numbers a decimal comma becomes a point). ``count`` says how many rows the file holds,
+    with those left out.
     """
 
     file: str
-    columns: Mapping[str, NDArray[np.float64] | tuple[str, ...]]
+    columns: Mapping[str, NDArray[Any] | tuple[str, ...]]
     units: Mapping[str, str]
     lines: tuple[int, ...]
-    labels: frozenset[str]
     header_line: int = 1
     count: RowCount = UNCOUNTED
+    cells: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     def __len__(self) -> int:
         return len(self.lines)
 
 
-def read_table(path: Path, units_of: Mapping[str, str], *, inputs: Collection[str] = ()) -> DataTable:
-    """Read a table of measurements.
-
-    ``units_of`` holds the declared units of the names that are known: their columns must have a unit of the same
-    dimension and come in SI, and so does ``sigma_NAME``, a standard deviation of NAME. Other columns are kept, in SI
-    where their unit is known; the column ``run`` and columns that hold words are labels. An empty cell is missing, and
-    so is "NaN", except in columns named by ``inputs``. Raises InputError with every fault and its line.
-    """
-    table, faults = gather_table(path, units_of, inputs=inputs)
-    faults.raise_any()
-    return table
-
-
-def gather_table(
-    path: Path, units_of: Mapping[str, str], *, inputs: Collection[str] = (), words: Collection[str] = ()
+def read_table(
+    path: TableSource,
+    known: Mapping[str, Known],
+    *,
+    is_measured: bool = True,
+    words: Collection[str] = (),
+    unknown: Callable[[Header], str] = lambda header: "",
 ) -> tuple[DataTable, Faults]:
-    """Read a table as ``read_table`` does, and return it with its faults for a caller who looks for more of them.
+    """Read a table, and return it with its faults for a caller who looks for more of them.
 
-    Columns named by ``words`` stay words, even where every cell is a number. A column whose header is a fault is left
-    out of ``columns``. Raises InputError where the file cannot be read at all.
+    Columns that are ``known`` must have a unit of the declared dimension, keep the bounds of their input, and come in
+    SI. Other columns are kept, in SI where their unit is known; those named by ``words``, the column ``run`` and
+    columns that hold words stay words. Of what is measured, "NaN" is a missing value as an empty cell is, and
+    ``sigma_NAME`` is a standard deviation of NAME; elsewhere cells are kept as written, and a word for a missing value
+    is a fault. ``unknown`` says what is wrong with a column that is not known, or nothing. A column whose header is a
+    fault is left out of ``columns``. Raises InputError where the file cannot be read at all.
     """
-    with opened(path) as table:
-        columns = [_column(header, units_of, inputs, table) for header in table.headers]
-        lines: list[int] = []
-        for chunk in table.chunks():
+    lines: list[int] = []
+    with opened(path) as file:
+        columns = [_column(header, known, is_measured, words, unknown) for header in file.headers]
+        for fault in (column.fault for column in columns if column.fault):
+            file.faults.add(fault, file.header_line)
+        texts: dict[str, list[str]] = {header.text: [] for header in file.headers}
+        for chunk in file.chunks():
             lines.extend(chunk.lines)
-            for column in columns:
-                column.take(chunk, table)
-    usable = [column for column in columns if column.is_usable]
-    made = {column.header.name: _made(column, words, table, lines) for column in usable}
-    table.marks.judge(table.faults)
-    found = DataTable(
-        file=str(path),
-        columns=made,
-        units={column.header.name: column.header.unit or "" for column in columns},
-        lines=tuple(lines),
-        labels=frozenset(name for name, values in made.items() if isinstance(values, tuple)),
-        header_line=table.header_line,
-        count=table.count(),
-    )
-    return found, table.faults
+            for column, cells in zip(columns, chunk.cells, strict=True):
+                column.take(cells, chunk.lines, file)
+                texts[column.header.text].extend(() if is_measured else cells)
+    made = {column.header.name: column.made(lines, file) for column in columns if column.header.name}
+    file.marks.judge(file.faults)
+    columns_made = {name: values for name, values in made.items() if values is not None}
+    units = {header.name: header.unit or "" for header in file.headers}
+    written = {text: _with_points(cells, file) for text, cells in texts.items()}
+    table = DataTable(str(path), columns_made, units, tuple(lines), file.header_line, file.count(), written)
+    return table, file.faults
 
 
-def _made(
-    column: _Known | _Other, words: Collection[str], table: CsvFile, lines: Sequence[int]
-) -> NDArray[np.float64] | tuple[str, ...]:
-    if isinstance(column, _Known):
-        return column.made()
-    return column.words() if column.header.name in words else column.made(table, lines)
+def _with_points(cells: Sequence[str], file: CsvFile) -> tuple[str, ...]:
+    """Return cells as written, those of a column of numbers with a decimal point."""
+    if file.decimal_comma and _numbers(cells, file) is not None:
+        return tuple(cell.replace(",", ".") for cell in cells)
+    return tuple(cells)
 
 
-def _column(header: Header, units_of: Mapping[str, str], inputs: Collection[str], table: CsvFile) -> _Known | _Other:
-    of = header.name.removeprefix(SIGMA)
-    is_sigma = header.name not in units_of and header.name.startswith(SIGMA) and of in units_of
-    if header.name not in units_of and not is_sigma:
-        return _Other(header, is_usable=bool(header.name))
-    declared = units_of[of if is_sigma else header.name]
-    fault = header_fault(header, declared, is_difference=is_sigma)
-    if fault:
-        table.faults.add(fault, table.header_line)
-    return _Known(header, declared, is_sigma, strict=header.name in inputs, is_usable=not fault)
+def _numbers(cells: Sequence[str], file: CsvFile) -> NDArray[np.float64] | None:
+    """Return cells as numbers where each is a number, empty, or a word for a missing value."""
+    comma = file.decimal_comma
+    try:
+        return np.array([read_cell(cell, decimal_comma=comma, may_be_missing_word=True) for cell in cells])
+    except ValueError:
+        return None
+
+
+def _column(
+    header: Header,
+    known: Mapping[str, Known],
+    is_measured: bool,
+    words: Collection[str],
+    unknown: Callable[[Header], str],
+) -> _Column:
+    """Return what takes the cells of a column, with what is wrong with its header."""
+    name = header.name
+    what = known.get(name)
+    if isinstance(what, InputField):
+        if what.kind == "file" or (what.kind == "series" and not what.spec.along):
+            return _Column(header, f"{name} cannot change from row to row; state it in the inputs file")
+        if what.kind in WORDS:
+            return _Words(header, word_header_fault(name, header.unit), what)
+        return _Numbers(header, header_fault(header, what.unit), what.unit, what, is_strict=not is_measured)
+    if isinstance(what, Source):
+        fault = header_fault(header, what.unit) if what.unit is not None else ""
+        fault = f"{fault} ('{what.made}' is made from it)" if fault else ""
+        return _Numbers(header, fault, what.unit, is_strict=not is_measured)
+    if what is not None:
+        return _Numbers(header, header_fault(header, what), what, is_strict=not is_measured)
+    unit = _unit_of(name.removeprefix(SIGMA), known) if is_measured and name.startswith(SIGMA) else None
+    if unit is not None:
+        return _Numbers(header, header_fault(header, difference_unit(unit)), difference_unit(unit), is_sigma=True)
+    return _Texts(header, unknown(header), is_words=name in words or name == RUN)
+
+
+def _unit_of(name: str, known: Mapping[str, Known]) -> str | None:
+    """Return the unit of numbers that are known by their name."""
+    what = known.get(name)
+    if isinstance(what, InputField):
+        return what.unit if what.kind in NUMBERS else None
+    return what.unit if isinstance(what, Source) else what
 
 
 @dataclass
-class _Known:
-    """A column of numbers whose name is known: cells become numbers as they come."""
+class _Column:
+    """A column of a table; this one is no use, and its cells are not looked at."""
 
     header: Header
-    declared: str
-    is_sigma: bool
-    strict: bool
-    is_usable: bool
+    fault: str
+
+    def take(self, cells: Sequence[str], lines: Sequence[int], file: CsvFile) -> None:
+        """Take the cells of the next rows; what is wrong with one is a fault with its line."""
+
+    def made(self, lines: Sequence[int], file: CsvFile) -> NDArray[Any] | tuple[str, ...] | None:
+        """Return the whole column, None where its header is a fault."""
+        return None
+
+
+@dataclass
+class _Numbers(_Column):
+    """A column of numbers that is known: cells become numbers as they come; ``declared`` is None for any unit."""
+
+    declared: str | None
+    item: InputField | None = None
+    is_strict: bool = False
+    is_sigma: bool = False
     parts: list[NDArray[np.float64]] = field(default_factory=list)
 
-    def take(self, chunk: Chunk, table: CsvFile) -> None:
-        """Take the next rows."""
-        cells = chunk.cells[self.header.place]
-        values = read_cells(cells, chunk.lines, self.header, table, strict=self.strict)
+    def take(self, cells: Sequence[str], lines: Sequence[int], file: CsvFile) -> None:
+        """Take cells: numbers, empty, or where that is allowed a word for a missing value."""
+        values = read_cells(cells, lines, self.header, file, is_strict=self.is_strict)
         if self.is_sigma and (values < 0).any():
-            worst = int((values < 0).argmax())
-            table.faults.add(f"{self.header.name}: a standard deviation is 0 or more", chunk.lines[worst])
-        self.parts.append(self._in_si(values, chunk, table.faults) if self.is_usable else values)
+            line = lines[int((values < 0).argmax())]
+            file.faults.add(f"{self.header.name}: a standard deviation is 0 or more", line)
+        if self.fault:
+            return
+        self.parts.append(self._in_si(values, cells, lines, file.faults))
+        if self.item is not None:
+            _keep_bounds(self.item, self.parts[-1], lines, file.faults)
 
-    def _in_si(self, values: NDArray[np.float64], chunk: Chunk, faults: Faults) -> NDArray[np.float64]:
-        if not self.is_sigma:
-            return column_in_si(values, chunk.lines, self.header, self.declared, faults)
-        header = replace(self.header, unit=difference_unit(self.header.unit or ""))
-        return column_in_si(values, chunk.lines, header, difference_unit(self.declared), faults)
+    def _in_si(
+        self, values: NDArray[np.float64], cells: Sequence[str], lines: Sequence[int], faults: Faults
+    ) -> NDArray[np.float64]:
+        """Bring numbers to SI; one that cannot be one of the declared unit there is a fault."""
+        unit = self.header.unit or ""
+        if unit in PURE:
+            return values
+        with np.errstate(over="ignore"):
+            made = in_si(values, unit)
+        odd = np.isfinite(values) & (~np.isfinite(made) | (made < 0) | ((made == 0) & (values != 0)))
+        for row in np.flatnonzero(odd).tolist():
+            if fault := si_fault(float(values[row]), float(made[row]), self.declared or ""):
+                written = f"{cells[row].strip()} {unit}"
+                faults.add(f"{self.header.name}: {shown(written)} {fault}", lines[row])
+        return made
 
-    def made(self) -> NDArray[np.float64]:
-        """Return the column in SI."""
-        return np.concatenate(self.parts) if self.parts else np.empty(0)
+    def made(self, lines: Sequence[int], file: CsvFile) -> NDArray[np.float64] | None:
+        """Return the column in SI, NaN where a cell is empty."""
+        return None if self.fault else np.concatenate([np.empty(0), *self.parts])
+
+
+def _keep_bounds(item: InputField, values: NDArray[np.float64], lines: Sequence[int], faults: Faults) -> None:
+    """Say which rows break a declared bound."""
+    distinct = np.unique(values[np.isfinite(values)]).tolist()
+    tried = distinct if getattr(item.spec, "whole", False) else [*distinct[:1], *distinct[-1:]]
+    if any(broken_bound(item, value) for value in tried):
+        broken = {value: broken_bound(item, value) for value in distinct}
+        for line, value in zip(lines, values.tolist(), strict=True):
+            if said := broken.get(value):
+                faults.add(said, line)
 
 
 @dataclass
-class _Other:
-    """A column nobody declared: numbers if every cell is one, else labels."""
+class _Words(_Column):
+    """A column of an input that is a choice, a text, a switch or a whole number."""
 
-    header: Header
-    is_usable: bool = True
+    item: InputField
+    values: list[Any] = field(default_factory=list)
+    read: dict[str, Any] = field(default_factory=lambda: {"": None})
+
+    def take(self, cells: Sequence[str], lines: Sequence[int], file: CsvFile) -> None:
+        """Take cells: each is one of the values that the input may have, or empty."""
+        if self.fault:
+            return
+        for cell, line in zip(map(str.strip, cells), lines, strict=True):
+            try:
+                if cell not in self.read:
+                    self.read[cell] = read_word(self.item, cell, decimal_comma=file.decimal_comma)
+                self.values.append(self.read[cell])
+                if self.item.kind == "integer":
+                    file.marks.take(self.header.name, cell, line)
+            except ValueError as error:
+                is_named = str(error).startswith(self.header.name)
+                file.faults.add(str(error) if is_named else f"{self.header.name}: {error}", line)
+                self.values.append(None)
+
+    def made(self, lines: Sequence[int], file: CsvFile) -> NDArray[Any] | None:
+        """Return the values as objects, None where a cell is empty."""
+        return None if self.fault else np.fromiter(self.values, dtype=object)
+
+
+@dataclass
+class _Texts(_Column):
+    """A column that nobody knows: numbers if every cell is one, in SI where the unit is known, else words."""
+
+    is_words: bool
     cells: list[str] = field(default_factory=list)
 
-    def take(self, chunk: Chunk, table: CsvFile) -> None:
-        """Take the next rows."""
-        self.cells.extend(chunk.cells[self.header.place])
+    def take(self, cells: Sequence[str], lines: Sequence[int], file: CsvFile) -> None:
+        """Take cells, whatever they hold."""
+        self.cells.extend(cells)
 
-    def made(self, table: CsvFile, lines: Sequence[int]) -> NDArray[np.float64] | tuple[str, ...]:
-        """Return numbers, in SI where the unit is known, or words."""
-        if self.header.name == RUN or not any(cell.strip() for cell in self.cells):
-            return self.words()
-        try:
-            values = np.array([
-                read_cell(cell, decimal_comma=table.decimal_comma, may_be_missing_word=True) for cell in self.cells
-            ])  # fmt: skip
-        except ValueError:
-            return self.words()
-        if table.decimal_comma:
+    def made(self, lines: Sequence[int], file: CsvFile) -> NDArray[np.float64] | tuple[str, ...] | None:
+        """Return numbers or words; the decimal marks of numbers must be those of the file."""
+        if self.fault:
+            return None
+        is_number = not self.is_words and any(cell.strip() for cell in self.cells)
+        values = _numbers(self.cells, file) if is_number else None
+        if values is None:
+            return tuple(cell.strip() for cell in self.cells)
+        if file.decimal_comma:
             for cell, line in zip(self.cells, lines, strict=True):
-                table.marks.take(self.header.name, cell.strip(), line)
-        try:
-            return in_si(values, self.header.unit or "")
-        except UnitError:
-            return values
+                file.marks.take(self.header.name, cell.strip(), line)
+        return in_si(values, self.header.unit or "")
 
-    def words(self) -> tuple[str, ...]:
-        """Return the cells as words."""
-        return tuple(cell.strip() for cell in self.cells)
+
+# Cells, units and words
+
+
+def is_number(column: Any) -> TypeGuard[NDArray[np.float64]]:
+    """Whether a column holds numbers."""
+    return isinstance(column, np.ndarray) and column.dtype != object
+
+
+def read_cells(
+    cells: Sequence[str], lines: Sequence[int], header: Header, file: CsvFile, *, is_strict: bool
+) -> NDArray[np.float64]:
+    """Return the numbers of a column as they stand; what is none is a fault with its line."""
+    fast = plain_numbers(cells)
+    if fast is not None and not (file.decimal_comma and any("." in cell for cell in cells)):
+        return fast
+    values = np.empty(len(cells))
+    for row, cell in enumerate(cells):
+        try:
+            values[row] = read_cell(cell, decimal_comma=file.decimal_comma, may_be_missing_word=not is_strict)
+            file.marks.take(header.name, cell.strip(), lines[row])
+        except ValueError as error:
+            values[row] = math.nan
+            file.faults.add(f"{header.name}: {error}", lines[row])
+    return values
 
 
 def in_si(values: NDArray[np.float64], unit: str) -> NDArray[np.float64]:
-    """Bring numbers from the unit of a header to SI."""
-    if unit in PURE:
+    """Bring numbers from the unit of a header to SI; where nobody knows the unit they stay as they stand."""
+    try:
+        return values if unit in PURE else to_si(values, unit)
+    except UnitError:
         return values
-    return to_si(values, unit)
 
 
-# Tables to files: numbers that read back exactly, a file that is complete or absent
+def header_fault(header: Header, declared: str) -> str:
+    """Return what is wrong with the unit in a header where ``declared`` is expected, or nothing."""
+    if header.unit is None:
+        if declared in PURE:
+            return ""
+        like = f"{header.name} [{declared}]"
+        return f"column '{header.name}' has no unit; it is {human_dimension(declared)}: write '{like}'"
+    try:
+        demand_dimension(header.unit, declared)
+    except UnitError as error:
+        return f"column {shown(header.text)}: {error}"
+    return ""
+
+
+def word_header_fault(name: str, unit: str | None) -> str:
+    """Return what is wrong with a unit in the header of an input that is no quantity, or nothing."""
+    if unit is None or unit in PURE:
+        return ""
+    return f"column '{name}' has the unit [{unit}], but it is no quantity; write '{name}'"
+
+
+def read_word(item: InputField, cell: str, *, decimal_comma: bool) -> Any:
+    """Return the value of an input that is a choice, a text, a switch or a whole number. Raises ValueError."""
+    raw: Any = cell.strip()
+    if item.kind == "switch":
+        raw = SWITCHES.get(raw.lower(), raw)
+    elif item.kind == "integer":
+        raw = read_cell(raw, decimal_comma=decimal_comma)
+    return read_input(item, raw, InputsRead(Path()))
+
+
+# Tables to text: numbers that read back exactly
 
 
 @dataclass(frozen=True)
@@ -202,30 +364,15 @@ EXCEL = TableStyle(MARK, ";", ",", "\r\n", is_guarded=True)
 """What a spreadsheet with a decimal comma opens by a double click."""
 
 
-def write_table(
-    target: Path | TextIO, headers: Sequence[str], columns: Sequence[Iterable[Any]], *, form: TableStyle = PLAIN
-) -> None:
-    """Write columns under headers such as "depth [um]"; the numbers are in these units already.
+def table_text(headers: Sequence[str], columns: Sequence[Iterable[Any]], *, form: TableStyle = PLAIN) -> str:
+    """Return columns under headers such as "depth [um]" as the text of a file; the numbers are in these units already.
 
     Numbers are written so that they read back exactly (at most 17 digits), NaN and None as empty cells; words stay as
-    they are, line ends in them become blanks. A file is written whole or not at all. Raises OutputError.
+    they are, line ends in them become blanks.
     """
-    if isinstance(target, Path):
-        write_files({target: table_text(headers, columns, form=form)})
-    else:
-        _write(target, headers, columns, form)
-
-
-def table_text(headers: Sequence[str], columns: Sequence[Iterable[Any]], *, form: TableStyle = PLAIN) -> str:
-    """Return a table as the text of its file."""
-    stream = StringIO(newline="")
-    _write(stream, headers, columns, form)
-    return stream.getvalue()
-
-
-def _write(stream: TextIO, headers: Sequence[str], columns: Sequence[Iterable[Any]], form: TableStyle) -> None:
     if len(headers) != len(columns):
         raise ValueError(f"{len(headers)} headers for {len(columns)} columns")
+    stream = StringIO(newline="")
     stream.write(form.mark)
     minimal, everything = (
         csv.writer(stream, delimiter=form.delimiter, lineterminator=form.line_end, quoting=quoting)
@@ -235,6 +382,7 @@ def _write(stream: TextIO, headers: Sequence[str], columns: Sequence[Iterable[An
     for row in _rows(headers, columns, form):
         # a line that begins with # would be a comment; a column alone must show what parts the cells
         (everything if row and row[0].lstrip().startswith("#") else minimal).writerow(row + alone)
+    return stream.getvalue()
 
 
 def _rows(headers: Sequence[str], columns: Sequence[Iterable[Any]], form: TableStyle) -> Iterator[list[str]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
@@ -15,8 +15,23 @@ from truing.declare.fields import Axis, Found, ResultField
 from truing.declare.model import Section
 from truing.errors import PluginError, UnitError
 from truing.kernel.blame import spoken_place
-from truing.numbers import format_value, pretty
-from truing.report.context import BlockView, Chapter, FigureView, ResultEntry, TableView, Value
+from truing.numbers import format_ends, format_value, pretty
+from truing.report.document import (
+    Aside,
+    BlockView,
+    Chapter,
+    Column,
+    FigureView,
+    Paragraph,
+    ResultEntry,
+    Strong,
+    Symbol,
+    TableView,
+    Text,
+    Value,
+    label_of,
+    with_source,
+)
 from truing.report.equations import equation_of, value_text
 from truing.report.figures import draw
 from truing.setup import Setup
@@ -34,16 +49,20 @@ class Figures:
 
     count: int = 0
     failures: list[str] = field(default_factory=list)
+    skipped: bool = False
+    """Whether nothing is drawn: for a printer that has no figures."""
 
     def view(self, title: str, what: Callable[[], Any], caption: str) -> BlockView:
         """Draw a figure; one that fails is said in its place and does not take the sheet away."""
         self.count += 1
+        if self.skipped:
+            return FigureView(title, "", caption or title, self.count)
         ident = f"f{self.count}"
         try:
             return FigureView(title, draw(what, title=title, ident=ident), caption or title, self.count)
         except PluginError as error:
             self.failures.append(str(error))
-            return Words(f"The figure '{title}' could not be drawn.", kind="warning")
+            return Paragraph(f"The figure '{title}' could not be drawn.", "warning")
 
 
 @dataclass(frozen=True)
@@ -68,7 +87,8 @@ def result_chapters(writing: Writing) -> Iterator[Chapter]:
         named.update(section.names)
         if RANK[section.level] <= rank:
             chapter = _of_section(writing, section)
-            if chapter.entries or chapter.blocks or not (section.names or section.figure or section.blocks):
+            says = len(chapter.blocks) > bool(section.text)
+            if says or not (section.names or section.figure or section.blocks):
                 yield chapter  # one that has nothing to say because its study did not run has no heading either
     if rank == 0:
         yield from _main_results(writing)
@@ -78,22 +98,20 @@ def result_chapters(writing: Writing) -> Iterator[Chapter]:
         name for name in writing.setup.model.result_fields if name not in named and name in writing.calculation.answers
     ]
     if rest:
-        entries, tables = _results(writing, rest)
-        yield Chapter("", "", "Further results", "results", entries=entries, blocks=tables)
+        yield Chapter("Further results", tuple(_results(writing, rest)))
 
 
 def _of_section(writing: Writing, section: Section) -> Chapter:
     names = [name for name in section.names if name in writing.calculation.answers]
-    entries, tables = _results(writing, names)
     record = writing.calculation.record
-    blocks: list[BlockView] = list(tables)
+    blocks: list[BlockView] = [*([Paragraph(section.text)] if section.text else []), *_results(writing, names)]
     if section.figure is not None:
         figure = section.figure
         blocks.append(writing.figures.view(section.title, lambda: figure(record), section.caption))
     if section.blocks is not None:
         made = section.blocks
         blocks += _guarded(writing, section.title, lambda: views(writing, made(record)))
-    return Chapter("", "", section.title, "results", text=section.text, entries=entries, blocks=tuple(blocks))
+    return Chapter(section.title, tuple(blocks))
 
 
 def _main_results(writing: Writing) -> Iterator[Chapter]:
@@ -105,15 +123,14 @@ def _main_results(writing: Writing) -> Iterator[Chapter]:
     )
     scalars = [name for name in dict.fromkeys(names) if _is_scalar(writing.calculation.answers.get(name))]
     if scalars:
-        entries = tuple(_entry(writing, name, with_formula=False) for name in scalars)
-        yield Chapter("", "", "Main results", "results", entries=entries)
+        yield Chapter("Main results", tuple(_entry(writing, name, with_formula=False) for name in scalars))
 
 
 def _studies(writing: Writing) -> Iterator[Chapter]:
     for name, outcome in writing.calculation.outcomes.items():
         found = _guarded(writing, f"study {name}", partial(_said, writing, outcome))
         if found:
-            yield Chapter("", "", f"Study: {name.replace('_', ' ')}", "study", blocks=tuple(found))
+            yield Chapter(f"Study: {name.replace('_', ' ')}", tuple(found))
 
 
 def _said(writing: Writing, outcome: Outcome) -> list[BlockView]:
@@ -124,61 +141,50 @@ def _is_scalar(value: Any) -> bool:
     return value is not None and getattr(value, "ndim", 0) == 0
 
 
-def _results(writing: Writing, names: Sequence[str]) -> tuple[tuple[ResultEntry, ...], tuple[BlockView, ...]]:
-    """Write single results as entries, short axes as tables, long ones as entries with their range."""
-    answers, fields = writing.calculation.answers, writing.setup.model.result_fields
-    tables = list(_axis_tables(writing, names))
-    entries = []
+def _results(writing: Writing, names: Sequence[str]) -> Iterator[BlockView]:
+    """Write single results as entries, long axes as entries with their range, short ones as tables."""
     for name in names:
-        item = fields[name]
-        if isinstance(item.spec, Axis) and item.spec.is_table:
-            continue
-        if isinstance(item.spec, Axis) or not _is_scalar(answers[name]):
-            entries.append(_range_entry(writing, item))
-        else:
-            entries.append(_entry(writing, name, with_formula=True))
-    return tuple(entries), tuple(tables)
+        spec = writing.setup.model.result_fields[name].spec
+        if not (isinstance(spec, Axis) and spec.is_table):
+            yield _entry(writing, name, with_formula=True)
+    yield from _axis_tables(writing, names)
 
 
 def _entry(writing: Writing, name: str, *, with_formula: bool) -> ResultEntry:
-    item = writing.setup.model.result_fields[name]
-    answers = writing.calculation.answers
+    """Say a result: its formula, and its value where the formula does not end with it."""
+    item, answers = writing.setup.model.result_fields[name], writing.calculation.answers
     absent = writing.calculation.absent.get(name, "")
-    return ResultEntry(
-        name=name,
-        symbol=item.symbol,
-        note=item.spec.note,
-        value=Value(*format_value(answers[name], writing.setup.print_unit(name), item.digits)),
-        equation=equation_of(writing.setup, answers, item) if with_formula and not absent else None,
-        method=getattr(item.spec, "method", ""),
-        source=getattr(item.spec, "source", ""),
-        absent=absent,
-    )
+    is_scalar = _is_scalar(answers[name])
+    equation = equation_of(writing.setup, answers, item) if with_formula and not (absent and is_scalar) else None
+    symbol = (Symbol(item.symbol), " ") if item.symbol else ()
+    value: Text = ""
+    if absent:
+        value = (*symbol, *(("has ",) if symbol else ()), Strong("no value"), ": ", Aside(absent))
+    elif not is_scalar:
+        extent, words = _range(writing, item)
+        value = (*symbol, *(("is ",) if symbol else ()), Strong(extent), " ", Aside(f"({words})"))
+    elif equation is None or equation.departs:
+        printed = Value(*format_value(answers[name], writing.setup.print_unit(name), item.digits))
+        value = (*symbol, *(("= ",) if symbol else ()), Strong(printed))
+        value += (" ", Aside(_departure(writing.setup))) if equation is not None else ()
+    method = with_source(getattr(item.spec, "method", ""), getattr(item.spec, "source", ""))
+    return ResultEntry(name, label_of(item.spec.note, name), equation, value, method)
 
 
-def _range_entry(writing: Writing, item: ResultField) -> ResultEntry:
-    """Say a result along an axis by its ends."""
-    values = np.asarray(writing.calculation.answers[item.name], dtype=float)
-    finite = values[np.isfinite(values)]
-    unit = writing.setup.print_unit(item.name)
-    if finite.size:
-        (low, text), (high, _) = (format_value(float(end), unit) for end in (finite.min(), finite.max()))
-        extent = f"{pretty(low)} … {pretty(high)}"
-    else:
-        extent, text = "no finite value", ""
+def _departure(setup: Setup) -> str:
+    """Say why the calculation has another number than the printed formula."""
+    if any(item.effect.place == "results" for item in setup.effects):
+        return "in the calculation, with the effects on the results that are on"
+    return "in the calculation: the printed formula gives another number"
+
+
+def _range(writing: Writing, item: ResultField) -> tuple[Value, str]:
+    """Say a result along an axis by its ends, and how many values it has."""
+    values = writing.calculation.answers[item.name]
     along = item.along if isinstance(item.spec, Found) else ""
-    words = f"{values.size} values" + (f" along {along}" if along and along != item.name else "")
-    return ResultEntry(
-        name=item.name,
-        symbol=item.symbol,
-        note=item.spec.note,
-        value=Value(extent, text if finite.size else ""),
-        equation=equation_of(writing.setup, writing.calculation.answers, item),
-        method=getattr(item.spec, "method", ""),
-        source=getattr(item.spec, "source", ""),
-        extent=words,
-        absent=writing.calculation.absent.get(item.name, ""),
-    )
+    words = f"{np.size(values)} values" + (f" along {along}" if along and along != item.name else "")
+    low, high, unit = format_ends(values, writing.setup.print_unit(item.name))
+    return Value(f"{pretty(low)} … {pretty(high)}", unit) if low else Value("no finite value"), words
 
 
 def _axis_tables(writing: Writing, names: Sequence[str]) -> Iterator[TableView]:
@@ -208,9 +214,9 @@ def _columns_table(writing: Writing, title: str, names: Sequence[str], most: int
     units = {name: setup.print_unit(name) for name in names}
     rows = tuple(tuple(format_value(float(answers[n][place]), units[n])[0] for n in names) for place in places)
     note = f"{len(places)} of {length} rows" if length > most else ""
-    titles = [setup.model.result_fields[name].spec.note or name for name in names]
-    headings = tuple(format_value(0.0, unit)[1] for unit in units.values())
-    return TableView(title, tuple(titles), headings, rows, (True,) * len(names), note)
+    fields = setup.model.result_fields
+    columns = (Column(fields[n].spec.note or n, format_value(0.0, unit)[1], "number") for n, unit in units.items())
+    return TableView(title, tuple(columns), rows, note)
 
 
 def _guarded(writing: Writing, title: str, make: Callable[[], list[BlockView]]) -> list[BlockView]:
@@ -219,7 +225,7 @@ def _guarded(writing: Writing, title: str, make: Callable[[], list[BlockView]]) 
         return make()
     except Exception as error:
         writing.figures.failures.append(f"{spoken_place(error)}'{title}' failed: {type(error).__name__}: {error}")
-        return [Words(f"What '{title}' says could not be written.", kind="warning")]
+        return [Paragraph(f"What '{title}' says could not be written.", "warning")]
 
 
 def views(writing: Writing, blocks: Sequence[Block]) -> list[BlockView]:
@@ -229,7 +235,7 @@ def views(writing: Writing, blocks: Sequence[Block]) -> list[BlockView]:
 
 def _view(writing: Writing, block: Block) -> BlockView:
     if isinstance(block, Words):
-        return block
+        return Paragraph(block.text, block.kind)
     if isinstance(block, Drawing):
         caption = f"{block.title}. {block.caption}" if block.caption else block.title
         return writing.figures.view(block.title, block.draw, caption)
@@ -241,32 +247,35 @@ def table_view(table: Table, most: int) -> TableView:
     shown = table.rows[:most]
     width = len(table.columns)
     rows = tuple(tuple([*map(value_text, row), *[""] * width][:width]) for row in shown)
-    numeric = tuple(
-        bool(shown) and all(_is_numeric(row[index]) for row in shown if index < len(row))
-        for index in range(len(table.columns))
+    units = [_known_unit(unit) for unit in (*table.units, *[""] * width)]
+    columns = tuple(
+        Column(title, unit, "number" if shown and all(map(_is_numeric, cells)) else "")
+        for title, unit, cells in zip(table.columns, units, _columns(shown, width), strict=False)
     )
     left = len(table.rows) - len(shown)
     note = " ".join(filter(None, [table.note, f"{left} further rows are not printed." if left else ""]))
-    units = tuple(_known_unit(unit_text, unit) for unit in table.units)
-    return TableView(table.title, tuple(table.columns), units, rows, numeric, note)
+    return TableView(table.title, columns, rows, note)
+
+
+def _columns(rows: Sequence[Sequence[Any]], width: int) -> list[list[Any]]:
+    return [[row[index] for row in rows if index < len(row)] for index in range(width)]
 
 
 def _is_numeric(cell: Any) -> bool:
     return cell is None or (isinstance(cell, (int, float)) and not isinstance(cell, bool)) or hasattr(cell, "dtype")
 
 
-def _known_unit(write: Callable[[str], str], unit: str) -> str:
+def _known_unit(unit: str) -> str:
     """Write a unit for print; a heading that is no unit stays as it is."""
     try:
-        return write(unit) if unit else ""
+        return unit_text(unit) if unit else ""
     except UnitError:
         return unit
 
 
-def numbered(chapters: Sequence[Chapter], start: int) -> Mapping[str, Chapter]:
+def numbered(chapters: Iterable[Chapter]) -> tuple[Chapter, ...]:
     """Give chapters their numbers and identifiers, in order."""
-    found = {}
-    for index, chapter in enumerate(chapters, start):
-        ident = chapter.ident or f"chapter-{index}"
-        found[ident] = replace(chapter, number=str(index), ident=ident)
-    return found
+    return tuple(
+        replace(chapter, number=str(index), ident=chapter.ident or f"chapter-{index}")
+        for index, chapter in enumerate(chapters, 1)
+    )

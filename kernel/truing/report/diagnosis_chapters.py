@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import partial
+from typing import TypeAlias
 
 import numpy as np
 
-from truing.declare.blocks import Words
 from truing.diagnosis.result import (
     APART,
     UNKNOWN,
@@ -15,35 +16,48 @@ from truing.diagnosis.result import (
     Amount,
     DiagnosisResult,
     FittedUnknown,
+    NextPoint,
     NoiseSummary,
+    VisibleSize,
     explanations_of,
 )
 from truing.numbers import ABSENT, STATED_DIGITS, format_number, pretty
 from truing.report import diagnosis_figures as figures
 from truing.report.chapters import Figures
-from truing.report.context import BlockView, Chapter, TableView
-from truing.report.diagnosis_next import next_blocks, table_of
 from truing.report.diagnosis_words import (
     amount_text,
+    cause_text,
     certainty,
     explanation,
+    fitted_text,
     listed,
     number_texts,
     p_text,
+    pair_text,
     percent,
     prose,
     readable,
     reasons,
     score_text,
+    settings_text,
     shared_words,
     spoken,
+    tie_text,
     together,
 )
+from truing.report.document import BlockView, Chapter, Paragraph, TableView, table_of
 from truing.runs.diagnosis_document import file_labels
 
 MOST_OUTLIERS = 12
 FITTED_DIGITS = 7
 EVERYTHING = "extended.toml"
+MOST_SEEN, MOST_MOVED, FEW_OUTLIERS = 8, 4, 5
+"""So many effects, inputs and outliers a terminal names at most."""
+WEAK = 10.0
+"""A rival that loses less fit than this is not worth a line of its own."""
+Parts: TypeAlias = Iterator[BlockView | str]
+"""What a chapter says: blocks for the sheet, and the lines that a terminal and a notebook print instead."""
+HEADS = ("Cause", "Unknown", "Value", "95 % interval", "Unit")
 
 
 def diagnosis_chapters(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[Chapter]:
@@ -52,44 +66,63 @@ def diagnosis_chapters(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[C
     yield _chapter("cause", "Cause", _cause(diagnosis, drawn))
     yield _chapter("model", "Extended model", _model(diagnosis))
     yield _chapter("gain", "Gain", _gain(diagnosis, drawn))
-    yield _chapter("next", "Next measurement", next_blocks(diagnosis))
+    yield _chapter("next", "Next measurement", _next(diagnosis))
     yield _chapter("data", "Data", _data(diagnosis))
 
 
-def _chapter(ident: str, title: str, blocks: Iterator[BlockView]) -> Chapter:
-    return Chapter("", ident, title, "blocks", blocks=tuple(blocks))
+def _chapter(ident: str, title: str, parts: Parts) -> Chapter:
+    said = list(parts)
+    lines = tuple(part for part in said if isinstance(part, str))
+    return Chapter(title, tuple(part for part in said if not isinstance(part, str)), ident, lines=lines)
 
 
 # What is wrong
 
 
-def _wrong(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[BlockView]:
-    rows = [
-        (
-            spoken(item.result), str(item.rows), amount_text(item.rmse), amount_text(item.noise_floor),
-            percent(item.reducible_share),
-        )
-        for item in diagnosis.wrong
-    ]  # fmt: skip
+def _wrong(diagnosis: DiagnosisResult, drawn: Figures) -> Parts:
+    errors, found, noises = [], [], []
+    for item in diagnosis.wrong:
+        name, noise = spoken(item.result), item.noise
+        rmse, floor, share = amount_text(item.rmse), amount_text(item.noise_floor), percent(item.reducible_share)
+        errors.append((name, str(item.rows), rmse, floor, share))
+        against = f"RMS error {rmse} against a noise floor of {floor}"
+        yield f"{name}: {against}: {share} of the mean square error is reducible"
+        for finding in item.findings:
+            text, sure = prose(finding.text), certainty(finding.p_value)
+            found.append((name, finding.kind, text, sure))
+            yield f"  {finding.kind}: {text}" + (f" – {sure}" if finding.p_value is not None else "")
+        correlation = pretty(format_number(noise.autocorrelation, 2))
+        far = _outliers(noise, MOST_OUTLIERS) or "none"
+        noises.append((name, amount_text(noise.sd), correlation, noise.tails, noise.spread, far))
+        count = len(noise.outliers)
+        few = f"; {count} suspected outlier{'s' * (count > 1)} ({_outliers(noise, FEW_OUTLIERS)})" if count else ""
+        yield f"  noise: autocorrelation {correlation}, tails {noise.tails}, spread {noise.spread}{few}"
     heads = ("Result", "Rows", "RMS error", "Noise floor", "Reducible")
     note = (
         "The error is that of the model calibrated within its tolerances. Reducible is the share of the mean square "
         "error that lies above the noise floor."
     )
-    yield table_of("Error of the model as it is", heads, rows, (1, 2, 3, 4), note)
-    found = [
-        (spoken(item.result), finding.kind, prose(finding.text), certainty(finding.p_value))
-        for item in diagnosis.wrong
-        for finding in item.findings
-    ]
+    yield table_of("Error of the model as it is", heads, errors, (1, 2, 3, 4), note)
     if found:
         kinds = ("Result", "Kind", "What the residuals show", "How sure, the search paid for")
         yield table_of("Structure in the residuals", kinds, found)
     else:
-        yield Words("At the level of 5 % the residuals show no bias, trend, order, step, wave or spread.")
-    noise = [(spoken(item.result), *_noise(item.noise)) for item in diagnosis.wrong]
+        yield Paragraph("At the level of 5 % the residuals show no bias, trend, order, step, wave or spread.")
     about = ("Result", "Standard deviation", "Autocorrelation", "Tails", "Spread", "Suspected outliers")
-    yield table_of("The noise, once everything found is taken out", about, noise, (1, 2))
+    yield table_of("The noise, once everything found is taken out", about, noises, (1, 2))
+    yield from _measured(diagnosis, drawn)
+
+
+def _outliers(noise: NoiseSummary, most: int) -> str:
+    """Name the rows of suspected outliers, so many at most."""
+    names = list(dict.fromkeys(file for file, _ in noise.outliers))
+    labels = dict(zip(names, file_labels(names), strict=True))
+    places = [f"{labels[file]}:{line}" for file, line in noise.outliers]
+    more = f" and {len(places) - most} more" if len(places) > most else ""
+    return ", ".join(places[:most]) + more
+
+
+def _measured(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[BlockView]:
     for curves in figures.shown_curves(diagnosis):
         title = f"Measured {spoken(curves.result)} against simulated"
         colours = " Red circles before, blue points after." if figures.has_changed(curves) else ""
@@ -98,47 +131,83 @@ def _wrong(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[BlockView]:
         yield drawn.view(title, partial(figures.against_simulated, diagnosis, curves), caption)
 
 
-def _noise(noise: NoiseSummary) -> tuple[str, ...]:
-    places = [f"{label}:{line}" for label, line in _labelled(noise.outliers)]
-    shown = ", ".join(places[:MOST_OUTLIERS])
-    more = f" and {len(places) - MOST_OUTLIERS} more" if len(places) > MOST_OUTLIERS else ""
-    correlation = pretty(format_number(noise.autocorrelation, 2))
-    return (amount_text(noise.sd), correlation, noise.tails, noise.spread, shown + more or "none")
-
-
-def _labelled(outliers: Sequence[tuple[str, int]]) -> Iterator[tuple[str, int]]:
-    names = list(dict.fromkeys(file for file, _ in outliers))
-    labels = dict(zip(names, file_labels(names), strict=True))
-    yield from ((labels[file], line) for file, line in outliers)
-
-
 # Cause
 
 
-def _cause(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[BlockView]:
-    yield Words(" ".join(_significance(diagnosis)))
+def _cause(diagnosis: DiagnosisResult, drawn: Figures) -> Parts:
+    yield _verdict_line(diagnosis)
+    yield Paragraph(" ".join(_significance(diagnosis)))
     if diagnosis.causes:
-        yield _named_table(diagnosis)
+        yield from _named(diagnosis)
+    yield from _near(diagnosis)
     if diagnosis.ranking:
-        yield _ranking(diagnosis)
+        yield ranking_table(diagnosis)
         title = "Ranking of the explanations"
         caption = f"{title}; blue is what this data does not exclude."
         yield drawn.view(title, partial(figures.ranking_bars, diagnosis), caption)
     yield from _residuals(diagnosis, drawn)
+    sentences = list(map(prose, diagnosis.inseparable))
+    yield from sentences
     yield from _sight(diagnosis)
-    if diagnosis.inseparable:
-        yield table_of("What this experiment can hardly tell apart", ("Because of its design",),
-                     [(prose(sentence).rstrip("."),) for sentence in diagnosis.inseparable])  # fmt: skip
+    if sentences:
+        rows = [(sentence.rstrip("."),) for sentence in sentences]
+        yield table_of("What this experiment can hardly tell apart", ("Because of its design",), rows)
 
 
-def _named_table(diagnosis: DiagnosisResult) -> TableView:
-    heads, rows = ("Cause", "What it is", "The same curve on this data"), list(_named(diagnosis))
+def _verdict_line(diagnosis: DiagnosisResult) -> str:
+    if not explanations_of(diagnosis):
+        said = "none" if diagnosis.verdict == "none" else f"undecided: {listed(list(reasons(diagnosis)))}"
+        return f"{said} ({p_text(diagnosis.p_any)})"
+    parts = [spoken(cause.effect) for cause in diagnosis.causes]
+    if diagnosis.remainder is not None:
+        parts.append(f"unregistered: {prose(diagnosis.remainder.shape)}")
+    second = f", of a second cause {p_text(diagnosis.p_second)}" if diagnosis.p_second is not None else ""
+    one_of = "; ".join(["", f"one of {len(explanations_of(diagnosis))}", *shared_words(diagnosis)])
+    open_ones = {"named": "; unique", "undecided": "; in doubt", "one_of": one_of}
+    return f"{' + '.join(parts)} ({p_text(diagnosis.p_any)}{second}{open_ones.get(diagnosis.verdict, '')})"
+
+
+def _named(diagnosis: DiagnosisResult) -> Parts:
+    """Say what the named causes are, what draws the same curve, and of several the shares."""
+    rows = []
+    for cause in diagnosis.causes:
+        effect = diagnosis.setup.model.known_effects.get(cause.effect)
+        about = "an input that must lie outside of its tolerance" if cause.effect.startswith("input:") else ""
+        about = about or ("" if effect is None else effect.why or effect.looks_like)
+        alike = listed([spoken(name) for name in cause.same_as])
+        rows.append((spoken(cause.effect), about or ABSENT, alike or "none", percent(cause.share)))
+    heads = ("Cause", "What it is", "The same curve on this data", "Share")
+    if len(rows) > 1:
+        yield f"shares of the correction: {', '.join(f'{name} {share}' for name, *_, share in rows)}"
+    for cause, (name, _, alike, _) in zip(diagnosis.causes, rows, strict=True):
+        if cause.same_as:
+            yield f"the same curve as {name} on this data: {alike}"
     if len(rows) < 2:
-        return table_of("Named", heads, rows)
-    shares = [percent(cause.share) for cause in diagnosis.causes]
+        yield table_of("Named", heads[:-1], [row[:-1] for row in rows])
+        return
     note = "Share: of the mean squares of what the named causes add to the model, over all rows in units of the noise."
-    with_shares = [(*row, share) for row, share in zip(rows, shares, strict=True)]
-    return table_of("Named", (*heads, "Share"), with_shares, (3,), note)
+    yield table_of("Named", heads, rows, (3,), note)
+
+
+def _near(diagnosis: DiagnosisResult) -> Iterator[str]:
+    """Say which explanations are not excluded, and which is the next behind them."""
+    for item in diagnosis.alternatives:
+        yield f"not excluded: {explanation(item)}{_distance(item)}"
+    rivals = _rivals(diagnosis)
+    if rivals and explanations_of(diagnosis):
+        yield f"next best: {explanation(rivals[0])}{_distance(rivals[0])}"
+
+
+def _rivals(diagnosis: DiagnosisResult) -> list[Alternative]:
+    """Return the explanations behind those that are not excluded, without those that only add to the named one."""
+    named = {cause.effect for cause in diagnosis.causes}
+    said = [item.causes for item in diagnosis.alternatives]
+    rivals = [item for item in diagnosis.ranking if item.causes and item.behind > 0 and item.causes not in said]
+    return [item for item in rivals if item.separation >= WEAK and not (named and named <= set(item.causes))]
+
+
+def _distance(item: Alternative) -> str:
+    return f", {item.behind:.1f} score units behind, λ {score_text(item.separation)}"
 
 
 def _significance(diagnosis: DiagnosisResult) -> Iterator[str]:
@@ -168,15 +237,8 @@ def _significance(diagnosis: DiagnosisResult) -> Iterator[str]:
         yield f"The verdict is one of {len(names)}, and this record cannot say which: {which}."
 
 
-def _named(diagnosis: DiagnosisResult) -> Iterator[tuple[str, ...]]:
-    for cause in diagnosis.causes:
-        effect = diagnosis.setup.model.known_effects.get(cause.effect)
-        about = "an input that must lie outside of its tolerance" if cause.effect.startswith("input:") else ""
-        about = about or ("" if effect is None else effect.why or effect.looks_like)
-        yield spoken(cause.effect), about or ABSENT, ", ".join(map(spoken, cause.same_as)) or "none"
-
-
-def _ranking(diagnosis: DiagnosisResult) -> TableView:
+def ranking_table(diagnosis: DiagnosisResult) -> TableView:
+    """Say the explanations that were compared, and what this data makes of each."""
     items = figures.shown_ranking(diagnosis)
     rows = [
         (explanation(item), pretty(f"{item.behind:.1f}"), score_text(item.separation), _judged(item, diagnosis))
@@ -210,40 +272,66 @@ def _residuals(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[BlockView
             yield drawn.view(title, partial(figures.over_covariate, diagnosis, curves, covariate), caption)
 
 
-def _sight(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
+def _sight(diagnosis: DiagnosisResult) -> Parts:
     """Say what this data could show: how small each effect may be, what is hidden, what was not excited or measured."""
+    lacking = [(spoken(effect), listed(list(needs))) for effect, needs in diagnosis.not_measured.items()]
+    yield from _seen(diagnosis)
+    if lacking:
+        yield f"not measured: {'; '.join(f'{effect} ({needs})' for effect, needs in lacking)}"
+    yield from _visible(diagnosis)
     rows = [
-        *(
-            (spoken(item.name), amount_text(readable(item.smallest)), str(item.sight), item.text)
-            for item in diagnosis.seen
-        ),
-        *(
-            (spoken(effect), ABSENT, "not measured", f"no column gives {listed(list(conditions))}")
-            for effect, conditions in diagnosis.not_measured.items()
-        ),
+        (spoken(item.name), amount_text(readable(item.smallest)), str(item.sight), item.text) for item in diagnosis.seen
     ]
+    rows += [(effect, ABSENT, "not measured", f"no column gives {needs}") for effect, needs in lacking]
     if rows:
         note = "Smallest visible: with a chance of 90 % this size is found, every explanation that is tried paid for."
         yield table_of("What this data can show", ("Effect", "Smallest visible", "Sight", "Remark"), rows, (1,), note)
 
 
+def _others(diagnosis: DiagnosisResult) -> list[VisibleSize]:
+    """Return the sizes of effects that are not named."""
+    named = {cause.effect for cause in diagnosis.causes}
+    return [item for item in diagnosis.seen if item.name.partition(".")[0] not in named]
+
+
+def _seen(diagnosis: DiagnosisResult) -> Iterator[str]:
+    for sight in ("not excited", "cannot be fitted", "hidden in the tolerances"):
+        found = [_blind(item) for item in _others(diagnosis) if item.sight == sight]
+        if found:
+            yield f"{sight}: {_some(found)}"
+
+
+def _visible(diagnosis: DiagnosisResult) -> Iterator[str]:
+    visible: dict[str, str] = {}
+    for item in _others(diagnosis):
+        if item.sight == "visible" and item.smallest is not None:
+            said = f"{spoken(item.name)} {amount_text(readable(item.smallest))}"
+            visible.setdefault(item.name.partition(".")[0], said)
+    if visible:
+        yield f"would have been seen from: {_some(list(visible.values()))}"
+
+
+def _some(texts: Sequence[str]) -> str:
+    return "; ".join(texts[:MOST_SEEN]) + ("; the sheet lists all" if len(texts) > MOST_SEEN else "")
+
+
+def _blind(item: VisibleSize) -> str:
+    """Say what could not be seen, and from what size it would be."""
+    visible = f"visible from {amount_text(readable(item.smallest))}" if item.smallest is not None else ""
+    remark = item.text or (visible if item.sight == "hidden in the tolerances" else "")
+    return f"{spoken(item.name)} ({remark})" if remark else spoken(item.name)
+
+
 # Extended model
 
 
-def _model(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
-    fitted = [
-        row
-        for cause in diagnosis.causes
-        for unknown in cause.unknowns
-        for row in _fitted(spoken(cause.effect), unknown)
-    ]
-    heads = ("Cause", "Unknown", "Value", "95 % interval", "Unit")
-    if fitted:
-        yield table_of(
-            "Unknowns as fitted", heads, fitted, (2, 3), "Intervals hold if the named cause is the true one."
-        )
+def _model(diagnosis: DiagnosisResult) -> Parts:
+    yield from _sizes(diagnosis)
+    fitted = fitted_table(diagnosis)
+    if fitted.rows:
+        yield fitted
     else:
-        yield Words("Nothing was named, so no effect is switched on.")
+        yield Paragraph("Nothing was named, so no effect is switched on.")
     others = [
         row
         for item in diagnosis.alternatives
@@ -255,7 +343,7 @@ def _model(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
         if effect != UNKNOWN
     ]
     if others:
-        yield table_of("The same for the explanations that are not excluded", ("Instead", *heads[1:]), others, (2, 3))
+        yield table_of("The same for the explanations that are not excluded", ("Instead", *HEADS[1:]), others, (2, 3))
     if diagnosis.calibrated:
         note = "Within its tolerance an input may move freely; what matters is how far, in standard deviations."
         yield table_of(
@@ -264,8 +352,34 @@ def _model(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
         )  # fmt: skip
     if diagnosis.causes or diagnosis.calibrated:
         name = diagnosis.setup.model.name
-        yield Words(f"{EVERYTHING} holds all of it; every verb accepts it: calc run {name} --inputs {EVERYTHING}.")
+        yield Paragraph(f"{EVERYTHING} holds all of it; every verb accepts it: calc run {name} --inputs {EVERYTHING}.")
     yield from _remainder(diagnosis)
+
+
+def _sizes(diagnosis: DiagnosisResult) -> Iterator[str]:
+    if not diagnosis.causes:
+        yield "nothing was named: the model stands as it is"
+    for cause in diagnosis.causes:
+        yield cause_text(cause)
+    for item in diagnosis.alternatives:
+        sizes = [fitted_text(unknown) for unknowns in item.unknowns.values() for unknown in unknowns]
+        if sizes:
+            yield f"or {explanation(item)}, {'; '.join(sizes)}"
+    moved = sorted(diagnosis.calibrated, key=lambda item: -abs(item.of_its_sd))[:MOST_MOVED]
+    if moved:
+        shifts = ", ".join(f"{spoken(item.name)} by {score_text(item.of_its_sd)}" for item in moved)
+        yield f"moved most within their tolerances (in standard deviations): {shifts}"
+
+
+def fitted_table(diagnosis: DiagnosisResult) -> TableView:
+    """Say the size of every cause that is named, with its interval."""
+    rows = [
+        row
+        for cause in diagnosis.causes
+        for unknown in cause.unknowns
+        for row in _fitted(spoken(cause.effect), unknown)
+    ]
+    return table_of("Unknowns as fitted", HEADS, rows, (2, 3), "Intervals hold if the named cause is the true one.")
 
 
 def _fitted(cause: str, unknown: FittedUnknown) -> Iterator[tuple[str, ...]]:
@@ -292,7 +406,7 @@ def _remainder(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
     remainder = diagnosis.remainder
     if remainder is None:
         return
-    yield Words(
+    yield Paragraph(
         f"The remainder ({prose(remainder.shape)}) is in no inputs file. new_effect.py holds its fitted shape as an "
         "effect, ready to be made physical. It must not be extrapolated beyond the measured range."
     )
@@ -301,19 +415,26 @@ def _remainder(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
 # Gain
 
 
-def _gain(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[BlockView]:
+def _gain(diagnosis: DiagnosisResult, drawn: Figures) -> Parts:
     if not diagnosis.gain:
-        yield Words("No gain was estimated.")
+        yield Paragraph("No gain was estimated.")
         return
-    rows = [
-        (
-            spoken(item.result), amount_text(item.rmse_before), amount_text(item.rmse_after),
-            amount_text(item.noise_floor), percent(item.reducible_removed),
-            score_text(item.log_score_gain), pretty(format_number(item.p_value, 2)),
-            percent(item.coverage90),
+    rows, held = [], []
+    for item in diagnosis.gain:
+        name, floor, removed = spoken(item.result), amount_text(item.noise_floor), percent(item.reducible_removed)
+        before, after = amount_text(item.rmse_before), amount_text(item.rmse_after)
+        score, covered = score_text(item.log_score_gain), percent(item.coverage90)
+        p_value = pretty(format_number(item.p_value, 2))
+        rows.append((name, before, after, floor, removed, score, p_value, covered))
+        yield (
+            f"{name}: RMS error {before} → {after} (noise floor {floor}) on rows not fitted; {removed} of the "
+            f"reducible error removed; log score {score} per row, {p_text(item.p_value)}; "
+            f"90 % intervals cover {covered}"
         )
-        for item in diagnosis.gain
-    ]  # fmt: skip
+        if item.held_out is not None:
+            before, after = (amount_text(replace(item.rmse_before, value=value)) for value in item.held_out)
+            held.append((name, before, after))
+            yield f"{name}: RMS error {before} → {after} on the rows held out on request"
     heads = ("Result", "Before", "After", "Noise floor", "Removed", "Log score per row", "p", "Coverage")
     note = (
         "RMS errors on rows that were not fitted: the whole diagnosis is repeated in every fold of a blocked "
@@ -322,22 +443,76 @@ def _gain(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[BlockView]:
     )
     yield table_of("What the extension is worth", heads, rows, tuple(range(1, 8)), note)
     if diagnosis.causes:
-        yield Words(f"The same causes were named in {percent(diagnosis.stability)} of the folds.")
-    held = [
-        (
-            spoken(item.result),
-            *(amount_text(type(item.rmse_before)(one, item.rmse_before.unit)) for one in item.held_out),
-        )
-        for item in diagnosis.gain
-        if item.held_out is not None
-    ]
+        yield f"the same causes in {percent(diagnosis.stability)} of the folds"
+        yield Paragraph(f"The same causes were named in {percent(diagnosis.stability)} of the folds.")
     if held:
         yield table_of("On the rows that were held out on request", ("Result", "Before", "After"), held, (1, 2))
     title = "Error before and after, and the noise floor"
     yield drawn.view(title, partial(figures.gain_bars, diagnosis), f"{title}, on rows that were not fitted.")
 
 
-# Next measurement and data
+# Next measurement
+
+
+def _next(diagnosis: DiagnosisResult) -> Parts:
+    """Write the chapter on the next measurement."""
+    if not diagnosis.next and diagnosis.verdict == "one_of":
+        yield Paragraph("No setting can be proposed that tells the explanations apart.")
+    elif not diagnosis.next:
+        can_be_more = any(item.sight == "not excited" for item in diagnosis.seen) or diagnosis.not_measured
+        yield Paragraph(
+            ("More readings would decide." if diagnosis.verdict == "undecided" else "There is nothing to separate.")
+            + (" Of what was not excited or not measured (chapter 2) this data says nothing." if can_be_more else "")
+        )
+    else:
+        yield from _points(diagnosis)
+    yield from (tie_text(tie).rstrip(".") for tie in diagnosis.ties)
+    if not diagnosis.next and not diagnosis.ties:
+        yield "nothing to separate" if diagnosis.unique else "no setting is proposed"
+    yield from _ties(diagnosis)
+
+
+def _points(diagnosis: DiagnosisResult) -> Parts:
+    reasons = list(dict.fromkeys(point.why for point in diagnosis.next if point.why))
+    for index, point in enumerate(diagnosis.next, start=1):
+        yield f"{index}. {settings_text(point)}: {pair_text(point)} (λ then {score_text(point.separation)})"
+    yield from (f"   {reason}" for reason in reasons)
+    names = list(dict.fromkeys(name for point in diagnosis.next for name in (*point.measure, *point.settings)))
+    rows = [_point(index, point, names) for index, point in enumerate(diagnosis.next, start=1)]
+    heads = ("Point", *(spoken(name).capitalize() for name in names), "Separates", "λ then")
+    note = (
+        "λ then is the separation to expect once all points up to this one are measured; from "
+        f"{APART:.0f} on the two are apart."
+    )
+    yield table_of("Settings to measure", heads, rows, (*range(1, len(names) + 1), len(names) + 2), note)
+    for reason in reasons:
+        yield Paragraph(f"{reason[:1].upper()}{reason[1:].rstrip('.')}.")
+
+
+def _ties(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
+    """Say which facts decide between explanations that no measurement proposed here tells apart."""
+    for tie in diagnosis.ties:
+        names = listed([together([name]) for name in tie.explanations])
+        yield Paragraph(f"No measurement proposed here tells {names} apart; a fact from elsewhere does.")
+        facts = [
+            (
+                together([fact.explanation]), spoken(fact.quantity.removeprefix("input:")), fact.note or ABSENT,
+                amount_text(readable(fact.value)),
+            )
+            for fact in tie.facts
+        ]  # fmt: skip
+        if facts:
+            heads = ("If it is", "then this quantity", "that is", "has this value")
+            yield table_of("Facts that decide", heads, facts, (3,))
+
+
+def _point(place: int, point: NextPoint, names: Sequence[str]) -> tuple[str, ...]:
+    settings = ["measure" if name in point.measure else amount_text(point.settings.get(name), 4) for name in names]
+    pair = " / ".join(together([name]) for name in point.separates)
+    return str(place), *settings, pair, score_text(point.separation)
+
+
+# Data
 
 
 def _data(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
@@ -352,10 +527,10 @@ def _data(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
     yield table_of("Files", ("File", "Rows in the file", "Used", "Left out", "Runs"), rows, (1, 2, 3, 4), note)
     for label, count in zip(file_labels(records.files), records.counts, strict=True):
         if count.unused:
-            yield Words(f"{label}: {count.sentence()}.")
+            yield Paragraph(f"{label}: {count.sentence()}.")
     yield table_of("Covariates", ("Name", "From", "To", "Role", "Remark"), list(_covariates(diagnosis)), (1, 2))
     for sentence in records.notes:
-        yield Words(sentence.rstrip(".") + ".")
+        yield Paragraph(sentence.rstrip(".") + ".")
 
 
 def _covariates(diagnosis: DiagnosisResult) -> Iterator[tuple[str, ...]]:

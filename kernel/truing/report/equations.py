@@ -14,7 +14,7 @@ from truing.formulas import Formula, evaluate, parse, symbol_text
 from truing.formulas.layout import Binding, Layout, Writer, number_leaf, symbol_leaf, symbolic
 from truing.formulas.tree import Binary, Call, Constant, Name, Node, NumberNode, children, simplified
 from truing.numbers import ABSENT, RESULT_DIGITS, format_number, format_value
-from truing.report.context import Equation, Value
+from truing.report.document import Equation, Value
 from truing.setup import Setup
 from truing.units import difference_unit, from_si, to_si
 

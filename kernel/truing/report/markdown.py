@@ -16,17 +16,12 @@ _LINE_START = re.compile(r"^(\d{0,9})([-+.)=](?=[\s=-]|$))")
 _AUTOLINK = re.compile(r"(?i)\b(https?|ftp|mailto|xmpp|www)([:.])")
 
 
-class Raw(str):
-    """Markdown that we wrote ourselves; everything else is escaped when a template prints it."""
+def escaped(text: object, *, begins: bool = True) -> str:
+    """Write any text so that Markdown prints it as it is: one line, no markup, no link, no formula, no HTML.
 
-    __slots__ = ()
-
-
-def escaped(text: object) -> Raw:
-    """Write any text so that Markdown prints it as it is: one line, no markup, no link, no formula, no HTML."""
-    if isinstance(text, Raw):
-        return text
+    ``begins``: it may stand at the beginning of a line, where a number or a dash would make a list.
+    """
     words = printable(str(text))
     safe = _MARK.sub(lambda found: ENTITIES.get(found[0], f"\\{found[0]}"), words)
     safe = _AUTOLINK.sub(lambda found: f"{found[1]}&#{ord(found[2])};", safe)
-    return Raw(_LINE_START.sub(r"\1\\\2", safe))
+    return _LINE_START.sub(r"\1\\\2", safe) if begins else safe

@@ -14,9 +14,10 @@ from truing.cases import CasesTable
 from truing.errors import OutputError
 from truing.kernel import Offer
 from truing.published import compare_published
-from truing.report.context import Sheet
+from truing.report.document import Document
+from truing.report.html_printer import html_of
+from truing.report.markdown_printer import markdown_of
 from truing.report.pdf import pdf_bytes
-from truing.report.render import html_of, markdown_of
 from truing.report.sheet import make_sheet
 from truing.runs.folder import write_run
 from truing.runs.provenance import provenance_of
@@ -40,14 +41,12 @@ def write_calculation(
 ) -> str:
     """Write sheets and folder of a finished calculation; return what became of the printing, nothing without one."""
     sheet = sheet_of(calculation, offer, started=started, cases=cases, progress=progress)
-    sheets: dict[str, str | bytes] = {"sheet.html": html_of(sheet), "sheet.md": markdown_of(sheet)}
     if pdf:
         progress("printing", 0, 0)
-    note = add_pdf(sheets, folder) if pdf else ""
+    sheets, note = sheets_of(sheet, folder, pdf=pdf)
     write_run(
         folder,
         calculation,
-        offer,
         provenance=sheet.provenance,
         run_info={**run_info(started), **computed},
         sheets=sheets,
@@ -64,7 +63,7 @@ def sheet_of(
     started: float,
     cases: CasesTable | None = None,
     progress: Progress = silent,
-) -> Sheet:
+) -> Document:
     """Return the sheet of a finished calculation, the numbers that the paper prints compared."""
     verified = compare_published(offer, progress=progress, known=calculation)
     progress("sheet", 0, 0)
@@ -72,13 +71,19 @@ def sheet_of(
     return make_sheet(calculation, provenance=provenance, verified=verified, cases=cases)
 
 
-def add_pdf(sheets: dict[str, str | bytes], folder: Path) -> str:
-    """Add the PDF where a browser can print it, and say what became of it: a run is not lost for want of a browser."""
+def sheets_of(document: Document, folder: Path, *, pdf: bool) -> tuple[dict[str, str | bytes], str]:
+    """Return the sheets of a document by file name, and what became of the PDF: a browser must print it.
+
+    A run is not lost for want of a browser.
+    """
+    page = html_of(document)
+    sheets: dict[str, str | bytes] = {"sheet.html": page, "sheet.md": markdown_of(document)}
+    if not pdf:
+        return sheets, ""
     try:
-        sheets["sheet.pdf"] = pdf_bytes(str(sheets["sheet.html"]))
+        return {**sheets, "sheet.pdf": pdf_bytes(page)}, f"printed: {folder / 'sheet.pdf'}"
     except OutputError as error:
-        return f"no PDF: {error}"
-    return f"printed: {folder / 'sheet.pdf'}"
+        return sheets, f"no PDF: {error}"
 
 
 def run_info(started: float) -> dict[str, Any]:

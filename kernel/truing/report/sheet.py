@@ -4,29 +4,25 @@ from __future__ import annotations
 
 from base64 import b64encode
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from truing.calculation import Calculation
 from truing.cases import CaseResult, CasesTable
-from truing.declare.published import rules_of
 from truing.numbers import STATED_DIGITS, format_value, with_unit
-from truing.published import ComparedRow, parted
+from truing.published import ComparedRow
 from truing.report.chapters import LONGEST_TABLE, Figures, Writing, numbered, result_chapters
 from truing.report.content import (
-    NOT_GIVEN,
-    changed_inputs,
-    check_rows,
+    check_table,
     check_value,
-    condition_rows,
-    effect_rows,
-    input_rows,
+    effect_blocks,
+    input_blocks,
     least_margin,
-    margins_words,
-    tolerance_rows,
+    provenance_items,
+    published_blocks,
+    tolerance_table,
 )
-from truing.report.context import Banner, Chapter, Head, InputRow, Sheet, TableView
+from truing.report.document import Banner, Chapter, Column, Document, Head, Items, Strong, TableView, Value, joined
 from truing.runs.provenance import Provenance
 from truing.setup import Setup
 from truing.studies.checks import HEADLINES, SHORT, Proposal
@@ -44,11 +40,9 @@ HEAD_FIELDS = {
 SIGNATURES = {"prepared": "Prepared", "checked": "Checked", "approved": "Approved"}
 PICTURES = {".svg": "image/svg+xml", ".png": "image/png", ".jpg": "image/jpeg", ".jpeg": "image/jpeg"}
 LARGEST_LOGO = 500_000
-FEW = 6
-"""So many inputs at a default of 0 still have rows of their own."""
-
 NOT_SHOWN = {"title", "logo"}
 NO_LIMITS = "No limits"
+SHEET = "Calculation sheet"
 
 
 def make_sheet(
@@ -57,38 +51,28 @@ def make_sheet(
     provenance: Provenance,
     verified: Sequence[ComparedRow] = (),
     cases: CasesTable | None = None,
-) -> Sheet:
+) -> Document:
     """Say everything that stands on the sheet of a calculation, at the level of detail of its setup."""
     setup = calculation.setup
     detail = setup.sheet.detail if setup.sheet.detail in LONGEST_TABLE else "normal"
     figures = Figures()
     results = list(result_chapters(Writing(calculation, detail, figures)))
-    own, elsewhere = parted(setup, verified)
-    inputs, idle = _inputs(setup, detail)
-    sheet = Sheet(
-        head=head_of(setup, provenance),
+    warnings = tuple(_warnings(calculation, cases, figures.failures))
+    front = _front(calculation, cases, detail)
+    back = () if detail == "short" else _back(setup, verified)
+    end = end_chapters(warnings, provenance, references(calculation, detail))
+    head = head_of(setup, provenance)
+    return Document(
+        kind=SHEET,
+        title=head.title,
+        head=head,
         detail=detail,
-        banner=_banner(calculation, cases),
-        margins=margins_words(calculation.checks),
         summary=setup.model.summary,
-        chapters=(),
-        checks=tuple(check_rows(calculation)),
-        inputs=inputs,
-        idle_inputs=idle,
-        tolerances=tuple(tolerance_rows(setup)),
-        conditions=tuple(condition_rows(setup)),
-        effects=tuple(effect_rows(setup)),
-        changed=tuple(changed_inputs(setup)),
-        compared=tuple(own),
-        compared_elsewhere=tuple(elsewhere),
-        rules=tuple(rules_of(row.published for row in verified).values()),
-        findings=tuple(setup.model.findings),
-        warnings=tuple(_warnings(calculation, cases, figures.failures)),
-        references=tuple(references(calculation)),
+        banner=banner_of(calculation, cases),
+        chapters=numbered([*front, *results, *back, *end]),
+        warnings=warnings,
         provenance=provenance,
     )
-    chapters = [*_front(sheet, calculation, cases), *results, *_back(sheet)]
-    return replace(sheet, chapters=tuple(numbered(chapters, 1).values()))
 
 
 def head_of(setup: Setup, provenance: Provenance) -> Head:
@@ -139,14 +123,20 @@ def logo_of(setup: Setup) -> tuple[str, str]:
     return f"data:{kind};base64,{b64encode(content).decode()}", ""
 
 
-def _banner(calculation: Calculation, cases: CasesTable | None) -> Banner:
-    """Say the verdict, of all cases where there are some."""
+def banner_of(calculation: Calculation, cases: CasesTable | None) -> Banner:
+    """Say the verdict, of all cases where there are some, and what the design that is proposed instead changes."""
     state = calculation.verdict if cases is None else cases.verdict
     text = sentence_of(calculation.decided) if cases is None else sentence_of_cases(cases)
-    proposal = _proposal(calculation, cases)
     if not calculation.checks and state == "passes":
-        return Banner("none", NO_LIMITS, text, proposal)
-    return Banner(state, HEADLINES[state], text, proposal)
+        return Banner("none", NO_LIMITS, (text,))
+    proposal = _proposal(calculation, cases)
+    if state != "proposed" or proposal is None:
+        return Banner(state, HEADLINES[state], (text,))
+    changes = joined(
+        (Value(f"{name.replace('_', ' ')} {stated} → "), Strong(proposed))
+        for name, stated, proposed in proposal.changes
+    )
+    return Banner(state, HEADLINES[state], (text, ("Changed: ", *changes, ".")))
 
 
 def _proposal(calculation: Calculation, cases: CasesTable | None) -> Proposal | None:
@@ -186,56 +176,56 @@ def _warnings(calculation: Calculation, cases: CasesTable | None, failures: Sequ
     yield from failures
 
 
-def references(calculation: Calculation) -> Iterator[str]:
-    """Name the literature of the model, then that of the studies that ran."""
+def references(calculation: Calculation, detail: str) -> tuple[str, ...]:
+    """Name the literature of the model, then that of the studies that ran; a short sheet has none."""
     outcomes = calculation.outcomes.values()
     texts = [*calculation.setup.model.cites, *(text for outcome in outcomes for text in getattr(outcome, "cites", ()))]
-    yield from dict.fromkeys(texts)
+    return () if detail == "short" else tuple(dict.fromkeys(texts))
 
 
-def _inputs(setup: Setup, detail: str) -> tuple[tuple[InputRow, ...], tuple[InputRow, ...]]:
-    """Part the inputs into rows and, where there are many, those not given or at a default of 0 without a source."""
-    rows = tuple(input_rows(setup))
-    idle = tuple(row for row in rows if not row.stated and row.value.text in {"0", NOT_GIVEN} and not row.source)
-    if detail == "full" or len(idle) <= FEW:
-        return rows, ()
-    return tuple(row for row in rows if row not in idle), idle
-
-
-def _front(sheet: Sheet, calculation: Calculation, cases: CasesTable | None) -> Iterator[Chapter]:
-    if sheet.checks:
-        yield Chapter("", "checks", "Checks", "checks")
+def _front(calculation: Calculation, cases: CasesTable | None, detail: str) -> Iterator[Chapter]:
+    setup = calculation.setup
+    if calculation.checks:
+        yield Chapter("Checks", (check_table(calculation),), "checks")
     if cases is not None:
-        table = cases_table(calculation, cases, LONGEST_TABLE[sheet.detail])
-        yield Chapter("", "cases", "Cases", "results", blocks=(table,))
-    if sheet.detail == "short":
+        yield Chapter("Cases", (cases_table(calculation, cases, LONGEST_TABLE[detail]),), "cases")
+    if detail == "short":
         return
-    yield Chapter("", "inputs", "Inputs", "inputs")
-    if sheet.tolerances:
-        yield Chapter("", "tolerances", "Tolerances in force", "tolerances")
-    if sheet.conditions or sheet.effects:
-        yield Chapter("", "effects", "Conditions and effects", "effects")
+    yield Chapter("Inputs", tuple(input_blocks(setup, detail)), "inputs")
+    if setup.distributions():
+        yield Chapter("Tolerances in force", (tolerance_table(setup),), "tolerances")
+    if setup.conditions or setup.effects:
+        yield Chapter("Conditions and effects", tuple(effect_blocks(setup)), "effects")
 
 
-def _back(sheet: Sheet) -> Iterator[Chapter]:
-    if sheet.detail != "short" and (sheet.compared or sheet.compared_elsewhere):
-        yield Chapter("", "published", "Paper against this calculation", "published")
-    if sheet.detail != "short" and sheet.findings:
-        yield Chapter("", "findings", "Findings", "findings")
-    if sheet.warnings:
-        yield Chapter("", "warnings", "Warnings", "warnings")
-    if sheet.detail != "short" and sheet.references:
-        yield Chapter("", "references", "References", "references")
-    yield Chapter("", "provenance", "Provenance", "provenance")
+def _back(setup: Setup, verified: Sequence[ComparedRow]) -> Iterator[Chapter]:
+    findings = setup.model.findings
+    if verified:
+        yield Chapter("Paper against this calculation", tuple(published_blocks(setup, verified)), "published")
+    if findings:
+        texts, labels = tuple(each.text for each in findings), tuple(each.title for each in findings)
+        yield Chapter("Findings", (Items("findings", texts, labels),), "findings")
+
+
+def end_chapters(warnings: Sequence[str], provenance: Provenance, references: Sequence[str] = ()) -> Iterator[Chapter]:
+    """Write what stands last on every sheet."""
+    if warnings:
+        yield Chapter("Warnings", (Items("warnings", tuple(warnings)),), "warnings")
+    if references:
+        yield Chapter("References", (Items("references", tuple(references)),), "references")
+    yield Chapter("Provenance", (provenance_items(provenance),), "provenance")
 
 
 def cases_table(calculation: Calculation, cases: CasesTable, most: int) -> TableView:
     """Write all cases: what each changes, its checks, its smallest margin; the governing one is marked."""
     setup = calculation.setup
     checks = list(dict.fromkeys(check.name for case in cases.cases for check in case.checks))
-    titles = ["Case", *(name.replace("_", " ") for name in (*cases.varied, *checks)), "Smallest margin", "Verdict"]
-    units = ["", *(format_value(0.0, setup.unit_of(name))[1] for name in cases.varied)]
-    units += [_check_unit(cases, name) for name in checks] + ["", ""]
+    numbers = [(name.replace("_", " "), format_value(0.0, setup.unit_of(name))[1]) for name in cases.varied]
+    numbers += [(name.replace("_", " "), _check_unit(cases, name)) for name in checks]
+    columns = (
+        Column("Case"), *(Column(title, unit, "number") for title, unit in numbers),
+        Column("Smallest margin", kind="number"), Column("Verdict"),
+    )  # fmt: skip
     places = list(range(min(len(cases.cases), most)))
     if cases.governing not in places:
         places = [*places[:-1], cases.governing]
@@ -244,9 +234,8 @@ def cases_table(calculation: Calculation, cases: CasesTable, most: int) -> Table
     note = f"The governing case ({case_name(cases.cases[cases.governing])}) is the one calculated in full below."
     note += f" {left} further cases are not printed." if left else ""
     note += f" In the file: {cases.count.sentence()}."
-    numeric = (False, *(True,) * (len(titles) - 2), False)
-    marked = places.index(cases.governing)
-    return TableView("All cases", tuple(titles), tuple(units), tuple(rows), numeric, note, marked)
+    states = tuple("marked" if place == cases.governing else "" for place in places)
+    return TableView("All cases", columns, tuple(rows), note, states)
 
 
 def _check_unit(cases: CasesTable, name: str) -> str:

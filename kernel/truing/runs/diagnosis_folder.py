@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from hashlib import file_digest
 from pathlib import Path
 from typing import Any
 
 from truing.diagnosis.result import DiagnosisResult
 from truing.runs.diagnosis_document import diagnosis_document, file_labels
 from truing.runs.extension import extended_text
-from truing.runs.folder import RUN_SCHEMA, json_text, npz_bytes, write_folder
-from truing.runs.inputs_written import complete_inputs
+from truing.runs.folder import npz_bytes, write_outcome
 from truing.runs.new_effect import new_effect_source
 from truing.runs.provenance import Provenance
 from truing.units import from_si
@@ -31,39 +29,20 @@ def write_diagnosis(
     replaced whole if it is a diagnosis of ours. Raises OutputError where it is not, or where nothing can be written.
     """
     document = diagnosis_document(diagnosis)
-    origin = diagnosis.setup.origin
-    run = {
-        "schema": RUN_SCHEMA,
-        **run_info,
-        "plugin": {"name": origin.name, "version": origin.version, "distribution": origin.distribution},
-        "versions": {"truing": provenance.kernel, "python": provenance.python, **provenance.packages},
-        "data": {file: digest_of(file) for file in diagnosis.records.files},
-    }
-    files: dict[str, str | bytes] = {
-        "inputs.toml": complete_inputs(diagnosis.setup, folder),
-        "diagnosis.json": json_text(document),
-        "run.json": json_text(run),
-        "arrays.npz": npz_bytes(curve_arrays(diagnosis)),
-        **sheets,
-    }
+    data = {"data": dict(diagnosis.records.digests)}
     extension = {"extended.toml": extended_text(diagnosis, folder), "new_effect.py": new_effect_source(diagnosis)}
-    write_folder(folder, {**files, **{name: text for name, text in extension.items() if text}}, "diagnosis")
+    files = {"arrays.npz": npz_bytes(curve_arrays(diagnosis)), **sheets}
+    files |= {name: text for name, text in extension.items() if text}
+    setup, run_info = diagnosis.setup, {**run_info, **data}
+    write_outcome(folder, "diagnosis", setup, document, provenance=provenance, run_info=run_info, files=files)
     return document
-
-
-def digest_of(file: str) -> str:
-    """Return the SHA-256 of a file; nothing where it cannot be read."""
-    try:
-        with Path(file).open("rb") as stream:
-            return file_digest(stream, "sha256").hexdigest()
-    except OSError:
-        return ""
 
 
 def data_digests(diagnosis: DiagnosisResult) -> dict[str, str]:
     """Return the SHA-256 of every data file by the name it is given on the sheet."""
-    files = diagnosis.records.files
-    return {label: digest_of(file) for label, file in zip(file_labels(files), files, strict=True)}
+    records = diagnosis.records
+    labels = zip(file_labels(records.files), records.files, strict=True)
+    return {label: records.digests.get(file, "") for label, file in labels}
 
 
 def curve_arrays(diagnosis: DiagnosisResult) -> dict[str, Any]:

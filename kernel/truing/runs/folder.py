@@ -16,12 +16,12 @@ from truing.atomic import place_folder, recover
 from truing.calculation import Calculation
 from truing.cases import CasesTable
 from truing.errors import OutputError, UnknownPluginError
-from truing.kernel import Offer
 from truing.runs.documents import SCHEMA, large_arrays, results_document
 from truing.runs.inputs_written import complete_inputs
 from truing.runs.provenance import Provenance
 from truing.runs.spreadsheet import spreadsheets
 from truing.runs.study_files import study_files
+from truing.setup import Setup
 
 RUN_SCHEMA = "truing.run/1"
 FolderKind = Literal["run", "diagnosis"]
@@ -40,38 +40,56 @@ def json_text(document: Any) -> str:
 def write_run(
     folder: Path,
     calculation: Calculation,
-    offer: Offer,
     *,
     provenance: Provenance,
     run_info: Mapping[str, Any],
     sheets: Mapping[str, str | bytes],
     cases: CasesTable | None = None,
-    arrays: Mapping[str, Any] | None = None,
     excel: bool = False,
 ) -> dict[str, Any]:
     """Write a run folder and return results.json as data.
 
     ``sheets`` holds files by name ("sheet.html", "sheet.md", "sheet.pdf"), ``run_info`` what run.json says of this one
-    run (date, duration, machine, workers), ``arrays`` further arrays for arrays.npz; ``excel`` adds tables for a
-    spreadsheet. Files of studies stand beside them. A folder that is there already is replaced whole if it is a run of
-    ours. Raises OutputError where it is not, or where nothing can be written.
+    run (date, duration, machine, workers); ``excel`` adds tables for a spreadsheet. Files of studies stand beside them.
+    Raises OutputError as ``write_outcome`` does.
     """
     document = results_document(calculation, provenance, cases=cases)
-    versions = {"truing": provenance.kernel, "python": provenance.python, **provenance.packages}
-    plugin = {"name": offer.origin.name, "version": offer.origin.version, "distribution": offer.origin.distribution}
-    run = {"schema": RUN_SCHEMA, **run_info, "plugin": plugin, "versions": versions}
-    files: dict[str, str | bytes] = {
-        "inputs.toml": complete_inputs(calculation.setup, folder),
-        "results.json": json_text(document),
-        "run.json": json_text(run),
-        **sheets,
-        **(spreadsheets(document, calculation.setup.model) if excel else {}),
-    }
-    large = {**large_arrays(calculation), **(arrays or {})}
-    if large:
+    files = {**sheets, **(spreadsheets(document, calculation.setup.model) if excel else {})}
+    if large := large_arrays(calculation):
         files["arrays.npz"] = npz_bytes(large)
-    write_folder(folder, {**files, **study_files(calculation.outcomes, files)})
+    files |= study_files(calculation.outcomes, files)
+    write_outcome(folder, "run", calculation.setup, document, provenance=provenance, run_info=run_info, files=files)
     return document
+
+
+def write_outcome(
+    folder: Path,
+    kind: FolderKind,
+    setup: Setup,
+    document: Mapping[str, Any],
+    *,
+    provenance: Provenance,
+    run_info: Mapping[str, Any],
+    files: Mapping[str, str | bytes],
+) -> None:
+    """Write the folder of a run or a diagnosis: its document, inputs.toml, run.json and further files, all or nothing.
+
+    A folder that is there already is replaced whole if it is one of ours of this kind. Raises OutputError where it is
+    not, or where nothing can be written.
+    """
+    origin = setup.origin
+    run = {
+        "schema": RUN_SCHEMA,
+        **run_info,
+        "plugin": {"name": origin.name, "version": origin.version, "distribution": origin.distribution},
+        "versions": {"truing": provenance.kernel, "python": provenance.python, **provenance.packages},
+    }
+    own = {
+        "inputs.toml": complete_inputs(setup, folder),
+        DOCUMENTS[kind][0]: json_text(document),
+        "run.json": json_text(run),
+    }
+    write_folder(folder, {**own, **files}, kind)
 
 
 def npz_bytes(arrays: Mapping[str, Any]) -> bytes:
@@ -97,11 +115,6 @@ def is_ours(folder: Path, kind: FolderKind) -> bool:
     except (OSError, ValueError):
         return False
     return isinstance(document, dict) and document.get("schema") == schema and (folder / "run.json").is_file()
-
-
-def is_run(folder: Path) -> bool:
-    """Tell whether a folder is a run of ours: results.json of our schema, and run.json."""
-    return is_ours(folder, "run")
 
 
 def demand_place(folder: Path, kind: FolderKind = "run") -> None:
@@ -145,11 +158,6 @@ def write_folder(folder: Path, files: Mapping[str, str | bytes], kind: FolderKin
     """Write files into a folder that appears complete or not at all; an earlier one of its kind is replaced whole."""
     demand_place(folder, kind)
     place_folder(folder, files, kind)
-
-
-def load_run(folder: Path) -> dict[str, Any]:
-    """Return results.json of a run folder; raises UnknownPluginError where there is no such run."""
-    return _loaded(folder, "run")
 
 
 def load_either(folder: Path) -> dict[str, Any]:

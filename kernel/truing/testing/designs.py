@@ -18,7 +18,7 @@ from truing.declare.sources import SINCE_START, Condition, Effect, Tolerance
 from truing.errors import TruingError, UsageError
 from truing.evaluate import evaluate
 from truing.inputs_file.values import broken_bound
-from truing.measurements.overriding import WORDS, read_word
+from truing.measurements.table import WORDS, read_word
 from truing.setup import Setup
 from truing.studies.reading import read_range
 from truing.studies.sweep import Sweep

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from io import StringIO
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -17,7 +16,7 @@ from truing.declare.model import Model
 from truing.errors import Fault, InputError, TruingError
 from truing.gauge import read_by_gauge
 from truing.inputs_file import setup_from_settings
-from truing.measurements import read_rows, write_table
+from truing.measurements import read_rows, table_text
 from truing.setup import Setup
 from truing.studies.scatter import generator, scatter_of
 from truing.testing.designs import RecordDesign, columns_of
@@ -145,9 +144,7 @@ class _Plan:
 
 
 def _csv(columns: Mapping[str, Any]) -> str:
-    text = StringIO()
-    write_table(text, list(columns), list(columns.values()))
-    return text.getvalue()
+    return table_text(list(columns), list(columns.values()))
 
 
 def _correlated(rng: np.random.Generator, design: RecordDesign, correlation: float) -> NDArray[np.float64]:

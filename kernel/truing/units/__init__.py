@@ -29,7 +29,7 @@ from truing.units.meaning import Dimension, Meaning, case_variants, meaning, reg
 __all__ = [
     "Quantity", "check_unit", "demand_dimension", "difference_unit", "from_si", "human_dimension", "pint_quantity",
     "quantity", "read_quantity", "registry", "same_dimension", "si_fault", "split_quantity", "to_si", "unit_factor",
-    "unit_latex", "unit_text",
+    "unit_text",
 ]  # fmt: skip
 
 _DIMENSIONS = {
@@ -174,49 +174,20 @@ def unit_text(unit: str) -> str:
     """Write a unit for people: "N*m" as N·m, "um" as µm, "m/s^2" as m/s², "degC" as °C, a pure number as nothing."""
     meaning(unit)
     product = grammar.parse(unit)
-    ten = f"10{_superscript(Fraction(product.power))}" if product.power else ""
-
-    def one(name: str, exponent: Fraction) -> str:
-        return _printed(name)[0] + (_superscript(exponent) if exponent != 1 else "")
-
-    return _fraction_bar(ten, [one(*factor) for factor in _above(product)], [one(*f) for f in _below(product)], "·")
-
-
-@lru_cache(maxsize=1024)
-def unit_latex(unit: str) -> str:
-    r"""Write a unit for a formula in Markdown: "N*m" as \mathrm{N\,m}; a pure number as nothing."""
-    meaning(unit)
-    product = grammar.parse(unit)
-    ten = f"10^{{{product.power}}}" if product.power else ""
-
-    def one(name: str, exponent: Fraction) -> str:
-        return _printed(name)[1] + (f"^{{{_decimal(exponent)}}}" if exponent != 1 else "")
-
-    text = _fraction_bar(ten, [one(*factor) for factor in _above(product)], [one(*f) for f in _below(product)], r"\,")
-    return rf"\mathrm{{{text}}}" if text else ""
-
-
-def _above(product: grammar.Product) -> list[tuple[str, Fraction]]:
-    return [(name, exponent) for name, exponent in product.factors if exponent > 0]
-
-
-def _below(product: grammar.Product) -> list[tuple[str, Fraction]]:
-    return [(name, -exponent) for name, exponent in product.factors if exponent < 0]
-
-
-def _fraction_bar(ten: str, above: list[str], below: list[str], dot: str) -> str:
-    top = dot.join([ten, *above] if ten else above)
+    ten = [f"10{_superscript(Fraction(product.power))}"] if product.power else []
+    above = [*ten, *(_raised(name, exponent) for name, exponent in product.factors if exponent > 0)]
+    below = [_raised(name, -exponent) for name, exponent in product.factors if exponent < 0]
     if not below:
-        return top
-    return f"{top or '1'}/{below[0] if len(below) == 1 else '(' + dot.join(below) + ')'}"
+        return "·".join(above)
+    return f"{'·'.join(above) or '1'}/{below[0] if len(below) == 1 else '(' + '·'.join(below) + ')'}"
 
 
-def _printed(name: str) -> tuple[str, str]:
+def _raised(name: str, exponent: Fraction) -> str:
+    raised = _superscript(exponent) if exponent != 1 else ""
     if name in names.PRINTED:
-        return names.PRINTED[name]
+        return names.PRINTED[name] + raised
     prefix, bare = split_prefix(name)
-    text, latex = names.PRINTED.get(bare, (bare, bare.replace("_", r"\_")))
-    return prefix.replace("u", "µ") + text, prefix.replace("u", r"\mu{}") + latex
+    return prefix.replace("u", "µ") + names.PRINTED.get(bare, bare) + raised
 
 
 def _superscript(exponent: Fraction) -> str:

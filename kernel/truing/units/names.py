@@ -152,28 +152,12 @@ SPELLINGS: dict[str, str] = {
     "inlbf": "lbf*in", "lbfin": "lbf*in", "Pas": "Pa*s", "mPas": "mPa*s", "Ws": "W*s", "Nms": "N*m*s", "As": "A*s",
 }  # fmt: skip
 
-# What a name looks like in print: (plain text, LaTeX inside \mathrm). A prefix is put in front.
-PRINTED: dict[str, tuple[str, str]] = {
-    "degC": ("°C", r"{}^{\circ}C"),
-    "degF": ("°F", r"{}^{\circ}F"),
-    "delta_degC": ("K", "K"),
-    "delta_degF": ("Δ°F", r"\Delta{}^{\circ}F"),
-    "deg": ("°", r"{}^{\circ}"),
-    "°": ("°", r"{}^{\circ}"),
-    "degree": ("°", r"{}^{\circ}"),
-    "arcmin": ("′", r"{}^{\prime}"),
-    "′": ("′", r"{}^{\prime}"),
-    "arcsec": ("″", r"{}^{\prime\prime}"),
-    "″": ("″", r"{}^{\prime\prime}"),
-    "%": ("%", r"\%"),
-    "percent": ("%", r"\%"),
-    "‰": ("‰", r"\text{‰}"),
-    "Ω": ("Ω", r"\Omega{}"),
-    "ohm": ("Ω", r"\Omega{}"),
-    "micron": ("µm", r"\mu{}m"),
-    "Å": ("Å", r"\mathring{A}"),
-    "angstrom": ("Å", r"\mathring{A}"),
-}
+# What a name looks like in print. A prefix is put in front.
+PRINTED: dict[str, str] = {
+    "degC": "°C", "degF": "°F", "delta_degC": "K", "delta_degF": "Δ°F", "deg": "°", "°": "°", "degree": "°",
+    "arcmin": "′", "′": "′", "arcsec": "″", "″": "″", "%": "%", "percent": "%", "‰": "‰", "Ω": "Ω", "ohm": "Ω",
+    "micron": "µm", "Å": "Å", "angstrom": "Å",
+}  # fmt: skip
 
 # (a unit text of that kind, what an engineer calls it). The dimension and the angle decide; the first entry wins.
 KINDS: tuple[tuple[str, str], ...] = (

@@ -1,0 +1,275 @@
+"""What a run or a diagnosis says, without markup: chapters of blocks, which every printer prints in its own way.
+
+A block is a paragraph, a list, a table, a figure, or a result with its formula. Its texts are made of pieces: words,
+numbers with units, symbols, names. HTML (``html_printer``), Markdown (``markdown_printer``) and the notebook print
+them. Texts in here are raw: they come from users and plugins, and only the printers know how to make them harmless.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from truing.formulas import Formula, symbol_text
+from truing.numbers import pretty, with_unit
+from truing.runs.provenance import Provenance
+from truing.studies.checks import SHORT, State
+
+MARKS = {
+    "passes": "✓", "proposed": "!", "undecided": "?", "fails": "✗", "none": "○", "calm": "✓", "found": "●", "open": "?",
+}  # fmt: skip
+"""The sign before a verdict: of a limit or a run, and of a diagnosis (calm, found, open)."""
+
+
+# Pieces of a text
+
+
+@dataclass(frozen=True)
+class Value:
+    """A number as printed, with the unit as printed."""
+
+    text: str
+    unit: str = ""
+
+
+@dataclass(frozen=True)
+class Symbol:
+    """The symbol of a quantity, as declared: h_0."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Code:
+    """A name as it stands in files; ``bracketed`` where it stands behind words that say the same."""
+
+    name: str
+    bracketed: bool = False
+
+
+@dataclass(frozen=True)
+class Strong:
+    """What is to be seen first."""
+
+    text: str | Value
+
+
+@dataclass(frozen=True)
+class Aside:
+    """What is less important than the words before it."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Source:
+    """The literature that something is taken from."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Break:
+    """The end of a line; where a text has one line only, what stands between its parts."""
+
+    instead: str = ", "
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """What became of a limit: its state in a sign and a word."""
+
+    state: State
+
+
+Piece: TypeAlias = str | Value | Symbol | Code | Strong | Aside | Source | Break | Judgement
+Text: TypeAlias = Piece | tuple[Piece, ...]
+
+
+def label_of(note: str, name: str, symbol: str = "") -> tuple[Piece, ...]:
+    """Say what a quantity is, and its name in files."""
+    return (note or name.replace("_", " "), *((" ", Symbol(symbol)) if symbol else ()), " ", Code(name, bracketed=True))
+
+
+def joined(parts: Iterable[Text], between: Piece = ", ") -> tuple[Piece, ...]:
+    """Join texts to one."""
+    pieces: list[Piece] = []
+    for part in parts:
+        pieces += [*([between] if pieces else []), *(part if isinstance(part, tuple) else (part,))]
+    return tuple(pieces)
+
+
+def plain_text(text: Text) -> str:
+    """Write a text without markup, on one line."""
+    return "".join(map(_plain, text if isinstance(text, tuple) else (text,)))
+
+
+def _plain(piece: Piece) -> str:
+    match piece:
+        case str():
+            return pretty(piece)
+        case Value(number, unit):
+            return with_unit(pretty(number), unit)
+        case Symbol(symbol):
+            return symbol_text(symbol)
+        case Code(name, bracketed):
+            return f"({name})" if bracketed else name
+        case Source(source):
+            return f"({source})"
+        case Break(instead):
+            return instead
+        case Judgement(state):
+            return f"{MARKS[state]} {SHORT[state]}"
+        case Strong(inner) | Aside(inner):
+            return _plain(inner)
+
+
+def with_source(words: str, source: str) -> Text:
+    """Return words with the literature behind them."""
+    return joined(filter(None, (words, Source(source) if source else "")), " ")
+
+
+# Blocks
+
+
+@dataclass(frozen=True)
+class Paragraph:
+    """A paragraph: a note, a finding, a warning, or an aside."""
+
+    text: Text
+    kind: str = "note"
+
+
+@dataclass(frozen=True)
+class Items:
+    """A list of texts, with or without a label for each. ``kind``: warnings, references, findings, provenance."""
+
+    kind: str
+    texts: tuple[Text, ...]
+    labels: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Column:
+    """The head of a column: its title, the unit of its numbers, and the kind of its cells.
+
+    ``kind``: "" (texts), number, name (what the row is about), symbol, units, given, relation, verdict-cell.
+    """
+
+    title: str
+    unit: str = ""
+    kind: str = ""
+
+
+@dataclass(frozen=True)
+class TableView:
+    """A table of finished texts. ``states`` says of each row how it looks: as a limit of that state, or "marked"."""
+
+    title: str
+    columns: tuple[Column, ...]
+    rows: tuple[tuple[Text, ...], ...]
+    note: Text = ""
+    states: tuple[str, ...] = ()
+    kind: str = ""
+
+
+@dataclass(frozen=True)
+class FigureView:
+    """A figure as SVG, with the words that stand for it where it cannot be seen."""
+
+    title: str
+    svg: str
+    caption: str
+    number: int
+
+
+@dataclass(frozen=True)
+class Equation:
+    """A formula ready to be set: in symbols, in numbers (None where a name runs along an axis), and its result."""
+
+    formula: Formula
+    name: str
+    symbol: str
+    symbols: Mapping[str, str]
+    numbers: Mapping[str, tuple[str, str]] | None
+    results: tuple[Value, ...]
+    departs: bool = False
+    """Whether the calculation's own answer is another one than the formula's: an effect on the results is on."""
+
+
+@dataclass(frozen=True)
+class ResultEntry:
+    """One result: its formula with numbers, what is said of its value beside that, and how it was found."""
+
+    name: str
+    label: Text
+    equation: Equation | None = None
+    value: Text = ""
+    method: Text = ""
+
+
+BlockView: TypeAlias = Paragraph | Items | TableView | FigureView | ResultEntry
+
+
+def table_of(
+    title: str, columns: Sequence[str], rows: Iterable[Sequence[Text]], numeric: Sequence[int] = (), note: str = ""
+) -> TableView:
+    """Return a table of texts; ``numeric`` holds the indices of the columns that are set to the right."""
+    heads = tuple(Column(column, kind="number" if index in numeric else "") for index, column in enumerate(columns))
+    return TableView(title, heads, tuple(map(tuple, rows)), note)
+
+
+# The whole
+
+
+@dataclass(frozen=True)
+class Chapter:
+    """A part of the sheet with a number and a title."""
+
+    title: str
+    blocks: tuple[BlockView, ...]
+    ident: str = ""
+    number: str = ""
+    lines: tuple[str, ...] = ()
+    """What a terminal and a notebook print of it; a line that begins with spaces belongs to the one above."""
+
+
+@dataclass(frozen=True)
+class Head:
+    """The title block."""
+
+    title: str
+    model: str
+    fields: tuple[tuple[str, str], ...]
+    signatures: tuple[tuple[str, str], ...]
+    footer: str
+    logo: str = ""
+    """A picture as a data address, or nothing."""
+
+
+@dataclass(frozen=True)
+class Banner:
+    """The verdict below the title block: ``mood`` is how it looks, a key of ``MARKS``; the headline, then sentences."""
+
+    mood: str
+    headline: str
+    sentences: tuple[Text, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Document:
+    """Everything that a calculation or a diagnosis says, in order."""
+
+    kind: str
+    title: str
+    """What the document is called by itself, without its title block."""
+    head: Head
+    detail: str
+    summary: str
+    banner: Banner
+    alarms: tuple[str, ...] = ()
+    """Suspected errors in the units of a record."""
+    chapters: tuple[Chapter, ...]
+    warnings: tuple[str, ...]
+    provenance: Provenance

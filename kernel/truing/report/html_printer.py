@@ -1,0 +1,169 @@
+"""A document as HTML: one page that asks for nothing, or its blocks alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from functools import lru_cache
+from itertools import groupby
+from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup, escape
+
+from truing.formulas.symbols import printable
+from truing.formulas.write_mathml import MathMLWriter
+from truing.numbers import pretty, with_unit
+from truing.report import equations
+from truing.report.columns import with_room
+from truing.report.document import (
+    MARKS,
+    Aside,
+    BlockView,
+    Break,
+    Code,
+    Document,
+    Equation,
+    Judgement,
+    Piece,
+    ResultEntry,
+    Source,
+    Strong,
+    Symbol,
+    Text,
+    Value,
+)
+from truing.report.templates import template_folder
+from truing.studies.checks import SHORT
+
+COLUMN = equations.LINE
+"""How wide a formula may be, in em, beside the words of its result; a wider one stands below them."""
+WIDEST = 1.3
+"""How much wider than estimated a formula may come out, in the widest of usual fonts; paper keeps room for that."""
+LONG = 7
+"""A sheet with more chapters than this has a table of contents."""
+UNBROKEN = 30
+"""A number with its unit that has fewer characters stays on one line."""
+
+
+def html_of(document: Document) -> str:
+    """Write a document as a page."""
+    has_contents = document.detail != "short" and len(document.chapters) > LONG
+    return page("sheet.html.j2", document, has_contents=has_contents)
+
+
+def page(template: str, sheet: Any, *, styles: Sequence[str] = ("sheet.css",), **more: Any) -> str:
+    """Write a page from its template; ``sheet`` has a ``head``, whose footer stands in the margin of every page."""
+    style = "".join((template_folder() / name).read_text(encoding="utf-8") for name in styles)
+    style = _markup(style + page_style(sheet.head.footer))
+    return with_room(_environment().get_template(template).render(sheet=sheet, style=style, **more)) + "\n"
+
+
+def blocks_html(blocks: Iterable[BlockView]) -> str:
+    """Write blocks as they stand on the page, without a style."""
+    module: Any = _environment().get_template("blocks.html.j2").module
+    return str(module.blocks(list(blocks)))
+
+
+def page_style(footer: str) -> str:
+    """Write what only this sheet's pages say: its title in the margin, from the second page on."""
+    title = f'@page {{ @top-left {{ content: "{css_text(footer)}"; }} }}'
+    return f"\n{title}\n@page :first {{ @top-left {{ content: none; }} }}\n"
+
+
+def css_text(text: str) -> str:
+    """Write any text inside a CSS string: everything but letters and digits as a code point."""
+    short = printable(text)[:110]
+    return "".join(c if c.isascii() and c.isalnum() else f"\\{ord(c):x} " for c in short)
+
+
+def _markup(text: str) -> Any:
+    return Markup(text)  # only for what this package wrote itself
+
+
+@lru_cache(maxsize=1)
+def _environment() -> Environment:
+    made = Environment(
+        loader=FileSystemLoader(template_folder()), undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True,
+        autoescape=True, finalize=_printable,
+    )  # fmt: skip
+    made.filters.update(
+        said=_said, formula=_equation, groups=_groups, breakable=_breakable, unbroken=_unbroken, own=_markup
+    )
+    made.tests["wide"] = _is_wide
+    made.globals["marks"] = MARKS
+    return made
+
+
+def _printable(value: Any) -> Any:
+    """Take control and direction characters out of every text that is no markup of ours."""
+    return _one_line(value) if type(value) is str else value
+
+
+def _one_line(text: str) -> str:
+    """Return a text on one line, without characters that hide or turn what is written."""
+    return text if text.isprintable() else printable(text)
+
+
+def _groups(views: Sequence[BlockView]) -> list[tuple[str, list[BlockView]]]:
+    """Return blocks with the name of their kind, neighbours of one kind together."""
+    return [(kind, list(group)) for kind, group in groupby(views, lambda view: type(view).__name__)]
+
+
+def _said(text: Text) -> Any:
+    """Write a text with all its pieces."""
+    return _markup("".join(map(_piece, text if isinstance(text, tuple) else (text,))))
+
+
+def _piece(piece: Piece) -> str:
+    match piece:
+        case str():
+            return escape(_one_line(pretty(piece)))
+        case Value(text, unit):
+            number = _one_line(with_unit(pretty(text), unit))
+            return escape(number.replace(" ", "\u00a0") if len(number) < UNBROKEN else number)
+        case Symbol(text):
+            return f"<math>{MathMLWriter().symbol(text)}</math>"
+        case Code(name):
+            return f"<code>{_breakable(name)}</code>"
+        case Strong(text):
+            return f"<strong>{_piece(text)}</strong>"
+        case Aside(text):
+            return f'<span class="aside">{_piece(text)}</span>'
+        case Source(text):
+            return f'<span class="aside">[{_piece(text)}]</span>'
+        case Break():
+            return "<br>"
+        case Judgement(state):
+            return f'<span aria-hidden="true">{MARKS[state]}</span> {SHORT[state]}'
+
+
+def _breakable(name: str) -> Any:
+    """Let a long name break behind its underscores."""
+    return _markup(str(escape(_one_line(name))).replace("_", "_<wbr>"))
+
+
+def _unbroken(markup: str) -> Any:
+    """Keep the two ends of an interval on one line."""
+    return _markup(markup.replace(" … ", "\u00a0…\u00a0"))
+
+
+def _is_wide(entry: ResultEntry) -> bool:
+    """Tell whether the formula of an entry needs the whole width of the page."""
+    return entry.equation is not None and max(line.width for line in _lines(entry.equation)) > COLUMN
+
+
+def _lines(equation: Equation) -> list[equations.Line]:
+    return equations.lines(MathMLWriter(), equation)
+
+
+def _equation(equation: Equation) -> Any:
+    """Set a formula as blocks of MathML, one a line; ``--room`` is the width in em for which paper keeps room."""
+    alternative = escape(f"{equation.name} = {equation.formula.text}")
+    blocks = []
+    lines = _lines(equation)
+    room = f' style="--room: {WIDEST * max(line.width for line in lines):.0f}"'
+    for index, line in enumerate(lines):
+        label = f' alttext="{alternative}"' if index == 0 else ""
+        mathematics = f'<math display="block"{label}><mrow>{line.markup}</mrow></math>'
+        blocks.append(f'<div class="line{" next" if index else ""}"{room}>{mathematics}</div>')
+    return _markup("".join(blocks))

@@ -1,0 +1,170 @@
+"""A document as Markdown."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Iterable, Iterator, Sequence
+
+from truing.formulas.write_latex import LatexWriter
+from truing.numbers import pretty, with_unit
+from truing.report import equations
+from truing.report.document import (
+    MARKS,
+    Aside,
+    BlockView,
+    Break,
+    Code,
+    Document,
+    Equation,
+    FigureView,
+    Items,
+    Judgement,
+    Paragraph,
+    Piece,
+    ResultEntry,
+    Source,
+    Strong,
+    Symbol,
+    TableView,
+    Text,
+    Value,
+)
+from truing.report.markdown import escaped
+from truing.studies.checks import SHORT
+
+LINE = 60.0
+"""How wide a line of a formula may be, in em as estimated."""
+
+
+def markdown_of(document: Document) -> str:
+    """Write a document as Markdown: parts with an empty line between."""
+    parts = [*_head(document)]
+    for chapter in document.chapters:
+        parts += [f"## {chapter.number} {escaped(chapter.title)}", *_blocks(chapter.blocks)]
+    return "\n\n".join(parts) + "\n"
+
+
+def _head(document: Document) -> Iterator[str]:
+    head, banner = document.head, document.banner
+    yield f"# {escaped(document.title)}"
+    yield from (escaped(text) for text in (head.model, document.summary) if text)
+    yield _pipes(head.fields)
+    yield _pipes(head.signatures, ["*Date, signature*"] * len(head.signatures))
+    sentences = [_said(sentence) for sentence in banner.sentences]
+    sentences[0] = f"**{escaped(banner.headline)}.** {sentences[0]}"
+    if document.warnings:
+        sentences[-1] += f" See the warnings ({len(document.warnings)})."
+    yield from sentences
+    yield from (f"**Suspected unit slip.** {escaped(text)} Nothing was changed." for text in document.alarms)
+
+
+def _pipes(fields: Sequence[tuple[str, str]], *rows: Sequence[str]) -> str:
+    labels, texts = ([escaped(text) for text in column] for column in zip(*fields, strict=True))
+    return _rows([labels, ["---"] * len(labels), texts, *rows])
+
+
+def _rows(rows: Iterable[Sequence[str]]) -> str:
+    return "\n".join("| " + " | ".join(cells) + " |" for cells in rows)
+
+
+def _blocks(blocks: Iterable[BlockView]) -> Iterator[str]:
+    for block in blocks:
+        match block:
+            case Paragraph(text, kind):
+                head = "" if kind in ("note", "aside") else f"**{kind.capitalize()}.** "
+                yield f"{head}{_said(text)}"
+            case Items():
+                yield "\n".join(_items(block))
+            case TableView():
+                yield from _table(block)
+            case FigureView():
+                data = base64.b64encode(block.svg.encode()).decode()
+                yield f"![{escaped(block.title)}](data:image/svg+xml;base64,{data})"
+                yield f"**Figure {block.number}.** {escaped(block.caption)}"
+            case ResultEntry():
+                yield from _entry(block)
+
+
+def _items(items: Items) -> Iterator[str]:
+    for index, text in enumerate(items.texts):
+        mark = f"{index + 1}." if items.kind == "references" else "-"
+        label = escaped(items.labels[index]) if items.labels else ""
+        label = f"**{label}.** " if items.kind == "findings" else f"{label}: " if label else ""
+        yield f"{mark} {label}{_said(text)}".rstrip()
+
+
+def _table(table: TableView) -> Iterator[str]:
+    """Write a pipe table; units stand in the headings."""
+    if table.title:
+        yield f"**{escaped(table.title)}**"
+    titles = [escaped(f"{each.title} [{each.unit}]" if each.unit else each.title) for each in table.columns]
+    rule = ["---:" if column.kind == "number" else "---" for column in table.columns]
+    states = table.states or ("",) * len(table.rows)
+    rows = [
+        [_cell(cell, is_marked=state == "marked") for cell in row]
+        for row, state in zip(table.rows, states, strict=True)
+    ]
+    yield _rows([titles, rule, *rows])
+    if table.note:
+        yield _said(table.note)
+
+
+def _cell(cell: Text, *, is_marked: bool) -> str:
+    text = _said(cell)
+    return f"**{text}**" if is_marked and text else text
+
+
+def _entry(entry: ResultEntry) -> Iterator[str]:
+    """Write a result: its value behind its name, or below its formula."""
+    note, *rest = entry.label if isinstance(entry.label, tuple) else (entry.label,)
+    label = f"**{_said(note)}**{_said(tuple(rest))}"
+    if entry.equation is None:
+        yield f"{label}: {_said(entry.value)}" if entry.value else label
+    else:
+        yield from (label, _equation(entry.equation), *([_said(entry.value)] if entry.value else []))
+    if entry.method:
+        yield _said(entry.method)
+
+
+def _said(text: Text) -> str:
+    """Write a text with all its pieces."""
+    first, *others = (text if isinstance(text, tuple) else (text,)) or ("",)
+    return "".join([_piece(first), *(_piece(piece, begins=False) for piece in others)])
+
+
+def _piece(piece: Piece, *, begins: bool = True) -> str:
+    match piece:
+        case str():
+            return _words(piece, begins=begins)
+        case Value(text, unit):
+            return escaped(with_unit(pretty(text), unit))
+        case Symbol(text):
+            return f"${LatexWriter().symbol(text)}$"
+        case Code(name, bracketed):
+            return escaped(f"({name})" if bracketed else name)
+        case Strong(text):
+            return _piece(text)
+        case Aside(text):
+            return escaped(text)
+        case Source(text):
+            return escaped(f"({text})")
+        case Break(instead):
+            return instead
+        case Judgement(state):
+            word = SHORT[state]
+            return f"{MARKS[state]} {word if state == 'passes' else f'**{word}**'}"
+
+
+def _words(text: str, *, begins: bool) -> str:
+    """Write words, with the spaces before and behind them that part them from other pieces."""
+    before, behind = " " * text.startswith(" "), " " * text.endswith(" ")
+    words = escaped(pretty(text), begins=begins)
+    return f"{before}{words}{behind}" if words else before
+
+
+def _equation(equation: Equation) -> str:
+    lines = [line.markup for line in equations.lines(LatexWriter(), equation, limit=LINE)]
+    if len(lines) == 1:
+        return f"$$\n{lines[0]}\n$$"
+    body = " \\cr\n& ".join(lines)
+    return f"$$\n\\begin{{aligned}}\n& {body}\n\\end{{aligned}}\n$$"

@@ -1,0 +1,407 @@
+"""How often is what is wrong with a machine of a plugin found and named? Every effect of it hidden in fresh machines.
+
+Run it: ``python tests/benchmarks/bench_diagnosis_plugins.py rv_wear --cases 64 --seed 1000``. A third of the cases
+hides nothing (of harmonic drives and flanks a quarter, and a quarter something that nobody registered). The others hide
+one effect at a size drawn between half and the whole of a clear one, on every noise and in several designs, with the
+results measured in which it shows. A name counts if it is the verdict alone or another name of its curve. Prints
+counts, the names of what went wrong, how often an interval held the truth, and the error on rows that were not fitted
+over that of the truth itself. ``--catalogue`` asks for every size and ratio of the catalogue of harmonic drives
+instead: which causes carry the torsion, and with what shares.
+"""
+
+import argparse
+import os
+import sys
+from collections import Counter
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(_name, "1")
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+import numpy as np  # noqa: E402
+
+from hidden_effects import (  # noqa: E402
+    gearing_asking,
+    gearing_cases,
+    harmonic_asking,
+    harmonic_cases,
+    rv_asking,
+    rv_cases,
+    screw_asking,
+    screw_cases,
+)
+from hidden_effects.harmonic_machine import MESH, TORSION, Rows  # noqa: E402
+from hidden_effects.harmonic_surface import STRUCTURE, SurfaceCase, SurfaceWish, make_surface, true_structure  # noqa: E402
+from hidden_effects.noises import KINDS  # noqa: E402
+from hidden_effects.plugin_asking import Answer, model_of  # noqa: E402
+from hidden_effects.rows import Array  # noqa: E402
+from truing.testing import recorded  # noqa: E402
+
+STAGE_STRESSES = (gearing_cases.SUN_ROOT, gearing_cases.CONTACT)
+STAGES: list[tuple[str, dict[str, float], tuple[str, ...], gearing_cases.Design]] = [
+    ("face_misalignment", {"misalignment": 2.0}, STAGE_STRESSES, "rig"),
+    ("face_misalignment", {"misalignment": 9.0}, STAGE_STRESSES, "rig"),
+    ("face_misalignment", {"per_load": 8.0}, STAGE_STRESSES, "one_way"),
+    ("structural_resonance", {"strength": 0.06, "resonance_speed": 900, "damping": 0.1}, STAGE_STRESSES, "rig"),
+    ("structural_resonance", {"strength": 0.06, "resonance_speed": 1500, "damping": 0.1}, STAGE_STRESSES, "rig"),
+    ("planet_load_sharing", {"lead": 0.2}, STAGE_STRESSES, "rig"),
+    ("crowned_contact", {"full_line_load": 25.0}, STAGE_STRESSES, "rig"),
+    ("relief_error", {"missing": 0.4}, STAGE_STRESSES, "rig"),
+    ("centre_distance_growth", {"expansion": 12.0}, (gearing_cases.PLAY,), "rig"),
+    ("sun_runout", {"cosine": 1.5, "sine": -1.2}, (gearing_cases.ERROR,), "rig"),
+    ("planet_runout", {"cosine": -1.2, "sine": 1.5}, (gearing_cases.ERROR,), "rig"),
+    ("mesh_ripple", {"cosine": 1.0, "sine": 1.0}, (gearing_cases.ERROR,), "sweep"),
+    ("mesh_ripple", {"second_cosine": 1.2, "second_sine": -0.8}, (gearing_cases.ERROR,), "rig"),
+    ("output_eccentricity", {"cosine": 2.5, "sine": 1.5}, (gearing_cases.ERROR,), "rig"),
+    ("output_eccentricity", {"tooth_cosine": 1.2, "tooth_sine": -0.8}, (gearing_cases.ERROR,), "rig"),
+    ("speed_dependent_loss", {"constant": 0.4, "viscous": 0.4}, (gearing_cases.LOSS,), "one_way"),
+    ("flash_temperature", {"friction": 0.06}, (gearing_cases.WARMTH,), "rig"),
+    ("wind_up", {"compliance": 0.6}, (gearing_cases.ERROR,), "rig"),
+    ("lost_motion", {"play": 15.0, "torque_scale": 60}, (gearing_cases.ERROR, gearing_cases.PLAY), "sweep"),
+    ("wear_drift", {"rate": 2.0}, (gearing_cases.ERROR, gearing_cases.PLAY), "rig"),
+    ("ratio_drift", {"miscount": 1e-6}, (gearing_cases.ERROR,), "rig"),
+    ("mesh_stiffening", {"share": 1.4}, (gearing_cases.ERROR,), "rig"),
+]
+OF_STAGES: list[tuple[tuple[str, ...], gearing_cases.Design]] = [
+    (STAGE_STRESSES, "rig"),
+    ((gearing_cases.ERROR, gearing_cases.PLAY), "sweep"),
+    ((gearing_cases.LOSS, gearing_cases.WARMTH), "one_way"),
+    ((gearing_cases.PLAY,), "rig"),
+    ((gearing_cases.ERROR,), "rig"),
+]
+REDUCERS: dict[str, dict[str, float]] = {
+    "thermal_clearance": {"expansion": 11.5}, "running_in": {"depth": 0.9, "run_in_time": 300},
+    "wear_temperature": {"softening": 0.006}, "film_lubrication": {"film_factor": 140}, "pin_rolling": {"rolling": 0.5},
+    "pin_wear": {"ratio": 0.7}, "lost_motion_share": {"loss": 0.6}, "bearing_wear": {"wear": 0.6},
+    "wind_up": {"compliance": 1.0}, "stiffening": {"twist": 0.2, "torque_scale": 120},
+    "runout": {"offset": 1.2, "direction": 310}, "pin_pass_ripple": {"pin_cosine": 0.03, "pin_sine": -0.02},
+    "friction_hysteresis": {"lag": 0.02}, "lubricant_ageing": {"rate": 0.3}, "load_exponent": {"exponent": 0.5},
+    "duty_share": {"idle": 0.45},
+}  # fmt: skip
+FLEETS = {"wear_temperature", "film_lubrication", "load_exponent"}
+"""What only several reducers, each at its own load and speed, can show."""
+SCREWS: list[tuple[str, dict[str, float], tuple[str, ...]]] = [  # effect, unknowns, results in which it shows
+    ("face_misalignment", {"misalignment": 2.0}, screw_cases.STRESSES),
+    ("face_misalignment", {"per_load": 0.1}, screw_cases.STRESSES),
+    ("mesh_resonance", {"excitation": 0.08, "resonance_speed": 1800, "damping": 0.06}, screw_cases.STRESSES),
+    ("roller_load_sharing", {"lead": 2.0}, screw_cases.STRESSES),
+    ("roller_load_sharing", {"lead": -0.4}, screw_cases.STRESSES),
+    ("interrupted_tooth", {"lost": 0.4, "phase": 320}, screw_cases.STRESSES),
+    ("rim_compliance", {"softness": 0.4}, (screw_cases.RING,)),
+    ("thermal_centre_distance", {"expansion": 11.5}, (screw_cases.BACKLASH,)),
+    ("roller_runout", {"cosine": 3.0, "sine": -2.0}, (screw_cases.ERROR,)),
+    ("carrier_runout", {"cosine": -1.0, "sine": 2.0}, (screw_cases.ERROR,)),
+    ("axial_migration", {"mismatch": 0.05}, (screw_cases.AXIAL,)),
+    ("flank_wear", {"rate": 2.0}, (screw_cases.WEAR, screw_cases.BACKLASH)),
+    ("mesh_friction", {"factor": 1.3}, (screw_cases.TORQUE,)),
+]
+OF_SCREWS = (*screw_cases.STRESSES, screw_cases.ERROR, screw_cases.WEAR, screw_cases.AXIAL, screw_cases.TORQUE,
+             screw_cases.BACKLASH)  # fmt: skip
+DRIVES: list[tuple[str, dict[str, float], str]] = [  # effect, unknowns, result in which it shows
+    ("series_compliance", {"compliance": 12}, TORSION),
+    ("engaged_pairs", {"gain": 1.8, "torque_scale": 0.8}, MESH),
+    ("oil_film", {"stiffness": 0.03}, MESH),
+    ("asperity_smoothing", {"dimension": 0.03, "roughness": 0.6, "cycle_scale": 2e5}, MESH),
+    ("modulus_temperature", {"softening": 8e-4}, TORSION),
+    ("creep", {"share": 0.03, "time_scale": 0.1}, TORSION),
+    ("ellipticity", {"cosine": 20, "sine": -25}, TORSION),
+    ("ellipticity", {"stiffness_cosine": 0.08, "stiffness_sine": 0.06}, MESH),
+    ("eccentricity", {"cosine": -16, "sine": 20}, TORSION),
+    ("hysteresis", {"loop": 200, "torque_scale": 0.16}, TORSION),
+    ("viscous_hysteresis", {"loop": 100, "torque_scale": 0.2, "thinning": 0.03}, TORSION),
+    ("lost_motion", {"play": 60, "torque_scale": 0.12}, TORSION),
+    ("first_load_set", {"set": 40, "exponent": 1.2}, TORSION),
+    ("first_load_set", {"stiffening": 0.3}, MESH),
+    ("flank_wear", {"rate": 1.0, "torque_scale": 0.08}, TORSION),
+    ("thermal_preload", {"expansion": 3}, TORSION),
+    ("rig_drift", {"rate": 6}, TORSION),
+    ("waviness", {"square": 0.01, "wavelength": 25}, ""),
+    ("instrument_noise", {"variance": 100}, ""),
+    ("lateral_filter", {"width": 0.8}, ""),
+]
+SHAPES = {
+    "resonance_speed", "damping", "phase", "torque_scale", "run_in_time", "direction", "thinning", "exponent",
+    "time_scale", "cycle_scale", "wavelength",
+}  # fmt: skip
+"""Unknowns that are no size: they stay as they are. The exponent of a load is one, that of a set is not."""
+OF_ITS_OWN = {"lost_motion": "torque_scale", "flank_wear": "torque_scale", "creep": "time_scale"}
+STIFFNESS = {  # of the catalogues, kN m/rad, by size and ratio (100 stands for all above 50), and where it changes, N m
+    "14": ((2.0, 6.9), {30: (1.9, 2.4, 3.4), 50: (3.4, 4.7, 5.7), 100: (4.7, 6.1, 7.1)}),
+    "17": ((3.9, 12.0), {30: (3.4, 4.4, 6.7), 50: (8.1, 11.0, 13.0), 100: (10.0, 14.0, 16.0)}),
+    "20": ((7.0, 25.0), {30: (5.7, 7.1, 11.0), 50: (13.0, 18.0, 23.0), 100: (16.0, 25.0, 29.0)}),
+    "25": ((14.0, 48.0), {30: (10.0, 13.0, 21.0), 50: (25.0, 34.0, 44.0), 100: (31.0, 50.0, 57.0)}),
+    "32": ((29.0, 108.0), {30: (24.0, 30.0, 49.0), 50: (54.0, 78.0, 98.0), 100: (67.0, 110.0, 120.0)}),
+    "40": ((54.0, 196.0), {50: (100.0, 140.0, 180.0), 100: (130.0, 200.0, 230.0)}),
+    "50": ((108.0, 382.0), {50: (200.0, 280.0, 340.0), 100: (250.0, 400.0, 440.0)}),
+    "58": ((168.0, 598.0), {50: (310.0, 440.0, 540.0), 100: (400.0, 610.0, 710.0)}),
+}
+
+
+def fifth_order(rows: Rows) -> Array:
+    """A wave that nobody registered."""
+    return 12 * np.sin(5 * np.radians(rows.wave_angle) + 0.4)
+
+
+def stiff_when_hot_and_fast(rows: Rows) -> Array:
+    """A product of two conditions."""
+    return 2.5e5 * (rows.temperature - 30) / 30 * (rows.speed - 1000) / 1000
+
+
+def feed_marks(at: Array) -> Array:
+    """Steps across a flank."""
+    return np.asarray(0.06 * np.sign(np.sin(2 * np.pi * at / 9 + 1)))
+
+
+def sized(unknowns: Mapping[str, float], rng: np.random.Generator, without: Collection[str] = ()) -> dict[str, float]:
+    """The unknowns at a share of their size, half to the whole; shapes as they are."""
+    share = rng.uniform(0.5, 1.0)
+    return {key: value if key in SHAPES and key not in without else share * value for key, value in unknowns.items()}
+
+
+def stage(place: int, seed: int) -> gearing_cases.Wish:
+    """A first stage: of three the first hides nothing, the others what comes next in the list."""
+    rng = np.random.default_rng([seed, 9])
+    kind = KINDS[int(rng.integers(len(KINDS)))]
+    if place % 3 == 0:
+        results, design = OF_STAGES[place // 3 % len(OF_STAGES)]
+        return gearing_cases.Wish(seed=seed, results=results, design=design, kind=kind)
+    name, clear, results, design = STAGES[(place - place // 3 - 1) % len(STAGES)]
+    return gearing_cases.Wish(seed=seed, hidden={name: sized(clear, rng)}, results=results, design=design, kind=kind)
+
+
+def reducer(_: int, seed: int) -> rv_cases.Wish:
+    """A reducer: of three seeds one hides nothing, the others any effect."""
+    rng = np.random.default_rng([seed, 9])
+    name = "" if seed % 3 == 0 else list(REDUCERS)[int(rng.integers(len(REDUCERS)))]
+    unknowns = sized(REDUCERS.get(name, {}), rng, without=("exponent",))
+    design: rv_cases.Design = "fleet" if name in FLEETS or rng.random() < 0.5 else "endurance"
+    results = (rv_cases.BACKLASH, rv_cases.WEAR) if rng.random() < 0.5 else (rv_cases.BACKLASH,)
+    kind = KINDS[int(rng.integers(len(KINDS)))]
+    return rv_cases.Wish(seed=seed, hidden={name: unknowns} if name else {}, design=design, kind=kind, results=results)
+
+
+def screw(_: int, seed: int) -> screw_cases.Wish:
+    """A roller screw: of three seeds one hides nothing, the others any effect, at times in one of its results alone."""
+    rng = np.random.default_rng([seed, 31])
+    kind = KINDS[int(rng.integers(len(KINDS)))]
+    if seed % 3 == 0:
+        results = tuple(rng.choice(OF_SCREWS, 2, replace=False).tolist())
+        design: screw_cases.Design = "endurance" if rng.random() < 0.5 else "bench"
+        return screw_cases.Wish(seed=seed, design=design, kind=kind, results=results)
+    name, clear, results = SCREWS[int(rng.integers(len(SCREWS)))]
+    unknowns = sized(clear, rng)
+    if len(results) > 1 and rng.random() < 0.3:
+        results = results[:1]
+    design = "endurance" if name == "flank_wear" else "bench" if rng.random() < 0.7 else "loaded"
+    return screw_cases.Wish(seed=seed, hidden={name: unknowns}, design=design, kind=kind, results=results)
+
+
+def drive(_: int, seed: int) -> harmonic_cases.Wish | SurfaceWish:
+    """A harmonic drive or a flank: of four seeds one hides nothing, one what nobody registered, two the next effect."""
+    rng = np.random.default_rng([seed, 37])
+    kind = KINDS[int(rng.integers(len(KINDS)))]
+    points: dict[str, Any] = {"design": "points", "results": (MESH,)}
+    if seed % 4 in {0, 2}:
+        which, is_strange = int(rng.integers(3)), seed % 4 == 2
+        if which == 2:
+            return SurfaceWish(seed=seed, strange=feed_marks if is_strange else None)
+        strange = (fifth_order, stiff_when_hot_and_fast)[which] if is_strange else None
+        return harmonic_cases.Wish(seed=seed, kind=kind, strange=strange, **(points if which else {}))
+    name, unknowns, result = DRIVES[seed // 2 % len(DRIVES)]
+    hidden = {name: sized(unknowns, rng)}
+    if not result:
+        return SurfaceWish(seed=seed, hidden=hidden)
+    tooth = 2e7 if name == "engaged_pairs" else np.inf
+    more = points if result == MESH else {}
+    return harmonic_cases.Wish(seed=seed, kind=kind, hidden=hidden, tooth=tooth, **more)
+
+
+def made_drive(wish: harmonic_cases.Wish | SurfaceWish) -> harmonic_cases.Case | SurfaceCase:
+    """The case of a drive or of a flank."""
+    return harmonic_cases.make_case(wish) if isinstance(wish, harmonic_cases.Wish) else make_surface(wish)
+
+
+@dataclass(frozen=True)
+class Machines:
+    """How cases of a plugin are wished for (by place and seed), made, and asked."""
+
+    wished: Callable[[int, int], Any]
+    made: Callable[[Any], Any]
+    diagnosed: Callable[[Any], Answer]
+
+
+MACHINES: dict[str, Machines] = {
+    "rv_gearing": Machines(stage, gearing_cases.make_case, gearing_asking.diagnosed),
+    "rv_wear": Machines(reducer, rv_cases.make_case, rv_asking.diagnosed),
+    "roller_screw_shift": Machines(screw, screw_cases.make_case, screw_asking.diagnosed),
+    "harmonic_fractal": Machines(drive, made_drive, harmonic_asking.diagnosed),
+}
+
+
+def judge(machines: Machines, place: int, seed: int, tally: "Tally") -> None:
+    """Ask one case and count what was said."""
+    wish = machines.wished(place, seed)
+    case = machines.made(wish)
+    answer = machines.diagnosed(case)
+    said = tally.count(wish, answer.document, answer.seconds)
+    if wish.hidden:
+        tally.left.append(left_over(case, answer))
+    if said == "named":
+        (cause,) = answer.document["causes"]
+        tally.cover(wish, cause, without={OF_ITS_OWN.get(cause["effect"], "")} if machines.wished is drive else ())
+
+
+def left_over(case: Any, answer: Answer) -> float:
+    """Error on the rows that were not fitted over that of the truth, of the worst result."""
+    scale: Array | float = 1.0
+    if isinstance(case, SurfaceCase):
+        true, scale = {STRUCTURE: true_structure(case.wish, case.held.lag)}, case.held.sigma_structure_function
+    else:
+        true = case.held_true if isinstance(case, harmonic_cases.Case) else case.true_readings(case.held)
+
+    def size(name: str, values: Mapping[str, Array]) -> float:
+        return float(np.mean(((case.held_readings[name] - values[name]) / scale) ** 2))
+
+    return max(float(np.sqrt(size(name, answer.predicted) / size(name, true))) for name in case.wish.results)
+
+
+# Counts
+
+
+QUIET = {"nothing", "named", "same curve", "called unknown"}
+"""What may be said of a case without a line being printed."""
+
+
+@dataclass
+class Tally:
+    """What was said, counted; ``left`` is the error on rows not fitted over that of the truth, where it was taken."""
+
+    nothing: int = 0
+    false_alarms: int = 0
+    strange: Counter[str] = field(default_factory=Counter)
+    said: Counter[str] = field(default_factory=Counter)
+    covered: list[bool] = field(default_factory=list)
+    left: list[float] = field(default_factory=list)
+    seconds: list[float] = field(default_factory=list)
+
+    def count(self, wish: Any, document: Mapping[str, Any], seconds: float) -> str:
+        """Count one answer, say it where it is not the truth alone, and return it in a word."""
+        self.seconds.append(seconds)
+        verdict = str(document["verdict"])
+        if wish.strange is not None:
+            said = {"unknown": "called unknown", "named": "another name"}.get(verdict, verdict)
+            self.strange[said] += 1
+        elif not wish.hidden:
+            self.nothing += 1
+            self.false_alarms += bool(document["explanations"])
+            said = "false alarm" if document["explanations"] else "nothing"
+        else:
+            said = verdict_on(document, next(iter(wish.hidden)))
+            self.said[said] += 1
+        if said not in QUIET:
+            named = [cause["effect"] for cause in document["causes"]]
+            print(f"  {wish.seed} {wish.title} {dict(wish.hidden)}: {said}: {named}", flush=True)
+        return said
+
+    def cover(self, wish: Any, cause: Mapping[str, Any], without: Collection[str] = ()) -> None:
+        """Count which intervals of a cause hold the truth."""
+        for name, value in wish.hidden[cause["effect"]].items():
+            if name not in cause["unknowns"] or name in without:
+                continue
+            low, high = cause["unknowns"][name]["interval95"]
+            self.covered.append((low is None or low <= value) and (high is None or value <= high))
+            if not self.covered[-1]:
+                print(f"  {wish.seed} {wish.title}: {name} is {value:.4g}, not {low} to {high}", flush=True)
+
+    def tell(self) -> None:
+        """Print all that was counted."""
+        print(f"nothing hidden: {self.false_alarms} false alarms in {self.nothing}")
+        if self.strange:
+            print("something unregistered: " + in_words(self.strange))
+        print(f"one effect hidden: {sum(self.said.values())}; {in_words(self.said)}")
+        print(f"intervals that hold the truth: {sum(self.covered)} of {len(self.covered)}")
+        if self.left:
+            middle, worst = np.median(self.left), max(self.left)
+            print(f"error on rows not fitted, over the truth: median {middle:.3f}, worst {worst:.2f}")
+        print(f"seconds: median {np.median(self.seconds):.1f}, longest {max(self.seconds):.1f}")
+
+
+def verdict_on(document: Mapping[str, Any], hidden: str) -> str:
+    """Say in a word how near to the truth an answer is."""
+    causes = document["causes"]
+    named = [{cause["effect"], *cause["same_as"]} for cause in causes]
+    if len(named) == 1 and hidden in named[0]:
+        if document["remainder"] is not None:
+            return "with an unknown remainder"
+        return "named" if causes[0]["effect"] == hidden else "same curve"
+    if any(hidden in names for names in named):
+        return "with something else"
+    if [hidden] in [other["causes"] for other in document["alternatives"]]:
+        return "alternative"
+    return str(document["verdict"]) if document["verdict"] != "named" else "another name"
+
+
+def in_words(counts: Mapping[str, int]) -> str:
+    """Write counts in a line, the largest first."""
+    return ", ".join(f"{name} {many}" for name, many in Counter(counts).most_common())
+
+
+# The catalogue
+
+
+def catalogue(seed: int) -> None:
+    """Ask what carries the torsion of every drive of the catalogue; flanks as by default, all else rigid."""
+    for size, (changes, by_ratio) in STIFFNESS.items():
+        for ratio, stiff in by_ratio.items():
+            document, rough = asked(size, ratio, drawn_line(changes, stiff, np.random.default_rng([seed, ratio])))
+            causes = ", ".join(f"{each['effect']} {100 * each['share']:.0f} %" for each in document["causes"])
+            others = "; ".join(" + ".join(each["causes"]) for each in document["alternatives"])
+            print(f"  {size:>3} {ratio:>4}: flanks {rough:.2%}; {causes or document['verdict']}; or {others or 'none'}")
+
+
+def drawn_line(changes: tuple[float, float], stiff: tuple[float, ...], rng: np.random.Generator) -> tuple[Array, Array]:
+    """Torques, N m, to twice the second change, and torsions, urad, with 10 urad of scatter."""
+    torque = np.round(changes[1] / 50 * np.arange(1, 101), 4)
+    ends = np.array([0.0, *changes, 3 * changes[1]])
+    angles = np.concatenate([[0.0], np.cumsum(np.diff(ends) / (1e-3 * np.array(stiff)))])
+    return torque, np.interp(torque, ends, angles) + 10 * rng.standard_normal(len(torque))
+
+
+def asked(size: str, ratio: int, read: tuple[Array, Array]) -> tuple[Mapping[str, Any], float]:
+    """What the diagnosis says to a record, and the share of the torsion that the flanks alone explain."""
+    larger = int(size) / 20
+    inputs = (
+        f'plugin = "harmonic_fractal"\n[inputs]\ncatalogue_size = "{size}"\npitch_radius = "{25.4 * larger:g} mm"\n'
+        f'face_width = "{10 * larger:g} mm"\nflank_height = "{0.4 * larger * 100 / ratio:g} mm"\n'
+        f"flexspline_teeth = {2 * ratio}\nengaged_pairs = {2 * int(0.3 * ratio)}\n"
+    )
+    rows = "".join(f"{torque!r},{angle!r}\n" for torque, angle in zip(*(part.tolist() for part in read), strict=True))
+    measured = "torque [N*m],torsion [urad]\n" + rows
+    document = recorded(model_of("harmonic_fractal"), inputs=inputs, measured=measured).answered.document
+    left = document["wrong"]["torsion"]["rmse"]["value"]
+    return document, 1 - left / float(np.sqrt(np.mean(read[1] ** 2)))
+
+
+def main() -> None:
+    """Read the options and run."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("plugin", choices=MACHINES)
+    parser.add_argument("--cases", type=int, default=40)
+    parser.add_argument("--seed", type=int, default=1000, help="the first seed")
+    parser.add_argument("--catalogue", action="store_true", help="ask for the drives of the catalogue instead")
+    options = parser.parse_args()
+    if options.catalogue:
+        catalogue(options.seed)
+        return
+    tally = Tally()
+    for place in range(options.cases):
+        judge(MACHINES[options.plugin], place, options.seed + place, tally)
+    tally.tell()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,61 @@
+"""What tests of the command line share: refusals that leave nothing behind, and rows of results by name."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from refusals import listing, sentences
+
+from shared import Calc
+
+
+@pytest.fixture
+def refused(calc: Calc, tmp_path: Path) -> Callable[..., list[str]]:
+    """Run ``calc``, which must end with exit code 2, leave the folder as it was and print no result."""
+
+    def run(*arguments: str | Path) -> list[str]:
+        before = listing(tmp_path)
+        answer = calc(*arguments)
+        assert listing(tmp_path) == before
+        return sentences(answer)
+
+    return run
+
+
+@pytest.fixture
+def refused_inputs(refused: Callable[..., list[str]], tmp_path: Path) -> Callable[..., list[str]]:
+    """Run a plugin, which must refuse these lines under [inputs]; the first of them is line 3 of ``inputs.toml``."""
+
+    def run(plugin: str, *lines: str, studies: str = "run = []") -> list[str]:
+        text = "\n".join([f'plugin = "{plugin}"', "[inputs]", *lines, "[studies]", studies, ""])
+        (tmp_path / "inputs.toml").write_text(text, encoding="utf-8")
+        return refused("run", plugin, "--inputs", "inputs.toml")
+
+    return run
+
+
+@pytest.fixture
+def tabled(calc: Calc, tmp_path: Path) -> Callable[..., list[dict[str, float]]]:
+    """Print results of a plugin row by row for a CSV, with settings on the command line; far quicker than a sheet.
+
+    A cell that holds no number is left out.
+    """
+
+    def run(plugin: str, rows: str, *settings: str) -> list[dict[str, float]]:
+        (tmp_path / "inputs.toml").write_text(f'plugin = "{plugin}"\n', encoding="utf-8")
+        (tmp_path / "rows.csv").write_text(rows, encoding="utf-8")
+        words = [word for setting in settings for word in ("--set", setting)]
+        answer = calc("table", plugin, "--inputs", "inputs.toml", "--rows", "rows.csv", *words)
+        assert answer.code == 0, answer.err
+        head, *found = csv.reader(io.StringIO(answer.out))
+        names = [name.split(" [")[0] for name in head]
+        return [
+            {name: float(cell) for name, cell in zip(names, row, strict=True) if cell and cell[0] in "-.0123456789"}
+            for row in found
+        ]
+
+    return run

@@ -1,0 +1,31 @@
+"""What every machine of the generators shares: rows as they were measured, and unknowns of what is hidden."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Self, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array: TypeAlias = NDArray[np.float64]
+Hidden: TypeAlias = Mapping[str, Mapping[str, float]]
+"""Unknown by effect, in the units of the registry; those of the press in SI."""
+
+
+@dataclass(frozen=True)
+class MeasuredRows:
+    """What was set and measured beside the results, an array (n,) for each, in the order of the clock."""
+
+    time: Array
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    def taken(self, places: NDArray[np.intp] | slice) -> Self:
+        """Some of the rows."""
+        return type(self)(**{name: values[places] for name, values in vars(self).items()})
+
+
+def of(hidden: Hidden, effect: str, unknown: str, otherwise: float = 0.0) -> float:
+    """An unknown of an effect, in the unit of the registry; what it is otherwise where the effect is not hidden."""
+    return float(hidden.get(effect, {}).get(unknown, otherwise))
