@@ -47,7 +47,7 @@ class Engagement:
         wanted = np.log(share)
         low = wanted + np.log(self.start)
         high = low + np.log1p(self.gain)
-        way = np.asarray(low, dtype=float)
+        way = np.broadcast_arrays(np.asarray(low, dtype=float), high, self.scale)[0]
         for _ in range(STEPS if np.any(self.gain) else 0):
             torque = np.exp(way)
             off = way - np.log(self.factor(torque)) - wanted
