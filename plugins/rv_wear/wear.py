@@ -1,10 +1,11 @@
 """Wear of the flank, step by step, for many meshes at once, and the largest wear after the working time."""
 
 from collections import OrderedDict
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TypeVar
+from threading import Lock
+from typing import Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -365,19 +366,31 @@ def history_of_group(key: HistoryKey, power: int) -> Histories:
     return histories(teeth_of(mesh_from(key)), 2.0 ** (power / FINENESS))
 
 
-class Latest(OrderedDict[HistoryKey, Answer]):
-    """The latest answers to single meshes."""
+class Latest(Generic[Answer]):
+    """The latest answers to single meshes, whatever thread asks."""
+
+    def __init__(self) -> None:
+        self._answers: OrderedDict[HistoryKey, Answer] = OrderedDict()
+        self._lock = Lock()
+
+    def known(self, keys: Sequence[HistoryKey]) -> dict[HistoryKey, Answer]:
+        """Return the answers that are remembered."""
+        with self._lock:
+            return {key: self._answers[key] for key in keys if key in self._answers}
+
+    def keep(self, answers: Mapping[HistoryKey, Answer]) -> None:
+        """Remember answers, and forget the oldest of too many."""
+        with self._lock:
+            for key, answer in answers.items():
+                self._answers[key] = answer
+                self._answers.move_to_end(key)
+            while len(self._answers) > FEW_REMEMBERED:
+                self._answers.popitem(last=False)
 
     def cache_clear(self) -> None:
         """Forget them all, as ``lru_cache`` says it."""
-        self.clear()
-
-    def keep(self, key: HistoryKey, answer: Answer) -> None:
-        """Remember an answer, and forget the oldest of too many."""
-        self[key] = answer
-        self.move_to_end(key)
-        if len(self) > FEW_REMEMBERED:
-            self.popitem(last=False)
+        with self._lock:
+            self._answers.clear()
 
 
 unworn_of_one: Latest[Unworn] = Latest()
@@ -397,14 +410,13 @@ def all_unworn(mesh: Mesh, count: int) -> Unworn:
     if count > FEW:
         return _joined([unworn_of_group(key_of(mesh, places)) for places in groups(np.arange(count))])
     keys = [key_of(mesh, np.array([place])) for place in range(count)]
-    answers = {key: unworn_of_one[key] for key in keys if key in unworn_of_one}
+    answers = unworn_of_one.known(keys)
     missing = [place for place, key in enumerate(keys) if key not in answers]
     if missing:
         new = unworn(some_of(mesh, np.array(missing)))
         for column, place in enumerate(missing):
             answers[keys[place]] = Unworn(*(values[column : column + 1] for values in vars(new).values()))
-    for key, answer in answers.items():
-        unworn_of_one.keep(key, answer)
+    unworn_of_one.keep(answers)
     return _joined([answers[key] for key in keys])
 
 
@@ -437,7 +449,7 @@ def _few_histories(mesh: Mesh, powers: NDArray[np.intp]) -> list[Histories]:
     One that was too short goes further than asked for, since a fit asks again for a little more.
     """
     keys = [key_of(mesh, np.array([place])) for place in range(len(powers))]
-    known = {key: history_of_one[key] for key in keys if key in history_of_one}
+    known = history_of_one.known(keys)
     missing = [place for place, key in enumerate(keys) if key not in known or known[key][0] < powers[place]]
     if missing:
         asked = powers[missing] + np.array([FURTHER * (keys[place] in known) for place in missing])
@@ -445,8 +457,7 @@ def _few_histories(mesh: Mesh, powers: NDArray[np.intp]) -> list[Histories]:
         for column, place in enumerate(missing):
             part = Histories(*(values[:, column : column + 1].copy() for values in vars(new).values()))
             known[keys[place]] = int(asked[column]), part
-    for key, answer in known.items():
-        history_of_one.keep(key, answer)
+    history_of_one.keep(known)
     return [known[key][1] for key in keys]
 
 
