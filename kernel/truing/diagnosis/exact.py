@@ -2,9 +2,9 @@
 
 Levenberg-Marquardt steps on the numbers of the causes. The inputs are eliminated from every step: as far as the fit
 goes they act by their slopes about an anchor, which is moved when the fit has settled and the model bends in them.
-Derivatives are differences; what a step shows and the derivatives where it leads are one batched call. Those of another
-fit, or of a model that jumps, are corrected by what each step shows (C. G. Broyden, Math. Comp. 19, 1965, 577) until
-that no longer leads down. The noise of every result is the one that is left: its mean square is what a fit makes small.
+Derivatives are taken by differences in one batched call and corrected by what each step shows (C. G. Broyden, Math.
+Comp. 19, 1965, 577) until that no longer leads down. The noise of every result is the one that is left: the logarithm
+of its mean square is what a fit makes small.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ NEARER = 30
 FIRST_DAMPING = 1e-3
 LARGEST_DAMPING = 1e8
 GOOD = 0.25
-"""Share of what a step promised from which on the next one is damped less."""
+"""Share of what a step promised from which on its corrected derivatives are good enough for the next one."""
 
 
 def fit(
@@ -61,11 +61,10 @@ def fit(
     numbers draw where it is of the same causes. None where the model fails however small the causes are.
     """
     state = Fitting(sample, extended, tuple(causes), near, held=held)
-    is_alike = near is not None and near.causes == state.causes and not extended.grain
-    known = near.slopes if near is not None and is_alike else {}
-    if not state.begin(np.concatenate(values) if causes else np.zeros(0), sloped=not known):
+    if not state.begin(np.concatenate(values) if causes else np.zeros(0)):
         return None
-    state.carry(known)
+    if near is not None and near.slopes and near.causes == state.causes and not extended.grain:
+        state.carry(near.slopes)
     state.settle(until)
     return state.answer()
 
@@ -117,24 +116,18 @@ class Fitting:
         """Return what is left if the inputs were at their means, as far as their slopes tell."""
         return self.sample.left(shown) + self.slopes @ self.anchor
 
-    def begin(self, values: Matrix, *, sloped: bool = False) -> bool:
-        """Take a start, or so much nearer to no cause that the model does not fail; False where it always does.
-
-        ``sloped`` takes the derivatives there in the same call.
-        """
+    def begin(self, values: Matrix) -> bool:
+        """Take a start, or so much nearer to no cause that the model does not fail; False where it always does."""
         u = np.where(self.log, np.log(np.where(self.log, values, 1.0)), values / self.sizes)
         u = np.clip(u, self.low, self.high)
         amplitudes = np.array([number.is_amplitude for number in self.numbers], dtype=bool)
         for halving in range(NEARER):
             tried = np.where(amplitudes, u / 2**halving, u)
-            steps, points = self._beside(tried, wanted=sloped)
-            shown, *aside = self.shown([tried, *points], self.anchor)
+            (shown,) = self.shown([tried], self.anchor)
             bare = self.bare(shown)
             if np.isfinite(bare).all():
                 self.u, self.predicted, self.b = tried, shown, self.anchor
                 self.b, self.left, self.cost = self.calibrated(bare)
-                if sloped:
-                    self._derive(steps, aside)
                 return True
         return False
 
@@ -155,24 +148,16 @@ class Fitting:
 
     def derivatives(self) -> None:
         """Take the derivatives of what the model shows by all free numbers, in one call of it."""
-        steps, points = self._beside(self.u)
-        self._derive(steps, self.shown(points, self.anchor))
-
-    def _beside(self, u: Matrix, *, wanted: bool = True) -> tuple[Matrix, list[Matrix]]:
-        """Return by how much every number is moved for its derivative, and the points at which one free number is."""
-        steps = steps_of(u, self.log, is_rough=bool(self.extended.grain))
-        steps = np.where(u + steps > self.high, -steps, steps)
-        moved = np.flatnonzero(self.free) if wanted else ()
-        return steps, [u + steps * np.eye(len(u))[index] for index in moved]
-
-    def _derive(self, steps: Matrix, aside: Sequence[dict[str, Matrix]]) -> None:
-        """Take the derivatives from what the model shows where one free number is moved."""
-        drawn = {name: np.zeros((len(base), len(steps))) for name, base in self.predicted.items()}
-        for index, shown in zip(np.flatnonzero(self.free), aside, strict=True):
+        places = np.flatnonzero(self.free)
+        steps = steps_of(self.u, self.log, is_rough=bool(self.extended.grain))
+        steps = np.where(self.u + steps > self.high, -steps, steps)
+        points = [self.u + step * unit for step, unit in zip(steps[places], np.eye(len(self.u))[places], strict=True)]
+        drawn = {name: np.zeros((len(base), len(self.u))) for name, base in self.predicted.items()}
+        for place, shown in zip(places, self.shown(points, self.anchor) if points else [], strict=True):
             if not np.isfinite(self.sample.left(shown)).all():
-                shown = self._other_side(int(index), float(steps[index]))
+                shown = self._other_side(int(place), float(steps[place]))
             for name, base in self.predicted.items():
-                drawn[name][:, index] = (shown[name] - base) / steps[index]
+                drawn[name][:, place] = (shown[name] - base) / steps[place]
         self._draw(drawn)
         self.is_fresh = True
 
@@ -192,9 +177,8 @@ class Fitting:
     def carry(self, slopes: dict[str, Matrix]) -> None:
         """Begin with the derivatives of another fit, where they are known on these rows."""
         drawn = {name: each * np.where(self.log, 1.0, self.sizes) for name, each in slopes.items()}
-        if drawn and np.isfinite(self.sample.curve(drawn)).all():
+        if np.isfinite(self.sample.curve(drawn)).all():
             self._draw(drawn)
-            self.is_fresh = False
 
     def step(self) -> tuple[Matrix, float]:
         """Return where a damped step leads within the bounds, and by how much the cost is to fall."""
@@ -287,52 +271,44 @@ class Fitting:
         self.damping = FIRST_DAMPING
         if not self.drawn:
             self.derivatives()
-        is_enough = until >= ROUGHLY and not self.extended.grain  # derivatives of another fit, of a smooth model
+        is_enough = until >= ROUGHLY and not self.extended.grain  # derivatives that were corrected, of a smooth model
         for _ in range(MOST_STEPS if until < ROUGHLY else MOST_ROUGH):
             moved, promised = self.step()
-            if promised < until and not self.is_fresh and not is_enough:
-                self.derivatives()
-                continue
-            if promised < until:
+            if promised < until and (self.is_fresh or is_enough or promised < 1e-3 * until):
                 if until < ROUGHLY and promised > 0:
                     self._taken(moved)
                 return
-            gained = self._taken(moved, sloped=self.is_fresh and not self.extended.grain)
-            if gained > 0:
-                is_good = gained > GOOD * promised
-                self.damping = max(self.damping / 5, 1e-12) if is_good else self.damping * 3
-                if self.is_fresh and gained < until:
-                    return
-                if not is_good and not self.is_fresh:
-                    self.derivatives()
-            elif not self.is_fresh:
+            if promised < until:
                 self.derivatives()
-            elif self.damping < LARGEST_DAMPING:
-                self.damping = max(self.damping, 1e-6) * 10
-            else:
+                continue
+            gained = self._taken(moved)
+            if gained is None or gained <= 0:
+                if not self.is_fresh:
+                    self.derivatives()
+                elif self.damping < LARGEST_DAMPING:
+                    self.damping = max(self.damping, 1e-6) * 10
+                else:
+                    return
+                continue
+            self.damping = max(self.damping / 5, 1e-12) if gained > GOOD * promised else self.damping * 3
+            if gained < GOOD * promised and not self.is_fresh:
+                self.derivatives()
+            elif gained < until and self.is_fresh:
                 return
 
-    def _taken(self, moved: Matrix, *, sloped: bool = False) -> float:
-        """Take a step if it leads down; return how far it leads down, 0 if it fails.
-
-        ``sloped`` takes the derivatives there in the same call; else those that the fit has are corrected by what the
-        step shows.
-        """
+    def _taken(self, moved: Matrix) -> float | None:
+        """Take a step if it leads down, and correct the derivatives by what it shows; return how far it led down."""
         tried = np.clip(self.u + moved, self.low, self.high)
-        steps, points = self._beside(tried, wanted=sloped)
-        shown, *aside = self.shown([tried, *points], self.anchor)
+        (shown,) = self.shown([tried], self.anchor)
         bare = self.bare(shown)
         if not np.isfinite(bare).all():
-            return 0.0
+            return None
         b, left, cost = self.calibrated(bare)
         gained = self.cost - cost
-        if gained <= 0:
-            return gained
-        way, before = tried - self.u, self.predicted
-        self.u, self.predicted, self.b, self.left, self.cost = tried, shown, b, left, cost
-        if sloped:
-            self._derive(steps, aside)
-        else:
+        if gained > 0:
+            way = tried - self.u
+            before = self.predicted
+            self.u, self.predicted, self.b, self.left, self.cost = tried, shown, b, left, cost
             self._draw({name: _corrected(own, shown[name] - before[name], way) for name, own in self.drawn.items()})
             self.is_fresh = False
         return gained
@@ -411,7 +387,8 @@ def slopes_at(found: Fit, extended: Extended) -> tuple[Matrix, Matrix]:
     of the inputs are taken where the fit has put them.
     """
     state = Fitting(found.sample, extended, found.causes, found, held=())
-    state.begin(np.concatenate(found.values) if found.causes else np.zeros(0), sloped=True)
+    state.begin(np.concatenate(found.values) if found.causes else np.zeros(0))
+    state.derivatives()
     return -state.slope, state.slopes_of_inputs()
 
 
