@@ -118,7 +118,9 @@ def test_the_extended_model_runs(desk: Path, found: Diagnosed) -> None:
     )
     temperature = warm["conditions"]["link_temperature"]["value"]
     assert temperature == pytest.approx(measured.mean(), rel=1e-12)
-    row = Rows(*(np.array([value]) for value in (0.0, 0.0, temperature, 0.0, 0.0, 0.0, 1.0)))
+    still = dict.fromkeys(("time", "crank_angle", "forming_force", "strokes", "speed"), 0.0)
+    given = {**still, "link_temperature": temperature, "direction": 1.0}
+    row = Rows(**{name: np.array([value]) for name, value in given.items()})
     for run, hidden in ((cold, {}), (warm, {"link_heating": {"expansion": expansion * 1e-6}})):
         height = run["results"]["slider_position"]
         assert height["unit"] == "mm"

@@ -12,7 +12,7 @@ Hidden: TypeAlias = Mapping[str, Mapping[str, float]]
 """Unknown by effect, in the units of the registry; those of the press in SI."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class MeasuredRows:
     """What was set and measured beside the results, an array (n,) for each, in the order of the clock."""
 
