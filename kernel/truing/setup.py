@@ -175,8 +175,8 @@ class SheetOptions:
 class Setup(Case):
     """What one inputs file says, checked, in SI: the case, what scatters about it, and what is asked.
 
-    ``spreads`` holds the tolerances in force and ``calibrated`` the standard deviations (SI) that a diagnosis left of
-    some inputs, by name; ``units`` the units in which results are printed, where these are not the declared ones.
+    ``spreads`` holds the tolerances in force and ``calibrated`` the inputs (SI) as a diagnosis fitted them to one
+    machine, by name; ``units`` the units in which results are printed, where these are not the declared ones.
     """
 
     origin: Origin

@@ -73,7 +73,7 @@ def html_table(rows: Sequence[Sequence[object]], head: Sequence[str] = ()) -> st
 
 def table_html(table: TableView) -> str:
     """Return a table of a document, with its title and its note."""
-    heads = [f"{column.title} [{column.unit}]" if column.unit else column.title for column in table.columns]
+    heads = [column.heading for column in table.columns]
     rows = [[plain_text(cell) for cell in row] for row in table.rows]
     note = paragraphs([plain_text(table.note)]) if table.note else ""
     return (heading(table.title) if table.title else "") + html_table(rows, heads) + note

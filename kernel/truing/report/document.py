@@ -161,6 +161,11 @@ class Column:
     unit: str = ""
     kind: str = ""
 
+    @property
+    def heading(self) -> str:
+        """The title, with its unit in brackets."""
+        return f"{self.title} [{self.unit}]" if self.unit else self.title
+
 
 @dataclass(frozen=True)
 class TableView:

@@ -6,7 +6,7 @@ import base64
 from collections.abc import Iterable, Iterator, Sequence
 
 from truing.formulas.write_latex import LatexWriter
-from truing.numbers import pretty, with_unit
+from truing.numbers import pretty
 from truing.report import equations
 from truing.report.document import (
     MARKS,
@@ -28,6 +28,7 @@ from truing.report.document import (
     TableView,
     Text,
     Value,
+    plain_text,
 )
 from truing.report.markdown import escaped
 from truing.studies.checks import SHORT
@@ -97,7 +98,7 @@ def _table(table: TableView) -> Iterator[str]:
     """Write a pipe table; units stand in the headings."""
     if table.title:
         yield f"**{escaped(table.title)}**"
-    titles = [escaped(f"{each.title} [{each.unit}]" if each.unit else each.title) for each in table.columns]
+    titles = [escaped(column.heading) for column in table.columns]
     rule = ["---:" if column.kind == "number" else "---" for column in table.columns]
     states = table.states or ("",) * len(table.rows)
     rows = [
@@ -136,18 +137,14 @@ def _piece(piece: Piece, *, begins: bool = True) -> str:
     match piece:
         case str():
             return _words(piece, begins=begins)
-        case Value(text, unit):
-            return escaped(with_unit(pretty(text), unit))
+        case Value() | Code() | Source():
+            return escaped(plain_text(piece))
         case Symbol(text):
             return f"${LatexWriter().symbol(text)}$"
-        case Code(name, bracketed):
-            return escaped(f"({name})" if bracketed else name)
         case Strong(text):
             return _piece(text)
         case Aside(text):
             return escaped(text)
-        case Source(text):
-            return escaped(f"({text})")
         case Break(instead):
             return instead
         case Judgement(state):
