@@ -8,15 +8,21 @@ import sys
 import tomllib
 from collections import Counter
 from collections.abc import Iterator
+from dataclasses import replace
 from graphlib import TopologicalSorter
 from importlib.metadata import packages_distributions
 from pathlib import Path
 
+import numpy as np
 import pytest
+from diagnosis_samples import REMAINDER, unknown
 from grimp import build_graph
 
 import truing
 from shared import ROOT, Answer, process
+from truing.diagnosis.records import Covariate
+from truing.diagnosis.result import ShapeTerm
+from truing.runs.new_effect import new_effect_source
 
 CODE = [*sorted((ROOT / "kernel").rglob("*.py")), *sorted((ROOT / "plugins").rglob("*.py"))]
 PACKAGES = sorted(path.parent.name for path in (ROOT / "plugins").glob("*/__init__.py"))
@@ -55,9 +61,28 @@ def test_format() -> None:
 # What the type checker catches in a plugin, before anything runs
 
 
-def test_the_plugin_of_the_style_page_is_typed() -> None:
-    answer = tool("mypy", "--strict", str(ROOT / "tests" / "data" / "pin_wear.py"))
-    assert answer.code == 0, answer.out
+def stub() -> str:
+    """The effect that a diagnosis proposes for a shape over two columns, one of which nobody declared."""
+    covariates = {**unknown().records.covariates, "a b": Covariate("a b", np.zeros(160), "kN", "other")}
+    records = replace(unknown().records, covariates=covariates)
+    terms = {"slide_position": (ShapeTerm("np.tanh(load / 1e3) * a b", 1e-6),)}
+    remainder = replace(REMAINDER, depends_on=("load", "a b"), terms=terms)
+    return new_effect_source(replace(unknown(), records=records, remainder=remainder))
+
+
+def test_plugins_outside_of_the_packages_are_typed_and_in_style(tmp_path: Path) -> None:
+    """Of the style page, of the manual, and the stub that a diagnosis writes, before anybody touches it."""
+    (tmp_path / "new_effect.py").write_text(stub(), encoding="utf-8")
+    examples = [str(file) for file in sorted((ROOT / "docs" / "examples").rglob("*.py"))]
+    files = [str(ROOT / "tests" / "data" / "pin_wear.py"), str(tmp_path / "new_effect.py"), *examples]
+    for words in (
+        ("mypy", "--strict", *files),
+        ("ruff", "check", *examples),
+        ("ruff", "format", "--check", *examples),
+        ("ruff", "check", "--select", "E,F,W,I", "--line-length", "120", str(tmp_path / "new_effect.py")),
+    ):
+        answer = tool(*words)
+        assert answer.code == 0, answer.out
 
 
 def test_every_mistake_in_a_plugin_is_caught() -> None:

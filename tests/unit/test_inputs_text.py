@@ -162,7 +162,7 @@ HOSTILE: dict[str, Callable[[int], str]] = {
     "sections": lambda n: "[[a]]\n" * (n // 6),
     "unknown sections": lambda n: "".join(f"[inputs.load{i}]\n" for i in range(n // 16)),
 }
-SIZE = 20_000
+SIZE = 10_000
 NAMES = "[inputs]\n" + "".join(f"load{i} = 1\n" for i in range(120_000))
 
 
@@ -179,8 +179,8 @@ def processor_time(text: str) -> float:
 @pytest.mark.parametrize("kind", HOSTILE)
 def test_reading_time_grows_with_the_size_of_a_file(kind: str) -> None:
     """Four times the text takes about four times as long; a scan that goes back takes sixteen times."""
-    small = min(processor_time(HOSTILE[kind](SIZE)) for _ in range(3))
-    large = min(processor_time(HOSTILE[kind](4 * SIZE)) for _ in range(2))
+    small = min(processor_time(HOSTILE[kind](SIZE)) for _ in range(2))
+    large = processor_time(HOSTILE[kind](4 * SIZE))
     assert large < 9 * max(small, 0.004)
 
 
@@ -228,7 +228,7 @@ def said(read: Callable[[], object]) -> list[str]:
     return []
 
 
-@drawing(max_examples=400, deadline=2000)
+@drawing(max_examples=200, deadline=2000)
 @drawn(st.one_of(st.text(), st.lists(LINES, max_size=12).map("\n".join)))
 def test_any_text_is_a_setup_or_an_input_error(text: str) -> None:
     assert all(sentence.startswith("wear.toml:") and "\n" not in sentence for sentence in said(lambda: pin(text)))

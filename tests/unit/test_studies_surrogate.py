@@ -210,10 +210,10 @@ def test_the_same_seed_gives_the_same_numbers_wherever_it_is_computed() -> None:
     study = Surrogate(of="depth", over=over, design=40, batch=16, compare=0)
     setup = replace(setup_of(WEAR), studies=(study,))
     texts = []
-    for address in ("serial", "serial", "processes:2"):
+    for address in ("serial", "processes:2"):
         with open_executor(address) as executor:
             texts.append(json.dumps(calculate(setup, executor=executor).outcomes["surrogate"].as_json()))
-    assert texts[0] == texts[1] == texts[2]
+    assert texts[0] == texts[1]
     other = calculate(replace(setup, seed=1)).outcomes["surrogate"]
     assert json.dumps(other.as_json()) != texts[0]
 
