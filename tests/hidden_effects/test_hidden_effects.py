@@ -178,14 +178,3 @@ def test_a_name_that_fits_worse_than_an_unregistered_curve_is_not_alone() -> Non
     assert "encoder_eccentricity" not in case.hidden
     assert document["verdict"] == "one_of"
     assert judged["in_set"]
-
-
-def test_what_is_believed_is_gone_on_from_where_the_search_left_it() -> None:
-    """A bend over the link temperature alone is better by 144 than two registered causes that draw most of it.
-
-    The two were named, and nothing beside them. The curve is seen now; that it is there alone is not said yet.
-    """
-    case, document, _ = answered(1400829, Wish())
-    assert case.shape is not None
-    assert document["remainder"]["depends_on"] == ["link_temperature"]
-    assert document["verdict"] in {"unknown", "undecided"}

@@ -179,11 +179,14 @@ def test_units_of_a_file_change_nothing(tmp_path: Path, two_found: DiagnosisResu
     assert_same(two_found, Asked(drive_model(), units=units).diagnosed(tmp_path, columns))
 
 
-def test_units_of_a_model_change_nothing(tmp_path: Path) -> None:
-    columns = nothing_wrong("wandering", 4)
-    scaled_columns, units = scaled(columns)
-    plain = PROPER.diagnosed(tmp_path, columns)
-    assert_same(plain, Asked(drive_model(in_si=True), units=units).diagnosed(tmp_path, scaled_columns))
+@pytest.fixture(scope="module")
+def nothing_found(tmp_path_factory: pytest.TempPathFactory) -> DiagnosisResult:
+    return PROPER.diagnosed(tmp_path_factory.mktemp("nothing"), nothing_wrong("wandering", 2))
+
+
+def test_units_of_a_model_change_nothing(tmp_path: Path, nothing_found: DiagnosisResult) -> None:
+    columns, units = scaled(nothing_wrong("wandering", 2))
+    assert_same(nothing_found, Asked(drive_model(in_si=True), units=units).diagnosed(tmp_path, columns))
 
 
 def test_the_order_of_the_rows_inside_a_run_changes_nothing(tmp_path: Path) -> None:
@@ -218,15 +221,12 @@ def test_order_seven_is_unknown_and_said_to_be_order_seven(tmp_path: Path) -> No
     assert_allclose(np.sqrt(np.mean((made / UM - wave) ** 2)), 0, atol=0.3)
 
 
-def test_nothing_wrong_gains_nothing_and_its_noise_floor_is_not_too_small(tmp_path: Path) -> None:
-    columns = nothing_wrong("wandering", 2)
-    rows = len(columns["time"])
-    found = PROPER.diagnosed(tmp_path, columns)
-    (gain,) = found.gain
+def test_nothing_wrong_gains_nothing_and_its_noise_floor_is_not_too_small(nothing_found: DiagnosisResult) -> None:
+    (gain,) = nothing_found.gain
     assert gain.reducible_removed <= 0 or gain.p_value > 0.05
-    (wrong,) = found.wrong
+    (wrong,) = nothing_found.wrong
     assert wrong.noise.autocorrelation > 0.2
-    assert_allclose(wrong.noise_floor.value / UM, 1, atol=4 / np.sqrt(rows))
+    assert_allclose(wrong.noise_floor.value / UM, 1, atol=4 / np.sqrt(len(nothing_found.records)))
 
 
 def test_a_decision_does_not_depend_on_who_asks(tmp_path: Path, two_found: DiagnosisResult) -> None:

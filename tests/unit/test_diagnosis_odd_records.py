@@ -19,12 +19,11 @@ from hard_models import (
     Shop,
     asked,
     leaning,
-    leaning_with_play,
     of_causes,
     record,
 )
 
-from truing import Effect, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
+from truing import Effect, Float, Model, Tolerance, Unknown, given, inputs, normal
 from truing.diagnosis import long_records
 
 pytestmark = pytest.mark.filterwarnings("error::RuntimeWarning")
@@ -96,19 +95,6 @@ def test_many_tolerated_inputs_are_calibrated_and_no_cause(tmp_path: Path, slant
 # Records of odd sizes
 
 
-def test_six_rows_name_nothing_and_are_all_there(tmp_path: Path) -> None:
-    answer = asked(Shop()).diagnosed(tmp_path, record(leaning_with_play, rows=6))
-    assert (answer.verdict, answer.causes) == ("undecided", ())
-    assert len(answer.records) == 6
-
-
-def test_a_constant_column_is_said_and_harms_nothing(tmp_path: Path) -> None:
-    columns = {**record(leaning), "warmth": np.full(ROWS, 20.0)}
-    answer = asked(Shop()).diagnosed(tmp_path, {**columns, "bend": columns["bend"]})
-    assert [cause.effect for cause in answer.causes] == ["leans"]
-    assert any("'warmth'" in note and "never change" in note for note in answer.records.notes)
-
-
 def test_two_equal_columns_are_told_as_one(tmp_path: Path) -> None:
     """A shape over either is the same: neither of the two is called the one."""
     columns = record(lambda at: 30 * np.sin(2 * np.pi * at["warmth"] / 12))
@@ -116,53 +102,6 @@ def test_two_equal_columns_are_told_as_one(tmp_path: Path) -> None:
     answer = twin.diagnosed(tmp_path, {**columns, "air": columns["warmth"] + 273.15})
     assert any({"warmth", "air"} <= set(said.replace(" and ", " ").split()) for said in answer.inseparable)
     assert answer.verdict in {"unknown", "one_of"}
-
-
-@inputs
-class Two:
-    """A beam of which the tilt is read as well."""
-
-    load: Float = given(0.0, "kN")
-    place: Float = given(0.0, "mm")
-    slant: Float = given(0.0, "um")
-
-
-def two_lean(it: Two, *, slant: Float) -> Two:
-    return replace(it, slant=it.slant + slant)
-
-
-TWO_LEAN = Effect("leans", on_inputs=two_lean, unknowns=[Unknown("slant", -200, 200, "um")])
-
-
-@results
-class Both:
-    """What is read."""
-
-    bend: Float = found("um")
-    tilt: Float = found("um")
-
-
-def both(it: Two) -> Both:
-    """The same twice."""
-    bend = it.load * 1e-7 + it.slant * it.place / 0.3
-    return Both(bend=bend, tilt=2 * bend)
-
-
-def test_a_result_that_is_read_three_times_only_is_not_used_and_no_row_is_lost(tmp_path: Path) -> None:
-    columns = record(leaning)
-    tilt = np.full(ROWS, np.nan)
-    tilt[[3, 50, 90]] = 2 * columns["bend"][[3, 50, 90]]
-    model = Model(
-        name="both",
-        title="Both",
-        function=both,
-        errors=[TWO_LEAN],
-    )
-    answer = Asked(model, units={**UNITS, "tilt": "um"}).diagnosed(tmp_path, {**columns, "tilt": tilt})
-    assert answer.measured == ("bend",)
-    assert len(answer.records) == ROWS
-    assert any(note.startswith("'tilt' is not used: 3 values are too few") for note in answer.records.notes)
-    assert [cause.effect for cause in answer.causes] == ["leans"]
 
 
 def test_a_long_record_runs_to_the_end_and_counts_every_row(
