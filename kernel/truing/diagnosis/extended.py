@@ -15,9 +15,8 @@ from truing.declare.sources import Effect
 from truing.diagnosis.causes import Candidate, at_rest
 from truing.diagnosis.machine import Calibration, Tolerated, predict_each
 from truing.errors import PluginError
-from truing.evaluate import effect_column
 from truing.repeated import REMEMBERED as REPEATED
-from truing.setup import Setup, SwitchedOn
+from truing.setup import Setup, SwitchedOn, effect_column
 from truing.trials import Trial
 
 REMEMBERED = 64
