@@ -195,7 +195,7 @@ def _one_call(
         model = case.model
         calculate = model.function if alike or not repeats else partial(results_of, model, repeats=repeats, failed=log)
         results = _apply(case, columns, calculate, reading=reading)
-        flat = model.read_results(results, {*names, *filter(None, (model.axes[name] for name in names))})
+        flat = model.read_results(results, {*names, *(model.axes[name] for name in names)} & {*model.axes})
         answers = {name: _as_rows(case, name, flat, called) for name in names}
         for name, values in answers.items():
             infinite = ~np.isfinite(values)
@@ -220,7 +220,7 @@ def _as_rows(case: Case, name: str, flat: Mapping[str, Any], rows: int) -> NDArr
         array = np.asarray(flat[name], dtype=float)
         if not item.along:
             return np.broadcast_to(array, (rows,))
-        axis = flat[case.model.axes[name]]
+        axis = flat.get(case.model.axes[name], array)
         return np.broadcast_to(array, (rows, np.asarray(axis).shape[-1] if np.ndim(axis) else 1))
     except (TypeError, ValueError):
         shape = getattr(flat[name], "shape", None)

@@ -10,6 +10,7 @@ of its mean square is what a fit makes small.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import inf
 
 import numpy as np
@@ -41,6 +42,8 @@ NEARER = 30
 """So often a start at which the model fails is halved: what is left of it is rounding."""
 FIRST_DAMPING = 1e-3
 LARGEST_DAMPING = 1e8
+MOST_KEPT = 1_000_000
+"""So many derivatives are kept with a fit; those of a longer record are made anew where they are asked for."""
 GOOD = 0.25
 """Share of what a step promised from which on its corrected derivatives are good enough for the next one."""
 
@@ -355,8 +358,11 @@ class Fitting:
         moved = self.b - self.anchor
         predicted = {name: shown + self.moves[name] @ moved for name, shown in self.predicted.items()}
         values = tuple(parts_of(self.causes, self.outward(self.u)))
+        answer = Fit(self.causes, values, self.b, predicted, self.left, self.cost, self.sample)
+        if sum(drawn.size for each in (self.drawn, self.moves) for drawn in each.values()) > MOST_KEPT:
+            return answer
         slopes = {name: each / np.where(self.log, 1.0, self.sizes) for name, each in self.drawn.items()}
-        return Fit(self.causes, values, self.b, predicted, self.left, self.cost, self.sample, slopes, self.moves)
+        return replace(answer, slopes=slopes, moves=self.moves)
 
 
 def _corrected(slopes: Matrix, change: Matrix, way: Matrix) -> Matrix:

@@ -211,7 +211,8 @@ def _columns(settings: Iterable[tuple[str, int, float]], files: Indices) -> dict
     """Return columns (n,) that have each value in the rows of its file, or in all where the file is -1."""
     made: dict[str, Any] = {}
     for name, file, value in settings:
-        made[name] = np.full(len(files), value) if file < 0 else np.where(files == file, value, made.get(name, 0.0))
+        everywhere = np.broadcast_to(value, (len(files),))
+        made[name] = everywhere if file < 0 else np.where(files == file, value, made.get(name, 0.0))
     return made
 
 

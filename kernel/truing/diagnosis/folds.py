@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import log, sqrt
 
@@ -73,12 +74,13 @@ def ends_of(sample: Sample) -> Folds:
     return Folds(block_of, 2)
 
 
-def refitted(found: Fit, extended: Extended, test: Mask) -> Fit | None:
-    """Fit an explanation to the rows that are not left out, from where it is."""
-    sample = found.sample.of_rows(~test)
-    if not all(len(channel) for channel in sample.channels):
-        return None
-    return refit(found, sample, extended)
+def refitted(fits: Sequence[Fit], extended: Extended, test: Mask) -> list[Fit | None]:
+    """Fit explanations to the rows that are not left out, each from where it is; None where that cannot be done."""
+    samples = {id(found.sample): found.sample for found in fits}
+    rest = {key: sample.of_rows(~test) for key, sample in samples.items()}
+    if not all(len(channel) for sample in rest.values() for channel in sample.channels):
+        return [None] * len(fits)
+    return [refit(found, rest[id(found.sample)], extended) for found in fits]
 
 
 def errors_left_out(found: Fit, extended: Extended, folds: Folds) -> Matrix:
@@ -90,7 +92,7 @@ def errors_left_out(found: Fit, extended: Extended, folds: Folds) -> Matrix:
     rows = np.concatenate([channel.rows for channel in found.sample.channels])
     for fold in range(folds.count):
         test = folds.test(fold)
-        again = refitted(found, extended, test)
+        (again,) = refitted([found], extended, test)
         if again is not None:
             made = np.where(test[rows], found.sample.left(again.predicted), made)
     return made

@@ -69,10 +69,10 @@ def nested(chosen: Chosen, done: Callable[[int, int], None] = lambda count, of: 
     for fold in range(folds.count):
         done(fold, folds.count)
         test = folds.test(fold)
-        base = refitted(chosen.null, made.extended, test)
+        base, *again = refitted([chosen.null, *several], made.extended, test)
         if base is None:
             continue
-        best = _chosen_again(chosen, base, several, test)
+        best = _chosen_again(chosen, base, [found for found in again if found is not None])
         same += best.key == chosen.best.key
         for index, channel in enumerate(base.sample.channels):
             _judge(judged[channel.name], index, (base, best), test)
@@ -95,10 +95,9 @@ def contenders(chosen: Chosen) -> list[Fit]:
     return [made.known[best.key], *near[:CONTENDERS]]
 
 
-def _chosen_again(chosen: Chosen, base: Fit, several: list[Fit], test: Mask) -> Fit:
+def _chosen_again(chosen: Chosen, base: Fit, again: list[Fit]) -> Fit:
     """Return what is chosen without the rows of a fold: the choice, unless another one is better by ``CLOSE``."""
     made = chosen.competition
-    again = [found for each in several if (found := refitted(each, made.extended, test)) is not None]
     if not again:
         return base
     own = next((found for found in again if found.key == chosen.best.key), None)

@@ -41,7 +41,7 @@ def contradictions_of(chosen: Chosen) -> tuple[Contradiction, ...]:
     turn = _in_turn(best.sample)
     rows = np.arange(len(best.sample.mask))
     left_out = [np.isin(rows, half) for half in (turn[len(turn) // 2 :], turn[: len(turn) // 2])]
-    fitted = [found for test in left_out if (found := refitted(best, extended, test)) is not None]
+    fitted = [found for test in left_out for found in refitted([best], extended, test) if found is not None]
     if len(fitted) < 2:
         return ()
     certain = [certainty_of(found, extended) for found in fitted]

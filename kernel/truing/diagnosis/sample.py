@@ -9,7 +9,7 @@ where they are those of Student's t, a reading far out says little, but the fart
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
 from math import exp, inf, log
@@ -161,7 +161,8 @@ class Sample:
     """All measured values of a fit, one result behind another, and the directions in which the inputs may move.
 
     ``directions`` has shape (inputs, K): u of them move the inputs by ``directions @ u`` standard deviations from
-    their means. What is left, and what is drawn, is taken without the memory of the noise.
+    their means. What is left, and what is drawn, is taken without the memory of the noise. ``whole`` is the sample of
+    which this one is a part, with the same directions.
     """
 
     machine: Calibration
@@ -169,6 +170,7 @@ class Sample:
     channels: tuple[Channel, ...]
     directions: Matrix
     mask: Mask
+    whole: Sample | None = field(default=None, repr=False)
 
     @property
     def rows(self) -> int:
@@ -209,6 +211,8 @@ class Sample:
     @cached_property
     def moves(self) -> dict[str, Matrix]:
         """What the directions of the inputs add to the predictions about their means, by result (n, K), SI."""
+        if self.whole is not None:
+            return self.whole.moves
         return {name: slopes @ self.directions for name, slopes in self.machine.slopes.items()}
 
     def scaled(self, left: Matrix) -> Iterator[tuple[Channel, slice, float]]:
@@ -244,7 +248,7 @@ class Sample:
 
     def of_rows(self, mask: Mask) -> Sample:
         """Return some of the rows, with the same noise."""
-        return sample_of(self.machine, self.noise, self.mask & mask, self.directions)
+        return replace(sample_of(self.machine, self.noise, self.mask & mask, self.directions), whole=self)
 
 
 def has_order(machine: Calibration) -> bool:
