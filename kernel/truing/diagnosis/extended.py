@@ -21,7 +21,7 @@ from truing.trials import Trial
 
 REMEMBERED = 64
 """So many setups with moved inputs are kept, and what the model showed at so many points."""
-LARGEST = 1_000_000
+ROWS_KEPT = 1_000_000
 """So many rows of what the model showed are kept."""
 LEAST_PER_EFFECT = 40
 """Calls for every effect on the inputs that are given however long they take: fewer show none of them as it is."""
@@ -100,7 +100,7 @@ class Extended:
         keys = [(tags, b"".join(np.asarray(each).tobytes() for each in (*values, moved))) for values, moved in bare]
         new = {key: point for key, point in zip(keys, bare, strict=True) if key not in self._shown}
         shown = {**self._shown, **dict(zip(new, self._called(bare_causes, list(new.values())), strict=True))}
-        kept = min(REMEMBERED, max(1, LARGEST // max(len(self.machine.records), 1)))  # a fit goes on from the last
+        kept = min(REMEMBERED, max(1, ROWS_KEPT // max(len(self.machine.records), 1)))  # a fit goes on from the last
         self._shown = dict(list({**self._shown, **{key: shown[key] for key in keys}}.items())[-kept:])
         return [self._with_shapes(shown[key], causes, values) for key, (values, _) in zip(keys, points, strict=True)]
 

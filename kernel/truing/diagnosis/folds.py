@@ -15,10 +15,13 @@ from truing.diagnosis.fitted import Fit
 from truing.diagnosis.sample import Sample, has_order
 
 FOLDS = 5
+"""So many folds of the cross-validation: each leaves a fifth of the blocks out."""
 SHORTEST_BLOCK = 6
+"""Rows of the shortest block of a record that is not short: neighbours stay together."""
 FEWEST_BLOCKS = 8
 """A short record has shorter blocks rather than fewer: of four that all gain the best significance is 1/16."""
 BLOCKS = 20
+"""A record has so many blocks at the most: the sign of each is one piece of evidence for the gain."""
 
 
 @dataclass(frozen=True)

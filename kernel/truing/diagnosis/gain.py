@@ -24,10 +24,13 @@ from truing.diagnosis.result import Amount, Gain
 from truing.diagnosis.sample import Channel, NoiseModel, errors_of
 
 FLIPS = 999
+"""So many signs of the blocks are drawn where there are too many to try all: a significance down to 0.001."""
 MOST_EXACT = 12
 """Of so many blocks all signs are tried, of more some that are drawn."""
-ROUNDING = 1e-9
+TIED_SUMS = 1e-9
+"""Share by which two sums of the same blocks differ by rounding alone."""
 COVERED = 0.9
+"""Share of new readings that the stated band is to hold; what it did hold is counted on rows left out."""
 SMALLEST_GAIN = 1e-6
 """Less than this per row is rounding, not gain."""
 CONTENDERS = 6
@@ -203,7 +206,7 @@ def sign_flip_p(gain: Matrix, block_of: Indices, *, seed: int) -> float:
     total = float(sums.sum())
     if total <= SMALLEST_GAIN * len(gain) or len(sums) < 2:
         return 1.0
-    least = total * (1 - ROUNDING)
+    least = total * (1 - TIED_SUMS)
     if len(sums) <= MOST_EXACT:
         signs = 1.0 - 2.0 * (np.arange(2 ** len(sums))[:, None] >> np.arange(len(sums)) & 1)
         return float((signs @ sums >= least).mean())

@@ -32,7 +32,8 @@ from truing.diagnosis.noise import (
 )
 
 WITHOUT_MEMORY, NORMAL, CONSTANT = Autocorrelation(), Tails(inf, 4.5), SpreadTrend()
-ROUNDS, SETTLED = 50, 1e-6
+MOST_SCALE_ROUNDS, SCALE_SETTLED = 50, 1e-6
+"""Newton steps on the logarithm of a scale (the likelihood has one top), until it changes by a smaller share."""
 
 
 @dataclass(frozen=True)
@@ -133,13 +134,13 @@ class Channel:
         with np.errstate(over="ignore"):  # what a wild step leaves may be beyond any number
             squares = left**2
             square = max(float(squares.sum()) / self.known, self.least)
-        for _ in range(ROUNDS if self.freedom < inf and square < inf else 0):  # Newton on its logarithm: it has one top
+        for _ in range(MOST_SCALE_ROUNDS if self.freedom < inf and square < inf else 0):
             outward = squares / (self.freedom * square + squares)
             total = float(outward.sum())
             steep = max(total - float(outward @ outward), 1e-300)
             rise = (total - self.known / (self.freedom + 1)) / steep
             before, square = square, max(square * exp(min(max(rise, -2.0), 2.0)), self.least)
-            if abs(square - before) <= SETTLED * square:
+            if abs(square - before) <= SCALE_SETTLED * square:
                 break
         return square
 
