@@ -9,6 +9,7 @@ import tomllib
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import cache
 from graphlib import TopologicalSorter
 from importlib.metadata import packages_distributions
 from pathlib import Path
@@ -125,7 +126,7 @@ def test_every_library_that_is_imported_is_declared() -> None:
     extras = project["optional-dependencies"]
     lists = [project["dependencies"], *(extras[name] for name in extras if name not in FOR_OUR_WORK)]
     declared = {canonical(word) for words in lists for word in words}
-    imported = {name for file in CODE for name in _libraries_of(ast.parse(file.read_text(encoding="utf-8")))}
+    imported = {name for file in CODE for name in _libraries_of(file)}
     imported -= NEVER_MISSED
     homes = packages_distributions()
     assert {"numpy", "pint", "sklearn"} <= imported
@@ -138,8 +139,14 @@ def canonical(requirement: str) -> str:
     return re.sub(r"[-_.]+", "-", name).lower()
 
 
-def _libraries_of(tree: ast.Module) -> Iterator[str]:
-    for node in ast.walk(tree):
+@cache
+def nodes_of(file: Path) -> list[ast.AST]:
+    """Every node of a file; each is read once for all tests."""
+    return list(ast.walk(ast.parse(file.read_text(encoding="utf-8"))))
+
+
+def _libraries_of(file: Path) -> Iterator[str]:
+    for node in nodes_of(file):
         names: list[str] = []
         if isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]
@@ -181,7 +188,7 @@ def test_every_file_on_the_way_is_there(begin: str) -> None:
 
 
 def imports_of(file: Path) -> Iterator[str]:
-    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+    for node in nodes_of(file):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
@@ -210,10 +217,9 @@ def test_every_name_for_authors_is_there() -> None:
 
 
 def test_the_type_checker_sees_the_same_names() -> None:
-    tree = ast.parse(Path(str(truing.__file__)).read_text(encoding="utf-8"))
     seen = {
         alias.name: node.module
-        for node in ast.walk(tree)
+        for node in nodes_of(Path(str(truing.__file__)))
         if isinstance(node, ast.ImportFrom) and str(node.module).startswith("truing.")
         for alias in node.names
     }
@@ -225,9 +231,7 @@ def test_the_type_checker_sees_the_same_names() -> None:
 
 
 def functions_of(file: Path) -> Iterator[ast.FunctionDef]:
-    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.FunctionDef):
-            yield node
+    return (node for node in nodes_of(file) if isinstance(node, ast.FunctionDef))
 
 
 def test_imports_stand_at_the_top_of_files() -> None:
