@@ -134,8 +134,8 @@ def _ranking(chosen: Chosen) -> tuple[Alternative, ...]:
     """Return the best explanations, the winner first, every one with how far it lies behind."""
     made = chosen.competition
     top = made.score(made.known[chosen.best.key])
-    others = [found for found in made.ranked() if found.key != chosen.best.key][: RANKED - 1]
-    ranked = [Rival(chosen.best, 0.0), *(Rival(found, max(0.0, made.score(found) - top)) for found in others)]
+    others = [fit for fit in made.ranked() if fit.key != chosen.best.key][: RANKED - 1]
+    ranked = [Rival(chosen.best, 0.0), *(Rival(fit, max(0.0, made.score(fit) - top)) for fit in others)]
     return tuple(alternative_of(chosen, each) for each in ranked)
 
 
