@@ -189,18 +189,18 @@ def _wave(best: Fit, channel: Channel) -> Iterator[ResidualFinding]:
     ``m (1 - g)^(m - 1)`` (Fisher, Proc. R. Soc. A 125, 1929, the first term of his sum).
     """
     left = channel.white(channel.left(best.predicted[channel.name]))
-    covariates = [item for item in best.sample.machine.records.covariates.values() if item.role != "order"]
-    moved = [item for item in covariates if len(np.unique(item.values[channel.rows])) >= FEWEST_OF_WAVE]
+    known = best.sample.machine.records.moved
+    moved = [covariate for covariate in known if len(np.unique(covariate.values[channel.rows])) >= FEWEST_OF_WAVE]
     periods = np.arange(FEWEST_PERIODS, (len(left) - 1) // 2 + 1)
     if len(left) < FEWEST_OF_WAVE or not moved or not np.ptp(left):
         return
     waves: list[tuple[float, str, int, float]] = []
-    for item in moved:
-        ordered = left[np.argsort(item.values[channel.rows], kind="stable")]
+    for covariate in moved:
+        ordered = left[np.argsort(covariate.values[channel.rows], kind="stable")]
         power = np.abs(np.fft.rfft(ordered - ordered.mean()))[periods] ** 2
         share = float(power.max() / power.sum())
         p_value = min(1.0, len(moved) * len(periods) * (1 - share) ** (len(periods) - 1))
-        waves.append((p_value, item.name, int(periods[np.argmax(power)]), share))
+        waves.append((p_value, covariate.name, int(periods[np.argmax(power)]), share))
     p_value, name, count, share = min(waves)
     if p_value <= WAVE_LEVEL:
         words = f"{count} waves over the range of {name}, with {100 * share:.0f} % of what is left after all"
