@@ -141,7 +141,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ("for power in (2.0, 4.0):", "for power in (4.0, 16.0):"),
     ),
     *changes(
-        "kernel/truing/studies/form.py", "unit/test_studies_reliability.py",
+        "kernel/truing/studies/chances.py", "unit/test_studies_reliability.py",
         ("max(0.0, 1.0 - missed)", "max(0.0, 1.0 - missed / 2)"),
     ),
     *changes(
@@ -158,7 +158,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ("paid.imag / (COMPLEX_STEP * widths)", "paid.imag / COMPLEX_STEP"),
     ),
     *changes(
-        "kernel/truing/studies/synthesis.py", "unit/test_studies_allocation.py",
+        "kernel/truing/studies/allocation.py", "unit/test_studies_allocation.py",
         ("GRADES[coarsest - 1]", "GRADES[coarsest - 2]"),
         ("return float((reach * 10.0**log_sd) ** 2)", "return float(reach * 10.0**log_sd)"),
     ),
@@ -217,7 +217,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ("[_in(low, unit), _in(high, unit)]", "[_in(low, unit), _in(low, unit)]"),
     ),
     *changes(
-        "kernel/truing/explain/touched.py", "end_to_end/test_explain.py",
+        "kernel/truing/explain/influence.py", "end_to_end/test_explain.py",
         ("(unknown.low * unknown.high) ** 0.5", "unknown.low * unknown.high"),
     ),
     *changes(

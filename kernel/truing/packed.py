@@ -14,7 +14,7 @@ from truing.declare.fields import Part, spec_of
 from truing.declare.model import Model
 from truing.errors import PluginError
 from truing.kernel import Kernel, Origin, kernel_for
-from truing.kernel.source import code_hash
+from truing.kernel.loading import code_hash
 from truing.setup import Setup, SwitchedOn
 
 SCRIPT = "__main__"

@@ -26,7 +26,7 @@ from diagnosis_samples import (
 )
 from hypothesis import HealthCheck, given, settings
 
-from truing.cli.diagnosis_printed import report
+from truing.cli.diagnose import lines_of as report
 from truing.diagnosis.noise import SETTINGS
 from truing.diagnosis.result import (
     Alternative,

@@ -13,15 +13,13 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from truing.api.comparison import Differences, comparison_of
 from truing.api.findings import NamedCause, Ranking, Residuals, causes_of
 from truing.api.notebook import bullets, fold, folds, heading, html_table, joined, paragraphs, picture, table_html
 from truing.api.records import MeasuredRecord
-from truing.api.run import Order, Run, performed
-from truing.api.settings import settings_of, text_of
+from truing.api.run import Differences, Order, Run, comparison_of, performed
 from truing.api.study import StudyResult
 from truing.api.tables import LABEL, beside, frame_text
-from truing.api.writing import write_sheet
+from truing.api.values import settings_of, text_of
 from truing.declare.model import Study
 from truing.declare.near_miss import near_miss
 from truing.describe import description, sections
@@ -34,14 +32,15 @@ from truing.example_file import example_of, example_text
 from truing.gauge import shown_by_gauge
 from truing.inputs_file import read_setup, setup_from_text
 from truing.inputs_file.assemble import toml_value
-from truing.inputs_file.culprit import told_by_line
-from truing.kernel import Offer
+from truing.inputs_file.sentences import told_by_line
+from truing.kernel import Offer, offer_of
 from truing.measurements import RowsFile, read_rows
 from truing.progress import progress_bar
 from truing.published import ComparedRow, compare_published
 from truing.report.diagnosis_chapters import fitted_table
 from truing.report.diagnosis_sheet import data_words, diagnosis_sheet_of, questions, write_diagnosed
 from truing.report.diagnosis_words import headline, verdict_word
+from truing.report.run import write_sheet
 from truing.runs.diagnosis_document import diagnosis_document
 from truing.runs.extension import extended_text
 from truing.runs.folder import demand_place
@@ -370,3 +369,15 @@ class Diagnosis:
         head = heading(f"Diagnosis of {self.result.setup.model.title}, {data_words(self.result)}")
         shown = picture(self.residuals.drawing(), "Residuals before and after")
         return joined(head + paragraphs([*said, *warned]), table, shown, fold("More", rest))
+
+
+# Loading a model: the first call of a user
+
+
+def load(plugin: str | Path) -> LoadedModel:
+    """Load a model: an installed plugin by its name, one model of several as "plugin.model", or a file (``.py``).
+
+    Plugins that are broken are left out, with a warning each. Raises UnknownPluginError where there is no such model,
+    PluginError where the plugin that is named is broken.
+    """
+    return LoadedModel(offer_of(str(plugin), lambda text: warnings.warn(text, stacklevel=4)))

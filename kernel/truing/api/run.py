@@ -12,27 +12,26 @@ from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
-from truing.api.comparison import Differences, comparison_of
 from truing.api.notebook import MOST_ROWS, fold, heading, html_table, joined, paragraphs, table_html
-from truing.api.quantities import quantity_of
 from truing.api.study import StudyResult
 from truing.api.tables import frame_of, frame_text
-from truing.api.writing import write_sheet
+from truing.api.values import quantity_of
 from truing.calculation import Calculation, calculate
 from truing.cases import CaseResult, CasesTable, run_cases
 from truing.declare.near_miss import near_miss
 from truing.errors import UsageError
 from truing.executors import BatchLog, KeptExecutor, WorkerPool, open_executor
 from truing.formulas import symbol_text
-from truing.inputs_file.culprit import told_by_line
+from truing.inputs_file.sentences import told_by_line
 from truing.kernel import Offer
 from truing.measurements import CasesFile, read_cases
 from truing.numbers import format_value, with_unit
 from truing.progress import progress_bar
 from truing.report.content import check_table
 from truing.report.document import plain_text
-from truing.report.run import UNDISTURBED, sheet_of, write_calculation
+from truing.report.run import UNDISTURBED, sheet_of, write_calculation, write_sheet
 from truing.report.sheet import banner_of, cases_table
+from truing.runs.comparison import Change, compared, in_order, words_of
 from truing.runs.documents import results_document
 from truing.runs.folder import demand_place
 from truing.runs.partial import code_of, identity_of, kept_batches
@@ -295,3 +294,37 @@ def _answer(case: CaseResult, name: str, setup: Setup) -> float:
 
 def _in_unit(value: Any, unit: str) -> Any:
     return value if isinstance(value, (str, bool)) else float(from_si(value, unit))
+
+
+# What differs between two runs, or two diagnoses
+
+
+CHANGE_COLUMNS = ("what", "name", "before", "after", "change")
+
+
+@dataclass(frozen=True)
+class Differences:
+    """What differs between two runs, or two diagnoses: checks of another state first. False where nothing does."""
+
+    changes: tuple[Change, ...]
+
+    def __repr__(self) -> str:
+        return "\n".join("  ".join(words_of(change)) for change in self.changes) or "equal"
+
+    def __bool__(self) -> bool:
+        """Whether anything differs."""
+        return bool(self.changes)
+
+    def frame(self) -> Any:
+        """Return the differences as a dataframe of texts: what, name, before, after, change."""
+        rows = [words_of(change) for change in self.changes]
+        return frame_of({name: [row[place] for row in rows] for place, name in enumerate(CHANGE_COLUMNS)})
+
+    def _repr_html_(self) -> str:
+        rows = [words_of(change) for change in self.changes]
+        return html_table(rows, CHANGE_COLUMNS) if rows else paragraphs(["equal"])
+
+
+def comparison_of(before: Mapping[str, Any], after: Mapping[str, Any]) -> Differences:
+    """Compare two documents. Raises UsageError for a run beside a diagnosis."""
+    return Differences(tuple(in_order(compared(before, after))))

@@ -8,14 +8,15 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
+from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, ParamSpec
+from typing import Annotated, ParamSpec, TypeAlias
 
 import typer
 
+from truing.cli import candidates
 from truing.cli.candidates import names, names_inside, runs
 from truing.cli.console import out, verb
-from truing.cli.words import AsJson, Cases, Changed, Excel, Inputs, OutputFile, Pdf, Plugin, RunFolder, Shell
 from truing.heavy import Later
 
 P = ParamSpec("P")
@@ -235,3 +236,44 @@ def completion(
     install: Annotated[bool, typer.Option("--install", help="Put the script where your shell finds it.")] = False,
 ) -> None:
     """Print the script by which your shell completes plugins, inputs and results, or install it."""
+
+
+# Arguments and options that several verbs share
+
+
+Plugin: TypeAlias = Annotated[
+    str, typer.Argument(help="An installed plugin's name, or a Python file.", autocompletion=candidates.plugins)
+]
+Changed: TypeAlias = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="NAME=VALUE",
+        help="Replace one value of the inputs file.",
+        autocompletion=candidates.changes,
+    ),
+]
+AsJson: TypeAlias = Annotated[bool, typer.Option("--json", help="One JSON document on stdout.")]
+OutputFile: TypeAlias = Annotated[
+    Path | None, typer.Option("-o", "--output", help="The file to write (stdout without it).")
+]
+Excel: TypeAlias = Annotated[
+    bool, typer.Option("--excel", help="Write CSV that a spreadsheet with a decimal comma opens.")
+]
+Inputs: TypeAlias = Annotated[
+    Path | None, typer.Option("--inputs", "-i", help="The inputs file; without it the shipped example.")
+]
+Cases: TypeAlias = Annotated[Path | None, typer.Option("--cases", help="A CSV file: every row is a case.")]
+RunFolder: TypeAlias = Annotated[
+    Path | None, typer.Option("--output", "-o", help="The run folder (default runs/STEM).")
+]
+Pdf: TypeAlias = Annotated[bool, typer.Option("--pdf", help="Print the sheet to PDF with an installed browser.")]
+
+
+class Shell(StrEnum):
+    """A shell that can complete."""
+
+    bash = "bash"
+    zsh = "zsh"
+    fish = "fish"
+    powershell = "powershell"

@@ -9,10 +9,10 @@ from pathlib import Path
 import typer
 
 from truing.atomic import write_files
+from truing.cli.app import Shell
 from truing.cli.console import out, settings_of
-from truing.cli.words import Shell
 from truing.errors import UsageError
-from truing.report.templates import template_folder
+from truing.report import template_folder
 
 FILES = {Shell.bash: "calc.bash", Shell.zsh: "calc.zsh", Shell.fish: "calc.fish", Shell.powershell: "calc.ps1"}
 

@@ -14,9 +14,9 @@ from truing.declare.near_miss import near_miss
 from truing.errors import OutputError, UsageError
 from truing.gauge import shown_by_gauge
 from truing.inputs_file import read_setup
-from truing.inputs_file.culprit import told_by_line
+from truing.inputs_file.sentences import told_by_line
 from truing.measurements import EXCEL, PLAIN, RowsFile, read_rows, table_text
-from truing.measurements.cells import with_comma
+from truing.measurements.csv_text import with_comma
 from truing.measurements.overriding import NAMES, REMARKS
 from truing.setup import Setup
 from truing.texts import one_line

@@ -19,8 +19,7 @@ from truing.cli.console import Settings, out, say, sentence_of, settings_of
 from truing.cli.load import LABEL, find_offer
 from truing.inputs_file.files import refuse_file
 from truing.kernel import Offer
-from truing.runs.change_words import amount_of
-from truing.runs.comparison import changes, in_order
+from truing.runs.comparison import amount_of, changes, in_order
 from truing.runs.folder import demand_place
 from truing.studies.checks import EXIT_CODES, SHORT
 from truing.texts import one_line

@@ -13,9 +13,8 @@ from truing.declare.fields import Axis
 from truing.declare.near_miss import near_miss
 from truing.declare.sources import SINCE_START
 from truing.kernel import Offer
-from truing.measurements.csv_text import Header, TableSource
+from truing.measurements.csv_text import UNCOUNTED, Header, RowCount, TableSource
 from truing.measurements.derived import TIME, histories
-from truing.measurements.row_count import UNCOUNTED, RowCount
 from truing.measurements.table import RUN, Known, Source, is_number, read_table
 from truing.setup import Setup
 from truing.units.grammar import shown

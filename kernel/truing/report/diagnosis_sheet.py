@@ -16,7 +16,7 @@ from truing.report.document import Banner, Document
 from truing.report.run import run_info, sheets_of
 from truing.report.sheet import end_chapters, head_of, logo_of
 from truing.runs.diagnosis_document import file_labels
-from truing.runs.diagnosis_folder import data_digests, write_diagnosis
+from truing.runs.folder import data_digests, write_diagnosis
 from truing.runs.provenance import Provenance, provenance_of
 
 DIAGNOSIS = "Diagnosis"

@@ -14,9 +14,9 @@ from urllib.parse import quote
 from truing.atomic import write_files
 from truing.errors import OutputError, UnitError
 from truing.numbers import ABSENT, counted, format_number, pretty, with_unit
+from truing.report import template_folder
 from truing.report.document import Head
 from truing.report.html_printer import page
-from truing.report.templates import template_folder
 from truing.runs.index import FolderEntry, ListedNumber, Listing, Other
 from truing.studies.checks import State
 from truing.units import unit_text

@@ -5,10 +5,11 @@ from __future__ import annotations
 import getpass
 import platform
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+from truing.atomic import write_files
 from truing.calculation import Calculation
 from truing.cases import CasesTable
 from truing.errors import OutputError
@@ -100,3 +101,24 @@ def run_info(started: float) -> dict[str, Any]:
         "user": user,
         "workers": {"count": 1, "lost": 0, "where": "serial"},
     }
+
+
+# Writing a sheet under a name that the user chooses
+
+
+def write_sheet(path: str | Path, make: Callable[[], Document]) -> Path:
+    """Write a sheet as HTML, Markdown or PDF, as the name ends, and return its path.
+
+    Raises OutputError for any other ending, for a PDF where no browser can print it, and where it cannot be written.
+    """
+    file = Path(path)
+    ending = file.suffix.lower()
+    if ending not in {".html", ".htm", ".md", ".pdf"}:
+        raise OutputError(f"{file}: a sheet ends in .html, .md or .pdf")
+    sheet = make()
+    if ending == ".md":
+        write_files({file: markdown_of(sheet)})
+    else:
+        page = html_of(sheet)
+        write_files({file: pdf_bytes(page) if ending == ".pdf" else page})
+    return file

@@ -13,7 +13,7 @@ from typing import IO, Any
 
 from truing.errors import OutputError
 from truing.executors.kept import BatchLog
-from truing.kernel.source import code_hash
+from truing.kernel.loading import code_hash
 from truing.runs.folder import json_text
 from truing.runs.provenance import provenance_of
 from truing.setup import Setup

@@ -15,11 +15,10 @@ from truing.errors import InfeasibleError, UsageError
 from truing.evaluate import acting_inputs, answered
 from truing.setup import Setup
 from truing.studies.bench import Bench
-from truing.studies.chances import chance, straightened
+from truing.studies.chances import FormResult, chance, form, straightened
 from truing.studies.checks import Check, chance_check, requirements
 from truing.studies.demands import Z95, Demand, as_number, demands, nominal_inputs, wilson, worst
 from truing.studies.drawings import labelled, lines
-from truing.studies.form import FormResult, form
 from truing.studies.reading import printed, printed_step, read_range, scattering_name, spoken
 from truing.studies.sampling import Machines, Moments, SampleBudget, Tally, sample
 from truing.studies.scatter import scatter_of

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
-from truing.arrays import Matrix
+from truing.arrays import Matrix, one_thread
 from truing.declare.near_miss import near_miss
 from truing.errors import DeclarationError, UnitError, UsageError
 from truing.evaluate import Rows
@@ -25,7 +25,6 @@ from truing.heavy import gaussian_kernels, gaussian_process, learning_exceptions
 from truing.setup import Setup
 from truing.studies.demands import Z95, wilson
 from truing.studies.reading import read_range
-from truing.studies.threads import one_thread
 from truing.units import pint_quantity, split_quantity, unit_factor
 
 LENGTHS = (1e-2, 1e3)

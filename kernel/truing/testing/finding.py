@@ -10,8 +10,7 @@ from truing.declare.sources import Effect
 from truing.diagnosis.result import Cause, DiagnosisResult, VisibleSize, explanations_of
 from truing.errors import UsageError
 from truing.report.diagnosis_words import cause_text, fitted_text, listed, settings_text
-from truing.testing.hidden import Hidden
-from truing.testing.hiding import hide
+from truing.testing.hiding import Hidden, hide
 from truing.testing.subject import fail
 from truing.units import difference_unit, from_si, unit_factor
 

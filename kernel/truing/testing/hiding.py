@@ -2,31 +2,42 @@
 
 from __future__ import annotations
 
+import inspect
+import json
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from time import perf_counter
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from truing.declare.model import Model
-from truing.errors import Fault, InputError, TruingError
-from truing.gauge import read_by_gauge
-from truing.inputs_file import setup_from_settings
+from truing.declare.near_miss import near_miss
+from truing.declare.sources import Effect, Unknown
+from truing.declare.specs import Axis
+from truing.diagnosis.engine import diagnose
+from truing.diagnosis.reading import read_records
+from truing.diagnosis.records import Records
+from truing.diagnosis.result import DiagnosisResult
+from truing.errors import Fault, InputError, TruingError, UsageError
+from truing.gauge import one_machine, read_by_gauge
+from truing.inputs_file import setup_from_settings, setup_from_text
+from truing.kernel import Offer, Origin
 from truing.measurements import read_rows, table_text
-from truing.setup import Setup
+from truing.runs.diagnosis_document import diagnosis_document
+from truing.runs.inputs_written import complete_inputs
+from truing.setup import Setup, SwitchedOn
 from truing.studies.scatter import generator, scatter_of
 from truing.testing.designs import RecordDesign, columns_of
-from truing.testing.hidden import MEASURED, Hidden, offer_of
-from truing.testing.noises import RecordNoise, noise_of
-from truing.testing.planted import Size, Strange, check_by, effect_of, truth_of, wrong_machine
 from truing.testing.subject import Subject
-from truing.units import difference_unit, from_si, unit_factor
+from truing.units import difference_unit, from_si, read_quantity, split_quantity, unit_factor
 
-HELD_OUT = 200
+HELD_OUT_ROWS = 200
 
 
 def hide(
@@ -95,7 +106,7 @@ def _hidden(wish: _Wish, model: Model[Any, Any]) -> Hidden:
     setup = replace(setup, conditions={**setup.conditions, **known})
     plan = _Plan(setup, wrong_machine(setup.changed(off), effect, truth, wish.by), noises, wish.correlation, wish.seed)
     measured, _ = plan.recorded(design, 0)
-    held, left = plan.recorded(design if wish.runs > 1 or design.is_record else replace(design, rows=HELD_OUT), 1)
+    held, left = plan.recorded(design if wish.runs > 1 or design.is_record else replace(design, rows=HELD_OUT_ROWS), 1)
     return Hidden(
         setup=setup, measured=measured, held_out=held, effect=wish.effect, truth=truth, machine=off, noise=left,
         is_strange=effect is None and wish.by is not None,
@@ -181,3 +192,360 @@ def _check_counts(wish: _Wish, faults: list[str]) -> None:
 def _drawn(setup: Setup, seed: int) -> dict[str, float]:
     """Draw a machine from the tolerances: its inputs in SI."""
     return {name: float(values[0]) for name, values in scatter_of(setup).draw(seed, 0, 1).items()}
+
+
+# A record with what was hidden in it, and what a diagnosis answers to it
+
+
+MEASURED, HELD_OUT, INPUTS = "measured.csv", "held_out.csv", "inputs.toml"
+
+
+@dataclass(frozen=True)
+class Answered:
+    """What a diagnosis said, as result and as diagnosis.json, and what it is worth on rows it has never seen.
+
+    ``held`` and ``predicted`` are those rows as measured and as the extended model predicts them, by result, in SI;
+    nothing where no rows were held out. ``seconds`` is what the diagnosis took.
+    """
+
+    diagnosis: DiagnosisResult
+    document: Mapping[str, Any]
+    held: Mapping[str, NDArray[np.float64]]
+    predicted: Mapping[str, NDArray[np.float64]]
+    seconds: float
+
+    def error_of(self, result: str) -> float:
+        """Return the root mean square error on the rows held out, SI."""
+        return float(np.sqrt(np.nanmean((self.held[result] - self.predicted[result]) ** 2)))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Hidden:
+    """A measured record whose truth is known: what ``hide`` makes, and what ``assert_finds`` judges.
+
+    ``measured`` and ``held_out`` are CSV as a diagnosis reads it; rows held out are never fitted. ``setup`` is what the
+    engineer knows of the machine. ``truth`` holds the unknowns of the effect, ``machine`` what its inputs truly are
+    where they are off their nominals, ``noise`` the root mean square of what the gauge added to the rows held out, by
+    result; all in SI. Without an ``effect`` nothing registered is hidden: nothing at all, unless ``is_strange``.
+    """
+
+    setup: Setup
+    measured: str
+    held_out: str = ""
+    effect: str | None = None
+    truth: Mapping[str, float] = field(default_factory=dict)
+    machine: Mapping[str, float] = field(default_factory=dict)
+    noise: Mapping[str, float] = field(default_factory=dict)
+    is_strange: bool = False
+
+    @cached_property
+    def answered(self) -> Answered:
+        """Diagnose the record, once, and predict the rows held out."""
+        return _answered(self)
+
+    def write(self, folder: Path) -> None:
+        """Write inputs.toml, measured.csv and held_out.csv, to look at and to diagnose on the command line."""
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / INPUTS).write_text(complete_inputs(self.setup, folder), encoding="utf-8")
+        (folder / MEASURED).write_text(self.measured, encoding="utf-8")
+        if self.held_out:
+            (folder / HELD_OUT).write_text(self.held_out, encoding="utf-8")
+
+
+def recorded(
+    model: Model[Any, Any],
+    *,
+    inputs: str,
+    measured: str,
+    held_out: str = "",
+    effect: str | None = None,
+    truth: Mapping[str, float] | None = None,
+) -> Hidden:
+    """Return a record that was made elsewhere: by a generator of your own, or on a machine whose error is known.
+
+    ``inputs`` is the text of the inputs file, ``measured`` and ``held_out`` that of CSV files with units in the header,
+    ``truth`` holds the unknowns of the effect in SI. Raises InputError with every fault of the inputs.
+    """
+    setup = setup_from_text(inputs, Subject(model).offer, file=INPUTS, folder=Path())
+    return Hidden(setup=setup, measured=measured, held_out=held_out, effect=effect, truth=truth or {})
+
+
+def offer_of(setup: Setup) -> Offer:
+    """Return the model of a setup as the command line would offer it."""
+    name = setup.model.name
+    origin = setup.origin if setup.origin.name else Origin(name, "", "", "", f"entry:{name}")
+    return Offer(name, setup.model, origin)
+
+
+def _answered(hidden: Hidden) -> Answered:
+    records = records_of(hidden.setup, hidden.measured, MEASURED)
+    start = perf_counter()
+    diagnosis = diagnose(hidden.setup, records)
+    seconds = perf_counter() - start
+    document = json.loads(json.dumps(diagnosis_document(diagnosis)))
+    if not hidden.held_out:
+        return Answered(diagnosis, document, {}, {}, seconds)
+    judged = records_of(hidden.setup, hidden.held_out, HELD_OUT, with_unit_errors=False)
+    return Answered(diagnosis, document, judged.measured, predicted(diagnosis, hidden.setup, judged), seconds)
+
+
+def records_of(setup: Setup, text: str, name: str, *, with_unit_errors: bool = True) -> Records:
+    """Read a record as the command line does; without a search for wrong units where nobody is told of them."""
+    with TemporaryDirectory() as folder:
+        file = Path(folder) / name
+        file.write_text(text, encoding="utf-8")
+        return read_records([file], offer_of(setup), setup, with_unit_errors=with_unit_errors)
+
+
+def predicted(diagnosis: DiagnosisResult, setup: Setup, records: Records) -> dict[str, NDArray[np.float64]]:
+    """Predict rows that were not fitted, by every cause and shape that was found on the calibrated machine; SI."""
+    calibrated = {item.name: item.value for item in diagnosis.calibrated}
+    machine = diagnosis.extended or replace(setup, calibrated={**setup.calibrated, **calibrated})
+    shown = read_by_gauge(one_machine(machine), records.rows, diagnosis.measured).results
+    known: dict[str, Any] = {name: one.values for name, one in records.covariates.items()}
+    found = {}
+    for result in diagnosis.measured:
+        values = shown[result]
+        for term in diagnosis.remainder.terms.get(result, ()) if diagnosis.remainder else ():
+            values = values + term.coefficient * np.asarray(eval(term.expression, {"np": np}, known))
+        found[result] = values
+    return found
+
+
+# What is hidden: an effect with its unknowns, made by its own function or by one of the author's own
+
+
+Size: TypeAlias = str | float | Mapping[str, str | float]
+Strange: TypeAlias = Callable[..., Any]
+STRANGE = "hidden_by_the_test"
+ENDLESS = 1e6
+"""Bounds as wide as these say nothing of how large an effect is."""
+
+
+def effect_of(model: Model[Any, Any], name: str | None, faults: list[str]) -> Effect[Any, Any] | None:
+    """Return the effect of this name, of the model or of the kernel."""
+    if name is None or name in model.known_effects:
+        return model.known_effects[name] if name is not None else None
+    known = list(model.known_effects)
+    faults.append(f"no effect '{name}'.{near_miss(name, known) or ' It has ' + ', '.join(known)}")
+    return None
+
+
+def truth_of(
+    effect: Effect[Any, Any] | None, size: Size | None, measured: Sequence[str], faults: list[str]
+) -> dict[str, float]:
+    """Return the unknowns of the effect in SI."""
+    if effect is None:
+        if size is not None and not faults:
+            faults.append(f"size is {size!r}, but no effect is hidden; leave it out")
+        return {}
+    stated = _stated(effect, size, measured, faults)
+    found: dict[str, float] = {}
+    for name, said in stated.items():
+        unknown = next((one for one in effect.unknowns if one.name == name), None)
+        if unknown is None:
+            known = [one.name for one in effect.unknowns]
+            faults.append(f"effect '{effect.name}' has no unknown '{name}'.{near_miss(name, known)}")
+            continue
+        try:
+            found[name] = _value(effect, unknown, said)
+        except TruingError as error:
+            faults.append(f"size of '{name}': {error}")
+    touched = [part for part in effect.groups() if any(one.name in stated for one in part)]
+    missing = [one.name for part in touched for one in part if one.name not in stated]
+    if missing:
+        faults.append(f"effect '{effect.name}': say {' and '.join(missing)} as well, size={{...}}")
+    if found and not any(one.is_amplitude and found.get(one.name) for one in effect.unknowns) and not missing:
+        faults.append(f"effect '{effect.name}' of size 0 hides nothing; hide(None, ...) does that")
+    return found
+
+
+def _stated(
+    effect: Effect[Any, Any], size: Size | None, measured: Sequence[str], faults: list[str]
+) -> Mapping[str, str | float]:
+    """Return what is said of each unknown; a plain size is that of the only amplitude."""
+    if isinstance(size, Mapping):
+        return size
+    parts = effect.groups()
+    if effect.parts:  # one gauge each: that of what is measured
+        parts = tuple(part for part in parts if any(one.name in measured for one in part)) or parts
+    if size is None:
+        return _half(effect, parts, faults)
+    if len(parts) == 1 and len(parts[0]) == 1:
+        return {parts[0][0].name: size}
+    names = [one.name for part in parts for one in part]
+    faults.append(
+        f"effect '{effect.name}' has the unknowns {', '.join(names)}: say which is {size}, "
+        f'size={{"{names[0]}": "{size}", ...}}'
+    )
+    return {}
+
+
+def _half(effect: Effect[Any, Any], parts: Sequence[Sequence[Unknown]], faults: list[str]) -> dict[str, str]:
+    """Take half of what the bounds of an amplitude allow, and the middle of those of a shape."""
+    if len(parts) != 1 or any(abs(one.high) >= ENDLESS for one in parts[0]):
+        faults.append(f"say how large '{effect.name}' is: size={{...}}; its bounds are no measure of it")
+        return {}
+    found = {}
+    for one in parts[0]:
+        if one.is_amplitude:
+            value = max((one.low, one.high), key=abs) / 2
+        else:
+            value = math.sqrt(one.low * one.high) if one.low > 0 else (one.low + one.high) / 2
+        found[one.name] = f"{round(value) if one.whole else value!r} {one.unit}".strip()
+    return found
+
+
+def _value(effect: Effect[Any, Any], unknown: Unknown, said: str | float) -> float:
+    """Read one unknown, SI. Raises UsageError where it is no quantity of its kind, or out of its bounds."""
+    value = float(read_quantity(said if isinstance(said, str) else repr(said), unknown.unit))
+    number = float(from_si(value, unknown.unit))
+    slack = 1e-9 * max(abs(unknown.low), abs(unknown.high))
+    if not unknown.low - slack <= number <= unknown.high + slack:
+        raise UsageError(
+            f"{said} lies outside of its bounds, {unknown.low:g} to {unknown.high:g} {unknown.unit}".rstrip()
+            + ", where no diagnosis looks"
+        )
+    if unknown.whole and not number.is_integer():
+        raise UsageError(f"{said} is no whole number")
+    return value
+
+
+def check_by(by: Strange | None, effect: Effect[Any, Any] | None, model: Model[Any, Any], faults: list[str]) -> None:
+    """Say where a function of the author's own does not take what the effect has."""
+    if by is None:
+        return
+    parameters = list(inspect.signature(by).parameters.values())
+    if any(item.kind is inspect.Parameter.VAR_KEYWORD for item in parameters):
+        return
+    named = {item.name for item in parameters[2:]}
+    if effect is None:
+        unknown = sorted(named - set(model.known_conditions))
+        if unknown:
+            faults.append(f"by takes {', '.join(unknown)}, which is no condition of the model")
+        return
+    wanted = {one.name for one in effect.unknowns} | {need.name for need in effect.needs}
+    needed = {item.name for item in parameters[2:] if item.default is inspect.Parameter.empty}
+    if len(parameters) < 2 or not needed <= wanted <= named:
+        faults.append(
+            f"by takes {', '.join(item.name for item in parameters) or 'nothing'}; it is called with inputs, results "
+            f"and the keywords {', '.join(sorted(wanted))}"
+        )
+
+
+def wrong_machine(
+    setup: Setup, effect: Effect[Any, Any] | None, truth: Mapping[str, float], by: Strange | None
+) -> Setup:
+    """Return the machine as it truly is: the effect on, made by its own function or by the author's."""
+    if by is None:
+        return replace(setup, effects=(SwitchedOn(effect, truth),)) if effect is not None else setup
+    model = setup.model
+    made = _by_hand(by, effect, model)
+    errors = [source for source in model.errors if source.name != made.name]
+    changed = replace(model, errors=[*errors, made])
+    on = SwitchedOn(made, truth if effect is not None else {made.unknowns[0].name: 1.0})
+    return replace(setup, model=changed, effects=(on,))
+
+
+def _by_hand(by: Strange, effect: Effect[Any, Any] | None, model: Model[Any, Any]) -> Effect[Any, Any]:
+    """Make an effect on the reading of the author's own function."""
+    if effect is not None:
+        return Effect(effect.name, on_reading=by, unknowns=effect.unknowns, needs=effect.needs, parts=effect.parts)
+    named = [*inspect.signature(by).parameters][2:]
+    needs = [model.known_conditions[name] for name in named if name in model.known_conditions]
+
+    def function(inputs: Any, results: Any, **known: Any) -> Any:
+        return by(inputs, results, **{name: known[name] for name in named})
+
+    return Effect(STRANGE, on_reading=function, unknowns=[Unknown("size", 0, 1)], needs=needs)
+
+
+# What the gauge scatters: which results are measured, and how well
+
+
+@dataclass(frozen=True)
+class RecordNoise:
+    """A standard deviation in SI, or a share of the span of what is shown."""
+
+    sd: float = 0.0
+    share: float = 0.0
+
+    def size(self, shown: NDArray[np.float64]) -> float:
+        """Return the standard deviation for these readings, SI."""
+        return self.sd or self.share * float(np.ptp(shown))
+
+
+def noise_of(setup: Setup, said: Any, measure: str | Sequence[str] | None, faults: list[str]) -> dict[str, RecordNoise]:
+    """Return the noise by measured result; what is wrong is added to ``faults``, a sentence each."""
+    gauged = gauged_results(setup)
+    named = [measure] if isinstance(measure, str) else list(measure or ())
+    if said is None:
+        like = f"{{'{named[0]}': ...}}" if named else "'0.1 kN'"
+        faults.append(f"noise is missing: say how far the gauge scatters, noise={like}, or '1 %' of the span")
+        return {}
+    if isinstance(said, Mapping):
+        texts = dict(said)
+    else:
+        names = named or _fitting(gauged, said, faults)
+        texts = dict.fromkeys(names, said)
+    found = {}
+    for name, text in texts.items():
+        if name not in gauged:
+            is_result = name in setup.model.result_fields
+            why = "is no result that a gauge can show" if is_result else f"is no result.{near_miss(name, gauged)}"
+            faults.append(f"'{name}' {why}")
+            continue
+        try:
+            found[name] = _read(text, gauged[name])
+        except TruingError as error:
+            faults.append(f"noise of '{name}': {error}")
+            continue
+        if not (found[name].sd > 0 or found[name].share > 0):
+            faults.append(f"noise of '{name}': {text} is no scatter; every gauge has some, by which it is judged")
+    missing = [name for name in named if name not in texts]
+    if missing:
+        faults.append(f"noise says nothing of {', '.join(missing)}, which is to be measured")
+    return found
+
+
+def gauged_results(setup: Setup) -> dict[str, str]:
+    """Return the results that can be measured, with their units: numbers and curves."""
+    fields = setup.model.own_result_fields
+    return {name: item.unit for name, item in fields.items() if not isinstance(item.spec, Axis)}
+
+
+def _fitting(gauged: Mapping[str, str], said: Any, faults: list[str]) -> list[str]:
+    """Return the one result that a noise can be of; of several the only one that is in the very unit of the noise."""
+    fits = [name for name, unit in gauged.items() if _is_share(said) or _fits(said, unit)]
+    if isinstance(said, str) and len(fits) > 1 and not _is_share(said):
+        same = [name for name in fits if gauged[name] == split_quantity(said).unit]
+        fits = same if len(same) == 1 else fits
+    if len(fits) == 1:
+        return fits
+    if fits:
+        faults.append(f"noise {said!r} may be of {', '.join(fits)}: say which is measured, measure='{fits[0]}'")
+    else:
+        units = ", ".join(f"{name} in {unit or 'pure numbers'}" for name, unit in gauged.items())
+        faults.append(f"noise {said!r} is of the kind of no result: {units}")
+    return []
+
+
+def _is_share(said: Any) -> bool:
+    return isinstance(said, str) and said.strip().endswith("%")
+
+
+def _fits(said: Any, unit: str) -> bool:
+    try:
+        _read(said, unit)
+    except TruingError:
+        return False
+    return True
+
+
+def _read(said: Any, unit: str) -> RecordNoise:
+    """Read a standard deviation, a difference in the unit of the result, or a share of its span."""
+    if _is_share(said):
+        noise = RecordNoise(share=read_quantity(said, ""))
+    else:
+        noise = RecordNoise(sd=read_quantity(said if isinstance(said, str) else repr(said), difference_unit(unit)))
+    return noise
