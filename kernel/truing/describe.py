@@ -11,7 +11,6 @@ from truing.declare.builtin import may_stand
 from truing.declare.fields import Axis, Found, Given, InputField, Loaded, ResultField
 from truing.declare.goals import Maximise, Minimise, Require, Vary
 from truing.declare.published import Published
-from truing.declare.sources import Condition
 from truing.formulas import symbol_text
 from truing.inputs_file.values import bounds_in_words
 from truing.kernel import Offer
@@ -46,12 +45,12 @@ def description(offer: Offer) -> dict[str, Any]:
             for item in model.tolerances.values()
         ],
         "effects": [_effect(effect) for effect in model.effects.values()],
-        "conditions": [_condition(item) for item in model.conditions.values()],
+        "conditions": [_named(item, CONDITION) for item in model.conditions.values()],
         "built_in": {
             "effects": [_effect(item) for item in built_in if not may_stand(item)],
             "where_measured": [_effect(item) for item in built_in if may_stand(item)],
             "conditions": [
-                _condition(item) for name, item in model.known_conditions.items() if name not in model.conditions
+                _named(item, CONDITION) for name, item in model.known_conditions.items() if name not in model.conditions
             ],
         },
         "objectives": [_objective(item) for item in model.objectives],
@@ -100,16 +99,15 @@ def _result(item: ResultField) -> dict[str, Any]:
     }
 
 
-def _condition(item: Condition) -> dict[str, Any]:
-    return {
-        "name": item.name,
-        "unit": item.unit,
-        "reference": item.reference,
-        "note": item.note,
-        "derived": item.derived,
-        "low": item.low,
-        "high": item.high,
-    }
+UNKNOWN = ("name", "low", "high", "unit", "note")
+CONDITION = ("name", "unit", "reference", "note", "derived", "low", "high")
+PUBLISHED = ("name", "result", "value", "unit", "where", "settings", "printed")
+JUDGED = ("within", "verdict", "obtained", "why")
+"""What is said of an unknown before its kind, of a condition, and of a printed number before and behind its kind."""
+
+
+def _named(item: Any, names: Sequence[str]) -> dict[str, Any]:
+    return {name: getattr(item, name) for name in names}
 
 
 def _effect(effect: Any) -> dict[str, Any]:
@@ -120,17 +118,8 @@ def _effect(effect: Any) -> dict[str, Any]:
         "why": effect.why,
         "source": effect.source,
         "unknowns": [
-            {
-                "name": item.name,
-                "low": item.low,
-                "high": item.high,
-                "unit": item.unit,
-                "note": item.note,
-                "amplitude": item.is_amplitude,
-                "whole": item.whole,
-                "along": item.along,
-            }
-            for item in effect.unknowns
+            {**_named(unknown, UNKNOWN), "amplitude": unknown.is_amplitude, **_named(unknown, ("whole", "along"))}
+            for unknown in effect.unknowns
         ],
         "needs": [item.name for item in effect.needs],
         "parts": [list(part) for part in effect.parts],
@@ -138,20 +127,8 @@ def _effect(effect: Any) -> dict[str, Any]:
 
 
 def _published(item: Published) -> dict[str, Any]:
-    return {
-        "name": item.name,
-        "result": item.result,
-        "value": item.value,
-        "unit": item.unit,
-        "where": item.where,
-        "settings": dict(item.settings),
-        "printed": item.printed,
-        "kind": item.rule,
-        "within": item.within,
-        "verdict": item.verdict,
-        "obtained": item.obtained,
-        "why": item.why,
-    }
+    said = {**_named(item, PUBLISHED), "kind": item.rule, **_named(item, JUDGED)}
+    return {**said, "settings": dict(item.settings)}
 
 
 def _objective(item: Any) -> dict[str, Any]:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
+
 import typer
 
 from truing.cli.console import columns, out, out_json, settings_of
-from truing.kernel import Kernel, Offer
+from truing.kernel import Kernel
 from truing.texts import one_line
 
 
@@ -22,7 +24,9 @@ def plugins(
         out_json(_document(kernel))
         return 0
     rows = [("model", "version", "from", "title")]
-    rows += [(offer.name, offer.origin.version, _home(offer), one_line(offer.model.title)) for offer in offers.values()]
+    for offer in offers.values():
+        home = offer.origin.distribution or offer.origin.file
+        rows.append((offer.name, offer.origin.version, home, one_line(offer.model.title)))
     out(columns(rows))
     for offer in offers.values():
         for item in offer.added:
@@ -30,10 +34,6 @@ def plugins(
     for broken in kernel.broken:
         settings_of(context).say(f"warning: {broken}")
     return 0
-
-
-def _home(offer: Offer) -> str:
-    return offer.origin.distribution or offer.origin.file
 
 
 def _document(kernel: Kernel) -> dict[str, object]:
@@ -46,18 +46,9 @@ def _document(kernel: Kernel) -> dict[str, object]:
                 "version": offer.origin.version,
                 "distribution": offer.origin.distribution,
                 "file": offer.origin.file,
-                "added": [{"what": item.what, "plugin": item.plugin, "version": item.version} for item in offer.added],
+                "added": [asdict(item) for item in offer.added],
             }
             for offer in kernel.offers.values()
         ],
-        "broken": [
-            {
-                "plugin": item.plugin,
-                "version": item.version,
-                "file": item.file,
-                "line": item.line,
-                "reason": item.reason,
-            }
-            for item in kernel.broken
-        ],
+        "broken": [asdict(item) for item in kernel.broken],
     }

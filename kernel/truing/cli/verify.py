@@ -11,7 +11,7 @@ import typer
 from truing.cli.console import aligned, out, out_json, settings_of
 from truing.cli.load import find_model
 from truing.declare.published import rules_of
-from truing.numbers import format_number
+from truing.numbers import counted, format_number
 from truing.published import ComparedRow
 from truing.texts import one_line
 from truing.units import unit_text
@@ -99,8 +99,7 @@ def _cells(row: ComparedRow, numbers: Mapping[str, str]) -> tuple[str, ...]:
 def _summary(rows: Sequence[ComparedRow]) -> str:
     matching = sum(row.matches for row in rows)
     wrong = [one_line(row.published.name) for row in rows if not row.as_stated]
-    numbers = "printed number" if len(rows) == 1 else "printed numbers"
-    said = f"{len(rows)} {numbers}: {matching} match, {len(rows) - matching} differ"
+    said = f"{counted(len(rows), 'printed number')}: {matching} match, {len(rows) - matching} differ"
     if not wrong:
         return f"{said}; every verdict is as stated"
     return f"{said}; NOT as stated: {', '.join(wrong)} (exit code 1)"

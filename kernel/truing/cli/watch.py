@@ -19,6 +19,7 @@ from truing.cli.console import Settings, out, say, sentence_of, settings_of
 from truing.cli.load import LABEL, find_offer
 from truing.inputs_file.files import refuse_file
 from truing.kernel import Offer
+from truing.numbers import counted
 from truing.runs.comparison import amount_of, changes, in_order
 from truing.runs.folder import demand_place
 from truing.studies.checks import EXIT_CODES, SHORT
@@ -63,7 +64,7 @@ def watch(
         if watcher.calculating:
             end.args = (f"calc: interrupted in the middle of a run; {watcher.what_stays()}",)
             raise
-        settings.say(f"calc: watched {watcher.runs} run{'s' * (watcher.runs != 1)}; {watcher.what_stays()}")
+        settings.say(f"calc: watched {counted(watcher.runs, 'run')}; {watcher.what_stays()}")
         return watcher.exit_code
 
 

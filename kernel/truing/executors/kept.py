@@ -17,6 +17,7 @@ from concurrent.futures import Future
 from contextlib import suppress
 from dataclasses import fields, is_dataclass
 from functools import partial
+from operator import attrgetter
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -125,6 +126,16 @@ class BatchLog:
 class KeptExecutor(WorkerPool):
     """Takes answers from a log where it holds them, else computes them elsewhere and keeps them."""
 
+    where = property(attrgetter("_inner.where"))
+    workers = property(attrgetter("_inner.workers"))
+    slots = property(attrgetter("_inner.slots"))
+    losses = property(attrgetter("_inner.losses"))
+    patience = property(attrgetter("_inner.patience"))
+    moment = property(attrgetter("_inner.moment"))
+    is_loss = property(attrgetter("_inner.is_loss"))
+    renew = property(attrgetter("_inner.renew"))
+    look_after = property(attrgetter("_inner.look_after"))
+
     def __init__(self, inner: WorkerPool, log: BatchLog) -> None:
         self._inner = inner
         self._log = log
@@ -164,48 +175,6 @@ class KeptExecutor(WorkerPool):
         if answered(future):
             for key, answer in zip(keys, future.result().answers, strict=False):
                 self._log.put(key, answer)
-
-    @property
-    def where(self) -> str:  # type: ignore[override]
-        """Where the other batches are computed."""
-        return self._inner.where
-
-    @property
-    def workers(self) -> int:  # type: ignore[override]
-        """How many workers compute them."""
-        return self._inner.workers
-
-    @property
-    def slots(self) -> int:  # type: ignore[override]
-        """How many are computed at once."""
-        return self._inner.slots
-
-    @property
-    def losses(self) -> int:  # type: ignore[override]
-        """How many workers were lost."""
-        return self._inner.losses
-
-    @property
-    def patience(self) -> float | None:  # type: ignore[override]
-        """How long an answer is waited for."""
-        return self._inner.patience
-
-    @property
-    def moment(self) -> float:  # type: ignore[override]
-        """How many seconds of work travel together."""
-        return self._inner.moment
-
-    def is_loss(self, error: BaseException) -> bool:
-        """Tell whether a worker was lost."""
-        return self._inner.is_loss(error)
-
-    def renew(self, error: BaseException) -> None:
-        """Make the place fit again."""
-        self._inner.renew(error)
-
-    def look_after(self) -> Exception | None:
-        """See whether an answer can still come."""
-        return self._inner.look_after()
 
     def remarks(self) -> list[str]:
         """Say what befell the workers, and where batches could not be kept."""

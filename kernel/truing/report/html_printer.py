@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from functools import lru_cache
 from html import unescape
 from itertools import groupby, zip_longest
@@ -56,12 +56,6 @@ def page(template: str, sheet: Any, *, styles: Sequence[str] = ("sheet.css",), *
     style = "".join((template_folder() / name).read_text(encoding="utf-8") for name in styles)
     style = _markup(style + page_style(sheet.head.footer))
     return with_room(_environment().get_template(template).render(sheet=sheet, style=style, **more)) + "\n"
-
-
-def blocks_html(blocks: Iterable[BlockView]) -> str:
-    """Write blocks as they stand on the page, without a style."""
-    module: Any = _environment().get_template("blocks.html.j2").module
-    return str(module.blocks(list(blocks)))
 
 
 def page_style(footer: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from pathlib import PurePath
 from typing import Any
 
@@ -14,7 +15,6 @@ from truing.diagnosis.result import (
     FittedUnknown,
     Gain,
     NextPoint,
-    Remainder,
     Tie,
     Wrong,
     doubts,
@@ -54,7 +54,7 @@ def diagnosis_document(diagnosis: DiagnosisResult) -> dict[str, Any]:
         "alternatives": [_alternative(item) for item in diagnosis.alternatives],
         "ranking": [_alternative(item) for item in diagnosis.ranking],
         "inseparable": list(diagnosis.inseparable),
-        "remainder": None if diagnosis.remainder is None else _remainder(diagnosis.remainder),
+        "remainder": None if diagnosis.remainder is None else clean(asdict(diagnosis.remainder)),
         **_sight(diagnosis),
         "calibrated": _calibrated(diagnosis),
         "gain": {**{item.result: _gain(item) for item in diagnosis.gain}, "stability": clean(diagnosis.stability)},
@@ -62,10 +62,7 @@ def diagnosis_document(diagnosis: DiagnosisResult) -> dict[str, Any]:
         "ties": [_tie(tie) for tie in diagnosis.ties],
         **_alarming(diagnosis),
         "notes": list(diagnosis.records.notes),
-        "unit_slips": [
-            {"column": unit_error.column, "factor": clean(unit_error.factor), "text": unit_error.text}
-            for unit_error in diagnosis.records.unit_errors
-        ],
+        "unit_slips": [clean(asdict(unit_error)) for unit_error in diagnosis.records.unit_errors],
         "warnings": list(diagnosis.warnings),
     }
 
@@ -77,19 +74,8 @@ def _alarming(diagnosis: DiagnosisResult) -> dict[str, Any]:
             {"effect": one.effect, "unknown": one.unknown, "first": _amount(one.first), "second": _amount(one.second)}
             for one in diagnosis.contradictions
         ],
-        "thinned": [
-            {"rows": one.rows, "causes": list(one.causes), "ahead": clean(one.ahead)} for one in diagnosis.thinned
-        ],
-        "trades": [
-            {
-                "effect": one.effect,
-                "unknown": one.unknown,
-                "input": one.input,
-                "correlation": clean(one.correlation),
-                "separation": clean(one.separation),
-            }
-            for one in diagnosis.trades
-        ],
+        "thinned": [clean(asdict(half)) for half in diagnosis.thinned],
+        "trades": [clean(asdict(trade)) for trade in diagnosis.trades],
     }
 
 
@@ -203,19 +189,6 @@ def _alternative(item: Alternative) -> dict[str, Any]:
             for effect, unknowns in item.unknowns.items()
         },
         "same_as": {effect: list(names) for effect, names in item.same_as.items()},
-    }
-
-
-def _remainder(remainder: Remainder) -> dict[str, Any]:
-    return {
-        "depends_on": list(remainder.depends_on),
-        "shape": remainder.shape,
-        "results": list(remainder.results),
-        "p_value": clean(remainder.p_value),
-        "terms": {
-            result: [{"expression": term.expression, "coefficient": clean(float(term.coefficient))} for term in terms]
-            for result, terms in remainder.terms.items()
-        },
     }
 
 

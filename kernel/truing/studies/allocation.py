@@ -132,10 +132,7 @@ class Allocation:
                 found[key] = found[twin]
                 continue
             setup = with_plan(bench.setup, plan)
-
-            def done(draws: int, total: int, stage: int = stage) -> None:
-                bench.progress(self.name, stage * total + draws, len(designs) * total)
-
+            done = bench.part(self.name, stage / len(designs), (stage + 1) / len(designs))
             budget = SampleBudget(self.draws, self.batch, bench.executor, done)
             found[key] = sample(Machines(setup, scatter_of(setup)), wanted, bench.answers, budget)
         return found
@@ -272,11 +269,42 @@ class Allotted:
 
     def as_json(self) -> dict[str, Any]:
         """Return steps, tolerances, cost and whether the goals are reached, of the rule and of the least cost."""
-        return allotted_json(self)
+        return {
+            "steps": [
+                {
+                    "number": step.number,
+                    "tolerance": step.tolerance,
+                    "from": step.before,
+                    "to": step.after,
+                    "width": {"from": _mm(step.width_before), "to": _mm(step.width_after), "unit": "mm"},
+                    "probabilities": dict(step.chances),
+                }
+                for step in self.steps
+            ],
+            **_design(self, self.rule, "rule"),
+            "adjustments": self.adjustments,
+            "start": _start(self),
+            "coefficients": {name: as_number(value) for name, value in self.coefficients.items()},
+            "finest": self.finest,
+            "least_cost": {"steps": self.least_steps, **_design(self, self.least, "least")},
+        }
 
     def blocks(self) -> Sequence[Block]:
         """Return the steps, rule against least cost, and the probabilities along the synthesis."""
-        return allotted_blocks(self)
+        blocks: list[Block] = []
+        if not self.reached:
+            far = " and ".join(f"{spoken(name)} {100 * value:.2f} %" for name, value in self.final.items())
+            blocks.append(Words(f"The goal is {self.rule.status}. It comes to {far}.", "finding"))
+        if self.problem.parts:
+            blocks.append(_steps(self))
+        blocks.append(_comparison(self))
+        if self.problem.parts:
+            blocks.append(_grades(self))
+        if self.problem.variables:
+            blocks += [_widths(self, what, plan) for what, plan in self.spoken.values()]
+        if self.steps:
+            blocks.append(Drawing("Probability along the synthesis", _drawn(self)))
+        return blocks
 
     def checks(self) -> Sequence[Check]:
         """Compare the probability of the tolerances in force with each goal."""
@@ -347,29 +375,6 @@ def _contradicted(tally: Tally, wanted: Sequence[Demand], what: str) -> list[str
 # How the outcome of an allocation is written: results.json and the sheet
 
 
-def allotted_json(allotted: Allotted) -> dict[str, Any]:
-    """Return what results.json holds; widths in mm."""
-    return {
-        "steps": [
-            {
-                "number": step.number,
-                "tolerance": step.tolerance,
-                "from": step.before,
-                "to": step.after,
-                "width": {"from": _mm(step.width_before), "to": _mm(step.width_after), "unit": "mm"},
-                "probabilities": dict(step.chances),
-            }
-            for step in allotted.steps
-        ],
-        **_design(allotted, allotted.rule, "rule"),
-        "adjustments": allotted.adjustments,
-        "start": _start(allotted),
-        "coefficients": {name: as_number(value) for name, value in allotted.coefficients.items()},
-        "finest": allotted.finest,
-        "least_cost": {"steps": allotted.least_steps, **_design(allotted, allotted.least, "least")},
-    }
-
-
 def _start(allotted: Allotted) -> dict[str, Any]:
     start = allotted.problem.start
     plan = AllocationPlan(start, allotted.problem.cost(start), allotted.start, allotted.problem.reached(start))
@@ -416,24 +421,6 @@ def _sampled(tally: Tally) -> dict[str, Any]:
 
 def _mm(width: float) -> float:
     return float(from_si(width, "mm"))
-
-
-def allotted_blocks(allotted: Allotted) -> Sequence[Block]:
-    """Return the steps, rule against least cost, and the probabilities along the synthesis."""
-    blocks: list[Block] = []
-    if not allotted.reached:
-        far = " and ".join(f"{spoken(name)} {100 * value:.2f} %" for name, value in allotted.final.items())
-        blocks.append(Words(f"The goal is {allotted.rule.status}. It comes to {far}.", "finding"))
-    if allotted.problem.parts:
-        blocks.append(_steps(allotted))
-    blocks.append(_comparison(allotted))
-    if allotted.problem.parts:
-        blocks.append(_grades(allotted))
-    if allotted.problem.variables:
-        blocks += [_widths(allotted, what, plan) for what, plan in allotted.spoken.values()]
-    if allotted.steps:
-        blocks.append(Drawing("Probability along the synthesis", _drawn(allotted)))
-    return blocks
 
 
 def _steps(allotted: Allotted) -> Table:

@@ -40,7 +40,7 @@ from truing.packed import Packed, pack, unpack
 from truing.prices import price_of, prices_at
 from truing.setup import Setup
 from truing.studies.checks import check_name, requirements
-from truing.studies.demands import normal_chance
+from truing.studies.demands import beside, normal_chance
 from truing.studies.differences import nominal_of
 from truing.studies.scatter import Scatter, ScatterSource, generator, scatter_of
 from truing.units import read_quantity, to_si
@@ -334,12 +334,6 @@ class World:
             return amount, infinity
         centre = self.own.get(bound.result, self.results.get(bound.result, self.prices))
         return centre - beside(amount, centre), centre + beside(amount, centre)
-
-
-def beside(limit: Any, values: Any) -> Any:
-    """Make a number per design meet values that run along further axes."""
-    deeper = np.ndim(values) - np.ndim(limit)
-    return limit if deeper <= 0 or np.ndim(limit) == 0 else np.expand_dims(limit, tuple(range(-deeper, 0)))
 
 
 def aims_of(setup: Setup, study: str) -> tuple[Aim, ...]:

@@ -17,8 +17,7 @@ from truing.errors import UsageError
 from truing.evaluate import acting_inputs, effect_column
 from truing.heavy import stats
 from truing.setup import Setup
-from truing.studies.bench import Bench, StepProgress
-from truing.studies.checks import Check
+from truing.studies.bench import Bench, Outcome, StepProgress
 from truing.studies.differences import exact_slopes, nominal_of, slopes
 from truing.studies.drawings import MOST_BARS, bars
 from truing.studies.reading import per, printed_step, result_names, scalar_results, spoken
@@ -156,7 +155,7 @@ def _agreement(numeric: Mapping[str, Mapping[str, float]], exact: Mapping[str, M
 
 
 @dataclass(frozen=True, kw_only=True)
-class Sensitivities:
+class Sensitivities(Outcome):
     """Derivatives in SI, shares of the first-order variance (0 where a spread is off), and Sobol indices where asked.
 
     ``derivatives[result][source]``, ``share[result][source]``, ``sd[result]``, ``sobol_first[result][source]``,
@@ -261,10 +260,6 @@ class Sensitivities:
                 f"Stated and numeric derivatives differ by at most {self.agreement[result]:.1e} of the largest."
             )
         return " ".join(words)
-
-    def checks(self) -> Sequence[Check]:
-        """Return nothing: a sensitivity decides no limit."""
-        return ()
 
     def warnings(self) -> Sequence[str]:
         """Say where stated and numeric derivatives disagree, and where there is no derivative."""

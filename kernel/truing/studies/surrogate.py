@@ -27,8 +27,7 @@ from truing.executors import SerialExecutor, in_order, keepable
 from truing.heavy import gaussian_process, stats
 from truing.packed import Packed, pack, unpack
 from truing.setup import Setup
-from truing.studies.bench import Bench, StepProgress
-from truing.studies.checks import Check
+from truing.studies.bench import Bench, Outcome, StepProgress
 from truing.studies.demands import as_number
 from truing.studies.drawings import BLUE, GREY, ORANGE, WIDTH, labelled
 from truing.studies.reading import printed, printed_step, result_names, scalar_results, spoken
@@ -217,7 +216,7 @@ class Counted:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Emulated:
+class Emulated(Outcome):
     """The surrogate, which answers in place of the model, and what it is worth.
 
     ``of`` names the results; ``judged[result]`` compares both at points that were held out, ``course`` along one input;
@@ -260,15 +259,34 @@ class Emulated:
 
     def as_json(self) -> dict[str, Any]:
         """Return box, points, accuracy and course in printed units; no times."""
-        return emulated_json(self)
+        return {
+            "of": list(self.of),
+            "box": _box(self),
+            "design": _points(self.sample),
+            "held_out": _points(self.judges),
+            "results": {name: _result(self, name) for name in self.of},
+            "extrapolated": list(self.passed),
+            "course": _course(self),
+        }
 
     def blocks(self) -> Sequence[Block]:
         """Return accuracy, times and directions, and the figures: over the model's results, and along one input."""
-        return emulated_blocks(self)
-
-    def checks(self) -> Sequence[Check]:
-        """Return nothing: a surrogate decides no limit."""
-        return ()
+        blocks: list[Block] = []
+        if self.speed is not None:
+            blocks.append(Words(_verdict(self, self.speed), "finding"))
+        if self.judged:
+            blocks.append(_accuracy_table(self))
+        if self.speed is not None:
+            blocks.append(_speed_table(self, self.speed))
+        blocks.append(_box_table(self))
+        names = list(self.judged)[:MOST_PANELS]
+        if names:
+            caption = "Points that were held out; beside it how far each is off, with its 95 % band."
+            blocks.append(Drawing("Surrogate over model", _agreement(self, names), caption))
+        if self.course is not None:
+            title = f"Surrogate along the {spoken(self.course.over)}"
+            blocks.append(Drawing(title, _along(self, list(self.of)[:MOST_PANELS]), _said_of_course(self)))
+        return blocks
 
     def warnings(self) -> Sequence[str]:
         """Say where the surrogate is asked beyond its box, promises too narrow a band, or lacks points."""
@@ -295,19 +313,6 @@ class Emulated:
 
 
 MOST_PANELS = 4
-
-
-def emulated_json(emulated: Emulated) -> dict[str, Any]:
-    """Return what results.json holds."""
-    return {
-        "of": list(emulated.of),
-        "box": _box(emulated),
-        "design": _points(emulated.sample),
-        "held_out": _points(emulated.judges),
-        "results": {name: _result(emulated, name) for name in emulated.of},
-        "extrapolated": list(emulated.passed),
-        "course": _course(emulated),
-    }
 
 
 def _box(emulated: Emulated) -> dict[str, Any]:
@@ -366,26 +371,6 @@ def _course(emulated: Emulated) -> dict[str, Any] | None:
         results[name] = {"unit": unit, "model": model, "predicted": mean, "low": low, "high": high}
     unit = emulated.units[course.over]
     return {"over": course.over, "unit": unit, "at": printed(course.coarse, unit), "results": results}
-
-
-def emulated_blocks(emulated: Emulated) -> Sequence[Block]:
-    """Return the words on speed and loss, three tables and two figures."""
-    blocks: list[Block] = []
-    if emulated.speed is not None:
-        blocks.append(Words(_verdict(emulated, emulated.speed), "finding"))
-    if emulated.judged:
-        blocks.append(_accuracy_table(emulated))
-    if emulated.speed is not None:
-        blocks.append(_speed_table(emulated, emulated.speed))
-    blocks.append(_box_table(emulated))
-    names = list(emulated.judged)[:MOST_PANELS]
-    if names:
-        caption = "Points that were held out; beside it how far each is off, with its 95 % band."
-        blocks.append(Drawing("Surrogate over model", _agreement(emulated, names), caption))
-    if emulated.course is not None:
-        title = f"Surrogate along the {spoken(emulated.course.over)}"
-        blocks.append(Drawing(title, _along(emulated, list(emulated.of)[:MOST_PANELS]), _said_of_course(emulated)))
-    return blocks
 
 
 def _verdict(emulated: Emulated, speed: Speed) -> str:
