@@ -109,7 +109,7 @@ MUTANTS: tuple[Mutant, ...] = (
         "kernel/truing/studies/demands.py", "unit/test_studies_reliability.py",
         ("square / (4 * draws * draws)", "square / (2 * draws * draws)"),
         ("np.where(above > 0, ndtr(-above)", "np.where(above > 0, ndtr(above)"),
-        ("return values - _beside(limit, values)", "return values + _beside(limit, values)"),
+        ("return values - beside(limit, values)", "return values + _beside(limit, values)"),
     ),
     *changes(
         "kernel/truing/studies/checks.py", "unit/test_checks.py",
@@ -127,7 +127,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ("first.mean + apart * (second.count / count)", "first.mean + apart * (first.count / count)"),
     ),
     *changes(
-        "kernel/truing/studies/scatter.py", "unit/test_studies_reliability.py unit/test_studies_sensitivity.py",
+        "kernel/truing/studies/sampling.py", "unit/test_studies_reliability.py unit/test_studies_sensitivity.py",
         ("np.sqrt(np.clip(values, 0.0, None))", "np.clip(values, 0.0, None)"),
     ),
     *changes(
@@ -173,7 +173,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ("(REFERENCE - order[:, 0])", "(order[:, 0])"),
     ),
     *changes(
-        "kernel/truing/studies/surrogate_fit.py", "unit/test_studies_surrogate.py",
+        "kernel/truing/studies/surrogate.py", "unit/test_studies_surrogate.py",
         ("self.low + (self.high - self.low) * shares", "self.low + self.high * shares"),
         ("np.exp(values) if self.logarithmic", "values if self.logarithmic"),
     ),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import pickle
 import threading
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from typing import Any
@@ -40,6 +40,7 @@ def pack(setup: Setup, *, studies: bool = False) -> Packed:
     With ``studies`` those that run travel too; what each gives is found again by its name.
     """
     declared = {name: tolerance.spread for name, tolerance in setup.model.tolerances.items()}
+    running: Sequence[Any] = setup.studies if studies else ()
     content = {
         "inputs": setup.model.read_inputs(setup.inputs),
         "spreads": {name: spread for name, spread in setup.spreads.items() if spread != declared.get(name)},
@@ -48,7 +49,7 @@ def pack(setup: Setup, *, studies: bool = False) -> Packed:
         "calibrated": dict(setup.calibrated),
         "seed": setup.seed,
         "units": dict(setup.units),
-        "studies": [_without_gives(study) for study in setup.studies] if studies else [],
+        "studies": [replace(study, gives=None) for study in running],
     }
     origin = setup.origin
     return Packed(origin.ref, origin.name, setup.model.name, _plain(content), _file_hash(origin.ref))
@@ -100,10 +101,6 @@ def travels(setup: Setup) -> bool:
         return SCRIPT.encode() not in pack(setup, studies=True).content
     except Exception:
         return False
-
-
-def _without_gives(study: Any) -> Any:
-    return replace(study, gives=None)
 
 
 def _with_gives(study: Any, model: Model[Any, Any]) -> Any:

@@ -133,13 +133,9 @@ def _same_scatter(setup: Setup, wanted: Setup) -> bool:
         return False
     return all(
         ours[name].keys() == theirs[name].keys()
-        and all(_close(ours[name][key].sd, theirs[name][key].sd) for key in theirs[name])
+        and all(math.isclose(ours[name][key].sd, theirs[name][key].sd, rel_tol=1e-9) for key in theirs[name])
         for name in theirs
     )
-
-
-def _close(one: float, other: float) -> bool:
-    return math.isclose(one, other, rel_tol=1e-9)
 
 
 def parted(setup: Setup, rows: Sequence[ComparedRow]) -> tuple[list[ComparedRow], list[ComparedRow]]:

@@ -14,7 +14,7 @@ from truing.calculation import calculate
 from truing.declare.spreads import Grade, Off
 from truing.errors import UsageError
 from truing.fits import GRADES, tolerance
-from truing.report.content import check_rows
+from truing.report.sheet import check_rows
 from truing.setup import default_setup
 from truing.studies.allocation import largest_variance
 from truing.studies.demands import Demand, normal_chance

@@ -13,7 +13,6 @@ from truing.api.tables import frame_of
 from truing.api.values import quantity_of
 from truing.diagnosis import result as found
 from truing.errors import UsageError
-from truing.report.diagnosis_chapters import ranking_table
 from truing.report.diagnosis_figures import (
     against_simulated,
     main_covariates,
@@ -21,6 +20,7 @@ from truing.report.diagnosis_figures import (
     ranking_bars,
     shown_curves,
 )
+from truing.report.diagnosis_sheet import ranking_table
 from truing.report.diagnosis_words import explanation
 from truing.units import from_si
 

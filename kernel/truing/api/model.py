@@ -37,13 +37,12 @@ from truing.kernel import Offer, offer_of
 from truing.measurements import RowsFile, read_rows
 from truing.progress import progress_bar
 from truing.published import ComparedRow, compare_published
-from truing.report.diagnosis_chapters import fitted_table
-from truing.report.diagnosis_sheet import data_words, diagnosis_sheet_of, questions, write_diagnosed
+from truing.report.diagnosis_sheet import data_words, diagnosis_sheet_of, fitted_table, questions
 from truing.report.diagnosis_words import headline, verdict_word
-from truing.report.run import write_sheet
+from truing.report.run import run_info, sheets_of, write_sheet
 from truing.runs.diagnosis_document import diagnosis_document
 from truing.runs.extension import extended_text
-from truing.runs.folder import demand_place
+from truing.runs.folder import demand_place, write_diagnosis
 from truing.setup import Setup
 from truing.studies.bench import Progress
 from truing.studies.sweep import Sweep
@@ -353,7 +352,11 @@ class Diagnosis:
 
     def written(self, folder: Path, *, pdf: bool = False) -> str:
         """Write the folder and return what became of the PDF."""
-        return write_diagnosed(self.result, folder, started=self.started, pdf=pdf)
+        sheet = diagnosis_sheet_of(self.result, self.started)
+        sheets, note = sheets_of(sheet, folder, pdf=pdf)
+        info = run_info(self.started)
+        write_diagnosis(folder, self.result, provenance=sheet.provenance, run_info=info, sheets=sheets)
+        return note
 
     def compare(self, before: Diagnosis) -> Differences:
         """Return what differs from ``before`` to this diagnosis: data, verdict, causes, errors, gain."""

@@ -20,20 +20,19 @@ from truing.calculation import Calculation, calculate
 from truing.cases import CaseResult, CasesTable, run_cases
 from truing.declare.near_miss import near_miss
 from truing.errors import UsageError
-from truing.executors import BatchLog, KeptExecutor, WorkerPool, open_executor
+from truing.executors import BatchLog, KeptExecutor, open_executor
 from truing.formulas import symbol_text
 from truing.inputs_file.sentences import told_by_line
 from truing.kernel import Offer
 from truing.measurements import CasesFile, read_cases
 from truing.numbers import format_value, with_unit
 from truing.progress import progress_bar
-from truing.report.content import check_table
 from truing.report.document import plain_text
-from truing.report.run import UNDISTURBED, sheet_of, write_calculation, write_sheet
-from truing.report.sheet import banner_of, cases_table
+from truing.report.run import run_info, sheet_of, sheets_of, write_sheet
+from truing.report.sheet import banner_of, cases_table, check_table
 from truing.runs.comparison import Change, compared, in_order, words_of
 from truing.runs.documents import results_document
-from truing.runs.folder import demand_place
+from truing.runs.folder import demand_place, write_run
 from truing.runs.partial import code_of, identity_of, kept_batches
 from truing.runs.provenance import provenance_of
 from truing.setup import Setup
@@ -91,7 +90,7 @@ class Run:
     calculation: Calculation
     started: float
     cases: CasesTable | None = None
-    computed: Mapping[str, Any] = field(default_factory=lambda: UNDISTURBED)
+    computed: Mapping[str, Any] = field(default_factory=lambda: {"resumed": 0, "warnings": []})
     note: str = ""
 
     def __repr__(self) -> str:
@@ -181,10 +180,15 @@ class Run:
     def written(self, order: Order, progress: Progress) -> str:
         """Write the folder of an order and return what became of the PDF."""
         assert order.folder is not None
-        return write_calculation(
-            order.folder, self.calculation, self.offer, started=self.started, computed=self.computed, cases=self.cases,
-            pdf=order.pdf, excel=order.excel, progress=progress,
+        sheet = sheet_of(self.calculation, self.offer, started=self.started, cases=self.cases, progress=progress)
+        if order.pdf:
+            progress("printing", 0, 0)
+        sheets, note = sheets_of(sheet, order.folder, pdf=order.pdf)
+        write_run(
+            order.folder, self.calculation, provenance=sheet.provenance, sheets=sheets,
+            run_info={**run_info(self.started), **self.computed}, cases=self.cases, excel=order.excel,
         )  # fmt: skip
+        return note
 
     def compare(self, before: Run) -> Differences:
         """Return what differs from ``before`` to this run: settings, inputs, results, checks, studies."""
@@ -245,7 +249,11 @@ def _calculated(setup: Setup, offer: Offer, order: Order, *, progress: Progress,
         executor = place if log is None else KeptExecutor(place, log)
         calculation, cases = _with_cases(setup, offer, order, executor=executor, progress=progress)
         place.settle()
-        computed = _computed(executor)
+        computed = {
+            "workers": {"count": executor.workers, "lost": executor.losses, "where": executor.where},
+            "resumed": executor.resumed if isinstance(executor, KeptExecutor) else 0,
+            "warnings": executor.remarks(),
+        }
     return Run(offer, calculation, started, cases, computed)
 
 
@@ -260,15 +268,6 @@ def _with_cases(
 def _cases_of(cases: Any, offer: Offer, setup: Setup) -> CasesFile:
     """Read cases from a file, or from a dataframe, which goes by that name."""
     return read_cases(Path(cases) if isinstance(cases, (str, Path)) else frame_text(cases, {}), offer, setup)
-
-
-def _computed(place: WorkerPool) -> dict[str, Any]:
-    """Return what run.json says of where it was computed: workers, what befell them, batches that were taken up."""
-    return {
-        "workers": {"count": place.workers, "lost": place.losses, "where": place.where},
-        "resumed": place.resumed if isinstance(place, KeptExecutor) else 0,
-        "warnings": place.remarks(),
-    }
 
 
 def _case_columns(cases: CasesTable, setup: Setup) -> dict[str, list[Any]]:

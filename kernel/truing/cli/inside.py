@@ -110,13 +110,9 @@ def _declared(model: Model[Any, Any]) -> Iterator[OfferedWord]:
     found: dict[str, str] = {}
     for fields in (model.result_fields, model.input_fields):
         for name, item in fields.items():
-            found.setdefault(name, _with_unit(item.spec.note, item.unit))
+            found.setdefault(name, ", ".join(part for part in (item.spec.note, item.unit) if part))
     for effect in model.effects.values():
         found.setdefault(effect.name, effect.why or effect.looks_like)
     for tolerance in model.tolerances.values():
         found.setdefault(tolerance.name, tolerance.why)
     yield from found.items()
-
-
-def _with_unit(note: str, unit: str) -> str:
-    return ", ".join(part for part in (note, unit) if part)

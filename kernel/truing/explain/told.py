@@ -39,8 +39,8 @@ from truing.inputs_file.values import bounds_in_words
 from truing.kernel import Offer
 from truing.numbers import ABSENT, format_difference, format_ends, format_value, pretty, with_unit
 from truing.published import compare_one, same_run
-from truing.report.content import input_value
 from truing.report.equations import equation_of
+from truing.report.sheet import input_value
 from truing.runs.documents import clean
 from truing.setup import Setup
 from truing.studies.bench import Progress, silent

@@ -4,8 +4,7 @@ What is printed comes from the same tree that is computed, so a sheet cannot sho
 was tested against the function.
 """
 
-from truing.formulas.dimensions import evaluate_quantities
-from truing.formulas.evaluation import evaluate
+from truing.formulas.evaluation import evaluate, evaluate_quantities
 from truing.formulas.parsing import parse
 from truing.formulas.symbols import symbol_text
 from truing.formulas.tree import Formula, Node

@@ -5,7 +5,7 @@ from __future__ import annotations
 import getpass
 import platform
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -20,41 +20,8 @@ from truing.report.html_printer import html_of
 from truing.report.markdown_printer import markdown_of
 from truing.report.pdf import pdf_bytes
 from truing.report.sheet import make_sheet
-from truing.runs.folder import write_run
 from truing.runs.provenance import provenance_of
 from truing.studies.bench import Progress, silent
-
-UNDISTURBED: Mapping[str, Any] = {"resumed": 0, "warnings": []}
-"""What run.json says beside ``run_info`` of a run in one process."""
-
-
-def write_calculation(
-    folder: Path,
-    calculation: Calculation,
-    offer: Offer,
-    *,
-    started: float,
-    computed: Mapping[str, Any] = UNDISTURBED,
-    cases: CasesTable | None = None,
-    pdf: bool = False,
-    excel: bool = False,
-    progress: Progress = silent,
-) -> str:
-    """Write sheets and folder of a finished calculation; return what became of the printing, nothing without one."""
-    sheet = sheet_of(calculation, offer, started=started, cases=cases, progress=progress)
-    if pdf:
-        progress("printing", 0, 0)
-    sheets, note = sheets_of(sheet, folder, pdf=pdf)
-    write_run(
-        folder,
-        calculation,
-        provenance=sheet.provenance,
-        run_info={**run_info(started), **computed},
-        sheets=sheets,
-        cases=cases,
-        excel=excel,
-    )
-    return note
 
 
 def sheet_of(

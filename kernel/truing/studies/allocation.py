@@ -36,8 +36,7 @@ from truing.studies.grades import (
     with_widths,
 )
 from truing.studies.reading import printed_step, spoken
-from truing.studies.sampling import Machines, SampleBudget, Tally, sample
-from truing.studies.scatter import scatter_of
+from truing.studies.sampling import Machines, SampleBudget, Tally, sample, scatter_of
 from truing.units import from_si, unit_text
 
 BALANCED_TO = 1e-4
@@ -283,7 +282,7 @@ class Allotted:
             ],
             **_design(self, self.rule, "rule"),
             "adjustments": self.adjustments,
-            "start": _start(self),
+            "start": _design(self, replace(as_it_stands(self.problem), status=""), "start"),
             "coefficients": {name: as_number(value) for name, value in self.coefficients.items()},
             "finest": self.finest,
             "least_cost": {"steps": self.least_steps, **_design(self, self.least, "least")},
@@ -375,12 +374,6 @@ def _contradicted(tally: Tally, wanted: Sequence[Demand], what: str) -> list[str
 # How the outcome of an allocation is written: results.json and the sheet
 
 
-def _start(allotted: Allotted) -> dict[str, Any]:
-    start = allotted.problem.start
-    plan = AllocationPlan(start, allotted.problem.cost(start), allotted.start, allotted.problem.reached(start))
-    return _design(allotted, plan, "start")
-
-
 def _design(allotted: Allotted, plan: AllocationPlan, key: str) -> dict[str, Any]:
     entry: dict[str, Any] = {
         "tolerances": dict(allotted.texts.get(key, plan.grades)),
@@ -438,9 +431,8 @@ def _steps(allotted: Allotted) -> Table:
 def _comparison(allotted: Allotted) -> Table:
     names = list(allotted.start)
     problem = allotted.problem
-    start = AllocationPlan(problem.start, problem.cost(problem.start), allotted.start, problem.reached(problem.start))
     designs: Mapping[str, tuple[AllocationPlan, str, int]] = {
-        "start": (start, "start", 0),
+        "start": (as_it_stands(problem), "start", 0),
         **({"rule": (allotted.rule, "rule", allotted.adjustments)} if problem.parts else {}),
         "least cost": (allotted.least, "least", allotted.least_steps),
     }

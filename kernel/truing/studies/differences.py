@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from truing.errors import TruingError
 from truing.evaluate import effect_column, evaluate_rows
 from truing.setup import Setup
-from truing.studies.scatter import Scatter
+from truing.studies.sampling import Scatter
 from truing.units import unit_factor
 
 LEVELS = 15

@@ -46,8 +46,7 @@ from truing.studies.optimise_search import (
     volume_of,
 )
 from truing.studies.reading import printed, spoken
-from truing.studies.sampling import Machines, SampleBudget, Tally, sample
-from truing.studies.scatter import scatter_of
+from truing.studies.sampling import Machines, SampleBudget, Tally, sample, scatter_of
 from truing.units import unit_text
 
 ALGORITHMS = ("nsga2",)

@@ -28,7 +28,6 @@ from truing.declare.spreads import (
     Target,
     Zone,
     shift_per_width,
-    with_width,
 )
 from truing.errors import TruingError, UnitError, UsageError
 from truing.evaluate import evaluate_rows
@@ -39,10 +38,11 @@ from truing.inputs_file.values import broken_bound
 from truing.packed import Packed, pack, unpack
 from truing.prices import price_of, prices_at
 from truing.setup import Setup
-from truing.studies.checks import check_name, requirements
+from truing.studies.checks import check_name, requirements, sockets_of
 from truing.studies.demands import beside, normal_chance
 from truing.studies.differences import nominal_of
-from truing.studies.scatter import Scatter, ScatterSource, generator, scatter_of
+from truing.studies.grades import with_grades, with_widths
+from truing.studies.sampling import Scatter, ScatterSource, generator, scatter_of
 from truing.units import read_quantity, to_si
 
 ROWS = 2**16  # of one call of the model, so that memory stays flat
@@ -189,8 +189,7 @@ def _own_results(problem: Problem, columns: Mapping[str, Any], count: int) -> di
     """Return the results from which ``within`` is measured, where they are not the nominal ones: see ``of_design``."""
     setup = problem.setup
     wanted = [bound.result for bound in problem.bounds if bound.require.kind == "within"]
-    names = {name for item in setup.model.tolerances.values() for name in item.on if name in setup.model.input_fields}
-    sockets = [name for name in sorted(names) if getattr(setup.model.input_fields[name].spec, "default", None) == 0]
+    sockets = sockets_of(setup)
     acts = any(item.effect.place != "reading" for item in setup.effects)
     deviates = any(name in columns or setup.nominal(name) != 0 for name in sockets)
     if not wanted or not (acts or deviates):
@@ -541,17 +540,10 @@ class Space:
     def setup_of(self, design: NDArray[np.float64]) -> Setup:
         """Return the setup of one design, as an inputs file would state it."""
         columns = {name: values[0].item() for name, values in self.columns(design[None, :]).items()}
-        setup = self.setup.changed(columns)
-        spreads = dict(setup.spreads)
-        for name, (variable, values) in self.choices(design[None, :]).items():
-            spread = setup.spread_of(name)
-            if variable.kind == "grade":
-                assert isinstance(spread, Grade)  # _of_tolerance has chosen these
-                spreads[name] = replace(spread, grade=GRADES[round(values[0])])
-            else:
-                first = next(iter(self.scatter[name]))
-                spreads[name] = with_width(spread, setup.target(first), float(values[0]))
-        return replace(setup, spreads=spreads)
+        chosen = [(variable, float(values[0])) for variable, values in self.choices(design[None, :]).values()]
+        grades = {variable.name: GRADES[round(value)] for variable, value in chosen if variable.kind == "grade"}
+        widths = {variable.name: value for variable, value in chosen if variable.kind == "width"}
+        return with_widths(with_grades(self.setup.changed(columns), grades), widths)
 
 
 def open_space(setup: Setup, brief: Brief) -> Space:

@@ -20,8 +20,7 @@ from truing.studies.checks import Check, chance_check, requirements
 from truing.studies.demands import Z95, Demand, as_number, demands, nominal_inputs, wilson, worst
 from truing.studies.drawings import labelled, lines
 from truing.studies.reading import printed, printed_step, read_range, scattering_name, spoken
-from truing.studies.sampling import Machines, Moments, SampleBudget, Tally, sample
-from truing.studies.scatter import scatter_of
+from truing.studies.sampling import Machines, Moments, SampleBudget, Tally, sample, scatter_of
 from truing.units import difference_unit, from_si, unit_text
 
 METHODS = ("first_order", "monte_carlo", "form")

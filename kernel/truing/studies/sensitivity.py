@@ -20,9 +20,8 @@ from truing.setup import Setup
 from truing.studies.bench import Bench, Outcome, StepProgress
 from truing.studies.differences import exact_slopes, nominal_of, slopes
 from truing.studies.drawings import MOST_BARS, bars
-from truing.studies.reading import per, printed_step, result_names, scalar_results, spoken
-from truing.studies.sampling import Machines, standard_rows
-from truing.studies.scatter import Scatter, scatter_of
+from truing.studies.reading import per, printed_step, scalar_results, single_numbers, spoken
+from truing.studies.sampling import Machines, Scatter, scatter_of, standard_rows
 from truing.units import difference_unit, unit_factor, unit_text
 
 AGREES_TO = 1e-6
@@ -77,16 +76,9 @@ class Sensitivity:
         )
 
     def _results(self, setup: Setup) -> tuple[str, ...]:
-        named = (self.of,) if isinstance(self.of, str) else tuple(self.of)
+        if self.of:
+            return single_numbers(setup, self.of, self.name)
         scalar = scalar_results(setup)
-        if named:
-            result_names(setup, named, self.name)
-            for name in named:
-                if name not in scalar:
-                    raise UsageError(
-                        f"study '{self.name}': '{name}' runs along an axis; name a result that is one number"
-                    )
-            return named
         goals = [item.result for item in setup.model.objectives if not isinstance(item, Vary)]
         return tuple(dict.fromkeys(name for name in goals if name in scalar)) or scalar
 

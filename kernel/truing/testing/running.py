@@ -19,7 +19,7 @@ from truing.executors import in_order, open_executor
 from truing.inputs_file import setup_from_settings
 from truing.packed import Packed, pack, unpack
 from truing.setup import Setup
-from truing.studies.scatter import scatter_of
+from truing.studies.sampling import scatter_of
 from truing.testing.sources import off_reference, shape, switched
 from truing.testing.subject import Subject, fail
 from truing.units import read_quantity, to_si, unit_factor
