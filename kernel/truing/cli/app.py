@@ -10,13 +10,13 @@ import functools
 from collections.abc import Callable
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, ParamSpec, TypeAlias
+from typing import Annotated, Any, ParamSpec, TypeAlias
 
 import typer
 
 from truing.cli import candidates
 from truing.cli.candidates import names, names_inside, runs
-from truing.cli.console import out, verb
+from truing.cli.console import out, settings_of, verb
 from truing.heavy import Later
 
 P = ParamSpec("P")
@@ -49,11 +49,16 @@ def _common(
 
 
 def _loaded(declared: Callable[P, None]) -> Callable[P, None]:
-    """Make a verb of a declaration: the function of its name, in the module of its name, is called with the same."""
+    """Make a verb of a declaration: the function of its name, in the module of its name, is called with the same.
+
+    In place of typer's context it takes the settings that hold for every verb.
+    """
 
     @functools.wraps(declared)
     def call(*args: P.args, **kwargs: P.kwargs) -> int:
-        return int(getattr(Later(f"truing.cli.{declared.__name__}"), declared.__name__)(*args, **kwargs))
+        taken: dict[str, Any] = {**kwargs, "settings": settings_of(kwargs["context"])}
+        del taken["context"]
+        return int(getattr(Later(f"truing.cli.{declared.__name__}"), declared.__name__)(**taken))
 
     return app.command(declared.__name__)(verb(call))
 
@@ -68,7 +73,7 @@ def plugins(
 ) -> int:
     """List what is installed, from where, which version, and what broke while loading."""
     if not names:
-        return int(Later("truing.cli.plugins").plugins(context=context, as_json=as_json, strict=strict))
+        return int(Later("truing.cli.plugins").plugins(settings=settings_of(context), as_json=as_json, strict=strict))
     for name in Later("truing.entry_points").plugin_names():
         out(name)
     return 0
@@ -184,11 +189,7 @@ def diagnose(
 
 
 @_loaded
-def verify(
-    context: typer.Context,
-    plugin: Plugin,
-    as_json: AsJson = False,
-) -> None:
+def verify(context: typer.Context, plugin: Plugin, as_json: AsJson = False) -> None:
     """Print every number that the source prints beside ours; exit 0 if every row matches its stated verdict."""
 
 

@@ -8,24 +8,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 
-import typer
 from rich.console import Console
 from rich.text import Text
 
-from truing.cli.console import GAP, aligned, harmless, out, out_json, put
+from truing.cli.console import GAP, Settings, aligned, harmless, out, out_json, put
 from truing.runs.comparison import Change, compared, in_order, words_of
 from truing.runs.folder import load_either
 from truing.studies.checks import EXIT_CODES
 from truing.texts import one_line
 
 
-def compare(
-    context: typer.Context,
-    *,
-    first: Path,
-    second: Path,
-    as_json: bool,
-) -> int:
+def compare(settings: Settings, *, first: Path, second: Path, as_json: bool) -> int:
     """Show inputs, results and checks that changed: exit 0 when equal, 1 when different."""
     found = compared(load_either(first), load_either(second))
     if as_json:

@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-import typer
-
 from truing.api.model import Diagnosis
 from truing.api.records import MeasuredRecord
-from truing.cli.console import Settings, broken, out, out_json, say, settings_of
+from truing.cli.console import Settings, broken, out, out_json, say
 from truing.cli.load import find_model, say_example
 from truing.diagnosis.result import DiagnosisResult
 from truing.errors import UsageError
@@ -23,7 +21,7 @@ MISSPELT = "Did you mean"
 
 
 def diagnose(
-    context: typer.Context,
+    settings: Settings,
     *,
     plugin: str,
     files: list[Path] | None,
@@ -35,7 +33,6 @@ def diagnose(
     as_json: bool,
 ) -> int:
     """Find what the simulation gets wrong, name the cause, extend the model and measure the gain."""
-    settings = settings_of(context)
     measured = (*(data or ()), *(files or ()))
     if not measured:
         raise UsageError("nothing to diagnose: name the measured rows with --data FILE.csv")

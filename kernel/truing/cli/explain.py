@@ -9,10 +9,8 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, TypeAlias
 
-import typer
-
 from truing.api.model import LoadedModel
-from truing.cli.console import NARROWEST, Settings, aligned, out, out_json, settings_of
+from truing.cli.console import NARROWEST, Settings, aligned, out, out_json
 from truing.cli.load import LABEL, find_offer, say_example
 from truing.errors import UsageError
 from truing.explain import SECTIONS, told
@@ -27,16 +25,9 @@ from truing.units import unit_text
 
 
 def explain(
-    context: typer.Context,
-    *,
-    what: str,
-    name: str,
-    inputs: Path | None,
-    changed: list[str] | None,
-    as_json: bool,
+    settings: Settings, *, what: str, name: str, inputs: Path | None, changed: list[str] | None, as_json: bool
 ) -> int:
     """Explain a result: formula, what it is made from, what moves it; or an input, an effect, a tolerance."""
-    settings = settings_of(context)
     offer, wanted = _asked(what, name, settings)
     say_example(inputs, offer.name, settings)
     setup = LoadedModel(offer, tuple(changed or ()), label=LABEL).setup(inputs)

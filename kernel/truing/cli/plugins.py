@@ -4,19 +4,12 @@ from __future__ import annotations
 
 from dataclasses import asdict
 
-import typer
-
-from truing.cli.console import columns, out, out_json, settings_of
+from truing.cli.console import Settings, columns, out, out_json
 from truing.kernel import Kernel
 from truing.texts import one_line
 
 
-def plugins(
-    context: typer.Context,
-    *,
-    as_json: bool,
-    strict: bool,
-) -> int:
+def plugins(settings: Settings, *, as_json: bool, strict: bool) -> int:
     """List what is installed, from where, which version, and what broke while loading."""
     kernel = Kernel.installed(strict=strict)
     offers = kernel.offers
@@ -32,7 +25,7 @@ def plugins(
         for item in offer.added:
             out(f"  {offer.name}: {item.plugin} {item.version} adds '{item.what}'")
     for broken in kernel.broken:
-        settings_of(context).say(f"warning: {broken}")
+        settings.say(f"warning: {broken}")
     return 0
 
 

@@ -7,13 +7,11 @@ from contextlib import contextmanager
 from itertools import islice
 from pathlib import Path
 
-import typer
-
 from truing.api.run import Run
 from truing.atomic import writings, written
 from truing.calculation import Calculation
 from truing.cases import CaseResult, CasesTable
-from truing.cli.console import Settings, aligned, columns, out, out_json, say, settings_of
+from truing.cli.console import Settings, aligned, columns, out, out_json, say
 from truing.cli.load import find_model, say_example
 from truing.errors import UsageError
 from truing.numbers import ABSENT, format_ends, format_value, with_unit
@@ -29,7 +27,7 @@ from truing.texts import one_line
 
 
 def run(
-    context: typer.Context,
+    settings: Settings,
     *,
     plugin: str,
     inputs: Path | None,
@@ -44,7 +42,6 @@ def run(
     as_json: bool,
 ) -> int:
     """Run the calculation and its studies and write the calculation sheet."""
-    settings = settings_of(context)
     if cluster and workers is not None:
         raise UsageError("--cluster and --workers exclude each other: a cluster has its own workers")
     model = find_model(plugin, settings, changed)

@@ -6,9 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
-import typer
-
-from truing.cli.console import aligned, out, out_json, settings_of
+from truing.cli.console import Settings, aligned, out, out_json
 from truing.cli.load import find_model
 from truing.declare.published import rules_of
 from truing.numbers import counted, format_number
@@ -19,14 +17,8 @@ from truing.units import unit_text
 HEAD = ("quantity", "where", "unit", "paper", "ours", "ratio", "verdict", "obtained", "kind", "why")
 
 
-def verify(
-    context: typer.Context,
-    *,
-    plugin: str,
-    as_json: bool,
-) -> int:
+def verify(settings: Settings, *, plugin: str, as_json: bool) -> int:
     """Print every number that the source prints beside ours; exit 0 if every row matches its stated verdict."""
-    settings = settings_of(context)
     model = find_model(plugin, settings)
     rows = model.verify(progress=not settings.quiet)
     if as_json:

@@ -10,12 +10,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import typer
-
 from truing.api.model import LoadedModel
 from truing.api.run import Run
 from truing.atomic import writings, written
-from truing.cli.console import Settings, out, say, sentence_of, settings_of
+from truing.cli.console import Settings, out, say, sentence_of
 from truing.cli.load import LABEL, find_offer
 from truing.inputs_file.files import refuse_file
 from truing.kernel import Offer
@@ -32,7 +30,7 @@ LOOKS = 2
 
 
 def watch(
-    context: typer.Context,
+    settings: Settings,
     *,
     plugin: str,
     inputs: Path,
@@ -44,7 +42,6 @@ def watch(
     every: float,
 ) -> int:
     """Run, and run again whenever the inputs file, its data files or the plugin's code change; Ctrl-C ends it."""
-    settings = settings_of(context)
     sys.dont_write_bytecode = True  # two savings within one second would otherwise be one to Python
     offer = find_offer(plugin, settings)
     _demand_file(inputs)

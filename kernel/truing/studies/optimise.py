@@ -17,7 +17,7 @@ from truing.fits import GRADES
 from truing.prices import price_answers
 from truing.setup import Setup
 from truing.studies.bench import Bench, Outcome
-from truing.studies.demands import Demand, as_number, demands, wilson
+from truing.studies.demands import Demand, as_number, demands, wilson, worst
 from truing.studies.drawings import BLUE, GREY, ORANGE, WIDTH, labelled
 from truing.studies.optimise_problem import (
     Aim,
@@ -306,13 +306,13 @@ class Optimum(Outcome):
     def verified(self) -> dict[str, float]:
         """The share of drawn machines of the knee that meets each goal."""
         tally = self.tally
-        return {} if tally is None else {name: _least(hits) / tally.draws for name, hits in tally.hits.items()}
+        return {} if tally is None else {name: worst(hits) / tally.draws for name, hits in tally.hits.items()}
 
     @property
     def interval(self) -> dict[str, tuple[float, float]]:
         """Wilson's 95 % interval of each of these shares."""
         tally = self.tally
-        return {} if tally is None else {name: wilson(_least(hits), tally.draws) for name, hits in tally.hits.items()}
+        return {} if tally is None else {name: wilson(worst(hits), tally.draws) for name, hits in tally.hits.items()}
 
     def as_json(self) -> dict[str, Any]:
         """Return front, knee, start, hypervolume and status in printed units."""
@@ -358,11 +358,6 @@ class Optimum(Outcome):
     def warnings(self) -> Sequence[str]:
         """Say what was not found, what the exact model contradicts, and whether the search had settled."""
         return [f"study '{self.name}': {text}" for text in optimum_warnings(self)]
-
-
-def _least(hits: Any) -> float:
-    """Return the smallest count along an axis, or the count itself."""
-    return float(np.min(hits))
 
 
 # How an optimum is written: results.json, the sheet, and what must be said of it
