@@ -336,7 +336,17 @@ def _line(error: ValueError | RecursionError) -> int | None:
 # What ``--set name=value`` puts in the place of what the file says
 
 
-SECTIONS = ("sheet", "inputs", "tolerances", "conditions", "effects", "calibrated", "studies", "units")
+SECTIONS = {
+    "sheet": "What the head of the sheet says, and how much the sheet shows.",
+    "inputs": "The inputs of the calculation; what is left out is as declared.",
+    "tolerances": "How inputs scatter about their nominals.",
+    "conditions": "What is measured but no input of the model.",
+    "effects": "Effects that are on, by name, each with its unknowns.",
+    "calibrated": "Inputs as fitted to one machine.",
+    "studies": "Which studies run, in which order, and their options.",
+    "units": "The unit in which a result or input is printed.",
+}
+"""The sections of an inputs file, and what each holds."""
 
 
 def apply_overrides(document: Document, model: Model[Any, Any], overrides: Sequence[str], label: str) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import MISSING, dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, PlainValidator, ValidationInfo, WithJsonSchema, create_model
@@ -19,6 +19,7 @@ from truing.declare.sources import Condition, Effect, Tolerance, Unknown
 from truing.declare.specs import Given, Loaded
 from truing.inputs_file import checks
 from truing.inputs_file.assemble import default_of, spread_text
+from truing.inputs_file.document import SECTIONS
 from truing.inputs_file.study_options import NAME, diagnose_schema, of_diagnose, option_schema, options_of
 from truing.inputs_file.values import ValueCheck, bounds_in_words, plain
 from truing.setup import DEFAULT_SEED
@@ -37,19 +38,6 @@ class SectionEntry:
     check: ValueCheck
     schema: Mapping[str, Any]
     required: bool = False
-
-
-SECTIONS = {
-    "sheet": "What the head of the sheet says, and how much the sheet shows.",
-    "inputs": "The inputs of the calculation; what is left out is as declared.",
-    "tolerances": "How inputs scatter about their nominals.",
-    "conditions": "What is measured but no input of the model.",
-    "effects": "Effects that are on, by name, each with its unknowns.",
-    "calibrated": "Inputs as fitted to one machine.",
-    "studies": "Which studies run, in which order, and their options.",
-    "units": "The unit in which a result or input is printed.",
-}
-"""The sections of an inputs file, and what each holds."""
 
 
 @lru_cache(maxsize=16)
@@ -128,33 +116,36 @@ def _is_required(item: InputField) -> bool:
 
 def _inputs(model: Model[Any, Any]) -> dict[str, SectionEntry]:
     entries = {
-        name: SectionEntry(checks.of_input(item, "inputs"), input_schema(item), _is_required(item))
+        name: SectionEntry(partial(checks.of_input, ("inputs", name), item), input_schema(item), _is_required(item))
         for name, item in model.input_fields.items()
     }
     for old, new in checks.renamed(model).items():
         if old not in entries and new in model.input_fields:
             schema = {**input_schema(model.input_fields[new]), "deprecated": True, "description": f"Now called {new}."}
-            entries[old] = SectionEntry(checks.of_old_name(old, model.input_fields[new]), schema)
+            entries[old] = SectionEntry(partial(checks.of_input, ("old names", old), model.input_fields[new]), schema)
     return entries
 
 
 def _calibrated(model: Model[Any, Any]) -> dict[str, SectionEntry]:
     varying = {name: item for name, item in model.input_fields.items() if item.varies}
     return {
-        name: SectionEntry(checks.of_input(item, "calibrated"), input_schema(item)) for name, item in varying.items()
+        name: SectionEntry(partial(checks.of_input, ("calibrated", name), item), input_schema(item))
+        for name, item in varying.items()
     }
 
 
 def _tolerances(model: Model[Any, Any]) -> dict[str, SectionEntry]:
     return {
-        name: SectionEntry(checks.of_tolerance(tolerance), tolerance_schema(tolerance))
+        name: SectionEntry(partial(checks.of_tolerance, tolerance), tolerance_schema(tolerance))
         for name, tolerance in model.tolerances.items()
     }
 
 
 def _conditions(model: Model[Any, Any]) -> dict[str, SectionEntry]:
     known = model.known_conditions
-    return {name: SectionEntry(checks.of_condition(item), condition_schema(item)) for name, item in known.items()}
+    return {
+        name: SectionEntry(partial(checks.of_condition, item), condition_schema(item)) for name, item in known.items()
+    }
 
 
 def _effects(model: Model[Any, Any]) -> type[BaseModel]:
@@ -169,11 +160,11 @@ def _effects(model: Model[Any, Any]) -> type[BaseModel]:
 def _effect(effect: Effect[Any, Any]) -> dict[str, SectionEntry]:
     entries = {
         unknown.name: SectionEntry(
-            checks.of_unknown(effect, unknown), unknown_schema(unknown), required=not effect.parts
+            partial(checks.of_unknown, effect, unknown), unknown_schema(unknown), required=not effect.parts
         )
         for unknown in effect.unknowns
     }
-    entries.setdefault("covariance", SectionEntry(checks.of_covariance(effect), covariance_schema(effect)))
+    entries.setdefault("covariance", SectionEntry(partial(checks.of_covariance, effect), covariance_schema(effect)))
     return entries
 
 
@@ -182,12 +173,14 @@ def _studies(model: Model[Any, Any]) -> dict[str, SectionEntry]:
     run = {"type": "array", "items": {"enum": names} if names else {}, "uniqueItems": True}
     seed = {"type": "integer", "minimum": 0, "default": DEFAULT_SEED, "description": "Where the random numbers begin."}
     entries = {
-        "run": SectionEntry(checks.of_run(names), {**run, "description": "The studies that run, in this order."}),
+        "run": SectionEntry(
+            partial(checks.of_run, names), {**run, "description": "The studies that run, in this order."}
+        ),
         "seed": SectionEntry(checks.stored(("studies", "seed"), checks.seed), seed),
     }
     for study in model.studies:
-        entries[study.name] = SectionEntry(checks.of_study(study), study_schema(study))
-    entries.setdefault(NAME, SectionEntry(of_diagnose(model), diagnose_schema(model)))
+        entries[study.name] = SectionEntry(partial(checks.of_study, study), study_schema(study))
+    entries.setdefault(NAME, SectionEntry(partial(of_diagnose, model), diagnose_schema(model)))
     return entries
 
 
@@ -196,7 +189,9 @@ def _units(model: Model[Any, Any]) -> dict[str, SectionEntry]:
     for name, item in model.input_fields.items():
         if isinstance(item.spec, Given) and item.spec.unit is not None:
             declared[name] = item.unit
-    return {name: SectionEntry(checks.of_unit(name, unit), unit_schema(unit)) for name, unit in declared.items()}
+    return {
+        name: SectionEntry(partial(checks.of_unit, name, unit), unit_schema(unit)) for name, unit in declared.items()
+    }
 
 
 # What an editor shows of every entry of an inputs file: descriptions, examples, defaults, as JSON Schema

@@ -99,29 +99,24 @@ def option_schema(hint: Any) -> dict[str, Any]:
 NAME = "diagnose"
 
 
-def of_diagnose(model: Model[Any, Any]) -> Callable[[Any, InputsRead], Any]:
-    """Make the check of the section; all that is wrong is said in one answer."""
+def of_diagnose(model: Model[Any, Any], raw: Any, reading: InputsRead) -> None:
+    """Check and keep the section; all that is wrong is said in one answer."""
+    if not isinstance(raw, dict):
+        raise SentenceError(f"[studies.{NAME}] is a section; write its options below it")
     readers = {
         "per_file": _per_file, "hold_out": _hold_out, "box": _box, "clipped": _clipped, "lognormal": _lognormal,
         "at_least": _marks("at_least"), "at_most": _marks("at_most"), "budget": _budget,
     }  # fmt: skip
-
-    def check(raw: Any, reading: InputsRead) -> Any:
-        if not isinstance(raw, dict):
-            raise SentenceError(f"[studies.{NAME}] is a section; write its options below it")
-        for name, value in raw.items():
-            key = ("studies", NAME, name)
-            try:
-                if name not in readers:
-                    meant = near_miss(name[:80], readers)
-                    known = f" (options: {', '.join(readers)})"
-                    raise SentenceError(f"study '{NAME}' has no option {shown(name)}.{meant}{known}")
-                reading.values[key] = readers[name](value, model)
-            except ValueError as error:
-                reading.faults.append((key, str(error)))
-        return raw
-
-    return check
+    for name, value in raw.items():
+        key = ("studies", NAME, name)
+        try:
+            if name not in readers:
+                meant = near_miss(name[:80], readers)
+                known = f" (options: {', '.join(readers)})"
+                raise SentenceError(f"study '{NAME}' has no option {shown(name)}.{meant}{known}")
+            reading.values[key] = readers[name](value, model)
+        except ValueError as error:
+            reading.faults.append((key, str(error)))
 
 
 def diagnose_options(model: Model[Any, Any], values: StatedValues) -> DiagnoseOptions:
