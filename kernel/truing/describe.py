@@ -31,36 +31,38 @@ def description(offer: Offer) -> dict[str, Any]:
         "title": model.title,
         "summary": model.summary,
         "plugin": {"name": offer.origin.name, "version": offer.origin.version},
-        "inputs": [_input(item) for item in model.input_fields.values()],
-        "results": [_result(item) for item in model.result_fields.values()],
+        "inputs": [_input(field) for field in model.input_fields.values()],
+        "results": [_result(field) for field in model.result_fields.values()],
         "tolerances": [
             {
-                "name": item.name,
-                "spread": item.spread.text,
-                "on": list(item.on),
-                "why": item.why,
-                "source": item.source,
-                "price": dataclasses.asdict(item.price) if item.price else None,
+                "name": tolerance.name,
+                "spread": tolerance.spread.text,
+                "on": list(tolerance.on),
+                "why": tolerance.why,
+                "source": tolerance.source,
+                "price": dataclasses.asdict(tolerance.price) if tolerance.price else None,
             }
-            for item in model.tolerances.values()
+            for tolerance in model.tolerances.values()
         ],
         "effects": [_effect(effect) for effect in model.effects.values()],
-        "conditions": [_named(item, CONDITION) for item in model.conditions.values()],
+        "conditions": [_named(condition, CONDITION) for condition in model.conditions.values()],
         "built_in": {
             "effects": [_effect(item) for item in built_in if not may_stand(item)],
             "where_measured": [_effect(item) for item in built_in if may_stand(item)],
             "conditions": [
-                _named(item, CONDITION) for name, item in model.known_conditions.items() if name not in model.conditions
+                _named(condition, CONDITION)
+                for name, condition in model.known_conditions.items()
+                if name not in model.conditions
             ],
         },
-        "objectives": [_objective(item) for item in model.objectives],
+        "objectives": [_objective(objective) for objective in model.objectives],
         "studies": [study.name for study in model.studies],
         "sheet": [{"title": section.title, "results": list(section.names)} for section in model.sheet],
-        "published": [_published(item) for item in model.published],
-        "findings": [dataclasses.asdict(item) for item in model.findings],
+        "published": [_published(printed) for printed in model.published],
+        "findings": [dataclasses.asdict(finding) for finding in model.findings],
         "exceptions": {str(name): reason for name, reason in model.exceptions.items()},
         "cites": list(model.cites),
-        "added": [dataclasses.asdict(item) for item in offer.added],
+        "added": [dataclasses.asdict(addition) for addition in offer.added],
     }
 
 
@@ -121,7 +123,7 @@ def _effect(effect: Any) -> dict[str, Any]:
             {**_named(unknown, UNKNOWN), "amplitude": unknown.is_amplitude, **_named(unknown, ("whole", "along"))}
             for unknown in effect.unknowns
         ],
-        "needs": [item.name for item in effect.needs],
+        "needs": [need.name for need in effect.needs],
         "parts": [list(part) for part in effect.parts],
     }
 
@@ -144,7 +146,7 @@ def sections(said: Mapping[str, Any]) -> dict[str, list[Sequence[str]]]:
     built_in = [_built_in_row(item, results) for item in said["built_in"]["effects"]]
     measured = [row for row in WHERE_MEASURED if _is_among(row[0], said["built_in"]["where_measured"])]
     found: dict[str, list[Sequence[str]]] = {
-        "Inputs": [_input_row(item) for item in said["inputs"]],
+        "Inputs": [_input_row(entry) for entry in said["inputs"]],
         "Results": [(item["name"], _symbol(item), _unit(item["unit"]), item["note"]) for item in said["results"]],
         "Tolerances": [
             (item["name"], item["spread"], "on " + ", ".join(item["on"]), item["why"]) for item in said["tolerances"]

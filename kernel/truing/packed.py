@@ -45,7 +45,7 @@ def pack(setup: Setup, *, studies: bool = False) -> Packed:
         "inputs": setup.model.read_inputs(setup.inputs),
         "spreads": {name: spread for name, spread in setup.spreads.items() if spread != declared.get(name)},
         "conditions": dict(setup.conditions),
-        "effects": [_plain_effect(item) for item in setup.effects],
+        "effects": [_plain_effect(active) for active in setup.effects],
         "calibrated": dict(setup.calibrated),
         "seed": setup.seed,
         "units": dict(setup.units),
@@ -104,18 +104,18 @@ def travels(setup: Setup) -> bool:
 
 
 def _with_gives(study: Any, model: Model[Any, Any]) -> Any:
-    declared = {item.name: item.gives for item in model.studies}
+    declared = {study.name: study.gives for study in model.studies}
     return replace(study, gives=declared.get(study.name))
 
 
 def made(cls: type[Any], values: Mapping[tuple[str, ...], Any]) -> Any:
     """Make nested inputs from the values of all their fields, given by path."""
     own = {path[0]: value for path, value in values.items() if len(path) == 1}
-    for item in fields(cls):
-        spec = spec_of(item)
+    for field in fields(cls):
+        spec = spec_of(field)
         if isinstance(spec, Part):
-            inner = {path[1:]: value for path, value in values.items() if path[0] == item.name}
-            own[item.name] = made(spec.of, inner)
+            inner = {path[1:]: value for path, value in values.items() if path[0] == field.name}
+            own[field.name] = made(spec.of, inner)
     return cls(**own)
 
 

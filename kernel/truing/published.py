@@ -42,11 +42,11 @@ def compare(
     """Compare every printed number with ours; each distinct set of settings is calculated once."""
     done: dict[frozenset[tuple[str, str]], Calculation] = {}
     rows = []
-    for item in published:
-        key = frozenset(item.settings.items())
+    for printed in published:
+        key = frozenset(printed.settings.items())
         if key not in done:
-            done[key] = calculation_for(item.settings)
-        rows.append(compare_one(item, done[key]))
+            done[key] = calculation_for(printed.settings)
+        rows.append(compare_one(printed, done[key]))
     return rows
 
 
@@ -65,7 +65,7 @@ def compare_published(
 
 
 def _compared(offer: Offer, progress: Progress, known: Calculation | None) -> list[ComparedRow]:
-    asked = {frozenset(item.settings.items()): item.settings for item in offer.model.published}
+    asked = {frozenset(printed.settings.items()): printed.settings for printed in offer.model.published}
     wanted = {key: setup_from_settings(offer, settings) for key, settings in asked.items()}
     missing = [
         key

@@ -317,7 +317,7 @@ class Differences:
     def frame(self) -> Any:
         """Return the differences as a dataframe of texts: what, name, before, after, change."""
         rows = [words_of(change) for change in self.changes]
-        return frame_of({name: [row[place] for row in rows] for place, name in enumerate(CHANGE_COLUMNS)})
+        return frame_of({name: [row[index] for row in rows] for index, name in enumerate(CHANGE_COLUMNS)})
 
     def _repr_html_(self) -> str:
         rows = [words_of(change) for change in self.changes]

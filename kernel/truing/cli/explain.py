@@ -275,8 +275,13 @@ def _effect(told: Told) -> Parts:
         yield "One of the kernel's own: it can act on the reading of any result, and never on a machine."
     if told["unknowns"]:
         rows = [
-            (item["name"], f"{item['low']:g} .. {item['high']:g} {item['unit']}".strip(), item["text"], item["note"])
-            for item in told["unknowns"]
+            (
+                entry["name"],
+                f"{entry['low']:g} .. {entry['high']:g} {entry['unit']}".strip(),
+                entry["text"],
+                entry["note"],
+            )
+            for entry in told["unknowns"]
         ]
         yield Chapter("Unknowns", (_table(rows),))
     if told["needs"]:

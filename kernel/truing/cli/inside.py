@@ -50,7 +50,7 @@ def changes(context: typer.Context, incomplete: str) -> Iterator[OfferedWord]:
     for key, schema in inside.items():
         yield f"{'.'.join([*above, key])}{'.' if 'properties' in schema else '='}", _words(schema)
     if not above:
-        files = (key for key, item in model.input_fields.items() if item.kind == "file")
+        files = (key for key, field in model.input_fields.items() if field.kind == "file")
         yield from ((f"{key}.", "how the data file is read") for key in files)
         sections = (key for key, entries in known.items() if entries and key not in {"inputs", "conditions"})
         yield from ((f"{key}.", "a section of the inputs file") for key in sections)
@@ -109,8 +109,8 @@ def _declared(model: Model[Any, Any]) -> Iterator[OfferedWord]:
     """Give results, inputs, effects and tolerances, each name once."""
     found: dict[str, str] = {}
     for fields in (model.result_fields, model.input_fields):
-        for name, item in fields.items():
-            found.setdefault(name, ", ".join(part for part in (item.spec.note, item.unit) if part))
+        for name, field in fields.items():
+            found.setdefault(name, ", ".join(part for part in (field.spec.note, field.unit) if part))
     for effect in model.effects.values():
         found.setdefault(effect.name, effect.why or effect.looks_like)
     for tolerance in model.tolerances.values():

@@ -22,8 +22,8 @@ def plugins(settings: Settings, *, as_json: bool, strict: bool) -> int:
         rows.append((offer.name, offer.origin.version, home, one_line(offer.model.title)))
     out(columns(rows))
     for offer in offers.values():
-        for item in offer.added:
-            out(f"  {offer.name}: {item.plugin} {item.version} adds '{item.what}'")
+        for addition in offer.added:
+            out(f"  {offer.name}: {addition.plugin} {addition.version} adds '{addition.what}'")
     for broken in kernel.broken:
         settings.say(f"warning: {broken}")
     return 0
@@ -39,7 +39,7 @@ def _document(kernel: Kernel) -> dict[str, object]:
                 "version": offer.origin.version,
                 "distribution": offer.origin.distribution,
                 "file": offer.origin.file,
-                "added": [asdict(item) for item in offer.added],
+                "added": [asdict(addition) for addition in offer.added],
             }
             for offer in kernel.offers.values()
         ],

@@ -22,7 +22,7 @@ def verify(settings: Settings, *, plugin: str, as_json: bool) -> int:
     model = find_model(plugin, settings)
     rows = model.verify(progress=not settings.quiet)
     if as_json:
-        findings = [asdict(item) for item in model.offer.model.findings]
+        findings = [asdict(finding) for finding in model.offer.model.findings]
         out_json(
             {
                 "rows": [_plain(row) for row in rows],

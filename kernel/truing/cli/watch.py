@@ -142,10 +142,10 @@ class _Watcher:
         """Say the warnings that the last run did not have, and the cases that failed."""
         cases = done.cases.cases if done.cases is not None else ()
         failed = [str(case.fault) for case in cases if case.reason is not None]
-        for text in (*(f"warning: {one_line(one)}" for one in done.warnings), *failed):
+        for text in (*(f"warning: {one_line(warning)}" for warning in done.warnings), *failed):
             if text not in self.warned:
                 self.settings.say(text)
-        self.warned = {*(f"warning: {one_line(one)}" for one in done.warnings), *failed}
+        self.warned = {*(f"warning: {one_line(warning)}" for warning in done.warnings), *failed}
 
     def _complain(self, error: Exception) -> None:
         self.exit_code = 1

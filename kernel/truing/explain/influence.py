@@ -58,7 +58,7 @@ class Influences:
 
 def differentiable(setup: Setup) -> list[str]:
     """Return the inputs and conditions that a result can be differentiated by: numbers that are given."""
-    numbers = [name for name, item in setup.model.input_fields.items() if item.kind == "float"]
+    numbers = [name for name, field in setup.model.input_fields.items() if field.kind == "float"]
     return [name for name in (*numbers, *setup.conditions) if (value := nominal_of(setup, name)) == value]
 
 
@@ -191,7 +191,7 @@ def touched(setup: Setup, effect: Effect[Any, Any]) -> Touched:
 
 
 def _trials(setup: Setup, effect: Effect[Any, Any]) -> Iterator[tuple[dict[str, float], dict[str, float]]]:
-    on = next((item for item in setup.effects if item.effect.name == effect.name), None)
+    on = next((active for active in setup.effects if active.effect.name == effect.name), None)
     if on is not None:
         yield dict(on.values), {need.name: _off_reference(setup, need) for need in effect.needs}
     for size in SIZES:
@@ -237,8 +237,8 @@ def _changed(before: Mapping[str, Any], after: Mapping[str, Any]) -> Iterator[tu
 def _moved(bare: Setup, acting: Setup) -> Iterator[tuple[str, tuple[float, float]]]:
     model = bare.model
     before, after = model.read_inputs(bare.inputs), model.read_inputs(acting_inputs(acting))
-    for name, item in model.input_fields.items():
-        if item.varies and before[name] == before[name] and before[name] != after[name]:
+    for name, field in model.input_fields.items():
+        if field.varies and before[name] == before[name] and before[name] != after[name]:
             yield name, (float(before[name]), float(after[name]))
 
 
@@ -260,11 +260,11 @@ def effects_on(found: Mapping[str, Touched], names: Sequence[str]) -> dict[str, 
 def made_from(model: Model[Any, Any]) -> Mapping[str, tuple[str, ...]]:
     """Return, for every result with a formula, the inputs and results that it names, in the order of its text."""
     found: dict[str, tuple[str, ...]] = {}
-    for name, item in model.result_fields.items():
-        if not isinstance(item.spec, Found) or not item.spec.formula:
+    for name, field in model.result_fields.items():
+        if not isinstance(field.spec, Found) or not field.spec.formula:
             continue
-        formula = parse(item.spec.formula)
-        scope = formula_scope(model, item)
+        formula = parse(field.spec.formula)
+        scope = formula_scope(model, field)
         sides = [side for side in (formula.left, formula.right) if side is not None]
         written = [node.name for side in sides for node in walk(side) if isinstance(node, Name)]
         names = dict.fromkeys(scope[word].name for word in written if word in scope)

@@ -162,7 +162,11 @@ def of_input(setup: Setup, name: str) -> dict[str, Any]:
         "tolerances": [_tolerance(setup, tolerance) for tolerance in scattering],
         "namesake": list(model.tolerances[name].on) if name in model.tolerances and not _is_on(setup, name) else [],
         "limit_of": [require_words(one, "") for one in _requires(setup) if name in {one.limit, one.reliability}],
-        "varied": [_vary_words(one) for one in model.objectives if isinstance(one, Vary) and one.input == name],
+        "varied": [
+            _vary_words(objective)
+            for objective in model.objectives
+            if isinstance(objective, Vary) and objective.input == name
+        ],
         "effects": [_effect_row(setup, model.effects[effect]) for effect in changed],
     }
 
@@ -177,7 +181,7 @@ def _is_given(setup: Setup, name: str) -> bool:
 
 
 def _requires(setup: Setup) -> list[Require]:
-    return [item for item in setup.model.objectives if isinstance(item, Require)]
+    return [objective for objective in setup.model.objectives if isinstance(objective, Require)]
 
 
 def _vary_words(item: Vary) -> str:
@@ -187,7 +191,7 @@ def _vary_words(item: Vary) -> str:
 def _moves(setup: Setup, sources: Sequence[str]) -> list[dict[str, Any]]:
     """Say of each result of the function what one per cent of the sources, and their scatter, do to it."""
     answers = setup.model.read_results(evaluate(setup))
-    results = [name for name, item in setup.model.own_result_fields.items() if not _is_table(item)]
+    results = [name for name, field in setup.model.own_result_fields.items() if not _is_table(field)]
     found = influences(setup, {name: answers[name] for name in results}, sources)
     rows = [row for result in results if (row := _row(setup, found, result, sources)) is not None]
     return sorted(rows, key=lambda row: (-row["share"], -abs(row["percent"] or 0.0)))
@@ -225,7 +229,7 @@ def of_tolerance(setup: Setup, name: str) -> dict[str, Any]:
 
 def _tolerance(setup: Setup, tolerance: Tolerance) -> dict[str, Any]:
     inner = setup.distributions().get(tolerance.name, {})
-    sds = dict.fromkeys(step_text(setup, name, item.sd, 4) for name, item in inner.items())
+    sds = dict.fromkeys(step_text(setup, name, distribution.sd, 4) for name, distribution in inner.items())
     return {
         "name": tolerance.name,
         "spread": setup.spread_of(tolerance.name).text,
@@ -265,12 +269,12 @@ def _touched_row(setup: Setup, name: str, size: float) -> dict[str, Any]:
 
 
 def _effect_row(setup: Setup, effect: Effect[Any, Any]) -> dict[str, Any]:
-    on = any(item.effect.name == effect.name for item in setup.effects)
+    on = any(active.effect.name == effect.name for active in setup.effects)
     return {"name": effect.name, "acts_on": effect.place, "on": on, "looks_like": effect.looks_like}
 
 
 def _unknowns(setup: Setup, effect: Effect[Any, Any]) -> Iterator[dict[str, Any]]:
-    held = next((item.values for item in setup.effects if item.effect.name == effect.name), {})
+    held = next((active.values for active in setup.effects if active.effect.name == effect.name), {})
     for unknown in effect.unknowns:
         value = held.get(unknown.name)
         yield {
@@ -286,7 +290,7 @@ def _in(value: float, unit: str) -> str:
 
 
 def _tried(setup: Setup, effect: Effect[Any, Any], name: str, value: float) -> str:
-    unknown = next((one for one in effect.unknowns if one.name == name), None)
+    unknown = next((unknown for unknown in effect.unknowns if unknown.name == name), None)
     return _in(value, unknown.unit if unknown is not None else setup.model.known_conditions[name].unit)
 
 
@@ -317,7 +321,7 @@ def of_study(setup: Setup, name: str) -> dict[str, Any]:
     said = (type(study).__doc__ or "").strip().partition("\n")[0]
     return {
         "note": said,
-        "asked": name in [each.name for each in setup.studies],
+        "asked": name in [study.name for study in setup.studies],
         "gives": list(setup.model.study_result_fields.get(name, {})),
     }
 
@@ -410,7 +414,7 @@ def study_of(model: Model[Any, Any], name: str) -> str:
 
 def _needed(setup: Setup, study: str) -> tuple[Study, ...]:
     """Return the studies up to the one that gives a result, as the setup asks for them."""
-    names = [each.name for each in setup.studies]
+    names = [study.name for study in setup.studies]
     return tuple(setup.studies[: names.index(study) + 1]) if study in names else ()
 
 
@@ -482,7 +486,7 @@ def slope_row(setup: Setup, result: str, one: Influence) -> dict[str, Any]:
 
 def _limits(setup: Setup, name: str, calculation: Calculation, below: set[str]) -> Iterator[dict[str, Any]]:
     """Say the limits and goals on a result and on those ``below`` it, and those that it sets for others."""
-    requires = [item for item in setup.model.objectives if isinstance(item, Require)]
+    requires = [objective for objective in setup.model.objectives if isinstance(objective, Require)]
     checks = {check.name: check for check in calculation.checks}
     for item in sorted(setup.model.objectives, key=lambda item: getattr(item, "result", "") != name):
         if isinstance(item, (Minimise, Maximise)) and item.result == name:
@@ -514,19 +518,19 @@ def _published(setup: Setup, offer: Offer, name: str, calculation: Calculation) 
     Ours is None for a result of a study under other settings: to verify these takes whole runs.
     """
     study = study_of(setup.model, name)
-    for item in setup.model.published:
-        if item.result != name:
+    for printed in setup.model.published:
+        if printed.result != name:
             continue
-        wanted = setup_from_settings(offer, item.settings)
+        wanted = setup_from_settings(offer, printed.settings)
         compared = None
         if not study:
-            compared = compare_one(item, calculate(replace(wanted, studies=())))
+            compared = compare_one(printed, calculate(replace(wanted, studies=())))
         elif same_run(setup, wanted) and _needed(setup, study) == _needed(wanted, study):
-            compared = compare_one(item, calculation)
+            compared = compare_one(printed, calculation)
         yield {
-            "name": item.name, "where": item.where, "settings": dict(item.settings), "unit": unit_text(item.unit),
-            "paper": item.value, "ours": None if compared is None else compared.value, "verdict": item.verdict,
-            "why": item.why,
+            "name": printed.name, "where": printed.where, "settings": dict(printed.settings),
+            "unit": unit_text(printed.unit), "paper": printed.value,
+            "ours": None if compared is None else compared.value, "verdict": printed.verdict, "why": printed.why,
         }  # fmt: skip
 
 
@@ -539,9 +543,4 @@ def _effects(setup: Setup, name: str, study: str, links: Mapping[str, Sequence[s
         else [one for one in links.get(name, ()) if one in model.own_result_fields]
     )
     found = all_touched(setup) if names else {}
-    on = {item.effect.name for item in setup.effects}
-    return [
-        {"name": effect, "acts_on": model.effects[effect].place, "on": effect in on,
-         "looks_like": model.effects[effect].looks_like}
-        for effect in effects_on(found, names)
-    ]  # fmt: skip
+    return [_effect_row(setup, model.effects[effect]) for effect in effects_on(found, names)]

@@ -116,8 +116,8 @@ def _is_required(item: InputField) -> bool:
 
 def _inputs(model: Model[Any, Any]) -> dict[str, SectionEntry]:
     entries = {
-        name: SectionEntry(partial(checks.of_input, ("inputs", name), item), input_schema(item), _is_required(item))
-        for name, item in model.input_fields.items()
+        name: SectionEntry(partial(checks.of_input, ("inputs", name), field), input_schema(field), _is_required(field))
+        for name, field in model.input_fields.items()
     }
     for old, new in checks.renamed(model).items():
         if old not in entries and new in model.input_fields:
@@ -127,7 +127,7 @@ def _inputs(model: Model[Any, Any]) -> dict[str, SectionEntry]:
 
 
 def _calibrated(model: Model[Any, Any]) -> dict[str, SectionEntry]:
-    varying = {name: item for name, item in model.input_fields.items() if item.varies}
+    varying = {name: field for name, field in model.input_fields.items() if field.varies}
     return {
         name: SectionEntry(partial(checks.of_input, ("calibrated", name), item), input_schema(item))
         for name, item in varying.items()
@@ -150,10 +150,10 @@ def _conditions(model: Model[Any, Any]) -> dict[str, SectionEntry]:
 
 def _effects(model: Model[Any, Any]) -> type[BaseModel]:
     fields: dict[str, Any] = {}
-    for place, (name, effect) in enumerate(model.known_effects.items()):
+    for index, (name, effect) in enumerate(model.known_effects.items()):
         words = effect_schema(effect)["description"]
         section = _section(f"Effect {name}", _effect(effect))
-        fields[f"effect_{place}"] = (section, Field(default_factory=dict, alias=name, title=name, description=words))
+        fields[f"effect_{index}"] = (section, Field(default_factory=dict, alias=name, title=name, description=words))
     return create_model("Effects", __config__=_config(), **fields)
 
 
@@ -185,10 +185,10 @@ def _studies(model: Model[Any, Any]) -> dict[str, SectionEntry]:
 
 
 def _units(model: Model[Any, Any]) -> dict[str, SectionEntry]:
-    declared = {name: item.unit for name, item in model.result_fields.items()}
-    for name, item in model.input_fields.items():
-        if isinstance(item.spec, Given) and item.spec.unit is not None:
-            declared[name] = item.unit
+    declared = {name: field.unit for name, field in model.result_fields.items()}
+    for name, field in model.input_fields.items():
+        if isinstance(field.spec, Given) and field.spec.unit is not None:
+            declared[name] = field.unit
     return {
         name: SectionEntry(partial(checks.of_unit, name, unit), unit_schema(unit)) for name, unit in declared.items()
     }

@@ -103,7 +103,7 @@ class _Words:
             "tolerances": ("tolerance", list(model.tolerances)),
             "conditions": ("condition", list(model.known_conditions)),
             "effects": ("effect", list(model.known_effects)),
-            "calibrated": ("input to calibrate called", [n for n, item in model.input_fields.items() if item.varies]),
+            "calibrated": ("input to calibrate called", [n for n, field in model.input_fields.items() if field.varies]),
             "studies": ("study", studies),
             "units": ("result or input", [*model.result_fields, *model.input_fields]),
             "sheet": ("entry", [*HEAD, "detail"]),
@@ -149,7 +149,7 @@ class _Words:
         """Say that something is missing, and how it is written."""
         name = path[-1]
         if path[0] == "effects":
-            unknown = next(one for one in self.model.known_effects[path[1]].unknowns if one.name == name)
+            unknown = next(unknown for unknown in self.model.known_effects[path[1]].unknowns if unknown.name == name)
             bounds = f"from {unknown.low:g} to {unknown.high:g} {unknown.unit}".strip()
             return f"effect '{path[1]}' is on, so its unknown '{name}' must be given ({bounds})"
         item = self.model.input_fields[name]
@@ -202,7 +202,7 @@ def _changed(setup: Setup) -> set[str]:
     """Return the inputs, conditions and effects that are not as the model has them."""
     fields = setup.model.input_fields
     values = setup.model.read_inputs(setup.inputs)
-    changed = {f"effects.{item.effect.name}" for item in setup.effects}
+    changed = {f"effects.{active.effect.name}" for active in setup.effects}
     known = setup.model.known_conditions
     changed |= {name for name, value in setup.conditions.items() if name in known and value != known[name].zero}
     for name in setup.source.places:

@@ -26,9 +26,9 @@ def options_of(study: Study) -> dict[str, Any]:
     if not dataclasses.is_dataclass(study):
         return {}
     return {
-        item.name: _hint(type(study), item, getattr(study, item.name))
-        for item in dataclasses.fields(study)
-        if item.init and item.name not in {"name", "gives"} and not callable(getattr(study, item.name))
+        field.name: _hint(type(study), field, getattr(study, field.name))
+        for field in dataclasses.fields(study)
+        if field.init and field.name not in {"name", "gives"} and not callable(getattr(study, field.name))
     }
 
 
@@ -171,7 +171,7 @@ def _of_readings(model: Model[Any, Any]) -> dict[str, Any]:
 
 
 def _settable(model: Model[Any, Any]) -> Iterator[str]:
-    yield from (name for name, item in model.input_fields.items() if item.varies)
+    yield from (name for name, field in model.input_fields.items() if field.varies)
     yield from model.known_conditions
 
 
@@ -186,7 +186,7 @@ def _per_file(raw: Any, model: Model[Any, Any]) -> tuple[str, ...]:
         raise SentenceError(f"study '{NAME}': per_file = {written(raw)} is no list of names; write [\"sensor_offset\"]")
     effects = model.known_effects
     unknowns = [f"{name}.{unknown.name}" for name, effect in effects.items() for unknown in effect.unknowns]
-    known = [*effects, *unknowns, *(name for name, item in model.input_fields.items() if item.varies)]
+    known = [*effects, *unknowns, *(name for name, field in model.input_fields.items() if field.varies)]
     for index, name in enumerate(raw):
         if name not in known:
             near = near_miss(name[:80], known)

@@ -455,7 +455,7 @@ class RowCount:
     @property
     def unused(self) -> int:
         """Rows that are left out."""
-        return sum(len(item.lines) for item in self.left_out)
+        return sum(len(omission.lines) for omission in self.left_out)
 
     @property
     def used(self) -> int:
@@ -467,7 +467,7 @@ class RowCount:
         taken = tuple(int(line) for line in lines)
         if not taken:
             return self
-        before = {item.reason: item.lines for item in self.left_out}
+        before = {omission.reason: omission.lines for omission in self.left_out}
         found = {**before, reason: tuple(sorted((*before.get(reason, ()), *taken)))}
         return replace(self, left_out=tuple(LeftOut(*item) for item in found.items()))
 
@@ -490,7 +490,7 @@ class RowCount:
 
     def as_json(self) -> dict[str, Any]:
         """Return the count as data."""
-        left = [{"reason": item.reason, "lines": list(item.lines)} for item in self.left_out]
+        left = [{"reason": omission.reason, "lines": list(omission.lines)} for omission in self.left_out]
         return {"in_file": self.in_file, "used": self.used, "left_out": left}
 
 

@@ -94,7 +94,7 @@ def questions(diagnosis: DiagnosisResult) -> dict[str, tuple[str, ...]]:
 
 def data_line(diagnosis: DiagnosisResult) -> str:
     """Say what was measured, how long it took, and which model it was held against."""
-    time = next((item for item in diagnosis.records.covariates.values() if item.role == "time"), None)
+    time = next((covariate for covariate in diagnosis.records.covariates.values() if covariate.role == "time"), None)
     lasting = ""
     if time is not None:
         hours = Amount(float(np.nanmax(time.values) - np.nanmin(time.values)), time.unit)
@@ -157,13 +157,13 @@ def _chapter(ident: str, title: str, parts: Parts) -> Chapter:
 
 def _wrong(diagnosis: DiagnosisResult, drawn: Figures) -> Parts:
     errors, found, noises = [], [], []
-    for item in diagnosis.wrong:
-        name, noise = spoken(item.result), item.noise
-        rmse, floor, share = amount_text(item.rmse), amount_text(item.noise_floor), percent(item.reducible_share)
-        errors.append((name, str(item.rows), rmse, floor, share))
+    for wrong in diagnosis.wrong:
+        name, noise = spoken(wrong.result), wrong.noise
+        rmse, floor, share = amount_text(wrong.rmse), amount_text(wrong.noise_floor), percent(wrong.reducible_share)
+        errors.append((name, str(wrong.rows), rmse, floor, share))
         against = f"RMS error {rmse} against a noise floor of {floor}"
         yield f"{name}: {against}: {share} of the mean square error is reducible"
-        for finding in item.findings:
+        for finding in wrong.findings:
             text, sure = prose(finding.text), certainty(finding.p_value)
             found.append((name, finding.kind, text, sure))
             yield f"  {finding.kind}: {text}" + (f" – {sure}" if finding.p_value is not None else "")
@@ -267,8 +267,8 @@ def _named(diagnosis: DiagnosisResult) -> Parts:
 
 def _near(diagnosis: DiagnosisResult) -> Iterator[str]:
     """Say which explanations are not excluded, and which is the next behind them."""
-    for item in diagnosis.alternatives:
-        yield f"not excluded: {explanation(item)}{_distance(item)}"
+    for alternative in diagnosis.alternatives:
+        yield f"not excluded: {explanation(alternative)}{_distance(alternative)}"
     rivals = _rivals(diagnosis)
     if rivals and explanations_of(diagnosis):
         yield f"next best: {explanation(rivals[0])}{_distance(rivals[0])}"
@@ -277,8 +277,12 @@ def _near(diagnosis: DiagnosisResult) -> Iterator[str]:
 def _rivals(diagnosis: DiagnosisResult) -> list[Alternative]:
     """Return the explanations behind those that are not excluded, without those that only add to the named one."""
     named = {cause.effect for cause in diagnosis.causes}
-    said = [item.causes for item in diagnosis.alternatives]
-    rivals = [item for item in diagnosis.ranking if item.causes and item.behind > 0 and item.causes not in said]
+    said = [alternative.causes for alternative in diagnosis.alternatives]
+    rivals = [
+        alternative
+        for alternative in diagnosis.ranking
+        if alternative.causes and alternative.behind > 0 and alternative.causes not in said
+    ]
     return [item for item in rivals if item.separation >= WEAK and not (named and named <= set(item.causes))]
 
 
@@ -356,7 +360,8 @@ def _sight(diagnosis: DiagnosisResult) -> Parts:
         yield f"not measured: {'; '.join(f'{effect} ({needs})' for effect, needs in lacking)}"
     yield from _visible(diagnosis)
     rows = [
-        (spoken(item.name), amount_text(readable(item.smallest)), str(item.sight), item.text) for item in diagnosis.seen
+        (spoken(visible.name), amount_text(readable(visible.smallest)), str(visible.sight), visible.text)
+        for visible in diagnosis.seen
     ]
     rows += [(effect, ABSENT, "not measured", f"no column gives {needs}") for effect, needs in lacking]
     if rows:
@@ -367,12 +372,12 @@ def _sight(diagnosis: DiagnosisResult) -> Parts:
 def _others(diagnosis: DiagnosisResult) -> list[VisibleSize]:
     """Return the sizes of effects that are not named."""
     named = {cause.effect for cause in diagnosis.causes}
-    return [item for item in diagnosis.seen if item.name.partition(".")[0] not in named]
+    return [visible for visible in diagnosis.seen if visible.name.partition(".")[0] not in named]
 
 
 def _seen(diagnosis: DiagnosisResult) -> Iterator[str]:
     for sight in ("not excited", "cannot be fitted", "hidden in the tolerances"):
-        found = [_blind(item) for item in _others(diagnosis) if item.sight == sight]
+        found = [_blind(visible) for visible in _others(diagnosis) if visible.sight == sight]
         if found:
             yield f"{sight}: {_some(found)}"
 
@@ -410,11 +415,11 @@ def _model(diagnosis: DiagnosisResult) -> Parts:
         yield Paragraph("Nothing was named, so no effect is switched on.")
     others = [
         row
-        for item in diagnosis.alternatives
-        for effect, unknowns in item.unknowns.items()
+        for alternative in diagnosis.alternatives
+        for effect, unknowns in alternative.unknowns.items()
         for unknown in unknowns
         for row in _fitted(
-            f"{explanation(item)}: {spoken(effect)}" if len(item.causes) > 1 else spoken(effect), unknown
+            f"{explanation(alternative)}: {spoken(effect)}" if len(alternative.causes) > 1 else spoken(effect), unknown
         )
         if effect != UNKNOWN
     ]
@@ -469,13 +474,13 @@ def _fitted(cause: str, unknown: FittedUnknown) -> Iterator[tuple[str, ...]]:
 
 def _calibrated(diagnosis: DiagnosisResult) -> Iterator[tuple[str, ...]]:
     setup = diagnosis.setup
-    for item in diagnosis.calibrated:
-        nominal = float(setup.nominal(item.name))
-        fitted = amount_text(Amount(item.value, item.unit), FITTED_DIGITS)
+    for calibrated in diagnosis.calibrated:
+        nominal = float(setup.nominal(calibrated.name))
+        fitted = amount_text(Amount(calibrated.value, calibrated.unit), FITTED_DIGITS)
         if not nominal:
-            fitted = amount_text(readable(Amount(item.value, item.unit)))
-        stated = amount_text(Amount(nominal, item.unit), STATED_DIGITS)
-        yield spoken(item.name), stated, fitted, score_text(item.of_its_sd)
+            fitted = amount_text(readable(Amount(calibrated.value, calibrated.unit)))
+        stated = amount_text(Amount(nominal, calibrated.unit), STATED_DIGITS)
+        yield spoken(calibrated.name), stated, fitted, score_text(calibrated.of_its_sd)
 
 
 def _remainder(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
@@ -496,19 +501,19 @@ def _gain(diagnosis: DiagnosisResult, drawn: Figures) -> Parts:
         yield Paragraph("No gain was estimated.")
         return
     rows, held = [], []
-    for item in diagnosis.gain:
-        name, floor, removed = spoken(item.result), amount_text(item.noise_floor), percent(item.reducible_removed)
-        before, after = amount_text(item.rmse_before), amount_text(item.rmse_after)
-        score, covered = score_text(item.log_score_gain), percent(item.coverage90)
-        p_value = pretty(format_number(item.p_value, 2))
+    for gain in diagnosis.gain:
+        name, floor, removed = spoken(gain.result), amount_text(gain.noise_floor), percent(gain.reducible_removed)
+        before, after = amount_text(gain.rmse_before), amount_text(gain.rmse_after)
+        score, covered = score_text(gain.log_score_gain), percent(gain.coverage90)
+        p_value = pretty(format_number(gain.p_value, 2))
         rows.append((name, before, after, floor, removed, score, p_value, covered))
         yield (
             f"{name}: RMS error {before} → {after} (noise floor {floor}) on rows not fitted; {removed} of the "
-            f"reducible error removed; log score {score} per row, {p_text(item.p_value)}; "
+            f"reducible error removed; log score {score} per row, {p_text(gain.p_value)}; "
             f"90 % intervals cover {covered}"
         )
-        if item.held_out is not None:
-            before, after = (amount_text(replace(item.rmse_before, value=value)) for value in item.held_out)
+        if gain.held_out is not None:
+            before, after = (amount_text(replace(gain.rmse_before, value=value)) for value in gain.held_out)
             held.append((name, before, after))
             yield f"{name}: RMS error {before} → {after} on the rows held out on request"
     heads = ("Result", "Before", "After", "Noise floor", "Removed", "Log score per row", "p", "Coverage")
@@ -535,7 +540,7 @@ def _next(diagnosis: DiagnosisResult) -> Parts:
     if not diagnosis.next and diagnosis.verdict == "one_of":
         yield Paragraph("No setting can be proposed that tells the explanations apart.")
     elif not diagnosis.next:
-        can_be_more = any(item.sight == "not excited" for item in diagnosis.seen) or diagnosis.not_measured
+        can_be_more = any(visible.sight == "not excited" for visible in diagnosis.seen) or diagnosis.not_measured
         yield Paragraph(
             ("More readings would decide." if diagnosis.verdict == "undecided" else "There is nothing to separate.")
             + (" Of what was not excited or not measured (chapter 2) this data says nothing." if can_be_more else "")
@@ -610,10 +615,10 @@ def _data(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
 
 
 def _covariates(diagnosis: DiagnosisResult) -> Iterator[tuple[str, ...]]:
-    for item in diagnosis.records.covariates.values():
-        finite = item.values[np.isfinite(item.values)]
+    for covariate in diagnosis.records.covariates.values():
+        finite = covariate.values[np.isfinite(covariate.values)]
         ends = (float(finite.min()), float(finite.max())) if finite.size else (None, None)
-        low, high = (ABSENT if end is None else amount_text(Amount(end, item.unit), 4) for end in ends)
-        missing = len(item.values) - finite.size
-        remarks = [*(["never changes"] if item.is_constant else []), *([f"{missing} missing"] if missing else [])]
-        yield spoken(item.name), low, high, item.role, ", ".join(remarks) or ABSENT
+        low, high = (ABSENT if end is None else amount_text(Amount(end, covariate.unit), 4) for end in ends)
+        missing = len(covariate.values) - finite.size
+        remarks = [*(["never changes"] if covariate.is_constant else []), *([f"{missing} missing"] if missing else [])]
+        yield spoken(covariate.name), low, high, covariate.role, ", ".join(remarks) or ABSENT

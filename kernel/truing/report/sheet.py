@@ -405,7 +405,10 @@ def tolerance_table(setup: Setup) -> TableView:
     rows = []
     for name, distributions in setup.distributions().items():
         tolerance = setup.model.tolerances[name]
-        sds = [Value(*format_difference(item.sd, setup.print_unit(on), 4)) for on, item in distributions.items()]
+        sds = [
+            Value(*format_difference(distribution.sd, setup.print_unit(on), 4))
+            for on, distribution in distributions.items()
+        ]
         scatter: list[Piece] = [*joined(dict.fromkeys(sds))]
         for shift in dict.fromkeys(_shifts(setup, distributions)):
             scatter += [Break(), "mean ", shift]
@@ -417,10 +420,10 @@ def tolerance_table(setup: Setup) -> TableView:
 
 def _shifts(setup: Setup, distributions: Mapping[str, Distribution]) -> Iterator[Value]:
     """Say how far the mean lies from the nominal, where it does."""
-    for name, item in distributions.items():
+    for name, distribution in distributions.items():
         nominal = float(setup.nominal(name))
-        if abs(item.mean - nominal) > 1e-12 * max(abs(nominal), item.sd):
-            number, unit = format_difference(item.mean - nominal, setup.print_unit(name), 4)
+        if abs(distribution.mean - nominal) > 1e-12 * max(abs(nominal), distribution.sd):
+            number, unit = format_difference(distribution.mean - nominal, setup.print_unit(name), 4)
             yield Value(number if number.startswith("-") else f"+{number}", unit)
 
 
@@ -460,15 +463,15 @@ def _effect_row(item: SwitchedOn) -> tuple[Text, ...]:
 
 def _changed_inputs(setup: Setup) -> Iterator[Text]:
     """Say which inputs the effects that are on change, and to what."""
-    if not any(item.effect.place == "inputs" for item in setup.effects):
+    if not any(active.effect.place == "inputs" for active in setup.effects):
         return
     stated, acting = (setup.model.read_inputs(inputs) for inputs in (setup.inputs, acting_inputs(setup)))
-    for name, item in setup.model.input_fields.items():
+    for name, field in setup.model.input_fields.items():
         before, after = stated[name], acting[name]
-        if item.varies and before != after and not (before != before and after != after):
+        if field.varies and before != after and not (before != before and after != after):
             unit = setup.print_unit(name)
             old, new = (Value(*format_value(value, unit, digits)) for value, digits in ((before, 10), (after, 7)))
-            yield Symbol(item.symbol) if item.symbol else name.replace("_", " "), " = ", new, " instead of ", old
+            yield Symbol(field.symbol) if field.symbol else name.replace("_", " "), " = ", new, " instead of ", old
 
 
 def check_table(calculation: Calculation) -> TableView:
@@ -498,7 +501,7 @@ def check_rows(calculation: Calculation) -> Iterator[CheckRow]:
     setup = calculation.setup
     fields = setup.model.result_fields
     requires = requirements(setup)
-    named = {check_name(item, requires): item for item in requires}
+    named = {check_name(require, requires): require for require in requires}
     relative = relative_margins(calculation.checks)
     for check in calculation.checks:
         require = named.get(check.name)

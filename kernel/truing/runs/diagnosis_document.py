@@ -42,7 +42,7 @@ def diagnosis_document(diagnosis: DiagnosisResult) -> dict[str, Any]:
         "input_hash": provenance.input_hash,
         "seed": provenance.seed,
         **_data(diagnosis),
-        "wrong": {item.result: _wrong(item, _labels(diagnosis)) for item in diagnosis.wrong},
+        "wrong": {wrong.result: _wrong(wrong, _labels(diagnosis)) for wrong in diagnosis.wrong},
         "verdict": diagnosis.verdict,
         "explanations": [list(names) for names in explanations_of(diagnosis)],
         "shared": list(shared_of(diagnosis)),
@@ -51,13 +51,13 @@ def diagnosis_document(diagnosis: DiagnosisResult) -> dict[str, Any]:
         "p_second": clean(diagnosis.p_second),
         "causes": [_cause(cause, _labels(diagnosis)) for cause in diagnosis.causes],
         "unique": bool(diagnosis.unique),
-        "alternatives": [_alternative(item) for item in diagnosis.alternatives],
-        "ranking": [_alternative(item) for item in diagnosis.ranking],
+        "alternatives": [_alternative(alternative) for alternative in diagnosis.alternatives],
+        "ranking": [_alternative(alternative) for alternative in diagnosis.ranking],
         "inseparable": list(diagnosis.inseparable),
         "remainder": None if diagnosis.remainder is None else clean(asdict(diagnosis.remainder)),
         **_sight(diagnosis),
         "calibrated": _calibrated(diagnosis),
-        "gain": {**{item.result: _gain(item) for item in diagnosis.gain}, "stability": clean(diagnosis.stability)},
+        "gain": {**{gain.result: _gain(gain) for gain in diagnosis.gain}, "stability": clean(diagnosis.stability)},
         "next": [_next(point) for point in diagnosis.next],
         "ties": [_tie(tie) for tie in diagnosis.ties],
         **_alarming(diagnosis),
@@ -81,8 +81,8 @@ def _alarming(diagnosis: DiagnosisResult) -> dict[str, Any]:
 
 def _calibrated(diagnosis: DiagnosisResult) -> dict[str, Any]:
     return {
-        item.name: {**_value(item.value, item.unit), "of_its_sd": clean(item.of_its_sd)}
-        for item in diagnosis.calibrated
+        calibrated.name: {**_value(calibrated.value, calibrated.unit), "of_its_sd": clean(calibrated.of_its_sd)}
+        for calibrated in diagnosis.calibrated
     }
 
 
@@ -111,8 +111,8 @@ def _data(diagnosis: DiagnosisResult) -> dict[str, Any]:
         "files": files,
         "held_out": int(records.held_out.sum()),
         "covariates": {
-            item.name: {"unit": item.unit, "role": item.role, "constant": item.is_constant}
-            for item in records.covariates.values()
+            covariate.name: {"unit": covariate.unit, "role": covariate.role, "constant": covariate.is_constant}
+            for covariate in records.covariates.values()
         },
     }
 

@@ -258,8 +258,8 @@ def curve_arrays(diagnosis: DiagnosisResult) -> dict[str, Any]:
     """Return what arrays.npz holds: per result measured, before and after in its printed unit; file, line and run."""
     records = diagnosis.records
     arrays: dict[str, Any] = {"file": records.file_of, "line": records.lines, "run": records.run_of}
-    for item in diagnosis.curves:
-        unit = diagnosis.setup.print_unit(item.result)
+    for curves in diagnosis.curves:
+        unit = diagnosis.setup.print_unit(curves.result)
         for name in ("measured", "before", "after"):
-            arrays[f"{item.result}.{name}"] = from_si(getattr(item, name), unit)
+            arrays[f"{curves.result}.{name}"] = from_si(getattr(curves, name), unit)
     return arrays

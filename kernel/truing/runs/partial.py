@@ -135,7 +135,7 @@ def _lock(file: IO[bytes]) -> None:
 
 def _demand_ours(place: Path) -> None:
     """Refuse a folder of that name that is somebody else's."""
-    strange = sorted(item.name for item in place.iterdir() if item.name not in OURS)
+    strange = sorted(path.name for path in place.iterdir() if path.name not in OURS)
     if strange:
         raise OutputError(f"{place}: holds '{strange[0]}', so it is none of ours; name another --output")
 

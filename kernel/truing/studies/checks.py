@@ -111,7 +111,7 @@ def is_known(require: Require, setup: Setup, answers: Mapping[str, Any]) -> bool
 def requirements(setup: Setup) -> list[Require]:
     """Return the requirements of the model; one whose limit is an input that is not given asks for nothing."""
     fields = setup.model.input_fields
-    every = [item for item in setup.model.objectives if isinstance(item, Require)]
+    every = [objective for objective in setup.model.objectives if isinstance(objective, Require)]
     return [item for item in every if item.limit not in fields or not isnan(float(setup.nominal(item.limit)))]
 
 
@@ -140,7 +140,7 @@ def of_design(setup: Setup, result: str, answers: dict[str, Any]) -> Any:
     No part of the design are effects that are on, and deviations that the inputs state: inputs with a tolerance whose
     declared default is 0.
     """
-    acts = any(item.effect.place != "reading" for item in setup.effects)
+    acts = any(active.effect.place != "reading" for active in setup.effects)
     deviating = dict.fromkeys((name for name in sockets_of(setup) if setup.nominal(name) != 0), 0.0)
     if not (acts or deviating) or result not in setup.model.own_result_fields:
         return answers[result]

@@ -319,7 +319,7 @@ class Optimum(Outcome):
         study = self.study
         entry: dict[str, Any] = {
             "status": self.status,
-            "variables": {item.key: _variable_json(item) for item in self.variables},
+            "variables": {variable.key: _variable_json(variable) for variable in self.variables},
             "objectives": {aim.name: {"sense": aim.sense, "unit": aim.unit} for aim in self.aims},
             "start": _design_json(self, self.start),
             "front": [_design_json(self, design) for design in self.front],
@@ -416,7 +416,7 @@ def _input_unit(optimum: Optimum, name: str) -> str:
 
 
 def _width_unit(optimum: Optimum, name: str) -> str:
-    return next(item.unit for item in optimum.variables if not item.is_input and item.name == name)
+    return next(variable.unit for variable in optimum.variables if not variable.is_input and variable.name == name)
 
 
 def _width(optimum: Optimum, name: str, value: float | str) -> Any:
@@ -640,6 +640,6 @@ def _undecided(optimum: Optimum) -> Iterator[Words]:
 
 
 def _goals(optimum: Optimum) -> Iterator[tuple[str, float, tuple[float, float]]]:
-    for item in optimum.demands:
-        if item.goal is not None:
-            yield item.name, item.goal, optimum.interval[item.name]
+    for demand in optimum.demands:
+        if demand.goal is not None:
+            yield demand.name, demand.goal, optimum.interval[demand.name]

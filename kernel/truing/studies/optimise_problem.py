@@ -121,13 +121,13 @@ class Answers:
 
     def __getitem__(self, rows: Any) -> Answers:
         """Return some of the designs."""
-        return Answers(**{item.name: getattr(self, item.name)[rows] for item in fields(self)})
+        return Answers(**{field.name: getattr(self, field.name)[rows] for field in fields(self)})
 
 
 def joined(parts: Sequence[Answers]) -> Answers:
     """Put the answers of several batches together, in their order."""
     return Answers(
-        **{item.name: np.concatenate([getattr(part, item.name) for part in parts]) for item in fields(Answers)}
+        **{field.name: np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Answers)}
     )
 
 
@@ -165,8 +165,8 @@ def _without_spread(spreads: Mapping[str, Any], count: int) -> NDArray[np.bool_]
     """Return the designs in which some tolerance has no width, as a grade that does not exist for their size."""
     missing = np.zeros(count, dtype=bool)
     for inner in spreads.values():
-        for item in inner.values():
-            missing |= ~np.isfinite(item.sd)
+        for distribution in inner.values():
+            missing |= ~np.isfinite(distribution.sd)
     return missing
 
 
@@ -190,7 +190,7 @@ def _own_results(problem: Problem, columns: Mapping[str, Any], count: int) -> di
     setup = problem.setup
     wanted = [bound.result for bound in problem.bounds if bound.require.kind == "within"]
     sockets = sockets_of(setup)
-    acts = any(item.effect.place != "reading" for item in setup.effects)
+    acts = any(active.effect.place != "reading" for active in setup.effects)
     deviates = any(name in columns or setup.nominal(name) != 0 for name in sockets)
     if not wanted or not (acts or deviates):
         return {}
@@ -339,12 +339,12 @@ def aims_of(setup: Setup, study: str) -> tuple[Aim, ...]:
     """Return the objectives. Raises UsageError where there is none, or one that is no single number."""
     own = setup.model.own_result_fields
     aims = []
-    for item in setup.model.objectives:
-        if not isinstance(item, (Minimise, Maximise)) or (name := item.result) in given_by_studies(setup):
+    for objective in setup.model.objectives:
+        if not isinstance(objective, (Minimise, Maximise)) or (name := objective.result) in given_by_studies(setup):
             continue
         if name in own and own[name].along:
             raise UsageError(f"study '{study}': the objective '{name}' runs along an axis; it must be one number")
-        aims.append(Aim(name, isinstance(item, Maximise), setup.print_unit(name)))
+        aims.append(Aim(name, isinstance(objective, Maximise), setup.print_unit(name)))
     if not aims:
         raise UsageError(
             f"study '{study}': {setup.model.name} says of no result of its function and of no price that it should be "
@@ -364,7 +364,7 @@ def bounds_of(setup: Setup) -> tuple[Bound, ...]:
     known = {*setup.model.own_result_fields, TOTAL_PRICE}
     found: list[Bound] = []
     for item in sorted(
-        (item for item in requires if item.result in known), key=lambda item: item.reliability is not None
+        (require for require in requires if require.result in known), key=lambda item: item.reliability is not None
     ):
         name, by_chance = check_name(item, requires), item.reliability is not None
         taken = any(bound.name == name for bound in found)
@@ -376,8 +376,8 @@ def bounds_of(setup: Setup) -> tuple[Bound, ...]:
 def left_out(setup: Setup) -> tuple[str, ...]:
     """Say which objectives and limits the search cannot see."""
     theirs = given_by_studies(setup)
-    goals = [item for item in setup.model.objectives if isinstance(item, (Minimise, Maximise))]
-    named = [item.result for item in (*goals, *requirements(setup))]
+    goals = [objective for objective in setup.model.objectives if isinstance(objective, (Minimise, Maximise))]
+    named = [require.result for require in (*goals, *requirements(setup))]
     return tuple(
         f"'{name}' is given by a study once per run, so the search does not follow it"
         for name in dict.fromkeys(named)
@@ -387,7 +387,7 @@ def left_out(setup: Setup) -> tuple[str, ...]:
 
 def constants(setup: Setup, answers: Mapping[str, Any]) -> tuple[tuple[str, float], ...]:
     """Return the limits that are results of earlier studies: they stay what they are."""
-    limits = {item.limit for item in requirements(setup)}
+    limits = {require.limit for require in requirements(setup)}
     theirs = limits & given_by_studies(setup) & set(answers)
     return tuple((name, float(answers[name])) for name in sorted(theirs) if np.ndim(answers[name]) == 0)
 
@@ -490,7 +490,9 @@ class Space:
     @property
     def moved(self) -> frozenset[str]:
         """The inputs that differ between designs."""
-        return frozenset(item.name for item in self.variables if item.is_input) | {item.name for item in self.followers}
+        return frozenset(variable.name for variable in self.variables if variable.is_input) | {
+            item.name for item in self.followers
+        }
 
     @property
     def start(self) -> NDArray[np.float64]:
@@ -548,9 +550,9 @@ class Space:
 
 def open_space(setup: Setup, brief: Brief) -> Space:
     """Collect what may be chosen. Raises UsageError where there is nothing, or a name or range makes no sense."""
-    stated = [item for item in setup.model.objectives if isinstance(item, Vary)]
+    stated = [objective for objective in setup.model.objectives if isinstance(objective, Vary)]
     inputs = [item for item in stated if not item.by]
-    tolerances = [item for item in setup.model.tolerances.values() if price_of(setup, item) is not None]
+    tolerances = [tolerance for tolerance in setup.model.tolerances.values() if price_of(setup, tolerance) is not None]
     _demand_known(setup, brief, {*(item.input for item in inputs), *(item.name for item in tolerances)})
 
     def kept(name: str) -> bool:
@@ -839,7 +841,7 @@ def by_draws(cloud: Cloud, designs: Designs, bounds: Sequence[Bound], answer: An
     results = answer(flat, designs.rows * cloud.draws, _wanted(bounds))
     each = {name: np.asarray(values).reshape(*shape, *np.shape(values)[1:]) for name, values in results.items()}
     found = np.empty((designs.rows, len(bounds)))
-    for place, bound in enumerate(bounds):
+    for index, bound in enumerate(bounds):
         low, high = _ends(designs.world, bound)
         response = each[bound.result]
         if _moves(designs.world, bound):
@@ -848,7 +850,7 @@ def by_draws(cloud: Cloud, designs: Designs, bounds: Sequence[Bound], answer: An
             response = response - beside(limit, response)
         with np.errstate(invalid="ignore"):
             inside = (response <= _per_design(high, response)) & (response >= _per_design(low, response))
-        found[:, place] = _worst(inside.mean(axis=1))
+        found[:, index] = _worst(inside.mean(axis=1))
     return found
 
 
@@ -913,7 +915,7 @@ def by_first_order(
     steps, variances, shifts = _moments(scatter, designs)
     values = _beside_the_designs(designs, columns, steps, _wanted(bounds), answer)
     found = np.empty((designs.rows, len(bounds)))
-    for place, bound in enumerate(bounds):
+    for index, bound in enumerate(bounds):
         centre, slopes = _line(designs, bound, values, (columns, steps))
         low, high = _ends(designs.world, bound)
         variance, mean = variances(slopes), centre
@@ -921,7 +923,7 @@ def by_first_order(
             mean = mean + slopes[column] * beside(shift, slopes[column])
         sd = np.sqrt(np.maximum(variance, 0.0))
         chance = _worst(np.asarray(normal_chance(mean, sd, beside(low, mean), beside(high, mean))))
-        found[:, place] = np.where(np.isfinite(chance), chance, 0.0)
+        found[:, index] = np.where(np.isfinite(chance), chance, 0.0)
     return found
 
 

@@ -71,7 +71,7 @@ def single_numbers(setup: Setup, of: str | tuple[str, ...], study: str) -> tuple
 
 def scalar_results(setup: Setup) -> tuple[str, ...]:
     """Return the results of the function that are one number each."""
-    return tuple(name for name, item in setup.model.own_result_fields.items() if not item.along)
+    return tuple(name for name, field in setup.model.own_result_fields.items() if not field.along)
 
 
 def spoken(name: str) -> str:

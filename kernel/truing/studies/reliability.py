@@ -66,7 +66,7 @@ class Reliability:
 
     def _answer(self, bench: Bench, setup: Setup, answers: Mapping[str, Any], stage: int) -> Odds:
         wanted = demands(setup, answers)
-        if not any(item.result in setup.model.own_result_fields for item in requirements(setup)):
+        if not any(require.result in setup.model.own_result_fields for require in requirements(setup)):
             raise UsageError(
                 f"study '{self.name}': {setup.model.name} requires nothing; add Require(result, ...) to it"
             )
@@ -132,7 +132,7 @@ class Reliability:
 
 def _lacking(bench: Bench) -> list[str]:
     """Say which limits have no probability because their result does not exist."""
-    limited = dict.fromkeys(item.result for item in requirements(bench.setup) if item.result in bench.absent)
+    limited = dict.fromkeys(require.result for require in requirements(bench.setup) if require.result in bench.absent)
     return [f"'{name}' has no probability: {bench.absent[name]}" for name in limited]
 
 

@@ -353,7 +353,7 @@ def _words(name: str) -> tuple[int, ...]:
 def scatter_of(setup: Setup) -> Scatter:
     """Collect what scatters in this setup. Raises UsageError for a tolerance on an input that is not given."""
     causes = [_of_tolerance(setup, name, inner) for name, inner in setup.distributions().items()]
-    causes += [cause for item in setup.effects if (cause := _of_effect(item)) is not None]
+    causes += [cause for active in setup.effects if (cause := _of_effect(active)) is not None]
     return Scatter(tuple(causes))
 
 

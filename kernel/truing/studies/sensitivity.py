@@ -79,7 +79,7 @@ class Sensitivity:
         if self.of:
             return single_numbers(setup, self.of, self.name)
         scalar = scalar_results(setup)
-        goals = [item.result for item in setup.model.objectives if not isinstance(item, Vary)]
+        goals = [objective.result for objective in setup.model.objectives if not isinstance(objective, Vary)]
         return tuple(dict.fromkeys(name for name in goals if name in scalar)) or scalar
 
     def _indices(self, bench: Bench, scatter: Scatter, results: Sequence[str]) -> tuple[_Indices, _Indices, list[str]]:
@@ -95,12 +95,12 @@ def _sources(setup: Setup, named: tuple[str, ...], study: str) -> tuple[str, ...
     """Return what is varied: the names asked for, or whatever may be in error, or every number there is."""
     fields = setup.model.input_fields
     unknowns = [
-        effect_column(item.effect.name, unknown.name)
-        for item in setup.effects
-        if item.effect.place != "reading"
-        for unknown in item.unknowns
+        effect_column(active.effect.name, unknown.name)
+        for active in setup.effects
+        if active.effect.place != "reading"
+        for unknown in active.unknowns
     ]
-    numbers = [name for name, item in fields.items() if item.kind == "float"]
+    numbers = [name for name, field in fields.items() if field.kind == "float"]
     known = [*numbers, *setup.conditions, *unknowns]
     for name in named:
         if name not in known:
@@ -111,9 +111,9 @@ def _sources(setup: Setup, named: tuple[str, ...], study: str) -> tuple[str, ...
 
 
 def _unit(setup: Setup, source: str) -> str:
-    for item in setup.effects:
-        for unknown in item.unknowns:
-            if source == effect_column(item.effect.name, unknown.name):
+    for active in setup.effects:
+        for unknown in active.unknowns:
+            if source == effect_column(active.effect.name, unknown.name):
                 return unknown.unit
     return setup.print_unit(source)
 
@@ -297,8 +297,8 @@ class _Sampled:
         for start in range(0, count, ROWS):
             part = np.ascontiguousarray(standard[:, start : start + ROWS])
             rows, _ = standard_rows(self.machines, part, self.results)
-            for place, result in enumerate(self.results):
-                answers[place, start : start + ROWS] = rows.results[result]
+            for index, result in enumerate(self.results):
+                answers[index, start : start + ROWS] = rows.results[result]
             self.failed += int(rows.failed.sum())
             self.reason = self.reason or next(iter(rows.reasons.values()), "")
             self.run += part.shape[1]

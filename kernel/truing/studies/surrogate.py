@@ -114,7 +114,7 @@ class Surrogate:
         )
 
     def _along(self, box: Box) -> str:
-        plain = [item.name for item in box.features if item.is_plain]
+        plain = [feature.name for feature in box.features if feature.is_plain]
         if self.along and self.along not in plain:
             raise UsageError(
                 f"study '{self.name}': along = '{self.along}' is no input in over.{near_miss(self.along, plain)}"
@@ -160,7 +160,7 @@ class Surrogate:
 
     def _course(self, setup: Setup, stand_in: StandIn, along: str) -> Course | None:
         """Follow one input through the box, everything else as in the run."""
-        feature = next((item for item in stand_in.box.features if item.name == along), None)
+        feature = next((feature for feature in stand_in.box.features if feature.name == along), None)
         if feature is None:
             return None
         axis = feature.value(np.linspace(0.0, 1.0, FINE))
@@ -188,7 +188,9 @@ def _counted(points: Ran, names: tuple[str, ...], logarithmic: bool) -> Counted:
 
 
 def _printed_units(setup: Setup, box: Box) -> dict[str, str]:
-    return {item.name: setup.print_unit(item.name) if item.is_plain else item.unit for item in box.features}
+    return {
+        feature.name: setup.print_unit(feature.name) if feature.is_plain else feature.unit for feature in box.features
+    }
 
 
 @dataclass(frozen=True)
@@ -302,10 +304,10 @@ MOST_PANELS = 4
 
 def _box(emulated: Emulated) -> dict[str, Any]:
     found = {}
-    for item in emulated.stand_in.box.features:
-        unit = emulated.units[item.name]
-        ends = {"low": printed(item.low, unit), "high": printed(item.high, unit), "unit": unit}
-        found[item.name] = {**ends, "logarithmic": item.logarithmic, "sets": item.sets}
+    for feature in emulated.stand_in.box.features:
+        unit = emulated.units[feature.name]
+        ends = {"low": printed(feature.low, unit), "high": printed(feature.high, unit), "unit": unit}
+        found[feature.name] = {**ends, "logarithmic": feature.logarithmic, "sets": feature.sets}
     return found
 
 
@@ -316,7 +318,7 @@ def _points(counted: Counted) -> dict[str, int]:
 def _result(emulated: Emulated, name: str) -> dict[str, Any]:
     unit = emulated.units[name]
     emulator = emulated.stand_in.emulators[name]
-    features = [item.name for item in emulated.stand_in.box.features]
+    features = [feature.name for feature in emulated.stand_in.box.features]
     mean, low, high = (float(values[0]) for values in emulated.stand_in.bands({})[name])
     entry: dict[str, Any] = {"unit": unit}
     if name in emulated.judged:
@@ -415,11 +417,13 @@ def _speed_table(emulated: Emulated, speed: Speed) -> Table:
 def _box_table(emulated: Emulated) -> Table:
     rows: list[list[Any]] = []
     emulators = emulated.stand_in.emulators
-    for index, item in enumerate(emulated.stand_in.box.features):
-        unit = emulated.units[item.name]
-        scale = "logarithmic" if item.logarithmic else "even"
+    for index, feature in enumerate(emulated.stand_in.box.features):
+        unit = emulated.units[feature.name]
+        scale = "logarithmic" if feature.logarithmic else "even"
         lengths = [emulator.lengths[index] for emulator in emulators.values()]
-        rows.append([item.name, printed(item.low, unit), printed(item.high, unit), unit_text(unit), scale, *lengths])
+        rows.append(
+            [feature.name, printed(feature.low, unit), printed(feature.high, unit), unit_text(unit), scale, *lengths]
+        )
     columns = ("direction", "from", "to", "unit", "scale", *(f"length of {spoken(name)}" for name in emulators))
     note = "Lengths over the side of the box: over a short one the result turns, over a long one it is straight."
     return Table("Box of the surrogate", columns, rows, (), note)
@@ -877,7 +881,7 @@ def setup_step(setup: Setup, name: str) -> float:
 
 def _held(setup: Setup) -> dict[str, float]:
     """Return the value of every number that may vary in a batch; one left open is NaN."""
-    names = [name for name, item in setup.model.input_fields.items() if item.varies]
+    names = [name for name, field in setup.model.input_fields.items() if field.varies]
     values = {name: setup.nominal(name) for name in (*names, *setup.conditions)}
     return {name: float("nan") if value is None else float(value) for name, value in values.items()}
 

@@ -305,10 +305,10 @@ def records_of(setup: Setup, text: str, name: str, *, with_unit_errors: bool = T
 
 def predicted(diagnosis: DiagnosisResult, setup: Setup, records: Records) -> dict[str, NDArray[np.float64]]:
     """Predict rows that were not fitted, by every cause and shape that was found on the calibrated machine; SI."""
-    calibrated = {item.name: item.value for item in diagnosis.calibrated}
+    calibrated = {calibrated.name: calibrated.value for calibrated in diagnosis.calibrated}
     machine = diagnosis.extended or replace(setup, calibrated={**setup.calibrated, **calibrated})
     shown = read_by_gauge(one_machine(machine), records.rows, diagnosis.measured).results
-    known: dict[str, Any] = {name: one.values for name, one in records.covariates.items()}
+    known: dict[str, Any] = {name: covariate.values for name, covariate in records.covariates.items()}
     found = {}
     for result in diagnosis.measured:
         values = shown[result]
@@ -348,9 +348,9 @@ def truth_of(
     stated = _stated(effect, size, measured, faults)
     found: dict[str, float] = {}
     for name, said in stated.items():
-        unknown = next((one for one in effect.unknowns if one.name == name), None)
+        unknown = next((unknown for unknown in effect.unknowns if unknown.name == name), None)
         if unknown is None:
-            known = [one.name for one in effect.unknowns]
+            known = [unknown.name for unknown in effect.unknowns]
             faults.append(f"effect '{effect.name}' has no unknown '{name}'.{near_miss(name, known)}")
             continue
         try:
@@ -361,7 +361,11 @@ def truth_of(
     missing = [one.name for part in touched for one in part if one.name not in stated]
     if missing:
         faults.append(f"effect '{effect.name}': say {' and '.join(missing)} as well, size={{...}}")
-    if found and not any(one.is_amplitude and found.get(one.name) for one in effect.unknowns) and not missing:
+    if (
+        found
+        and not any(unknown.is_amplitude and found.get(unknown.name) for unknown in effect.unknowns)
+        and not missing
+    ):
         faults.append(f"effect '{effect.name}' of size 0 hides nothing; hide(None, ...) does that")
     return found
 
@@ -430,7 +434,7 @@ def check_by(by: Strange | None, effect: Effect[Any, Any] | None, model: Model[A
         if unknown:
             faults.append(f"by takes {', '.join(unknown)}, which is no condition of the model")
         return
-    wanted = {one.name for one in effect.unknowns} | {need.name for need in effect.needs}
+    wanted = {unknown.name for unknown in effect.unknowns} | {need.name for need in effect.needs}
     needed = {item.name for item in parameters[2:] if item.default is inspect.Parameter.empty}
     if len(parameters) < 2 or not needed <= wanted <= named:
         faults.append(
@@ -517,7 +521,7 @@ def noise_of(setup: Setup, said: Any, measure: str | Sequence[str] | None, fault
 def gauged_results(setup: Setup) -> dict[str, str]:
     """Return the results that can be measured, with their units: numbers and curves."""
     fields = setup.model.own_result_fields
-    return {name: item.unit for name, item in fields.items() if not isinstance(item.spec, Axis)}
+    return {name: field.unit for name, field in fields.items() if not isinstance(field.spec, Axis)}
 
 
 def _fitting(gauged: Mapping[str, str], said: Any, faults: list[str]) -> list[str]:
@@ -773,10 +777,16 @@ def _unit_of(setup: Setup, name: str, measured: Sequence[str]) -> str | None:
 def _sources(setup: Setup) -> dict[str, str]:
     """Return the columns from which conditions are made that are neither input nor condition, with their units."""
     model = setup.model
-    made = [item for item in model.known_conditions.values() if item.made_from and item.history != "direction"]
+    made = [
+        condition
+        for condition in model.known_conditions.values()
+        if condition.made_from and condition.history != "direction"
+    ]
     found = {item.made_from: item.unit for item in made}
-    axes = {name: item.unit for name, item in model.own_result_fields.items() if isinstance(item.spec, Axis)}
-    found |= {item.made_from: "" for item in model.known_conditions.values() if item.history == "direction"} | found
+    axes = {name: field.unit for name, field in model.own_result_fields.items() if isinstance(field.spec, Axis)}
+    found |= {
+        condition.made_from: "" for condition in model.known_conditions.values() if condition.history == "direction"
+    } | found
     return {name: unit for name, unit in found.items() if name not in axes}
 
 

@@ -277,7 +277,7 @@ def batch_equals_loop(subject: Subject) -> None:
 
 def is_row_by_row(subject: Subject) -> bool:
     """Whether the kernel calls the function once per row anyway, because a table is made of unlike length."""
-    specs = [item.spec for item in subject.model.own_result_fields.values()]
+    specs = [field.spec for field in subject.model.own_result_fields.values()]
     return any(isinstance(spec, Axis) and spec.is_table for spec in specs)
 
 
@@ -319,7 +319,7 @@ def rounding(batch: Batch, row: int, result: str) -> Any:
     """
     own = {name: values[row] for name, values in batch.columns.items()}
     fields = batch.setup.model.input_fields
-    numbers = {name: batch.setup.nominal(name) for name, item in fields.items() if item.varies} | own
+    numbers = {name: batch.setup.nominal(name) for name, field in fields.items() if field.varies} | own
     before = batch.alone(row).results[result][0]
     total = np.zeros(np.shape(before))
     for name, value in numbers.items():
