@@ -11,6 +11,7 @@ from truing.declare.builtin import may_stand
 from truing.declare.fields import Axis, Found, Given, InputField, Loaded, ResultField
 from truing.declare.goals import Maximise, Minimise, Require, Vary
 from truing.declare.published import Published
+from truing.declare.sources import Tolerance
 from truing.formulas import symbol_text
 from truing.inputs_file.values import bounds_in_words
 from truing.kernel import Offer
@@ -33,22 +34,12 @@ def description(offer: Offer) -> dict[str, Any]:
         "plugin": {"name": offer.origin.name, "version": offer.origin.version},
         "inputs": [_input(field) for field in model.input_fields.values()],
         "results": [_result(field) for field in model.result_fields.values()],
-        "tolerances": [
-            {
-                "name": tolerance.name,
-                "spread": tolerance.spread.text,
-                "on": list(tolerance.on),
-                "why": tolerance.why,
-                "source": tolerance.source,
-                "price": dataclasses.asdict(tolerance.price) if tolerance.price else None,
-            }
-            for tolerance in model.tolerances.values()
-        ],
+        "tolerances": [_tolerance(tolerance) for tolerance in model.tolerances.values()],
         "effects": [_effect(effect) for effect in model.effects.values()],
         "conditions": [_named(condition, CONDITION) for condition in model.conditions.values()],
         "built_in": {
-            "effects": [_effect(item) for item in built_in if not may_stand(item)],
-            "where_measured": [_effect(item) for item in built_in if may_stand(item)],
+            "effects": [_effect(effect) for effect in built_in if not may_stand(effect)],
+            "where_measured": [_effect(effect) for effect in built_in if may_stand(effect)],
             "conditions": [
                 _named(condition, CONDITION)
                 for name, condition in model.known_conditions.items()
@@ -110,6 +101,17 @@ JUDGED = ("within", "verdict", "obtained", "why")
 
 def _named(item: Any, names: Sequence[str]) -> dict[str, Any]:
     return {name: getattr(item, name) for name in names}
+
+
+def _tolerance(tolerance: Tolerance) -> dict[str, Any]:
+    return {
+        "name": tolerance.name,
+        "spread": tolerance.spread.text,
+        "on": list(tolerance.on),
+        "why": tolerance.why,
+        "source": tolerance.source,
+        "price": dataclasses.asdict(tolerance.price) if tolerance.price else None,
+    }
 
 
 def _effect(effect: Any) -> dict[str, Any]:

@@ -8,19 +8,16 @@ import re
 import unicodedata
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
 from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
-
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from truing.atomic import place_folder, recover, write_files
 from truing.errors import OutputError, UsageError
 from truing.formulas.symbols import printable
 from truing.kernel import Kernel
-from truing.report import template_folder
 from truing.report.markdown_printer import escaped
+from truing.templating import rendered
 
 PROJECT = {
     ".github/workflows/tests.yml": "workflow.yml.j2",
@@ -73,19 +70,6 @@ def project(plan: NewPlugin) -> dict[str, str]:
 def single_file(plan: NewPlugin) -> str:
     """Return a plugin as one Python file: physics, model, hook and tests."""
     return rendered("single/calculation.py.j2", plan.words)
-
-
-def rendered(template: str, words: Mapping[str, str]) -> str:
-    """Fill in a template; what a word holds is printed, never obeyed."""
-    return _environment().get_template(template).render(words)
-
-
-@lru_cache(maxsize=1)
-def _environment() -> Environment:
-    return Environment(
-        loader=FileSystemLoader(template_folder()), undefined=StrictUndefined, trim_blocks=True,
-        keep_trailing_newline=True,
-    )  # fmt: skip
 
 
 def write_project(folder: Path, files: Mapping[str, str]) -> None:

@@ -10,7 +10,7 @@ from truing.atomic import write_files
 from truing.cli.app import Shell
 from truing.cli.console import Settings, out
 from truing.errors import UsageError
-from truing.report import template_folder
+from truing.templating import template_folder
 
 FILES = {Shell.bash: "calc.bash", Shell.zsh: "calc.zsh", Shell.fish: "calc.fish", Shell.powershell: "calc.ps1"}
 

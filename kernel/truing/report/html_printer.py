@@ -15,7 +15,7 @@ from markupsafe import Markup, escape
 from truing.formulas.symbols import printable
 from truing.formulas.write_mathml import MathMLWriter
 from truing.numbers import pretty, with_unit
-from truing.report import equations, template_folder
+from truing.report import equations
 from truing.report.document import (
     MARKS,
     Aside,
@@ -34,6 +34,7 @@ from truing.report.document import (
     Value,
 )
 from truing.studies.checks import SHORT
+from truing.templating import template_folder
 
 COLUMN = equations.LINE
 """How wide a formula may be, in em, beside the words of its result; a wider one stands below them."""

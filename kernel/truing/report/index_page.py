@@ -14,11 +14,11 @@ from urllib.parse import quote
 from truing.atomic import write_files
 from truing.errors import OutputError, UnitError
 from truing.numbers import ABSENT, counted, format_number, pretty, with_unit
-from truing.report import template_folder
 from truing.report.document import Head
 from truing.report.html_printer import page
 from truing.runs.index import FolderEntry, ListedNumber, Listing, Other
 from truing.studies.checks import State
+from truing.templating import template_folder
 from truing.units import unit_text
 
 MARK = '<meta name="generator" content="calc index">'
