@@ -19,10 +19,10 @@ from numpy.typing import NDArray
 
 from truing.declare.spreads import FIXED_DRAWS, Distribution, Drawn
 from truing.errors import UsageError
-from truing.evaluate import Rows, effect_column, evaluate_rows
+from truing.evaluate import Rows, evaluate_rows
 from truing.executors import SerialExecutor, in_order, keepable
 from truing.packed import Packed, pack, unpack
-from truing.setup import Setup, SwitchedOn
+from truing.setup import Setup, SwitchedOn, effect_column
 from truing.studies.demands import Demand, nominal_inputs, results_needed
 
 KEPT_REASONS = 8

@@ -14,11 +14,11 @@ from truing.declare.fields import Axis, InputField, with_values
 from truing.declare.sources import Condition, Unknown
 from truing.declare.specs import Given
 from truing.errors import InfeasibleError, PluginError, TruingError
-from truing.evaluate import Rows, effect_column, evaluate, evaluate_rows
+from truing.evaluate import Rows, evaluate, evaluate_rows
 from truing.executors import in_order, open_executor
 from truing.inputs_file import setup_from_settings
 from truing.packed import Packed, pack, unpack
-from truing.setup import Setup
+from truing.setup import Setup, effect_column
 from truing.studies.sampling import scatter_of
 from truing.testing.sources import off_reference, shape, switched
 from truing.testing.subject import Subject, fail
