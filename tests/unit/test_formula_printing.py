@@ -16,11 +16,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from formula_printed import latex, mathml, substituted_latex, substituted_mathml
 from formula_reader import Reader
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
-from truing.formulas import evaluate, latex, mathml, parse, substituted_latex, substituted_mathml
+from truing.formulas import evaluate, parse
 
 SYMBOLS = {"load": "F", "early": "h_0", "angle": "theta_11", "way": "Delta z", "teeth": "z_2'", "limit": "F_N,max"}
 SYMBOLS |= {"ratio": "xi_lh", "rate": "k_R"}

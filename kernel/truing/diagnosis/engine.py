@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from truing.arrays import one_thread
 from truing.declare.near_miss import near_miss
 from truing.diagnosis.causes import effects_of, followed_by, inputs_of
 from truing.diagnosis.choice import Chosen, Rival, choose
@@ -32,7 +33,6 @@ from truing.diagnosis.visibility import inseparable, smallest_visible, trades_of
 from truing.errors import UsageError
 from truing.setup import Setup
 from truing.studies.bench import FINE, Progress, part_of, silent
-from truing.studies.threads import one_thread
 
 TOO_ROUGH = 6**0.5
 """A step so many times what is left of the readings is half of it: its mean square is a twelfth of its own."""
