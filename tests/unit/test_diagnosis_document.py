@@ -45,9 +45,8 @@ from truing.inputs_file import setup_from_text
 from truing.kernel import Kernel, Origin
 from truing.kernel.loading import load_file
 from truing.runs.diagnosis_document import diagnosis_document, file_labels
-from truing.runs.diagnosis_folder import write_diagnosis
 from truing.runs.extension import extended_setup, extended_text
-from truing.runs.folder import demand_place, is_ours, json_text, write_folder
+from truing.runs.folder import demand_place, is_ours, json_text, write_diagnosis, write_folder
 from truing.runs.new_effect import code_name, new_effect_source, safe_expression
 from truing.runs.provenance import provenance_of
 from truing.setup import Setup, SwitchedOn, default_setup

@@ -20,7 +20,7 @@ from test_report_sheet import HOSTILE, Page
 
 from shared import Calc
 from truing.api import model
-from truing.cli.diagnosis_printed import report
+from truing.cli.diagnose import lines_of as report
 from truing.diagnosis.records import Covariate, SuspectedUnit
 from truing.diagnosis.result import (
     Alternative,

@@ -26,9 +26,8 @@ from truing.executors import (
     in_order,
     open_executor,
 )
-from truing.executors.data import answer_of, text_of
-from truing.executors.kept import HEAD, MAGIC, key_of
-from truing.executors.versions import differences
+from truing.executors.cluster import differences
+from truing.executors.kept import HEAD, MAGIC, answer_of, key_of, text_of
 from truing.kernel import kernel_for
 from truing.packed import pack, unpack
 from truing.setup import SwitchedOn, default_setup

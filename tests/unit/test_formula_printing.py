@@ -12,11 +12,12 @@ from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
 
+from formula_printed import latex, mathml, substituted_latex, substituted_mathml
 from formula_reader import Reader
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from truing.formulas import latex, mathml, parse, substituted_latex, substituted_mathml
+from truing.formulas import parse
 
 SYMBOLS = {"load": "F", "early": "h_0", "angle": "theta_11", "way": "Delta z", "teeth": "z_2'", "limit": "F_N,max"}
 SYMBOLS |= {"ratio": "xi_lh", "rate": "k_R"}

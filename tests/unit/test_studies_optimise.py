@@ -42,8 +42,7 @@ from truing.studies.checks import limits, margin_of, plain_checks
 from truing.studies.demands import demands, nominal_inputs, worst
 from truing.studies.optimise_problem import ROWS, Brief, Problem, answers_of, make_problem, open_space
 from truing.studies.optimise_search import REFERENCE, knee_of, non_dominated, spread_out, volume_of
-from truing.studies.sampling import Machines
-from truing.studies.scatter import Scatter, _gather, scatter_of
+from truing.studies.sampling import Machines, Scatter, _gather, scatter_of
 
 SMALL = Optimise(population=20, generations=12, draws=600, verify=2000)
 

@@ -20,8 +20,7 @@ from truing.errors import UsageError
 from truing.executors import open_executor
 from truing.inputs_file.study_options import options_of, read_option
 from truing.setup import Setup, SwitchedOn
-from truing.studies.surrogate import Speed, designed
-from truing.studies.surrogate_fit import open_box
+from truing.studies.surrogate import Speed, designed, open_box
 
 
 def hill(three: Three) -> Sum:

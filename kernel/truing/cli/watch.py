@@ -10,17 +10,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import typer
-
 from truing.api.model import LoadedModel
 from truing.api.run import Run
 from truing.atomic import writings, written
-from truing.cli.console import Settings, out, say, sentence_of, settings_of
+from truing.cli.console import Settings, out, say, sentence_of
 from truing.cli.load import LABEL, find_offer
 from truing.inputs_file.files import refuse_file
 from truing.kernel import Offer
-from truing.runs.change_words import amount_of
-from truing.runs.comparison import changes, in_order
+from truing.numbers import counted
+from truing.runs.comparison import amount_of, changes, in_order
 from truing.runs.folder import demand_place
 from truing.studies.checks import EXIT_CODES, SHORT
 from truing.texts import one_line
@@ -32,7 +30,7 @@ LOOKS = 2
 
 
 def watch(
-    context: typer.Context,
+    settings: Settings,
     *,
     plugin: str,
     inputs: Path,
@@ -44,7 +42,6 @@ def watch(
     every: float,
 ) -> int:
     """Run, and run again whenever the inputs file, its data files or the plugin's code change; Ctrl-C ends it."""
-    settings = settings_of(context)
     sys.dont_write_bytecode = True  # two savings within one second would otherwise be one to Python
     offer = find_offer(plugin, settings)
     _demand_file(inputs)
@@ -64,7 +61,7 @@ def watch(
         if watcher.calculating:
             end.args = (f"calc: interrupted in the middle of a run; {watcher.what_stays()}",)
             raise
-        settings.say(f"calc: watched {watcher.runs} run{'s' * (watcher.runs != 1)}; {watcher.what_stays()}")
+        settings.say(f"calc: watched {counted(watcher.runs, 'run')}; {watcher.what_stays()}")
         return watcher.exit_code
 
 
@@ -145,10 +142,10 @@ class _Watcher:
         """Say the warnings that the last run did not have, and the cases that failed."""
         cases = done.cases.cases if done.cases is not None else ()
         failed = [str(case.fault) for case in cases if case.reason is not None]
-        for text in (*(f"warning: {one_line(one)}" for one in done.warnings), *failed):
+        for text in (*(f"warning: {one_line(warning)}" for warning in done.warnings), *failed):
             if text not in self.warned:
                 self.settings.say(text)
-        self.warned = {*(f"warning: {one_line(one)}" for one in done.warnings), *failed}
+        self.warned = {*(f"warning: {one_line(warning)}" for warning in done.warnings), *failed}
 
     def _complain(self, error: Exception) -> None:
         self.exit_code = 1
