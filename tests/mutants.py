@@ -117,7 +117,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ("(limit.high - limit.low) / 2", "(limit.high - limit.low)"),
     ),
     *changes(
-        "kernel/truing/studies/chances.py", "unit/test_studies_reliability.py unit/test_studies_allocation.py",
+        "kernel/truing/studies/chances.py", "unit/test_studies_allocation_widths.py",
         ("mean = value + sum(", "mean = value - sum("),
     ),
     *changes(
