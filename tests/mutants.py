@@ -192,7 +192,7 @@ MUTANTS: tuple[Mutant, ...] = (
     ),
     *changes(
         "kernel/truing/diagnosis/intervals.py", "unit/test_diagnosis_intervals.py",
-        ("LEVEL = 0.975", "LEVEL = 0.9"),
+        ("QUANTILE = 0.975", "QUANTILE = 0.9"),
         ("log1p(student**2 * certainty.variance / known)", "log1p(student * certainty.variance / known)"),
     ),
     *changes(
@@ -205,7 +205,7 @@ MUTANTS: tuple[Mutant, ...] = (
     ),
     *changes(
         "kernel/truing/diagnosis/unit_errors.py", "unit/test_diagnosis_unit_errors.py",
-        ("> FAR * _size(values, mode)", "> 30 * FAR * _size(values, mode)"),
+        ("> FAR_OFF * _size(values, mode)", "> 30 * FAR_OFF * _size(values, mode)"),
         ("best = max(gains, key=gains.__getitem__", "best = min(gains, key=gains.__getitem__"),
     ),
     *changes(

@@ -21,7 +21,7 @@ from truing.errors import InfeasibleError, PluginError, TruingError, UsageError
 from truing.kernel.blame import home_of, place_of
 from truing.parts_of_batch import uniform_parts
 from truing.repeated import results_of
-from truing.setup import Case, SwitchedOn
+from truing.setup import Case, SwitchedOn, effect_column
 from truing.units import to_si
 
 
@@ -52,11 +52,6 @@ class Rows:
         for values in results.values():
             values[failed] = np.nan
         return Rows(results, failed, reasons)
-
-
-def effect_column(effect: str, unknown: str) -> str:
-    """Return the column name of an effect's unknown."""
-    return f"effects.{effect}.{unknown}"
 
 
 @dataclass(frozen=True)
@@ -200,7 +195,7 @@ def _one_call(
         model = case.model
         calculate = model.function if alike or not repeats else partial(results_of, model, repeats=repeats, failed=log)
         results = _apply(case, columns, calculate, reading=reading)
-        flat = case.model.read_results(results)
+        flat = model.read_results(results, {*names, *(model.axes[name] for name in names)} & {*model.axes})
         answers = {name: _as_rows(case, name, flat, called) for name in names}
         for name, values in answers.items():
             infinite = ~np.isfinite(values)
@@ -225,8 +220,7 @@ def _as_rows(case: Case, name: str, flat: Mapping[str, Any], rows: int) -> NDArr
         array = np.asarray(flat[name], dtype=float)
         if not item.along:
             return np.broadcast_to(array, (rows,))
-        own = f"{item.along}_{item.scope}"
-        axis = flat.get(own, flat.get(item.along, array))
+        axis = flat.get(case.model.axes[name], array)
         return np.broadcast_to(array, (rows, np.asarray(axis).shape[-1] if np.ndim(axis) else 1))
     except (TypeError, ValueError):
         shape = getattr(flat[name], "shape", None)

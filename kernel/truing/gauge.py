@@ -11,9 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from truing.declare.fields import Axis
-from truing.declare.model import Model
 from truing.errors import UsageError
-from truing.evaluate import Rows, effect_column, evaluate_rows
+from truing.evaluate import Rows, evaluate_rows
 from truing.measurements import RowsFile
 from truing.setup import Setup
 from truing.units import from_si
@@ -82,16 +81,13 @@ def read_by_gauge(machine: Setup, rows: RowsFile, wanted: Collection[str] | None
 
 def answers_many(machine: Setup, rows: RowsFile, wanted: Collection[str] | None = None) -> bool:
     """Whether one calculation answers for many rows: for a record, along an axis, or where no column is looked at."""
-    along = any(axis_of(name, machine.model) for name in _readable(machine, rows, wanted))
+    along = any(machine.model.axes[name] for name in _readable(machine, rows, wanted))
     return bool(rows.series) or along or not seen_columns(machine, rows.columns)
 
 
 def seen_columns(machine: Setup, columns: Mapping[str, Any]) -> dict[str, Any]:
     """Return the columns that the model or an effect that is on looks at."""
-    seen = {need.name for item in machine.effects for need in item.effect.needs}
-    seen |= {effect_column(item.effect.name, one.name) for item in machine.effects for one in item.effect.unknowns}
-    fields = machine.model.input_fields
-    return {name: values for name, values in columns.items() if name in fields or name in seen}
+    return {name: values for name, values in columns.items() if name in machine.columns_looked_at}
 
 
 def _at_places(machine: Setup, rows: RowsFile) -> Setup:
@@ -109,7 +105,7 @@ def without_place(evaluated: Rows, machine: Setup, rows: RowsFile) -> dict[int, 
     """Say which rows lie nowhere on the axis of a result, so that nothing can be read there."""
     reasons: dict[int, str] = {}
     for name, values in evaluated.results.items():
-        axis = axis_of(name, machine.model)
+        axis = machine.model.axes[name]
         for place in np.flatnonzero(np.isnan(values)) if axis else ():
             is_empty = np.isnan(rows.axes[axis][place])
             words = f"'{axis}' is not given" if is_empty else f"it lies beyond the axis '{axis}'"
@@ -161,7 +157,7 @@ def read_each(
 
     A trial changes columns, to one value or to (n,). Calculations of several trials are one call of the model.
     """
-    along = {name: axis_of(name, machine.model) for name in _readable(machine, rows, wanted)}
+    along = {name: machine.model.axes[name] for name in _readable(machine, rows, wanted)}
     asked, machine = {*along, *filter(None, along.values())}, _at_places(machine, rows)
     made = [_Answer({name: np.full(len(rows), np.nan) for name in along}) for _ in trials]
     for record in _records(rows):
@@ -255,18 +251,9 @@ def _value_at(column: Any, place: int) -> Any:
 
 def _readable(machine: Setup, rows: RowsFile, wanted: Collection[str] | None) -> Iterator[str]:
     """Give the wanted results that have one value per row, or are read at the row's place on their axis."""
-    for name in machine.model.own_result_fields:
-        axis = axis_of(name, machine.model)
+    for name, axis in machine.model.axes.items():
         if (wanted is None or name in wanted) and (not axis or (axis in rows.axes and axis != name)):
             yield name
-
-
-def axis_of(name: str, model: Model[Any, Any]) -> str:
-    """Return the flat name of the axis that a result runs along: its own part's where that has one."""
-    fields = model.own_result_fields
-    item = fields[name]
-    own = f"{item.along}_{item.scope}"
-    return own if own in fields else item.along
 
 
 def _read_at(places: Any, axis: NDArray[np.float64], curve: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -43,14 +43,11 @@ def results_of(model: Model[Any, Any], inputs: Any, repeats: int, failed: Failed
     """
     rows = len(failed.codes)
     values = {field.path: read(inputs, field.path) for field in model.input_fields.values()}
+    arrays = {path: value for path, value in values.items() if isinstance(value, np.ndarray)}
     series = {field.path for field in model.input_fields.values() if field.spec.along}
-    columns = {
-        path: value
-        for path, value in values.items()
-        if path not in series and isinstance(value, np.ndarray) and value.shape[:1] == (rows,)
-    }
+    columns = {path: value for path, value in arrays.items() if path not in series and value.shape[:1] == (rows,)}
     count = rows // repeats
-    if any(isinstance(values[path], np.ndarray) and values[path].ndim > 1 for path in series) or not all(
+    if any(path in series and value.ndim > 1 for path, value in arrays.items()) or not all(
         _is_repeated(value, count) for value in columns.values()
     ):
         return model.function(inputs)
@@ -64,13 +61,13 @@ def results_of(model: Model[Any, Any], inputs: Any, repeats: int, failed: Failed
         _remember(key, known, count)
     _note(failed, known.failed, repeats)
     flat, fields = model.read_results(known.results), model.own_result_fields
-    arrays = {name: value for name, value in flat.items() if isinstance(value, np.ndarray) and value.ndim}
+    answers = {name: value for name, value in flat.items() if isinstance(value, np.ndarray) and value.ndim}
     of_rows = {
-        name for name, value in arrays.items() if len(value) == count and not (fields[name].along and value.ndim < 2)
+        name for name, value in answers.items() if len(value) == count and not (fields[name].along and value.ndim < 2)
     }
     copies = {  # never what is remembered itself: an effect may change an array in place
-        fields[name].path: np.tile(value, (repeats if name in of_rows else 1, *[1] * (value.ndim - 1)))
-        for name, value in arrays.items()
+        fields[name].path: np.concatenate([value] * (repeats if name in of_rows else 1))
+        for name, value in answers.items()
     }
     return with_values(known.results, copies)
 

@@ -21,6 +21,11 @@ from truing.kernel import Added, Origin
 DEFAULT_SEED = 0
 
 
+def effect_column(effect: str, unknown: str) -> str:
+    """Return the column name of an effect's unknown."""
+    return f"effects.{effect}.{unknown}"
+
+
 @dataclass(frozen=True)
 class SwitchedOn:
     """An effect that is on: its unknowns in SI, and their standard deviations and covariance where diagnosed.
@@ -111,6 +116,15 @@ class Case:
         values = ((item.path, read(self.inputs, item.path)) for item in varying)
         numbers = {path: value if isinstance(value, np.ndarray) else np.float64(value) for path, value in values}
         return with_values(self.inputs, numbers)
+
+    @cached_property
+    def columns_looked_at(self) -> frozenset[str]:
+        """The columns of a batch that the model or an effect that is on looks at."""
+        needs = {need.name for on in self.effects for need in on.effect.needs}
+        unknowns = {
+            effect_column(on.effect.name, unknown.name) for on in self.effects for unknown in on.effect.unknowns
+        }
+        return frozenset({*self.model.input_fields, *needs, *unknowns})
 
     def changed(self, values: Mapping[str, Any]) -> Self:
         """Return the case with these inputs and conditions, by name and in SI, in place of its own."""

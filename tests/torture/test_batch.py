@@ -12,9 +12,9 @@ import pytest
 
 from truing import Kernel, Model
 from truing.errors import InfeasibleError
-from truing.evaluate import effect_column, evaluate
+from truing.evaluate import evaluate
 from truing.kernel import kernel_for
-from truing.setup import Setup, SwitchedOn
+from truing.setup import Setup, SwitchedOn, effect_column
 from truing.testing.batches import Batch, compare, condition_values, input_values, is_row_by_row
 from truing.testing.sources import amplitude, off_reference, shape
 from truing.testing.subject import Subject

@@ -41,14 +41,14 @@ from truing.diagnosis.causes import effects_of
 from truing.diagnosis.machine import calibration_of
 from truing.diagnosis.reading import read_records
 from truing.errors import InputError, UsageError
-from truing.evaluate import effect_column, evaluate, evaluate_rows
+from truing.evaluate import evaluate, evaluate_rows
 from truing.inputs_file import json_schema, setup_from_text
 from truing.kernel import Kernel, Offer, Origin
 from truing.packed import pack, unpack
 from truing.runs.documents import results_document
 from truing.runs.inputs_written import complete_inputs, input_hash
 from truing.runs.provenance import provenance_of
-from truing.setup import Setup, SwitchedOn, default_setup
+from truing.setup import Setup, SwitchedOn, default_setup, effect_column
 
 
 @inputs

@@ -32,7 +32,7 @@ from truing.diagnosis.causes import Parameter
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.conditional import KEPT, ConditionalGain, compared, conditional_on, independent
 from truing.diagnosis.curves import Bundle
-from truing.diagnosis.points import ALIKE, FINEST, LEVELS, SPREAD, WAVES_PER_POINT, first_places, placed, spread
+from truing.diagnosis.points import FINEST, LEVELS, NEXT_TO, SPREAD, WAVES_PER_POINT, first_places, placed, spread
 from truing.diagnosis.sample import Sample
 from truing.diagnosis.sweeps import Conditional
 
@@ -170,7 +170,7 @@ def test_the_sweep_of_a_time_constant_leaves_no_gap_and_is_the_models(tmp_path: 
     assert_allclose(constants, np.geomspace(0.1, 20, 9))  # neighbours are alike already
     exact = [1 - np.exp(-bench.time / constant) for constant in constants]
     assert_allclose(found.curves[:, 0], exact, rtol=1e-9, atol=1e-12)
-    assert cosines(exact).min() > ALIKE
+    assert cosines(exact).min() > NEXT_TO
 
 
 def test_a_sweep_is_refined_where_neighbours_differ_too_much(tmp_path: Path) -> None:
@@ -178,13 +178,13 @@ def test_a_sweep_is_refined_where_neighbours_differ_too_much(tmp_path: Path) -> 
     bench = replace(wide(3000), travel=np.linspace(0, 300, 3000))
     found = alone(made_of(tmp_path, ["bump"], bench=bench), "bump")
     apart = np.diff(found.points[:, 1] * 1e3)
-    widest = 2 * 5 * np.sqrt(-np.log(ALIKE))
+    widest = 2 * 5 * np.sqrt(-np.log(NEXT_TO))
     inner = apart[3:-3]  # a bump that is cut in two is narrower
     assert (inner > widest / 2 - 1e-9).all()
     assert (inner <= widest).all()
     exact = [np.exp(-(((bench.travel - centre * 1e3) / 5) ** 2) / 2) for centre in found.points[:, 1]]
     assert_allclose(found.curves[:, 0], exact, rtol=1e-9, atol=1e-12)
-    assert cosines(exact).min() >= ALIKE
+    assert cosines(exact).min() >= NEXT_TO
     assert len(found.points) <= FINEST
 
 

@@ -11,7 +11,7 @@ from diagnosis_models import UM, Array, Asked, chosen_as, drive_model, fit_of, g
 from numpy.testing import assert_allclose
 
 from truing.diagnosis.choice import Chosen
-from truing.diagnosis.halves import APART, FEWEST, contradictions_of
+from truing.diagnosis.halves import CONTRADICTING, FEWEST_PER_NUMBER, contradictions_of
 
 ROWS = 160
 BENCH = wide(ROWS, seed=41)
@@ -44,7 +44,9 @@ def taken(folder: Path, error: Array, rows: Array | slice = slice(None)) -> Chos
     return chosen_as(made, fit_of(made, "lead_error"))
 
 
-@pytest.mark.parametrize(("by", "is_apart"), [(0.0, False), (0.7 * APART, False), (1.4 * APART, True), (30.0, True)])
+@pytest.mark.parametrize(
+    ("by", "is_apart"), [(0.0, False), (0.7 * CONTRADICTING, False), (1.4 * CONTRADICTING, True), (30.0, True)]
+)
 def test_halves_contradict_where_a_size_differs_by_more_than_four_standard_errors(
     tmp_path: Path, by: float, is_apart: bool
 ) -> None:
@@ -60,7 +62,7 @@ def test_halves_contradict_where_a_size_differs_by_more_than_four_standard_error
 def test_halves_of_few_rows_say_nothing(tmp_path: Path) -> None:
     """Ten rows for the one number in either half."""
     error, middle = changing(60.0), ROWS // 2
-    for rows, is_told in ((2 * FEWEST - 2, False), (2 * FEWEST, True)):
+    for rows, is_told in ((2 * FEWEST_PER_NUMBER - 2, False), (2 * FEWEST_PER_NUMBER, True)):
         around = slice(middle - rows // 2, middle + rows // 2)
         assert bool(contradictions_of(taken(tmp_path, error, around))) is is_told
 

@@ -67,7 +67,7 @@ def test_the_first_idea_of_the_noise_is_what_least_squares_leave(
     rest = left - design @ np.linalg.lstsq(design, left)[0]
     expected = 1e-6 * np.sqrt(rest @ rest / (400 - design.shape[1]))
     assert_allclose(first_noise(there)["deflection"].scale, expected, rtol=1e-6)
-    monkeypatch.setattr("truing.diagnosis.machine.BLOCK", 60)
+    monkeypatch.setattr("truing.diagnosis.machine.ROWS_AT_ONCE", 60)
     assert_allclose(first_noise(there)["deflection"].scale, expected, rtol=1e-6)
 
 

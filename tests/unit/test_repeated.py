@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from truing import Effect, Float, Model, Unknown, feasible, found, given, inputs, repeated, results
-from truing.evaluate import effect_column, evaluate_rows
-from truing.setup import Setup, SwitchedOn, default_setup
+from truing.evaluate import evaluate_rows
+from truing.setup import Setup, SwitchedOn, default_setup, effect_column
 
 ROWS, COPIES = 5, 4
 

@@ -11,9 +11,8 @@ import pytest
 from test_gauge import PIN_WEAR, WALL, Course, Wall, rows_for, wall
 
 from truing import trials
-from truing.evaluate import effect_column
 from truing.gauge import read_by_gauge
-from truing.setup import SwitchedOn
+from truing.setup import SwitchedOn, effect_column
 from truing.trials import read_trials
 
 LOADS = "load [N],time [h]\n28,1\n56,2\n84,3\n"

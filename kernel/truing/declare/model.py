@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -163,6 +163,13 @@ class Model(Generic[I, R]):
         return result_fields(self.result_type)
 
     @cached_property
+    def axes(self) -> dict[str, str]:
+        """The flat name of the axis that each result runs along, its own part's where that has one; "" for a number."""
+        fields = self.own_result_fields
+        own = {name: f"{item.along}_{item.scope}" for name, item in fields.items()}
+        return {name: own[name] if own[name] in fields else item.along for name, item in fields.items()}
+
+    @cached_property
     def measurable(self) -> list[str]:
         """The results that rows of a record can hold: numbers and curves, no axes and nothing of a table."""
         fields = self.own_result_fields
@@ -254,9 +261,10 @@ class Model(Generic[I, R]):
         """Return every input by flat name, SI."""
         return {name: read(inputs, item.path) for name, item in self.input_fields.items()}
 
-    def read_results(self, results: R) -> dict[str, Any]:
-        """Return every result of the function by flat name, SI."""
-        return {name: read(results, item.path) for name, item in self.own_result_fields.items()}
+    def read_results(self, results: R, names: Iterable[str] | None = None) -> dict[str, Any]:
+        """Return these results of the function by flat name, SI; all by default."""
+        fields = self.own_result_fields
+        return {name: read(results, fields[name].path) for name in (fields if names is None else names)}
 
 
 def _in_si(value: Any, item: InputField) -> Any:

@@ -28,6 +28,7 @@ from truing.units import to_si
 
 ShapeKind = Literal["trend", "product", "order", "wave", "step", "jump", "kink", "dead zone", "settling"]
 INPUT = "input:"
+"""Begins the tag of a tolerated input that competes as a cause."""
 ENDS = 0.02
 """Share of a record at each end within which nothing begins."""
 LITTLE = 1e-3

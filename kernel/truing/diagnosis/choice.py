@@ -36,8 +36,8 @@ ALIKE = 1.0
 """Sum of squares, in units of the noise, by which two explanations differ that are one on this record."""
 TWIN = 0.98
 """Share of a curve that a shape must draw to be a vaguer word for it, unless it fits better by ``CLOSE``."""
-RIVALS = 24
-ROUNDS = 2
+MOST_RIVALS, MOST_CHOICES = 24, 2
+"""So many rivals are kept, and so often it is decided anew after causes were exchanged."""
 SURELY = 30.0
 """What a cause must be worth, in score, that is named although its interval holds zero."""
 
@@ -91,7 +91,7 @@ class Chosen:
 def choose(made: Competition, *, seed: int) -> Chosen:
     """Decide how many causes there are and which, and gather what is near."""
     decision = steps_from(made, Decision(made.null, Law(np.zeros(0), 1.0)), seed=seed)
-    for _ in range(ROUNDS if decision.at.causes else 0):
+    for _ in range(MOST_CHOICES if decision.at.causes else 0):
         before = len(made.known)
         best = _exchanged(made, decision.at)
         if best.key == decision.at.key and len(made.known) == before:
@@ -241,7 +241,7 @@ def _rivals(made: Competition, best: Fit, seed: int) -> list[Rival]:
     top = made.score(best)
     near: list[Fit] = []
     for found in made.ranked(lambda each: bool(each.causes) and not best.key <= each.key and is_sensible(each)):
-        if made.score(found) - top > 10 * CLOSE or len(near) >= RIVALS:
+        if made.score(found) - top > 10 * CLOSE or len(near) >= MOST_RIVALS:
             break
         if found.key not in alike and _is_near(made, best, found):
             near.append(found)

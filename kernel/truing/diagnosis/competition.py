@@ -20,22 +20,23 @@ from truing.diagnosis.learning import as_noise, learnt
 from truing.diagnosis.sample import Sample, sample_of
 
 MOST_CAUSES = 5
+"""So many causes are named at most; what another one would explain stays in the remainder."""
 MARGIN = 6.0
 """What every sign of a wrong explanation costs, in score: a Bayes factor of about 20."""
 UNREGISTERED = 4.0
 """What a shape that nobody registered costs beside its numbers."""
 LEAST_PROMISE = 4.0
 """A cause whose curves promise less, unpaid, is not fitted."""
-WITHIN = 60.0
+WITHIN, RENEWED = 60.0, 40
 """Explanations within so much of the best are fitted again when the noise was learnt anew, and so many at most."""
-RENEWED = 40
 FINER = 0.5
 """Directions of the inputs are looked for anew when the noise turns out so much finer."""
-SETTLED = 0.02
-ROUNDS = 4
+NOISE_SETTLED, MOST_RENEWALS = 0.02, 4
+"""The noise is learnt anew until its scale changes by a smaller share, and so often at most."""
 ROWS_PER_NUMBER = 4
 """Fewer rows for every number are followed by any curve, noise or not."""
 AGAIN, TO_THE_END = "fits in the noise that was learnt", "fits to the end"
+"""What a budget that has ended leaves out, in words."""
 
 
 @dataclass
@@ -202,7 +203,7 @@ class Competition:
 
     def renew(self) -> None:
         """Learn the noise from the fairest explanation, and judge everything in it."""
-        for _ in range(ROUNDS):
+        for _ in range(MOST_RENEWALS):
             fair = self.fairest
             noise = learnt(self.sample, fair.predicted, fair.size + len(fair.inputs) ** 0.5)
             finer = any(noise[name].scale < FINER * own.scale for name, own in self.sample.noise.items())
@@ -210,7 +211,7 @@ class Competition:
             sample = sample_of(self.sample.machine, noise, self.sample.mask, directions)
             scale = max(abs(log(noise[name].scale / own.scale)) for name, own in self.sample.noise.items())
             laws = [[(own.memory, own.tails) for own in each.values()] for each in (noise, self.sample.noise)]
-            if laws[0] == laws[1] and scale < SETTLED:
+            if laws[0] == laws[1] and scale < NOISE_SETTLED:
                 break
             self.sample, self.fresh, self.exchanged, self.owned, self.paid = sample, set(), set(), {}, {}
             self.known = {key: found.in_sample(sample) for key, found in self.known.items()}

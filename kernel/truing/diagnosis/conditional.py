@@ -13,7 +13,7 @@ import numpy as np
 
 from truing.arrays import Indices, Mask, Matrix
 from truing.diagnosis.causes import Candidate
-from truing.diagnosis.curves import LARGEST, Bundle, ResponseCurves
+from truing.diagnosis.curves import VALUES_KEPT, Bundle, ResponseCurves
 from truing.diagnosis.exact import slopes_left
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
@@ -33,7 +33,10 @@ KEPT = 3
 NEAR_LEVEL = 2.0
 """A curve that bends stands for amplitudes up to so many times its own, and down to one over it; the smallest ones for
 all that are smaller."""
-FAINT = 1e-9
+AS_ONE = 0.98
+"""Share of its curves, squared, that one point must draw of another one to be no further start."""
+FAINTEST_CURVE = 1e-9
+"""A curve that is smaller, squared and in units of the noise, is rounding."""
 OWN = 0.03
 """Share of a curve that must be left beside an explanation for it to count as one more that was tried."""
 
@@ -114,7 +117,7 @@ def _swept(
 
 def _draws(size: Matrix, raw: Matrix) -> Mask:
     """Mark the points at which curves of these sizes, with and without what is taken, draw anything."""
-    return np.asarray(((size > 1e-6 * raw) & (raw > FAINT)).any(axis=1))
+    return np.asarray(((size > 1e-6 * raw) & (raw > FAINTEST_CURVE)).any(axis=1))
 
 
 def _turned(inner: Matrix, q: int) -> float:
@@ -157,7 +160,7 @@ def _weighed(curves: Matrix, conditional: Conditional) -> tuple[Any, Any, Matrix
 
     Bases of many curves are kept in single precision.
     """
-    kind = np.float32 if curves.size > LARGEST else np.float64
+    kind = np.float32 if curves.size > VALUES_KEPT else np.float64
     basis = np.empty((*curves.shape[:2], len(conditional.left)), dtype=kind)
     parts = []
     for block in blocks_of(curves):
@@ -177,18 +180,14 @@ def _best(
     """Return the best points that do not draw the same, with what each is worth in score."""
     chosen: list[int] = []
     for place in np.argsort(-gains, kind="stable")[:200].tolist():
-        if gains[place] > 0 and not any(_is_same(span.vectors(place), span.vectors(other)) for other in chosen):
+        pairs = [(span.vectors(place), span.vectors(other)) for other in chosen] if gains[place] > 0 else []
+        if gains[place] > 0 and not any(np.linalg.norm(a @ b.T) ** 2 > AS_ONE * min(len(a), len(b)) for a, b in pairs):
             chosen.append(place)
         if len(chosen) == KEPT:
             break
     known, whole = conditional.sample.known, float(conditional.left @ conditional.left)
     rest = np.maximum(1 - gains[chosen] / max(whole, known, 1.0), 1e-9)  # of the squares; the noise is what is left
     return tuple(zip((-known * np.log(rest)).tolist(), values[chosen], strict=True))
-
-
-def _is_same(one: Matrix, other: Matrix) -> bool:
-    """Whether two sets of columns draw nearly the same."""
-    return bool(np.linalg.norm(one @ other.T) ** 2 > 0.98 * min(len(one), len(other)))
 
 
 def _starts(bundle: Bundle, places: Indices, right: Matrix, normal: Matrix) -> tuple[Matrix, Matrix]:

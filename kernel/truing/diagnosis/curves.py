@@ -23,7 +23,7 @@ from truing.diagnosis.sweeps import TermTable
 
 STRAIGHT = 1e-4
 """Share of its size by which chords of a cause may differ while it counts as proportional."""
-LARGEST = 8_000_000
+VALUES_KEPT = 8_000_000
 """Bundles of more values are made anew each time, and compared in single precision."""
 LARGE = 1_000_000
 """Shapes that nobody registered, with more values than that in their curves, have them in a table."""
@@ -69,7 +69,7 @@ class ResponseCurves:
         if cause.tag in self._alone:
             return self._alone[cause.tag]
         made = self._first(cause, _Place(self.extended, conditional, ()))
-        if made.curves.size <= LARGEST:
+        if made.curves.size <= VALUES_KEPT:
             self._alone[cause.tag] = made
         return made
 

@@ -14,7 +14,6 @@ from truing.declare.fields import Axis
 from truing.declare.model import Model
 from truing.declare.near_miss import near_miss
 from truing.errors import Fault, InputError, UnitError
-from truing.gauge import axis_of
 from truing.kernel import Offer
 from truing.measurements.csv_text import Faults, TableSource
 from truing.measurements.row_count import RowCount
@@ -181,7 +180,7 @@ def _unfit(table: DataTable, model: Model[Any, Any]) -> Iterator[str]:
         result = model.own_result_fields.get(name)
         if result is not None and not isinstance(result.spec, Axis) and name not in model.measurable:
             yield f"{name} is a column of a table that the calculation makes; it cannot be compared row by row"
-        axis = model.own_result_fields.get(axis_of(name, model)) if name in model.measurable else None
+        axis = model.own_result_fields.get(model.axes[name]) if name in model.measurable else None
         if axis is not None and axis.name not in table.columns:
             like = f"{axis.name} [{axis.unit}]" if axis.unit else axis.name
             yield f"{name} runs along '{axis.name}'; give the place of each row in a column '{like}'"

@@ -30,9 +30,11 @@ from truing.numbers import format_number
 from truing.units import from_si
 
 POINTS = 4
+"""So many next measurements are proposed."""
 MOST_POINTS = 100
 """Nobody measures more: explanations that so many points do not tell apart are told apart by a fact, or not at all."""
-RIVALS = 4
+MOST_DUELLING = 4
+"""So many of the nearest rivals are to be told apart: their pairs are compared at every setting."""
 UNSEEN = 1e-9
 """Share of its own precision, or of one over its range squared, that is added to that of every number."""
 
@@ -134,7 +136,7 @@ def rival_fits(chosen: Chosen) -> list[Fit]:
 
     Explanations with a shape that nobody registered are left out.
     """
-    rivals = [rival.fit for rival in chosen.rivals if is_physical(rival.fit)][:RIVALS]
+    rivals = [rival.fit for rival in chosen.rivals if is_physical(rival.fit)][:MOST_DUELLING]
     own = [chosen.best, *_renamed(chosen)] if is_physical(chosen.best) else []
     by_name: dict[frozenset[str], Fit] = {}
     for found in (*own, *rivals):

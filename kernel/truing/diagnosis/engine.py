@@ -34,11 +34,11 @@ from truing.setup import Setup
 from truing.studies.bench import FINE, Progress, part_of, silent
 from truing.studies.threads import one_thread
 
-ROUGH = 6**0.5
+TOO_ROUGH = 6**0.5
 """A step so many times what is left of the readings is half of it: its mean square is a twelfth of its own."""
 SIZED = 4
 """Of so many alternatives it is told what their own fit says."""
-SHARES = {"columns": 0.05, "search": 0.75, "significance": 0.85, "gain": 1.0}
+STAGE_ENDS = {"columns": 0.05, "search": 0.75, "significance": 0.85, "gain": 1.0}
 """What share of the time has passed when each stage ends, for whoever waits."""
 
 
@@ -52,14 +52,14 @@ def diagnose(setup: Setup, records: Records, *, progress: Progress | None = None
     is_short = records.readings < FEWEST_READINGS  # what is calculated of them is not used
     with one_thread(), np.errstate(all="ignore" if is_short else None):
         machine = calibration_of(setup, records)
-        told("columns", round(FINE * SHARES["columns"]), FINE)
+        told("columns", round(FINE * STAGE_ENDS["columns"]), FINE)
         few = searched(records, seed=setup.seed)
         competition = laid_out(machine if few is records else calibration_of(setup, few))
         probe(competition)
-        search(competition, part_of(told, "diagnosis", SHARES["columns"], SHARES["search"]))
-        told("search", round(FINE * SHARES["search"]), FINE)
+        search(competition, part_of(told, "diagnosis", STAGE_ENDS["columns"], STAGE_ENDS["search"]))
+        told("search", round(FINE * STAGE_ENDS["search"]), FINE)
         chosen = on_all_rows(choose(competition, seed=setup.seed), machine)
-        told("significance", round(FINE * SHARES["significance"]), FINE)
+        told("significance", round(FINE * STAGE_ENDS["significance"]), FINE)
         answer = _answer(chosen, setup, told)
         return replace(answer, hindrances=(*competition.extended.budget.told(), *_too_rough(answer, chosen)))
 
@@ -94,7 +94,7 @@ def _answer(chosen: Chosen, setup: Setup, progress: Progress) -> DiagnosisResult
     machine = best.sample.machine
     units = units_of(chosen)
     causes = by_share(chosen, causes_of(chosen, best))
-    judged = nested(chosen, part_of(progress, "diagnosis", SHARES["significance"], SHARES["gain"]))
+    judged = nested(chosen, part_of(progress, "diagnosis", STAGE_ENDS["significance"], STAGE_ENDS["gain"]))
     points, ties = with_results(chosen, next_points(chosen))
     progress("gain", FINE, FINE)
     return DiagnosisResult(
@@ -171,7 +171,7 @@ def _too_rough(answer: DiagnosisResult, chosen: Chosen) -> list[str]:
         f"the model's {each.result} jumps or scatters by up to {in_unit(grain[each.result], each.noise_floor.unit)} by "
         "itself, which is most of what is left of the readings: this may be what is wrong; make it finer"
         for each in answer.wrong
-        if grain.get(each.result, 0.0) > ROUGH * each.noise_floor.value
+        if grain.get(each.result, 0.0) > TOO_ROUGH * each.noise_floor.value
     ]
 
 

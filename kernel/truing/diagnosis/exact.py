@@ -10,6 +10,7 @@ of its mean square is what a fit makes small.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import inf
 
 import numpy as np
@@ -29,18 +30,21 @@ MOST_STEPS, MOST_ROUGH = 40, 12
 MOVED = 0.1
 """Sum of squares, in units of the noise, that slopes of the inputs may miss before their anchor is moved."""
 MOST_ANCHORS = 3
+"""So often the slopes of the inputs are taken anew where a fit has put these."""
 ASIDE = 0.05
 """Standard deviations to each side by which an input is moved for its slope where a fit has put it."""
-ROUNDS, FAR = 5, 1e6
+MOST_NOISE_ROUNDS, FAILED = 5, 1e6
 """So often the noise is taken anew where numbers and inputs are fitted at once; what is left where the model fails."""
-SHARES = (1.0, 0.5, 0.25, 0.1)
+WAYS = (1.0, 0.5, 0.25, 0.1)
 """Of the way that the slopes promise, how far the anchor goes: where the model bends, the whole way may lead up."""
-MOST_ROUNDS, SETTLED = 20, 1e-7
+MOST_INPUT_ROUNDS, INPUTS_SETTLED = 20, 1e-7
 """Inputs go with the noise that they leave when a round gains less than so much of the score."""
 NEARER = 30
 """So often a start at which the model fails is halved: what is left of it is rounding."""
-FIRST_DAMPING = 1e-3
-LARGEST_DAMPING = 1e8
+FIRST_DAMPING, LARGEST_DAMPING = 1e-3, 1e8
+"""Of a step, in units of the curvature: where it begins, and where no step is left that leads down."""
+MOST_KEPT = 1_000_000
+"""So many derivatives are kept with a fit; those of a longer record are made anew where they are asked for."""
 GOOD = 0.25
 """Share of what a step promised from which on its corrected derivatives are good enough for the next one."""
 
@@ -135,14 +139,14 @@ class Fitting:
         """Return the inputs that go best with what is left without them, what is then left, and its cost."""
         b = self.b
         left = bare - self.slopes @ b
-        for _ in range(MOST_ROUNDS if len(b) else 0):
+        for _ in range(MOST_INPUT_ROUNDS if len(b) else 0):
             roots = self.sample.roots(left)
             weighted = self.slopes * roots[:, None]
             downward = weighted.T @ (roots * left) - b
             moved = np.linalg.solve(weighted.T @ weighted + np.eye(len(b)), downward)
             b = b + self.sample.stride * moved
             left = bare - self.slopes @ b
-            if moved @ downward < SETTLED:
+            if moved @ downward < INPUTS_SETTLED:
                 break
         return b, left, self.sample.cost(left, b)
 
@@ -227,7 +231,7 @@ class Fitting:
         places = np.flatnonzero(self.free)
         low = np.append(self.low[places], np.full(len(self.b), -np.inf))
         high = np.append(self.high[places], np.full(len(self.b), np.inf))
-        for _ in range(ROUNDS):
+        for _ in range(MOST_NOISE_ROUNDS):
             roots = self.sample.roots(self.left)
 
             def weighted(x: Matrix, roots: Matrix = roots) -> Matrix:
@@ -263,7 +267,7 @@ class Fitting:
         settings = [(parts_of(self.causes, self.outward(u)), moved_by(self.sample, b)) for u, b in parted]
         made = self.extended.at(self.causes, settings)
         left = [np.append(roots * self.sample.left(each), b) for each, (_, b) in zip(made, parted, strict=True)]
-        return np.where(np.isfinite(left), left, FAR)
+        return np.where(np.isfinite(left), left, FAILED)
 
     def _descend(self, until: float) -> None:
         if not self.free.any():
@@ -317,7 +321,7 @@ class Fitting:
         """Move the anchor to the inputs, or as far as leads down; whether the slopes missed enough to go on."""
         start, wanted = self.anchor, self.b
         before = self.sample.cost(self.sample.left(self.predicted), start)
-        for share in SHARES:
+        for share in WAYS:
             tried = start + share * (wanted - start)
             (shown,) = self.shown([self.u], tried)
             exact = self.sample.left(shown)
@@ -355,8 +359,11 @@ class Fitting:
         moved = self.b - self.anchor
         predicted = {name: shown + self.moves[name] @ moved for name, shown in self.predicted.items()}
         values = tuple(parts_of(self.causes, self.outward(self.u)))
+        answer = Fit(self.causes, values, self.b, predicted, self.left, self.cost, self.sample)
+        if sum(drawn.size for each in (self.drawn, self.moves) for drawn in each.values()) > MOST_KEPT:
+            return answer
         slopes = {name: each / np.where(self.log, 1.0, self.sizes) for name, each in self.drawn.items()}
-        return Fit(self.causes, values, self.b, predicted, self.left, self.cost, self.sample, slopes, self.moves)
+        return replace(answer, slopes=slopes, moves=self.moves)
 
 
 def _corrected(slopes: Matrix, change: Matrix, way: Matrix) -> Matrix:

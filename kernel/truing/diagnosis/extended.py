@@ -15,14 +15,13 @@ from truing.declare.sources import Effect
 from truing.diagnosis.causes import Candidate, at_rest
 from truing.diagnosis.machine import Calibration, Tolerated, predict_each
 from truing.errors import PluginError
-from truing.evaluate import effect_column
 from truing.repeated import REMEMBERED as REPEATED
-from truing.setup import Setup, SwitchedOn
+from truing.setup import Setup, SwitchedOn, effect_column
 from truing.trials import Trial
 
 REMEMBERED = 64
 """So many setups with moved inputs are kept, and what the model showed at so many points."""
-LARGEST = 1_000_000
+ROWS_KEPT = 1_000_000
 """So many rows of what the model showed are kept."""
 LEAST_PER_EFFECT = 40
 """Calls for every effect on the inputs that are given however long they take: fewer show none of them as it is."""
@@ -101,7 +100,7 @@ class Extended:
         keys = [(tags, b"".join(np.asarray(each).tobytes() for each in (*values, moved))) for values, moved in bare]
         new = {key: point for key, point in zip(keys, bare, strict=True) if key not in self._shown}
         shown = {**self._shown, **dict(zip(new, self._called(bare_causes, list(new.values())), strict=True))}
-        kept = min(REMEMBERED, max(1, LARGEST // max(len(self.machine.records), 1)))  # a fit goes on from the last
+        kept = min(REMEMBERED, max(1, ROWS_KEPT // max(len(self.machine.records), 1)))  # a fit goes on from the last
         self._shown = dict(list({**self._shown, **{key: shown[key] for key in keys}}.items())[-kept:])
         return [self._with_shapes(shown[key], causes, values) for key, (values, _) in zip(keys, points, strict=True)]
 
@@ -212,7 +211,8 @@ def _columns(settings: Iterable[tuple[str, int, float]], files: Indices) -> dict
     """Return columns (n,) that have each value in the rows of its file, or in all where the file is -1."""
     made: dict[str, Any] = {}
     for name, file, value in settings:
-        made[name] = np.full(len(files), value) if file < 0 else np.where(files == file, value, made.get(name, 0.0))
+        everywhere = np.broadcast_to(value, (len(files),))
+        made[name] = everywhere if file < 0 else np.where(files == file, value, made.get(name, 0.0))
     return made
 
 

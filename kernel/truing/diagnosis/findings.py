@@ -19,15 +19,17 @@ from truing.diagnosis.sample import Channel, errors_of, residuals_of
 from truing.diagnosis.shape_words import drawn_by, in_unit, shape_in_words
 from truing.numbers import counted
 
-SIGNIFICANT = 0.05
-FAR = 4.0
-LARGEST_COUNT = 4
+SIGNIFICANT, LARGEST_COUNT = 0.05, 4
+"""Chance that noise alone gives as much, up to which a pattern is told, and so many of the largest."""
+OUTLYING = 4.0
+"""Standard deviations from which on a reading is named as an outlier: of normal noise one in 16,000."""
 NOTICEABLE = 0.1
-BIASED = 3.0
-SHOWS = 3.0
-"""Standard errors from which on what a cause adds to a result is said to be in it."""
-BETTER = 6.0
-SHADOW = 0.3
+"""Autocorrelation of neighbouring rows from which on it is told."""
+BIASED, SHOWS = 3.0, 3.0
+"""Standard errors from which on a mean is off zero, and from which on what a cause adds to a result is told."""
+PAIR_BETTER, SHADOW = 6.0, 0.3
+"""A pattern over two covariates must be worth so much more than over one, and any such a share of what the best
+explanation is worth: less is the shadow of another pattern."""
 WAVE_LEVEL = 0.001
 """Significance from which on a wave in what is left is visible, all frequencies and covariates paid for."""
 FEWEST_PERIODS = 2
@@ -56,7 +58,7 @@ def _wrong(chosen: Chosen, channel: Channel, acting: Mapping[str, Sequence[Candi
         *_wave(best, channel),
     ]
     size = after[channel.read] * channel.weights[channel.read]
-    far = np.abs(size) > FAR * max(robust_sd(size), channel.scale * channel.least**0.5)
+    far = np.abs(size) > OUTLYING * max(robust_sd(size), channel.scale * channel.least**0.5)
     places = rows[channel.read][far].tolist()
     outliers = tuple((records.files[int(records.file_of[row])], int(records.lines[row])) for row in places)
     memory = channel.memory
@@ -111,7 +113,7 @@ def _structure(chosen: Chosen, name: str, unit: str) -> Iterator[ResidualFinding
     least = SHADOW * (plain - made.score(made.ranked()[0]))
     kept = []
     for label, (gain, found) in sorted(best.items(), key=lambda item: -item[1][0]):
-        plainer = max((singles[each] + BETTER for each in label[1:] if each in singles), default=gain)
+        plainer = max((singles[each] + PAIR_BETTER for each in label[1:] if each in singles), default=gain)
         if gain >= least and (len(label) != 3 or gain >= plainer):
             kept.append((gain, found))
     for gain, found in kept[:LARGEST_COUNT]:

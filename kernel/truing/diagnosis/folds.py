@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import log, sqrt
 
@@ -14,10 +15,13 @@ from truing.diagnosis.fitted import Fit
 from truing.diagnosis.sample import Sample, has_order
 
 FOLDS = 5
+"""So many folds of the cross-validation: each leaves a fifth of the blocks out."""
 SHORTEST_BLOCK = 6
+"""Rows of the shortest block of a record that is not short: neighbours stay together."""
 FEWEST_BLOCKS = 8
 """A short record has shorter blocks rather than fewer: of four that all gain the best significance is 1/16."""
 BLOCKS = 20
+"""A record has so many blocks at the most: the sign of each is one piece of evidence for the gain."""
 
 
 @dataclass(frozen=True)
@@ -73,12 +77,13 @@ def ends_of(sample: Sample) -> Folds:
     return Folds(block_of, 2)
 
 
-def refitted(found: Fit, extended: Extended, test: Mask) -> Fit | None:
-    """Fit an explanation to the rows that are not left out, from where it is."""
-    sample = found.sample.of_rows(~test)
-    if not all(len(channel) for channel in sample.channels):
-        return None
-    return refit(found, sample, extended)
+def refitted(fits: Sequence[Fit], extended: Extended, test: Mask) -> list[Fit | None]:
+    """Fit explanations to the rows that are not left out, each from where it is; None where that cannot be done."""
+    samples = {id(found.sample): found.sample for found in fits}
+    rest = {key: sample.of_rows(~test) for key, sample in samples.items()}
+    if not all(len(channel) for sample in rest.values() for channel in sample.channels):
+        return [None] * len(fits)
+    return [refit(found, rest[id(found.sample)], extended) for found in fits]
 
 
 def errors_left_out(found: Fit, extended: Extended, folds: Folds) -> Matrix:
@@ -90,7 +95,7 @@ def errors_left_out(found: Fit, extended: Extended, folds: Folds) -> Matrix:
     rows = np.concatenate([channel.rows for channel in found.sample.channels])
     for fold in range(folds.count):
         test = folds.test(fold)
-        again = refitted(found, extended, test)
+        (again,) = refitted([found], extended, test)
         if again is not None:
             made = np.where(test[rows], found.sample.left(again.predicted), made)
     return made

@@ -24,10 +24,13 @@ from truing.diagnosis.result import Amount, Gain
 from truing.diagnosis.sample import Channel, NoiseModel, errors_of
 
 FLIPS = 999
+"""So many signs of the blocks are drawn where there are too many to try all: a significance down to 0.001."""
 MOST_EXACT = 12
 """Of so many blocks all signs are tried, of more some that are drawn."""
-ROUNDING = 1e-9
+TIED_SUMS = 1e-9
+"""Share by which two sums of the same blocks differ by rounding alone."""
 COVERED = 0.9
+"""Share of new readings that the stated band is to hold; what it did hold is counted on rows left out."""
 SMALLEST_GAIN = 1e-6
 """Less than this per row is rounding, not gain."""
 CONTENDERS = 6
@@ -69,10 +72,10 @@ def nested(chosen: Chosen, done: Callable[[int, int], None] = lambda count, of: 
     for fold in range(folds.count):
         done(fold, folds.count)
         test = folds.test(fold)
-        base = refitted(chosen.null, made.extended, test)
+        base, *again = refitted([chosen.null, *several], made.extended, test)
         if base is None:
             continue
-        best = _chosen_again(chosen, base, several, test)
+        best = _chosen_again(chosen, base, [found for found in again if found is not None])
         same += best.key == chosen.best.key
         for index, channel in enumerate(base.sample.channels):
             _judge(judged[channel.name], index, (base, best), test)
@@ -95,10 +98,9 @@ def contenders(chosen: Chosen) -> list[Fit]:
     return [made.known[best.key], *near[:CONTENDERS]]
 
 
-def _chosen_again(chosen: Chosen, base: Fit, several: list[Fit], test: Mask) -> Fit:
+def _chosen_again(chosen: Chosen, base: Fit, again: list[Fit]) -> Fit:
     """Return what is chosen without the rows of a fold: the choice, unless another one is better by ``CLOSE``."""
     made = chosen.competition
-    again = [found for each in several if (found := refitted(each, made.extended, test)) is not None]
     if not again:
         return base
     own = next((found for found in again if found.key == chosen.best.key), None)
@@ -204,7 +206,7 @@ def sign_flip_p(gain: Matrix, block_of: Indices, *, seed: int) -> float:
     total = float(sums.sum())
     if total <= SMALLEST_GAIN * len(gain) or len(sums) < 2:
         return 1.0
-    least = total * (1 - ROUNDING)
+    least = total * (1 - TIED_SUMS)
     if len(sums) <= MOST_EXACT:
         signs = 1.0 - 2.0 * (np.arange(2 ** len(sums))[:, None] >> np.arange(len(sums)) & 1)
         return float((signs @ sums >= least).mean())

@@ -22,11 +22,11 @@ from truing.diagnosis.noise import Autocorrelation
 from truing.diagnosis.result import Amount, Contradiction, Thinned
 from truing.diagnosis.sample import Sample, has_order
 
-APART = 4.0
+CONTRADICTING = 4.0
 """Standard errors by which an amplitude differs between halves that contradict one another: by chance 1 in 16,000."""
-FEWEST = 10
+FEWEST_PER_NUMBER = 10
 """Rows for every number that a half must have: of fewer its own standard errors are not known."""
-RIVALS = 4
+RIVALS_THINNED = 4
 """So many of the nearest explanations that name something else are fitted to every second row."""
 ORDERED = ("every second row, from the first", "every second row, from the second")
 UNORDERED = ("one half of the rows, taken at random", "the other half of the rows, taken at random")
@@ -41,7 +41,7 @@ def contradictions_of(chosen: Chosen) -> tuple[Contradiction, ...]:
     turn = _in_turn(best.sample)
     rows = np.arange(len(best.sample.mask))
     left_out = [np.isin(rows, half) for half in (turn[len(turn) // 2 :], turn[: len(turn) // 2])]
-    fitted = [found for test in left_out if (found := refitted(best, extended, test)) is not None]
+    fitted = [found for test in left_out for found in refitted([best], extended, test) if found is not None]
     if len(fitted) < 2:
         return ()
     certain = [certainty_of(found, extended) for found in fitted]
@@ -52,7 +52,7 @@ def contradictions_of(chosen: Chosen) -> tuple[Contradiction, ...]:
                 continue
             first, second = (value_of(found, place) for found in fitted)
             error = hypot(*(each.in_si([place])[0][0] ** 0.5 for each in certain))
-            if error > 0 and abs(first - second) > APART * error:
+            if error > 0 and abs(first - second) > CONTRADICTING * error:
                 unit = next(each.unit for each in cause.effect.unknowns if each.name == number.name)
                 made.append(Contradiction(cause.name, number.name, Amount(first, unit), Amount(second, unit)))
     return tuple(made)
@@ -60,7 +60,7 @@ def contradictions_of(chosen: Chosen) -> tuple[Contradiction, ...]:
 
 def _are_few(best: Fit) -> bool:
     """Whether half of the rows is too little for an explanation, or there is none."""
-    return not best.causes or best.sample.known < 2 * FEWEST * (best.size + len(best.inputs) ** 0.5)
+    return not best.causes or best.sample.known < 2 * FEWEST_PER_NUMBER * (best.size + len(best.inputs) ** 0.5)
 
 
 def _in_turn(sample: Sample) -> Indices:
@@ -81,7 +81,7 @@ def thinned_of(chosen: Chosen) -> tuple[Thinned, ...]:
     if _are_few(best):
         return ()
     several = [found for found in contenders(chosen) if not (found.key < best.key or best.key < found.key)]
-    others = [found for found in several if set(found.names) != set(best.names)][:RIVALS]
+    others = [found for found in several if set(found.names) != set(best.names)][:RIVALS_THINNED]
     turn = _in_turn(best.sample)
     words, made = ORDERED if has_order(best.sample.machine) else UNORDERED, []
     for begin, said in enumerate(words):

@@ -21,19 +21,21 @@ from truing.diagnosis.extended import Extended, parts_of
 from truing.diagnosis.fitted import Fit, inward
 from truing.diagnosis.machine import in_blocks
 
-LEVEL = 0.975
+QUANTILE = 0.975
 """Of Student's t at either end of an interval: together they hold 95 %."""
 LARGEST_LEVERAGE = 0.95
+"""A row that holds an estimate alone leaves nothing; what it would have left is taken to be at most 20 times that."""
 FEWEST_FREE = 2.0
+"""Degrees of freedom of Student's t at the least, however few rows a result has."""
 SINGULAR = 1e-12
 """Share of the largest eigenvalue, columns of unit length, below which a combination of numbers is not determined."""
 FARTHER = 2.0
 """So many times as far is looked for the end of a profile that was not reached yet."""
 SHORTEST, LONGEST = 1e-3, 0.25
 """Of the way to a bound: between these is the first step along a profile."""
-CLOSE = 5e-3
+END_KNOWN = 5e-3
 """Of its distance from the fitted value: how well the end of a profile is known."""
-PLACES = 7.35
+PLACE_LIMIT = 7.35
 """What the cost of a place at which something begins may rise by (B. E. Hansen, Sample splitting and threshold
 estimation, Econometrica 68, 2000, 575)."""
 WHOLE = 6.0
@@ -62,7 +64,7 @@ class Certainty:
     def reach(self, weights: Matrix) -> float:
         """Return half of the 95 % interval of a weighted sum of numbers and directions, as the fit sees them."""
         squared = max(float(weights @ self.covariance @ weights), 0.0)
-        return float(stdtrit(self.freedom, LEVEL)) * sqrt(squared)
+        return float(stdtrit(self.freedom, QUANTILE)) * sqrt(squared)
 
     def reach_of(self, place: int) -> float:
         """Return half of the 95 % interval of one number, as the fit sees it."""
@@ -209,7 +211,7 @@ def place_interval(found: Fit, extended: Extended, place: int) -> tuple[float, f
 
     def holds(gap: int) -> bool:
         made = _kept_at(found, extended, place, float(rows[gap - 1 : gap + 1].mean()))
-        return made is not None and made.cost <= found.cost + PLACES
+        return made is not None and made.cost <= found.cost + PLACE_LIMIT
 
     last = len(rows) - 1
     low = own - 1 - _farthest(lambda off: holds(own - off), own - 1)
@@ -239,7 +241,7 @@ class _Profile:
         value = value_of(found, place)
         self.start = log(value) if self.number.is_log else value / self.unit
         self.known = {self.start: _kept_at(found, extended, place, self.outward(self.start)) or found}
-        student = float(stdtrit(certainty.freedom, LEVEL))
+        student = float(stdtrit(certainty.freedom, QUANTILE))
         known = found.sample.known
         self.allowed = known * log1p(student**2 * certainty.variance / known)
         self.reach = certainty.reach_of(place)
@@ -269,5 +271,5 @@ class _Profile:
             if step >= 1.0:
                 return None
             before, step = step, min(FARTHER * step, 1.0)
-        at = brentq(lambda share: self.above(self.start + share * way), before, step, xtol=CLOSE * step)
+        at = brentq(lambda share: self.above(self.start + share * way), before, step, xtol=END_KNOWN * step)
         return self.outward(self.start + float(at) * way)

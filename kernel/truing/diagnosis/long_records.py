@@ -21,18 +21,20 @@ from truing.diagnosis.records import Records
 from truing.diagnosis.sample import sample_of
 
 LONG = 2500
-"""A record of more rows is searched on about so many of them."""
+"""A record of more readings is searched on about so many of them."""
 RANKED = 8
 """So many of the best explanations are fitted to all rows beside the chosen one and its rivals."""
 
 
 def searched(records: Records, *, seed: int) -> Records:
     """Return the rows that a search looks at: all of a record that is not long."""
-    if len(records) <= LONG or records.rows.series:
+    readings = sum(int(np.isfinite(values).sum()) for values in records.measured.values())
+    if readings <= LONG or records.rows.series:
         return records
-    edges = np.linspace(0, len(records), LONG + 1).astype(np.intp)
+    rows = len(records) * LONG // readings
+    edges = np.linspace(0, len(records), rows + 1).astype(np.intp)
     generator = np.random.Generator(np.random.SFC64(seed))
-    return records.part(edges[:-1] + (generator.random(LONG) * np.diff(edges)).astype(np.intp))
+    return records.part(edges[:-1] + (generator.random(rows) * np.diff(edges)).astype(np.intp))
 
 
 def on_all_rows(chosen: Chosen, machine: Calibration) -> Chosen:

@@ -23,11 +23,14 @@ from truing.studies.scatter import root_of, scatter_of
 from truing.trials import Trial, read_trials
 
 Predicted = Mapping[str, Matrix]
-STEP = 0.5
+INPUT_STEP = 0.5
+"""Standard deviations to each side by which an input is moved for its slope over the width of its tolerance."""
 FAINTEST = 0.01
+"""Root mean square, in units of the noise, below which these rows do not see a direction of the inputs."""
 MANY = 200_000
 """Slopes of more rows than this are kept in single precision, and added up in double precision."""
-BLOCK = 8192
+ROWS_AT_ONCE = 8192
+"""Rows that are added up in one pass, so that long records need no second copy."""
 
 
 @dataclass(frozen=True)
@@ -145,11 +148,11 @@ def calibration_of(setup: Setup, records: Records) -> Calibration:
 
 def _slopes(start: Setup, records: Records, inputs: Sequence[Tolerated]) -> Iterator[tuple[str, dict[str, Matrix]]]:
     """Give by input the central difference of every result over one standard deviation, 0 where the model fails."""
-    moves = {item.name: STEP * item.sd for item in inputs}
+    moves = {item.name: INPUT_STEP * item.sd for item in inputs}
     ends = [{name: float(start.nominal(name)) + sign * move} for name, move in moves.items() for sign in (1, -1)]
     answers = predict_each(start, records, ends)
     for name, up, down in zip(moves, answers, answers, strict=False):
-        slopes = {result: (up[result] - down[result]) / (2 * STEP) for result in records.measured}
+        slopes = {result: (up[result] - down[result]) / (2 * INPUT_STEP) for result in records.measured}
         yield name, {result: np.where(np.isfinite(slope), slope, 0.0) for result, slope in slopes.items()}
 
 
@@ -166,7 +169,7 @@ def directions_of(gram: Matrix, rows: int) -> Matrix:
     """Return the combinations of inputs that the data can see, shape (inputs, K), columns of unit length.
 
     ``gram`` holds the inner products of the slopes over ``rows`` values, in units of the noise. Kept are singular
-    values above a hundredth of the noise per row; with a prior of one standard deviation on every input, each
+    values above ``FAINTEST`` of the noise per row; with a prior of one standard deviation on every input, each
     direction has the same prior.
     """
     if len(gram) == 0:
@@ -180,7 +183,7 @@ def directions_of(gram: Matrix, rows: int) -> Matrix:
 
 def in_blocks(rows: int, size: int = 0) -> Iterator[slice]:
     """Give the rows in blocks, one after another, of one size where it is given."""
-    size = size or BLOCK
+    size = size or ROWS_AT_ONCE
     return (slice(begin, begin + size) for begin in range(0, rows, size))
 
 

@@ -24,14 +24,17 @@ TAILS = {3.0: 1.9, 4.0: 2.1, 6.0: 2.5, 10.0: 3.0, inf: 4.5}
 """Degrees of freedom of Student's t, and where innovations are clipped, in standard deviations."""
 HEAVIER = 1.92
 """In log-likelihood: tails that are no heavier than normal seem so by chance in one record of twenty."""
-AT_ONCE = 16_384
+READINGS_AT_ONCE = 16_384
+"""Readings whose likelihood under every tail is taken in one pass."""
 SMALLEST_SHARE = 1e-6
 """Of the readings: noise is no smaller, or it is rounding."""
 LARGEST_EXPONENT = 2.5
+"""The noise differs between rows by at most exp(2.5), twelve times, to each side."""
 SPREAD_LEVEL = 0.01
 """Significance of a spread. At 0.002 one that grows threefold was found in 12 % of records of 50 rows and four drivers,
 at this one in 28 %; of the best test there can be 56 % are expected, rows without end."""
-MOST_ROUNDS, SETTLED = 500, 1e-12
+MOST_SHARE_ROUNDS, SHARES_SETTLED = 500, 1e-12
+"""The mean square of censored rows is taken anew until it changes by a smaller share, and so often at most."""
 
 
 @dataclass(frozen=True)
@@ -149,8 +152,8 @@ def _by_freedom(innovations: Matrix) -> dict[float, float]:
     u = innovations / _scale(innovations)
     factors = np.exp(np.linspace(-0.6, 0.6, 25))
     totals = np.zeros((len(TAILS), len(factors)))
-    for begin in range(0, len(u), AT_ONCE):
-        z2 = (u[begin : begin + AT_ONCE] / factors[:, None]) ** 2
+    for begin in range(0, len(u), READINGS_AT_ONCE):
+        z2 = (u[begin : begin + READINGS_AT_ONCE] / factors[:, None]) ** 2
         for index, freedom in enumerate(TAILS):
             if freedom == inf:
                 logs = -0.5 * z2 - 0.5 * np.log(2 * np.pi)
@@ -285,10 +288,10 @@ def scale_of(left: Matrix, short: Matrix, free: float) -> float:
     """
     known = float(np.sum(left**2))
     square = known / max(len(left) - free, 1.0)
-    for _ in range(MOST_ROUNDS if len(short) and square > 0 else 0):
+    for _ in range(MOST_SHARE_ROUNDS if len(short) and square > 0 else 0):
         hidden = square * float(np.sum(_square_beyond(short / square**0.5)))
         before, square = square, (known + hidden) / max(len(left) + len(short) - free, 1.0)
-        if abs(square - before) <= SETTLED * square:
+        if abs(square - before) <= SHARES_SETTLED * square:
             break
     return float(square**0.5)
 

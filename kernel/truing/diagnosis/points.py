@@ -14,7 +14,7 @@ LEVELS = (1.0, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001)
 """Shares of its bound at which an amplitude that bends is asked for."""
 FIRST, FINEST = 9, 3000
 """Points of a sweep to begin with, and at most."""
-ALIKE = 0.7
+NEXT_TO = 0.7
 """Neighbours of a sweep with a smaller cosine have another curve between them."""
 SPREAD = 64
 """Points over several numbers at once."""
@@ -97,7 +97,7 @@ def refined(
         flat = np.nan_to_num(made.reshape(len(made), -1))
         size = np.linalg.norm(flat, axis=1)
         cosine = np.abs(np.einsum("ij,ij->i", flat[1:], flat[:-1])) / np.maximum(size[1:] * size[:-1], 1e-300)
-        gaps = np.flatnonzero((cosine < ALIKE) & (np.diff(u[:, 0]) > 1e-5) & (np.minimum(size[1:], size[:-1]) > 0))
+        gaps = np.flatnonzero((cosine < NEXT_TO) & (np.diff(u[:, 0]) > 1e-5) & (np.minimum(size[1:], size[:-1]) > 0))
         if not len(gaps):
             break
         new = (u[gaps] + u[gaps + 1])[: most - len(u)] / 2

@@ -20,7 +20,7 @@ from truing.diagnosis.competition import Competition
 from truing.diagnosis.extended import LEAST_PER_EFFECT, CallBudget, Extended, Point
 from truing.repeated import forget
 
-AT_ONCE = 0.03
+QUICK_CALL = 0.03
 """Seconds of a call below which a search needs no budget: it makes a few thousand calls."""
 MINUTES = 300.0
 """Seconds that the calls of a search may take where no budget is stated."""
@@ -28,14 +28,14 @@ CURVES = 0.25
 """Share of the calls in which all curves are to be made."""
 FEWEST_POINTS = 6
 """At so many points at least an effect is looked at: fewer say nothing about how it bends."""
-ASIDE = 1.23456789
+PROBE = 1.23456789
 """Standard deviations, or tenths of a range, by which something is moved to see what the model is like there.
 
 It is no round number, so that answers are multiples of a step only where the model makes them so.
 """
 FINE, COARSE = 1e-9, 1e-6
 """Shares of the largest answer: what lies nearer to a multiple is one, and no step is smaller."""
-FEWEST = 6
+FEWEST_DISTINCT = 6
 """So many answers that differ must be multiples of one step."""
 ROUNDING = 1e-12
 """Share of the largest answer by which two calls may differ: how libraries round depends on where an array lies."""
@@ -51,8 +51,8 @@ def probe(made: Competition) -> None:
     tried: list[Candidate] = [] if machine.inputs else costly[:1]
     if not machine.inputs and not costly:
         return
-    values = [np.array([each.low + 0.1 * ASIDE * (each.high - each.low) for each in cause.numbers]) for cause in tried]
-    point = values, np.full(len(machine.inputs), ASIDE)
+    values = [np.array([each.low + 0.1 * PROBE * (each.high - each.low) for each in cause.numbers]) for cause in tried]
+    point = values, np.full(len(machine.inputs), PROBE)
     extended.budget = budget_of(machine.start.diagnose.budget, len(costly), lambda: extended.at(tried, [point]))
     if extended.budget.is_dear:
         extended.budget.points = max(FEWEST_POINTS, int(CURVES * extended.budget.calls / max(len(costly), 1)))
@@ -66,7 +66,7 @@ def budget_of(stated: int, effects: int, call: Callable[[], object]) -> CallBudg
     begin = perf_counter()
     call()
     seconds = perf_counter() - begin
-    if seconds < AT_ONCE:
+    if seconds < QUICK_CALL:
         return CallBudget()
     takes = 10.0 ** round(log10(seconds))
     return CallBudget(max(round(MINUTES / takes), LEAST_PER_EFFECT * max(effects, 1)), takes)
@@ -92,7 +92,7 @@ def _grain_of(extended: Extended, causes: list[Candidate], point: Point) -> dict
 def step_of(values: Matrix) -> float:
     """Return the step of which all values are multiples, by Euclid's algorithm; 0 where there is none."""
     distinct = np.unique(np.abs(values[values != 0]))
-    if len(distinct) < FEWEST:
+    if len(distinct) < FEWEST_DISTINCT:
         return 0.0
     step, least = float(distinct[0]), FINE * float(distinct[-1])
     for value in distinct.tolist():

@@ -25,9 +25,11 @@ from truing.numbers import counted
 from truing.setup import Setup
 
 FEWEST = 3
+"""Fewer rows are no record."""
 FEWEST_BESIDE = 6
 """Of a result beside others: from fewer values its noise cannot be told, and any cause would fit them exactly."""
 MOST_FAILED = 0.5
+"""A model that fails in a larger share of the rows is not the model of this record."""
 _FEW = ("no row", "one row", "two rows")
 
 

@@ -51,6 +51,11 @@ class Covariate:
         finite = self.values[np.isfinite(self.values)]
         return len(finite) == 0 or bool(np.ptp(finite) <= 1e-9 * np.abs(finite).max())
 
+    def moves_with(self, other: Covariate, least: float) -> bool:
+        """Whether the correlation with another one is above ``least``, of either sign."""
+        both = np.isfinite(self.values) & np.isfinite(other.values)
+        return both.sum() > 2 and bool(abs(np.corrcoef(self.values[both], other.values[both])[0, 1]) > least)
+
 
 @dataclass(frozen=True)
 class SuspectedUnit:

@@ -9,7 +9,7 @@ where they are those of Student's t, a reading far out says little, but the fart
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
 from math import exp, inf, log
@@ -32,7 +32,8 @@ from truing.diagnosis.noise import (
 )
 
 WITHOUT_MEMORY, NORMAL, CONSTANT = Autocorrelation(), Tails(inf, 4.5), SpreadTrend()
-ROUNDS, SETTLED = 50, 1e-6
+MOST_SCALE_ROUNDS, SCALE_SETTLED = 50, 1e-6
+"""Newton steps on the logarithm of a scale (the likelihood has one top), until it changes by a smaller share."""
 
 
 @dataclass(frozen=True)
@@ -133,13 +134,13 @@ class Channel:
         with np.errstate(over="ignore"):  # what a wild step leaves may be beyond any number
             squares = left**2
             square = max(float(squares.sum()) / self.known, self.least)
-        for _ in range(ROUNDS if self.freedom < inf and square < inf else 0):  # Newton on its logarithm: it has one top
+        for _ in range(MOST_SCALE_ROUNDS if self.freedom < inf and square < inf else 0):
             outward = squares / (self.freedom * square + squares)
             total = float(outward.sum())
             steep = max(total - float(outward @ outward), 1e-300)
             rise = (total - self.known / (self.freedom + 1)) / steep
             before, square = square, max(square * exp(min(max(rise, -2.0), 2.0)), self.least)
-            if abs(square - before) <= SETTLED * square:
+            if abs(square - before) <= SCALE_SETTLED * square:
                 break
         return square
 
@@ -161,7 +162,8 @@ class Sample:
     """All measured values of a fit, one result behind another, and the directions in which the inputs may move.
 
     ``directions`` has shape (inputs, K): u of them move the inputs by ``directions @ u`` standard deviations from
-    their means. What is left, and what is drawn, is taken without the memory of the noise.
+    their means. What is left, and what is drawn, is taken without the memory of the noise. ``whole`` is the sample of
+    which this one is a part, with the same directions.
     """
 
     machine: Calibration
@@ -169,6 +171,7 @@ class Sample:
     channels: tuple[Channel, ...]
     directions: Matrix
     mask: Mask
+    whole: Sample | None = field(default=None, repr=False)
 
     @property
     def rows(self) -> int:
@@ -209,6 +212,8 @@ class Sample:
     @cached_property
     def moves(self) -> dict[str, Matrix]:
         """What the directions of the inputs add to the predictions about their means, by result (n, K), SI."""
+        if self.whole is not None:
+            return self.whole.moves
         return {name: slopes @ self.directions for name, slopes in self.machine.slopes.items()}
 
     def scaled(self, left: Matrix) -> Iterator[tuple[Channel, slice, float]]:
@@ -244,7 +249,7 @@ class Sample:
 
     def of_rows(self, mask: Mask) -> Sample:
         """Return some of the rows, with the same noise."""
-        return sample_of(self.machine, self.noise, self.mask & mask, self.directions)
+        return replace(sample_of(self.machine, self.noise, self.mask & mask, self.directions), whole=self)
 
 
 def has_order(machine: Calibration) -> bool:

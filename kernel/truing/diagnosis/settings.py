@@ -19,6 +19,7 @@ from truing.units import to_si
 TRIED, FEW = 512, 32
 """So many points inside of the box are tried, and so many corners; few where calls of the model are dear."""
 FEW_VALUES = 3
+"""A column of so few values has no values between them: it is set to one of these."""
 
 
 def settings_of(machine: Calibration, tried: int = TRIED) -> dict[str, Matrix]:

@@ -12,8 +12,8 @@ from truing.diagnosis.result import readable_unit
 from truing.numbers import format_number
 from truing.units import from_si
 
-SHOWN_DIGITS = 2
-PLACE_DIGITS = 3
+SHOWN_DIGITS, PLACE_DIGITS = 2, 3
+"""Significant digits of a size, and of where something is on an axis."""
 ONE_WAY = 0.9
 """Share of its range between the ends of a trend from which on it rises or falls; else it is curved."""
 

@@ -19,8 +19,8 @@ from truing.diagnosis.folds import Folds, carries_over, ends_of, folds_of
 from truing.diagnosis.records import FEWEST_READINGS
 from truing.diagnosis.result import OUTSIDE
 
-ANY_LEVEL = 0.015
-FURTHER_LEVEL = 0.01
+ANY_LEVEL, FURTHER_LEVEL = 0.015, 0.01
+"""Chance that noise alone gives as much, up to which a first cause is believed, and a further one."""
 LEAST_IN_PLACE = 12.0
 """What a step must be better by that puts more numbers in the place of others: twice what counts as near."""
 WANDER = 6.0
@@ -35,7 +35,7 @@ FURTHER = 6
 """So many causes are fitted beside what stays."""
 MANY_CURVES = 20
 """A cause with more independent curves is a wave of any period."""
-ROUGH, MENDED = 0.25, 45.0
+MENDED_SHARE, MENDED = 0.25, 45.0
 """A registered cause beside a shape must gain such a share of what the shape gains, or so much: a shape is rough, and
 what mends it a little is no cause."""
 
@@ -168,21 +168,17 @@ def _step(made: Competition, at: Fit, more: Fit, folds: Folds, *, seed: int) -> 
         return _Step(more, law, False)
     is_certain = bool(at.causes) and gain > CERTAIN
     law = Law(np.zeros(0), 1 / 300) if is_certain else law_of(made, at, more, seed=seed)
-    level = FURTHER_LEVEL if at.causes else ANY_LEVEL
+    level, is_more = FURTHER_LEVEL if at.causes else ANY_LEVEL, more.size > at.size
+    added = len(more.causes) - len(at.causes) if is_more or at.key < more.key else 0
     is_believed = (
         law.p_value <= level
-        and gain >= (0.0 if at.key < more.key or more.size <= at.size else LEAST_IN_PLACE)
+        and gain >= (LEAST_IN_PLACE if is_more and not at.key < more.key else 0.0)
         and made.own_score(at) - made.own_score(more) >= (WANDER if at.causes else 0.0)
         and not _mends(made, at, more, gain)
-        and carries_over(at, more, made.extended, folds) >= CARRIED * _added(at, more)
+        and carries_over(at, more, made.extended, folds) >= CARRIED * added
         and not _beats(made, at, more)
     )
     return _Step(more, law, is_believed)
-
-
-def _added(at: Fit, more: Fit) -> int:
-    """Return how many causes a step adds; none where it puts others in their place that have no more numbers."""
-    return len(more.causes) - len(at.causes) if at.key < more.key or more.size > at.size else 0
 
 
 def _beats(made: Competition, at: Fit, more: Fit) -> bool:
@@ -198,4 +194,4 @@ def _mends(made: Competition, at: Fit, more: Fit, gain: float) -> bool:
         return False
     rest = [made.without(more, index) for index in shapes]
     worth = max((made.score(each) - made.score(more) for each in rest if each is not None), default=0.0)
-    return gain < min(ROUGH * worth, MENDED)
+    return gain < min(MENDED_SHARE * worth, MENDED)

@@ -21,9 +21,9 @@ from truing.numbers import counted
 from truing.units import same_dimension
 from truing.units.names import PURE
 
-FEW_DEGREES = 90.0
-SWEEPING = 0.95
-MOST_JUMPS = 0.25
+FEW_DEGREES, SWEEPING, MOST_JUMPS = 90.0, 0.95, 0.25
+"""An angle sweeps where such a share of its steps is smaller than so many degrees, turns taken out, and where no
+larger share of them jumps by a turn."""
 FEWEST_IN_BLOCK = 3
 """Fewer rows that repeat earlier ones may be chance where the gauge is coarse."""
 BLOCK_AGAIN = "in a block that repeats an earlier one in every cell, times included"

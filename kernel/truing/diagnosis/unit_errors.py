@@ -29,10 +29,10 @@ from truing.units.names import LEVELS, PURE
 FACTORS = {1e-3: "0.001", 1e3: "1000", 1e-6: "1e-6", 1e6: "1e6"}
 INCHES = {25.4: "25.4 (inches, not millimetres)", 1 / 25.4: "1/25.4 (millimetres, not inches)"}
 ANGLES = {math.pi / 180: "pi/180 (degrees, not radians)", 180 / math.pi: "180/pi (radians, not degrees)"}
-BETTER = 10.0
-LIKE = 0.3
-FAR = 0.1
-INLIERS = 0.9
+TIMES_NEARER, LIKE = 10.0, 0.3
+"""Another unit is suspected where it leaves so many times less, and no more than such a share of what is measured."""
+FAR_OFF, INLIERS = 0.1, 0.9
+"""Units are tried where the model is off by such a share of what is measured; such a share of the errors counts."""
 MOST_ROWS = 60
 """Rows on which factors are tried."""
 FEWEST_ABOUT = 6
@@ -57,7 +57,7 @@ class _Gauge:
         best = 0.0
         for mode in (0, 1) if len(measured) >= FEWEST_ABOUT else (0,):
             before, after, signal = self.off(mode), _size(measured - answer, mode), _size(answer, mode)
-            if before > BETTER * max(self.reach[mode], after) and after <= LIKE * signal:
+            if before > TIMES_NEARER * max(self.reach[mode], after) and after <= LIKE * signal:
                 best = max(best, before / max(after, 1e-12 * before))
         return best
 
@@ -70,7 +70,7 @@ def suspected_unit_errors(joined: DataRows, setup: Setup) -> tuple[SuspectedUnit
     few = joined.taken(_some_rows(joined))
     gauges = _gauges(few, setup)
     far = [one for one in gauges if _is_far(one.measured, one.answer)]
-    beyond = [one for one in far if any(one.off(mode) > BETTER * one.reach[mode] for mode in (0, 1))]
+    beyond = [one for one in far if any(one.off(mode) > TIMES_NEARER * one.reach[mode] for mode in (0, 1))]
     own = {one.name: found for one in beyond if (found := _own_slip(one, few, setup))}
     if len(beyond) > len(own) or len(own) > 1:
         shared = _input_slip(few, gauges, beyond, setup)
@@ -93,7 +93,7 @@ def _is_far(measured: Matrix, answer: Matrix) -> bool:
     """Whether the error is a tenth of what is measured at least, as it is or about its middle."""
     here = np.isfinite(measured) & np.isfinite(answer)
     values, errors = measured[here], (measured - answer)[here]
-    return len(values) > 0 and any(_size(errors, mode) > FAR * _size(values, mode) for mode in (0, 1))
+    return len(values) > 0 and any(_size(errors, mode) > FAR_OFF * _size(values, mode) for mode in (0, 1))
 
 
 def _some_rows(joined: DataRows) -> Indices:
@@ -145,7 +145,7 @@ def _input_slip(few: DataRows, gauges: list[_Gauge], beyond: list[_Gauge], setup
     for (name, factor, words), answers in zip(trials, found, strict=True):
         gains = [one.gain(one.measured, answers[one.name]) for one in beyond]
         off = ((_size(one.measured - answers[one.name], 0), max(one.off(0), one.reach[0])) for one in gauges)
-        if not all(gains) or any(after > LIKE * BETTER * before for after, before in off):
+        if not all(gains) or any(after > LIKE * TIMES_NEARER * before for after, before in off):
             continue
         if best is None or min(gains) > best[0]:
             after = beyond[0].measured - answers[beyond[0].name]
@@ -166,7 +166,7 @@ def _trials(few: DataRows, setup: Setup) -> Iterator[tuple[str, float, str]]:
 def _off(one: _Gauge, after: Matrix, setup: Setup) -> str:
     """Say how far the model is off a result before and after, in the unit the result is printed in."""
     unit = difference_unit(setup.print_unit(one.name))
-    mode = 1 if one.off(0) < BETTER * _size(after, 0) else 0
+    mode = 1 if one.off(0) < TIMES_NEARER * _size(after, 0) else 0
     before, then = from_si(one.off(mode), unit), from_si(_size(after, mode), unit)
     scale = "" if unit in PURE else f" {unit}"
     about = " about its middle" if mode else ""
@@ -190,7 +190,7 @@ def _out_of_range(joined: DataRows, setup: Setup) -> Iterator[SuspectedUnit]:
             continue
         low, high = to_si(condition.low, condition.unit), to_si(condition.high, condition.unit)
         span = high - low
-        if np.mean((values < low - BETTER * span) | (values > high + BETTER * span)) < 0.5:
+        if np.mean((values < low - TIMES_NEARER * span) | (values > high + TIMES_NEARER * span)) < 0.5:
             continue
         for factor, words in _factors(condition.unit).items():
             right = values * factor

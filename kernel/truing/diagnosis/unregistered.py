@@ -19,11 +19,12 @@ from truing.diagnosis.causes import ENDS, Candidate, Parameter, ShapeKind, Term,
 from truing.diagnosis.records import Covariate, Records
 from truing.diagnosis.result import UNKNOWN
 
-DEGREES = (2, 4)
-HIGHEST_ORDER = 16
+DEGREES, HIGHEST_ORDER = (2, 4), 16
+"""Degrees of the polynomials over a covariate, and the highest order over an angle."""
 FEWEST_VALUES = 12
 """A covariate of fewer distinct values orders nothing: no wave, no step, no settling over it."""
 MOST_WAVES = 3000
+"""So many periods of a wave lie in a record at most: the frequencies to look at grow with it."""
 EITHER_SIDE = 0.1
 """Share of the rows on each side of zero from which on something may happen where a covariate changes its sign."""
 SHORTEST_SETTLING, LONGEST_SETTLING = 0.02, 1.0
@@ -56,15 +57,9 @@ def _apart(moved: Sequence[Covariate]) -> list[Covariate]:
     """Return the covariates but those that another one moves as one with."""
     kept: list[Covariate] = []
     for item in moved:
-        both = [(item, other) for other in kept if not (item.is_angle and item.goes_round)]
-        if not any(abs(_correlation(one.values, other.values)) > 0.99999 for one, other in both):
+        if (item.is_angle and item.goes_round) or not any(item.moves_with(other, 0.99999) for other in kept):
             kept.append(item)
     return kept
-
-
-def _correlation(one: Matrix, other: Matrix) -> float:
-    both = np.isfinite(one) & np.isfinite(other)
-    return float(np.corrcoef(one[both], other[both])[0, 1]) if both.sum() > 2 else 0.0
 
 
 def _families(

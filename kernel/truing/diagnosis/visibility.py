@@ -22,16 +22,18 @@ from truing.diagnosis.machine import Calibration
 from truing.diagnosis.points import LEVELS
 from truing.diagnosis.result import APART, Amount, Trade, Visibility, VisibleSize
 
-POWER = 0.9
-LEVEL = 0.05
+POWER, LEVEL = 0.9, 0.05
+"""A size is visible that is found with this power at this level, the choice among all explanations paid for."""
 SWALLOWED = 0.1
 """Share of a curve, squared and in units of the noise, below which the tolerances have swallowed it."""
 FAINT = 1e-18
 """A curve that is smaller, squared and in units of the noise at its bound, is rounding."""
 INSEPARABLE = 0.01
+"""Share of a curve, squared, that is left beside another one below which the two are inseparable."""
 SAME = 1e-9
 """Squared sine of an angle below which two curves are one."""
 TIED = 0.995
+"""Correlation above which two settings of a record were moved together."""
 FEW_SHAPES = 5
 """At so many shapes a cause that bends in several amplitudes is asked for each of them alone."""
 NEXT_LEVEL = 0.3
@@ -209,8 +211,7 @@ def _moved_alike(machine: Calibration) -> Iterator[str]:
     """Say which covariates are tied, and which conditions that can have either sign had one sign only."""
     moved = [item for item in machine.records.covariates.values() if not item.is_constant]
     for first, second in combinations(moved, 2):
-        both = np.isfinite(first.values) & np.isfinite(second.values)
-        if both.sum() > 2 and abs(np.corrcoef(first.values[both], second.values[both])[0, 1]) > TIED:
+        if first.moves_with(second, TIED):
             yield (
                 f"{first.name} and {second.name} move together in this record: what follows one cannot be told from "
                 "what follows the other"

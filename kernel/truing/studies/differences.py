@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from truing.errors import TruingError
-from truing.evaluate import effect_column, evaluate_rows
-from truing.setup import Setup
+from truing.evaluate import evaluate_rows
+from truing.setup import Setup, effect_column
 from truing.studies.scatter import Scatter
 from truing.units import unit_factor
 

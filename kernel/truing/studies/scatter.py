@@ -18,8 +18,7 @@ from numpy.typing import NDArray
 
 from truing.declare.spreads import FIXED_DRAWS, Distribution, Drawn
 from truing.errors import UsageError
-from truing.evaluate import effect_column
-from truing.setup import Setup, SwitchedOn
+from truing.setup import Setup, SwitchedOn, effect_column
 
 
 @dataclass(frozen=True, eq=False)

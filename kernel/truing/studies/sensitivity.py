@@ -14,9 +14,9 @@ from truing.declare.blocks import Block, Drawing, Table
 from truing.declare.goals import Vary
 from truing.declare.near_miss import near_miss
 from truing.errors import UsageError
-from truing.evaluate import acting_inputs, effect_column
+from truing.evaluate import acting_inputs
 from truing.heavy import stats
-from truing.setup import Setup
+from truing.setup import Setup, effect_column
 from truing.studies.bench import Bench, StepProgress
 from truing.studies.checks import Check
 from truing.studies.differences import exact_slopes, nominal_of, slopes

@@ -13,8 +13,8 @@ from truing.declare.fields import Axis, InputField
 from truing.declare.sources import Condition, Unknown
 from truing.declare.specs import Given
 from truing.errors import PluginError
-from truing.evaluate import Rows, effect_column, evaluate_rows
-from truing.setup import Setup
+from truing.evaluate import Rows, evaluate_rows
+from truing.setup import Setup, effect_column
 from truing.testing.sources import off_reference, shape, switched
 from truing.testing.subject import Subject, fail
 from truing.units import to_si, unit_factor
