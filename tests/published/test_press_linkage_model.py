@@ -370,6 +370,14 @@ def test_figures_without_studies() -> None:
     assert len(drawings(calculate(setup))) == 3
 
 
+def test_the_knee_closes_its_triangle() -> None:
+    """Knee drive and upper link reach the knee from both ends of the line between their joints."""
+    press, answers = PRESS_LINKAGE.inputs(), ran(reading="printed").answers
+    along, across, distance = (answers[name] for name in ("knee_along", "knee_across", "ground_distance"))
+    assert np.hypot(along, across) * distance == pytest.approx(press.knee_drive_length, rel=1e-12)
+    assert np.hypot(1 - along, across) * distance == pytest.approx(press.upper_knee_length, rel=1e-12)
+
+
 def test_inputs_are_flat() -> None:
     wanted = [
         "crank_radius", "rod_length", "platform_arm", "knee_drive_length", "upper_knee_length", "lower_knee_length",
