@@ -24,7 +24,7 @@ from typing import Literal
 
 ROOT = Path(__file__).parents[1]
 COPIED = ("kernel", "plugins", "templates", "tests", "docs", "pyproject.toml", "README.md", "LICENSE")
-LEFT_OUT = shutil.ignore_patterns("__pycache__", "runs", ".*", "site", "browser")
+LEFT_OUT = shutil.ignore_patterns("__pycache__", ".*", "site", "browser")
 LONGEST_RUN_S = 600.0
 FIRST_TIME = 1_000_000_000
 """Seconds since 1970 that a changed file is given as its time, one more with every change: Python compiles it anew."""
