@@ -196,11 +196,11 @@ MUTANTS: tuple[Mutant, ...] = (
         ("log1p(student**2 * certainty.variance / known)", "log1p(student * certainty.variance / known)"),
     ),
     *changes(
-        "kernel/truing/diagnosis/findings.py", "unit/test_diagnosis_verdict.py unit/test_diagnosis_known_answers.py",
+        "kernel/truing/diagnosis/findings.py", "unit/test_diagnosis_halves.py",
         ("1 - floor**2 / rmse**2", "1 - floor / rmse"),
     ),
     *changes(
-        "kernel/truing/diagnosis/visibility.py", "unit/test_diagnosis_alarms.py unit/test_diagnosis_gain_design.py",
+        "kernel/truing/diagnosis/visibility.py", "unit/test_diagnosis_known_answers.py",
         ("1 - LEVEL / (2 * max(explanations, 1))", "1 - LEVEL / (2 * 1)"),
     ),
     *changes(

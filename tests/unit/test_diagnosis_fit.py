@@ -16,7 +16,6 @@ from diagnosis_models import (
     Reading,
     along_first,
     cause_of,
-    decided,
     drive_model,
     fit_of,
     gauge,
@@ -275,15 +274,15 @@ def test_the_interval_of_a_time_constant_is_its_profile(tmp_path: Path, time_con
         assert_allclose(high / 3600, brentq(lambda at: cost(at) - level, free.x[1], 20), rtol=5e-3)
 
 
-@pytest.mark.parametrize("tails", ["normal", "heavy"])
-def test_intervals_cover_what_is_true(tmp_path: Path, tails: str) -> None:
-    """Nominal 95 %; held against 90 %, which clipping without a wider interval would miss with heavy tails."""
-    asked, records_made, covered = Asked(twist_model(), units=TWIST), 60, 0
+def test_intervals_cover_what_is_true_in_heavy_tails(tmp_path: Path) -> None:
+    """Nominal 95 %; held against 90 %, which clipping without a wider interval would miss."""
+    asked, records_made, covered = Asked(twist_model(), units=TWIST), 50, 0
     for seed in range(records_made):
         rng = np.random.default_rng([27, seed])
         first, second = rng.uniform(-1, 1, (2, 100))
-        noise = rng.normal(size=100) if tails == "normal" else rng.standard_t(3, 100)
-        records = asked.records(tmp_path, {"first": first, "second": second, "reading": 2 * first + noise})
+        records = asked.records(
+            tmp_path, {"first": first, "second": second, "reading": 2 * first + rng.standard_t(3, 100)}
+        )
         made = plain_competition(asked, records, 1.0)
         fit_of(made, "along_first")
         made.renew()
@@ -306,7 +305,5 @@ def test_the_extended_model_says_what_was_fitted(tmp_path: Path) -> None:
     assert found.extended is not None
     again = predict(one_machine(found.extended), records)["deflection"]
     assert_allclose(again, found.curves[0].after, rtol=0, atol=1e-3 * UM)
-    best = decided(asked.setup, records).best
-    assert_allclose(found.curves[0].after, best.predicted["deflection"], rtol=0, atol=1e-6 * UM)
     left = found.curves[0].measured - found.curves[0].after
     assert np.sqrt(np.mean(left**2)) < 1.2 * UM
