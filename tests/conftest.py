@@ -17,32 +17,6 @@ for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")  # the workers of the suite share the cores; a test of threads sets its own
 
 
-SOFT = "what the diagnosis says here is known to be wrong; it is to be put right: "
-KNOWN_WRONG = {
-    "test_rows_held_out_are_predicted_as_well_as_can_be[interrupted_tooth-bench-autocorrelated-root_stress_ring]": (
-        "1.075 of the noise, where 1.07 is asked for"
-    ),
-    "test_rows_held_out_are_predicted_as_well_as_can_be[relief_error-rig-growing-root_stress_sun+contact_stress]": (
-        "0.88 of a gain of 2 % is removed, at p 0.031, where 0.9 is asked for"
-    ),
-    "test_the_cause_is_named[joint_wear-wide-heavy-1]": (
-        "the wear is named, and whether a drift is there as well is left open: chance gives as much in one of ten"
-    ),
-    "test_what_nobody_registered_is_called_unknown[feed_marks-surface]": (
-        "marks every 9 um draw waves of 9, 3, ... um; one of them is called waviness, the other one is unregistered"
-    ),
-}
-"""By the end of a test's name: answers of the diagnosis that are known to be wrong, each with what is wrong."""
-
-
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Expect the answers that are known to be wrong to fail."""
-    for item in items:
-        reason = next((why for name, why in KNOWN_WRONG.items() if item.nodeid.endswith(name)), "")
-        if reason:
-            item.add_marker(pytest.mark.xfail(strict=False, reason=SOFT + reason))
-
-
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Add the size of the torture tests: ``python -m pytest tests/torture --torture=full``."""
     parser.addoption(

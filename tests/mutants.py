@@ -109,7 +109,7 @@ MUTANTS: tuple[Mutant, ...] = (
         "kernel/truing/studies/demands.py", "unit/test_studies_reliability.py",
         ("square / (4 * draws * draws)", "square / (2 * draws * draws)"),
         ("np.where(above > 0, ndtr(-above)", "np.where(above > 0, ndtr(above)"),
-        ("return values - _beside(limit, values)", "return values + _beside(limit, values)"),
+        ("return values - beside(limit, values)", "return values + _beside(limit, values)"),
     ),
     *changes(
         "kernel/truing/studies/checks.py", "unit/test_checks.py",
@@ -127,7 +127,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ("first.mean + apart * (second.count / count)", "first.mean + apart * (first.count / count)"),
     ),
     *changes(
-        "kernel/truing/studies/scatter.py", "unit/test_studies_reliability.py unit/test_studies_sensitivity.py",
+        "kernel/truing/studies/sampling.py", "unit/test_studies_reliability.py unit/test_studies_sensitivity.py",
         ("np.sqrt(np.clip(values, 0.0, None))", "np.clip(values, 0.0, None)"),
     ),
     *changes(
@@ -141,7 +141,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ("for power in (2.0, 4.0):", "for power in (4.0, 16.0):"),
     ),
     *changes(
-        "kernel/truing/studies/form.py", "unit/test_studies_reliability.py",
+        "kernel/truing/studies/chances.py", "unit/test_studies_reliability.py",
         ("max(0.0, 1.0 - missed)", "max(0.0, 1.0 - missed / 2)"),
     ),
     *changes(
@@ -158,7 +158,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ("paid.imag / (COMPLEX_STEP * widths)", "paid.imag / COMPLEX_STEP"),
     ),
     *changes(
-        "kernel/truing/studies/synthesis.py", "unit/test_studies_allocation.py",
+        "kernel/truing/studies/allocation.py", "unit/test_studies_allocation.py",
         ("GRADES[coarsest - 1]", "GRADES[coarsest - 2]"),
         ("return float((reach * 10.0**log_sd) ** 2)", "return float(reach * 10.0**log_sd)"),
     ),
@@ -173,7 +173,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ("(REFERENCE - order[:, 0])", "(order[:, 0])"),
     ),
     *changes(
-        "kernel/truing/studies/surrogate_fit.py", "unit/test_studies_surrogate.py",
+        "kernel/truing/studies/surrogate.py", "unit/test_studies_surrogate.py",
         ("self.low + (self.high - self.low) * shares", "self.low + self.high * shares"),
         ("np.exp(values) if self.logarithmic", "values if self.logarithmic"),
     ),
@@ -196,11 +196,11 @@ MUTANTS: tuple[Mutant, ...] = (
         ("log1p(student**2 * certainty.variance / known)", "log1p(student * certainty.variance / known)"),
     ),
     *changes(
-        "kernel/truing/diagnosis/findings.py", "unit/test_diagnosis_verdict.py unit/test_diagnosis_known_answers.py",
+        "kernel/truing/diagnosis/findings.py", "unit/test_diagnosis_halves.py",
         ("1 - floor**2 / rmse**2", "1 - floor / rmse"),
     ),
     *changes(
-        "kernel/truing/diagnosis/visibility.py", "unit/test_diagnosis_alarms.py unit/test_diagnosis_gain_design.py",
+        "kernel/truing/diagnosis/visibility.py", "unit/test_diagnosis_known_answers.py",
         ("1 - LEVEL / (2 * max(explanations, 1))", "1 - LEVEL / (2 * 1)"),
     ),
     *changes(
@@ -217,7 +217,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ("[_in(low, unit), _in(high, unit)]", "[_in(low, unit), _in(low, unit)]"),
     ),
     *changes(
-        "kernel/truing/explain/touched.py", "end_to_end/test_explain.py",
+        "kernel/truing/explain/influence.py", "end_to_end/test_explain.py",
         ("(unknown.low * unknown.high) ** 0.5", "unknown.low * unknown.high"),
     ),
     *changes(

@@ -6,8 +6,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from truing.api.loading import load
-    from truing.api.model import Diagnosis, LoadedModel
+    from truing.api.model import Diagnosis, LoadedModel, load
     from truing.api.records import read, record
     from truing.api.run import Run
     from truing.api.study import StudyResult
@@ -20,8 +19,8 @@ if TYPE_CHECKING:
     from truing.declare.sources import Condition, Effect, ErrorSource, Tolerance, Unknown
     from truing.declare.spreads import by_choice, drawn, grade, lognormal, normal, off, plus_minus, uniform, zone
     from truing.errors import TruingError
+    from truing.hookspecs import hookimpl, hookspec
     from truing.kernel import Kernel
-    from truing.markers import hookimpl, hookspec
     from truing.studies.allocation import Allocation, Allotted
     from truing.studies.bench import Bench, Outcome
     from truing.studies.checks import Check, Proposal
@@ -33,8 +32,7 @@ if TYPE_CHECKING:
     from truing.units import quantity
 
 _HOMES = {
-    "truing.api.loading": ("load",),
-    "truing.api.model": ("Diagnosis", "LoadedModel"),
+    "truing.api.model": ("Diagnosis", "LoadedModel", "load"),
     "truing.api.records": ("read", "record"),
     "truing.api.run": ("Run",),
     "truing.api.study": ("StudyResult",),
@@ -51,7 +49,7 @@ _HOMES = {
     ),
     "truing.errors": ("TruingError",),
     "truing.kernel": ("Kernel",),
-    "truing.markers": ("hookimpl", "hookspec"),
+    "truing.hookspecs": ("hookimpl", "hookspec"),
     "truing.studies.allocation": ("Allocation", "Allotted"),
     "truing.studies.bench": ("Bench", "Outcome"),
     "truing.studies.checks": ("Check", "Proposal"),

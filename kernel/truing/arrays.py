@@ -1,10 +1,14 @@
-"""The kinds of arrays that studies and the diagnosis work with."""
+"""The kinds of arrays that studies and the diagnosis work with, and linear algebra on one thread."""
 
-from collections.abc import Sequence
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
 
 Matrix = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -20,3 +24,13 @@ def first_alike(columns: Sequence[NDArray[Any]]) -> Indices:
     rows = np.ascontiguousarray(cells).view(np.dtype((np.void, cells.itemsize * cells.shape[1])))[:, 0]
     _, first, group = np.unique(rows, return_index=True, return_inverse=True)
     return np.asarray(first[group])
+
+
+# Linear algebra on one thread: its sums then have one order, so that results do not depend on the machine's cores
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Keep the linear algebra of numpy and scipy on one thread, both loaded first: a later one would not be held."""
+    with threadpool_limits(limits=1):
+        yield

@@ -73,7 +73,7 @@ def calculate(setup: Setup, *, executor: Executor | None = None, progress: Progr
             if study.gives is not None:
                 given = study.gives(outcome)
                 fields = given_by[study.name]
-                answers.update({name: read(given, item.path) for name, item in fields.items()})
+                answers.update({name: read(given, field.path) for name, field in fields.items()})
     finally:
         if own:
             executor.shutdown()
@@ -97,12 +97,12 @@ def _idle_effects(setup: Setup) -> list[str]:
     """Name effects that are on while every condition they need stays at its reference and does not scatter about it."""
     scattering = {name for inner in setup.distributions().values() for name in inner} if setup.effects else set()
     idle = []
-    for item in setup.effects:
-        needs = item.effect.needs
+    for active in setup.effects:
+        needs = active.effect.needs
         still = all(setup.nominal(need.name) == need.zero and need.name not in scattering for need in needs)
-        if needs and still and not _acts(setup, item):
+        if needs and still and not _acts(setup, active):
             names = " and ".join(f"'{need.name}'" for need in needs)
-            idle.append(f"effect '{item.effect.name}' is on, but {names} stays at its reference: it does nothing")
+            idle.append(f"effect '{active.effect.name}' is on, but {names} stays at its reference: it does nothing")
     return idle
 
 

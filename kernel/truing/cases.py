@@ -139,7 +139,7 @@ def run_cases(
     cases = _completed(setup, read.cases)
     of_each = replace(setup, studies=_studies_of_each(setup))
     done = (_one_by_one if of_each.studies else _in_blocks)(of_each, cases, executor, progress)
-    while alive := [place for place, case in enumerate(done) if case.reason is None]:
+    while alive := [index for index, case in enumerate(done) if case.reason is None]:
         governing = min(alive, key=lambda place: done[place].margin)
         try:
             full = calculate(case_setup(setup, cases[governing]), executor=executor, progress=progress)
@@ -160,7 +160,7 @@ def _completed(setup: Setup, cases: Sequence[StatedCase]) -> list[StatedCase]:
 
 def _studies_of_each(setup: Setup) -> tuple[Study, ...]:
     """Return the studies that every case runs: up to the last that gives results, or that may decide a limit."""
-    by_chance = any(item.reliability is not None for item in requirements(setup))
+    by_chance = any(require.reliability is not None for require in requirements(setup))
     silent_ones = DECIDE_NOTHING if by_chance else (*DECIDE_NOTHING, *DECIDE_CHANCES)
     needed = [study.gives is not None or not isinstance(study, silent_ones) for study in setup.studies]
     last = max((number for number, is_needed in enumerate(needed, start=1) if is_needed), default=0)

@@ -11,7 +11,7 @@ from truing.declare.builtin import may_stand
 from truing.declare.fields import Axis, Found, Given, InputField, Loaded, ResultField
 from truing.declare.goals import Maximise, Minimise, Require, Vary
 from truing.declare.published import Published
-from truing.declare.sources import Condition
+from truing.declare.sources import Tolerance
 from truing.formulas import symbol_text
 from truing.inputs_file.values import bounds_in_words
 from truing.kernel import Offer
@@ -32,36 +32,28 @@ def description(offer: Offer) -> dict[str, Any]:
         "title": model.title,
         "summary": model.summary,
         "plugin": {"name": offer.origin.name, "version": offer.origin.version},
-        "inputs": [_input(item) for item in model.input_fields.values()],
-        "results": [_result(item) for item in model.result_fields.values()],
-        "tolerances": [
-            {
-                "name": item.name,
-                "spread": item.spread.text,
-                "on": list(item.on),
-                "why": item.why,
-                "source": item.source,
-                "price": dataclasses.asdict(item.price) if item.price else None,
-            }
-            for item in model.tolerances.values()
-        ],
+        "inputs": [_input(field) for field in model.input_fields.values()],
+        "results": [_result(field) for field in model.result_fields.values()],
+        "tolerances": [_tolerance(tolerance) for tolerance in model.tolerances.values()],
         "effects": [_effect(effect) for effect in model.effects.values()],
-        "conditions": [_condition(item) for item in model.conditions.values()],
+        "conditions": [_named(condition, CONDITION) for condition in model.conditions.values()],
         "built_in": {
-            "effects": [_effect(item) for item in built_in if not may_stand(item)],
-            "where_measured": [_effect(item) for item in built_in if may_stand(item)],
+            "effects": [_effect(effect) for effect in built_in if not may_stand(effect)],
+            "where_measured": [_effect(effect) for effect in built_in if may_stand(effect)],
             "conditions": [
-                _condition(item) for name, item in model.known_conditions.items() if name not in model.conditions
+                _named(condition, CONDITION)
+                for name, condition in model.known_conditions.items()
+                if name not in model.conditions
             ],
         },
-        "objectives": [_objective(item) for item in model.objectives],
+        "objectives": [_objective(objective) for objective in model.objectives],
         "studies": [study.name for study in model.studies],
         "sheet": [{"title": section.title, "results": list(section.names)} for section in model.sheet],
-        "published": [_published(item) for item in model.published],
-        "findings": [dataclasses.asdict(item) for item in model.findings],
+        "published": [_published(printed) for printed in model.published],
+        "findings": [dataclasses.asdict(finding) for finding in model.findings],
         "exceptions": {str(name): reason for name, reason in model.exceptions.items()},
         "cites": list(model.cites),
-        "added": [dataclasses.asdict(item) for item in offer.added],
+        "added": [dataclasses.asdict(addition) for addition in offer.added],
     }
 
 
@@ -100,15 +92,25 @@ def _result(item: ResultField) -> dict[str, Any]:
     }
 
 
-def _condition(item: Condition) -> dict[str, Any]:
+UNKNOWN = ("name", "low", "high", "unit", "note")
+CONDITION = ("name", "unit", "reference", "note", "derived", "low", "high")
+PUBLISHED = ("name", "result", "value", "unit", "where", "settings", "printed")
+JUDGED = ("within", "verdict", "obtained", "why")
+"""What is said of an unknown before its kind, of a condition, and of a printed number before and behind its kind."""
+
+
+def _named(item: Any, names: Sequence[str]) -> dict[str, Any]:
+    return {name: getattr(item, name) for name in names}
+
+
+def _tolerance(tolerance: Tolerance) -> dict[str, Any]:
     return {
-        "name": item.name,
-        "unit": item.unit,
-        "reference": item.reference,
-        "note": item.note,
-        "derived": item.derived,
-        "low": item.low,
-        "high": item.high,
+        "name": tolerance.name,
+        "spread": tolerance.spread.text,
+        "on": list(tolerance.on),
+        "why": tolerance.why,
+        "source": tolerance.source,
+        "price": dataclasses.asdict(tolerance.price) if tolerance.price else None,
     }
 
 
@@ -120,38 +122,17 @@ def _effect(effect: Any) -> dict[str, Any]:
         "why": effect.why,
         "source": effect.source,
         "unknowns": [
-            {
-                "name": item.name,
-                "low": item.low,
-                "high": item.high,
-                "unit": item.unit,
-                "note": item.note,
-                "amplitude": item.is_amplitude,
-                "whole": item.whole,
-                "along": item.along,
-            }
-            for item in effect.unknowns
+            {**_named(unknown, UNKNOWN), "amplitude": unknown.is_amplitude, **_named(unknown, ("whole", "along"))}
+            for unknown in effect.unknowns
         ],
-        "needs": [item.name for item in effect.needs],
+        "needs": [need.name for need in effect.needs],
         "parts": [list(part) for part in effect.parts],
     }
 
 
 def _published(item: Published) -> dict[str, Any]:
-    return {
-        "name": item.name,
-        "result": item.result,
-        "value": item.value,
-        "unit": item.unit,
-        "where": item.where,
-        "settings": dict(item.settings),
-        "printed": item.printed,
-        "kind": item.rule,
-        "within": item.within,
-        "verdict": item.verdict,
-        "obtained": item.obtained,
-        "why": item.why,
-    }
+    said = {**_named(item, PUBLISHED), "kind": item.rule, **_named(item, JUDGED)}
+    return {**said, "settings": dict(item.settings)}
 
 
 def _objective(item: Any) -> dict[str, Any]:
@@ -167,7 +148,7 @@ def sections(said: Mapping[str, Any]) -> dict[str, list[Sequence[str]]]:
     built_in = [_built_in_row(item, results) for item in said["built_in"]["effects"]]
     measured = [row for row in WHERE_MEASURED if _is_among(row[0], said["built_in"]["where_measured"])]
     found: dict[str, list[Sequence[str]]] = {
-        "Inputs": [_input_row(item) for item in said["inputs"]],
+        "Inputs": [_input_row(entry) for entry in said["inputs"]],
         "Results": [(item["name"], _symbol(item), _unit(item["unit"]), item["note"]) for item in said["results"]],
         "Tolerances": [
             (item["name"], item["spread"], "on " + ", ".join(item["on"]), item["why"]) for item in said["tolerances"]

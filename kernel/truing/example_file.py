@@ -13,7 +13,7 @@ from truing.declare.model import Model, Study
 from truing.declare.sources import Tolerance, Unknown
 from truing.errors import PluginError
 from truing.inputs_file.assemble import default_of, spread_text, toml_key, toml_value
-from truing.inputs_file.schema_words import described
+from truing.inputs_file.file_model import described
 from truing.inputs_file.study_options import options_of
 from truing.inputs_file.values import plain
 from truing.kernel import Offer
@@ -70,8 +70,8 @@ def _lines(offer: Offer) -> Iterator[str]:
     yield '# detail = "normal"'
     yield from _comment('"short", "normal" or "full"', "#   ")
     yield from ("", "[inputs]")
-    for item in model.input_fields.values():
-        yield from _input(item)
+    for field in model.input_fields.values():
+        yield from _input(field)
     yield from _tolerances(model)
     yield from _conditions(model)
     yield from _effects(model)
@@ -112,7 +112,7 @@ def _tolerances(model: Model[Any, Any]) -> Iterator[str]:
         return
     words = 'How inputs scatter: "±0.05 mm", "sd 3 %", "band 0.125 mm", "IT6", "off". As declared:'
     yield from _heading("tolerances", words)
-    defaults = {name: default_of(item) for name, item in model.input_fields.items()}
+    defaults = {name: default_of(field) for name, field in model.input_fields.items()}
     for tolerance in model.tolerances.values():
         yield from _comment(_why(tolerance), "#   ")
         stated = spread_text(tolerance.spread, defaults)
@@ -181,7 +181,7 @@ def _is_plain(value: Any) -> bool:
 
 
 def _units(model: Model[Any, Any]) -> Iterator[str]:
-    printed = {name: item.unit for name, item in model.result_fields.items() if item.unit not in PURE}
+    printed = {name: field.unit for name, field in model.result_fields.items() if field.unit not in PURE}
     if printed:
         yield from _heading("units", "The unit in which a result is printed.")
         yield from (f"# {name} = {toml_value(unit)}" for name, unit in printed.items())

@@ -5,10 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import pluggy
+
 from truing.declare.goals import Objective
 from truing.declare.model import Model, Section
 from truing.declare.sources import ErrorSource
-from truing.markers import hookspec
+
+hookspec = pluggy.HookspecMarker("truing")
+hookimpl = pluggy.HookimplMarker("truing")
+"""The two decorators of pluggy, bound to this project's name."""
 
 
 @hookspec

@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import pickle
 import threading
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from typing import Any
@@ -14,7 +14,7 @@ from truing.declare.fields import Part, spec_of
 from truing.declare.model import Model
 from truing.errors import PluginError
 from truing.kernel import Kernel, Origin, kernel_for
-from truing.kernel.source import code_hash
+from truing.kernel.loading import code_hash
 from truing.setup import Setup, SwitchedOn
 
 SCRIPT = "__main__"
@@ -40,15 +40,16 @@ def pack(setup: Setup, *, studies: bool = False) -> Packed:
     With ``studies`` those that run travel too; what each gives is found again by its name.
     """
     declared = {name: tolerance.spread for name, tolerance in setup.model.tolerances.items()}
+    running: Sequence[Any] = setup.studies if studies else ()
     content = {
         "inputs": setup.model.read_inputs(setup.inputs),
         "spreads": {name: spread for name, spread in setup.spreads.items() if spread != declared.get(name)},
         "conditions": dict(setup.conditions),
-        "effects": [_plain_effect(item) for item in setup.effects],
+        "effects": [_plain_effect(active) for active in setup.effects],
         "calibrated": dict(setup.calibrated),
         "seed": setup.seed,
         "units": dict(setup.units),
-        "studies": [_without_gives(study) for study in setup.studies] if studies else [],
+        "studies": [replace(study, gives=None) for study in running],
     }
     origin = setup.origin
     return Packed(origin.ref, origin.name, setup.model.name, _plain(content), _file_hash(origin.ref))
@@ -102,23 +103,19 @@ def travels(setup: Setup) -> bool:
         return False
 
 
-def _without_gives(study: Any) -> Any:
-    return replace(study, gives=None)
-
-
 def _with_gives(study: Any, model: Model[Any, Any]) -> Any:
-    declared = {item.name: item.gives for item in model.studies}
+    declared = {study.name: study.gives for study in model.studies}
     return replace(study, gives=declared.get(study.name))
 
 
 def made(cls: type[Any], values: Mapping[tuple[str, ...], Any]) -> Any:
     """Make nested inputs from the values of all their fields, given by path."""
     own = {path[0]: value for path, value in values.items() if len(path) == 1}
-    for item in fields(cls):
-        spec = spec_of(item)
+    for field in fields(cls):
+        spec = spec_of(field)
         if isinstance(spec, Part):
-            inner = {path[1:]: value for path, value in values.items() if path[0] == item.name}
-            own[item.name] = made(spec.of, inner)
+            inner = {path[1:]: value for path, value in values.items() if path[0] == field.name}
+            own[field.name] = made(spec.of, inner)
     return cls(**own)
 
 

@@ -30,7 +30,7 @@ def total_price(setup: Setup) -> float | None:
     """
     if TOTAL_PRICE not in setup.model.result_fields:
         return None
-    prices = {name: price_of(setup, item) for name, item in setup.model.tolerances.items()}
+    prices = {name: price_of(setup, tolerance) for name, tolerance in setup.model.tolerances.items()}
     paid = [
         price.at(next(iter(inner.values())).width)
         for name, inner in setup.distributions().items()

@@ -42,11 +42,11 @@ def compare(
     """Compare every printed number with ours; each distinct set of settings is calculated once."""
     done: dict[frozenset[tuple[str, str]], Calculation] = {}
     rows = []
-    for item in published:
-        key = frozenset(item.settings.items())
+    for printed in published:
+        key = frozenset(printed.settings.items())
         if key not in done:
-            done[key] = calculation_for(item.settings)
-        rows.append(compare_one(item, done[key]))
+            done[key] = calculation_for(printed.settings)
+        rows.append(compare_one(printed, done[key]))
     return rows
 
 
@@ -65,7 +65,7 @@ def compare_published(
 
 
 def _compared(offer: Offer, progress: Progress, known: Calculation | None) -> list[ComparedRow]:
-    asked = {frozenset(item.settings.items()): item.settings for item in offer.model.published}
+    asked = {frozenset(printed.settings.items()): printed.settings for printed in offer.model.published}
     wanted = {key: setup_from_settings(offer, settings) for key, settings in asked.items()}
     missing = [
         key
@@ -133,13 +133,9 @@ def _same_scatter(setup: Setup, wanted: Setup) -> bool:
         return False
     return all(
         ours[name].keys() == theirs[name].keys()
-        and all(_close(ours[name][key].sd, theirs[name][key].sd) for key in theirs[name])
+        and all(math.isclose(ours[name][key].sd, theirs[name][key].sd, rel_tol=1e-9) for key in theirs[name])
         for name in theirs
     )
-
-
-def _close(one: float, other: float) -> bool:
-    return math.isclose(one, other, rel_tol=1e-9)
 
 
 def parted(setup: Setup, rows: Sequence[ComparedRow]) -> tuple[list[ComparedRow], list[ComparedRow]]:

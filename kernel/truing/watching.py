@@ -113,7 +113,7 @@ def code_files(offer: Offer) -> set[Path]:
     new = list(found)
     while new:
         for path in _imported_by(new.pop()):
-            if path not in found and not _is_settled(path):
+            if path not in found and not str(path).startswith(_homes()):
                 found.add(path)
                 new.append(path)
     return found
@@ -158,11 +158,6 @@ def _file_of(module: Any) -> Path | None:
 @cache
 def _resolved(name: str) -> Path:
     return Path(name).resolve()
-
-
-def _is_settled(path: Path) -> bool:
-    """Tell whether a file is part of what is installed or of the kernel itself."""
-    return str(path).startswith(_homes())
 
 
 @lru_cache(maxsize=1)

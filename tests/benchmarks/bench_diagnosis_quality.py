@@ -1,6 +1,6 @@
 """How often does the diagnosis find what is hidden, name it rightly and say how sure it is? Hundreds of hidden cases.
 
-Run it: ``python tests/benchmarks/bench_diagnosis_quality.py --cases 200 --seed 1000 --workers 2 [--baselines]``. It
+Run it: ``python tests/benchmarks/bench_diagnosis_quality.py --cases 200 --seed 1000 --workers 2``. It
 prints every metric with its 95 % interval beside what is asked, for all cases, for the slider position alone and for
 position and tilt; ``--dump FILE`` writes one JSON line per case, ``--only SEED`` shows one case and its document.
 Seeds decide everything: the same seeds are the same cases.
@@ -35,19 +35,14 @@ def wished(stratum: str | None) -> Wish:
     return Wish(stratum=stratum)  # type: ignore[arg-type]
 
 
-def one_case(seed: int, *, stratum: str | None = None, baselines: bool = False) -> dict[str, Any]:
+def one_case(seed: int, *, stratum: str | None = None) -> dict[str, Any]:
     """Make a case, ask, and judge; what goes wrong is an outcome too."""
     case = make_case(seed, wished(stratum))
-    found: dict[str, Any] = {}
-    if baselines:
-        from hidden_effects.baselines import all_baselines
-
-        found["baselines"] = all_baselines(case)
     try:
         answer = diagnosed(case)
-        return found | outcome(case, answer) | {"next_points": asked(case, answer.document)}
+        return outcome(case, answer) | {"next_points": asked(case, answer.document)}
     except Exception:
-        return found | about(case) | {"failed": traceback.format_exc()}
+        return about(case) | {"failed": traceback.format_exc()}
 
 
 def every_outcome(seeds: Sequence[int], options: argparse.Namespace) -> Iterator[dict[str, Any]]:
@@ -55,7 +50,7 @@ def every_outcome(seeds: Sequence[int], options: argparse.Namespace) -> Iterator
     from concurrent.futures import ProcessPoolExecutor, as_completed
     from multiprocessing import get_context
 
-    work = partial(one_case, stratum=options.stratum, baselines=options.baselines)
+    work = partial(one_case, stratum=options.stratum)
     if options.workers < 2:
         yield from map(work, seeds)
         return
@@ -89,10 +84,6 @@ def say(outcomes: Sequence[dict[str, Any]]) -> None:
         chosen = [one for one in good if count is None or len(one["results"]) == count]
         if chosen:
             print(table(chosen, title))
-    if any("baselines" in one for one in outcomes):
-        from hidden_effects.baselines import baseline_table
-
-        print(baseline_table(outcomes))
     for one in failed:
         print(f"\nseed {one['seed']} broke: {one['failed'].strip().splitlines()[-1]}")
 
@@ -115,7 +106,6 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1000, help="the first seed")
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--stratum", choices=["none", "single", "double", "unknown", "beside"])
-    parser.add_argument("--baselines", action="store_true", help="three common methods on the same cases")
     parser.add_argument("--dump", help="write one JSON line per case to this file")
     parser.add_argument("--only", type=int, help="show the case of this seed alone, with its document")
     options = parser.parse_args()

@@ -24,8 +24,7 @@ from truing.calculation import calculate
 from truing.executors import SerialExecutor, open_executor
 from truing.kernel import Kernel
 from truing.setup import Setup, default_setup
-from truing.studies.sampling import Machines
-from truing.studies.scatter import scatter_of
+from truing.studies.sampling import Machines, scatter_of
 
 BATCH = 2**14
 ROUNDS = 5

@@ -24,7 +24,7 @@ from truing import Reliability
 from truing.calculation import calculate
 from truing.kernel import Kernel
 from truing.setup import Setup, default_setup
-from truing.studies.scatter import scatter_of
+from truing.studies.sampling import scatter_of
 
 DESIGNS = 1000
 BY_HAND = 10  # of them in the plain loop; its time per design hardly varies

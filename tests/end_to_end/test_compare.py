@@ -13,9 +13,8 @@ import pytest
 
 from shared import Calc
 from truing.cli import main
-from truing.cli.changes import styles_of
-from truing.runs.change_words import amount_of, words_of
-from truing.runs.comparison import Change, changes, differing
+from truing.cli.compare import styles_of
+from truing.runs.comparison import Change, amount_of, changes, differing, words_of
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
 

@@ -16,8 +16,15 @@ import typer.main
 from shared import ROOT, Answer, Calc, process
 from truing.cli.app import app
 from truing.kernel.loading import load_file
-from truing.new_project import NewPlugin, project, single_file, write_project, write_single_file
-from truing.new_project.names import LONGEST_NAME, WIDEST_TITLE
+from truing.new_project import (
+    LONGEST_NAME,
+    WIDEST_TITLE,
+    NewPlugin,
+    project,
+    single_file,
+    write_project,
+    write_single_file,
+)
 
 PLANS = [
     NewPlugin("q", "Q"),

@@ -15,8 +15,8 @@ from gated import BATCHES, FREE, PATIENCE, Gated, run_of, wait_until
 from test_interrupt import children_of, hearing_interrupts, is_alive
 
 from shared import Calc
+from truing.api import run
 from truing.errors import OutputError
-from truing.report import run
 from truing.studies import sampling
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="a console signal there stops the test too")

@@ -8,7 +8,8 @@ import numpy as np
 
 from hidden_effects.gearing_machine import Rows, shown
 from hidden_effects.gearing_stage import Array, Stage
-from hidden_effects.rig_cases import RigCase, RigCases, RigWish
+from hidden_effects.plugin_asking import Rig
+from hidden_effects.rig_cases import RigCases, RigWish
 
 Design: TypeAlias = Literal["rig", "sweep", "one_way"]
 Strange: TypeAlias = Callable[[Rows], dict[str, Array]]
@@ -58,8 +59,14 @@ def measured(design: Design, count: int, rng: np.random.Generator) -> Rows:
     )
 
 
-Case: TypeAlias = RigCase[Rows]
-make_case = RigCases(
+CASES = RigCases(
     stream=75, held=300, measured=measured, machine=built, true=true_readings,
     spread=lambda rows: 0.4 + 1.6 * np.abs(rows.load_torque) / 1300, noise=NOISE,
-).made  # fmt: skip
+)  # fmt: skip
+make_case = CASES.made
+INPUTS = 'plugin = "rv_gearing"\n[inputs]\nsun_teeth = 20\nplanet_teeth = 55\n'
+WRITTEN = {
+    "time": "h", "load_torque": "N*m", "input_speed": "rpm", "oil_temperature": "degC", "input_angle": "deg",
+}  # fmt: skip
+STAGE = Rig(plugin="rv_gearing", inputs=INPUTS, written=WRITTEN, measured=UNIT)
+diagnosed = STAGE.diagnosed

@@ -2,19 +2,36 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import isfinite
 from typing import Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hidden_effects.harmonic_machine import MESH, TORSION, Array, Rows, shown
+from hidden_effects.harmonic_surface import FLANK, SurfaceWish, make_surface
 from hidden_effects.noises import noise_of
-from hidden_effects.rig_cases import RigWish
+from hidden_effects.plugin_asking import Answer, Rig
+from hidden_effects.rig_cases import RigCase, RigWish
 
 Design: TypeAlias = Literal["loops", "climb", "points"]
 Strange: TypeAlias = Callable[[Rows], Array]
 UNIT = {TORSION: "urad", MESH: "N*m/rad"}
 NOISE = {TORSION: 5.0, MESH: 6e4}
+INPUTS = """plugin = "harmonic_fractal"
+
+[inputs]
+fractal_dimension = "2.5"
+fractal_roughness = "1e-9 m"
+convention = "areal"
+reference_torque = "20 mN*m"
+drive_compliance = "36 urad/(N*m)"
+{tooth}
+[studies.diagnose]
+box = {{ torque = "-40..40 N*m" }}
+"""
+PAST = {"torque": "N*m", "reversal_torque": "N*m", "peak_torque": "N*m", "direction": "1"}
+LOGS = {"time": "h", "wave_angle": "deg", "temperature": "degC", "cycles": "1", "speed": "r/min"}
 PEAKS = (8.0, 16.0, 24.0, 32.0, 12.0, 40.0)
 
 
@@ -36,19 +53,12 @@ class Wish(RigWish):
         return NOISE[result] * (0.1 if result == MESH and np.isfinite(self.tooth) else 1.0)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Case:
-    """A record with its readings, rows held out with theirs, and what is true of the latter."""
-
-    wish: Wish
-    rows: Rows
-    held: Rows
-    readings: dict[str, Array]
-    held_readings: dict[str, Array]
-    held_true: dict[str, Array]
+def make_case(wish: Wish | SurfaceWish) -> RigCase:
+    """Make a drive on the rig or a flank under an instrument, as was wished for."""
+    return make_surface(wish) if isinstance(wish, SurfaceWish) else make_drive(wish)
 
 
-def make_case(wish: Wish) -> Case:
+def make_drive(wish: Wish) -> RigCase:
     """Put a drive on the rig, read it, and keep half of the readings back; both halves know the whole past.
 
     Both begin with the clock, which counts from the first reading of a file.
@@ -67,7 +77,7 @@ def make_case(wish: Wish) -> Case:
         for name in wish.results:
             noise[name][places] = noise_of(wish.kind, spread[places], wish.noise(name), rng)
     read = [{name: true[name][places] + noise[name][places] for name in wish.results} for places in parts]
-    return Case(
+    return RigCase(
         wish=wish,
         rows=every.taken(parts[0]),
         held=every.taken(parts[1]),
@@ -124,3 +134,15 @@ def _climb(count: int, rng: np.random.Generator) -> tuple[Array, Array, NDArray[
 def _points(count: int, rng: np.random.Generator) -> tuple[Array, Array, NDArray[np.intp]]:
     torque = np.round(rng.uniform(3, 45, count) * rng.choice([-1.0, 1.0], count), 3)
     return torque, np.zeros(count), np.arange(count, dtype=np.intp)
+
+
+def diagnosed(case: RigCase) -> Answer:
+    """Ask for a diagnosis of the record and predict the rows that were held out."""
+    return (FLANK if isinstance(case.wish, SurfaceWish) else drive(case.wish)).diagnosed(case)
+
+
+def drive(wish: Wish) -> Rig:
+    """The rig of a drive that writes down what was wished for beside the torque and its past."""
+    written = PAST | {name: LOGS[name] for name in wish.logs}
+    tooth = f'tooth_stiffness = "{wish.tooth:g} N/m"\n' if isfinite(wish.tooth) else ""
+    return Rig(plugin="harmonic_fractal", inputs=INPUTS.format(tooth=tooth), written=written, measured=UNIT)

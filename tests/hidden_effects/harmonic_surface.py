@@ -4,7 +4,7 @@ Nothing of the plugin is imported. Lines are drawn as a sum of all waves with th
 what is looked at on either side; a wave, a blunt instrument and its noise act on the heights. Lengths um.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cache
 from math import gamma, pi, sin
@@ -14,6 +14,8 @@ import numpy as np
 
 from hidden_effects.harmonic_contact import Array
 from hidden_effects.noises import title_of
+from hidden_effects.plugin_asking import Rig
+from hidden_effects.rig_cases import RigCase
 from hidden_effects.rows import Hidden, of
 
 STRUCTURE = "structure_function"
@@ -51,17 +53,6 @@ class SurfaceWish:
     def title(self) -> str:
         """What the case is called in the list of tests."""
         return title_of(self.hidden, self.strange, "surface")
-
-
-@dataclass(frozen=True, kw_only=True)
-class SurfaceCase:
-    """A record of one surface, and one of other places of it at other lags."""
-
-    wish: SurfaceWish
-    rows: Lags
-    held: Lags
-    readings: Mapping[str, Array]
-    held_readings: Mapping[str, Array]
 
 
 @cache
@@ -130,7 +121,7 @@ def true_structure(wish: SurfaceWish, lag: Array) -> Array:
     return np.asarray(power() * np.array(plain) + of(wish.hidden, "waviness", "square") * wave + noise)
 
 
-def make_surface(wish: SurfaceWish) -> SurfaceCase:
+def make_surface(wish: SurfaceWish) -> RigCase:
     """Read a surface, each lag on lines of its own and in any order, so that its errors are its own.
 
     Every other lag is held out.
@@ -143,7 +134,20 @@ def make_surface(wish: SurfaceWish) -> SurfaceCase:
     parts = [rng.permutation(np.arange(first, len(steps), 2)) for first in (0, 1)]
     lags = [Lags(STEP * steps[part], sigma[part]) for part in parts]
     found = [{STRUCTURE: read[part]} for part in parts]
-    return SurfaceCase(wish=wish, rows=lags[0], held=lags[1], readings=found[0], held_readings=found[1])
+    return RigCase(
+        wish=wish,
+        rows=lags[0],
+        held=lags[1],
+        readings=found[0],
+        held_readings=found[1],
+        held_true={STRUCTURE: true_structure(wish, lags[1].lag)},
+        held_error=lags[1].sigma_structure_function,
+    )
 
 
-__all__ = ["LINES", "SurfaceCase", "SurfaceWish", "make_surface", "power"]
+FLANK = Rig(
+    plugin="harmonic_fractal",
+    inputs='plugin = "harmonic_fractal"\n',
+    written={"lag": "um", "sigma_structure_function": "um^2"},
+    measured={STRUCTURE: "um^2"},
+)

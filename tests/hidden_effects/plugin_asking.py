@@ -5,31 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, Protocol, TypeAlias
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hidden_effects.rig_cases import RigCase
+from hidden_effects.rows import Array
 from truing import Kernel, Model
 from truing.testing import Hidden, recorded
 from truing.units import from_si
-
-Array: TypeAlias = NDArray[np.float64]
-
-
-class Case(Protocol):
-    """A record with its readings, and rows held out with theirs; ``wish.results`` names what is measured."""
-
-    @property
-    def wish(self) -> Any: ...
-    @property
-    def rows(self) -> Any: ...
-    @property
-    def held(self) -> Any: ...
-    @property
-    def readings(self) -> Mapping[str, Array]: ...
-    @property
-    def held_readings(self) -> Mapping[str, Array]: ...
 
 
 @dataclass(frozen=True)
@@ -59,12 +43,12 @@ class Rig:
     written: Mapping[str, str]
     measured: Mapping[str, str]
 
-    def record(self, case: Case) -> Hidden:
+    def record(self, case: RigCase) -> Hidden:
         """The record as the kit takes it."""
         measured, held = self._table(case.rows, case.readings), self._table(case.held, case.held_readings)
         return recorded(model_of(self.plugin), inputs=self.inputs, measured=measured, held_out=held)
 
-    def diagnosed(self, case: Case) -> Answer:
+    def diagnosed(self, case: RigCase) -> Answer:
         """Ask for a diagnosis of the record and predict the rows that were held out."""
         said = self.record(case).answered
         predicted = {name: np.asarray(from_si(values, self.measured[name])) for name, values in said.predicted.items()}

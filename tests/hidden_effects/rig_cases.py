@@ -32,16 +32,26 @@ class RigWish:
 
 
 @dataclass(frozen=True, kw_only=True)
-class RigCase(Generic[RowsT]):
-    """A record with its readings, rows held out with theirs, and what is true of both."""
+class RigCase:
+    """A record with its readings, and rows held out with theirs and with what is true of them.
+
+    ``held_true`` is what the gauges would show without noise, ``held_error`` the standard errors that readings state.
+    """
 
     wish: Any
-    rows: RowsT
-    held: RowsT
+    rows: Any
+    held: Any
     readings: Mapping[str, Array]
     held_readings: Mapping[str, Array]
-    true_readings: Callable[[RowsT], dict[str, Array]]
-    """What the gauges would show without noise."""
+    held_true: Mapping[str, Array]
+    held_error: Array | float = 1.0
+
+    def left_over_noise(self, predicted: Mapping[str, Array], result: str) -> float:
+        """Error of a prediction of the rows held out over that of the truth, which leaves the noise."""
+        left, noise = (
+            (self.held_readings[result] - shown[result]) / self.held_error for shown in (predicted, self.held_true)
+        )
+        return float(np.sqrt(np.mean(left**2) / np.mean(noise**2)))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,18 +69,17 @@ class RigCases(Generic[RowsT, MachineT]):
     spread: Callable[[RowsT], Array]
     noise: Mapping[str, float]
 
-    def made(self, wish: RigWish) -> RigCase[RowsT]:
+    def made(self, wish: RigWish) -> RigCase:
         """Draw a machine within its tolerances, measure it, and put the noise on."""
         rng = np.random.default_rng([wish.seed, self.stream])
         every = self.measured(wish.design, wish.count + self.held, rng)
         rows, held = (every.taken(places) for places in held_out(len(every), self.held, rng))
         machine = self.machine(rng)
-        read = []
+        true, read = [], []
         for part in (rows, held):
-            true = self.true(wish, part, machine)
+            true.append(self.true(wish, part, machine))
             noise = {name: noise_of(wish.kind, self.spread(part), self.noise[name], rng) for name in wish.results}
-            read.append({name: true[name] + noise[name] for name in wish.results})
+            read.append({name: true[-1][name] + noise[name] for name in wish.results})
         return RigCase(
-            wish=wish, rows=rows, held=held, readings=read[0], held_readings=read[1],
-            true_readings=lambda some: self.true(wish, some, machine),
+            wish=wish, rows=rows, held=held, readings=read[0], held_readings=read[1], held_true=true[1]
         )  # fmt: skip

@@ -6,7 +6,8 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from hidden_effects.rig_cases import RigCase, RigCases, RigWish
+from hidden_effects.plugin_asking import Rig
+from hidden_effects.rig_cases import RigCases, RigWish
 from hidden_effects.rv_machine import LIFE, RATED, ROUGHNESS_SCATTER, SPEED, ZONES, Array, Rows, shown
 
 Design: TypeAlias = Literal["endurance", "fleet"]
@@ -66,8 +67,15 @@ def measured(design: Design, count: int, rng: np.random.Generator) -> Rows:
     )
 
 
-Case: TypeAlias = RigCase[Rows]
-make_case = RigCases(
+CASES = RigCases(
     stream=74, held=300, measured=measured, machine=machine, true=true_readings,
     spread=lambda rows: 0.4 + 1.6 * rows.working_time / LIFE, noise={BACKLASH: 0.01, WEAR: 0.1},
-).made  # fmt: skip
+)  # fmt: skip
+make_case = CASES.made
+WRITTEN = {
+    "time": "h", "working_time": "h", "output_torque": "N*m", "output_speed": "r/min", "housing_temperature": "degC",
+    "disc_temperature": "degC", "oil_temperature": "degC", "output_angle": "deg", "crank_angle": "deg",
+    "measuring_torque": "N*m", "direction": "1",
+}  # fmt: skip
+REDUCER = Rig(plugin="rv_wear", inputs='plugin = "rv_wear"\n', written=WRITTEN, measured=UNIT)
+diagnosed = REDUCER.diagnosed

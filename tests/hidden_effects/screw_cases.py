@@ -6,7 +6,8 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from hidden_effects.rig_cases import RigCase, RigCases, RigWish
+from hidden_effects.plugin_asking import Rig
+from hidden_effects.rig_cases import RigCases, RigWish
 from hidden_effects.screw_machine import WIDTHS, Array, Rows, shown
 
 Design: TypeAlias = Literal["bench", "loaded", "endurance"]
@@ -67,8 +68,18 @@ def measured(design: Design, count: int, rng: np.random.Generator) -> Rows:
     )
 
 
-Case: TypeAlias = RigCase[Rows]
-make_case = RigCases(
+CASES = RigCases(
     stream=58, held=200, measured=measured, machine=machine, true=true_readings,
     spread=lambda rows: 0.4 + rows.axial_load / 12, noise=NOISE,
-).made  # fmt: skip
+)  # fmt: skip
+make_case = CASES.made
+INPUTS = """plugin = "roller_screw_shift"
+
+[studies.diagnose]
+box = { axial_load = "1..25 kN" }
+"""
+WRITTEN = {
+    "time": "h", "axial_load": "kN", "screw_speed": "r/min", "temperature": "degC", "screw_angle": "deg", "cycles": "1",
+}  # fmt: skip
+SCREW = Rig(plugin="roller_screw_shift", inputs=INPUTS, written=WRITTEN, measured=UNIT)
+diagnosed = SCREW.diagnosed

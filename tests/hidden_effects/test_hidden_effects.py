@@ -1,7 +1,8 @@
 """A press with something wrong, hidden by physics of its own: does the diagnosis name it, size it and gain by it?
 
 A few clear cases of every verdict, on every kind of noise. Each was chosen by what the generator says of it alone:
-visible, separable from every rival, and measured with noise that is itself not odd.
+visible, separable from every rival, and measured with noise that is itself not odd. How often each effect is found, in
+every design and with every noise, is measured by ``tests/benchmarks/bench_diagnosis_quality.py``.
 """
 
 from functools import cache
@@ -24,24 +25,17 @@ POSITION_ALONE, BOTH = (POSITION,), (POSITION, TILT)
 CLEAR = 60.0
 
 NOTHING = [
-    (1, Wish("none", "wide", "gaussian", BOTH, 150)),
-    (2, Wish("none", "warm-up", "autocorrelated", POSITION_ALONE, 150)),
     (3, Wish("none", "narrow", "heavy", BOTH, 80)),
     (4, Wish("none", "wide", "growing", POSITION_ALONE, 150)),
 ]
 NAMED = [
     (4, Wish("single", "wide", "gaussian", POSITION_ALONE, 150, ("link_heating",), 2.0)),
-    (1, Wish("single", "wide", "heavy", BOTH, 150, ("joint_wear",), 2.0)),
     (3, Wish("single", "wide", "autocorrelated", POSITION_ALONE, 300, ("elastic_deflection",), 2.0)),
-    (18, Wish("single", "warm-up", "growing", BOTH, 150, ("side_heating",), 2.0)),
-    (2, Wish("single", "wide", "gaussian", BOTH, 150, ("warm_up",), 2.5)),
     (1, Wish("single", "narrow", "growing", POSITION_ALONE, 80, ("slider_inertia",), 2.0)),
     (4, Wish("double", "wide", "gaussian", BOTH, 150, ("link_heating", "joint_clearance"), 2.0)),
-    (7, Wish("double", "wide", "heavy", POSITION_ALONE, 300, ("encoder_eccentricity", "joint_wear"), 2.0)),
 ]
 UNKNOWN = [
     (1, Wish("unknown", "wide", "gaussian", POSITION_ALONE, 150, (), 2.0, "order")),
-    (3, Wish("unknown", "wide", "heavy", BOTH, 150, (), 2.0, "product_of_two")),
 ]
 BESIDE = [(7, Wish("beside", "wide", "gaussian", POSITION_ALONE, 300, ("joint_clearance",), 2.5, "product_of_two"))]
 
@@ -168,15 +162,6 @@ def test_a_cause_is_named_beside_something_unregistered(seed: int, wish: Wish) -
     assert set(case.shape.depends_on) <= set(document["remainder"]["depends_on"])
 
 
-def test_a_small_cause_beside_a_rough_shape_is_not_excluded() -> None:
-    """Its 26 is 5 % of what the shape is worth, so that it may mend the shape: but the shape alone is not stated."""
-    case, document, judged = answered(882158, Wish())
-    assert case.shape is not None
-    assert list(case.hidden) == ["slider_inertia"]
-    assert (document["verdict"], document["causes"], document["shared"]) == ("one_of", [], ["unknown"])
-    assert judged["in_set"]
-
-
 def test_a_wave_beside_a_cause_may_be_there_as_well() -> None:
     """5.6 cycles over time, which noise with a memory draws as well: the cause alone is not stated."""
     case, document, judged = answered(911029, Wish())
@@ -186,22 +171,10 @@ def test_a_wave_beside_a_cause_may_be_there_as_well() -> None:
     assert judged["in_set"]
 
 
-@pytest.mark.parametrize(("seed", "named"), [(913009, "periodic_order"), (913155, "encoder_eccentricity")])
-def test_a_name_that_fits_worse_than_an_unregistered_curve_is_not_alone(seed: int, named: str) -> None:
-    """A bend and an order of 6 that nobody registered, of which a registered curve draws most with fewer numbers."""
-    case, document, judged = answered(seed, Wish())
+def test_a_name_that_fits_worse_than_an_unregistered_curve_is_not_alone() -> None:
+    """An order of 6 that nobody registered, of which the eccentricity of the encoder draws most with fewer numbers."""
+    case, document, judged = answered(913155, Wish())
     assert case.shape is not None
-    assert named not in case.hidden
+    assert "encoder_eccentricity" not in case.hidden
     assert document["verdict"] == "one_of"
     assert judged["in_set"]
-
-
-def test_what_is_believed_is_gone_on_from_where_the_search_left_it() -> None:
-    """A bend over the link temperature alone is better by 144 than two registered causes that draw most of it.
-
-    The two were named, and nothing beside them. The curve is seen now; that it is there alone is not said yet.
-    """
-    case, document, _ = answered(1400829, Wish())
-    assert case.shape is not None
-    assert document["remainder"]["depends_on"] == ["link_temperature"]
-    assert document["verdict"] in {"unknown", "undecided"}

@@ -24,8 +24,8 @@ from rv_gearing.rating import SAFETIES, Capacity, Reserve, Safeties, rating, rv_
 from truing import Drawing, Kernel, Swept, Table, TruingError, Words
 from truing.calculation import Calculation, calculate
 from truing.inputs_file import setup_from_text
-from truing.report.content import check_rows
 from truing.report.figures import draw
+from truing.report.sheet import check_rows
 from truing.setup import default_setup
 
 RACK = Rack(dedendum=1.25, fillet=0.38, pressure_angle=np.radians(20.0))

@@ -15,7 +15,7 @@ from truing.errors import InfeasibleError
 from truing.evaluate import evaluate
 from truing.kernel import kernel_for
 from truing.setup import Setup, SwitchedOn, effect_column
-from truing.testing.batches import Batch, compare, condition_values, input_values, is_row_by_row
+from truing.testing.running import Batch, compare, condition_values, input_values, is_row_by_row
 from truing.testing.sources import amplitude, off_reference, shape
 from truing.testing.subject import Subject
 from truing.units import to_si

@@ -17,7 +17,7 @@ from truing.errors import InputError
 from truing.executors import SerialExecutor, WorkerPool, open_executor
 from truing.kernel import Origin
 from truing.measurements import CasesFile, RowCount, StatedCase
-from truing.report.content import least_margin
+from truing.report.sheet import least_margin
 from truing.setup import Setup, SwitchedOn, default_setup
 from truing.studies.checks import Check, Proposal
 from truing.studies.verdicts import Decided

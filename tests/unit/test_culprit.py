@@ -9,7 +9,7 @@ from pin_wear import PIN_WEAR
 
 from truing.errors import InfeasibleError, InputError
 from truing.inputs_file import setup_from_text
-from truing.inputs_file.culprit import located, told_by_line
+from truing.inputs_file.sentences import located, told_by_line
 from truing.kernel import Offer, Origin
 from truing.setup import default_setup
 

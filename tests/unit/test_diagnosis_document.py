@@ -5,8 +5,6 @@ from __future__ import annotations
 import json
 import math
 import re
-import subprocess
-import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -47,9 +45,8 @@ from truing.inputs_file import setup_from_text
 from truing.kernel import Kernel, Origin
 from truing.kernel.loading import load_file
 from truing.runs.diagnosis_document import diagnosis_document, file_labels
-from truing.runs.diagnosis_folder import write_diagnosis
 from truing.runs.extension import extended_setup, extended_text
-from truing.runs.folder import demand_place, is_ours, json_text, write_folder
+from truing.runs.folder import demand_place, is_ours, json_text, write_diagnosis, write_folder
 from truing.runs.new_effect import code_name, new_effect_source, safe_expression
 from truing.runs.provenance import provenance_of
 from truing.setup import Setup, SwitchedOn, default_setup
@@ -247,19 +244,6 @@ def test_the_stub_of_a_remainder_adds_the_fitted_shape(tmp_path: Path) -> None:
         setup = replace(default_setup(offer.model), effects=(on,))
         shown[factor] = evaluate_rows(setup, {"crank_angle": angle}, len(angle)).results["slide_position"]
     assert shown[1.0] - shown[0.0] == pytest.approx(shape_of(made.records), abs=1e-15)
-
-
-def test_the_stub_is_typed_and_in_style(tmp_path: Path) -> None:
-    """As it stands, before anybody touches it: mypy --strict and the rules of ruff that catch faults."""
-    covariates = {**unknown().records.covariates, "a b": Covariate("a b", np.zeros(160), "kN", "other")}
-    records = replace(unknown().records, covariates=covariates)
-    terms = {"slide_position": (ShapeTerm("np.tanh(load / 1e3) * a b", 1e-6),)}
-    remainder = replace(REMAINDER, depends_on=("load", "a b"), terms=terms)
-    file = tmp_path / "new_effect.py"
-    file.write_text(new_effect_source(replace(unknown(), records=records, remainder=remainder)), encoding="utf-8")
-    for tool in (["mypy", "--strict"], ["ruff", "check", "--select", "E,F,W,I", "--line-length", "120"]):
-        done = subprocess.run([sys.executable, "-m", *tool, str(file)], capture_output=True, text=True, check=False)
-        assert done.returncode == 0, done.stdout + done.stderr
 
 
 def truing_models() -> list[Model[Any, Any]]:

@@ -8,13 +8,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from diagnosis_models import Asked
 
 from truing import Float, Model, Tolerance, drawn, found, given, inputs, normal, results
-from truing.diagnosis.engine import diagnose
-from truing.diagnosis.reading import read_records
 from truing.diagnosis.result import DiagnosisResult
-from truing.kernel import Offer, Origin
-from truing.setup import default_setup
 
 SD, NOISE, ROWS = 5.0, 0.5, 80
 
@@ -58,12 +55,8 @@ def diagnosed(tmp_path: Path) -> Callable[[list[Tolerance], str, float], Diagnos
         model = Model(name="stack", title="Stack", function=height, errors=errors)
         rng = np.random.default_rng(7)
         nominal = 20.0 if result == "both" else 15.0
-        rows = zip(rng.uniform(-5, 5, ROWS), nominal + off + rng.normal(0, NOISE, ROWS), strict=True)
-        file = tmp_path / "measured.csv"
-        file.write_text(f"place [mm],{result} [um]\n" + "".join(f"{place},{read}\n" for place, read in rows))
-        setup = default_setup(model)
-        offer = Offer("stack", model, Origin("stack", "1.0", "", "", "module:stack"))
-        return diagnose(setup, read_records([file], offer, setup))
+        columns = {"place": rng.uniform(-5, 5, ROWS), result: nominal + off + rng.normal(0, NOISE, ROWS)}
+        return Asked(model, units={"place": "mm", result: "um"}).diagnosed(tmp_path, columns)
 
     return diagnosed
 

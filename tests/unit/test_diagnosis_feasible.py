@@ -11,14 +11,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from diagnosis_models import Asked
 
 from truing import Effect, Float, Model, Tolerance, Unknown, feasible, found, given, inputs, normal, results
-from truing.diagnosis.engine import diagnose
-from truing.diagnosis.reading import read_records
 from truing.diagnosis.result import DiagnosisResult
-from truing.kernel import Offer, Origin
 from truing.runs.diagnosis_document import diagnosis_document
-from truing.setup import default_setup
 
 WIDTH, LENGTH, NOISE = 100.0, 10.0, 0.3
 
@@ -69,12 +66,7 @@ def asked(folder: Path, loss: float) -> DiagnosisResult:
     rng = np.random.default_rng(3)
     place = np.linspace(0, LENGTH, 60)
     shown = np.sqrt((WIDTH - loss * place / LENGTH) * 100) + rng.normal(0, NOISE, 60)
-    file = folder / "record.csv"
-    rows = [f"{at!r},{reading!r}" for at, reading in zip(place.tolist(), shown.tolist(), strict=True)]
-    file.write_text("\n".join(["place [mm],flow [um]", *rows, ""]), encoding="utf-8")
-    offer = Offer("gap", MODEL, Origin("gap", "1.0", "gaps", "gap.py", "entry:gap"))
-    setup = default_setup(MODEL, offer.origin)
-    return diagnose(setup, read_records([file], offer, setup))
+    return Asked(MODEL, units={"place": "mm", "flow": "um"}).diagnosed(folder, {"place": place, "flow": shown})
 
 
 def test_a_start_at_which_the_model_fails_is_moved_inside(tmp_path: Path) -> None:
@@ -91,7 +83,7 @@ def test_what_the_model_fails_with_is_left_out_by_name(tmp_path: Path) -> None:
     answer = asked(tmp_path, 30.0)
     (unseen,) = [item for item in answer.seen if item.name == "shuts"]
     assert (unseen.sight, unseen.smallest) == ("cannot be fitted", None)
-    assert unseen.text == "the model fails with it, in record.csv:2 as the first row: the gap is closed"
+    assert unseen.text == "the model fails with it, in measured.csv:2 as the first row: the gap is closed"
     document = diagnosis_document(answer)
     assert document["not_fitted"] == {"shuts": unseen.text}
     assert "shuts" not in document["not_excited"]

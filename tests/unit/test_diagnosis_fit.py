@@ -16,7 +16,6 @@ from diagnosis_models import (
     Reading,
     along_first,
     cause_of,
-    decided,
     drive_model,
     fit_of,
     gauge,
@@ -34,7 +33,7 @@ from scipy.stats import binom, f, t
 from truing import Condition, Effect, Model, Tolerance, Unknown, normal
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.engine import diagnose
-from truing.diagnosis.exact import EXACTLY, fit
+from truing.diagnosis.exact import EXACTLY, fit_from
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.intervals import Certainty, certainty_of, interval, may_be_zero, numbers_of, shape_interval
 from truing.diagnosis.machine import predict
@@ -191,7 +190,7 @@ def test_a_size_stays_inside_its_bounds(tmp_path: Path) -> None:
     error = np.random.default_rng(24).normal(0, 40, 60) + 700 * np.sign(bench.load) + 5 * bench.travel
     made = drive_competition(tmp_path, error, tolerances={})
     start = np.array([4000 * UM]), np.array([1e-3])  # outside as well
-    best = fit(made.sample, made.extended, [cause_of(made, name) for name in ("clearance", "lead_error")], start)
+    best = fit_from(made.sample, made.extended, [cause_of(made, name) for name in ("clearance", "lead_error")], start)
     assert best is not None
     assert_allclose(size_of(best, "gap"), 500 * UM, rtol=1e-9)
     rest = error - 500 * np.sign(bench.load)
@@ -205,7 +204,7 @@ def test_a_number_that_is_held_keeps_its_start(tmp_path: Path) -> None:
     made = drive_competition(tmp_path, error, tolerances={})
     cause = cause_of(made, "warm_up")
     start = np.array([UM, 5 * 3600.0])
-    best = fit(made.sample, made.extended, [cause], [start], held=[cause.numbers[1]])
+    best = fit_from(made.sample, made.extended, [cause], [start], held=[cause.numbers[1]])
     assert best is not None
     column = 1 - np.exp(-bench.time / 5)
     assert size_of(best, "time_constant") == pytest.approx(5 * 3600, rel=1e-12)
@@ -216,7 +215,7 @@ def in_noise(made: Competition, found: Fit, **more: object) -> tuple[Fit, Certai
     """A fit and its certainty as if the noise had been another one."""
     noise = {name: replace(own, **more) for name, own in made.sample.noise.items()}  # type: ignore[arg-type]
     sample = sample_of(made.sample.machine, noise, made.sample.mask, made.sample.directions)
-    again = fit(sample, made.extended, found.causes, found.values, found)
+    again = fit_from(sample, made.extended, found.causes, found.values, found)
     assert again is not None
     return again, certainty_of(again, made.extended)
 
@@ -275,15 +274,15 @@ def test_the_interval_of_a_time_constant_is_its_profile(tmp_path: Path, time_con
         assert_allclose(high / 3600, brentq(lambda at: cost(at) - level, free.x[1], 20), rtol=5e-3)
 
 
-@pytest.mark.parametrize("tails", ["normal", "heavy"])
-def test_intervals_cover_what_is_true(tmp_path: Path, tails: str) -> None:
-    """Nominal 95 %; held against 90 %, which clipping without a wider interval would miss with heavy tails."""
-    asked, records_made, covered = Asked(twist_model(), units=TWIST), 60, 0
+def test_intervals_cover_what_is_true_in_heavy_tails(tmp_path: Path) -> None:
+    """Nominal 95 %; held against 90 %, which clipping without a wider interval would miss."""
+    asked, records_made, covered = Asked(twist_model(), units=TWIST), 50, 0
     for seed in range(records_made):
         rng = np.random.default_rng([27, seed])
         first, second = rng.uniform(-1, 1, (2, 100))
-        noise = rng.normal(size=100) if tails == "normal" else rng.standard_t(3, 100)
-        records = asked.records(tmp_path, {"first": first, "second": second, "reading": 2 * first + noise})
+        records = asked.records(
+            tmp_path, {"first": first, "second": second, "reading": 2 * first + rng.standard_t(3, 100)}
+        )
         made = plain_competition(asked, records, 1.0)
         fit_of(made, "along_first")
         made.renew()
@@ -306,7 +305,5 @@ def test_the_extended_model_says_what_was_fitted(tmp_path: Path) -> None:
     assert found.extended is not None
     again = predict(one_machine(found.extended), records)["deflection"]
     assert_allclose(again, found.curves[0].after, rtol=0, atol=1e-3 * UM)
-    best = decided(asked.setup, records).best
-    assert_allclose(found.curves[0].after, best.predicted["deflection"], rtol=0, atol=1e-6 * UM)
     left = found.curves[0].measured - found.curves[0].after
     assert np.sqrt(np.mean(left**2)) < 1.2 * UM

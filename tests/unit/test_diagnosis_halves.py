@@ -85,8 +85,11 @@ def test_shapes_and_the_model_as_it_is_have_no_halves(tmp_path: Path) -> None:
 
 def test_consistent_halves_leave_a_cause_its_name(tmp_path: Path) -> None:
     one = Asked(drive_model(["lead_error", "clearance"], {}))
-    found = one.diagnosed(tmp_path, BENCH.columns(gauge(BENCH.load, BENCH.travel) + LEAD * BENCH.travel + NOISE))
+    error = LEAD * BENCH.travel + NOISE
+    found = one.diagnosed(tmp_path, BENCH.columns(gauge(BENCH.load, BENCH.travel) + error))
     assert (name_sets(found), found.contradictions, found.verdict) == ([{"lead_error"}], (), "named")
+    (wrong,) = found.wrong  # of its mean square all but the noise can go
+    assert_allclose(wrong.reducible_share, 1 - (NOISE @ NOISE) / (error @ error), rtol=0, atol=0.002)
 
 
 def test_contradicting_halves_take_a_cause_its_name(tmp_path: Path) -> None:

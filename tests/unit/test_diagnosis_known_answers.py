@@ -32,7 +32,6 @@ from diagnosis_models import (
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 from scipy.linalg import subspace_angles
-from scipy.optimize import least_squares
 from scipy.stats import multivariate_normal, norm
 
 from truing.diagnosis.competition import Competition
@@ -218,22 +217,6 @@ def test_a_setting_added_by_one_rank_is_a_full_refit(gauges: int) -> None:
         assert_allclose(duel.coefficients, refit, rtol=1e-9)
         if gauges == 1:
             assert_allclose(duel.separation, before + gain, rtol=1e-9)
-
-
-@pytest.mark.parametrize("time_constant", [0.4, 2.0, 7.0])
-def test_a_time_constant_from_its_curves_is_that_of_a_direct_fit(tmp_path: Path, time_constant: float) -> None:
-    bench = wide(150, seed=8)
-    noise = np.random.default_rng(8).normal(0, 0.3, len(bench))
-    error = 4 * (1 - np.exp(-bench.time / time_constant)) + noise
-    asked = Asked(drive_model(tolerances={}))
-    columns = bench.columns(gauge(bench.load, bench.travel) + error)
-    best = fit_of(plain_competition(asked, asked.records(tmp_path, columns), 0.3 * UM), "warm_up")
-
-    def left(x: Array) -> Array:
-        return np.asarray(error - x[0] * (1 - np.exp(-bench.time / x[1])))
-
-    direct = least_squares(left, [3.0, 1.0], xtol=1e-15, ftol=1e-15, gtol=1e-15)
-    assert_allclose([size_of(best, "rise") / UM, size_of(best, "time_constant") / 3600], direct.x, rtol=1e-4)
 
 
 @pytest.mark.parametrize(("explanations", "limit"), [(12, 17.5), (78, 22.0), (200, 24.5)])

@@ -71,21 +71,6 @@ def test_the_first_idea_of_the_noise_is_what_least_squares_leave(
     assert_allclose(first_noise(there)["deflection"].scale, expected, rtol=1e-6)
 
 
-def test_twenty_thousand_rows_are_named(tmp_path: Path) -> None:
-    bench = wide(21_000, seed=7)
-    error = 0.02 * (bench.temperature - 20) + np.random.default_rng(7).normal(0, 1, len(bench))
-    asked = Asked(drive_model(("clearance", "lead_error", "thermal_growth")))
-    found = asked.diagnosed(tmp_path, bench.columns(gauge(bench.load, bench.travel) + error))
-    assert found.verdict == "one_of"  # growth, or a drift of the gauge with temperature
-    assert name_sets(found) == [{"thermal_growth", "thermal_drift"}]
-    (size,) = found.causes[0].unknowns
-    assert size.low is not None
-    assert size.high is not None
-    assert size.low < 0.02e-6 < size.high
-    wide_apart = 2 * 1.96e-6 / np.sqrt(np.sum((bench.temperature - 20) ** 2))  # of a slope through zero
-    assert_allclose(size.high - size.low, wide_apart, rtol=0.05)
-
-
 def test_a_search_looks_at_one_row_of_every_stretch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(long_records, "LONG", 40)
     bench, asked = wide(130), Asked(drive_model(("lead_error",)))
@@ -142,7 +127,12 @@ def test_what_a_search_of_some_rows_came_to_is_fitted_to_all(tmp_path: Path, mon
     found = asked.diagnosed(tmp_path, bench.columns(gauge(bench.load, bench.travel) + error))
     assert name_sets(found) == [{"lead_error"}]
     exact = bench.travel @ error / (bench.travel @ bench.travel)  # by all rows
-    assert_allclose(found.causes[0].unknowns[0].value, exact * 1e-3, rtol=1e-5)
+    (size,) = found.causes[0].unknowns
+    assert_allclose(size.value, exact * 1e-3, rtol=1e-5)
+    assert size.low is not None
+    assert size.high is not None
+    wide_apart = 2 * 1.97e-3 / np.sqrt(bench.travel @ bench.travel)  # of a slope through zero in noise of 1 um
+    assert_allclose(size.high - size.low, wide_apart, rtol=0.1)
 
 
 class Slow:
@@ -193,19 +183,18 @@ def test_effects_on_results_cost_no_call_of_a_slow_model_however_many_pairs_ther
 
     Of an effect that was not fitted the model is asked twice whether it fails with it.
     """
-    calls = [calls_of(tmp_path, extra, {}) for extra in (0, 5, 10)]
-    assert calls[0] == 1
-    assert all(count <= 1 + 2 * extra for count, extra in zip(calls, (0, 5, 10), strict=True))
+    none, six = (calls_of(tmp_path, extra, {}) for extra in (0, 6))
+    assert none == 1
+    assert six <= 1 + 2 * 6
     monkeypatch.setattr(search, "_pairs", lambda made: None)
-    assert [calls_of(tmp_path, extra, {}) for extra in (0, 10)] == [calls[0], calls[2]]
+    assert calls_of(tmp_path, 6, {}) == six
 
 
 def test_where_inputs_have_tolerances_a_further_effect_costs_a_few_calls(tmp_path: Path) -> None:
     """Every explanation that is fitted has inputs of its own, and the model is called there; not for every pair."""
-    calls = [calls_of(tmp_path, extra, TOLERANCES) for extra in (0, 5, 10)]
-    assert calls[1] - calls[0] <= 5 * 5
-    assert calls[2] - calls[0] <= 5 * 10  # of 45 pairs more
-    assert calls[0] < 300
+    none, ten = (calls_of(tmp_path, extra, TOLERANCES) for extra in (0, 10))
+    assert none < 300
+    assert ten - none <= 5 * 10  # of 45 pairs more
 
 
 def test_every_linear_algebra_has_one_thread_in_a_fresh_process() -> None:

@@ -31,14 +31,7 @@ def noise() -> Array:
 # Shapes between the points at which curves are asked for
 
 
-@pytest.mark.parametrize(
-    ("time_constant", "rise"),
-    [
-        *((hours, 100.0) for hours in (0.14, 0.23, 1.7, 6.2, 12.0)),
-        (0.23, 500.0),
-        (6.2, 500.0),
-    ],
-)
+@pytest.mark.parametrize(("time_constant", "rise"), [(0.14, 100.0), (0.23, 500.0), (12.0, 100.0)])
 def test_a_large_effect_between_two_points_of_its_curves_is_named_alone(
     tmp_path: Path, time_constant: float, rise: float
 ) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from diagnosis_models import UM, Array, Asked, decided, drive_model, fit_of, gauge, plain_competition, wide
+from diagnosis_models import UM, Array, Asked, drive_model, fit_of, gauge, plain_competition, wide
 from numpy.testing import assert_allclose
 
 from truing.diagnosis import choice
@@ -21,7 +21,6 @@ from truing.diagnosis.choice import (
     _certain,
     _is_vaguer,
     _rivals,
-    _same,
     _says_the_same,
     unsure,
 )
@@ -132,11 +131,6 @@ def test_nothing_has_no_rivals(tmp_path: Path) -> None:
     assert _rivals(made, made.null, 1) == []
 
 
-def test_the_unsureness_of_a_fit_and_itself_is_nothing(tmp_path: Path) -> None:
-    made = competing(tmp_path, np.zeros(ROWS))
-    assert unsure(made.null, made.null) == 0
-
-
 def test_what_acts_beside_the_winner_is_no_rival(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Two causes draw two curves: each alone leaves the other, so that neither stands for it, however near they are."""
     bench = wide(ROWS, seed=21)
@@ -148,60 +142,7 @@ def test_what_acts_beside_the_winner_is_no_rival(tmp_path: Path, monkeypatch: py
     assert "clearance" not in causes_in([found for found in near(made, one) if len(found.causes) == 1])
 
 
-def test_a_shape_that_draws_what_the_winner_has_is_a_vaguer_word_and_no_rival(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A line over the travel is in every polynomial over it, and in none over the load."""
-    monkeypatch.setattr(choice, "unsure", lambda one, other: 1e6)
-    made = searched(tmp_path, 0.005 * wide(ROWS, seed=21).travel)
-    best = fit_of(made, "lead_error")
-    for cause in made.causes:
-        if cause.shape is not None and cause.shape.kind == "trend":
-            made.joined(made.null, cause, made.look(made.null, [cause])[cause.tag].starts)
-    trends = {found.causes[0].tag for found in near(made, best) if found.causes[0].shape is not None}
-    assert any(":load:" in tag for tag in trends)
-    assert not any(":travel:" in tag for tag in trends)
-
-
-def test_two_names_of_one_curve_are_one_explanation(tmp_path: Path) -> None:
-    """Under a load of one sign a clearance is an offset; at both signs it is not."""
-    load = np.abs(wide(ROWS, seed=21).load) + 1
-    made = competing(tmp_path, np.full(ROWS, 3.0), load=load)
-    best, _ = fit_of(made, "sensor_offset"), fit_of(made, "clearance")
-    assert _same(made, best) == {best.causes[0].tag: ("clearance",)}
-    assert "clearance" not in causes_in(near(made, best))
-    made = competing(tmp_path, 3 + 2 * np.sign(wide(ROWS, seed=21).load))
-    best, _ = fit_of(made, "sensor_offset"), fit_of(made, "clearance")
-    assert _same(made, best) == {}
-
-
-def test_the_weakest_name_of_a_curve_is_the_winner(tmp_path: Path) -> None:
-    """Of an offset of the kernel and a clearance of the model the offset, with the clearance as its other name."""
-    bench = wide(ROWS, seed=21)
-    bench = replace(bench, load=np.abs(bench.load) + 1)
-    asked = Asked(drive_model(("clearance",), {}))
-    error = 3 + np.random.default_rng(3).normal(0, 1, ROWS)
-    chosen = decided(asked.setup, asked.records(tmp_path, bench.columns(gauge(bench.load, bench.travel) + error)))
-    assert [cause.name for cause in chosen.best.causes] == ["sensor_offset"]
-    assert set(chosen.same[chosen.best.causes[0].tag]) == {"clearance"}
-    assert_allclose(chosen.best.values[0][0], error.mean() * UM, rtol=0, atol=0.01 * UM)  # 0.1 is its error
-
-
 # What may as well be zero
-
-
-@pytest.mark.parametrize(("offset", "stays"), [(0.1, False), (1.0, True)])
-def test_an_effect_whose_interval_holds_zero_is_left_out(tmp_path: Path, offset: float, stays: bool) -> None:
-    """An offset of 90 readings with noise of 1 um has a standard error of 0.1 um."""
-    bench = wide(ROWS, seed=21)
-    noise = np.random.default_rng(3).normal(0, 1, ROWS)
-    design = np.column_stack([bench.travel, np.ones(ROWS)])
-    by_hand = offset - np.linalg.lstsq(design, noise)[0][1]  # what least squares then say is ``offset``
-    made = competing(tmp_path, 0.05 * bench.travel + by_hand)
-    best = fit_of(made, "lead_error", "sensor_offset")
-    assert_allclose(best.values[1][0], offset * UM, rtol=1e-3)
-    kept = ["lead_error", "sensor_offset"] if stays else ["lead_error"]
-    assert [cause.name for cause in _certain(made, best).causes] == kept
 
 
 @pytest.mark.parametrize(("worth", "stays"), [(SURELY - 5, False), (SURELY + 5, True)])

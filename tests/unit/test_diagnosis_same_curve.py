@@ -7,13 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from diagnosis_models import Asked
 
 from truing import Effect, Float, Model, Unknown, found, given, inputs, results
-from truing.diagnosis.engine import diagnose
-from truing.diagnosis.reading import read_records
 from truing.diagnosis.result import DiagnosisResult
-from truing.kernel import Offer, Origin
-from truing.setup import default_setup
 
 NOISE = 0.02  # MPa
 ROWS = 90
@@ -82,6 +79,9 @@ MODEL = Model(
 )
 
 
+ASKED = Asked(MODEL, units={"force": "N", "speed": "Hz", "stress": "MPa"})
+
+
 def asked(folder: Path, truth: str, size: float, *, low: float, gauge: float = 1.0) -> DiagnosisResult:
     """Ask about beams under forces from ``low`` on, with one thing wrong; ``gauge`` scales the noise of some rows."""
     rng = np.random.default_rng(4)
@@ -92,12 +92,7 @@ def asked(folder: Path, truth: str, size: float, *, low: float, gauge: float = 1
         "resonant": lambda: force * (1 + size * np.asarray(peak(speed, 40.0, 0.05))),
     }[truth]()
     stress = stress + NOISE * rng.standard_normal(ROWS) * np.where(np.arange(ROWS) % 9 == 4, gauge, 1.0)
-    lines = [",".join(repr(float(cell)) for cell in row) for row in zip(force, speed, stress, strict=True)]
-    file = folder / "record.csv"
-    file.write_text("\n".join(["force [N],speed [Hz],stress [MPa]", *lines]) + "\n", encoding="utf-8")
-    offer = Offer("beam", MODEL, Origin("beam", "1.0", "beams", "beam.py", "entry:beam"))
-    setup = default_setup(MODEL, offer.origin)
-    return diagnose(setup, read_records([file], offer, setup))
+    return ASKED.diagnosed(folder, {"force": force, "speed": speed, "stress": stress})
 
 
 def named(answer: DiagnosisResult) -> set[str]:

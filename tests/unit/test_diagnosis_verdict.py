@@ -26,7 +26,7 @@ from diagnosis_samples import (
 )
 from hypothesis import HealthCheck, given, settings
 
-from truing.cli.diagnosis_printed import report
+from truing.cli.diagnose import lines_of as report
 from truing.diagnosis.noise import SETTINGS
 from truing.diagnosis.result import (
     Alternative,
@@ -41,7 +41,7 @@ from truing.diagnosis.result import (
     shared_of,
 )
 from truing.report.chapters import Figures
-from truing.report.diagnosis_chapters import diagnosis_chapters
+from truing.report.diagnosis_sheet import diagnosis_chapters
 from truing.report.diagnosis_words import headline, prose, spoken, together, verdict_word
 from truing.report.document import Paragraph, TableView
 from truing.runs.diagnosis_document import diagnosis_document

@@ -6,22 +6,13 @@ import re
 import xml.etree.ElementTree as ElementTree
 
 import pytest
+from formula_printed import block_mathml, latex, mathml, substituted_latex, substituted_mathml, symbol_latex
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from truing.formulas import (
-    block_mathml,
-    latex,
-    mathml,
-    number_latex,
-    number_mathml,
-    parse,
-    substituted_latex,
-    substituted_mathml,
-    symbol_latex,
-    symbol_mathml,
-    symbol_text,
-)
+from truing.formulas import parse, symbol_mathml, symbol_text
+from truing.formulas.write_latex import number_latex
+from truing.formulas.write_mathml import number_mathml
 
 SYMBOLS = [
     ("F", "<mi>F</mi>", "F", "F"),

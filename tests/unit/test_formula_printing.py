@@ -1,26 +1,23 @@
 """The printed formula is the computed one: random formulas are printed, read back by eye's rules, and compared.
 
-The first comparison is exact: numbers live in a finite field (modulo a prime of 61 bits), functions are arbitrary maps
-of it, so a misplaced parenthesis changes the answer almost surely and rounding cannot hide it. The second compares
-with ``evaluate`` in floating point.
+The comparison is exact: numbers live in a finite field (modulo a prime of 61 bits), functions are arbitrary maps
+of it, so a misplaced parenthesis changes the answer almost surely and rounding cannot hide it.
 """
 
 from __future__ import annotations
 
-import math
 import re
 import zlib
 from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
 
-import numpy as np
-import pytest
+from formula_printed import latex, mathml, substituted_latex, substituted_mathml
 from formula_reader import Reader
-from hypothesis import assume, example, given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from truing.formulas import evaluate, latex, mathml, parse, substituted_latex, substituted_mathml
+from truing.formulas import parse
 
 SYMBOLS = {"load": "F", "early": "h_0", "angle": "theta_11", "way": "Delta z", "teeth": "z_2'", "limit": "F_N,max"}
 SYMBOLS |= {"ratio": "xi_lh", "rate": "k_R"}
@@ -182,7 +179,7 @@ def traps(*seconds: Any) -> Callable[[Callable[..., None]], Callable[..., None]]
 
 @traps()
 @given(expressions())
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=100, deadline=None)
 def test_symbols_read_back_exactly(text: str) -> None:
     reader = Reader(SEEN)
     formula = parse(text)
@@ -197,7 +194,7 @@ SHOWN = ["360", "2.5", "-12.5", "1.2e-05", "-3.4E+7", "0.001", "-0"]
 
 @traps([("-12.5", "mm")] * 10, [("-2.5", "")] * 10, [("1.2e-05", "")] * 10, [("360", "")] * 10, [("-3.4E+7", "°")] * 10)
 @given(expressions(), st.lists(st.tuples(st.sampled_from(SHOWN), st.sampled_from(["", *UNITS])), min_size=len(NAMES)))
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=100, deadline=None)
 def test_numbers_read_back_exactly(text: str, shown: list[tuple[str, str]]) -> None:
     numbers = dict(zip(NAMES, shown, strict=False))
     formula = parse(text)
@@ -207,29 +204,3 @@ def test_numbers_read_back_exactly(text: str, shown: list[tuple[str, str]]) -> N
     reader = Reader({"π": "pi"}, UNITS | {r"\%", r"{^{\circ}}"})
     assert exact(reader.mathml(substituted_mathml(formula, numbers)), **values) == wanted
     assert exact(reader.latex(substituted_latex(formula, numbers)), **values) == wanted
-
-
-FLOATS: dict[str, Any] = {name: getattr(np, name) for name in ("sqrt", "cbrt", "exp", "log", "log10", "abs", "sign")}
-FLOATS |= {name: getattr(np, name) for name in ("sin", "cos", "tan", "sinh", "cosh", "tanh")}
-FLOATS |= {"asin": np.arcsin, "acos": np.arccos, "atan": np.arctan, "atan2": np.arctan2, "cases": choose, "pi": math.pi}
-FLOATS |= {"cot": lambda x: 1 / np.tan(x), "inv": lambda x: np.tan(x) - x, "sum": lambda x: x, "mean": lambda x: x}
-FLOATS |= {"min": lambda *x: np.min(x), "max": lambda *x: np.max(x), "N": np.float64}
-FLOATS |= {"either": lambda x, y: y if np.isnan(x) else x}
-VALUES = st.lists(st.floats(0.05, 5.0), min_size=len(NAMES), max_size=len(NAMES))
-
-
-@traps([0.3 + 0.17 * place for place in range(10)])
-@given(expressions(), VALUES)
-@settings(max_examples=200, deadline=None)
-def test_symbols_read_back_with_the_value_of_evaluate(text: str, values: list[float]) -> None:
-    formula = parse(text)
-    point = dict(zip(NAMES, values, strict=True))
-    wanted = evaluate(formula, point)
-    moved = evaluate(formula, {name: value * (1 + 1e-9 * math.sin(value * 1e6)) for name, value in point.items()})
-    assume(math.isnan(wanted) or abs(moved - wanted) <= 1e-7 * abs(wanted))  # cancellation hides behind no tolerance
-    for read in (Reader(SEEN).mathml(mathml(formula, SYMBOLS)), Reader(SEEN).latex(latex(formula, SYMBOLS))):
-        with np.errstate(all="ignore"):
-            found = eval(
-                read, {"__builtins__": {}}, FLOATS | {name: np.float64(value) for name, value in point.items()}
-            )
-        assert found == pytest.approx(wanted, rel=1e-9, nan_ok=True), read

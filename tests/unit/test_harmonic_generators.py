@@ -150,7 +150,7 @@ def test_lines_made_together_know_nothing_of_one_another() -> None:
     assert brownian_profiles(1.4, 1.0, (3, 10), np.random.default_rng(0)).shape == (3, 10)
 
 
-@pytest.mark.parametrize("dimension", [1.15, 1.3, 1.6])
+@pytest.mark.parametrize("dimension", [1.15, 1.6])
 def test_brownian_patches_have_their_law_in_every_direction(dimension: float) -> None:
     exponent, count, step = 4.0 - 2.0 * dimension, 1500, 2.0
     pairs = (((0, 0), (0, 1)), ((0, 0), (1, 0)), ((3, 2), (9, 25)), ((0, 29), (19, 0)), ((19, 0), (0, 0)))

@@ -48,21 +48,20 @@ def test_errors_of_dimension_and_roughness_go_together() -> None:
 
 
 @pytest.mark.parametrize("method", ["pooled", "per_line"])
-@pytest.mark.parametrize("lines", [20, 100])
-def test_independent_lines_scatter_as_independent_surfaces_do(lines: int, method: str) -> None:
-    """120 surfaces: each standard deviation is known to 6.5 %, and three times that is allowed."""
+def test_independent_lines_scatter_as_independent_surfaces_do(method: str) -> None:
+    """120 surfaces of 20 lines: each standard deviation is known to 6.5 %, and three times that is allowed."""
     rng = np.random.default_rng(20221210)
     surfaces = [
-        estimated(brownian_profiles(1.5, STEP, (lines, 300), rng), resamples=100, method=method) for _ in range(120)
+        estimated(brownian_profiles(1.5, STEP, (20, 300), rng), resamples=100, method=method) for _ in range(120)
     ]
     true = np.std([pair(found) for found in surfaces], axis=0, ddof=1)
     told = np.sqrt(np.mean([found.resampled.var(axis=0, ddof=1) for found in surfaces if found.is_accepted], axis=0))
     np.testing.assert_allclose(told / true, 1.0, atol=0.2)
 
 
-@pytest.mark.parametrize("shape", [(1, 500), (5, 500), (100, 200)])
+@pytest.mark.parametrize("shape", [(5, 500), (100, 100)])
 def test_pieces_see_most_of_the_scatter(shape: tuple[int, int]) -> None:
-    """One line, five lines, a patch that is alike in both directions: 0.65 to 1.1 of the true standard deviation."""
+    """Five lines, a patch that is alike in both directions: 0.65 to 1.1 of the true standard deviation."""
     rng = np.random.default_rng(20221210)
     made = brownian_surface if shape[0] == 100 else brownian_profiles
     surfaces = [estimated(made(1.6, STEP, shape, rng), resamples=100) for _ in range(80)]

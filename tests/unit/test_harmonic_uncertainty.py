@@ -20,7 +20,7 @@ from harmonic_fractal.uncertainty import FLANKS, Propagated, Uncertainty, flank_
 from truing import Table, TruingError, Words
 from truing.calculation import Calculation, calculate
 from truing.setup import default_setup
-from truing.studies.scatter import scatter_of
+from truing.studies.sampling import scatter_of
 
 Array = NDArray[np.float64]
 SPACING, LINES, POINTS = 0.4e-6, 100, 500

@@ -8,15 +8,22 @@ import sys
 import tomllib
 from collections import Counter
 from collections.abc import Iterator
+from dataclasses import replace
+from functools import cache
 from graphlib import TopologicalSorter
 from importlib.metadata import packages_distributions
 from pathlib import Path
 
+import numpy as np
 import pytest
+from diagnosis_samples import REMAINDER, unknown
 from grimp import build_graph
 
 import truing
 from shared import ROOT, Answer, process
+from truing.diagnosis.records import Covariate
+from truing.diagnosis.result import ShapeTerm
+from truing.runs.new_effect import new_effect_source
 
 CODE = [*sorted((ROOT / "kernel").rglob("*.py")), *sorted((ROOT / "plugins").rglob("*.py"))]
 PACKAGES = sorted(path.parent.name for path in (ROOT / "plugins").glob("*/__init__.py"))
@@ -55,9 +62,28 @@ def test_format() -> None:
 # What the type checker catches in a plugin, before anything runs
 
 
-def test_the_plugin_of_the_style_page_is_typed() -> None:
-    answer = tool("mypy", "--strict", str(ROOT / "tests" / "data" / "pin_wear.py"))
-    assert answer.code == 0, answer.out
+def stub() -> str:
+    """The effect that a diagnosis proposes for a shape over two columns, one of which nobody declared."""
+    covariates = {**unknown().records.covariates, "a b": Covariate("a b", np.zeros(160), "kN", "other")}
+    records = replace(unknown().records, covariates=covariates)
+    terms = {"slide_position": (ShapeTerm("np.tanh(load / 1e3) * a b", 1e-6),)}
+    remainder = replace(REMAINDER, depends_on=("load", "a b"), terms=terms)
+    return new_effect_source(replace(unknown(), records=records, remainder=remainder))
+
+
+def test_plugins_outside_of_the_packages_are_typed_and_in_style(tmp_path: Path) -> None:
+    """Of the style page, of the manual, and the stub that a diagnosis writes, before anybody touches it."""
+    (tmp_path / "new_effect.py").write_text(stub(), encoding="utf-8")
+    examples = [str(file) for file in sorted((ROOT / "docs" / "examples").rglob("*.py"))]
+    files = [str(ROOT / "tests" / "data" / "pin_wear.py"), str(tmp_path / "new_effect.py"), *examples]
+    for words in (
+        ("mypy", "--strict", *files),
+        ("ruff", "check", *examples),
+        ("ruff", "format", "--check", *examples),
+        ("ruff", "check", "--select", "E,F,W,I", "--line-length", "120", str(tmp_path / "new_effect.py")),
+    ):
+        answer = tool(*words)
+        assert answer.code == 0, answer.out
 
 
 def test_every_mistake_in_a_plugin_is_caught() -> None:
@@ -100,7 +126,7 @@ def test_every_library_that_is_imported_is_declared() -> None:
     extras = project["optional-dependencies"]
     lists = [project["dependencies"], *(extras[name] for name in extras if name not in FOR_OUR_WORK)]
     declared = {canonical(word) for words in lists for word in words}
-    imported = {name for file in CODE for name in _libraries_of(ast.parse(file.read_text(encoding="utf-8")))}
+    imported = {name for file in CODE for name in _libraries_of(file)}
     imported -= NEVER_MISSED
     homes = packages_distributions()
     assert {"numpy", "pint", "sklearn"} <= imported
@@ -113,8 +139,14 @@ def canonical(requirement: str) -> str:
     return re.sub(r"[-_.]+", "-", name).lower()
 
 
-def _libraries_of(tree: ast.Module) -> Iterator[str]:
-    for node in ast.walk(tree):
+@cache
+def nodes_of(file: Path) -> list[ast.AST]:
+    """Every node of a file; each is read once for all tests."""
+    return list(ast.walk(ast.parse(file.read_text(encoding="utf-8"))))
+
+
+def _libraries_of(file: Path) -> Iterator[str]:
+    for node in nodes_of(file):
         names: list[str] = []
         if isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]
@@ -156,7 +188,7 @@ def test_every_file_on_the_way_is_there(begin: str) -> None:
 
 
 def imports_of(file: Path) -> Iterator[str]:
-    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+    for node in nodes_of(file):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
@@ -185,10 +217,9 @@ def test_every_name_for_authors_is_there() -> None:
 
 
 def test_the_type_checker_sees_the_same_names() -> None:
-    tree = ast.parse(Path(str(truing.__file__)).read_text(encoding="utf-8"))
     seen = {
         alias.name: node.module
-        for node in ast.walk(tree)
+        for node in nodes_of(Path(str(truing.__file__)))
         if isinstance(node, ast.ImportFrom) and str(node.module).startswith("truing.")
         for alias in node.names
     }
@@ -200,9 +231,7 @@ def test_the_type_checker_sees_the_same_names() -> None:
 
 
 def functions_of(file: Path) -> Iterator[ast.FunctionDef]:
-    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.FunctionDef):
-            yield node
+    return (node for node in nodes_of(file) if isinstance(node, ast.FunctionDef))
 
 
 def test_imports_stand_at_the_top_of_files() -> None:

@@ -188,12 +188,10 @@ def test_reading_time_grows_with_the_size_of_a_file(kind: str) -> None:
     "text",
     [
         NAMES,
-        "".join(f"[load{i}]\n" for i in range(20_000)),
-        "a = [\n" * 300_000,
         "[" * 1_900_000,
         '[inputs]\nload = "' + "9" * 1_900_000 + ' N"',
     ],
-    ids=["120000 names", "20000 sections", "lists", "brackets", "digits"],
+    ids=["120000 names", "brackets", "digits"],
 )
 def test_a_large_file_that_is_no_inputs_file_is_answered_at_once(text: str) -> None:
     """Against what Python's own reader takes for 120,000 names, about half a second on a machine of its own."""
@@ -228,7 +226,7 @@ def said(read: Callable[[], object]) -> list[str]:
     return []
 
 
-@drawing(max_examples=400, deadline=2000)
+@drawing(max_examples=200, deadline=2000)
 @drawn(st.one_of(st.text(), st.lists(LINES, max_size=12).map("\n".join)))
 def test_any_text_is_a_setup_or_an_input_error(text: str) -> None:
     assert all(sentence.startswith("wear.toml:") and "\n" not in sentence for sentence in said(lambda: pin(text)))

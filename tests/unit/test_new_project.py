@@ -10,6 +10,8 @@ import pytest
 
 from truing.errors import OutputError, UsageError
 from truing.new_project import (
+    LONGEST_NAME,
+    WIDEST_TITLE,
     NewPlugin,
     check_name,
     check_title,
@@ -20,7 +22,6 @@ from truing.new_project import (
     write_project,
     write_single_file,
 )
-from truing.new_project.names import LONGEST_NAME, WIDEST_TITLE
 
 LONG_NAME = "a" + "_b" * 19 + "c"
 TITLES = [

@@ -7,7 +7,7 @@ from markdown_it import MarkdownIt
 from markdown_it.token import Token
 
 from truing.formulas.symbols import printable
-from truing.report.markdown import escaped
+from truing.report.markdown_printer import escaped
 
 HOSTILE = [
     "<script>alert(1)</script>",

@@ -22,14 +22,13 @@ from truing.inputs_file import read_setup, setup_from_text
 from truing.kernel import Kernel, Offer
 from truing.measurements import read_cases
 from truing.published import compare_published
-from truing.report.columns import with_room
 from truing.report.document import Document, ResultEntry, TableView
-from truing.report.html_printer import css_text, html_of
+from truing.report.html_printer import css_text, html_of, with_room
 from truing.report.markdown_printer import markdown_of
 from truing.report.sheet import logo_of, make_sheet
-from truing.report.templates import template_folder
 from truing.runs.provenance import Provenance, provenance_of
 from truing.setup import InputsSource, Setup, SheetOptions, default_setup
+from truing.templating import template_folder
 
 DATA = Path(__file__).parents[1] / "data"
 HOSTILE = "<script>alert(1)</script> {{7*7}} $x$ | # `code` [link](https://evil.example) **bold** & \"' # next"

@@ -14,11 +14,11 @@ from truing.calculation import calculate
 from truing.declare.spreads import Grade, Off
 from truing.errors import UsageError
 from truing.fits import GRADES, tolerance
-from truing.report.content import check_rows
+from truing.report.sheet import check_rows
 from truing.setup import default_setup
+from truing.studies.allocation import largest_variance
 from truing.studies.demands import Demand, normal_chance
 from truing.studies.sampling import Tally
-from truing.studies.synthesis import largest_variance
 
 
 def allotted(model, study=None, setup=None):

@@ -42,8 +42,7 @@ from truing.studies.checks import limits, margin_of, plain_checks
 from truing.studies.demands import demands, nominal_inputs, worst
 from truing.studies.optimise_problem import ROWS, Brief, Problem, answers_of, make_problem, open_space
 from truing.studies.optimise_search import REFERENCE, knee_of, non_dominated, spread_out, volume_of
-from truing.studies.sampling import Machines
-from truing.studies.scatter import Scatter, _gather, scatter_of
+from truing.studies.sampling import Machines, Scatter, _gather, scatter_of
 
 SMALL = Optimise(population=20, generations=12, draws=600, verify=2000)
 
@@ -65,9 +64,8 @@ def values(best: Optimum, *names: str) -> np.ndarray:
 # Known fronts
 
 
-@pytest.mark.parametrize("seed", [0, 1])
-def test_the_front_of_zdt1(seed: int) -> None:
-    best = optimum(replace(setup_of(ZDT1), seed=seed), Optimise(population=100, generations=120))
+def test_the_front_of_zdt1() -> None:
+    best = optimum(setup_of(ZDT1), Optimise(population=100, generations=120))
     first, second = values(best, "first", "second").T
     away = second - (1 - np.sqrt(first))  # Zitzler, Deb, Thiele 2000: the front is 1 - sqrt(f1)
     assert len(best.front) == 100
@@ -106,12 +104,11 @@ def least_cost(goal: float, law: str, permitted: float = BAND) -> float:
     return sum(amount ** (2 / 3) for amount in AMOUNTS) ** 1.5 / math.sqrt(whole)
 
 
-@pytest.mark.parametrize("law", ["reciprocal", "square"])
-def test_the_least_cost_of_two_tolerances_for_every_limit(law: str) -> None:
+def test_the_least_cost_of_two_tolerances_for_every_limit() -> None:
     study = Optimise(tightest=0.25, widest=4.0, chance="first_order", population=100, generations=200, verify=1000)
-    best = optimum(setup_of(PAIR, law=law), study)
+    best = optimum(setup_of(PAIR, law="square"), study)
     limits_ = np.array([design.inputs["permitted"] for design in best.front])
-    least = np.array([least_cost(0.95, law, limit) for limit in limits_])
+    least = np.array([least_cost(0.95, "square", limit) for limit in limits_])
     over = values(best, "tolerance_price")[:, 0] / least - 1
     assert over.min() > -1e-9
     assert np.median(over) < 3e-3
@@ -120,7 +117,7 @@ def test_the_least_cost_of_two_tolerances_for_every_limit(law: str) -> None:
     assert all(design.chances["length"] >= 0.95 for design in best.front)
 
 
-GOALS = (0.7, 0.8, 0.9, 0.95, 0.99)
+GOALS = (0.7, 0.9, 0.99)
 
 
 @pytest.mark.parametrize("method", ["first_order", "draws"])
@@ -356,11 +353,10 @@ def test_the_same_seed_gives_the_same_front_and_another_one_another() -> None:
 @pytest.mark.parametrize("chance_", ["draws", "first_order"])
 def test_processes_give_the_same_bytes(chance_: Any) -> None:
     study = replace(SMALL, tightest=0.25, chance=chance_, parts=3)
-    setups = [replace(setup_of(PAIR), studies=(study,)), replace(grown(), studies=(study,))]
+    setup = replace(setup_of(PAIR) if chance_ == "draws" else grown(), studies=(study,))
     with open_executor("processes:2") as executor:
-        for setup in setups:
-            apart = calculate(setup, executor=executor).outcomes["optimise"]
-            assert written(apart) == written(calculate(setup).outcomes["optimise"])  # type: ignore[arg-type]
+        apart = calculate(setup, executor=executor).outcomes["optimise"]
+    assert written(apart) == written(calculate(setup).outcomes["optimise"])  # type: ignore[arg-type]
 
 
 def test_an_interrupted_search_takes_up_what_was_kept(tmp_path: Path) -> None:
@@ -506,15 +502,14 @@ def test_the_front_is_sorted_feasible_and_nobody_is_beaten() -> None:
 
 
 def test_the_sheet_shows_the_front_and_both_figures() -> None:
-    for setup, study in ((grown(), SMALL), (setup_of(PAIR), None), (setup_of(GEAR), SMALL)):
-        best = optimum(setup, study)
+    for best in (optimum(grown(), SMALL), optimum(setup_of(PAIR), SMALL), optimum(setup_of(GEAR), SMALL)):
         for block in best.blocks():
             if hasattr(block, "draw"):
                 block.draw().canvas.draw()
             elif hasattr(block, "rows"):
                 assert all(len(row) == len(block.columns) for row in block.rows)
                 assert len(block.rows) <= 24
-    titles = [block.title for block in optimum(setup_of(PAIR)).blocks() if not isinstance(block, Words)]
+    titles = [block.title for block in optimum(setup_of(PAIR), SMALL).blocks() if not isinstance(block, Words)]
     assert titles == ["Start and knee", "Front", "Front, start and knee", "Hypervolume over the generations"]
 
 

@@ -31,10 +31,9 @@ from truing.declare.spreads import Off
 from truing.errors import UsageError
 from truing.executors import open_executor
 from truing.setup import SwitchedOn
+from truing.studies.chances import FormResult
 from truing.studies.demands import normal_chance, wilson
-from truing.studies.form import FormResult
-from truing.studies.sampling import Moments, joined
-from truing.studies.scatter import scatter_of
+from truing.studies.sampling import Moments, joined, scatter_of
 
 QUICK = Reliability(draws=40_000)
 

@@ -16,7 +16,7 @@ from truing.inputs_file import setup_from_text
 from truing.kernel import Offer, Origin
 from truing.measurements import read_rows
 from truing.setup import Setup
-from truing.studies.scatter import scatter_of
+from truing.studies.sampling import scatter_of
 
 
 def weight_in(path: Path) -> float:

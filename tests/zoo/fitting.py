@@ -13,7 +13,7 @@ from truing.diagnosis.records import Records
 from truing.gauge import read_by_gauge
 from truing.setup import Setup, SwitchedOn
 from truing.testing import recorded
-from truing.testing.hidden import MEASURED, records_of
+from truing.testing.hiding import MEASURED, records_of
 from truing.units import to_si
 from zoo.zoo import Array, Measured, model_of
 

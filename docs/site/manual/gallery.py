@@ -18,7 +18,7 @@ from typing import Any
 from manual.models import environment, offers
 from manual.places import DOCS, ROOT
 from truing.cli import main
-from truing.kernel.source import code_hash
+from truing.kernel.loading import code_hash
 
 KEPT = ROOT / "build" / "gallery"
 """Where calculated sheets stay until the code, the templates or the example change; with TRUING_GALLERY=kept longer."""

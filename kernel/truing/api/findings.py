@@ -9,11 +9,10 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from truing.api.notebook import plotted, table_html
-from truing.api.quantities import quantity_of
 from truing.api.tables import frame_of
+from truing.api.values import quantity_of
 from truing.diagnosis import result as found
 from truing.errors import UsageError
-from truing.report.diagnosis_chapters import ranking_table
 from truing.report.diagnosis_figures import (
     against_simulated,
     main_covariates,
@@ -21,6 +20,7 @@ from truing.report.diagnosis_figures import (
     ranking_bars,
     shown_curves,
 )
+from truing.report.diagnosis_sheet import ranking_table
 from truing.report.diagnosis_words import explanation
 from truing.units import from_si
 
@@ -52,16 +52,16 @@ class Ranking:
     result: found.DiagnosisResult
 
     def __repr__(self) -> str:
-        return f"<Ranking: {'; '.join(explanation(each) for each in self.result.ranking)}>"
+        return f"<Ranking: {'; '.join(explanation(alternative) for alternative in self.result.ranking)}>"
 
     def frame(self) -> Any:
         """Return them as a dataframe: explanation, how far behind in score, lambda that separates it from the best."""
         ranked = self.result.ranking
         return frame_of(
             {
-                "explanation": [explanation(each) for each in ranked],
-                "behind": [each.behind for each in ranked],
-                "separation": [each.separation for each in ranked],
+                "explanation": [explanation(alternative) for alternative in ranked],
+                "behind": [alternative.behind for alternative in ranked],
+                "separation": [alternative.separation for alternative in ranked],
             }
         )
 
@@ -116,7 +116,9 @@ class Residuals:
 def causes_of(diagnosis: found.DiagnosisResult) -> tuple[NamedCause, ...]:
     """Return the causes that are named, the largest first, unknowns in the units they were declared in."""
     return tuple(
-        NamedCause(cause.effect, {each.name: _fitted(each) for each in cause.unknowns}, cause.share, cause.same_as)
+        NamedCause(
+            cause.effect, {unknown.name: _fitted(unknown) for unknown in cause.unknowns}, cause.share, cause.same_as
+        )
         for cause in diagnosis.causes
     )
 

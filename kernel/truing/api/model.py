@@ -13,15 +13,13 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from truing.api.comparison import Differences, comparison_of
 from truing.api.findings import NamedCause, Ranking, Residuals, causes_of
 from truing.api.notebook import bullets, fold, folds, heading, html_table, joined, paragraphs, picture, table_html
 from truing.api.records import MeasuredRecord
-from truing.api.run import Order, Run, performed
-from truing.api.settings import settings_of, text_of
+from truing.api.run import Differences, Order, Run, comparison_of, performed
 from truing.api.study import StudyResult
 from truing.api.tables import LABEL, beside, frame_text
-from truing.api.writing import write_sheet
+from truing.api.values import settings_of, text_of
 from truing.declare.model import Study
 from truing.declare.near_miss import near_miss
 from truing.describe import description, sections
@@ -34,17 +32,17 @@ from truing.example_file import example_of, example_text
 from truing.gauge import shown_by_gauge
 from truing.inputs_file import read_setup, setup_from_text
 from truing.inputs_file.assemble import toml_value
-from truing.inputs_file.culprit import told_by_line
-from truing.kernel import Offer
+from truing.inputs_file.sentences import told_by_line
+from truing.kernel import Offer, offer_of
 from truing.measurements import RowsFile, read_rows
 from truing.progress import progress_bar
 from truing.published import ComparedRow, compare_published
-from truing.report.diagnosis_chapters import fitted_table
-from truing.report.diagnosis_sheet import data_words, diagnosis_sheet_of, questions, write_diagnosed
+from truing.report.diagnosis_sheet import data_words, diagnosis_sheet_of, fitted_table, questions
 from truing.report.diagnosis_words import headline, verdict_word
+from truing.report.run import run_info, sheets_of, write_sheet
 from truing.runs.diagnosis_document import diagnosis_document
 from truing.runs.extension import extended_text
-from truing.runs.folder import demand_place
+from truing.runs.folder import demand_place, write_diagnosis
 from truing.setup import Setup
 from truing.studies.bench import Progress
 from truing.studies.sweep import Sweep
@@ -354,7 +352,11 @@ class Diagnosis:
 
     def written(self, folder: Path, *, pdf: bool = False) -> str:
         """Write the folder and return what became of the PDF."""
-        return write_diagnosed(self.result, folder, started=self.started, pdf=pdf)
+        sheet = diagnosis_sheet_of(self.result, self.started)
+        sheets, note = sheets_of(sheet, folder, pdf=pdf)
+        info = run_info(self.started)
+        write_diagnosis(folder, self.result, provenance=sheet.provenance, run_info=info, sheets=sheets)
+        return note
 
     def compare(self, before: Diagnosis) -> Differences:
         """Return what differs from ``before`` to this diagnosis: data, verdict, causes, errors, gain."""
@@ -370,3 +372,15 @@ class Diagnosis:
         head = heading(f"Diagnosis of {self.result.setup.model.title}, {data_words(self.result)}")
         shown = picture(self.residuals.drawing(), "Residuals before and after")
         return joined(head + paragraphs([*said, *warned]), table, shown, fold("More", rest))
+
+
+# Loading a model: the first call of a user
+
+
+def load(plugin: str | Path) -> LoadedModel:
+    """Load a model: an installed plugin by its name, one model of several as "plugin.model", or a file (``.py``).
+
+    Plugins that are broken are left out, with a warning each. Raises UnknownPluginError where there is no such model,
+    PluginError where the plugin that is named is broken.
+    """
+    return LoadedModel(offer_of(str(plugin), lambda text: warnings.warn(text, stacklevel=4)))

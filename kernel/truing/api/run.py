@@ -12,29 +12,27 @@ from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
-from truing.api.comparison import Differences, comparison_of
 from truing.api.notebook import MOST_ROWS, fold, heading, html_table, joined, paragraphs, table_html
-from truing.api.quantities import quantity_of
 from truing.api.study import StudyResult
 from truing.api.tables import frame_of, frame_text
-from truing.api.writing import write_sheet
+from truing.api.values import quantity_of
 from truing.calculation import Calculation, calculate
 from truing.cases import CaseResult, CasesTable, run_cases
 from truing.declare.near_miss import near_miss
 from truing.errors import UsageError
-from truing.executors import BatchLog, KeptExecutor, WorkerPool, open_executor
+from truing.executors import BatchLog, KeptExecutor, open_executor
 from truing.formulas import symbol_text
-from truing.inputs_file.culprit import told_by_line
+from truing.inputs_file.sentences import told_by_line
 from truing.kernel import Offer
 from truing.measurements import CasesFile, read_cases
 from truing.numbers import format_value, with_unit
 from truing.progress import progress_bar
-from truing.report.content import check_table
 from truing.report.document import plain_text
-from truing.report.run import UNDISTURBED, sheet_of, write_calculation
-from truing.report.sheet import banner_of, cases_table
+from truing.report.run import run_info, sheet_of, sheets_of, write_sheet
+from truing.report.sheet import banner_of, cases_table, check_table
+from truing.runs.comparison import Change, compared, in_order, words_of
 from truing.runs.documents import results_document
-from truing.runs.folder import demand_place
+from truing.runs.folder import demand_place, write_run
 from truing.runs.partial import code_of, identity_of, kept_batches
 from truing.runs.provenance import provenance_of
 from truing.setup import Setup
@@ -92,7 +90,7 @@ class Run:
     calculation: Calculation
     started: float
     cases: CasesTable | None = None
-    computed: Mapping[str, Any] = field(default_factory=lambda: UNDISTURBED)
+    computed: Mapping[str, Any] = field(default_factory=lambda: {"resumed": 0, "warnings": []})
     note: str = ""
 
     def __repr__(self) -> str:
@@ -182,10 +180,15 @@ class Run:
     def written(self, order: Order, progress: Progress) -> str:
         """Write the folder of an order and return what became of the PDF."""
         assert order.folder is not None
-        return write_calculation(
-            order.folder, self.calculation, self.offer, started=self.started, computed=self.computed, cases=self.cases,
-            pdf=order.pdf, excel=order.excel, progress=progress,
+        sheet = sheet_of(self.calculation, self.offer, started=self.started, cases=self.cases, progress=progress)
+        if order.pdf:
+            progress("printing", 0, 0)
+        sheets, note = sheets_of(sheet, order.folder, pdf=order.pdf)
+        write_run(
+            order.folder, self.calculation, provenance=sheet.provenance, sheets=sheets,
+            run_info={**run_info(self.started), **self.computed}, cases=self.cases, excel=order.excel,
         )  # fmt: skip
+        return note
 
     def compare(self, before: Run) -> Differences:
         """Return what differs from ``before`` to this run: settings, inputs, results, checks, studies."""
@@ -246,7 +249,11 @@ def _calculated(setup: Setup, offer: Offer, order: Order, *, progress: Progress,
         executor = place if log is None else KeptExecutor(place, log)
         calculation, cases = _with_cases(setup, offer, order, executor=executor, progress=progress)
         place.settle()
-        computed = _computed(executor)
+        computed = {
+            "workers": {"count": executor.workers, "lost": executor.losses, "where": executor.where},
+            "resumed": executor.resumed if isinstance(executor, KeptExecutor) else 0,
+            "warnings": executor.remarks(),
+        }
     return Run(offer, calculation, started, cases, computed)
 
 
@@ -261,15 +268,6 @@ def _with_cases(
 def _cases_of(cases: Any, offer: Offer, setup: Setup) -> CasesFile:
     """Read cases from a file, or from a dataframe, which goes by that name."""
     return read_cases(Path(cases) if isinstance(cases, (str, Path)) else frame_text(cases, {}), offer, setup)
-
-
-def _computed(place: WorkerPool) -> dict[str, Any]:
-    """Return what run.json says of where it was computed: workers, what befell them, batches that were taken up."""
-    return {
-        "workers": {"count": place.workers, "lost": place.losses, "where": place.where},
-        "resumed": place.resumed if isinstance(place, KeptExecutor) else 0,
-        "warnings": place.remarks(),
-    }
 
 
 def _case_columns(cases: CasesTable, setup: Setup) -> dict[str, list[Any]]:
@@ -295,3 +293,37 @@ def _answer(case: CaseResult, name: str, setup: Setup) -> float:
 
 def _in_unit(value: Any, unit: str) -> Any:
     return value if isinstance(value, (str, bool)) else float(from_si(value, unit))
+
+
+# What differs between two runs, or two diagnoses
+
+
+CHANGE_COLUMNS = ("what", "name", "before", "after", "change")
+
+
+@dataclass(frozen=True)
+class Differences:
+    """What differs between two runs, or two diagnoses: checks of another state first. False where nothing does."""
+
+    changes: tuple[Change, ...]
+
+    def __repr__(self) -> str:
+        return "\n".join("  ".join(words_of(change)) for change in self.changes) or "equal"
+
+    def __bool__(self) -> bool:
+        """Whether anything differs."""
+        return bool(self.changes)
+
+    def frame(self) -> Any:
+        """Return the differences as a dataframe of texts: what, name, before, after, change."""
+        rows = [words_of(change) for change in self.changes]
+        return frame_of({name: [row[index] for row in rows] for index, name in enumerate(CHANGE_COLUMNS)})
+
+    def _repr_html_(self) -> str:
+        rows = [words_of(change) for change in self.changes]
+        return html_table(rows, CHANGE_COLUMNS) if rows else paragraphs(["equal"])
+
+
+def comparison_of(before: Mapping[str, Any], after: Mapping[str, Any]) -> Differences:
+    """Compare two documents. Raises UsageError for a run beside a diagnosis."""
+    return Differences(tuple(in_order(compared(before, after))))

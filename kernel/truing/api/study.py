@@ -43,7 +43,7 @@ class StudyResult:
             return frame_of(dict(_swept_columns(self.outcome)))
         tables = {block.title: block for block in self.outcome.blocks() if isinstance(block, Table)}
         table = _chosen(title, tables, "table")
-        return frame_of({name: [row[place] for row in table.rows] for place, name in enumerate(_headers(table))})
+        return frame_of({name: [row[index] for row in table.rows] for index, name in enumerate(_headers(table))})
 
     def plot(self, *names: str) -> Figure:
         """Draw the study: of a sweep the results that are named, or those that change; else the figure of that title.
@@ -88,7 +88,7 @@ def _headers(table: Table) -> list[str]:
     """Return the names of columns with their units; columns of one name are told apart by a number."""
     units = [*table.units, *[""] * len(table.columns)]
     names = [f"{name} [{unit}]" if unit else name for name, unit in zip(table.columns, units, strict=False)]
-    return [name if names.index(name) == place else f"{name} {place + 1}" for place, name in enumerate(names)]
+    return [name if names.index(name) == index else f"{name} {index + 1}" for index, name in enumerate(names)]
 
 
 def _moving_results(swept: Swept, names: tuple[str, ...]) -> list[str]:

@@ -8,10 +8,9 @@ import sys
 from collections.abc import Sequence
 from contextlib import suppress
 
-from truing.cli.answers import answer_the_shell
 from truing.cli.app import app
-from truing.cli.console import Settings, after_output, close_stream, lose_output, ready_streams
-from truing.cli.endings import hear_endings
+from truing.cli.candidates import answer_the_shell
+from truing.cli.console import Settings, after_output, close_stream, hear_endings, lose_output, ready_streams
 
 FLAGS = {"--traceback": "traceback", "-v": "verbose", "--verbose": "verbose", "-q": "quiet", "--quiet": "quiet"}
 

@@ -8,14 +8,15 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
+from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, ParamSpec
+from typing import Annotated, Any, ParamSpec, TypeAlias
 
 import typer
 
+from truing.cli import candidates
 from truing.cli.candidates import names, names_inside, runs
-from truing.cli.console import out, verb
-from truing.cli.words import AsJson, Cases, Changed, Excel, Inputs, OutputFile, Pdf, Plugin, RunFolder, Shell
+from truing.cli.console import out, settings_of, verb
 from truing.heavy import Later
 
 P = ParamSpec("P")
@@ -48,11 +49,16 @@ def _common(
 
 
 def _loaded(declared: Callable[P, None]) -> Callable[P, None]:
-    """Make a verb of a declaration: the function of its name, in the module of its name, is called with the same."""
+    """Make a verb of a declaration: the function of its name, in the module of its name, is called with the same.
+
+    In place of typer's context it takes the settings that hold for every verb.
+    """
 
     @functools.wraps(declared)
     def call(*args: P.args, **kwargs: P.kwargs) -> int:
-        return int(getattr(Later(f"truing.cli.{declared.__name__}"), declared.__name__)(*args, **kwargs))
+        taken: dict[str, Any] = {**kwargs, "settings": settings_of(kwargs["context"])}
+        del taken["context"]
+        return int(getattr(Later(f"truing.cli.{declared.__name__}"), declared.__name__)(**taken))
 
     return app.command(declared.__name__)(verb(call))
 
@@ -67,7 +73,7 @@ def plugins(
 ) -> int:
     """List what is installed, from where, which version, and what broke while loading."""
     if not names:
-        return int(Later("truing.cli.plugins").plugins(context=context, as_json=as_json, strict=strict))
+        return int(Later("truing.cli.plugins").plugins(settings=settings_of(context), as_json=as_json, strict=strict))
     for name in Later("truing.entry_points").plugin_names():
         out(name)
     return 0
@@ -140,6 +146,7 @@ def watch(
     context: typer.Context,
     plugin: Plugin,
     inputs: Annotated[Path, typer.Option("--inputs", "-i", help="The inputs file that is being edited.")],
+    data: Data = None,
     changed: Changed = None,
     cases: Cases = None,
     output: RunFolder = None,
@@ -147,7 +154,7 @@ def watch(
     workers: Annotated[int, typer.Option("--workers", min=1, help="Processes that share the work.")] = 1,
     every: Annotated[float, typer.Option("--every", min=0.02, help="Seconds without a change before it runs.")] = 0.5,
 ) -> None:
-    """Run, and run again whenever the inputs file, its data files or the plugin's code change; Ctrl-C ends it."""
+    """Run, or with --data diagnose, again whenever inputs, data files or the plugin's code change; Ctrl-C ends it."""
 
 
 @_loaded
@@ -169,9 +176,7 @@ def diagnose(
     plugin: Plugin,
     files: Annotated[list[Path] | None, typer.Argument(help="Further files of measured rows.")] = None,
     inputs: Inputs = None,
-    data: Annotated[
-        list[Path] | None, typer.Option("--data", "-d", help="A CSV file of measured rows; may be repeated.")
-    ] = None,
+    data: Data = None,
     changed: Changed = None,
     output: Annotated[
         Path | None, typer.Option("--output", "-o", help="The folder (default runs/STEM of the first data file).")
@@ -183,11 +188,7 @@ def diagnose(
 
 
 @_loaded
-def verify(
-    context: typer.Context,
-    plugin: Plugin,
-    as_json: AsJson = False,
-) -> None:
+def verify(context: typer.Context, plugin: Plugin, as_json: AsJson = False) -> None:
     """Print every number that the source prints beside ours; exit 0 if every row matches its stated verdict."""
 
 
@@ -235,3 +236,47 @@ def completion(
     install: Annotated[bool, typer.Option("--install", help="Put the script where your shell finds it.")] = False,
 ) -> None:
     """Print the script by which your shell completes plugins, inputs and results, or install it."""
+
+
+# Arguments and options that several verbs share
+
+
+Plugin: TypeAlias = Annotated[
+    str, typer.Argument(help="An installed plugin's name, or a Python file.", autocompletion=candidates.plugins)
+]
+Changed: TypeAlias = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="NAME=VALUE",
+        help="Replace one value of the inputs file.",
+        autocompletion=candidates.changes,
+    ),
+]
+AsJson: TypeAlias = Annotated[bool, typer.Option("--json", help="One JSON document on stdout.")]
+OutputFile: TypeAlias = Annotated[
+    Path | None, typer.Option("-o", "--output", help="The file to write (stdout without it).")
+]
+Excel: TypeAlias = Annotated[
+    bool, typer.Option("--excel", help="Write CSV that a spreadsheet with a decimal comma opens.")
+]
+Inputs: TypeAlias = Annotated[
+    Path | None, typer.Option("--inputs", "-i", help="The inputs file; without it the shipped example.")
+]
+Cases: TypeAlias = Annotated[Path | None, typer.Option("--cases", help="A CSV file: every row is a case.")]
+Data: TypeAlias = Annotated[
+    list[Path] | None, typer.Option("--data", "-d", help="A CSV file of measured rows; may be repeated.")
+]
+RunFolder: TypeAlias = Annotated[
+    Path | None, typer.Option("--output", "-o", help="The run folder (default runs/STEM).")
+]
+Pdf: TypeAlias = Annotated[bool, typer.Option("--pdf", help="Print the sheet to PDF with an installed browser.")]
+
+
+class Shell(StrEnum):
+    """A shell that can complete."""
+
+    bash = "bash"
+    zsh = "zsh"
+    fish = "fish"
+    powershell = "powershell"

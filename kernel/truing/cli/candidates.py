@@ -7,8 +7,11 @@ not, but never told of an error.
 from __future__ import annotations
 
 import functools
+import os
+import re
 from collections.abc import Callable, Iterator
-from contextlib import redirect_stderr, redirect_stdout
+from contextlib import redirect_stderr, redirect_stdout, suppress
+from importlib import import_module
 from io import StringIO
 from pathlib import Path
 from typing import Any, ParamSpec
@@ -113,3 +116,23 @@ def _is_file(incomplete: str) -> bool:
 
 def _from(distribution: Any) -> str:
     return f"{distribution.name} {distribution.version}" if distribution is not None else ""
+
+
+# The answer when a shell asks what it may complete
+
+
+LINE = "_TYPER_COMPLETE_ARGS"
+"""The environment variable in which a shell hands over what was typed."""
+_FLAGS = re.compile(r"(?<=\s)(?:-q|-v|--quiet|--verbose|--traceback)(?=\s)")
+
+
+def answer_the_shell(app: Callable[..., object]) -> int:
+    """Answer a shell that asks, through the protocol of typer; whatever goes wrong, nothing is said."""
+    os.environ["COLUMNS"] = os.environ["TERMINAL_WIDTH"] = "1000"  # a help text broken into lines would be names
+    line = os.environ.get(LINE)
+    if line is not None:
+        os.environ[LINE] = _FLAGS.sub("", line)
+    with open(os.devnull, "w", encoding="utf-8") as nowhere, redirect_stderr(nowhere), suppress(SystemExit, Exception):
+        import_module("typer.completion").completion_init()
+        app(args=[], prog_name="calc")
+    return 0

@@ -2,27 +2,23 @@
 
 from __future__ import annotations
 
+import os
+import sys
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 
-import typer
+from rich.console import Console
+from rich.text import Text
 
-from truing.cli.changes import styles_of
-from truing.cli.coloured import out_table
-from truing.cli.console import out, out_json
-from truing.runs.change_words import words_of
-from truing.runs.comparison import Change, compared, in_order
+from truing.cli.console import GAP, Settings, aligned, harmless, out, out_json, put
+from truing.runs.comparison import Change, compared, in_order, words_of
 from truing.runs.folder import load_either
+from truing.studies.checks import EXIT_CODES
 from truing.texts import one_line
 
 
-def compare(
-    context: typer.Context,
-    *,
-    first: Path,
-    second: Path,
-    as_json: bool,
-) -> int:
+def compare(settings: Settings, *, first: Path, second: Path, as_json: bool) -> int:
     """Show inputs, results and checks that changed: exit 0 when equal, 1 when different."""
     found = compared(load_either(first), load_either(second))
     if as_json:
@@ -39,3 +35,66 @@ def _print(found: list[Change], titles: tuple[str, str]) -> None:
     ordered = in_order(found)
     rows = [("what", "name", *map(one_line, titles), "change"), *map(words_of, ordered)]
     out_table(rows, [("",) * 5, *map(styles_of, ordered)])
+
+
+# The colours that repeat what changed between two runs
+
+
+def styles_of(change: Change) -> tuple[str, str, str, str, str]:
+    """Name the colours of one row: what a check gained or lost, and what is new."""
+    if change.kind != "checks":
+        return "", "", OLD, NEW, ""
+    better = _is_better(change)
+    colour = {True: GOOD, False: BAD, None: ""}[better]
+    flip = f"bold {colour}" if change.flipped else colour
+    return flip if change.flipped else "", flip if change.flipped else "", OLD, NEW, flip
+
+
+def _is_better(change: Change) -> bool | None:
+    """Tell whether a check has more left than before; None where that cannot be said."""
+    if change.flipped:
+        states = list(EXIT_CODES)
+        return states.index(change.after["state"]) < states.index(change.before["state"])
+    if not isinstance(change.before, Mapping) or not isinstance(change.after, Mapping):
+        return None
+    before, after = change.before.get("margin"), change.after.get("margin")
+    return None if before is None or after is None or before == after else bool(after > before)
+
+
+# Tables in colour where a terminal shows them; everywhere else, and with NO_COLOR, the same text without
+
+
+GOOD, BAD, NEW, OLD = "green", "red", "bold", "dim"
+
+
+def shows_colour() -> bool:
+    """Tell whether what is printed goes to a terminal that is to show colours."""
+    plain = os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb"
+    return sys.stdout.isatty() and not plain
+
+
+def out_table(rows: Sequence[Sequence[str]], styles: Sequence[Sequence[str]], *, right: Sequence[int] = ()) -> None:
+    """Print rows in aligned columns; ``styles`` names the colour of each cell, or nothing. Colour changes no text."""
+    lines = aligned(rows, right=right)
+    if not shows_colour():
+        out("\n".join(lines))
+        return
+    console = Console(file=sys.stdout, highlight=False, soft_wrap=True)
+    starts = _starts(rows)
+    with console.capture() as coloured:
+        for line, of_cells in zip(lines, styles, strict=True):
+            text = Text(harmless(line))
+            for index, style in enumerate(of_cells):
+                if style:
+                    end = starts[index + 1] if index + 1 < len(of_cells) else len(line)
+                    text.stylize(style, starts[index], end)
+            console.print(text)
+    put(coloured.get())
+
+
+def _starts(rows: Sequence[Sequence[str]]) -> list[int]:
+    """Return where each column begins."""
+    starts = [0]
+    for column in zip(*rows, strict=True):
+        starts.append(starts[-1] + max(map(len, column)) + len(GAP))
+    return starts

@@ -6,18 +6,16 @@ import os
 from importlib import import_module
 from pathlib import Path
 
-import typer
-
 from truing.atomic import write_files
-from truing.cli.console import out, settings_of
-from truing.cli.words import Shell
+from truing.cli.app import Shell
+from truing.cli.console import Settings, out
 from truing.errors import UsageError
-from truing.report.templates import template_folder
+from truing.templating import template_folder
 
 FILES = {Shell.bash: "calc.bash", Shell.zsh: "calc.zsh", Shell.fish: "calc.fish", Shell.powershell: "calc.ps1"}
 
 
-def completion(context: typer.Context, *, shell: Shell | None, install: bool) -> int:
+def completion(settings: Settings, *, shell: Shell | None, install: bool) -> int:
     """Print the script by which your shell completes plugins, inputs and results, or install it."""
     wanted = shell or _present_shell()
     text = (template_folder() / "completion" / FILES[wanted]).read_text(encoding="utf-8")
@@ -25,7 +23,7 @@ def completion(context: typer.Context, *, shell: Shell | None, install: bool) ->
         out(text.rstrip("\n"))
         return 0
     for line in _installed(wanted, text):
-        settings_of(context).say(line)
+        settings.say(line)
     return 0
 
 

@@ -1,14 +1,17 @@
-"""Where words go: results to stdout, everything else to stderr, one sentence per error."""
+"""Where words go: results to stdout, everything else to stderr, one sentence per error; and how a command ends."""
 
 from __future__ import annotations
 
+import _thread
 import functools
 import json
 import os
 import re
 import shutil
+import signal
 import sys
 import textwrap
+import threading
 import traceback
 from collections.abc import Callable, Sequence
 from contextlib import suppress
@@ -17,7 +20,6 @@ from typing import Any, ParamSpec, TextIO
 
 import typer
 
-from truing.cli.endings import Terminated
 from truing.errors import InputError, OutputError, TruingError
 from truing.heavy import Later
 from truing.texts import one_line
@@ -214,3 +216,45 @@ def broken(line: str, indent: int, width: int = 0) -> list[str]:
         return [line]
     parts = textwrap.wrap(line[indent:], width - indent, break_on_hyphens=False) or [""]
     return [line[:indent] + parts[0], *(" " * indent + part for part in parts[1:])]
+
+
+# How a command is ended from outside: by Ctrl-C and by the system, and by neither in vain
+
+
+AFTER_FINALIZER = 0.05
+"""So many seconds after a finalizer that an interrupt was dropped in it is raised again."""
+
+
+class Terminated(KeyboardInterrupt):  # as the interrupt it is
+    """The system has asked this process to end (SIGTERM): what Ctrl-C does, with another exit code."""
+
+
+def hear_endings() -> None:
+    """End as after an interrupt when the system asks for it, so that nothing is left behind.
+
+    Python drops an exception in a finalizer. An interrupt that comes just then is raised once more, after it.
+    """
+
+    def terminate(number: int, frame: object) -> None:
+        raise Terminated
+
+    def raise_again(dropped: sys.UnraisableHookArgs) -> None:
+        if not isinstance(dropped.exc_value, KeyboardInterrupt):
+            sys.__unraisablehook__(dropped)
+            return
+        number = signal.SIGTERM if isinstance(dropped.exc_value, Terminated) else signal.SIGINT
+        later = threading.Timer(AFTER_FINALIZER, _signal_main, [number])
+        later.daemon = True
+        later.start()
+
+    signal.signal(signal.SIGTERM, terminate)
+    sys.unraisablehook = raise_again
+
+
+def _signal_main(number: signal.Signals) -> None:
+    """Send a signal to the main thread, wherever it waits."""
+    main = threading.main_thread().ident
+    if sys.platform == "win32" or main is None:
+        _thread.interrupt_main(number)
+    else:
+        signal.pthread_kill(main, number)

@@ -5,24 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-import typer
-
-from truing.cli.console import columns, out, out_json, settings_of
+from truing.cli.console import Settings, columns, out, out_json
 from truing.cli.load import find_model
 from truing.describe import sections
 from truing.inputs_file import json_schema
 from truing.texts import one_line
 
 
-def describe(
-    context: typer.Context,
-    *,
-    plugin: str,
-    as_json: bool,
-    as_schema: bool,
-) -> int:
+def describe(settings: Settings, *, plugin: str, as_json: bool, as_schema: bool) -> int:
     """Show inputs, results, error sources and objectives: symbols, units, bounds, sources."""
-    model = find_model(plugin, settings_of(context))
+    model = find_model(plugin, settings)
     if as_schema:
         out_json(json_schema(model.offer))
     elif as_json:

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
-
-import typer
 
 from truing.api.model import Diagnosis
 from truing.api.records import MeasuredRecord
-from truing.cli.console import Settings, out, out_json, say, settings_of
-from truing.cli.diagnosis_printed import report
+from truing.cli.console import Settings, broken, out, out_json, say
 from truing.cli.load import find_model, say_example
+from truing.diagnosis.result import DiagnosisResult
 from truing.errors import UsageError
+from truing.report.diagnosis_sheet import data_line, questions
+from truing.report.diagnosis_words import headline, verdict_word
 from truing.runs.provenance import provenance_of
 from truing.texts import one_line
 
@@ -20,7 +21,7 @@ MISSPELT = "Did you mean"
 
 
 def diagnose(
-    context: typer.Context,
+    settings: Settings,
     *,
     plugin: str,
     files: list[Path] | None,
@@ -32,7 +33,6 @@ def diagnose(
     as_json: bool,
 ) -> int:
     """Find what the simulation gets wrong, name the cause, extend the model and measure the gain."""
-    settings = settings_of(context)
     measured = (*(data or ()), *(files or ()))
     if not measured:
         raise UsageError("nothing to diagnose: name the measured rows with --data FILE.csv")
@@ -44,7 +44,7 @@ def diagnose(
     if as_json:
         out_json(done.document)
     else:
-        out("\n".join(report(done.result, folder)))
+        out("\n".join(lines_of(done.result, folder)))
     return 0
 
 
@@ -61,3 +61,30 @@ def _say_beside(done: Diagnosis, settings: Settings) -> None:
         settings.say(done.note)
     setup = done.result.setup
     settings.detail(f"input hash {provenance_of(setup).input_hash}, seed {setup.seed}")
+
+
+# A diagnosis on the terminal: the verdict in sentences, then its five questions in a few lines each
+
+
+INDENT = 18
+
+
+def lines_of(diagnosis: DiagnosisResult, folder: Path) -> Iterator[str]:
+    """Say what a diagnosis found: one block for each question, broken to the width of a terminal."""
+    yield from broken(f"DIAGNOSIS  {one_line(data_line(diagnosis))}", 11)
+    yield ""
+    word = f"{verdict_word(diagnosis)}."
+    for index, sentence in enumerate(headline(diagnosis)):
+        yield from broken(one_line(f"{word} {sentence}" if not index else sentence), 0)
+    yield ""
+    for number, (question, lines) in enumerate(questions(diagnosis).items(), start=1):
+        title = f"{number} {question}"
+        for index, line in enumerate(lines):
+            inner = " " * (len(line) - len(line.lstrip()))
+            yield from broken((title if not index else "").ljust(INDENT) + inner + one_line(line), INDENT + len(inner))
+    yield ""
+    yield f"sheet: {folder / 'sheet.html'}"
+    if diagnosis.causes:
+        yield f"extended model: {folder / 'extended.toml'}"
+    if diagnosis.remainder is not None:
+        yield f"remainder as an effect: {folder / 'new_effect.py'}"

@@ -4,23 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import typer
-
-from truing.cli.console import out, out_json, settings_of
+from truing.cli.console import Settings, out, out_json
 from truing.report.index_page import listing_document, summary_of, write_index
 from truing.runs.index import list_folder
 from truing.texts import one_line
 
 
-def index(
-    context: typer.Context,
-    *,
-    folder: Path,
-    output: Path | None,
-    as_json: bool,
-) -> int:
+def index(settings: Settings, *, folder: Path, output: Path | None, as_json: bool) -> int:
     """Write one page that lists the runs and diagnoses of a folder, to sort and to filter, offline."""
-    settings = settings_of(context)
     listing = list_folder(folder)
     page = output or folder / "index.html"
     if output is not None or not as_json:

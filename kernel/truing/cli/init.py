@@ -5,26 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-import typer
-
 from truing.atomic import write_files
-from truing.cli.console import json_text, out, settings_of
+from truing.cli.console import Settings, json_text, out
 from truing.cli.load import find_offer
 from truing.errors import OutputError
 from truing.example_file import example_text, schema_name, with_schema_line
 from truing.inputs_file import json_schema
 
 
-def init(
-    context: typer.Context,
-    *,
-    plugin: str,
-    output: Path | None,
-    force: bool,
-    no_schema: bool,
-) -> int:
+def init(settings: Settings, *, plugin: str, output: Path | None, force: bool, no_schema: bool) -> int:
     """Write a commented inputs file that holds the shipped example."""
-    settings = settings_of(context)
     offer = find_offer(plugin, settings)
     text = example_text(offer)
     if output is None:

@@ -50,7 +50,7 @@ def changes(context: typer.Context, incomplete: str) -> Iterator[OfferedWord]:
     for key, schema in inside.items():
         yield f"{'.'.join([*above, key])}{'.' if 'properties' in schema else '='}", _words(schema)
     if not above:
-        files = (key for key, item in model.input_fields.items() if item.kind == "file")
+        files = (key for key, field in model.input_fields.items() if field.kind == "file")
         yield from ((f"{key}.", "how the data file is read") for key in files)
         sections = (key for key, entries in known.items() if entries and key not in {"inputs", "conditions"})
         yield from ((f"{key}.", "a section of the inputs file") for key in sections)
@@ -109,14 +109,10 @@ def _declared(model: Model[Any, Any]) -> Iterator[OfferedWord]:
     """Give results, inputs, effects and tolerances, each name once."""
     found: dict[str, str] = {}
     for fields in (model.result_fields, model.input_fields):
-        for name, item in fields.items():
-            found.setdefault(name, _with_unit(item.spec.note, item.unit))
+        for name, field in fields.items():
+            found.setdefault(name, ", ".join(part for part in (field.spec.note, field.unit) if part))
     for effect in model.effects.values():
         found.setdefault(effect.name, effect.why or effect.looks_like)
     for tolerance in model.tolerances.values():
         found.setdefault(tolerance.name, tolerance.why)
     yield from found.items()
-
-
-def _with_unit(note: str, unit: str) -> str:
-    return ", ".join(part for part in (note, unit) if part)

@@ -7,8 +7,7 @@ from pathlib import Path
 
 from truing.api.model import LoadedModel
 from truing.cli.console import Settings
-from truing.kernel import Offer
-from truing.kernel.finding import offer_of
+from truing.kernel import Offer, offer_of
 
 LABEL = "--set"
 """What sentences about a value on the command line begin with."""

@@ -6,9 +6,7 @@ import os
 import shlex
 from pathlib import Path
 
-import typer
-
-from truing.cli.console import settings_of
+from truing.cli.console import Settings
 from truing.errors import UsageError
 from truing.new_project import (
     NewPlugin,
@@ -22,23 +20,14 @@ from truing.new_project import (
 )
 
 
-def new(
-    context: typer.Context,
-    *,
-    name: str,
-    title: str | None,
-    output: Path | None,
-    single: bool,
-) -> int:
+def new(settings: Settings, *, name: str, title: str | None, output: Path | None, single: bool) -> int:
     """Write a plugin of your own: package, tests, entry point, CI; it works as written."""
     check_name(name)
     if title is not None:
         check_title(title)
     plan = NewPlugin(name, title.strip() if title is not None else title_of(name))
     steps = _file(plan, output) if single else _project(plan, output)
-    settings_of(context).say(
-        "\n".join([*steps, "the physics in it is a placeholder, a clamped bar: replace it by your own"])
-    )
+    settings.say("\n".join([*steps, "the physics in it is a placeholder, a clamped bar: replace it by your own"]))
     return 0
 
 

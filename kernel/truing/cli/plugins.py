@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-import typer
+from dataclasses import asdict
 
-from truing.cli.console import columns, out, out_json, settings_of
-from truing.kernel import Kernel, Offer
+from truing.cli.console import Settings, columns, out, out_json
+from truing.kernel import Kernel
 from truing.texts import one_line
 
 
-def plugins(
-    context: typer.Context,
-    *,
-    as_json: bool,
-    strict: bool,
-) -> int:
+def plugins(settings: Settings, *, as_json: bool, strict: bool) -> int:
     """List what is installed, from where, which version, and what broke while loading."""
     kernel = Kernel.installed(strict=strict)
     offers = kernel.offers
@@ -22,18 +17,16 @@ def plugins(
         out_json(_document(kernel))
         return 0
     rows = [("model", "version", "from", "title")]
-    rows += [(offer.name, offer.origin.version, _home(offer), one_line(offer.model.title)) for offer in offers.values()]
+    for offer in offers.values():
+        home = offer.origin.distribution or offer.origin.file
+        rows.append((offer.name, offer.origin.version, home, one_line(offer.model.title)))
     out(columns(rows))
     for offer in offers.values():
-        for item in offer.added:
-            out(f"  {offer.name}: {item.plugin} {item.version} adds '{item.what}'")
+        for addition in offer.added:
+            out(f"  {offer.name}: {addition.plugin} {addition.version} adds '{addition.what}'")
     for broken in kernel.broken:
-        settings_of(context).say(f"warning: {broken}")
+        settings.say(f"warning: {broken}")
     return 0
-
-
-def _home(offer: Offer) -> str:
-    return offer.origin.distribution or offer.origin.file
 
 
 def _document(kernel: Kernel) -> dict[str, object]:
@@ -46,18 +39,9 @@ def _document(kernel: Kernel) -> dict[str, object]:
                 "version": offer.origin.version,
                 "distribution": offer.origin.distribution,
                 "file": offer.origin.file,
-                "added": [{"what": item.what, "plugin": item.plugin, "version": item.version} for item in offer.added],
+                "added": [asdict(addition) for addition in offer.added],
             }
             for offer in kernel.offers.values()
         ],
-        "broken": [
-            {
-                "plugin": item.plugin,
-                "version": item.version,
-                "file": item.file,
-                "line": item.line,
-                "reason": item.reason,
-            }
-            for item in kernel.broken
-        ],
+        "broken": [asdict(item) for item in kernel.broken],
     }

@@ -2,26 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from itertools import islice
 from pathlib import Path
-
-import typer
 
 from truing.api.run import Run
 from truing.atomic import writings, written
-from truing.cli.console import Settings, out, out_json, say, settings_of
+from truing.calculation import Calculation
+from truing.cases import CaseResult, CasesTable
+from truing.cli.console import Settings, aligned, columns, out, out_json, say
 from truing.cli.load import find_model, say_example
-from truing.cli.run_printed import lines_of
 from truing.errors import UsageError
+from truing.numbers import ABSENT, format_ends, format_value, with_unit
+from truing.report.document import Value
+from truing.report.sheet import check_rows, least_margin, sentence_of_cases
 from truing.runs.partial import is_partial, partial_folder
 from truing.runs.provenance import provenance_of
-from truing.studies.checks import EXIT_CODES
+from truing.setup import Setup
+from truing.studies.bench import files_of
+from truing.studies.checks import EXIT_CODES, HEADLINES, SHORT
+from truing.studies.verdicts import change_words, sentence_of
 from truing.texts import one_line
 
 
 def run(
-    context: typer.Context,
+    settings: Settings,
     *,
     plugin: str,
     inputs: Path | None,
@@ -36,7 +42,6 @@ def run(
     as_json: bool,
 ) -> int:
     """Run the calculation and its studies and write the calculation sheet."""
-    settings = settings_of(context)
     if cluster and workers is not None:
         raise UsageError("--cluster and --workers exclude each other: a cluster has its own workers")
     model = find_model(plugin, settings, changed)
@@ -94,3 +99,125 @@ def _say_where_from(done: Run, settings: Settings) -> None:
     settings.detail(f"plugin {setup.origin.name} {setup.origin.version} from {setup.origin.file}")
     settings.detail(f"inputs: {stated} stated, {len(setup.model.input_fields) - stated} at their defaults")
     settings.detail(f"input hash {provenance_of(setup).input_hash}, seed {setup.seed}")
+
+
+# A finished run on the terminal: cases, results in the order of the sheet, checks, and where the sheet is
+
+
+MOST_CASES = 40
+
+
+def lines_of(done: Run, folder: Path, *, with_titles: bool) -> Iterator[str]:
+    """Say what a run found, and what fails; ``with_titles`` puts the results under the sections of the sheet."""
+    calculation = done.calculation
+    model = calculation.setup.model
+    yield one_line(f"{model.name}: {model.title}")
+    if done.cases is not None:
+        yield from _cases_lines(done.cases, calculation.setup)
+    yield from _result_lines(calculation, with_titles=with_titles)
+    yield from _absent_lines(calculation)
+    if calculation.checks:
+        yield ""
+        yield _checks(calculation)
+    yield ""
+    yield from _verdict_lines(done)
+    yield f"sheet: {folder / 'sheet.html'}"
+    for outcome in calculation.outcomes.values():
+        yield from (f"beside it: {folder / name}" for name in files_of(outcome))
+
+
+def _verdict_lines(done: Run) -> Iterator[str]:
+    """Say which limits, or which cases, are not kept as stated, and what would have to change."""
+    decided, verdict = done.calculation.decided, done.verdict
+    if verdict == "passes":
+        return
+    said = sentence_of(decided) if done.cases is None else sentence_of_cases(done.cases)
+    yield one_line(f"{HEADLINES[verdict]}. {said} (exit code {EXIT_CODES[verdict]})")
+    if verdict == "proposed" and decided.proposal is not None:
+        yield one_line(f"changed: {change_words(decided.proposal)}")
+
+
+def _cases_lines(cases: CasesTable, setup: Setup) -> Iterator[str]:
+    """Say every case with what it changes and its smallest margin; the results below are the governing one's."""
+    heads = [f"{name} [{unit}]" if (unit := setup.print_unit(name)) else name for name in cases.varied]
+    shown = [index for index in range(len(cases.cases)) if index < MOST_CASES or index == cases.governing]
+    rows = [_case_row(cases.cases[index], setup, governs=index == cases.governing) for index in shown]
+    yield ""
+    yield columns([("row", "case", *heads, "margin", ""), *rows], right=(0, *range(2, len(heads) + 3)))
+    if len(shown) < len(cases.cases):
+        yield f"{len(cases.cases) - len(shown)} further cases stand in results.json"
+    if cases.count.unused:
+        yield f"{one_line(cases.read.file)}: {one_line(cases.count.sentence())}"
+
+
+def _case_row(case: CaseResult, setup: Setup, *, governs: bool) -> tuple[str, ...]:
+    values = [
+        one_line(value) if isinstance(value, (str, bool)) else format_value(value, setup.print_unit(name))[0]
+        for name, value in case.values.items()
+    ]
+    margin = _written(least_margin(case.checks))
+    verdict = "failed" if case.reason else SHORT[case.verdict]
+    return (str(case.row), one_line(case.name), *values, margin, verdict + ", governing" * governs)
+
+
+def _result_lines(calculation: Calculation, *, with_titles: bool) -> Iterator[str]:
+    """Give the results in the order of the sheet, under the titles of its sections where there are several."""
+    groups = list(_groups(calculation))
+    rows = iter(aligned([_result_row(calculation, name) for _, names in groups for name in names], right=(1,)))
+    for index, (title, names) in enumerate(groups):
+        if with_titles and len(groups) > 1:
+            yield from ("", one_line(title))
+        elif index == 0:
+            yield ""
+        yield from islice(rows, len(names))
+
+
+def _absent_lines(calculation: Calculation) -> Iterator[str]:
+    """Say which results do not exist, and why, a line per reason."""
+    by_reason: dict[str, list[str]] = {}
+    for name, reason in calculation.absent.items():
+        by_reason.setdefault(reason, []).append(name)
+    for reason, names in by_reason.items():
+        yield ""
+        yield one_line(f"no {', '.join(names)}: {reason}")
+
+
+def _groups(calculation: Calculation) -> Iterator[tuple[str, Sequence[str]]]:
+    """Part the results into the sections of the sheet, each result once, and the rest."""
+    left = dict.fromkeys(calculation.answers)
+    for section in calculation.setup.model.sheet:
+        names = [name for name in section.names if name in left]
+        for name in names:
+            del left[name]
+        if names:
+            yield section.title, names
+    if left:
+        yield "Further results", list(left)
+
+
+def _result_row(calculation: Calculation, name: str) -> tuple[str, ...]:
+    item = calculation.setup.model.result_fields[name]
+    value, print_unit = calculation.answers[name], calculation.setup.print_unit(name)
+    if getattr(value, "ndim", 0):
+        low, high, unit = format_ends(value, print_unit)
+        return (name, f"{low} .. {high}" if low else ABSENT, unit, one_line(item.spec.note))
+    return (name, *format_value(value, print_unit, item.digits), one_line(item.spec.note))
+
+
+def _checks(calculation: Calculation) -> str:
+    """Say every limit: what is compared, with what, and what is left."""
+    rows = list(check_rows(calculation))
+    proposed = calculation.decided.proposal is not None
+    head = ("check", "as stated" if proposed else "value", "", "limit", "margin", "", "as proposed" if proposed else "")
+    lines = [
+        (
+            one_line(row.compared), _written(row.value), row.relation, _written(row.limit), _written(row.margin),
+            SHORT[row.state], _written(row.proposed) if row.proposed is not None else one_line(row.remark),
+        )
+        for row in rows
+    ]  # fmt: skip
+    return columns([head, *lines], right=(1, 3, 4))
+
+
+def _written(value: Value) -> str:
+    return with_unit(value.text, value.unit)

@@ -5,25 +5,24 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-import typer
-
+from truing.api.tables import name_in
 from truing.atomic import write_files
-from truing.cli.console import Settings, out, say, settings_of
+from truing.cli.console import Settings, out, say
 from truing.cli.load import find_offer
 from truing.declare.near_miss import near_miss
 from truing.errors import OutputError, UsageError
 from truing.gauge import shown_by_gauge
 from truing.inputs_file import read_setup
-from truing.inputs_file.culprit import told_by_line
+from truing.inputs_file.sentences import told_by_line
 from truing.measurements import EXCEL, PLAIN, RowsFile, read_rows, table_text
-from truing.measurements.cells import with_comma
+from truing.measurements.csv_text import with_comma
 from truing.measurements.overriding import NAMES, REMARKS
 from truing.setup import Setup
 from truing.texts import one_line
 
 
 def table(
-    context: typer.Context,
+    settings: Settings,
     *,
     plugin: str,
     inputs: Path,
@@ -33,7 +32,6 @@ def table(
     excel: bool,
 ) -> int:
     """Print what the gauge would show at every row: the file's columns, then the results, units in the header."""
-    settings = settings_of(context)
     if excel and output is None:
         raise UsageError("--excel writes a file for a spreadsheet; name it with -o")
     _demand_new(output, inputs, rows)
@@ -43,7 +41,7 @@ def table(
     _say_unused(read, setup, settings)
     with told_by_line(setup):
         shown = shown_by_gauge(setup, read)
-    kept = {text: cells for text, cells in read.cells.items() if _name(text) not in shown.values}
+    kept = {text: cells for text, cells in read.cells.items() if name_in(text) not in shown.values}
     headers = [*kept, *(f"{name} [{shown.units[name] or '1'}]" for name in shown.values)]
     cells = [_with_commas(text, column, setup) if excel else column for text, column in kept.items()]
     columns = [*cells, *shown.values.values()]
@@ -68,15 +66,10 @@ def _demand_new(output: Path | None, *read: Path) -> None:
             raise OutputError(f"{output} is read by this command; name another file for the output")
 
 
-def _name(header: str) -> str:
-    """Return the name in a header as written."""
-    return header.partition("[")[0].strip()
-
-
 def _with_commas(header: str, cells: Sequence[str], setup: Setup) -> Sequence[str]:
     """Return a column as written, its numbers with decimal commas; names of runs and words are no numbers."""
-    item = setup.model.input_fields.get(_name(header))
-    is_word = item.kind in {"choice", "text"} if item is not None else _name(header) in {"run", *NAMES, *REMARKS}
+    item = setup.model.input_fields.get(name_in(header))
+    is_word = item.kind in {"choice", "text"} if item is not None else name_in(header) in {"run", *NAMES, *REMARKS}
     return cells if is_word else with_comma(cells)
 
 

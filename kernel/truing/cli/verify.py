@@ -6,12 +6,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
-import typer
-
-from truing.cli.console import aligned, out, out_json, settings_of
+from truing.cli.console import Settings, aligned, out, out_json
 from truing.cli.load import find_model
 from truing.declare.published import rules_of
-from truing.numbers import format_number
+from truing.numbers import counted, format_number
 from truing.published import ComparedRow
 from truing.texts import one_line
 from truing.units import unit_text
@@ -19,18 +17,12 @@ from truing.units import unit_text
 HEAD = ("quantity", "where", "unit", "paper", "ours", "ratio", "verdict", "obtained", "kind", "why")
 
 
-def verify(
-    context: typer.Context,
-    *,
-    plugin: str,
-    as_json: bool,
-) -> int:
+def verify(settings: Settings, *, plugin: str, as_json: bool) -> int:
     """Print every number that the source prints beside ours; exit 0 if every row matches its stated verdict."""
-    settings = settings_of(context)
     model = find_model(plugin, settings)
     rows = model.verify(progress=not settings.quiet)
     if as_json:
-        findings = [asdict(item) for item in model.offer.model.findings]
+        findings = [asdict(finding) for finding in model.offer.model.findings]
         out_json(
             {
                 "rows": [_plain(row) for row in rows],
@@ -99,8 +91,7 @@ def _cells(row: ComparedRow, numbers: Mapping[str, str]) -> tuple[str, ...]:
 def _summary(rows: Sequence[ComparedRow]) -> str:
     matching = sum(row.matches for row in rows)
     wrong = [one_line(row.published.name) for row in rows if not row.as_stated]
-    numbers = "printed number" if len(rows) == 1 else "printed numbers"
-    said = f"{len(rows)} {numbers}: {matching} match, {len(rows) - matching} differ"
+    said = f"{counted(len(rows), 'printed number')}: {matching} match, {len(rows) - matching} differ"
     if not wrong:
         return f"{said}; every verdict is as stated"
     return f"{said}; NOT as stated: {', '.join(wrong)} (exit code 1)"

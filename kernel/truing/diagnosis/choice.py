@@ -130,10 +130,10 @@ def _certain(made: Competition, best: Fit) -> Fit:
     return best
 
 
-def _adds_nothing(made: Competition, best: Fit, found: Fit) -> bool:
+def _adds_nothing(made: Competition, best: Fit, fit: Fit) -> bool:
     """Whether an explanation is the winner and a cause whose every amplitude may as well be zero."""
-    added = [cause for cause in found.causes if cause.tag not in best.key] if best.key < found.key else []
-    return any(may_be_zero(found, certainty_of(found, made.extended), cause) for cause in added)
+    added = [cause for cause in fit.causes if cause.tag not in best.key] if best.key < fit.key else []
+    return any(may_be_zero(fit, certainty_of(fit, made.extended), cause) for cause in added)
 
 
 def _exchanged(made: Competition, best: Fit) -> Fit:
@@ -142,18 +142,18 @@ def _exchanged(made: Competition, best: Fit) -> Fit:
     for _ in range(2):
         for index in range(len(best.causes)):
             exchange(made, best, index)
-        top = next(iter(made.ranked(lambda found: is_sensible(found) and _kinds(found) == kinds)), best)
+        top = next(iter(made.ranked(lambda fit: is_sensible(fit) and _kinds(fit) == kinds)), best)
         if top.key == best.key:
             break
         best = made.exact(top)
     return made.exact(best)
 
 
-def _kinds(found: Fit) -> tuple[int, int, int]:
+def _kinds(fit: Fit) -> tuple[int, int, int]:
     """Return how many effects, inputs and shapes an explanation has."""
-    shapes = sum(cause.shape is not None for cause in found.causes)
-    inputs = sum(cause.tolerated >= 0 for cause in found.causes)
-    return len(found.causes) - shapes - inputs, inputs, shapes
+    shapes = sum(cause.shape is not None for cause in fit.causes)
+    inputs = sum(cause.tolerated >= 0 for cause in fit.causes)
+    return len(fit.causes) - shapes - inputs, inputs, shapes
 
 
 def _registered(made: Competition, best: Fit) -> Fit:
@@ -161,44 +161,44 @@ def _registered(made: Competition, best: Fit) -> Fit:
     if all(cause.is_registered for cause in best.causes):
         return best
     near = made.ranked(
-        lambda found: (
-            0 < len(found.causes) <= len(best.causes) + 1
-            and all(cause.effect is not None for cause in found.causes)
-            and made.score(found) < made.score(best) + CLOSE
+        lambda fit: (
+            0 < len(fit.causes) <= len(best.causes) + 1
+            and all(cause.effect is not None for cause in fit.causes)
+            and made.score(fit) < made.score(best) + CLOSE
         )
     )
-    return min(near, key=lambda found: (len(found.causes), made.score(found)), default=best)
+    return min(near, key=lambda fit: (len(fit.causes), made.score(fit)), default=best)
 
 
 def _taking_least(made: Competition, best: Fit) -> Fit:
     """Return, of shapes over the same covariates that are about as good beside names, the one that leaves them most."""
     if shapes_in(best) in (0, len(best.causes)):
         return best
-    near = [found for found in made.known.values() if made.score(found) < made.score(best) + CLOSE]
-    alike = [found for found in near if len(found.causes) == len(best.causes) and _says_the_same(best, found)]
-    return max(alike, key=lambda found: _worth_of_names(made, found))
+    near = [fit for fit in made.known.values() if made.score(fit) < made.score(best) + CLOSE]
+    alike = [fit for fit in near if len(fit.causes) == len(best.causes) and _says_the_same(best, fit)]
+    return max(alike, key=lambda fit: _worth_of_names(made, fit))
 
 
-def _worth_of_names(made: Competition, found: Fit) -> float:
+def _worth_of_names(made: Competition, fit: Fit) -> float:
     """Return what the score loses at least without one of the causes that have a name."""
-    named = (index for index, cause in enumerate(found.causes) if cause.shape is None)
-    less = (made.without(found, index) for index in named)
-    return min((made.score(each) - made.score(found) for each in less if each is not None), default=0.0)
+    named = (index for index, cause in enumerate(fit.causes) if cause.shape is None)
+    less = (made.without(fit, index) for index in named)
+    return min((made.score(each) - made.score(fit) for each in less if each is not None), default=0.0)
 
 
 def _named_weakest(made: Competition, best: Fit) -> Fit:
     """Return the explanation under the weakest of its names, where several causes draw one curve."""
-    alike = [found for found in _like(made, best) if made.score(found) < made.score(best) + 1.0]
-    return min([best, *alike], key=lambda found: sorted(cause.weakest_first for cause in found.causes))
+    alike = [fit for fit in _like(made, best) if made.score(fit) < made.score(best) + 1.0]
+    return min([best, *alike], key=lambda fit: sorted(cause.weakest_first for cause in fit.causes))
 
 
 def _like(made: Competition, best: Fit) -> Iterator[Fit]:
     """Give explanations that exchange one cause for another one and draw the same, the inputs no farther off."""
-    for found in made.known.values():
-        own = found.key - best.key
-        is_other = len(found.causes) == len(best.causes) and len(own) == 1 and found.cost < best.cost + CLOSE
-        if is_other and all(cause.effect is not None for cause in found.causes) and differ(best, found) < ALIKE:
-            yield found
+    for fit in made.known.values():
+        own = fit.key - best.key
+        is_other = len(fit.causes) == len(best.causes) and len(own) == 1 and fit.cost < best.cost + CLOSE
+        if is_other and all(cause.effect is not None for cause in fit.causes) and differ(best, fit) < ALIKE:
+            yield fit
 
 
 def _same(made: Competition, best: Fit) -> dict[str, tuple[str, ...]]:
@@ -207,19 +207,19 @@ def _same(made: Competition, best: Fit) -> dict[str, tuple[str, ...]]:
     One with more amplitudes that the record tells apart holds the winner as a special case: that is no other name.
     """
     names: dict[str, list[str]] = {}
-    for found in _like(made, best):
-        (gone,) = (cause for cause in best.causes if cause.tag not in found.key)
-        (other,) = (cause for cause in found.causes if cause.tag not in best.key)
-        if other.name != gone.name and _felt(found, other) <= _felt(best, gone):
+    for fit in _like(made, best):
+        (gone,) = (cause for cause in best.causes if cause.tag not in fit.key)
+        (other,) = (cause for cause in fit.causes if cause.tag not in best.key)
+        if other.name != gone.name and _felt(fit, other) <= _felt(best, gone):
             names.setdefault(gone.tag, []).append(other.name)
     return {tag: tuple(dict.fromkeys(every)) for tag, every in names.items()}
 
 
-def _felt(found: Fit, cause: Candidate) -> int:
+def _felt(fit: Fit, cause: Candidate) -> int:
     """Return how many directions among the amplitudes of a cause this record feels, each moved by as much as it is."""
-    places = [places_of(found, cause)[amplitude] for amplitude in cause.amplitudes]
-    drawn = found.sample.curve(found.slopes, found.predicted)[:, places] * np.concatenate(found.values)[places]
-    drawn *= found.sample.roots(found.left)[:, None]
+    places = [places_of(fit, cause)[amplitude] for amplitude in cause.amplitudes]
+    drawn = fit.sample.curve(fit.slopes, fit.predicted)[:, places] * np.concatenate(fit.values)[places]
+    drawn *= fit.sample.roots(fit.left)[:, None]
     return int((np.linalg.svd(drawn, compute_uv=False) > ALIKE).sum())
 
 
@@ -237,31 +237,31 @@ def _rivals(made: Competition, best: Fit, seed: int) -> list[Rival]:
     """
     if not best.causes:
         return []
-    alike = {found.key for found in _like(made, best)}
+    alike = {fit.key for fit in _like(made, best)}
     top = made.score(best)
     near: list[Fit] = []
-    for found in made.ranked(lambda each: bool(each.causes) and not best.key <= each.key and is_sensible(each)):
-        if made.score(found) - top > 10 * CLOSE or len(near) >= MOST_RIVALS:
+    for fit in made.ranked(lambda each: bool(each.causes) and not best.key <= each.key and is_sensible(each)):
+        if made.score(fit) - top > 10 * CLOSE or len(near) >= MOST_RIVALS:
             break
-        if found.key not in alike and _is_near(made, best, found):
-            near.append(found)
-    more = [found for found in _with_more(made, best, seed) if not any(found.key > each.key for each in near)]
-    return [Rival(found, max(0.0, made.score(found) - top)) for found in sorted((*near, *more), key=made.score)]
+        if fit.key not in alike and _is_near(made, best, fit):
+            near.append(fit)
+    more = [fit for fit in _with_more(made, best, seed) if not any(fit.key > each.key for each in near)]
+    return [Rival(fit, max(0.0, made.score(fit) - top)) for fit in sorted((*near, *more), key=made.score)]
 
 
 def _with_more(made: Competition, best: Fit, seed: int) -> list[Fit]:
     """Return the winner with one cause more that may be there as well; with a shape where it is with no effect."""
-    found = [
+    wider = [
         each
         for each in made.ranked(lambda each: best.key < each.key and len(each.causes) == len(best.causes) + 1)
         if all(cause.tolerated < 0 or cause.tag in best.key for cause in each.causes)
     ]
-    if not found:
+    if not wider:
         return []
-    law, folds = law_of(made, best, found[0], seed=seed), folds_of(made.sample)
+    law, folds = law_of(made, best, wider[0], seed=seed), folds_of(made.sample)
     near = [
         each
-        for each in found
+        for each in wider
         if (not shapes_in(best) or shapes_in(each) == shapes_in(best))
         and law.p_of(_gained(made, best, each)) <= MAYBE
         and carries_over(best, each, made.extended, folds) >= CARRIED
@@ -269,66 +269,65 @@ def _with_more(made: Competition, best: Fit, seed: int) -> list[Fit]:
     return [each for each in near if shapes_in(each) == shapes_in(best)] or near
 
 
-def _gained(made: Competition, best: Fit, found: Fit) -> float:
+def _gained(made: Competition, best: Fit, fit: Fit) -> float:
     """Return by how much the winner is better with one cause more, in noise with a memory in its own noise as well."""
-    gain = made.score(best) - made.score(found)
-    return max(gain, made.own_score(best) - made.own_score(found)) if made.sample.has_memory else gain
+    gain = made.score(best) - made.score(fit)
+    return max(gain, made.own_score(best) - made.own_score(fit)) if made.sample.has_memory else gain
 
 
-def _is_near(made: Competition, best: Fit, found: Fit) -> bool:
+def _is_near(made: Competition, best: Fit, fit: Fit) -> bool:
     """Whether an explanation is a rival of the winner."""
-    behind = made.score(found) - made.score(best)
-    if len(found.causes) > len(best.causes) or (found.key < best.key and behind >= CLOSE):
+    behind = made.score(fit) - made.score(best)
+    if len(fit.causes) > len(best.causes) or (fit.key < best.key and behind >= CLOSE):
         return False
-    if (shifts_inputs(found) and not shifts_inputs(best)) or shapes_in(found) > max(shapes_in(best), 1):
+    if (shifts_inputs(fit) and not shifts_inputs(best)) or shapes_in(fit) > max(shapes_in(best), 1):
         return False
-    if behind >= max(CLOSE, SURE * unsure(best, found)):
+    if behind >= max(CLOSE, SURE * unsure(best, fit)):
         return False
-    return not _is_vaguer(made, best, found) and not _acts_beside(made, best, found)
+    return not _is_vaguer(made, best, fit) and not _acts_beside(made, best, fit)
 
 
-def _is_vaguer(made: Competition, best: Fit, found: Fit) -> bool:
+def _is_vaguer(made: Competition, best: Fit, fit: Fit) -> bool:
     """Whether a shape that nobody registered draws what the winner has in its place, and fits no better.
 
     A polynomial always fits a little better: it draws anything.
     """
-    shapes = [cause for cause in found.causes if cause.shape is not None and cause.tag not in best.key]
-    gone = [index for index, cause in enumerate(best.causes) if cause.tag not in found.key]
+    shapes = [cause for cause in fit.causes if cause.shape is not None and cause.tag not in best.key]
+    gone = [index for index, cause in enumerate(best.causes) if cause.tag not in fit.key]
     if not shapes or all(best.causes[index].shape is not None for index in gone):
-        return _says_the_same(best, found)
-    if found.cost < best.cost - CLOSE and not any(draws_anything(cause) for cause in shapes):
+        return _says_the_same(best, fit)
+    if fit.cost < best.cost - CLOSE and not any(draws_anything(cause) for cause in shapes):
         return False
     wanted = _curve_of(made, best, gone)
-    columns = [column for cause in shapes for column in _columns_of(made, found, cause)]
+    columns = [column for cause in shapes for column in _columns_of(made, fit, cause)]
     basis = np.linalg.qr(np.column_stack([*columns, made.sample.drawn]))[0]
     drawn = basis.T @ wanted
     return float(drawn @ drawn) >= TWIN * float(wanted @ wanted)
 
 
-def _says_the_same(best: Fit, found: Fit) -> bool:
+def _says_the_same(best: Fit, fit: Fit) -> bool:
     """Whether two explanations have the same registered causes, and shapes over the same covariates."""
     said = [
-        {cause.name if cause.shape is None else cause.shape.depends_on for cause in each.causes}
-        for each in (best, found)
+        {cause.name if cause.shape is None else cause.shape.depends_on for cause in each.causes} for each in (best, fit)
     ]
     return said[0] == said[1] and shapes_in(best) > 0
 
 
-def _curve_of(made: Competition, found: Fit, places: list[int]) -> Matrix:
+def _curve_of(made: Competition, fit: Fit, places: list[int]) -> Matrix:
     """Return what some causes of an explanation add to it, in units of the noise."""
-    kept = [index for index in range(len(found.causes)) if index not in places]
-    causes, values = [found.causes[index] for index in kept], [found.values[index] for index in kept]
-    (without,) = made.extended.at(causes, [(values, found.moved)])
-    (whole,) = made.extended.at(found.causes, [(found.values, found.moved)])
+    kept = [index for index in range(len(fit.causes)) if index not in places]
+    causes, values = [fit.causes[index] for index in kept], [fit.values[index] for index in kept]
+    (without,) = made.extended.at(causes, [(values, fit.moved)])
+    (whole,) = made.extended.at(fit.causes, [(fit.values, fit.moved)])
     return np.nan_to_num(made.sample.left(without) - made.sample.left(whole))
 
 
-def _columns_of(made: Competition, found: Fit, cause: Candidate) -> Iterator[Matrix]:
+def _columns_of(made: Competition, fit: Fit, cause: Candidate) -> Iterator[Matrix]:
     """Give the terms of a shape as it was fitted, in units of the noise."""
     shape = cause.shape
     if shape is None:
         return
-    values = found.of(cause)
+    values = fit.of(cause)
     records = made.sample.machine.records
     terms = shape.terms([float(values[place]) for place in cause.shapes], records.covariates)
     for name in shape.results:
@@ -338,7 +337,7 @@ def _columns_of(made: Competition, found: Fit, cause: Candidate) -> Iterator[Mat
             yield made.sample.curve(added)
 
 
-def _acts_beside(made: Competition, best: Fit, found: Fit) -> bool:
+def _acts_beside(made: Competition, best: Fit, fit: Fit) -> bool:
     """Whether a rival draws something else than the winner does: both together are far better than the winner."""
-    union = made.known.get(best.key | found.key)
+    union = made.known.get(best.key | fit.key)
     return union is not None and made.score(union) < made.score(best) - CLOSE

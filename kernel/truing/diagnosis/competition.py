@@ -13,7 +13,7 @@ from truing.arrays import Matrix
 from truing.diagnosis.causes import Candidate, are_exclusive
 from truing.diagnosis.conditional import ConditionalGain, look
 from truing.diagnosis.curves import ResponseCurves
-from truing.diagnosis.exact import EXACTLY, ROUGHLY, fit, nothing, refit
+from truing.diagnosis.exact import EXACTLY, ROUGHLY, fit_from, nothing, refit
 from truing.diagnosis.extended import Extended, shape_added
 from truing.diagnosis.fitted import Fit, signs_of_wrong
 from truing.diagnosis.learning import as_noise, learnt
@@ -61,27 +61,27 @@ class Competition:
 
     # ---- scores
 
-    def price(self, found: Fit) -> float:
+    def price(self, fit: Fit) -> float:
         """Return what an explanation pays for its numbers, for the choice of causes and curves, and for its signs."""
-        many, most = len(found.causes), max(len(self.causes), len(found.causes))
+        many, most = len(fit.causes), max(len(self.causes), len(fit.causes))
         choice = 2 * (lgamma(most + 1) - lgamma(many + 1) - lgamma(most - many + 1))
-        if found not in self.paid:
-            self.paid[found] = self.price_of_size(found) + MARGIN * signs_of_wrong(found)
-        return choice + sum(self.price_of(cause) for cause in found.causes) + self.paid[found]
+        if fit not in self.paid:
+            self.paid[fit] = self.price_of_size(fit) + MARGIN * signs_of_wrong(fit)
+        return choice + sum(self.price_of(cause) for cause in fit.causes) + self.paid[fit]
 
     def price_of(self, cause: Candidate) -> float:
         """Return what a cause pays for its numbers and for the choice among its independent curves."""
         own = cause.size * log(max(self.sample.rows, 2)) + 2 * log(max(self.tries.get(cause.tag, 1.0), 1.0))
         return own + (UNREGISTERED if cause.shape is not None else MARGIN if cause.tolerated >= 0 else 0.0)
 
-    def price_of_size(self, found: Fit) -> float:
+    def price_of_size(self, fit: Fit) -> float:
         """Return what shapes that nobody registered pay for how much they draw: a large remainder is less likely.
 
         With a scale of its own every amplitude costs the logarithm of what it draws over the noise. A constant is free:
         two shapes may each have one, and only their sum is drawn.
         """
-        sample, total, roots = found.sample, 0.0, found.sample.roots(found.left)
-        for cause, values in zip(found.causes, found.values, strict=True):
+        sample, total, roots = fit.sample, 0.0, fit.sample.roots(fit.left)
+        for cause, values in zip(fit.causes, fit.values, strict=True):
             added, square = shape_added(sample.machine, cause, values), 0.0
             for channel, part in zip(sample.channels, sample.parts, strict=True):
                 if (curve := added.get(channel.name)) is not None:
@@ -90,23 +90,23 @@ class Competition:
             total += len(cause.amplitudes) * log1p(square / sample.rows)
         return total
 
-    def score(self, found: Fit) -> float:
+    def score(self, fit: Fit) -> float:
         """Return how unlikely an explanation is: its cost, and its price."""
-        return found.cost + self.price(found)
+        return fit.cost + self.price(fit)
 
-    def own_score(self, found: Fit) -> float:
+    def own_score(self, fit: Fit) -> float:
         """Return the same where what is left counts as noise with the memory that suits it best."""
-        if found not in self.owned:
-            self.owned[found] = as_noise(self.sample, found.predicted)
-        return self.owned[found] + float(found.inputs @ found.inputs) + self.price(found)
+        if fit not in self.owned:
+            self.owned[fit] = as_noise(self.sample, fit.predicted)
+        return self.owned[fit] + float(fit.inputs @ fit.inputs) + self.price(fit)
 
     def ranked(self, accept: Callable[[Fit], bool] = lambda _: True) -> list[Fit]:
         """Return what was fitted and is accepted, the best first."""
-        return sorted((found for found in self.known.values() if accept(found)), key=self.score)
+        return sorted((fit for fit in self.known.values() if accept(fit)), key=self.score)
 
     def best(self, size: int) -> Fit | None:
         """Return the best explanation of so many causes."""
-        return min((found for found in self.known.values() if len(found.causes) == size), key=self.score, default=None)
+        return min((fit for fit in self.known.values() if len(fit.causes) == size), key=self.score, default=None)
 
     @property
     def null(self) -> Fit:
@@ -120,16 +120,16 @@ class Competition:
 
     # ---- fits
 
-    def keep(self, found: Fit | None) -> Fit | None:
+    def keep(self, fit: Fit | None) -> Fit | None:
         """Keep a fit where it is better than what is known of its causes."""
-        if found is None:
+        if fit is None:
             return None
-        before = self.known.get(found.key)
-        allowed = 0.0 if found.key in self.fresh else MARGIN  # what was rough may have promised too much
-        if before is None or found.cost < before.cost + allowed:
-            self.known[found.key] = found
-        self.fresh.add(found.key)
-        return self.known[found.key]
+        before = self.known.get(fit.key)
+        allowed = 0.0 if fit.key in self.fresh else MARGIN  # what was rough may have promised too much
+        if before is None or fit.cost < before.cost + allowed:
+            self.known[fit.key] = fit
+        self.fresh.add(fit.key)
+        return self.known[fit.key]
 
     def fitted(self, causes: Sequence[Candidate], values: Sequence[Matrix], near: Fit | None) -> Fit | None:
         """Fit an explanation from a start and keep it."""
@@ -138,7 +138,7 @@ class Competition:
         if not self.extended.allows(self.stage):
             return self.known.get(frozenset(cause.tag for cause in causes))
         self.begun.add(_begins(causes, values))
-        return self.keep(fit(self.sample, self.extended, causes, values, near, until=ROUGHLY))
+        return self.keep(fit_from(self.sample, self.extended, causes, values, near, until=ROUGHLY))
 
     def joined(self, at: Fit, cause: Candidate, starts: Iterable[tuple[float, Matrix]]) -> Fit | None:
         """Fit an explanation with one more cause, from each of its starts."""
@@ -167,10 +167,10 @@ class Competition:
             return
         seen = self.look(at, [cause for cause in self.causes if accept(cause)])
         for cause in self.promising(seen)[: count if len(at.causes) < 2 else count // 2]:
-            starts, found = seen[cause.tag].starts, self.known.get(at.key | {cause.tag})
-            if found is None or found.key not in self.fresh:
+            starts, fit = seen[cause.tag].starts, self.known.get(at.key | {cause.tag})
+            if fit is None or fit.key not in self.fresh:
                 self.joined(at, cause, starts)
-            elif at.cost - starts[0][0] < found.cost - MARGIN:  # it begins elsewhere
+            elif at.cost - starts[0][0] < fit.cost - MARGIN:  # it begins elsewhere
                 self.joined(at, cause, starts[:1])
 
     def promising(self, seen: Mapping[str, ConditionalGain]) -> list[Candidate]:
@@ -182,22 +182,22 @@ class Competition:
         }
         return sorted(worth, key=lambda cause: (-worth[cause], cause.weakest_first))
 
-    def without(self, found: Fit, place: int) -> Fit | None:
+    def without(self, fit: Fit, place: int) -> Fit | None:
         """Fit an explanation without one of its causes."""
         causes, values = (
-            found.causes[:place] + found.causes[place + 1 :],
-            found.values[:place] + found.values[place + 1 :],
+            fit.causes[:place] + fit.causes[place + 1 :],
+            fit.values[:place] + fit.values[place + 1 :],
         )
         begin = _begins(causes, values)
         if begin[0] in self.fresh and (not begin[1] or begin in self.begun):
             return self.known[begin[0]]
-        return self.fitted(causes, values, found)
+        return self.fitted(causes, values, fit)
 
-    def backward(self, found: Fit) -> Fit:
+    def backward(self, fit: Fit) -> Fit:
         """Leave out what is no longer needed."""
-        less = [each for index in range(len(found.causes)) if (each := self.without(found, index)) is not None]
-        best = min(less, key=self.score, default=found)
-        return self.backward(best) if len(found.causes) > 1 and self.score(best) < self.score(found) else found
+        less = [each for index in range(len(fit.causes)) if (each := self.without(fit, index)) is not None]
+        best = min(less, key=self.score, default=fit)
+        return self.backward(best) if len(fit.causes) > 1 and self.score(best) < self.score(fit) else fit
 
     # ---- noise
 
@@ -214,33 +214,33 @@ class Competition:
             if laws[0] == laws[1] and scale < NOISE_SETTLED:
                 break
             self.sample, self.fresh, self.exchanged, self.owned, self.paid = sample, set(), set(), {}, {}
-            self.known = {key: found.in_sample(sample) for key, found in self.known.items()}
+            self.known = {key: fit.in_sample(sample) for key, fit in self.known.items()}
             self.again(self.ranked()[:3])
 
-    def exact(self, found: Fit) -> Fit:
+    def exact(self, fit: Fit) -> Fit:
         """Return an explanation fitted to the end; where the budget has ended, of several the best alone."""
-        if self.extended.lasts or self.known[found.key] is self.ranked()[0]:
-            self._again(found, EXACTLY)
-        return self.known[found.key]
+        if self.extended.lasts or self.known[fit.key] is self.ranked()[0]:
+            self._again(fit, EXACTLY)
+        return self.known[fit.key]
 
     def again(self, several: Iterable[Fit], until: float = ROUGHLY) -> None:
         """Fit explanations again from where they are, in the present noise."""
-        for found in several:
-            is_due = found.key not in self.fresh or until < ROUGHLY
-            if is_due and (not found.causes or self.extended.allows(AGAIN if until >= ROUGHLY else TO_THE_END)):
-                self._again(found, until)
+        for fit in several:
+            is_due = fit.key not in self.fresh or until < ROUGHLY
+            if is_due and (not fit.causes or self.extended.allows(AGAIN if until >= ROUGHLY else TO_THE_END)):
+                self._again(fit, until)
 
-    def _again(self, found: Fit, until: float) -> None:
-        made = refit(found, self.sample, self.extended, until=until)
-        self.fresh.discard(found.key)
+    def _again(self, fit: Fit, until: float) -> None:
+        made = refit(fit, self.sample, self.extended, until=until)
+        self.fresh.discard(fit.key)
         if made is not None and until < ROUGHLY and not self.extended.grain:  # a rough end may have promised too much
-            del self.known[found.key]
+            del self.known[fit.key]
         self.keep(made)
 
     def refresh(self) -> None:
         """Fit again what lies near the best, since the noise was learnt anew; and the model as it is."""
         top = self.score(self.ranked()[0])
-        near = [found for found in self.ranked()[:RENEWED] if self.score(found) < top + WITHIN]
+        near = [fit for fit in self.ranked()[:RENEWED] if self.score(fit) < top + WITHIN]
         self.again([self.null, *near])
 
 

@@ -69,17 +69,17 @@ class ConditionalGain:
     span: Spanned | ProjectedCurves
 
 
-def conditional_on(found: Fit, extended: Extended) -> Conditional:
+def conditional_on(fit: Fit, extended: Extended) -> Conditional:
     """Return an explanation as other causes see it."""
-    sample, k = found.sample, len(found.inputs)
-    roots = sample.roots(found.left)
-    slopes = np.column_stack(slopes_left(found, extended)) * roots[:, None]
-    columns = np.concatenate([slopes, np.eye(k, found.size + k, found.size)])
+    sample, k = fit.sample, len(fit.inputs)
+    roots = sample.roots(fit.left)
+    slopes = np.column_stack(slopes_left(fit, extended)) * roots[:, None]
+    columns = np.concatenate([slopes, np.eye(k, fit.size + k, fit.size)])
     columns = columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
     basis, size, _ = np.linalg.svd(columns, full_matrices=False)
     taken = np.asarray(basis[:, size > 1e-9 * size.max()] if size.size else basis)
-    left = np.concatenate([roots * found.left, -found.inputs])
-    return Conditional(sample, roots, left - taken @ (taken.T @ left), taken, found.predicted)
+    left = np.concatenate([roots * fit.left, -fit.inputs])
+    return Conditional(sample, roots, left - taken @ (taken.T @ left), taken, fit.predicted)
 
 
 def look(curves: ResponseCurves, at: Fit, causes: Sequence[Candidate]) -> Mapping[str, ConditionalGain]:

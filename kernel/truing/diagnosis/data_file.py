@@ -15,8 +15,7 @@ from truing.declare.model import Model
 from truing.declare.near_miss import near_miss
 from truing.errors import Fault, InputError, UnitError
 from truing.kernel import Offer
-from truing.measurements.csv_text import Faults, TableSource
-from truing.measurements.row_count import RowCount
+from truing.measurements.csv_text import Faults, RowCount, TableSource
 from truing.measurements.table import RUN, SIGMA, WORDS, DataTable, Known, is_number, read_table
 from truing.units import check_unit
 from truing.units.grammar import shown

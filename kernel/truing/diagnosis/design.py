@@ -18,7 +18,7 @@ from truing.diagnosis.causes import Candidate
 from truing.diagnosis.choice import Chosen
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.conditional import look
-from truing.diagnosis.exact import fit, slopes_at, unit_of
+from truing.diagnosis.exact import fit_from, slopes_at, unit_of
 from truing.diagnosis.extended import Extended, elsewhere, parts_of
 from truing.diagnosis.fitted import STEP, WIDE, Fit, moved_by
 from truing.diagnosis.intervals import numbers_of
@@ -115,20 +115,20 @@ def next_points(chosen: Chosen) -> NextPoints:
     duels = _duels(chosen, several, settings) if settings else []
     live = _live(_live(duels))  # what is the same chooses no setting for the others
     winner = name_of(chosen.best)
-    pairs = [(winner, name_of(found)) for found in several[1:]] if is_physical(chosen.best) else []
+    pairs = [(winner, name_of(fit)) for fit in several[1:]] if is_physical(chosen.best) else []
     apart = {frozenset(duel.names) for duel in live}
     tied = tuple(pair for pair in pairs if frozenset(pair) not in apart)
     return NextPoints(tuple(_points(chosen, settings, live)), tied)
 
 
-def is_physical(found: Fit) -> bool:
+def is_physical(fit: Fit) -> bool:
     """Whether an explanation is made of effects and inputs alone, so that it says something at other settings."""
-    return bool(found.causes) and all(cause.is_registered for cause in found.causes)
+    return bool(fit.causes) and all(cause.is_registered for cause in fit.causes)
 
 
-def name_of(found: Fit) -> str:
+def name_of(fit: Fit) -> str:
     """Return what an explanation is called: the names of its causes, each once."""
-    return " + ".join(found.names)
+    return " + ".join(fit.names)
 
 
 def rival_fits(chosen: Chosen) -> list[Fit]:
@@ -139,8 +139,8 @@ def rival_fits(chosen: Chosen) -> list[Fit]:
     rivals = [rival.fit for rival in chosen.rivals if is_physical(rival.fit)][:MOST_DUELLING]
     own = [chosen.best, *_renamed(chosen)] if is_physical(chosen.best) else []
     by_name: dict[frozenset[str], Fit] = {}
-    for found in (*own, *rivals):
-        by_name.setdefault(frozenset(found.names), found)
+    for fit in (*own, *rivals):
+        by_name.setdefault(frozenset(fit.names), fit)
     return list(by_name.values())
 
 
@@ -151,10 +151,10 @@ def _renamed(chosen: Chosen) -> Iterator[Fit]:
         for name in chosen.same.get(cause.tag, ()):
             others = [other for other in made.causes if other.name == name and other.tag not in best.key]
             keys = [(best.key - {cause.tag}) | {other.tag} for other in others]
-            found = [made.known[key] for key in keys if key in made.known]
-            found = found or [each for other in others for each in _exchanged(made, best, index, other)]
-            if found:
-                yield min(found, key=lambda each: each.cost)
+            fits = [made.known[key] for key in keys if key in made.known]
+            fits = fits or [each for other in others for each in _exchanged(made, best, index, other)]
+            if fits:
+                yield min(fits, key=lambda each: each.cost)
 
 
 def _exchanged(made: Competition, best: Fit, place: int, other: Candidate) -> Iterator[Fit]:
@@ -167,9 +167,9 @@ def _exchanged(made: Competition, best: Fit, place: int, other: Candidate) -> It
     seen = look(made.curves, held, [other]).get(other.tag) if np.isfinite(held.left).all() else None
     for _, start in seen.starts if seen is not None else ():
         several = (*causes[:place], other, *causes[place:])
-        found = fit(made.sample, made.extended, several, (*values[:place], start, *values[place:]), held)
-        if found is not None:
-            yield found
+        fit = fit_from(made.sample, made.extended, several, (*values[:place], start, *values[place:]), held)
+        if fit is not None:
+            yield fit
 
 
 def _live(duels: Sequence[_Duel]) -> list[_Duel]:
@@ -183,17 +183,17 @@ def _greedy(duels: Sequence[_Duel]) -> list[int]:
     if not duels:
         return []
     now = [replace(duel) for duel in duels]
-    found: list[int] = []
+    chosen: list[int] = []
     for _ in range(POINTS):
         worth = np.sum([np.log1p(duel.separation + duel.gains()) for duel in now], axis=0)
-        worth[found] = -np.inf
+        worth[chosen] = -np.inf
         place = int(np.argmax(np.where(np.isfinite(worth), worth, -np.inf)))
         if not np.isfinite(worth[place]):
             break
-        found.append(place)
+        chosen.append(place)
         for duel in now:
             duel.measure(place)
-    return found
+    return chosen
 
 
 def _points(chosen: Chosen, settings: Mapping[str, Matrix], live: Sequence[_Duel]) -> Iterator[NextPoint]:
@@ -221,7 +221,7 @@ class _Seen:
     (rows, p), and at the settings in SI, (R, T, p).
     """
 
-    found: Fit
+    fit: Fit
     columns: Matrix
     there: Matrix
     columns_there: Matrix
@@ -232,9 +232,9 @@ def _duels(chosen: Chosen, several: Sequence[Fit], settings: Mapping[str, Matrix
     made = chosen.competition
     tried = elsewhere(made.extended, machine_there(made.sample.machine, settings))
     roots = made.sample.roots(chosen.best.in_sample(made.sample).left)
-    seen = [_seen(found.in_sample(made.sample), made.extended, tried) for found in several]
+    seen = [_seen(fit.in_sample(made.sample), made.extended, tried) for fit in several]
     spreads = np.array(list(_spreads(made.sample, chosen.best).values()))[:, None]
-    return [_duel(a, b, roots, spreads) for a, b in permutations(seen, 2) if not a.found.key <= b.found.key]
+    return [_duel(a, b, roots, spreads) for a, b in permutations(seen, 2) if not a.fit.key <= b.fit.key]
 
 
 def _spreads(sample: Sample, best: Fit) -> dict[str, float]:
@@ -247,41 +247,41 @@ def _duel(true: _Seen, rival: _Seen, roots: Matrix, spreads: Matrix) -> _Duel:
 
     The rival pays for its inputs what they are off their means, the believed one has paid for its own already.
     """
-    k = len(rival.found.inputs)
+    k = len(rival.fit.inputs)
     design = rival.columns * roots[:, None]
     count = design.shape[1]
-    at = np.concatenate([np.zeros(count - k), rival.found.inputs])  # coefficients are moves, of inputs all of them
-    apart = (rival.found.left - true.found.left) * roots + design @ at
+    at = np.concatenate([np.zeros(count - k), rival.fit.inputs])  # coefficients are moves, of inputs all of them
+    apart = (rival.fit.left - true.fit.left) * roots + design @ at
     normal = design.T @ design
     normal += np.diag([0.0] * (count - k) + [1.0] * k) + UNSEEN * np.diag(np.maximum(np.diag(normal), 1.0))
     inverse: Matrix = np.asarray(np.linalg.inv(normal), dtype=np.float64)
     start = inverse @ (design.T @ apart)
     left = apart - design @ start
-    paid = float(start[count - k :] @ start[count - k :]) - float(true.found.inputs @ true.found.inputs)
+    paid = float(start[count - k :] @ start[count - k :]) - float(true.fit.inputs @ true.fit.inputs)
     rows = rival.columns_there / spreads[..., None]
     signal = (true.there - rival.there) / spreads + rows @ at
-    names = name_of(true.found), name_of(rival.found)
+    names = name_of(true.fit), name_of(rival.fit)
     return _Duel(names, max(0.0, float(left @ left) + paid), start, inverse, signal, rows)
 
 
-def _seen(found: Fit, extended: Extended, tried: Extended) -> _Seen:
+def _seen(fit: Fit, extended: Extended, tried: Extended) -> _Seen:
     """Return what an explanation predicts and how it changes, on the data and at the settings that are tried."""
-    numbers, sample, k, units = numbers_of(found), found.sample, len(found.inputs), unit_of(found)
-    flat = np.concatenate(found.values)
+    numbers, sample, k, units = numbers_of(fit), fit.sample, len(fit.inputs), unit_of(fit)
+    flat = np.concatenate(fit.values)
     steps = (WIDE if tried.grain else STEP) * np.maximum(np.abs(flat), 1e-2 * np.abs(units))
     steps = np.where(flat + steps > [number.high for number in numbers], -steps, steps)
     moves = np.diag([step if number.is_free else 0.0 for step, number in zip(steps, numbers, strict=True)])
-    points = [(parts_of(found.causes, flat + move), found.moved) for move in (np.zeros(len(flat)), *moves)]
+    points = [(parts_of(fit.causes, flat + move), fit.moved) for move in (np.zeros(len(flat)), *moves)]
     for half in 0.5 * np.eye(k):
-        points += [(list(found.values), moved_by(sample, found.inputs + sign * half)) for sign in (1, -1)]
+        points += [(list(fit.values), moved_by(sample, fit.inputs + sign * half)) for sign in (1, -1)]
     names = [channel.name for channel in sample.channels]
-    base, *moved = np.array([[shown[name] for name in names] for shown in tried.at(found.causes, points)])
+    base, *moved = np.array([[shown[name] for name in names] for shown in tried.at(fit.causes, points)])
     rises, ups, downs = moved[: len(flat)], moved[len(flat) :: 2], moved[len(flat) + 1 :: 2]
     slopes = [(each - base) * unit / step for each, unit, step in zip(rises, units, steps, strict=True)]
     slopes += [up - down for up, down in zip(ups, downs, strict=True)]
-    own = np.column_stack(slopes_at(found, extended))
+    own = np.column_stack(slopes_at(fit, extended))
     free = np.array([*(number.is_free for number in numbers), *[True] * k])
-    return _Seen(found, own[:, free], base, np.stack(slopes, axis=-1)[..., free])
+    return _Seen(fit, own[:, free], base, np.stack(slopes, axis=-1)[..., free])
 
 
 def _why(chosen: Chosen, settings: Mapping[str, Matrix], place: int, duel: _Duel) -> str:

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from truing.arrays import one_thread
 from truing.declare.near_miss import near_miss
 from truing.diagnosis.causes import effects_of, followed_by, inputs_of
 from truing.diagnosis.choice import Chosen, Rival, choose
@@ -32,7 +33,6 @@ from truing.diagnosis.visibility import inseparable, smallest_visible, trades_of
 from truing.errors import UsageError
 from truing.setup import Setup
 from truing.studies.bench import FINE, Progress, part_of, silent
-from truing.studies.threads import one_thread
 
 TOO_ROUGH = 6**0.5
 """A step so many times what is left of the readings is half of it: its mean square is a twelfth of its own."""
@@ -134,8 +134,8 @@ def _ranking(chosen: Chosen) -> tuple[Alternative, ...]:
     """Return the best explanations, the winner first, every one with how far it lies behind."""
     made = chosen.competition
     top = made.score(made.known[chosen.best.key])
-    others = [found for found in made.ranked() if found.key != chosen.best.key][: RANKED - 1]
-    ranked = [Rival(chosen.best, 0.0), *(Rival(found, max(0.0, made.score(found) - top)) for found in others)]
+    others = [fit for fit in made.ranked() if fit.key != chosen.best.key][: RANKED - 1]
+    ranked = [Rival(chosen.best, 0.0), *(Rival(fit, max(0.0, made.score(fit) - top)) for fit in others)]
     return tuple(alternative_of(chosen, each) for each in ranked)
 
 

@@ -49,7 +49,7 @@ GOOD = 0.25
 """Share of what a step promised from which on its corrected derivatives are good enough for the next one."""
 
 
-def fit(
+def fit_from(
     sample: Sample,
     extended: Extended,
     causes: Sequence[Candidate],
@@ -73,9 +73,9 @@ def fit(
     return state.answer()
 
 
-def refit(found: Fit, sample: Sample, extended: Extended, *, until: float = ROUGHLY) -> Fit | None:
+def refit(fit: Fit, sample: Sample, extended: Extended, *, until: float = ROUGHLY) -> Fit | None:
     """Fit an explanation again from where it is: in other noise, or to other rows."""
-    return fit(sample, extended, found.causes, found.values, found, until=until)
+    return fit_from(sample, extended, fit.causes, fit.values, fit, until=until)
 
 
 class Fitting:
@@ -244,10 +244,10 @@ class Fitting:
                 return np.asarray((np.column_stack(there) - here[:, None]) / steps)
 
             start = np.clip(np.append(self.u[places], self.b), low, high)
-            found = least_squares(
+            solved = least_squares(
                 weighted, start, sloped, (low, high), ftol=until / len(roots), x_scale="jac", max_nfev=MOST_STEPS
             )
-            u, b = self._parted(found.x)
+            u, b = self._parted(solved.x)
             (shown,) = self.shown([u], b)
             left = self.sample.left(shown)
             cost = self.sample.cost(left, b) if np.isfinite(left).all() else inf
@@ -378,41 +378,41 @@ def _solved(normal: Matrix, right: Matrix) -> Matrix:
 
 def nothing(sample: Sample, extended: Extended) -> Fit:
     """Return the model as it is, calibrated as far as tolerances and its own misfit make likely."""
-    found = fit(sample, extended, (), ())
-    if found is None:
+    fit = fit_from(sample, extended, (), ())
+    if fit is None:
         raise ArithmeticError("the model fails with its inputs at their means")
-    return found
+    return fit
 
 
 # What numbers and inputs draw about a fit: the derivatives of what the model shows
 
 
-def slopes_at(found: Fit, extended: Extended) -> tuple[Matrix, Matrix]:
+def slopes_at(fit: Fit, extended: Extended) -> tuple[Matrix, Matrix]:
     """Return the derivatives of what a fit predicts, by its numbers and by the directions, in units of the noise.
 
     Shapes (rows, numbers) per unit of the number as the fit sees it, 0 for what keeps its start, and (rows, K); those
     of the inputs are taken where the fit has put them.
     """
-    state = Fitting(found.sample, extended, found.causes, found, held=())
-    state.begin(np.concatenate(found.values) if found.causes else np.zeros(0))
+    state = Fitting(fit.sample, extended, fit.causes, fit, held=())
+    state.begin(np.concatenate(fit.values) if fit.causes else np.zeros(0))
     state.derivatives()
     return -state.slope, state.slopes_of_inputs()
 
 
-def slopes_left(found: Fit, extended: Extended) -> tuple[Matrix, Matrix]:
+def slopes_left(fit: Fit, extended: Extended) -> tuple[Matrix, Matrix]:
     """Return the derivatives as the fit left them, without a call of the model; else as ``slopes_at`` does."""
-    sample = found.sample
-    if not found.moves or (found.causes and not found.slopes):
-        return slopes_at(found, extended)
-    own = sample.curve(found.slopes, found.predicted) if found.slopes else np.zeros((sample.rows, 0))
-    return own, sample.curve(found.moves, found.predicted)
+    sample = fit.sample
+    if not fit.moves or (fit.causes and not fit.slopes):
+        return slopes_at(fit, extended)
+    own = sample.curve(fit.slopes, fit.predicted) if fit.slopes else np.zeros((sample.rows, 0))
+    return own, sample.curve(fit.moves, fit.predicted)
 
 
-def unit_of(found: Fit) -> Matrix:
+def unit_of(fit: Fit) -> Matrix:
     """Return what one unit of every number, as the fit sees it, is in SI at the fitted value."""
-    scales = {channel.name: channel.scale for channel in found.sample.channels}
-    numbers = [number for cause in found.causes for number in cause.numbers]
-    flat = np.concatenate(found.values) if found.causes else np.zeros(0)
+    scales = {channel.name: channel.scale for channel in fit.sample.channels}
+    numbers = [number for cause in fit.causes for number in cause.numbers]
+    flat = np.concatenate(fit.values) if fit.causes else np.zeros(0)
     return np.array(
         [value if number.is_log else size_of(number, scales) for number, value in zip(numbers, flat, strict=True)]
     )

@@ -47,11 +47,11 @@ def wrong_of(chosen: Chosen, units: Mapping[str, str]) -> tuple[Wrong, ...]:
 def _wrong(chosen: Chosen, channel: Channel, acting: Mapping[str, Sequence[Candidate]], unit: str) -> Wrong:
     best, name, rows = chosen.best, channel.name, channel.rows
     machine, own, records = best.sample.machine, best.sample.noise[name], best.sample.machine.records
-    before, after = (errors_of(machine, name, own, found.predicted[name])[rows] for found in (chosen.null, best))
+    before, after = (errors_of(machine, name, own, fit.predicted[name])[rows] for fit in (chosen.null, best))
     floor = floor_of(best, channel)
     rmse = float(np.sqrt(np.mean(before**2)))
     share = max(0.0, 1 - floor**2 / rmse**2) if rmse > 0 and best.causes else 0.0
-    found = [
+    findings = [
         *_bias(chosen, channel, residuals_of(machine)[name][rows[channel.read]], unit),
         *_with_named(chosen, acting[name], list(_structure(chosen, name, unit))),
         *_of_noise(best, channel),
@@ -67,11 +67,11 @@ def _wrong(chosen: Chosen, channel: Channel, acting: Mapping[str, Sequence[Candi
     )
     if outliers:
         words = f"{counted(len(outliers), 'suspected outlier')}, beyond four standard deviations of the noise"
-        found.append(ResidualFinding("outlier", "", None, words))
+        findings.append(ResidualFinding("outlier", "", None, words))
     given = records.sigma.get(name, np.zeros(len(records)))[rows]
     given = given[given > 0]
     stated = Amount(float(np.sqrt(np.mean(given**2))), unit) if len(given) else None
-    return Wrong(name, len(rows), Amount(rmse, unit), Amount(floor, unit), share, noise, tuple(found), stated)
+    return Wrong(name, len(rows), Amount(rmse, unit), Amount(floor, unit), share, noise, tuple(findings), stated)
 
 
 def _bias(chosen: Chosen, channel: Channel, residual: Matrix, unit: str) -> Iterator[ResidualFinding]:
@@ -96,45 +96,45 @@ def _structure(chosen: Chosen, name: str, unit: str) -> Iterator[ResidualFinding
     Shapes that explain little beside the best explanation are its shadows (a jump has waves of every order).
     """
     made = chosen.competition
-    alone = [found for found in made.known.values() if len(found.causes) == 1]
-    offsets = [found for found in alone if found.causes[0].name == "sensor_offset"]
-    constant = [found for found in offsets if gauged(found.causes[0], [name])]
-    plain = min(made.score(found) for found in (made.null, *constant))  # what a trend must beat to be one
+    alone = [fit for fit in made.known.values() if len(fit.causes) == 1]
+    offsets = [fit for fit in alone if fit.causes[0].name == "sensor_offset"]
+    constant = [fit for fit in offsets if gauged(fit.causes[0], [name])]
+    plain = min(made.score(fit) for fit in (made.null, *constant))  # what a trend must beat to be one
     best: dict[tuple[str, ...], tuple[float, Fit]] = {}
-    for found in alone:
-        label, gain = _label(found, name), plain - made.score(found)
+    for fit in alone:
+        label, gain = _label(fit, name), plain - made.score(fit)
         is_found = bool(label) and chosen.law.p_of(gain) <= SIGNIFICANT
         if is_found and (label not in best or gain > best[label][0]):
-            best[label] = (gain, found)
+            best[label] = (gain, fit)
     singles: dict[str, float] = {}
     for label, (gain, _) in best.items():
         if len(label) == 2:
             singles[label[1]] = max(gain, singles.get(label[1], gain))
     least = SHADOW * (plain - made.score(made.ranked()[0]))
     kept = []
-    for label, (gain, found) in sorted(best.items(), key=lambda item: -item[1][0]):
+    for label, (gain, fit) in sorted(best.items(), key=lambda item: -item[1][0]):
         plainer = max((singles[each] + PAIR_BETTER for each in label[1:] if each in singles), default=gain)
         if gain >= least and (len(label) != 3 or gain >= plainer):
-            kept.append((gain, found))
-    for gain, found in kept[:LARGEST_COUNT]:
-        yield _finding(found, made.extended, chosen.law.p_of(gain), name, unit)
+            kept.append((gain, fit))
+    for gain, fit in kept[:LARGEST_COUNT]:
+        yield _finding(fit, made.extended, chosen.law.p_of(gain), name, unit)
 
 
-def _label(found: Fit, name: str) -> tuple[str, ...]:
+def _label(fit: Fit, name: str) -> tuple[str, ...]:
     """Return kind and covariates of a finding on one result alone; nothing for what is none."""
-    (cause,) = found.causes
+    (cause,) = fit.causes
     alone = cause.shape.results if cause.shape is not None else (gauged(cause, [name]),)
     drawn = drawn_by(cause) if alone == (name,) else ()
     return drawn if not drawn or drawn[0] in {"order", "step", "wave", "product"} else ("trend", *drawn[1:])
 
 
-def _finding(found: Fit, extended: Extended, p_value: float, name: str, unit: str) -> ResidualFinding:
+def _finding(fit: Fit, extended: Extended, p_value: float, name: str, unit: str) -> ResidualFinding:
     """Describe an explanation of one cause as it was fitted."""
-    (cause,), (values,) = found.causes, found.values
+    (cause,), (values,) = fit.causes, fit.values
     drawn, *names = drawn_by(cause)
     kind: ResidualPattern = "order" if drawn == "order" else "step" if drawn == "step" else "trend"
-    added = added_by(found, extended)[cause.name][name]
-    text = shape_in_words(found.sample.machine, cause, values, added, unit)
+    added = added_by(fit, extended)[cause.name][name]
+    text = shape_in_words(fit.sample.machine, cause, values, added, unit)
     return ResidualFinding(kind, " and ".join(names), p_value, text)
 
 
@@ -153,7 +153,7 @@ def _acting(chosen: Chosen) -> dict[str, list[Candidate]]:
     }
 
 
-def _with_named(chosen: Chosen, acting: Sequence[Candidate], found: list[ResidualFinding]) -> list[ResidualFinding]:
+def _with_named(chosen: Chosen, acting: Sequence[Candidate], findings: list[ResidualFinding]) -> list[ResidualFinding]:
     """Add what the named causes follow, where no shape has shown it: a cause is a sharper eye than any shape."""
     made = chosen.competition
     gain = made.score(made.null) - made.score(made.known[chosen.best.key])
@@ -162,12 +162,12 @@ def _with_named(chosen: Chosen, acting: Sequence[Candidate], found: list[Residua
         effect = cause.effect
         follows = [*(need.name for need in effect.needs), *effect.reads] if effect is not None else []
         for name in follows:
-            is_seen = any(name in finding.covariate.split(" and ") for finding in found)
+            is_seen = any(name in finding.covariate.split(" and ") for finding in findings)
             if not is_seen and name in covariates and not covariates[name].is_constant:
-                found.append(
+                findings.append(
                     ResidualFinding("trend", name, chosen.law.p_of(gain), f"follows {name}, as {cause.name} would")
                 )
-    return found
+    return findings
 
 
 def _of_noise(best: Fit, channel: Channel) -> Iterator[ResidualFinding]:
@@ -189,19 +189,19 @@ def _wave(best: Fit, channel: Channel) -> Iterator[ResidualFinding]:
     ``m (1 - g)^(m - 1)`` (Fisher, Proc. R. Soc. A 125, 1929, the first term of his sum).
     """
     left = channel.white(channel.left(best.predicted[channel.name]))
-    covariates = [item for item in best.sample.machine.records.covariates.values() if item.role != "order"]
-    moved = [item for item in covariates if len(np.unique(item.values[channel.rows])) >= FEWEST_OF_WAVE]
+    known = best.sample.machine.records.moved
+    moved = [covariate for covariate in known if len(np.unique(covariate.values[channel.rows])) >= FEWEST_OF_WAVE]
     periods = np.arange(FEWEST_PERIODS, (len(left) - 1) // 2 + 1)
     if len(left) < FEWEST_OF_WAVE or not moved or not np.ptp(left):
         return
-    found: list[tuple[float, str, int, float]] = []
-    for item in moved:
-        ordered = left[np.argsort(item.values[channel.rows], kind="stable")]
+    waves: list[tuple[float, str, int, float]] = []
+    for covariate in moved:
+        ordered = left[np.argsort(covariate.values[channel.rows], kind="stable")]
         power = np.abs(np.fft.rfft(ordered - ordered.mean()))[periods] ** 2
         share = float(power.max() / power.sum())
         p_value = min(1.0, len(moved) * len(periods) * (1 - share) ** (len(periods) - 1))
-        found.append((p_value, item.name, int(periods[np.argmax(power)]), share))
-    p_value, name, count, share = min(found)
+        waves.append((p_value, covariate.name, int(periods[np.argmax(power)]), share))
+    p_value, name, count, share = min(waves)
     if p_value <= WAVE_LEVEL:
         words = f"{count} waves over the range of {name}, with {100 * share:.0f} % of what is left after all"
         yield ResidualFinding("wave", name, p_value, words)

@@ -106,20 +106,20 @@ def differ(one: Fit, other: Fit) -> float:
     return float(np.sum((sample.roots(one.left) * apart) ** 2))
 
 
-def input_value(found: Fit, place: int) -> float:
+def input_value(fit: Fit, place: int) -> float:
     """Return a tolerated input as calibrated and shifted, SI."""
-    machine = found.sample.machine
-    shifts = zip(found.causes, found.values, strict=True)
-    off = float(found.moved[place]) + sum(float(values[0]) for cause, values in shifts if cause.tolerated == place)
+    machine = fit.sample.machine
+    shifts = zip(fit.causes, fit.values, strict=True)
+    off = float(fit.moved[place]) + sum(float(values[0]) for cause, values in shifts if cause.tolerated == place)
     item = machine.inputs[place]
     return float(machine.start.nominal(item.name)) + item.mean + off * item.sd
 
 
-def signs_of_wrong(found: Fit) -> int:
+def signs_of_wrong(fit: Fit) -> int:
     """Count what a wrong explanation looks like: unknowns at their bounds, inputs far outside of their tolerances."""
-    registered = [pair for pair in zip(found.causes, found.values, strict=True) if pair[0].effect is not None]
+    registered = [pair for pair in zip(fit.causes, fit.values, strict=True) if pair[0].effect is not None]
     numbers = [pair for cause, values in registered for pair in zip(cause.numbers, values, strict=True)]
-    return sum(is_at_bound(number, float(value)) for number, value in numbers) + len(far_inputs(found))
+    return sum(is_at_bound(number, float(value)) for number, value in numbers) + len(far_inputs(fit))
 
 
 def is_at_bound(number: Parameter, value: float) -> bool:
@@ -130,8 +130,8 @@ def is_at_bound(number: Parameter, value: float) -> bool:
     return any(end and abs(end) < inf and abs(value - end) <= reach for end in (number.low, number.high))
 
 
-def far_inputs(found: Fit) -> list[int]:
+def far_inputs(fit: Fit) -> list[int]:
     """Return the places of inputs that no cause shifts and that were moved far beyond their tolerances."""
-    shifted = {cause.tolerated for cause in found.causes}
-    free = [(index, item) for index, item in enumerate(found.sample.machine.inputs) if index not in shifted]
-    return [index for index, item in free if abs((input_value(found, index) - item.design) / item.sd) > OUTSIDE]
+    shifted = {cause.tolerated for cause in fit.causes}
+    free = [(index, item) for index, item in enumerate(fit.sample.machine.inputs) if index not in shifted]
+    return [index for index, item in free if abs((input_value(fit, index) - item.design) / item.sd) > OUTSIDE]

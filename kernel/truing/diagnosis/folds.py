@@ -79,25 +79,25 @@ def ends_of(sample: Sample) -> Folds:
 
 def refitted(fits: Sequence[Fit], extended: Extended, test: Mask) -> list[Fit | None]:
     """Fit explanations to the rows that are not left out, each from where it is; None where that cannot be done."""
-    samples = {id(found.sample): found.sample for found in fits}
+    samples = {id(fit.sample): fit.sample for fit in fits}
     rest = {key: sample.of_rows(~test) for key, sample in samples.items()}
     if not all(len(channel) for sample in rest.values() for channel in sample.channels):
         return [None] * len(fits)
-    return [refit(found, rest[id(found.sample)], extended) for found in fits]
+    return [refit(fit, rest[id(fit.sample)], extended) for fit in fits]
 
 
-def errors_left_out(found: Fit, extended: Extended, folds: Folds) -> Matrix:
+def errors_left_out(fit: Fit, extended: Extended, folds: Folds) -> Matrix:
     """Return the errors of all rows of the sample, each predicted without its fold, in units of the noise, (rows,).
 
     NaN where the model fails without the fold.
     """
-    made = np.full(found.sample.rows, np.nan)
-    rows = np.concatenate([channel.rows for channel in found.sample.channels])
+    made = np.full(fit.sample.rows, np.nan)
+    rows = np.concatenate([channel.rows for channel in fit.sample.channels])
     for fold in range(folds.count):
         test = folds.test(fold)
-        (again,) = refitted([found], extended, test)
+        (again,) = refitted([fit], extended, test)
         if again is not None:
-            made = np.where(test[rows], found.sample.left(again.predicted), made)
+            made = np.where(test[rows], fit.sample.left(again.predicted), made)
     return made
 
 

@@ -75,7 +75,7 @@ def nested(chosen: Chosen, done: Callable[[int, int], None] = lambda count, of: 
         base, *again = refitted([chosen.null, *several], made.extended, test)
         if base is None:
             continue
-        best = _chosen_again(chosen, base, [found for found in again if found is not None])
+        best = _chosen_again(chosen, base, [fit for fit in again if fit is not None])
         same += best.key == chosen.best.key
         for index, channel in enumerate(base.sample.channels):
             _judge(judged[channel.name], index, (base, best), test)
@@ -89,10 +89,10 @@ def contenders(chosen: Chosen) -> list[Fit]:
         return []
     plain = all(cause.effect is not None for cause in best.causes)
     near = made.ranked(
-        lambda found: (
-            0 < len(found.causes) <= len(best.causes)
-            and found.key != best.key
-            and (not plain or all(cause.effect is not None for cause in found.causes))
+        lambda fit: (
+            0 < len(fit.causes) <= len(best.causes)
+            and fit.key != best.key
+            and (not plain or all(cause.effect is not None for cause in fit.causes))
         )
     )
     return [made.known[best.key], *near[:CONTENDERS]]
@@ -103,7 +103,7 @@ def _chosen_again(chosen: Chosen, base: Fit, again: list[Fit]) -> Fit:
     made = chosen.competition
     if not again:
         return base
-    own = next((found for found in again if found.key == chosen.best.key), None)
+    own = next((fit for fit in again if fit.key == chosen.best.key), None)
     top = min(again, key=made.score)
     best = own if own is not None and made.score(own) < made.score(top) + CLOSE else top
     return best if made.score(best) < made.score(base) else base
@@ -115,13 +115,13 @@ def _judge(judged: HeldOutAnswers, place: int, fits: tuple[Fit, Fit], test: Mask
     name, noise = channel.name, sample.noise[channel.name]
     known, weights = machine.records.known(name), noise.weights[test] / channel.scale
     logs = []
-    for found, errors in zip(fits, (judged.before, judged.after), strict=True):
-        off = errors_of(machine, name, noise, found.predicted[name])
+    for fit, errors in zip(fits, (judged.before, judged.after), strict=True):
+        off = errors_of(machine, name, noise, fit.predicted[name])
         errors[test] = off[test]
-        left = found.left[sample.parts[place]]
+        left = fit.left[sample.parts[place]]
         sd = sqrt(max(float(np.sum(left**2)) / channel.known, channel.least))
         density = _log_density(errors[test] * weights / sd, noise.tails.freedom) + np.log(weights / sd)
-        logs.append(np.where(known[test], density, _log_chance(machine, name, noise, found)[test]))
+        logs.append(np.where(known[test], density, _log_chance(machine, name, noise, fit)[test]))
     judged.gain[test] = logs[1] - logs[0]
     rows = channel.rows[channel.read]
     left = off[rows] * (channel.weights[channel.read] / channel.scale)
@@ -131,10 +131,10 @@ def _judge(judged: HeldOutAnswers, place: int, fits: tuple[Fit, Fit], test: Mask
     judged.inside[test] = np.where(np.isfinite(judged.after[test]) & known[test], ~outside, np.nan)
 
 
-def _log_chance(machine: Calibration, name: str, noise: NoiseModel, found: Fit) -> Matrix:
+def _log_chance(machine: Calibration, name: str, noise: NoiseModel, fit: Fit) -> Matrix:
     """Return the log probability that the true value lies beyond what was read, (n,); 0 where it was read."""
     sides = machine.records.sides.get(name, np.zeros(len(machine.records), dtype=np.int8))
-    off = difference(machine.records.measured[name], found.predicted[name], noise.typical) * noise.weights / noise.scale
+    off = difference(machine.records.measured[name], fit.predicted[name], noise.typical) * noise.weights / noise.scale
     return np.where(sides == 0, 0.0, -0.5 * beyond(off, sides) ** 2)
 
 
@@ -172,11 +172,11 @@ def gains_of(chosen: Chosen, judged: Nested, units: Mapping[str, str]) -> tuple[
     return tuple(made)
 
 
-def floor_of(found: Fit, channel: Channel) -> float:
+def floor_of(fit: Fit, channel: Channel) -> float:
     """Return the root mean square that an explanation leaves of one result, SI, its numbers paid for."""
-    sample = found.sample
-    errors = errors_of(sample.machine, channel.name, sample.noise[channel.name], found.predicted[channel.name])
-    used = (found.size + len(found.inputs)) / len(sample.channels)
+    sample = fit.sample
+    errors = errors_of(sample.machine, channel.name, sample.noise[channel.name], fit.predicted[channel.name])
+    used = (fit.size + len(fit.inputs)) / len(sample.channels)
     return float(np.sqrt(np.sum(errors[channel.rows] ** 2) / max(len(channel) - used, 1.0)))
 
 

@@ -41,16 +41,16 @@ def contradictions_of(chosen: Chosen) -> tuple[Contradiction, ...]:
     turn = _in_turn(best.sample)
     rows = np.arange(len(best.sample.mask))
     left_out = [np.isin(rows, half) for half in (turn[len(turn) // 2 :], turn[: len(turn) // 2])]
-    fitted = [found for test in left_out for found in refitted([best], extended, test) if found is not None]
+    fitted = [fit for test in left_out for fit in refitted([best], extended, test) if fit is not None]
     if len(fitted) < 2:
         return ()
-    certain = [certainty_of(found, extended) for found in fitted]
+    certain = [certainty_of(fit, extended) for fit in fitted]
     made = []
     for cause in best.causes:
         for place, number in zip(places_of(best, cause), cause.numbers, strict=True):
             if cause.effect is None or not number.is_amplitude or number.file >= 0:
                 continue
-            first, second = (value_of(found, place) for found in fitted)
+            first, second = (value_of(fit, place) for fit in fitted)
             error = hypot(*(each.in_si([place])[0][0] ** 0.5 for each in certain))
             if error > 0 and abs(first - second) > CONTRADICTING * error:
                 unit = next(each.unit for each in cause.effect.unknowns if each.name == number.name)
@@ -80,26 +80,26 @@ def thinned_of(chosen: Chosen) -> tuple[Thinned, ...]:
     best = chosen.best
     if _are_few(best):
         return ()
-    several = [found for found in contenders(chosen) if not (found.key < best.key or best.key < found.key)]
-    others = [found for found in several if set(found.names) != set(best.names)][:RIVALS_THINNED]
+    several = [fit for fit in contenders(chosen) if not (fit.key < best.key or best.key < fit.key)]
+    others = [fit for fit in several if set(fit.names) != set(best.names)][:RIVALS_THINNED]
     turn = _in_turn(best.sample)
     words, made = ORDERED if has_order(best.sample.machine) else UNORDERED, []
     for begin, said in enumerate(words):
         sample = _thinned(best.sample, turn[begin::2])
         if not all(len(channel) for channel in sample.channels):  # a result was read in the other rows alone
             continue
-        ahead = {found: _score(chosen, found, sample) for found in (best, *others)}
+        ahead = {fit: _score(chosen, fit, sample) for fit in (best, *others)}
         top = min(ahead, key=ahead.__getitem__)
         if ahead[top] < ahead[best] - CLOSE < np.inf:
             made.append(Thinned(said, top.names, ahead[best] - ahead[top]))
     return tuple(made)
 
 
-def _score(chosen: Chosen, found: Fit, sample: Sample) -> float:
+def _score(chosen: Chosen, fit: Fit, sample: Sample) -> float:
     """Return the score of an explanation on half of the rows, where it pays half of its price."""
     made = chosen.competition
-    again = refit(found, sample, made.extended)
-    whole = made.known[found.key]
+    again = refit(fit, sample, made.extended)
+    whole = made.known[fit.key]
     return np.inf if again is None else again.cost + (made.score(whole) - whole.cost) / 2
 
 

@@ -16,7 +16,7 @@ from scipy.special import stdtrit
 
 from truing.arrays import Matrix
 from truing.diagnosis.causes import Candidate, Parameter
-from truing.diagnosis.exact import CLOSELY, fit, slopes_at, unit_of
+from truing.diagnosis.exact import CLOSELY, fit_from, slopes_at, unit_of
 from truing.diagnosis.extended import Extended, parts_of
 from truing.diagnosis.fitted import Fit, inward
 from truing.diagnosis.machine import in_blocks
@@ -77,40 +77,40 @@ class Certainty:
         return tuple(tuple(row) for row in part.tolist())
 
 
-def numbers_of(found: Fit) -> list[Parameter]:
+def numbers_of(fit: Fit) -> list[Parameter]:
     """Return the numbers of all causes of a fit, one behind another: the order of places."""
-    return [number for cause in found.causes for number in cause.numbers]
+    return [number for cause in fit.causes for number in cause.numbers]
 
 
-def places_of(found: Fit, cause: Candidate) -> range:
+def places_of(fit: Fit, cause: Candidate) -> range:
     """Return the places of the numbers of a cause among those of all."""
-    place = [each.tag for each in found.causes].index(cause.tag)
-    begin = sum(each.size for each in found.causes[:place])
+    place = [each.tag for each in fit.causes].index(cause.tag)
+    begin = sum(each.size for each in fit.causes[:place])
     return range(begin, begin + cause.size)
 
 
-def value_of(found: Fit, place: int) -> float:
+def value_of(fit: Fit, place: int) -> float:
     """Return one of all numbers, SI."""
-    return float(np.concatenate(found.values)[place])
+    return float(np.concatenate(fit.values)[place])
 
 
-def certainty_of(found: Fit, extended: Extended) -> Certainty:
+def certainty_of(fit: Fit, extended: Extended) -> Certainty:
     """Return how certain the numbers of a fit are.
 
     The larger of the model-based covariance and the sandwich (HC3; J. G. MacKinnon, H. White, J. Econometrics 29, 1985,
     305), number by number. Of noise that is Student's t with f degrees of freedom a row tells (f + 1) / (f + 3) of what
     its weight says.
     """
-    sample, units = found.sample, unit_of(found)
-    roots = sample.roots(found.left)
+    sample, units = fit.sample, unit_of(fit)
+    roots = sample.roots(fit.left)
     told = np.concatenate([np.full(len(each), sqrt(1 - 2 / (each.freedom + 3))) for each in sample.channels])
-    slopes = np.column_stack(slopes_at(found, extended)) * (roots * told)[:, None]
-    prior = np.diag(np.append(np.zeros(len(units)), np.ones(len(found.inputs))))
+    slopes = np.column_stack(slopes_at(fit, extended)) * (roots * told)[:, None]
+    prior = np.diag(np.append(np.zeros(len(units)), np.ones(len(fit.inputs))))
     normal = slopes.T @ slopes
     inverse = _inverse(normal + prior)
     used = float(np.trace(inverse @ normal))
     variance = sample.known / max(sample.known - used, 1.0)
-    scores = _scores(slopes, roots * found.left / told, inverse)
+    scores = _scores(slopes, roots * fit.left / told, inverse)
     plain, sandwich = inverse * variance, inverse @ (scores + variance * prior) @ inverse
     ratio = np.sqrt(np.maximum(np.diag(sandwich) / np.maximum(np.diag(plain), 1e-300), 1.0))
     return Certainty(plain * np.outer(ratio, ratio), units, variance, max(sample.known - used, FEWEST_FREE))
@@ -134,62 +134,62 @@ def _scores(slopes: Matrix, left: Matrix, inverse: Matrix) -> Matrix:
     return made
 
 
-def interval(found: Fit, certainty: Certainty, place: int) -> tuple[float, float]:
+def interval(fit: Fit, certainty: Certainty, place: int) -> tuple[float, float]:
     """Return the 95 % interval of an amplitude in SI, within its bounds."""
-    number, value = numbers_of(found)[place], value_of(found, place)
+    number, value = numbers_of(fit)[place], value_of(fit, place)
     reach = certainty.reach_of(place) * float(certainty.units[place])
     return max(value - reach, min(number.low, value)), min(value + reach, max(number.high, value))
 
 
-def may_be_zero(found: Fit, certainty: Certainty, cause: Candidate) -> bool:
+def may_be_zero(fit: Fit, certainty: Certainty, cause: Candidate) -> bool:
     """Tell whether the 95 % interval of every amplitude of a cause contains zero."""
-    own = places_of(found, cause)
-    ends = [interval(found, certainty, own[place]) for place in cause.amplitudes]
+    own = places_of(fit, cause)
+    ends = [interval(fit, certainty, own[place]) for place in cause.amplitudes]
     return all(low <= 0 <= high for low, high in ends)
 
 
-def ends_of(found: Fit, extended: Extended, certainty: Certainty, place: int) -> Ends:
+def ends_of(fit: Fit, extended: Extended, certainty: Certainty, place: int) -> Ends:
     """Return the 95 % interval of any number, SI: of a whole one between those that are not excluded."""
-    number = numbers_of(found)[place]
+    number = numbers_of(fit)[place]
     if number.whole:
-        values = [value_of(each, place) for each in (found, *whole_left(found, extended, place))]
+        values = [value_of(each, place) for each in (fit, *whole_left(fit, extended, place))]
         return min(values), max(values)
     if number.along:
-        return place_interval(found, extended, place)
-    return (amplitude_interval if number.is_amplitude else shape_interval)(found, extended, certainty, place)
+        return place_interval(fit, extended, place)
+    return (amplitude_interval if number.is_amplitude else shape_interval)(fit, extended, certainty, place)
 
 
-def shape_interval(found: Fit, extended: Extended, certainty: Certainty, place: int) -> Ends:
+def shape_interval(fit: Fit, extended: Extended, certainty: Certainty, place: int) -> Ends:
     """Return the 95 % profile interval of a number in SI; an end is None where the profile stays open to its bound."""
-    profile = _Profile(found, extended, certainty, place)
+    profile = _Profile(fit, extended, certainty, place)
     low, high = (profile.end(bound) for bound in profile.bounds)
     return low, high
 
 
-def amplitude_interval(found: Fit, extended: Extended, certainty: Certainty, place: int) -> Ends:
+def amplitude_interval(fit: Fit, extended: Extended, certainty: Certainty, place: int) -> Ends:
     """Return the 95 % interval of an amplitude in SI, with its profile where its cause has a shape that is free.
 
     Where its cause has a whole number, it holds the intervals at every one that is not excluded.
     """
-    (cause,) = (each for each in found.causes if place in places_of(found, each))
-    numbers, begin = [cause.numbers[shape] for shape in cause.shapes], places_of(found, cause)[0]
-    own = interval(found, certainty, place)
+    (cause,) = (each for each in fit.causes if place in places_of(fit, each))
+    numbers, begin = [cause.numbers[shape] for shape in cause.shapes], places_of(fit, cause)[0]
+    own = interval(fit, certainty, place)
     if any(number.is_free for number in numbers):
-        low, high = shape_interval(found, extended, certainty, place)
+        low, high = shape_interval(fit, extended, certainty, place)
         return None if low is None else min(low, own[0]), None if high is None else max(high, own[1])
     whole = [begin + shape for shape in cause.shapes if cause.numbers[shape].whole]
-    fits = (each for shape in whole for each in whole_left(found, extended, shape))
+    fits = (each for shape in whole for each in whole_left(fit, extended, shape))
     several = [own, *(interval(each, certainty_of(each, extended), place) for each in fits)]
     return min(low for low, _ in several), max(high for _, high in several)
 
 
-def whole_left(found: Fit, extended: Extended, place: int) -> list[Fit]:
+def whole_left(fit: Fit, extended: Extended, place: int) -> list[Fit]:
     """Return the fits at other whole numbers that the readings do not exclude."""
-    number, own = numbers_of(found)[place], round(value_of(found, place))
+    number, own = numbers_of(fit)[place], round(value_of(fit, place))
     ends = max(number.low, own - MOST_WHOLE), min(number.high, own + MOST_WHOLE)
     others = [value for value in range(round(ends[0]), round(ends[1]) + 1) if value != own]
-    fits = (_kept_at(found, extended, place, float(value)) for value in others)
-    return [each for each in fits if each is not None and each.cost < found.cost + WHOLE]
+    fits = (_kept_at(fit, extended, place, float(value)) for value in others)
+    return [each for each in fits if each is not None and each.cost < fit.cost + WHOLE]
 
 
 def _kept_at(near: Fit, extended: Extended, place: int, value: float) -> Fit | None:
@@ -197,21 +197,21 @@ def _kept_at(near: Fit, extended: Extended, place: int, value: float) -> Fit | N
     flat = np.concatenate(near.values)
     flat[place] = value
     held = [numbers_of(near)[place]]
-    return fit(near.sample, extended, near.causes, parts_of(near.causes, flat), near, until=CLOSELY, held=held)
+    return fit_from(near.sample, extended, near.causes, parts_of(near.causes, flat), near, until=CLOSELY, held=held)
 
 
-def place_interval(found: Fit, extended: Extended, place: int) -> tuple[float, float]:
+def place_interval(fit: Fit, extended: Extended, place: int) -> tuple[float, float]:
     """Return the rows of the record, SI, between which lies, at 95 %, a place at which something begins."""
-    number, value = numbers_of(found)[place], value_of(found, place)
-    item = found.sample.machine.records.covariates.get(number.along)
+    number, value = numbers_of(fit)[place], value_of(fit, place)
+    item = fit.sample.machine.records.covariates.get(number.along)
     if item is None:
         return value, value
     rows = np.unique(item.values[np.isfinite(item.values)])
     own = int(np.searchsorted(rows, value))
 
     def holds(gap: int) -> bool:
-        made = _kept_at(found, extended, place, float(rows[gap - 1 : gap + 1].mean()))
-        return made is not None and made.cost <= found.cost + PLACE_LIMIT
+        made = _kept_at(fit, extended, place, float(rows[gap - 1 : gap + 1].mean()))
+        return made is not None and made.cost <= fit.cost + PLACE_LIMIT
 
     last = len(rows) - 1
     low = own - 1 - _farthest(lambda off: holds(own - off), own - 1)
@@ -234,15 +234,15 @@ def _farthest(holds: Callable[[int], bool], limit: int) -> int:
 class _Profile:
     """The least cost with one number held, everything else fitted again from the nearest point that is known."""
 
-    def __init__(self, found: Fit, extended: Extended, certainty: Certainty, place: int) -> None:
-        self.extended, self.place, self.number = extended, place, numbers_of(found)[place]
+    def __init__(self, fit: Fit, extended: Extended, certainty: Certainty, place: int) -> None:
+        self.extended, self.place, self.number = extended, place, numbers_of(fit)[place]
         self.unit = 1.0 if self.number.is_log else float(certainty.units[place])
         self.bounds = inward(self.number, self.unit)
-        value = value_of(found, place)
+        value = value_of(fit, place)
         self.start = log(value) if self.number.is_log else value / self.unit
-        self.known = {self.start: _kept_at(found, extended, place, self.outward(self.start)) or found}
+        self.known = {self.start: _kept_at(fit, extended, place, self.outward(self.start)) or fit}
         student = float(stdtrit(certainty.freedom, QUANTILE))
-        known = found.sample.known
+        known = fit.sample.known
         self.allowed = known * log1p(student**2 * certainty.variance / known)
         self.reach = certainty.reach_of(place)
 

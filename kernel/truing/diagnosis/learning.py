@@ -37,8 +37,7 @@ FEWEST_OF_MEMORY = 20
 def first_noise(machine: Calibration) -> dict[str, NoiseModel]:
     """Return a first idea of the noise: what the tolerated inputs and powers of all covariates cannot explain."""
     made = {}
-    moved = [item for item in machine.records.covariates.values() if not item.is_constant and item.role != "order"]
-    drivers = [standardised(item.values) for item in moved]
+    drivers = [standardised(covariate.values) for covariate in machine.records.moved]
     for name, values in residuals_of(machine).items():
         here = np.flatnonzero(np.isfinite(values) & ~machine.records.held_out)
         typical = typical_of(machine, name)
@@ -125,12 +124,10 @@ def _short(channel: Channel, predicted: Matrix, weights: Matrix) -> Matrix:
 def _drivers(machine: Calibration) -> dict[str, Matrix]:
     """Return what the spread of noise may depend on: every covariate, and its size where it changes sign."""
     made: dict[str, Matrix] = {}
-    for name, item in machine.records.covariates.items():
-        if item.is_constant or item.role == "order":
-            continue
-        made[name] = item.values
-        if np.nanmin(item.values) < 0 < np.nanmax(item.values):
-            made[f"size of {name}"] = np.abs(item.values)
+    for covariate in machine.records.moved:
+        made[covariate.name] = covariate.values
+        if np.nanmin(covariate.values) < 0 < np.nanmax(covariate.values):
+            made[f"size of {covariate.name}"] = np.abs(covariate.values)
     return made
 
 

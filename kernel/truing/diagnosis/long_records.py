@@ -50,11 +50,11 @@ def on_all_rows(chosen: Chosen, machine: Calibration) -> Chosen:
     few.gains_seen = {}  # much, and needed no more
     rivals_there = [few.known[rival.fit.key] for rival in chosen.rivals]
     wanted = [few.known[chosen.best.key], *rivals_there, *few.ranked()[:RANKED]]
-    for found in {found.key: found for found in wanted}.values():
-        made.fitted(found.causes, found.values, None)
+    for fit in {fit.key: fit for fit in wanted}.values():
+        made.fitted(fit.causes, fit.values, None)
     made.renew()
     made.refresh()
     best = made.known.get(chosen.best.key, made.null)
     ends = [made.exact(made.known[rival.fit.key]) for rival in chosen.rivals if rival.fit.key in made.known]
-    rivals = tuple(Rival(found, max(0.0, made.score(found) - made.score(best))) for found in ends)
+    rivals = tuple(Rival(fit, max(0.0, made.score(fit) - made.score(best))) for fit in ends)
     return replace(chosen, competition=made, best=made.exact(best), rivals=rivals, of_some_rows=chosen)

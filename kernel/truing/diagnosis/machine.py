@@ -19,7 +19,7 @@ from truing.arrays import Indices, Matrix
 from truing.diagnosis.records import Records
 from truing.gauge import one_machine
 from truing.setup import Setup
-from truing.studies.scatter import root_of, scatter_of
+from truing.studies.sampling import root_of, scatter_of
 from truing.trials import Trial, read_trials
 
 Predicted = Mapping[str, Matrix]

@@ -23,62 +23,62 @@ Sized = tuple[float, float | None, float | None]
 """A fitted value with its interval, SI."""
 
 
-def causes_of(chosen: Chosen, found: Fit) -> tuple[Cause, ...]:
+def causes_of(chosen: Chosen, fit: Fit) -> tuple[Cause, ...]:
     """Return the named causes of an explanation; parts of one effect (offsets of two gauges) are one cause."""
-    if all(cause.shape is not None for cause in found.causes):
+    if all(cause.shape is not None for cause in fit.causes):
         return ()
-    known = certainty_of(found, chosen.competition.extended)
-    effects = {cause.name: cause.effect for cause in found.causes if cause.effect is not None}
-    inputs = dict.fromkeys(cause.name for cause in found.causes if cause.tolerated >= 0)
-    named = [_effect(chosen, found, known, each) for each in effects.values()]
-    return (*named, *(_input(found, known, name) for name in inputs))
+    known = certainty_of(fit, chosen.competition.extended)
+    effects = {cause.name: cause.effect for cause in fit.causes if cause.effect is not None}
+    inputs = dict.fromkeys(cause.name for cause in fit.causes if cause.tolerated >= 0)
+    named = [_effect(chosen, fit, known, each) for each in effects.values()]
+    return (*named, *(_input(fit, known, name) for name in inputs))
 
 
-def _input(found: Fit, known: Certainty, effect: str) -> Cause:
+def _input(fit: Fit, known: Certainty, effect: str) -> Cause:
     """Return an input that lies outside its band, with the interval of its value, in every file that has its own."""
-    machine = found.sample.machine
+    machine = fit.sample.machine
     made: dict[int, Sized] = {}
-    for cause in [cause for cause in found.causes if cause.name == effect]:
+    for cause in [cause for cause in fit.causes if cause.name == effect]:
         given = machine.inputs[cause.tolerated]
         own = np.zeros(len(known.covariance))
-        own[places_of(found, cause)[0]] = 1.0
-        if len(found.inputs):
-            own[-len(found.inputs) :] = found.sample.directions[cause.tolerated]
-        value, reach = input_value(found, cause.tolerated), known.reach(own) * given.sd
+        own[places_of(fit, cause)[0]] = 1.0
+        if len(fit.inputs):
+            own[-len(fit.inputs) :] = fit.sample.directions[cause.tolerated]
+        value, reach = input_value(fit, cause.tolerated), known.reach(own) * given.sd
         made[given.file] = value, value - reach, value + reach
-    return Cause(effect, (_of_files(found, given.name, made, machine.start.unit_of(given.name)),))
+    return Cause(effect, (_of_files(fit, given.name, made, machine.start.unit_of(given.name)),))
 
 
-def _of_files(found: Fit, name: str, made: Mapping[int, Sized], unit: str) -> FittedUnknown:
+def _of_files(fit: Fit, name: str, made: Mapping[int, Sized], unit: str) -> FittedUnknown:
     """Return an unknown with its interval, -1 where it is one for all files; else their mean and every file's own."""
     if -1 in made:
         return FittedUnknown(name, *made[-1], unit)
-    own = {found.sample.machine.records.files[file]: sized for file, sized in made.items()}
+    own = {fit.sample.machine.records.files[file]: sized for file, sized in made.items()}
     return FittedUnknown(name, sum(value for value, _, _ in made.values()) / len(made), None, None, unit, own)
 
 
-def _effect(chosen: Chosen, found: Fit, known: Certainty, effect: Effect[Any, Any]) -> Cause:
+def _effect(chosen: Chosen, fit: Fit, known: Certainty, effect: Effect[Any, Any]) -> Cause:
     """Return an effect with all its unknowns that were fitted."""
-    extended, numbers = chosen.competition.extended, numbers_of(found)
-    parts = [cause for cause in found.causes if cause.effect is effect]
-    places = [place for cause in parts for place in places_of(found, cause)]
+    extended, numbers = chosen.competition.extended, numbers_of(fit)
+    parts = [cause for cause in fit.causes if cause.effect is effect]
+    places = [place for cause in parts for place in places_of(fit, cause)]
     unknowns, kept = [], []
     for unknown in effect.unknowns:
         own = [place for place in places if numbers[place].name == unknown.name]
         if own:
             sized: dict[int, Sized] = {
-                numbers[each].file: (value_of(found, each), *ends_of(found, extended, known, each)) for each in own
+                numbers[each].file: (value_of(fit, each), *ends_of(fit, extended, known, each)) for each in own
             }
-            unknowns.append(_of_files(found, unknown.name, sized, unknown.unit))
+            unknowns.append(_of_files(fit, unknown.name, sized, unknown.unit))
             kept.append(own[0])
     is_whole = all(numbers[place].is_free and numbers[place].file < 0 for place in kept)
     covariance = known.in_si(kept) if is_whole else ()
-    return Cause(effect.name, tuple(unknowns), covariance, _other_names(chosen, found, effect.name))
+    return Cause(effect.name, tuple(unknowns), covariance, _other_names(chosen, fit, effect.name))
 
 
-def _other_names(chosen: Chosen, found: Fit, name: str) -> tuple[str, ...]:
+def _other_names(chosen: Chosen, fit: Fit, name: str) -> tuple[str, ...]:
     """Return the names of others that draw the same curve as the causes of an explanation that have this name."""
-    same = [other for cause in found.causes if cause.name == name for other in chosen.same.get(cause.tag, ())]
+    same = [other for cause in fit.causes if cause.name == name for other in chosen.same.get(cause.tag, ())]
     return tuple(dict.fromkeys(other for other in same if other != name))
 
 
@@ -101,17 +101,17 @@ def by_share(chosen: Chosen, causes: tuple[Cause, ...]) -> tuple[Cause, ...]:
     return tuple(sorted(weighed, key=lambda cause: -cause.share))
 
 
-def added_by(found: Fit, extended: Extended) -> dict[str, dict[str, Matrix]]:
+def added_by(fit: Fit, extended: Extended) -> dict[str, dict[str, Matrix]]:
     """Return by name of a cause what all that it names adds to each result of an explanation, SI on all rows."""
     points = []
-    for name in ("", *found.names):
-        off = ([cause.name == name and number.is_amplitude for number in cause.numbers] for cause in found.causes)
-        values = [np.where(mask, 0.0, own) for mask, own in zip(off, found.values, strict=True)]
-        points.append((values, found.moved))
-    whole, *without = extended.at(found.causes, points)
+    for name in ("", *fit.names):
+        off = ([cause.name == name and number.is_amplitude for number in cause.numbers] for cause in fit.causes)
+        values = [np.where(mask, 0.0, own) for mask, own in zip(off, fit.values, strict=True)]
+        points.append((values, fit.moved))
+    whole, *without = extended.at(fit.causes, points)
     return {
         name: {result: np.nan_to_num(whole[result] - values) for result, values in less.items()}
-        for name, less in zip(found.names, without, strict=True)
+        for name, less in zip(fit.names, without, strict=True)
     }
 
 
@@ -138,18 +138,18 @@ def _switched_on(best: Fit, causes: Sequence[Cause]) -> Iterator[SwitchedOn]:
             yield replace(on, sds=sds, covariance=complete)
 
 
-def input_values(found: Fit) -> Mapping[str, tuple[float, float]]:
+def input_values(fit: Fit) -> Mapping[str, tuple[float, float]]:
     """Return every tolerated input as calibrated, SI, and how far it moved in units of its sd (the first file's)."""
     made: dict[str, tuple[float, float]] = {}
-    for index, item in enumerate(found.sample.machine.inputs):
-        value = input_value(found, index)
+    for index, item in enumerate(fit.sample.machine.inputs):
+        value = input_value(fit, index)
         made.setdefault(item.name, (value, (value - item.design) / item.sd))
     return made
 
 
-def calibrated_of(found: Fit) -> tuple[Calibrated, ...]:
+def calibrated_of(fit: Fit) -> tuple[Calibrated, ...]:
     """Return every tolerated input as fitted to this machine."""
-    start, values = found.sample.machine.start, input_values(found).items()
+    start, values = fit.sample.machine.start, input_values(fit).items()
     return tuple(Calibrated(name, value, start.unit_of(name), off) for name, (value, off) in values)
 
 
@@ -176,24 +176,24 @@ def remainder_of(chosen: Chosen, units: Mapping[str, str]) -> Remainder | None:
     return Remainder(_followed(best), "; ".join(named), tuple(words), p_value, terms)
 
 
-def _followed(found: Fit) -> tuple[str, ...]:
+def _followed(fit: Fit) -> tuple[str, ...]:
     """Return what the unregistered shapes of an explanation depend on."""
-    shapes = [cause.shape for cause in found.causes if cause.shape is not None]
+    shapes = [cause.shape for cause in fit.causes if cause.shape is not None]
     return tuple(dict.fromkeys(name for shape in shapes for name in shape.depends_on))
 
 
 def alternative_of(chosen: Chosen, rival: Rival, *, with_sizes: bool = False) -> Alternative:
     """Return a rival explanation: how far behind, how separable, and on demand what its own fit says."""
-    found, searched = rival.fit, chosen.searched
+    fit, searched = rival.fit, chosen.searched
     fits = searched.competition.known if searched is not chosen else {}
-    apart = separation(searched.best, fits.get(found.key, found), searched.competition.extended)
-    sized = causes_of(chosen, found) if with_sizes else ()
-    same = {name: others for name in found.names if (others := _other_names(chosen, found, name))}
+    apart = separation(searched.best, fits.get(fit.key, fit), searched.competition.extended)
+    sized = causes_of(chosen, fit) if with_sizes else ()
+    same = {name: others for name in fit.names if (others := _other_names(chosen, fit, name))}
     return Alternative(
-        found.names,
+        fit.names,
         rival.behind,
         apart * chosen.rows_searched,
-        _followed(found),
+        _followed(fit),
         {cause.effect: cause.unknowns for cause in sized},
         same,
     )

@@ -105,6 +105,11 @@ class Records:
         settings = [item.values[~self.held_out] for item in self.covariates.values() if item.role != "order"]
         return int(np.isfinite(measured[np.unique(first_alike([*measured.T, *settings]))]).sum())
 
+    @property
+    def moved(self) -> list[Covariate]:
+        """The covariates that changed, without the place of a row in its file."""
+        return [each for each in self.covariates.values() if not each.is_constant and each.role != "order"]
+
     def known(self, name: str) -> Mask:
         """Mark the rows in which the value of a result was read: neither missing nor censored."""
         there = np.isfinite(self.measured[name])

@@ -62,17 +62,17 @@ def _singles(made: Competition) -> None:
 def _distinct(made: Competition, size: int, count: int, accept: Callable[[Fit], bool] = lambda _: True) -> list[Fit]:
     """Return the best accepted explanations of one size that do not draw the same."""
     kept: list[Fit] = []
-    for found in made.ranked(lambda each: len(each.causes) == size and accept(each)):
-        if all(differ(found, other) > 1.0 for other in kept):
-            kept.append(found)
+    for fit in made.ranked(lambda each: len(each.causes) == size and accept(each)):
+        if all(differ(fit, other) > 1.0 for other in kept):
+            kept.append(fit)
         if len(kept) == count:
             break
     return kept
 
 
 def _pairs(made: Competition) -> None:
-    several = {found.key: found for found in (*_distinct(made, 1, BEAM), *_registered(made, BEAM))}
-    placed = {cause for found in several.values() for cause in found.causes if cause.kept}
+    several = {fit.key: fit for fit in (*_distinct(made, 1, BEAM), *_registered(made, BEAM))}
+    placed = {cause for fit in several.values() for cause in fit.causes if cause.kept}
     for at in list(several.values())[:BEAM]:
         made.forward(at, JOINED, placed.__contains__)
     for one, other in sorted(combinations(several.values(), 2), key=lambda pair: sum(map(made.score, pair))):
@@ -82,11 +82,11 @@ def _pairs(made: Competition) -> None:
 
 def _registered(made: Competition, count: int) -> list[Fit]:
     """Return the best single causes that somebody registered and that do not draw the same."""
-    return _distinct(made, 1, count, accept=lambda found: found.causes[0].is_registered)
+    return _distinct(made, 1, count, accept=lambda fit: fit.causes[0].is_registered)
 
 
 def _beside_firsts(made: Competition) -> None:
-    firsts = {found.key: found for found in (*_distinct(made, 1, FIRSTS), *_registered(made, FIRSTS // 2))}
+    firsts = {fit.key: fit for fit in (*_distinct(made, 1, FIRSTS), *_registered(made, FIRSTS // 2))}
     for at in firsts.values():
         made.forward(at, JOINED, _is_quick)
 
@@ -140,6 +140,6 @@ def exchange(made: Competition, now: Fit, place: int) -> None:
 def _exactly(made: Competition) -> None:
     """Fit to the end what lies near, the best of every size, and single causes: a rough fit may stop far from it."""
     top = made.score(made.ranked()[0])
-    near = [found for found in made.ranked()[:RENEWED] if made.score(found) < top + 4 * MARGIN]
+    near = [fit for fit in made.ranked()[:RENEWED] if made.score(fit) < top + 4 * MARGIN]
     sized = [best for size in range(1, MOST_CAUSES) if (best := made.best(size)) is not None]
     made.again([made.null, *near, *sized, *_registered(made, BEAM)], CLOSELY)

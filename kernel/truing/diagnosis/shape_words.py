@@ -34,53 +34,53 @@ def drawn_by(cause: Candidate) -> tuple[str, ...]:
 def shape_in_words(machine: Calibration, cause: Candidate, values: Matrix, added: Matrix, unit: str) -> str:
     """Describe a fitted curve by its numbers (SI) and what it adds to a result, SI, (n,): see ``drawn_by``."""
     kind, *names = drawn_by(cause)
-    item, spanned = machine.records.covariates[names[0]], float(np.ptp(added))
-    size, amplitude = in_unit(spanned, unit), in_unit(spanned / 2, unit)
+    covariate, spanned = machine.records.covariates[names[0]], float(np.ptp(added))
+    size, amplitude, change = in_unit(spanned, unit), in_unit(spanned / 2, unit), _change(covariate, added, unit)
     number = float(values[cause.shapes[0]]) if cause.shapes else 0.0
     if kind == "order":
-        return f"order {number:g} of {item.name}, amplitude {amplitude}"
+        return f"order {number:g} of {covariate.name}, amplitude {amplitude}"
     if kind == "step":
-        return f"step of {in_unit(float(added[np.argmax(np.abs(added))]), unit)} at {_place(item, number)}"
+        return f"step of {in_unit(float(added[np.argmax(np.abs(added))]), unit)} at {_place(covariate, number)}"
     if kind == "wave":
-        return f"one wave per {_length(item, 1 / number)}, amplitude {amplitude}"
+        return f"one wave per {_length(covariate, 1 / number)}, amplitude {amplitude}"
     if kind == "settling":
-        return f"settles with a time constant of {_length(item, number)}, by {in_unit(_change(item, added), unit)}"
+        return f"settles with a time constant of {_length(covariate, number)}, by {change}"
     if kind == "jump":
-        return f"jumps by {in_unit(_change(item, added), unit)} where {item.name} changes its sign"
+        return f"jumps by {change} where {covariate.name} changes its sign"
     if kind == "kink":
-        return f"has a kink where {item.name} changes its sign, range {size}"
+        return f"has a kink where {covariate.name} changes its sign, range {size}"
     if kind == "dead zone":
-        return f"a dead zone of +-{_length(item, number)}, range {size}"
+        return f"a dead zone of +-{_length(covariate, number)}, range {size}"
     if kind == "product":
         return f"depends on {' and '.join(names)} together, range {size}"
-    return _trend(item, added, unit)
+    return _trend(covariate, added, unit)
 
 
-def _change(item: Covariate, added: Matrix) -> float:
-    """Return by how much a curve differs between the smallest and the largest value of a covariate."""
-    return float(added[np.nanargmax(item.values)] - added[np.nanargmin(item.values)])
+def _change(covariate: Covariate, added: Matrix, unit: str) -> str:
+    """Write by how much a curve differs between the smallest and the largest value of a covariate."""
+    return in_unit(float(added[np.nanargmax(covariate.values)] - added[np.nanargmin(covariate.values)]), unit)
 
 
-def _place(item: Covariate, at: float) -> str:
-    return f"{item.name} = {in_unit(at, item.unit, PLACE_DIGITS)}"
+def _place(covariate: Covariate, at: float) -> str:
+    return f"{covariate.name} = {in_unit(at, covariate.unit, PLACE_DIGITS)}"
 
 
-def _length(item: Covariate, value: float) -> str:
+def _length(covariate: Covariate, value: float) -> str:
     """Write a distance along a covariate."""
-    length = in_unit(value, readable_unit(item.unit, value), PLACE_DIGITS)
-    return f"{length} of {item.name}" if item.role != "time" else length
+    length = in_unit(value, readable_unit(covariate.unit, value), PLACE_DIGITS)
+    return f"{length} of {covariate.name}" if covariate.role != "time" else length
 
 
-def _trend(item: Covariate, added: Matrix, unit: str) -> str:
+def _trend(covariate: Covariate, added: Matrix, unit: str) -> str:
     """Describe a trend: rising or falling, or curved with its turning point."""
-    order = np.argsort(item.values)[: int(np.isfinite(item.values).sum())]
-    curve, at = added[order], item.values[order]
+    order = np.argsort(covariate.values)[: int(np.isfinite(covariate.values).sum())]
+    curve, at = added[order], covariate.values[order]
     low, high = int(np.argmin(curve)), int(np.argmax(curve))
     size = in_unit(float(np.ptp(curve)), unit)
     ends = abs(curve[-1] - curve[0]) / max(float(np.ptp(curve)), 1e-300)
     if ends > ONE_WAY:
         way = "rises" if curve[-1] > curve[0] else "falls"
-        return f"{way} with {item.name}, by {size} over the record"
+        return f"{way} with {covariate.name}, by {size} over the record"
     turning = low if 0 < low < len(curve) - 1 and abs(curve[low] - curve[0]) >= abs(curve[high] - curve[0]) else high
     kind = "lowest" if turning == low else "highest"
-    return f"curved over {item.name}, {kind} at {_place(item, float(at[turning]))}, range {size}"
+    return f"curved over {covariate.name}, {kind} at {_place(covariate, float(at[turning]))}, range {size}"

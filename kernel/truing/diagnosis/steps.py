@@ -98,21 +98,19 @@ def _candidates(made: Competition, at: Fit, size: int) -> Iterator[Fit]:
     null = made.null
     least = NEARLY_ALL * (_squares(best, null) - _squares(best, best))
     named = made.ranked(
-        lambda found: (
-            len(found.causes) == size and _is_own(found) and _squares(best, null) - _squares(best, found) >= least
-        )
+        lambda fit: len(fit.causes) == size and _is_own(fit) and _squares(best, null) - _squares(best, fit) >= least
     )
     yield from named[:1]
     if at.causes and _is_own(at) and _squares(best, null) - _squares(best, at) >= least:
         made.forward(at, FURTHER)
-        yield from made.ranked(lambda found: len(found.causes) == size and found.key > at.key)[:1]
+        yield from made.ranked(lambda fit: len(fit.causes) == size and fit.key > at.key)[:1]
         return
     yield best
 
 
-def _is_own(found: Fit) -> bool:
+def _is_own(fit: Fit) -> bool:
     """Whether an explanation is made of effects that the model itself declares."""
-    return all(cause.effect is not None and not cause.is_kernel for cause in found.causes)
+    return all(cause.effect is not None and not cause.is_kernel for cause in fit.causes)
 
 
 def draws_anything(cause: Candidate) -> bool:
@@ -120,9 +118,9 @@ def draws_anything(cause: Candidate) -> bool:
     return cause.shape is not None and cause.shape.kind in {"trend", "product"}
 
 
-def _squares(judge: Fit, found: Fit) -> float:
+def _squares(judge: Fit, fit: Fit) -> float:
     """Return the sum of squares that an explanation leaves, in the noise that another one leaves."""
-    return float(np.sum((judge.sample.roots(judge.left) * found.left) ** 2))
+    return float(np.sum((judge.sample.roots(judge.left) * fit.left) ** 2))
 
 
 def _best(made: Competition, at: Fit, size: int) -> Fit | None:
@@ -131,32 +129,32 @@ def _best(made: Competition, at: Fit, size: int) -> Fit | None:
     Beside a cause with a name there is one shape in all: a second one takes from what the cause draws.
     """
 
-    def allows(found: Fit) -> bool:
-        many = shapes_in(found)
+    def allows(fit: Fit) -> bool:
+        many = shapes_in(fit)
         return many <= (max(shapes_in(at), 1) if many < size else shapes_in(at) + 1)
 
-    sized = made.ranked(lambda found: len(found.causes) == size and is_sensible(found) and allows(found))
+    sized = made.ranked(lambda fit: len(fit.causes) == size and is_sensible(fit) and allows(fit))
     if not sized:
         return None
-    named = next((found for found in sized if not shifts_inputs(found)), None)
+    named = next((fit for fit in sized if not shifts_inputs(fit)), None)
     if shifts_inputs(sized[0]) and named is not None and made.score(named) < made.score(sized[0]) + MARGIN:
         return named
     return sized[0]
 
 
-def shapes_in(found: Fit) -> int:
+def shapes_in(fit: Fit) -> int:
     """Return how many shapes that nobody registered an explanation has."""
-    return sum(cause.shape is not None for cause in found.causes)
+    return sum(cause.shape is not None for cause in fit.causes)
 
 
-def shifts_inputs(found: Fit) -> bool:
+def shifts_inputs(fit: Fit) -> bool:
     """Whether an explanation names an input that lies outside of its band."""
-    return any(cause.tolerated >= 0 for cause in found.causes)
+    return any(cause.tolerated >= 0 for cause in fit.causes)
 
 
-def is_sensible(found: Fit) -> bool:
+def is_sensible(fit: Fit) -> bool:
     """Whether inputs that are named lie outside of their bands: what lies inside is calibrated, not named."""
-    pairs = zip(found.causes, found.values, strict=True)
+    pairs = zip(fit.causes, fit.values, strict=True)
     return all(abs(float(values[0])) > OUTSIDE for cause, values in pairs if cause.tolerated >= 0)
 
 

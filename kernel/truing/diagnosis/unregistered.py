@@ -39,7 +39,7 @@ def shapes_of(records: Records, registered: Mapping[str, Sequence[int]], *, has_
     time are looked for already. Of covariates that move as one the first has the shapes; the place of a row in a file
     is none.
     """
-    moved = _apart([item for item in records.covariates.values() if not item.is_constant and item.role != "order"])
+    moved = _apart(records.moved)
     results = tuple(records.measured)
     groups = [(name,) for name in results] + ([results] if len(results) > 1 else [])
     made = []
@@ -56,9 +56,10 @@ def shapes_of(records: Records, registered: Mapping[str, Sequence[int]], *, has_
 def _apart(moved: Sequence[Covariate]) -> list[Covariate]:
     """Return the covariates but those that another one moves as one with."""
     kept: list[Covariate] = []
-    for item in moved:
-        if (item.is_angle and item.goes_round) or not any(item.moves_with(other, 0.99999) for other in kept):
-            kept.append(item)
+    for covariate in moved:
+        is_alone = not any(covariate.moves_with(other, 0.99999) for other in kept)
+        if is_alone or (covariate.is_angle and covariate.goes_round):
+            kept.append(covariate)
     return kept
 
 
@@ -66,28 +67,28 @@ def _families(
     moved: Sequence[Covariate], registered: Mapping[str, Sequence[int]], *, has_steps: bool, rows: int
 ) -> Iterator[Family]:
     """Give every family of shapes: kind, covariates, terms a result, shape numbers, and how its terms are made."""
-    for item in moved:
-        distinct = len(np.unique(np.round(item.values[np.isfinite(item.values)], 12)))
-        is_round = item.goes_round and item.is_angle
+    for covariate in moved:
+        distinct = len(np.unique(np.round(covariate.values[np.isfinite(covariate.values)], 12)))
+        is_round = covariate.goes_round and covariate.is_angle
         if is_round:
-            yield "trend", (item.name,), 3, (), _harmonics
+            yield "trend", (covariate.name,), 3, (), _harmonics
         for degree in DEGREES:
             if distinct > degree and not is_round:
-                yield "trend", (item.name,), degree + 1, (), partial(_powers, degree)
-        yield from _at_zero(item)
+                yield "trend", (covariate.name,), degree + 1, (), partial(_powers, degree)
+        yield from _at_zero(covariate)
         if distinct >= FEWEST_VALUES:
-            yield from _ordered(item, registered.get(item.name, ()), has_steps=has_steps, rows=rows)
+            yield from _ordered(covariate, registered.get(covariate.name, ()), has_steps=has_steps, rows=rows)
     for first, second in combinations(moved, 2):
         for degree in (1, 2):
             yield "product", (first.name, second.name), len(_exponents(degree)), (), partial(_products, degree)
 
 
-def _at_zero(item: Covariate) -> Iterator[Family]:
+def _at_zero(covariate: Covariate) -> Iterator[Family]:
     """Give what may happen where a covariate changes its sign: a jump, a kink, a dead zone."""
-    values = item.values[np.isfinite(item.values)]
-    if min((values > 0).mean(), (values < 0).mean()) < EITHER_SIDE or (item.is_angle and item.goes_round):
+    values = covariate.values[np.isfinite(covariate.values)]
+    if min((values > 0).mean(), (values < 0).mean()) < EITHER_SIDE or (covariate.is_angle and covariate.goes_round):
         return
-    on, largest = (item.name,), float(np.abs(values).max())
+    on, largest = (covariate.name,), float(np.abs(values).max())
     yield "jump", on, 1, (), _jump
     yield "kink", on, 1, (), _kink
     if len(np.unique(values)) >= FEWEST_VALUES:
@@ -95,13 +96,13 @@ def _at_zero(item: Covariate) -> Iterator[Family]:
         yield "dead zone", on, 1, (width,), _dead_zone
 
 
-def _ordered(item: Covariate, registered: Sequence[int], *, has_steps: bool, rows: int) -> Iterator[Family]:
+def _ordered(covariate: Covariate, registered: Sequence[int], *, has_steps: bool, rows: int) -> Iterator[Family]:
     """Give waves of whole orders over an angle, of any period over all else, steps and settling in time."""
-    values = item.values[np.isfinite(item.values)]
-    span, on = float(np.ptp(values)), (item.name,)
-    if item.is_angle:
+    values = covariate.values[np.isfinite(covariate.values)]
+    span, on = float(np.ptp(values)), (covariate.name,)
+    if covariate.is_angle:
         low = max(registered, default=0) + 1
-        high = min(HIGHEST_ORDER, highest_order(item.values))
+        high = min(HIGHEST_ORDER, highest_order(covariate.values))
         if high > low:
             order = Parameter("order", low, high, is_amplitude=False, whole=True)
             yield "order", on, 2, (order,), partial(_waves, 1.0)
@@ -109,10 +110,10 @@ def _ordered(item: Covariate, registered: Sequence[int], *, has_steps: bool, row
     most = min(0.5 * len(np.unique(values)), 0.5 * rows, MOST_WAVES)
     frequency = Parameter("frequency", 1.0 / span, max(most, 2.0) / span, is_amplitude=False)
     yield "wave", on, 2, (frequency,), partial(_waves, 2 * pi)
-    if item.role == "time":
+    if covariate.role == "time":
         if not has_steps:
             ends = (float(values.min() + ENDS * span), float(values.max() - ENDS * span))
-            place = Parameter("place", *ends, is_amplitude=False, along=item.name)
+            place = Parameter("place", *ends, is_amplitude=False, along=covariate.name)
             yield "step", on, 1, (place,), _step
         reach = (SHORTEST_SETTLING * span, LONGEST_SETTLING * span)
         yield "settling", on, 2, (Parameter("constant", *reach, is_amplitude=False),), _settling

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from truing.errors import UsageError
 from truing.executors.cluster import ClusterExecutor
-from truing.executors.data import keepable
-from truing.executors.kept import BatchLog, KeptExecutor
-from truing.executors.ordered import in_order
-from truing.executors.places import SerialExecutor, WorkerPool
+from truing.executors.kept import BatchLog, KeptExecutor, keepable
+from truing.executors.places import SerialExecutor, WorkerPool, in_order
 from truing.executors.processes import ProcessExecutor
 
 __all__ = [

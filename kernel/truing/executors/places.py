@@ -1,9 +1,10 @@
-"""A place to compute, as the ordered reduction and run.json see it; and the simplest one, this process."""
+"""Places to compute, the simplest of them this process, and jobs handed out there with answers taken in their order."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Executor, Future
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
@@ -100,3 +101,136 @@ class SerialExecutor(WorkerPool):
         except Exception as error:
             future.set_exception(error)
         return future
+
+
+# Jobs handed out, answers taken in the order of the jobs, and what was lost handed out again
+
+
+MOST_TOGETHER = 256
+
+
+def in_order(executor: Executor, function: Callable[[J], A], jobs: Iterable[J], *, window: int = 16) -> Iterator[A]:
+    """Yield ``function(job)`` in the order of the jobs, with about ``window`` of them under way.
+
+    Short jobs travel together, as many as are computed in a moment. Jobs that were under way when a worker was lost are
+    handed out again. For a place that is not this process (``SerialExecutor``) function and jobs must be picklable.
+    """
+    place = executor if isinstance(executor, WorkerPool) else _Foreign(executor)
+    work = _Work(place, function, 1 if place.where == "serial" else window)
+    try:
+        for job in jobs:
+            yield from work.after(job)
+        yield from work.rest()
+    finally:
+        work.cancel()
+
+
+class _Foreign(WorkerPool):
+    """Any other executor, which is left to itself."""
+
+    where = "foreign"
+
+    def __init__(self, executor: Executor) -> None:
+        self._executor = executor
+
+    def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        return self._executor.submit(function, *args, **kwargs)
+
+
+@dataclass
+class _Part(Generic[J, A]):
+    """Jobs that travel together, and their answers to come."""
+
+    jobs: list[J]
+    future: Future[Timed[A]]
+
+
+class _Work(Generic[J, A]):
+    """The jobs under way, oldest first, and those that wait until enough of them can travel together."""
+
+    def __init__(self, place: WorkerPool, function: Callable[[J], A], window: int) -> None:
+        self._place = place
+        self._function = function
+        self._window = window
+        self._pending: deque[_Part[J, A]] = deque()
+        self._waiting: list[J] = []
+        self._together = 1
+
+    def after(self, job: J) -> Iterator[A]:
+        """Take one more job, and yield the answers that must come before further ones are taken."""
+        known = self._place.known(self._function, job)
+        if known is not None:
+            self._hand_out()
+            self._pending.append(_Part([job], known))
+        else:
+            self._waiting.append(job)
+            if len(self._waiting) >= self._together:
+                self._hand_out()
+        while len(self._pending) >= max(self._window, 4 * (self._place.slots - 1)):
+            yield from self._first()
+
+    def rest(self) -> Iterator[A]:
+        """Yield all answers that are still to come."""
+        self._hand_out()
+        while self._pending:
+            yield from self._first()
+
+    def cancel(self) -> None:
+        """Give up what is under way."""
+        for part in self._pending:
+            part.future.cancel()
+
+    def _hand_out(self) -> None:
+        if self._waiting:
+            jobs, self._waiting = self._waiting, []
+            self._pending.append(_Part(jobs, self._submitted(jobs)))
+
+    def _first(self) -> Iterator[A]:
+        """Yield the oldest answers. Jobs behind one that failed have none yet and are handed out again."""
+        timed = self._awaited()
+        part = self._pending.popleft()
+        left = part.jobs[len(timed.answers) :]
+        if left:
+            self._pending.appendleft(_Part(left, self._submitted(left)))
+        if timed.seconds > 0:
+            fitting = int(self._place.moment * len(timed.answers) / timed.seconds)
+            self._together = max(1, min(fitting, 2 * self._together, MOST_TOGETHER))
+        yield from timed.answers
+
+    def _awaited(self) -> Timed[A]:
+        """Wait for the oldest answers, handing out again what was lost as often as is sensible."""
+        while True:
+            future = self._pending[0].future
+            try:
+                return future.result(timeout=self._place.patience)
+            except Exception as error:
+                waited = isinstance(error, TimeoutError) and not future.done()
+                if not waited and not self._place.is_loss(error):
+                    raise
+                loss = self._place.look_after() if waited else error
+                if loss is not None:
+                    self._hand_out_again(loss)
+
+    def _submitted(self, jobs: list[J]) -> Future[Timed[A]]:
+        while True:
+            try:
+                return self._place.submit_together(self._function, jobs)
+            except Exception as error:
+                if not self._place.is_loss(error):
+                    raise
+                self._hand_out_again(error)
+
+    def _hand_out_again(self, error: Exception) -> None:
+        """Renew the place and submit every unanswered part once more, in the same order."""
+        while True:
+            self._place.renew(error)
+            try:
+                for part in self._pending:
+                    if not answered(part.future):
+                        part.future = self._place.submit_together(self._function, part.jobs)
+            except Exception as again:
+                if not self._place.is_loss(again):
+                    raise
+                error = again
+                continue
+            return

@@ -1,19 +1,28 @@
-"""How strongly a source moves a result: its share of the scatter, and what one per cent of it does."""
+"""What has to do with what: how a source moves a result, what an effect changes, what is made from what."""
 
 from __future__ import annotations
 
 import math
 import time
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
-from truing.errors import TruingError
-from truing.setup import Setup
+import numpy as np
+
+from truing.declare.checks import formula_scope
+from truing.declare.fields import Found
+from truing.declare.model import Model
+from truing.declare.sources import Condition, Effect, Unknown
+from truing.errors import InfeasibleError, TruingError
+from truing.evaluate import acting_inputs, evaluate
+from truing.formulas import parse
+from truing.formulas.tree import Name, walk
+from truing.setup import Setup, SwitchedOn
 from truing.studies.bench import Progress, silent
 from truing.studies.differences import exact_slopes, nominal_of, slopes
-from truing.studies.scatter import Scatter, scatter_of
-from truing.units import difference_unit, unit_factor
+from truing.studies.sampling import Scatter, scatter_of
+from truing.units import difference_unit, to_si, unit_factor
 from truing.units.names import LEVELS
 
 PATIENCE = 20.0
@@ -49,7 +58,7 @@ class Influences:
 
 def differentiable(setup: Setup) -> list[str]:
     """Return the inputs and conditions that a result can be differentiated by: numbers that are given."""
-    numbers = [name for name, item in setup.model.input_fields.items() if item.kind == "float"]
+    numbers = [name for name, field in setup.model.input_fields.items() if field.kind == "float"]
     return [name for name in (*numbers, *setup.conditions) if (value := nominal_of(setup, name)) == value]
 
 
@@ -140,3 +149,153 @@ def by_share(found: Sequence[Influence]) -> list[Influence]:
 def by_slope(found: Sequence[Influence]) -> list[Influence]:
     """Return what moves the result, the steepest first."""
     return sorted((one for one in found if one.moves and one.step), key=lambda one: -abs(one.step or 0.0))
+
+
+# What an effect changes: the model is run with it, at a size it may have, beside the model without
+
+
+SIZES = (0.5, 0.05, 0.005)
+"""Shares of an amplitude's bound that are tried, until the calculation is possible."""
+STEP = 10.0
+"""How far from its reference a condition without a range is tried, in its unit."""
+ROUNDING = 1e-12
+
+
+@dataclass(frozen=True)
+class Touched:
+    """What changes when an effect is on: results by name with the relative change, and inputs before and after (SI).
+
+    The change of a result that is 0 without the effect is infinite; along an axis it is the largest change over the
+    largest value. ``at`` holds the unknowns and conditions of the trial, SI. None could be tried where it is empty.
+    """
+
+    at: Mapping[str, float]
+    results: Mapping[str, float]
+    inputs: Mapping[str, tuple[float, float]]
+
+
+def touched(setup: Setup, effect: Effect[Any, Any]) -> Touched:
+    """Try one effect alone, as it is where it is on, else at sizes within its bounds, its conditions off reference."""
+    for values, conditions in _trials(setup, effect):
+        bare = replace(setup, effects=(), conditions={**setup.conditions, **conditions})
+        acting = replace(bare, effects=(SwitchedOn(effect, values),))
+        try:
+            without, with_it = evaluate(bare, reading=True), evaluate(acting, reading=True)
+        except InfeasibleError:
+            continue
+        read = setup.model.read_results
+        changed = dict(_changed(read(without), read(with_it)))
+        inputs = dict(_moved(bare, acting)) if effect.place == "inputs" else {}
+        return Touched({**values, **conditions}, changed, inputs)
+    return Touched({}, {}, {})
+
+
+def _trials(setup: Setup, effect: Effect[Any, Any]) -> Iterator[tuple[dict[str, float], dict[str, float]]]:
+    on = next((active for active in setup.effects if active.effect.name == effect.name), None)
+    if on is not None:
+        yield dict(on.values), {need.name: _off_reference(setup, need) for need in effect.needs}
+    for size in SIZES:
+        values = {unknown.name: _tried(setup, unknown, size) for unknown in effect.unknowns}
+        yield values, {need.name: _off_reference(setup, need) for need in effect.needs}
+
+
+def _tried(setup: Setup, unknown: Unknown, size: float) -> float:
+    """Return a value of an unknown: an amplitude at a share of its bound, a shape amid its bounds."""
+    if unknown.is_amplitude:
+        return float(to_si(size * (unknown.high or unknown.low), unknown.unit))
+    if unknown.whole:
+        return float(to_si(unknown.low, unknown.unit))
+    if unknown.low > 0:
+        return float(to_si((unknown.low * unknown.high) ** 0.5, unknown.unit))
+    return float(to_si((unknown.low + unknown.high) / 2, unknown.unit))
+
+
+def _off_reference(setup: Setup, need: Condition) -> float:
+    """Return a value of a condition that is not its reference."""
+    value = setup.conditions.get(need.name, need.zero)
+    if value != need.zero:
+        return float(value)
+    for tried in (need.high, need.low):
+        if tried is not None and tried != need.reference:
+            return float(to_si(tried, need.unit))
+    return float(to_si(need.reference + STEP, need.unit))
+
+
+def _changed(before: Mapping[str, Any], after: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
+    for name, value in before.items():
+        one, other = np.atleast_1d(np.asarray(value, dtype=float)), np.atleast_1d(np.asarray(after[name], dtype=float))
+        if one.shape != other.shape:
+            yield name, float("inf")
+            continue
+        difference = other - one
+        step = float(difference[np.argmax(np.abs(difference))]) if one.size else 0.0
+        size = float(np.abs(one).max()) if one.size else 0.0
+        if abs(step) > ROUNDING * size:
+            yield name, step / size if size else float("inf")
+
+
+def _moved(bare: Setup, acting: Setup) -> Iterator[tuple[str, tuple[float, float]]]:
+    model = bare.model
+    before, after = model.read_inputs(bare.inputs), model.read_inputs(acting_inputs(acting))
+    for name, field in model.input_fields.items():
+        if field.varies and before[name] == before[name] and before[name] != after[name]:
+            yield name, (float(before[name]), float(after[name]))
+
+
+def all_touched(setup: Setup) -> dict[str, Touched]:
+    """Try every effect of the model itself, one by one."""
+    return {name: touched(setup, effect) for name, effect in setup.model.effects.items()}
+
+
+def effects_on(found: Mapping[str, Touched], names: Sequence[str]) -> dict[str, float]:
+    """Return the effects that change any of these results, the largest relative change first."""
+    sizes = {effect: max((abs(one.results[name]) for name in names if name in one.results), default=0.0)
+             for effect, one in found.items()}  # fmt: skip
+    return dict(sorted(((effect, size) for effect, size in sizes.items() if size), key=lambda pair: -pair[1]))
+
+
+# Which result is made from what, as the declared formulas say, and which results follow from a name
+
+
+def made_from(model: Model[Any, Any]) -> Mapping[str, tuple[str, ...]]:
+    """Return, for every result with a formula, the inputs and results that it names, in the order of its text."""
+    found: dict[str, tuple[str, ...]] = {}
+    for name, field in model.result_fields.items():
+        if not isinstance(field.spec, Found) or not field.spec.formula:
+            continue
+        formula = parse(field.spec.formula)
+        scope = formula_scope(model, field)
+        sides = [side for side in (formula.left, formula.right) if side is not None]
+        written = [node.name for side in sides for node in walk(side) if isinstance(node, Name)]
+        names = dict.fromkeys(scope[word].name for word in written if word in scope)
+        found[name] = tuple(other for other in names if other != name)
+    return found
+
+
+def following(links: Mapping[str, tuple[str, ...]], name: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return the results whose formulas name this one, and those that follow further down."""
+    direct = tuple(result for result, sources in links.items() if name in sources)
+    further: dict[str, None] = {}
+    front = list(direct)
+    while front:
+        last = front.pop(0)
+        for result, sources in links.items():
+            if last in sources and result not in direct and result not in further and result != name:
+                further[result] = None
+                front.append(result)
+    return direct, tuple(further)
+
+
+def chain(links: Mapping[str, tuple[str, ...]], name: str) -> Iterator[tuple[int, str, bool]]:
+    """Yield what a result is made from, depth first down to the inputs: depth, name, whether it stood above already."""
+    seen: set[str] = set()
+
+    def below(result: str, depth: int) -> Iterator[tuple[int, str, bool]]:
+        for source in links.get(result, ()):
+            again = source in seen and source in links
+            seen.add(source)
+            yield depth, source, again
+            if not again:
+                yield from below(source, depth + 1)
+
+    yield from below(name, 1)

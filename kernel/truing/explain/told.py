@@ -2,16 +2,50 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any, Literal, TypeAlias
 
-from truing.declare.model import Model
+import numpy as np
+
+from truing.calculation import Calculation, calculate
+from truing.declare.fields import Axis, ResultField
+from truing.declare.goals import Maximise, Minimise, Require, Vary, prices_in
+from truing.declare.model import Model, Study
 from truing.declare.near_miss import near_miss
+from truing.declare.sources import Effect, Tolerance
 from truing.errors import UsageError
-from truing.explain import told_result, told_sources
+from truing.evaluate import evaluate
+from truing.explain.influence import (
+    Influence,
+    Influences,
+    Touched,
+    all_touched,
+    by_share,
+    by_slope,
+    chain,
+    differentiable,
+    effects_on,
+    following,
+    influences,
+    made_from,
+    touched,
+)
+from truing.formulas import symbol_text
+from truing.formulas.layout import substituted, symbolic
+from truing.formulas.write_text import TextWriter
+from truing.inputs_file import setup_from_settings
+from truing.inputs_file.values import bounds_in_words
 from truing.kernel import Offer
+from truing.numbers import ABSENT, format_difference, format_ends, format_value, pretty, with_unit
+from truing.published import compare_one, same_run
+from truing.report.equations import equation_of
+from truing.report.sheet import input_value
+from truing.runs.documents import clean
 from truing.setup import Setup
 from truing.studies.bench import Progress, silent
+from truing.studies.checks import check_name
+from truing.units import from_si, unit_text
 
 
 def told(setup: Setup, offer: Offer, name: str, *, progress: Progress = silent) -> dict[str, Any]:
@@ -25,14 +59,14 @@ def told(setup: Setup, offer: Offer, name: str, *, progress: Progress = silent) 
     name = name.rpartition(".")[2]
     head = {"model": offer.name, "title": model.title, "name": name, "kind": kind}
     if kind == "result":
-        return {**head, **told_result.of_result(setup, offer, name, progress)}
+        return {**head, **of_result(setup, offer, name, progress)}
     if kind == "study":
-        return {**head, **told_sources.of_study(setup, name)}
+        return {**head, **of_study(setup, name)}
     tell = {
-        "input": told_sources.of_input,
-        "effect": told_sources.of_effect,
-        "tolerance": told_sources.of_tolerance,
-        "condition": told_sources.of_condition,
+        "input": of_input,
+        "effect": of_effect,
+        "tolerance": of_tolerance,
+        "condition": of_condition,
     }[kind]
     return {**head, **tell(setup, name)}
 
@@ -99,3 +133,414 @@ def _described(model: Model[Any, Any], name: str, kind: Topic) -> str:
     item: Any = model.result_fields.get(name) or model.input_fields.get(name)
     note = item.spec.note if kind in {"result", "input"} and item is not None else ""
     return ", ".join(part for part in (kind, note) if part)
+
+
+# Inputs, tolerances, effects, conditions and studies explained: what they are, and which results they move
+
+
+def of_input(setup: Setup, name: str) -> dict[str, Any]:
+    """Explain an input: value, bounds, scatter, the results it moves, limits and effects that have to do with it."""
+    model = setup.model
+    item = model.input_fields[name]
+    direct, further = following(made_from(model), name)
+    scattering = [tolerance for tolerance in model.tolerances.values() if name in tolerance.on]
+    changed = [effect for effect, one in all_touched(setup).items() if name in one.inputs]
+    moves = _moves(setup, [name]) if item.kind == "float" and _is_given(setup, name) else None
+    moved = {*direct, *further, *(row["name"] for row in moves or ())}
+    return {
+        "symbol": symbol_text(item.symbol) if item.symbol else "",
+        "note": item.spec.note,
+        "source": item.spec.source,
+        **amount(setup, name, model.read_inputs(setup.inputs)[name]),
+        "stated": name in setup.source.stated,
+        "choices": list(item.choices),
+        "bounds": bounds_in_words(item),
+        "followed_by": list(direct),
+        "then": list(further),
+        "moves": moves,
+        "limits": [require_words(one, "") for one in _requires(setup) if one.result in moved],
+        "tolerances": [_tolerance(setup, tolerance) for tolerance in scattering],
+        "namesake": list(model.tolerances[name].on) if name in model.tolerances and not _is_on(setup, name) else [],
+        "limit_of": [require_words(one, "") for one in _requires(setup) if name in {one.limit, one.reliability}],
+        "varied": [
+            _vary_words(objective)
+            for objective in model.objectives
+            if isinstance(objective, Vary) and objective.input == name
+        ],
+        "effects": [_effect_row(setup, model.effects[effect]) for effect in changed],
+    }
+
+
+def _is_on(setup: Setup, name: str) -> bool:
+    return name in setup.model.tolerances[name].on
+
+
+def _is_given(setup: Setup, name: str) -> bool:
+    value = setup.nominal(name)
+    return bool(value == value)
+
+
+def _requires(setup: Setup) -> list[Require]:
+    return [objective for objective in setup.model.objectives if isinstance(objective, Require)]
+
+
+def _vary_words(item: Vary) -> str:
+    return f"follows {item.by}" if item.by else f"may be chosen from {item.low} to {item.high}"
+
+
+def _moves(setup: Setup, sources: Sequence[str]) -> list[dict[str, Any]]:
+    """Say of each result of the function what one per cent of the sources, and their scatter, do to it."""
+    answers = setup.model.read_results(evaluate(setup))
+    results = [name for name, field in setup.model.own_result_fields.items() if not _is_table(field)]
+    found = influences(setup, {name: answers[name] for name in results}, sources)
+    rows = [row for result in results if (row := _row(setup, found, result, sources)) is not None]
+    return sorted(rows, key=lambda row: (-row["share"], -abs(row["percent"] or 0.0)))
+
+
+def _is_table(item: Any) -> bool:
+    return bool(getattr(item.spec, "is_table", False))
+
+
+def _row(setup: Setup, found: Influences, result: str, sources: Sequence[str]) -> dict[str, Any] | None:
+    of = [one for one in found.of[result] if one.source in sources and one.moves]
+    if not of:
+        return None
+    alone = of[0] if len(sources) == 1 else None
+    return {
+        "name": result,
+        "note": setup.model.own_result_fields[result].spec.note,
+        "change": step_text(setup, result, alone.step) if alone is not None else "",
+        "percent": 100 * alone.relative if alone is not None and alone.relative is not None else None,
+        "share": sum(one.share for one in of),
+    }
+
+
+def of_tolerance(setup: Setup, name: str) -> dict[str, Any]:
+    """Explain a tolerance: its spread, what it is on, its price, and whose scatter it makes."""
+    tolerance = setup.model.tolerances[name]
+    given = [target for target in tolerance.on if _is_given(setup, target)]
+    rows = _moves(setup, given) if given else []
+    return {
+        **_tolerance(setup, tolerance),
+        "on": [{"name": target, "text": text_of(setup, target, setup.nominal(target))} for target in tolerance.on],
+        "moves": [row for row in rows if row["share"]],
+    }
+
+
+def _tolerance(setup: Setup, tolerance: Tolerance) -> dict[str, Any]:
+    inner = setup.distributions().get(tolerance.name, {})
+    sds = dict.fromkeys(step_text(setup, name, distribution.sd, 4) for name, distribution in inner.items())
+    return {
+        "name": tolerance.name,
+        "spread": setup.spread_of(tolerance.name).text,
+        "sd": list(sds),
+        "why": tolerance.why,
+        "source": tolerance.source,
+        "price": [f"{price.formula} {price.unit}, width in {price.width}" for price in prices_in(tolerance.price)],
+    }
+
+
+def of_effect(setup: Setup, name: str) -> dict[str, Any]:
+    """Explain an effect: where it acts, its unknowns, what it needs, and what changes when it is on."""
+    model = setup.model
+    effect = model.known_effects[name]
+    built_in = name not in model.effects
+    found = Touched({}, {}, {}) if built_in else touched(setup, effect)
+    ranked = sorted(found.results.items(), key=lambda pair: -abs(pair[1]))
+    return {
+        **_effect_row(setup, effect),
+        "why": effect.why,
+        "source": effect.source,
+        "built_in": built_in,
+        "unknowns": [] if built_in else list(_unknowns(setup, effect)),
+        "needs": [_need(setup, need.name) for need in effect.needs],
+        "tried_at": [{"name": key, "text": _tried(setup, effect, key, value)} for key, value in found.at.items()],
+        "moves": [_touched_row(setup, key, size) for key, size in ranked],
+        "inputs": [
+            {"name": key, "before": text_of(setup, key, before), "after": text_of(setup, key, after)}
+            for key, (before, after) in found.inputs.items()
+        ],
+    }
+
+
+def _touched_row(setup: Setup, name: str, size: float) -> dict[str, Any]:
+    note = setup.model.own_result_fields[name].spec.note
+    return {"name": name, "note": note, "percent": 100 * size if abs(size) < float("inf") else None}
+
+
+def _effect_row(setup: Setup, effect: Effect[Any, Any]) -> dict[str, Any]:
+    on = any(active.effect.name == effect.name for active in setup.effects)
+    return {"name": effect.name, "acts_on": effect.place, "on": on, "looks_like": effect.looks_like}
+
+
+def _unknowns(setup: Setup, effect: Effect[Any, Any]) -> Iterator[dict[str, Any]]:
+    held = next((active.values for active in setup.effects if active.effect.name == effect.name), {})
+    for unknown in effect.unknowns:
+        value = held.get(unknown.name)
+        yield {
+            "name": unknown.name, "low": unknown.low, "high": unknown.high, "unit": unit_text(unknown.unit),
+            "note": unknown.note, "amplitude": unknown.is_amplitude,
+            "text": "" if value is None else _in(value, unknown.unit),
+        }  # fmt: skip
+
+
+def _in(value: float, unit: str) -> str:
+    number, word = format_value(value, unit)
+    return with_unit(pretty(number), word)
+
+
+def _tried(setup: Setup, effect: Effect[Any, Any], name: str, value: float) -> str:
+    unknown = next((unknown for unknown in effect.unknowns if unknown.name == name), None)
+    return _in(value, unknown.unit if unknown is not None else setup.model.known_conditions[name].unit)
+
+
+def _need(setup: Setup, name: str) -> dict[str, Any]:
+    condition = setup.model.known_conditions[name]
+    return {"name": name, "note": condition.note, "reference": _in(condition.zero, condition.unit)}
+
+
+def of_condition(setup: Setup, name: str) -> dict[str, Any]:
+    """Explain a condition: its value, the reference where its effects vanish, and these effects."""
+    condition = setup.model.known_conditions[name]
+    effects = [effect for effect in setup.model.known_effects.values() if condition in effect.needs]
+    ends = [condition.low, condition.high]
+    said = f"{condition.low:g} to {condition.high:g} {unit_text(condition.unit)}" if None not in ends else ""
+    return {
+        "note": condition.note,
+        **amount(setup, name, setup.nominal(name)),
+        "reference": _in(condition.zero, condition.unit),
+        "range": said.strip(),
+        "derived": condition.derived,
+        "effects": [_effect_row(setup, effect) for effect in effects],
+    }
+
+
+def of_study(setup: Setup, name: str) -> dict[str, Any]:
+    """Explain a study: what it asks, whether this setup runs it, and the results it gives."""
+    study = next(study for study in setup.model.studies if study.name == name)
+    said = (type(study).__doc__ or "").strip().partition("\n")[0]
+    return {
+        "note": said,
+        "asked": name in [study.name for study in setup.studies],
+        "gives": list(setup.model.study_result_fields.get(name, {})),
+    }
+
+
+# Numbers of an explanation: SI values as they are printed, and as data
+
+
+def amount(setup: Setup, name: str, value: Any) -> dict[str, Any]:
+    """Return the value (SI) of an input, a condition or a result as data, with the text that is printed of it."""
+    unit = setup.print_unit(name)
+    shown = text_of(setup, name, value)
+    if isinstance(value, (bool, str)) or value is None or not _is_number(value):
+        return {"value": clean(value) if isinstance(value, (bool, str)) else None, "unit": unit, "text": shown}
+    return {"value": clean(from_si(value, unit)), "unit": unit, "text": shown}
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float)) or hasattr(value, "dtype")
+
+
+def text_of(setup: Setup, name: str, value: Any) -> str:
+    """Write a value with its unit: a number, the range of a series, a choice, a file."""
+    field = setup.model.input_fields.get(name)
+    if field is not None:
+        shown = input_value(setup, field, value)
+        return with_unit(pretty(shown.text), shown.unit)
+    unit = setup.print_unit(name)
+    if getattr(value, "ndim", 0):
+        low, high, word = format_ends(value, unit)
+        return f"{with_unit(f'{pretty(low)} .. {pretty(high)}', word)} ({np.size(value)} values)" if low else ABSENT
+    result = setup.model.result_fields.get(name)
+    number, word = format_value(value, unit, result.digits if result is not None else 10)
+    return with_unit(pretty(number), word)
+
+
+def step_text(setup: Setup, name: str, step: float | None, digits: int = 3) -> str:
+    """Write a difference (SI) of a result or an input, with its unit."""
+    if step is None:
+        return ABSENT
+    number, unit = format_difference(step, setup.print_unit(name), digits)
+    return with_unit(pretty(number), unit)
+
+
+def item_of(setup: Setup, name: str, value: Any) -> dict[str, Any]:
+    """Return a row about an input, a condition or a result: what it is called, its symbol, its value, its note."""
+    model = setup.model
+    field: Any = model.result_fields.get(name) or model.input_fields.get(name)
+    kind = "result" if name in model.result_fields else "input" if field is not None else "condition"
+    symbol = symbol_text(field.symbol) if field is not None and field.symbol else ""
+    note = field.spec.note if field is not None else model.known_conditions[name].note
+    return {"name": name, "kind": kind, "symbol": symbol, **amount(setup, name, value), "note": note}
+
+
+# A result explained: its formula, what it is made from and what moves it, what rests on it and what follows
+
+
+def of_result(setup: Setup, offer: Offer, name: str, progress: Progress) -> dict[str, Any]:
+    """Explain one result under a setup; studies are run as far as the result needs them."""
+    model = setup.model
+    item, study = model.result_fields[name], study_of(model, name)
+    calculation = calculate(replace(setup, studies=_needed(setup, study)), progress=progress)
+    answers = calculation.answers
+    links = made_from(model)
+    direct, further = following(links, name)
+    known = {**model.read_inputs(setup.inputs), **answers}
+    return {
+        **_declared(item),
+        **amount(setup, name, answers.get(name)),
+        "study": study,
+        "formula": formula_of(setup, answers, item),
+        "made_from": [item_of(setup, source, known.get(source)) for source in links.get(name, ())],
+        "chain": [
+            {**item_of(setup, source, known.get(source)), "depth": depth, "again": again}
+            for depth, source, again in chain(links, name)
+        ],
+        "followed_by": list(direct),
+        "then": list(further),
+        **_moved_by(setup, item, answers.get(name), progress),
+        "limits": list(_limits(setup, name, calculation, {*direct, *further})),
+        "published": list(_published(setup, offer, name, calculation)),
+        "effects": _effects(setup, name, study, links),
+        "sections": [section.title for section in model.sheet if name in section.names],
+    }
+
+
+def study_of(model: Model[Any, Any], name: str) -> str:
+    """Return the study that gives a result, or nothing where the calculation itself does."""
+    return next((study for study, fields in model.study_result_fields.items() if name in fields), "")
+
+
+def _needed(setup: Setup, study: str) -> tuple[Study, ...]:
+    """Return the studies up to the one that gives a result, as the setup asks for them."""
+    names = [study.name for study in setup.studies]
+    return tuple(setup.studies[: names.index(study) + 1]) if study in names else ()
+
+
+def _declared(item: ResultField) -> dict[str, Any]:
+    return {
+        "symbol": symbol_text(item.symbol) if item.symbol else "",
+        "note": item.spec.note,
+        "along": "" if isinstance(item.spec, Axis) else item.along,
+        "method": getattr(item.spec, "method", ""),
+        "source": getattr(item.spec, "source", ""),
+    }
+
+
+def formula_of(setup: Setup, answers: Mapping[str, Any], item: ResultField) -> dict[str, Any] | None:
+    """Return the formula of a result as text: in symbols, with numbers, and the result; None where it has none."""
+    equation = equation_of(setup, answers, item)
+    if equation is None:
+        return None
+    writer, formula = TextWriter(), equation.formula
+    symbols = dict(equation.symbols)
+    numbers = ""
+    if equation.numbers is not None and formula.names and formula.left is None:
+        numbers = substituted(writer, formula, equation.numbers)
+    shown = [with_unit(pretty(value.text), value.unit) for value in equation.results if value.text != ABSENT]
+    return {
+        "text": formula.text,
+        "left": "" if formula.left is not None else writer.symbol(item.symbol) if item.symbol else item.name,
+        "symbols": symbolic(writer, formula, symbols),
+        "numbers": numbers,
+        "results": shown,
+        "departs": equation.departs,
+    }
+
+
+def _moved_by(setup: Setup, item: ResultField, answer: Any, progress: Progress) -> dict[str, Any]:
+    """Say what moves the result: its scatter by source, and the change per one per cent of each input."""
+    name = item.name
+    if name not in setup.model.own_result_fields:
+        return {"scatter": None, "slopes": [], "remarks": []}
+    found = influences(setup, {name: answer}, differentiable(setup), progress=progress)
+    of = found.of[name]
+    scatter = None
+    if found.sd[name] > 0:
+        scatter = {
+            "sd": step_text(setup, name, found.sd[name]),
+            "shares": [{"name": one.source, "share": one.share, **_because(setup, one.source)} for one in by_share(of)],
+        }
+    return {
+        "scatter": scatter,
+        "slopes": [slope_row(setup, name, one) for one in by_slope(of)],
+        "remarks": list(found.warnings),
+    }
+
+
+def _because(setup: Setup, source: str) -> dict[str, Any]:
+    """Name the tolerance that lets a source scatter, and its spread."""
+    names = [name for name, inner in setup.distributions().items() if source in inner]
+    return {"tolerances": names, "spread": ", ".join(setup.spread_of(name).text for name in names)}
+
+
+def slope_row(setup: Setup, result: str, one: Influence) -> dict[str, Any]:
+    """Say what one per cent of a source (one kelvin of a temperature) does to a result."""
+    return {
+        "name": one.source,
+        "change": step_text(setup, result, one.step),
+        "percent": None if one.relative is None else 100 * one.relative,
+    }
+
+
+def _limits(setup: Setup, name: str, calculation: Calculation, below: set[str]) -> Iterator[dict[str, Any]]:
+    """Say the limits and goals on a result and on those ``below`` it, and those that it sets for others."""
+    requires = [objective for objective in setup.model.objectives if isinstance(objective, Require)]
+    checks = {check.name: check for check in calculation.checks}
+    for item in sorted(setup.model.objectives, key=lambda item: getattr(item, "result", "") != name):
+        if isinstance(item, (Minimise, Maximise)) and item.result == name:
+            yield {
+                "says": "should be small" if isinstance(item, Minimise) else "should be large",
+                "check": None,
+            }
+        if isinstance(item, Require) and (name in {item.result, item.limit, item.reliability} or item.result in below):
+            check = checks.get(check_name(item, requires))
+            yield {"says": require_words(item, name), "check": None if check is None else check_data(check)}
+
+
+def require_words(item: Require, name: str) -> str:
+    """Write a requirement: at most 80 MPa, with reliability 0.99; named by its result where that is another."""
+    subject = "" if item.result == name else f"{item.result} "
+    goal = f", with reliability {item.reliability}" if item.reliability is not None else ""
+    return f"{subject}{item.kind.replace('_', ' ')} {item.limit}{goal}"
+
+
+def check_data(check: Any) -> dict[str, Any]:
+    """Return value, limit, margin and verdict of a check."""
+    named = ("value", "limit", "unit", "margin", "compared", "relation", "state", "passed", "undecided")
+    return {key: clean(getattr(check, key)) for key in named}
+
+
+def _published(setup: Setup, offer: Offer, name: str, calculation: Calculation) -> Iterator[dict[str, Any]]:
+    """Put what the source prints of a result beside ours, each under the settings that it holds for.
+
+    Ours is None for a result of a study under other settings: to verify these takes whole runs.
+    """
+    study = study_of(setup.model, name)
+    for printed in setup.model.published:
+        if printed.result != name:
+            continue
+        wanted = setup_from_settings(offer, printed.settings)
+        compared = None
+        if not study:
+            compared = compare_one(printed, calculate(replace(wanted, studies=())))
+        elif same_run(setup, wanted) and _needed(setup, study) == _needed(wanted, study):
+            compared = compare_one(printed, calculation)
+        yield {
+            "name": printed.name, "where": printed.where, "settings": dict(printed.settings),
+            "unit": unit_text(printed.unit), "paper": printed.value,
+            "ours": None if compared is None else compared.value, "verdict": printed.verdict, "why": printed.why,
+        }  # fmt: skip
+
+
+def _effects(setup: Setup, name: str, study: str, links: Mapping[str, Sequence[str]]) -> list[dict[str, Any]]:
+    """Name the model's own effects that change a result (of a study: a result that it names), the largest first."""
+    model = setup.model
+    names = (
+        [name]
+        if name in model.own_result_fields
+        else [one for one in links.get(name, ()) if one in model.own_result_fields]
+    )
+    found = all_touched(setup) if names else {}
+    return [_effect_row(setup, model.effects[effect]) for effect in effects_on(found, names)]

@@ -94,11 +94,6 @@ def upright_unit(unit: str) -> str:
     return rf"\mathrm{{{written}}}"
 
 
-def symbol_latex(symbol: str) -> str:
-    """Write a declared symbol ("theta_11", "Delta z", "F_N,max", "z_2'") as LaTeX; any text is safe."""
-    return LatexWriter().symbol(symbol)
-
-
 def number_latex(text: str) -> str:
     """Write a formatted number as LaTeX: "1.2e-05" as 1.2 times a power of ten; what is no number as text."""
     number = read_number(text)

@@ -50,11 +50,6 @@ def number_mathml(text: str) -> str:
     return parts[0] if len(parts) == 1 else row(*parts)
 
 
-def block_mathml(*inner: str) -> str:
-    """Join "symbol", "expression", "numbers", "result" by equals signs into one displayed formula."""
-    return f'<math display="block">{row(SIGNS["=="].join(inner))}</math>'
-
-
 def _unsigned(digits: str, negative: bool) -> str:
     number = f"<mn>{escape(digits)}</mn>"
     return row('<mo form="prefix">−</mo>', number) if negative else number

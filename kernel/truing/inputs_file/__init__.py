@@ -11,10 +11,9 @@ from pydantic import ValidationError
 from truing.errors import InputError
 from truing.inputs_file import assemble
 from truing.inputs_file.assemble import names_stated, part_faults
-from truing.inputs_file.document import UNREADABLE, Document, read_document
+from truing.inputs_file.document import UNREADABLE, Document, apply_overrides, read_document
 from truing.inputs_file.file_model import file_model
 from truing.inputs_file.files import read_text
-from truing.inputs_file.overrides import apply_overrides
 from truing.inputs_file.sentences import each, faults_of, in_order
 from truing.inputs_file.values import InputsRead
 from truing.kernel import Offer

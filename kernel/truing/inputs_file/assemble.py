@@ -25,11 +25,11 @@ from truing.units.names import PURE
 def nominals_of(model: Model[Any, Any], values: StatedValues) -> dict[str, Any]:
     """Return every input and condition in SI: as stated, else as declared; files without a default are left out."""
     found: dict[str, Any] = {name: condition.zero for name, condition in model.conditions.items()}
-    for name, item in model.input_fields.items():
-        if hasattr(item.spec, "initial"):
-            found[name] = item.spec.initial()
-        elif getattr(item.spec, "default", dataclasses.MISSING) is not dataclasses.MISSING:
-            found[name] = item.spec.default
+    for name, field in model.input_fields.items():
+        if hasattr(field.spec, "initial"):
+            found[name] = field.spec.initial()
+        elif getattr(field.spec, "default", dataclasses.MISSING) is not dataclasses.MISSING:
+            found[name] = field.spec.default
     for (section, name, *_), value in ((path, value) for path, value in values.items() if len(path) == 2):
         if section in {"inputs", "conditions"}:
             found[name] = value
@@ -53,8 +53,8 @@ def unexplained(model: Model[Any, Any], document: Document) -> Iterator[tuple[tu
     """Say which inputs are stated without the one that tells what they mean."""
     section = document.data.get("inputs")
     stated = section if isinstance(section, dict) else {}
-    for name, item in model.input_fields.items():
-        other = item.spec.stated_with
+    for name, field in model.input_fields.items():
+        other = field.spec.stated_with
         if name in stated and other and other not in stated:
             choices = model.input_fields[other].choices
             meant = f" ({', '.join(choices)})" if choices else ""

@@ -70,15 +70,9 @@ def one_of(choices: Sequence[str]) -> Callable[[Any], str]:
     return read
 
 
-def of_input(item: InputField, section: str) -> ValueCheck:
-    """Make the check of an input."""
-
-    def check(raw: Any, reading: InputsRead) -> Any:
-        value = read_input(item, raw, reading)
-        reading.values[section, item.name] = value
-        return value
-
-    return check
+def of_input(key: tuple[str, str], item: InputField, raw: Any, reading: InputsRead) -> None:
+    """Check an input, and keep its value under a key."""
+    reading.values[key] = read_input(item, raw, reading)
 
 
 def renamed(model: Model[Any, Any]) -> Mapping[str, str]:
@@ -87,60 +81,33 @@ def renamed(model: Model[Any, Any]) -> Mapping[str, str]:
     return found if isinstance(found, dict) else {}
 
 
-def of_old_name(old: str, item: InputField) -> ValueCheck:
-    """Make the check of an input under its old name."""
-
-    def check(raw: Any, reading: InputsRead) -> Any:
-        value = read_input(item, raw, reading)
-        reading.values["old names", old] = value
-        return value
-
-    return check
-
-
-def of_tolerance(tolerance: Tolerance) -> ValueCheck:
-    """Make the check of a tolerance; what it resolves to is checked when the nominals are known."""
-
-    def check(raw: Any, reading: InputsRead) -> Any:
-        if not isinstance(raw, (str, dict)):
-            raise SentenceError(f"{tolerance.name}: a tolerance is a text such as '±0.05 mm', 'sd 3 %', 'IT6' or 'off'")
-        try:
-            spread = read_spread(raw, tolerance.spread)
-        except UnitError as error:
-            raise SentenceError(f"{tolerance.name}: {error}") from None
-        reading.values["tolerances", tolerance.name] = spread
-        return spread
-
-    return check
+def of_tolerance(tolerance: Tolerance, raw: Any, reading: InputsRead) -> None:
+    """Check and keep a tolerance; what it resolves to is checked when the nominals are known."""
+    if not isinstance(raw, (str, dict)):
+        raise SentenceError(f"{tolerance.name}: a tolerance is a text such as '±0.05 mm', 'sd 3 %', 'IT6' or 'off'")
+    try:
+        spread = read_spread(raw, tolerance.spread)
+    except UnitError as error:
+        raise SentenceError(f"{tolerance.name}: {error}") from None
+    reading.values["tolerances", tolerance.name] = spread
 
 
-def of_condition(condition: Condition) -> ValueCheck:
-    """Make the check of a condition."""
-
-    def check(raw: Any, reading: InputsRead) -> Any:
-        value = read_number(condition.name, raw, condition.unit)
-        reading.values["conditions", condition.name] = value
-        return value
-
-    return check
+def of_condition(condition: Condition, raw: Any, reading: InputsRead) -> None:
+    """Check and keep a condition."""
+    reading.values["conditions", condition.name] = read_number(condition.name, raw, condition.unit)
 
 
-def of_unknown(effect: Effect[Any, Any], unknown: Unknown) -> ValueCheck:
-    """Make the check of an unknown: "5 um" or {value = "5 um", sd = "0.3 um"}; its bounds must hold."""
-
-    def check(raw: Any, reading: InputsRead) -> Any:
-        table = raw if isinstance(raw, dict) else {"value": raw}
-        if "value" not in table or set(table) - {"value", "sd"}:
-            raise SentenceError(f'{unknown.name} is written "value unit" or {{ value = "...", sd = "..." }}')
-        value = read_number(unknown.name, table["value"], unknown.unit)
-        _keep_within(unknown, value)
-        key = ("effects", effect.name, unknown.name)
-        reading.values[key] = value
-        if "sd" in table:
-            reading.values[(*key, "sd")] = _sd(unknown, table["sd"])
-        return value
-
-    return check
+def of_unknown(effect: Effect[Any, Any], unknown: Unknown, raw: Any, reading: InputsRead) -> None:
+    """Check and keep an unknown: "5 um" or {value = "5 um", sd = "0.3 um"}; its bounds must hold."""
+    table = raw if isinstance(raw, dict) else {"value": raw}
+    if "value" not in table or set(table) - {"value", "sd"}:
+        raise SentenceError(f'{unknown.name} is written "value unit" or {{ value = "...", sd = "..." }}')
+    value = read_number(unknown.name, table["value"], unknown.unit)
+    _keep_within(unknown, value)
+    key = ("effects", effect.name, unknown.name)
+    reading.values[key] = value
+    if "sd" in table:
+        reading.values[(*key, "sd")] = _sd(unknown, table["sd"])
 
 
 def _keep_within(unknown: Unknown, value: float) -> None:
@@ -166,26 +133,19 @@ def _sd(unknown: Unknown, raw: Any) -> float:
     return value
 
 
-def of_covariance(effect: Effect[Any, Any]) -> ValueCheck:
-    """Make the check of a covariance: a symmetric matrix over the unknowns that are given, in their declared units."""
-
-    def check(raw: Any, reading: InputsRead) -> Any:
-        given = reading.stated.get(effect.name, frozenset()) if effect.parts else None
-        unknowns = [unknown for unknown in effect.unknowns if given is None or unknown.name in given]
-        size = len(unknowns)
-        names = ", ".join(f"{unknown.name} [{unknown.unit or '1'}]" for unknown in unknowns)
-        like = f"covariance is a list of {size} rows of {size} numbers, over {names}"
-        if not isinstance(raw, list) or len(raw) != size or any(not _is_row(row, size) for row in raw):
-            raise SentenceError(like)
-        _keep_possible(raw)
-        factors = [unit_factor(unknown.unit) for unknown in unknowns]
-        rows = tuple(
-            tuple(float(one) * factors[i] * factors[j] for j, one in enumerate(row)) for i, row in enumerate(raw)
-        )
-        reading.values["effects", effect.name, "covariance"] = rows
-        return rows
-
-    return check
+def of_covariance(effect: Effect[Any, Any], raw: Any, reading: InputsRead) -> None:
+    """Check and keep a covariance: a symmetric matrix over the unknowns that are given, in their declared units."""
+    given = reading.stated.get(effect.name, frozenset()) if effect.parts else None
+    unknowns = [unknown for unknown in effect.unknowns if given is None or unknown.name in given]
+    size = len(unknowns)
+    names = ", ".join(f"{unknown.name} [{unknown.unit or '1'}]" for unknown in unknowns)
+    like = f"covariance is a list of {size} rows of {size} numbers, over {names}"
+    if not isinstance(raw, list) or len(raw) != size or any(not _is_row(row, size) for row in raw):
+        raise SentenceError(like)
+    _keep_possible(raw)
+    factors = [unit_factor(unknown.unit) for unknown in unknowns]
+    rows = tuple(tuple(float(one) * factors[i] * factors[j] for j, one in enumerate(row)) for i, row in enumerate(raw))
+    reading.values["effects", effect.name, "covariance"] = rows
 
 
 def _is_row(row: Any, size: int) -> bool:
@@ -213,57 +173,40 @@ def _keep_possible(rows: list[list[float]]) -> None:
         raise SentenceError("covariance gives some combination of the unknowns a negative variance")
 
 
-def of_run(names: Sequence[str]) -> ValueCheck:
-    """Make the check of the list of studies."""
-
-    def check(raw: Any, reading: InputsRead) -> Any:
-        if not isinstance(raw, list) or not all(isinstance(name, str) for name in raw):
-            raise SentenceError(f'run is a list of studies; write run = ["{names[0] if names else ""}"]')
-        offered = f"studies of this model: {', '.join(names) or 'none'}"
-        for index, name in enumerate(raw):
-            if name not in names:
-                raise SentenceError(
-                    f"run names {shown(name)}, which is no study.{near_miss(name[:80], names)} ({offered})"
-                )
-            if name in raw[:index]:
-                raise SentenceError(f"run names '{name}' twice")
-        reading.values["studies", "run"] = tuple(raw)
-        return raw
-
-    return check
+def of_run(names: Sequence[str], raw: Any, reading: InputsRead) -> None:
+    """Check and keep the list of studies."""
+    if not isinstance(raw, list) or not all(isinstance(name, str) for name in raw):
+        raise SentenceError(f'run is a list of studies; write run = ["{names[0] if names else ""}"]')
+    offered = f"studies of this model: {', '.join(names) or 'none'}"
+    for index, name in enumerate(raw):
+        if name not in names:
+            raise SentenceError(f"run names {shown(name)}, which is no study.{near_miss(name[:80], names)} ({offered})")
+        if name in raw[:index]:
+            raise SentenceError(f"run names '{name}' twice")
+    reading.values["studies", "run"] = tuple(raw)
 
 
-def of_study(study: Study) -> ValueCheck:
-    """Make the check of the options of a study; all that are wrong are said in one answer."""
-
-    def check(raw: Any, reading: InputsRead) -> Any:
-        if not isinstance(raw, dict):
-            raise SentenceError(f"[studies.{study.name}] is a section; write its options below it")
-        options = options_of(study)
-        for name, value in raw.items():
-            key = ("studies", study.name, name)
-            try:
-                if name not in options:
-                    known = f" (options: {', '.join(options) or 'none'})"
-                    meant = near_miss(name[:80], options)
-                    raise SentenceError(f"study '{study.name}' has no option {shown(name)}.{meant}{known}")
-                reading.values[key] = read_option(study, name, options[name], value)
-            except ValueError as error:
-                reading.faults.append((key, str(error)))
-        return raw
-
-    return check
-
-
-def of_unit(name: str, declared: str) -> ValueCheck:
-    """Make the check of a unit in which something is printed."""
-
-    def check(raw: Any, reading: InputsRead) -> Any:
+def of_study(study: Study, raw: Any, reading: InputsRead) -> None:
+    """Check and keep the options of a study; all that are wrong are said in one answer."""
+    if not isinstance(raw, dict):
+        raise SentenceError(f"[studies.{study.name}] is a section; write its options below it")
+    options = options_of(study)
+    for name, value in raw.items():
+        key = ("studies", study.name, name)
         try:
-            demand_dimension(text(raw), declared)
-        except (UnitError, SentenceError) as error:
-            raise SentenceError(f"{name}: {error}") from None
-        reading.values["units", name] = raw
-        return raw
+            if name not in options:
+                known = f" (options: {', '.join(options) or 'none'})"
+                meant = near_miss(name[:80], options)
+                raise SentenceError(f"study '{study.name}' has no option {shown(name)}.{meant}{known}")
+            reading.values[key] = read_option(study, name, options[name], value)
+        except ValueError as error:
+            reading.faults.append((key, str(error)))
 
-    return check
+
+def of_unit(name: str, declared: str, raw: Any, reading: InputsRead) -> None:
+    """Check and keep a unit in which something is printed."""
+    try:
+        demand_dimension(text(raw), declared)
+    except (UnitError, SentenceError) as error:
+        raise SentenceError(f"{name}: {error}") from None
+    reading.values["units", name] = raw

@@ -8,29 +8,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import MISSING, dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, PlainValidator, ValidationInfo, WithJsonSchema, create_model
 
 from truing.declare.fields import InputField
-from truing.declare.model import Model
-from truing.declare.sources import Effect
+from truing.declare.model import Model, Study
+from truing.declare.sources import Condition, Effect, Tolerance, Unknown
 from truing.declare.specs import Given, Loaded
 from truing.inputs_file import checks
-from truing.inputs_file.schema_words import (
-    condition_schema,
-    covariance_schema,
-    effect_schema,
-    input_schema,
-    study_schema,
-    tolerance_schema,
-    unit_schema,
-    unknown_schema,
-)
-from truing.inputs_file.study_options import NAME, diagnose_schema, of_diagnose
-from truing.inputs_file.values import ValueCheck
+from truing.inputs_file.assemble import default_of, spread_text
+from truing.inputs_file.document import SECTIONS
+from truing.inputs_file.study_options import NAME, diagnose_schema, of_diagnose, option_schema, options_of
+from truing.inputs_file.values import ValueCheck, bounds_in_words, plain
 from truing.setup import DEFAULT_SEED
+from truing.units.names import PURE
 
 HEAD = (
     "project", "drawing", "revision", "prepared_by", "checked_by", "approved_by", "date", "company", "logo",
@@ -45,19 +38,6 @@ class SectionEntry:
     check: ValueCheck
     schema: Mapping[str, Any]
     required: bool = False
-
-
-SECTIONS = {
-    "sheet": "What the head of the sheet says, and how much the sheet shows.",
-    "inputs": "The inputs of the calculation; what is left out is as declared.",
-    "tolerances": "How inputs scatter about their nominals.",
-    "conditions": "What is measured but no input of the model.",
-    "effects": "Effects that are on, by name, each with its unknowns.",
-    "calibrated": "Inputs as fitted to one machine.",
-    "studies": "Which studies run, in which order, and their options.",
-    "units": "The unit in which a result or input is printed.",
-}
-"""The sections of an inputs file, and what each holds."""
 
 
 @lru_cache(maxsize=16)
@@ -136,52 +116,55 @@ def _is_required(item: InputField) -> bool:
 
 def _inputs(model: Model[Any, Any]) -> dict[str, SectionEntry]:
     entries = {
-        name: SectionEntry(checks.of_input(item, "inputs"), input_schema(item), _is_required(item))
-        for name, item in model.input_fields.items()
+        name: SectionEntry(partial(checks.of_input, ("inputs", name), field), input_schema(field), _is_required(field))
+        for name, field in model.input_fields.items()
     }
     for old, new in checks.renamed(model).items():
         if old not in entries and new in model.input_fields:
             schema = {**input_schema(model.input_fields[new]), "deprecated": True, "description": f"Now called {new}."}
-            entries[old] = SectionEntry(checks.of_old_name(old, model.input_fields[new]), schema)
+            entries[old] = SectionEntry(partial(checks.of_input, ("old names", old), model.input_fields[new]), schema)
     return entries
 
 
 def _calibrated(model: Model[Any, Any]) -> dict[str, SectionEntry]:
-    varying = {name: item for name, item in model.input_fields.items() if item.varies}
+    varying = {name: field for name, field in model.input_fields.items() if field.varies}
     return {
-        name: SectionEntry(checks.of_input(item, "calibrated"), input_schema(item)) for name, item in varying.items()
+        name: SectionEntry(partial(checks.of_input, ("calibrated", name), item), input_schema(item))
+        for name, item in varying.items()
     }
 
 
 def _tolerances(model: Model[Any, Any]) -> dict[str, SectionEntry]:
     return {
-        name: SectionEntry(checks.of_tolerance(tolerance), tolerance_schema(tolerance))
+        name: SectionEntry(partial(checks.of_tolerance, tolerance), tolerance_schema(tolerance))
         for name, tolerance in model.tolerances.items()
     }
 
 
 def _conditions(model: Model[Any, Any]) -> dict[str, SectionEntry]:
     known = model.known_conditions
-    return {name: SectionEntry(checks.of_condition(item), condition_schema(item)) for name, item in known.items()}
+    return {
+        name: SectionEntry(partial(checks.of_condition, item), condition_schema(item)) for name, item in known.items()
+    }
 
 
 def _effects(model: Model[Any, Any]) -> type[BaseModel]:
     fields: dict[str, Any] = {}
-    for place, (name, effect) in enumerate(model.known_effects.items()):
+    for index, (name, effect) in enumerate(model.known_effects.items()):
         words = effect_schema(effect)["description"]
         section = _section(f"Effect {name}", _effect(effect))
-        fields[f"effect_{place}"] = (section, Field(default_factory=dict, alias=name, title=name, description=words))
+        fields[f"effect_{index}"] = (section, Field(default_factory=dict, alias=name, title=name, description=words))
     return create_model("Effects", __config__=_config(), **fields)
 
 
 def _effect(effect: Effect[Any, Any]) -> dict[str, SectionEntry]:
     entries = {
         unknown.name: SectionEntry(
-            checks.of_unknown(effect, unknown), unknown_schema(unknown), required=not effect.parts
+            partial(checks.of_unknown, effect, unknown), unknown_schema(unknown), required=not effect.parts
         )
         for unknown in effect.unknowns
     }
-    entries.setdefault("covariance", SectionEntry(checks.of_covariance(effect), covariance_schema(effect)))
+    entries.setdefault("covariance", SectionEntry(partial(checks.of_covariance, effect), covariance_schema(effect)))
     return entries
 
 
@@ -190,18 +173,138 @@ def _studies(model: Model[Any, Any]) -> dict[str, SectionEntry]:
     run = {"type": "array", "items": {"enum": names} if names else {}, "uniqueItems": True}
     seed = {"type": "integer", "minimum": 0, "default": DEFAULT_SEED, "description": "Where the random numbers begin."}
     entries = {
-        "run": SectionEntry(checks.of_run(names), {**run, "description": "The studies that run, in this order."}),
+        "run": SectionEntry(
+            partial(checks.of_run, names), {**run, "description": "The studies that run, in this order."}
+        ),
         "seed": SectionEntry(checks.stored(("studies", "seed"), checks.seed), seed),
     }
     for study in model.studies:
-        entries[study.name] = SectionEntry(checks.of_study(study), study_schema(study))
-    entries.setdefault(NAME, SectionEntry(of_diagnose(model), diagnose_schema(model)))
+        entries[study.name] = SectionEntry(partial(checks.of_study, study), study_schema(study))
+    entries.setdefault(NAME, SectionEntry(partial(of_diagnose, model), diagnose_schema(model)))
     return entries
 
 
 def _units(model: Model[Any, Any]) -> dict[str, SectionEntry]:
-    declared = {name: item.unit for name, item in model.result_fields.items()}
-    for name, item in model.input_fields.items():
-        if isinstance(item.spec, Given) and item.spec.unit is not None:
-            declared[name] = item.unit
-    return {name: SectionEntry(checks.of_unit(name, unit), unit_schema(unit)) for name, unit in declared.items()}
+    declared = {name: field.unit for name, field in model.result_fields.items()}
+    for name, field in model.input_fields.items():
+        if isinstance(field.spec, Given) and field.spec.unit is not None:
+            declared[name] = field.unit
+    return {
+        name: SectionEntry(partial(checks.of_unit, name, unit), unit_schema(unit)) for name, unit in declared.items()
+    }
+
+
+# What an editor shows of every entry of an inputs file: descriptions, examples, defaults, as JSON Schema
+
+
+def described(item: InputField) -> str:
+    """Say in one line what an input is: symbol, note, bounds, source."""
+    parts = [f"{item.symbol}: {item.spec.note}" if item.symbol and item.spec.note else item.symbol or item.spec.note]
+    parts += [bounds_in_words(item), "optional" if item.is_optional else ""]
+    parts += [f"source: {item.spec.source}" if item.spec.source else ""]
+    return "; ".join(part for part in parts if part)
+
+
+def input_schema(item: InputField) -> dict[str, Any]:
+    """Return the schema of one input."""
+    schema: dict[str, Any] = {"description": described(item), **_type_of(item)}
+    default = default_of(item)
+    if default is not None:
+        schema["default"] = default
+    extra = {"x-symbol": item.symbol, "x-unit": item.unit}
+    return {**schema, **{key: value for key, value in extra.items() if value}}
+
+
+def _type_of(item: InputField) -> dict[str, Any]:
+    if item.kind in {"float", "whole", "integer"}:
+        return _number_type(item)
+    if item.kind == "choice":
+        return {"enum": list(item.choices)}
+    if item.kind == "file":
+        table = {"type": "object", "properties": {"file": {"type": "string"}}, "required": ["file"]}
+        return {"anyOf": [{"type": "string"}, table], "examples": [{"file": "data.txt"}]}
+    if item.kind == "series":
+        values = {"type": "array", "minItems": 1}
+        table = {"type": "object", "properties": {"values": values, "unit": {"type": "string"}}}
+        return {"anyOf": [values, table]} if item.unit not in PURE else values
+    return {"type": {"switch": "boolean", "text": "string"}[item.kind]}
+
+
+def _number_type(item: InputField) -> dict[str, Any]:
+    if item.unit not in PURE:
+        default = default_of(item)
+        return {"type": "string", "examples": [default if isinstance(default, str) else f"1 {item.unit}"]}
+    spec: Any = item.spec
+    bounds = {"exclusiveMinimum": spec.above, "exclusiveMaximum": spec.below}
+    bounds |= {"minimum": spec.at_least, "maximum": spec.at_most}
+    kind = "integer" if item.kind == "integer" else ["number", "string"]
+    return {"type": kind, **{key: bound for key, bound in bounds.items() if bound is not None}}
+
+
+def tolerance_schema(tolerance: Tolerance) -> dict[str, Any]:
+    """Return the schema of one tolerance."""
+    zone = {
+        "type": "object",
+        "properties": {"zone": {"type": "array", "items": {"type": "string"}, "minItems": 2, "maxItems": 2}},
+        "required": ["zone"],
+        "additionalProperties": False,
+    }
+    words = "; ".join(part for part in (f"on {', '.join(tolerance.on)}", tolerance.why, tolerance.source) if part)
+    schema: dict[str, Any] = {"anyOf": [{"type": "string"}, zone], "description": words}
+    declared = spread_text(tolerance.spread)
+    schema["examples"] = [one for one in (declared, "±0.05 mm", "sd 3 %", "IT6", "off") if one]
+    if declared:
+        schema["default"] = declared
+    return schema
+
+
+def condition_schema(condition: Condition) -> dict[str, Any]:
+    """Return the schema of one condition."""
+    reference = f"{plain(condition.reference)} {condition.unit}".strip()
+    words = condition.note or "a condition"
+    kind: Any = ["number", "string"] if condition.unit in PURE else "string"
+    return {"type": kind, "description": f"{words}; effects vanish at {reference}", "default": reference}
+
+
+def effect_schema(effect: Effect[Any, Any]) -> dict[str, Any]:
+    """Return the words of one effect."""
+    alone = "what is left out is off" if effect.parts else ""
+    words = (effect.why or effect.looks_like or effect.name, f"acts on the {effect.place}", effect.source, alone)
+    return {"description": "; ".join(word for word in words if word)}
+
+
+def covariance_schema(effect: Effect[Any, Any]) -> dict[str, Any]:
+    """Return the schema of the covariance of an effect's unknowns."""
+    size = {} if effect.parts else {"minItems": len(effect.unknowns), "maxItems": len(effect.unknowns)}
+    which = "unknowns that are given" if effect.parts else "unknowns"
+    words = f"Covariance of the {which} in their declared units, in the order they are declared."
+    row = {"type": "array", "items": {"type": "number"}, **size}
+    return {"type": "array", "items": row, **size, "description": words}
+
+
+def unknown_schema(unknown: Unknown) -> dict[str, Any]:
+    """Return the schema of one unknown of an effect."""
+    bounds = f"from {plain(unknown.low)} to {plain(unknown.high)} {unknown.unit}".strip()
+    value = {"type": ["number", "string"] if unknown.unit in PURE else "string"}
+    table = {"type": "object", "properties": {"value": value, "sd": value}, "required": ["value"]}
+    words = "; ".join(word for word in (unknown.note, bounds, "a whole number" if unknown.whole else "") if word)
+    return {"anyOf": [value, {**table, "additionalProperties": False}], "description": words, "x-unit": unknown.unit}
+
+
+def study_schema(study: Study) -> dict[str, Any]:
+    """Return the schema of a study's options."""
+    properties: dict[str, Any] = {}
+    for name, hint in options_of(study).items():
+        schema = option_schema(hint)
+        value = getattr(study, name)
+        if isinstance(value, (bool, int, float, str)):
+            schema["default"] = value
+        properties[name] = schema
+    summary = (type(study).__doc__ or "").strip().splitlines()
+    words = summary[0] if summary else study.name
+    return {"type": "object", "properties": properties, "additionalProperties": False, "description": words}
+
+
+def unit_schema(unit: str) -> dict[str, Any]:
+    """Return the schema of a unit to print in."""
+    return {"type": "string", "default": unit, "description": f"a unit like {unit or '1'}"}

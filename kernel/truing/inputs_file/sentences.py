@@ -1,16 +1,19 @@
-"""What pydantic found wrong, in the engineer's words and with the line it stands in."""
+"""What is wrong with an inputs file, in the engineer's words and with the line it stands in."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from math import isclose
 from typing import Any
 
 from truing.declare.model import Model
 from truing.declare.near_miss import near_miss
-from truing.errors import Fault
-from truing.inputs_file.document import Document
+from truing.errors import Fault, InfeasibleError, InputError
+from truing.inputs_file.document import SECTIONS, Document
 from truing.inputs_file.file_model import HEAD
-from truing.inputs_file.overrides import SECTIONS
+from truing.setup import Setup
 from truing.units.grammar import shown
 
 MOST_FAULTS = 200
@@ -100,7 +103,7 @@ class _Words:
             "tolerances": ("tolerance", list(model.tolerances)),
             "conditions": ("condition", list(model.known_conditions)),
             "effects": ("effect", list(model.known_effects)),
-            "calibrated": ("input to calibrate called", [n for n, item in model.input_fields.items() if item.varies]),
+            "calibrated": ("input to calibrate called", [n for n, field in model.input_fields.items() if field.varies]),
             "studies": ("study", studies),
             "units": ("result or input", [*model.result_fields, *model.input_fields]),
             "sheet": ("entry", [*HEAD, "detail"]),
@@ -146,7 +149,7 @@ class _Words:
         """Say that something is missing, and how it is written."""
         name = path[-1]
         if path[0] == "effects":
-            unknown = next(one for one in self.model.known_effects[path[1]].unknowns if one.name == name)
+            unknown = next(unknown for unknown in self.model.known_effects[path[1]].unknowns if unknown.name == name)
             bounds = f"from {unknown.low:g} to {unknown.high:g} {unknown.unit}".strip()
             return f"effect '{path[1]}' is on, so its unknown '{name}' must be given ({bounds})"
         item = self.model.input_fields[name]
@@ -167,3 +170,49 @@ def each(faults: Sequence[tuple[tuple[str, ...], str]], document: Document) -> I
     """Give faults that are known by the path of their name."""
     for path, sentence in faults:
         yield document.fault(path, sentence)
+
+
+# Which line is to blame when inputs that are well formed describe something impossible?
+
+
+@contextmanager
+def told_by_line(setup: Setup) -> Iterator[None]:
+    """Turn InfeasibleError into InputError that begins with the place of the input most likely to blame."""
+    try:
+        yield
+    except InfeasibleError as error:
+        raise InputError([located(setup, str(error))]) from error
+
+
+def located(setup: Setup, sentence: str) -> Fault:
+    """Return what is impossible as a fault at the place of the likeliest input.
+
+    Likely is what is not at its default, then what the sentence names, then what came last: with ``--set``, or farther
+    down in the file. Where nothing of this is stated it is the place where the inputs begin.
+    """
+    names = set(re.findall(r"\w+", sentence))
+    changed = _changed(setup)
+    stated = [name for name in setup.source.places if name]
+    ranked = sorted(enumerate(stated), key=lambda item: (item[1] in changed, item[1] in names, item[0]))
+    likeliest = ranked[-1][1] if ranked and (ranked[-1][1] in changed or ranked[-1][1] in names) else ""
+    return Fault(sentence, *setup.source.places.get(likeliest, ("", None)))
+
+
+def _changed(setup: Setup) -> set[str]:
+    """Return the inputs, conditions and effects that are not as the model has them."""
+    fields = setup.model.input_fields
+    values = setup.model.read_inputs(setup.inputs)
+    changed = {f"effects.{active.effect.name}" for active in setup.effects}
+    known = setup.model.known_conditions
+    changed |= {name for name, value in setup.conditions.items() if name in known and value != known[name].zero}
+    for name in setup.source.places:
+        if name in fields and not _is_default(fields[name].spec, values[name]):
+            changed.add(name)
+    return changed
+
+
+def _is_default(spec: Any, value: Any) -> bool:
+    default = spec.initial() if hasattr(spec, "initial") else None
+    if isinstance(value, float) and isinstance(default, (int, float)):
+        return isclose(value, default, rel_tol=1e-12) or (value != value and default != default)
+    return getattr(value, "ndim", 0) == 0 and bool(value == default)

@@ -26,9 +26,9 @@ def options_of(study: Study) -> dict[str, Any]:
     if not dataclasses.is_dataclass(study):
         return {}
     return {
-        item.name: _hint(type(study), item, getattr(study, item.name))
-        for item in dataclasses.fields(study)
-        if item.init and item.name not in {"name", "gives"} and not callable(getattr(study, item.name))
+        field.name: _hint(type(study), field, getattr(study, field.name))
+        for field in dataclasses.fields(study)
+        if field.init and field.name not in {"name", "gives"} and not callable(getattr(study, field.name))
     }
 
 
@@ -99,29 +99,24 @@ def option_schema(hint: Any) -> dict[str, Any]:
 NAME = "diagnose"
 
 
-def of_diagnose(model: Model[Any, Any]) -> Callable[[Any, InputsRead], Any]:
-    """Make the check of the section; all that is wrong is said in one answer."""
+def of_diagnose(model: Model[Any, Any], raw: Any, reading: InputsRead) -> None:
+    """Check and keep the section; all that is wrong is said in one answer."""
+    if not isinstance(raw, dict):
+        raise SentenceError(f"[studies.{NAME}] is a section; write its options below it")
     readers = {
         "per_file": _per_file, "hold_out": _hold_out, "box": _box, "clipped": _clipped, "lognormal": _lognormal,
         "at_least": _marks("at_least"), "at_most": _marks("at_most"), "budget": _budget,
     }  # fmt: skip
-
-    def check(raw: Any, reading: InputsRead) -> Any:
-        if not isinstance(raw, dict):
-            raise SentenceError(f"[studies.{NAME}] is a section; write its options below it")
-        for name, value in raw.items():
-            key = ("studies", NAME, name)
-            try:
-                if name not in readers:
-                    meant = near_miss(name[:80], readers)
-                    known = f" (options: {', '.join(readers)})"
-                    raise SentenceError(f"study '{NAME}' has no option {shown(name)}.{meant}{known}")
-                reading.values[key] = readers[name](value, model)
-            except ValueError as error:
-                reading.faults.append((key, str(error)))
-        return raw
-
-    return check
+    for name, value in raw.items():
+        key = ("studies", NAME, name)
+        try:
+            if name not in readers:
+                meant = near_miss(name[:80], readers)
+                known = f" (options: {', '.join(readers)})"
+                raise SentenceError(f"study '{NAME}' has no option {shown(name)}.{meant}{known}")
+            reading.values[key] = readers[name](value, model)
+        except ValueError as error:
+            reading.faults.append((key, str(error)))
 
 
 def diagnose_options(model: Model[Any, Any], values: StatedValues) -> DiagnoseOptions:
@@ -176,7 +171,7 @@ def _of_readings(model: Model[Any, Any]) -> dict[str, Any]:
 
 
 def _settable(model: Model[Any, Any]) -> Iterator[str]:
-    yield from (name for name, item in model.input_fields.items() if item.varies)
+    yield from (name for name, field in model.input_fields.items() if field.varies)
     yield from model.known_conditions
 
 
@@ -191,7 +186,7 @@ def _per_file(raw: Any, model: Model[Any, Any]) -> tuple[str, ...]:
         raise SentenceError(f"study '{NAME}': per_file = {written(raw)} is no list of names; write [\"sensor_offset\"]")
     effects = model.known_effects
     unknowns = [f"{name}.{unknown.name}" for name, effect in effects.items() for unknown in effect.unknowns]
-    known = [*effects, *unknowns, *(name for name, item in model.input_fields.items() if item.varies)]
+    known = [*effects, *unknowns, *(name for name, field in model.input_fields.items() if field.varies)]
     for index, name in enumerate(raw):
         if name not in known:
             near = near_miss(name[:80], known)

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from truing.measurements.csv_text import TableSource, TableText
+from truing.measurements.csv_text import LeftOut, RowCount, TableSource, TableText
 from truing.measurements.overriding import CasesFile, RowsFile, StatedCase, read_cases, read_rows
-from truing.measurements.row_count import LeftOut, RowCount
 from truing.measurements.table import EXCEL, PLAIN, DataTable, TableStyle, read_table, table_text
 
 __all__ = [

@@ -6,23 +6,25 @@ behind the header is used, a fault, or in ``left_out`` with its reason.
 
 from __future__ import annotations
 
+import math
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from hashlib import sha256
 from io import StringIO
 from itertools import chain
 from pathlib import Path
-from typing import TextIO
+from typing import Any, TextIO
+
+import numpy as np
+from numpy.typing import NDArray
 
 from truing.errors import Fault, InputError
 from truing.inputs_file.files import refuse_file
-from truing.measurements.cells import EITHER, MARK, all_unguarded
-from truing.measurements.row_count import LeftOut, RowCount
 from truing.numbers import counted
-from truing.units.grammar import shown
+from truing.units.grammar import number, shown
 
 LARGEST_TABLE = 512_000_000
 LONGEST_LINE = 1_000_000
@@ -244,11 +246,11 @@ def opened(path: TableSource) -> Iterator[CsvFile]:
 def _foreign_line(path: Path) -> int:
     """Return the first line that is no UTF-8."""
     with path.open("rb") as stream:
-        for number, line in enumerate(stream, start=1):
+        for count, line in enumerate(stream, start=1):
             try:
                 line.decode("utf-8")
             except UnicodeDecodeError:
-                return number
+                return count
     return 1
 
 
@@ -272,11 +274,11 @@ def _table(path: TableSource, stream: TextIO, instead: str) -> CsvFile:
 
 def _lines(stream: Iterable[str], faults: Faults) -> Iterator[tuple[str, int]]:
     """Give every line that holds anything, without its end, and its number."""
-    for number, text in enumerate(stream, start=1):
+    for line, text in enumerate(stream, start=1):
         if len(text) > LONGEST_LINE:
-            faults.add(f"this line has {len(text)} characters; at most {LONGEST_LINE} are read", number)
+            faults.add(f"this line has {len(text)} characters; at most {LONGEST_LINE} are read", line)
         elif not text.isspace():
-            yield text.rstrip("\r\n"), number
+            yield text.rstrip("\r\n"), line
 
 
 def _delimiter(header: str) -> str:
@@ -333,3 +335,169 @@ def _name_and_unit(text: str) -> tuple[str | None, str | None]:
     if "]" in name or (bracket and (unit == rest or "[" in unit or "]" in unit)):
         return None, None
     return name.strip(), unit.strip() if bracket else None
+
+
+# What the text of a cell may be: a number, a word for none, or words that a spreadsheet would take for a formula
+
+
+MARK = "\ufeff"
+"""The byte order mark: by it a spreadsheet knows UTF-8, and we a table that was written for one."""
+
+NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
+EITHER = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}", re.ASCII)
+"""A comma that may be the decimal mark or part thousands: read where another number decides, written nowhere."""
+MISSING_WORDS = {"nan", "na", "n/a", "#n/a", "null", "none", "-"}
+_FORMULA = re.compile(r"'*(?P<words>\s*[=+\-@＝＋－＠].+)", re.DOTALL)
+_COMMA = re.compile(r"([+-]?\d*),(\d+(?:[eE][+-]?\d+)?|(?=[eE]|$))(?:[eE][+-]?\d+)?", re.ASCII)
+_INFINITE = re.compile(r"[+-]?(?:inf|infinity|∞)", re.IGNORECASE)
+
+
+def read_cell(text: str, *, decimal_comma: bool, may_be_missing_word: bool = False) -> float:
+    """Return the number in a cell, NaN for an empty one. Raises ValueError with one sentence."""
+    cell = text.strip()
+    if not cell:
+        return math.nan
+    if decimal_comma and "," in cell and _COMMA.fullmatch(cell):
+        cell = cell.replace(",", ".")
+    value = number(cell)
+    if value is not None:
+        return value
+    if cell.lower() in MISSING_WORDS:
+        if may_be_missing_word:
+            return math.nan
+        raise ValueError(f"{shown(text)} is no number; leave the cell empty where a value is missing")
+    raise ValueError(_wrong(cell))
+
+
+def _wrong(cell: str) -> str:
+    if cell[0] in "<>≤≥":
+        words = "write the number, and mark the row in a column of its own (at_least or at_most in [studies.diagnose])"
+        return f"{shown(cell)} is no number; {words}"
+    if _INFINITE.fullmatch(cell):
+        return f"{shown(cell)} is not a finite number"
+    if not cell.isascii() and any(character.isdigit() and not character.isascii() for character in cell):
+        return f"{shown(cell)} is no number; digits are 0 to 9"
+    if re.fullmatch(r"[+-]?\d+,\d+", cell):
+        return f"{shown(cell)} has a decimal comma; put semicolons between the columns, or write a point"
+    if re.fullmatch(r"[+-]?\d{1,3}(?:[.,' ]\d{3})+(?:[.,]\d+)?", cell):
+        return f"{shown(cell)} has marks between the thousands; write the digits alone"
+    if re.fullmatch(NUMBER.pattern + r"\s*[^\d\s,;.]+.*", cell):
+        return f"{shown(cell)} holds more than a number; the unit stands in the header, as in 'load [N]'"
+    return f"{shown(cell)} is no number"
+
+
+def plain_numbers(cells: Sequence[str]) -> NDArray[np.float64] | None:
+    """Return a column at once where every cell is a number that Python reads as we do; else None."""
+    try:
+        fast = np.array(list(map(float, cells)))
+    except ValueError:
+        return None
+    together = "".join(cells)
+    if not np.isfinite(fast).all() or "_" in together or not together.isascii():
+        return None
+    zeros = [cells[row] for row in np.flatnonzero(fast == 0).tolist()] if "e" in together or "E" in together else []
+    return None if any(cell.strip(" +-0.") for cell in zeros) else fast
+
+
+def guarded(cell: str) -> str:
+    """Return a cell with an apostrophe before what would be a formula; numbers and other words stay."""
+    return f"'{cell}" if _may_be_formula(cell) else cell
+
+
+def unguarded(cell: str) -> str:
+    """Return a cell as it was before it was guarded."""
+    return cell[1:] if cell.startswith("'") and _may_be_formula(cell[1:]) else cell
+
+
+def all_unguarded(row: Sequence[str]) -> list[str]:
+    """Return the cells of a row as they were before they were guarded."""
+    return [unguarded(cell) for cell in row]
+
+
+def _may_be_formula(cell: str) -> bool:
+    found = _FORMULA.fullmatch(cell)
+    return found is not None and not NUMBER.fullmatch(found["words"].strip().replace(",", ".", 1))
+
+
+def with_comma(cells: Sequence[str]) -> Sequence[str]:
+    """Return a column of numbers as written with decimal commas; one that holds any other word stays as it is."""
+    plain = [cell.strip() for cell in cells]
+    if all(not cell or NUMBER.fullmatch(cell) or cell.lower() in MISSING_WORDS for cell in plain):
+        return [cell.replace(".", ",") for cell in cells]
+    return cells
+
+
+# What became of every row of a file: rows in the file = rows used + rows left out, each with its reason
+
+
+MOST_LINES = 8
+"""How many lines are named for one reason where people read; files of data hold all."""
+MOST_REASONS = 12
+"""How many reasons are named where people read."""
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """Rows that are not used, all for one reason (a clause: "begins with '#'"), and the lines they stand in."""
+
+    reason: str
+    lines: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class RowCount:
+    """The rows of one file: how many it holds, and which are left out."""
+
+    file: str
+    in_file: int
+    left_out: tuple[LeftOut, ...] = ()
+
+    @property
+    def unused(self) -> int:
+        """Rows that are left out."""
+        return sum(len(omission.lines) for omission in self.left_out)
+
+    @property
+    def used(self) -> int:
+        """Rows that are not left out."""
+        return self.in_file - self.unused
+
+    def without(self, reason: str, lines: Iterable[int]) -> RowCount:
+        """Return the count with further rows left out, joined to those that are left out for the same reason."""
+        taken = tuple(int(line) for line in lines)
+        if not taken:
+            return self
+        before = {omission.reason: omission.lines for omission in self.left_out}
+        found = {**before, reason: tuple(sorted((*before.get(reason, ()), *taken)))}
+        return replace(self, left_out=tuple(LeftOut(*item) for item in found.items()))
+
+    def without_all(self, lines: Mapping[str, Iterable[int]]) -> RowCount:
+        """Return the count with rows left out for several reasons."""
+        count = self
+        for reason, taken in lines.items():
+            count = count.without(reason, taken)
+        return count
+
+    def sentence(self) -> str:
+        """Say how many rows there are, and what became of those that are left out: "5 rows, 4 used; left out: ..."."""
+        rows = counted(self.in_file)
+        if not self.left_out:
+            return f"{rows}, all used"
+        named = [f"{_where(item.lines)} ({item.reason})" for item in self.left_out[:MOST_REASONS]]
+        more = sum(len(item.lines) for item in self.left_out[MOST_REASONS:])
+        named += [f"{more} more for other reasons"] if more else []
+        return f"{rows}, {self.used} used; {self.unused} left out: {', '.join(named)}"
+
+    def as_json(self) -> dict[str, Any]:
+        """Return the count as data."""
+        left = [{"reason": omission.reason, "lines": list(omission.lines)} for omission in self.left_out]
+        return {"in_file": self.in_file, "used": self.used, "left_out": left}
+
+
+def _where(lines: tuple[int, ...]) -> str:
+    more = f" and {len(lines) - MOST_LINES} more" if len(lines) > MOST_LINES else ""
+    return f"line{'' if len(lines) == 1 else 's'} {', '.join(map(str, lines[:MOST_LINES]))}{more}"
+
+
+UNCOUNTED = RowCount("", 0)
+"""The count of rows that come from no file."""

@@ -13,9 +13,8 @@ from truing.declare.fields import Axis
 from truing.declare.near_miss import near_miss
 from truing.declare.sources import SINCE_START
 from truing.kernel import Offer
-from truing.measurements.csv_text import Header, TableSource
+from truing.measurements.csv_text import UNCOUNTED, Header, RowCount, TableSource
 from truing.measurements.derived import TIME, histories
-from truing.measurements.row_count import UNCOUNTED, RowCount
 from truing.measurements.table import RUN, Known, Source, is_number, read_table
 from truing.setup import Setup
 from truing.units.grammar import shown
@@ -138,7 +137,11 @@ def read_rows(path: TableSource, offer: Offer, setup: Setup) -> RowsFile:
     that is on needs them, or the inputs file states them. Raises InputError with every fault.
     """
     known, axes = _known(setup), _axes(setup)
-    past = [item for item in setup.model.known_conditions.values() if item.derived and item.name in known]
+    past = [
+        condition
+        for condition in setup.model.known_conditions.values()
+        if condition.derived and condition.name in known
+    ]
     sources = {item.made_from: Source(None, item.name) for item in past}  # anything that is a number has a direction
     sources |= {item.made_from: Source(item.unit, item.name) for item in past if item.history != "direction"}
     table, faults = read_table(path, {**sources, **axes, **known}, is_measured=False)

@@ -17,9 +17,20 @@ from numpy.typing import NDArray
 from truing.declare.fields import InputField
 from truing.errors import UnitError
 from truing.inputs_file.values import InputsRead, broken_bound, read_input
-from truing.measurements.cells import EITHER, MARK, guarded, plain_numbers, read_cell
-from truing.measurements.csv_text import CsvFile, Faults, Header, TableSource, opened
-from truing.measurements.row_count import UNCOUNTED, RowCount
+from truing.measurements.csv_text import (
+    EITHER,
+    MARK,
+    UNCOUNTED,
+    CsvFile,
+    Faults,
+    Header,
+    RowCount,
+    TableSource,
+    guarded,
+    opened,
+    plain_numbers,
+    read_cell,
+)
 from truing.units import demand_dimension, difference_unit, human_dimension, si_fault, to_si
 from truing.units.grammar import shown
 from truing.units.names import PURE

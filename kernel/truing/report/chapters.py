@@ -173,7 +173,7 @@ def _entry(writing: Writing, name: str, *, with_formula: bool) -> ResultEntry:
 
 def _departure(setup: Setup) -> str:
     """Say why the calculation has another number than the printed formula."""
-    if any(item.effect.place == "results" for item in setup.effects):
+    if any(active.effect.place == "results" for active in setup.effects):
         return "in the calculation, with the effects on the results that are on"
     return "in the calculation: the printed formula gives another number"
 

@@ -64,7 +64,7 @@ def _guilty(diagnosis: DiagnosisResult, cause: str) -> Covariate | None:
 def _main(diagnosis: DiagnosisResult) -> Covariate | None:
     """Return the covariate to look over first: an angle, else another input, else the time, else the order."""
     rank = {"input": 1, "time": 2, "condition": 3, "other": 4, "order": 5}
-    able = [item for item in diagnosis.records.covariates.values() if _places(item) >= MOST_PLACES]
+    able = [covariate for covariate in diagnosis.records.covariates.values() if _places(covariate) >= MOST_PLACES]
     return min(able, key=lambda item: (not item.is_angle, rank[item.role]), default=None)
 
 
@@ -75,7 +75,7 @@ def _places(covariate: Covariate) -> int:
 def shown_curves(diagnosis: DiagnosisResult) -> list[ResultCurves]:
     """Return what is drawn: the results that are wrong, or all where nothing is."""
     wrong = wrong_results(diagnosis)
-    return [item for item in diagnosis.curves if item.result in wrong]
+    return [curves for curves in diagnosis.curves if curves.result in wrong]
 
 
 def has_changed(curves: ResultCurves) -> bool:
@@ -87,7 +87,7 @@ def residuals_of(diagnosis: DiagnosisResult, curves: ResultCurves) -> _Residuals
     """Return the residuals of one result in the unit for its differences."""
     unit = diagnosis.units.get(curves.result) or diagnosis.setup.print_unit(curves.result)
     factor = unit_factor(unit)
-    floor = next((item.noise_floor.value for item in diagnosis.wrong if item.result == curves.result), 0.0)
+    floor = next((wrong.noise_floor.value for wrong in diagnosis.wrong if wrong.result == curves.result), 0.0)
     return _Residuals(
         curves.result, unit, (curves.measured - curves.before) / factor, (curves.measured - curves.after) / factor,
         floor / factor,
@@ -192,8 +192,8 @@ def _extent(values: Sequence[NDArray[np.float64]]) -> tuple[float, float]:
 def shown_ranking(diagnosis: DiagnosisResult) -> list[Alternative]:
     """Return the explanations that are listed: the best ones, one of each that reads alike."""
     unique: dict[str, Alternative] = {}
-    for item in diagnosis.ranking:
-        unique.setdefault(explanation(item), item)
+    for alternative in diagnosis.ranking:
+        unique.setdefault(explanation(alternative), alternative)
     return list(unique.values())[:MOST_BARS]
 
 

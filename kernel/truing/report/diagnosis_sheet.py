@@ -1,33 +1,60 @@
-"""From a finished diagnosis to its document, its sheets and its folder, all or nothing."""
+"""The sheet of a diagnosis: what is wrong, why, the extended model, its worth, what to measure next, the data."""
 
 from __future__ import annotations
 
 import time
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from pathlib import Path
+from functools import partial
+from typing import TypeAlias
 
 import numpy as np
 
-from truing.diagnosis.result import Amount, DiagnosisResult
+from truing.diagnosis.result import (
+    APART,
+    UNKNOWN,
+    Alternative,
+    Amount,
+    DiagnosisResult,
+    FittedUnknown,
+    NextPoint,
+    NoiseSummary,
+    VisibleSize,
+    explanations_of,
+)
+from truing.numbers import ABSENT, STATED_DIGITS, format_number, pretty
+from truing.report import diagnosis_figures as figures
 from truing.report.chapters import Figures, numbered
-from truing.report.diagnosis_chapters import diagnosis_chapters
-from truing.report.diagnosis_words import amount_text, headline, verdict_word
-from truing.report.document import Banner, Document
-from truing.report.run import run_info, sheets_of
+from truing.report.diagnosis_words import (
+    amount_text,
+    cause_text,
+    certainty,
+    explanation,
+    fitted_text,
+    headline,
+    listed,
+    number_texts,
+    p_text,
+    pair_text,
+    percent,
+    prose,
+    readable,
+    reasons,
+    score_text,
+    settings_text,
+    shared_words,
+    spoken,
+    tie_text,
+    together,
+    verdict_word,
+)
+from truing.report.document import Banner, BlockView, Chapter, Document, Paragraph, TableView, table_of
 from truing.report.sheet import end_chapters, head_of, logo_of
 from truing.runs.diagnosis_document import file_labels
-from truing.runs.diagnosis_folder import data_digests, write_diagnosis
+from truing.runs.folder import data_digests
 from truing.runs.provenance import Provenance, provenance_of
 
 DIAGNOSIS = "Diagnosis"
-
-
-def write_diagnosed(diagnosis: DiagnosisResult, folder: Path, *, started: float, pdf: bool = False) -> str:
-    """Write sheets and folder of a diagnosis; return what became of the printing, nothing without one."""
-    document = diagnosis_sheet_of(diagnosis, started)
-    sheets, note = sheets_of(document, folder, pdf=pdf)
-    write_diagnosis(folder, diagnosis, provenance=document.provenance, run_info=run_info(started), sheets=sheets)
-    return note
 
 
 def diagnosis_sheet_of(diagnosis: DiagnosisResult, started: float) -> Document:
@@ -67,7 +94,7 @@ def questions(diagnosis: DiagnosisResult) -> dict[str, tuple[str, ...]]:
 
 def data_line(diagnosis: DiagnosisResult) -> str:
     """Say what was measured, how long it took, and which model it was held against."""
-    time = next((item for item in diagnosis.records.covariates.values() if item.role == "time"), None)
+    time = next((covariate for covariate in diagnosis.records.covariates.values() if covariate.role == "time"), None)
     lasting = ""
     if time is not None:
         hours = Amount(float(np.nanmax(time.values) - np.nanmin(time.values)), time.unit)
@@ -92,3 +119,506 @@ def data_words(diagnosis: DiagnosisResult) -> str:
     of_all = f" of {in_files}" if in_files > len(records) else ""
     counted = f"{len(records)}{of_all} rows, {runs} run{'' if runs == 1 else 's'}"
     return f"{', '.join(file_labels(records.files))}: {counted}"
+
+
+# The chapters of a diagnosis: what is wrong, why, the extended model, its worth, what to measure next, the data
+
+
+MOST_OUTLIERS = 12
+FITTED_DIGITS = 7
+EVERYTHING = "extended.toml"
+MOST_SEEN, MOST_MOVED, FEW_OUTLIERS = 8, 4, 5
+"""So many effects, inputs and outliers a terminal names at most."""
+WEAK = 10.0
+"""A rival that loses less fit than this is not worth a line of its own."""
+Parts: TypeAlias = Iterator[BlockView | str]
+"""What a chapter says: blocks for the sheet, and the lines that a terminal and a notebook print instead."""
+HEADS = ("Cause", "Unknown", "Value", "95 % interval", "Unit")
+
+
+def diagnosis_chapters(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[Chapter]:
+    """Write the chapters in the order in which they are asked for."""
+    yield _chapter("wrong", "What is wrong", _wrong(diagnosis, drawn))
+    yield _chapter("cause", "Cause", _cause(diagnosis, drawn))
+    yield _chapter("model", "Extended model", _model(diagnosis))
+    yield _chapter("gain", "Gain", _gain(diagnosis, drawn))
+    yield _chapter("next", "Next measurement", _next(diagnosis))
+    yield _chapter("data", "Data", _data(diagnosis))
+
+
+def _chapter(ident: str, title: str, parts: Parts) -> Chapter:
+    said = list(parts)
+    lines = tuple(part for part in said if isinstance(part, str))
+    return Chapter(title, tuple(part for part in said if not isinstance(part, str)), ident, lines=lines)
+
+
+# What is wrong
+
+
+def _wrong(diagnosis: DiagnosisResult, drawn: Figures) -> Parts:
+    errors, found, noises = [], [], []
+    for wrong in diagnosis.wrong:
+        name, noise = spoken(wrong.result), wrong.noise
+        rmse, floor, share = amount_text(wrong.rmse), amount_text(wrong.noise_floor), percent(wrong.reducible_share)
+        errors.append((name, str(wrong.rows), rmse, floor, share))
+        against = f"RMS error {rmse} against a noise floor of {floor}"
+        yield f"{name}: {against}: {share} of the mean square error is reducible"
+        for finding in wrong.findings:
+            text, sure = prose(finding.text), certainty(finding.p_value)
+            found.append((name, finding.kind, text, sure))
+            yield f"  {finding.kind}: {text}" + (f" – {sure}" if finding.p_value is not None else "")
+        correlation = pretty(format_number(noise.autocorrelation, 2))
+        far = _outliers(noise, MOST_OUTLIERS) or "none"
+        noises.append((name, amount_text(noise.sd), correlation, noise.tails, noise.spread, far))
+        count = len(noise.outliers)
+        few = f"; {count} suspected outlier{'s' * (count > 1)} ({_outliers(noise, FEW_OUTLIERS)})" if count else ""
+        yield f"  noise: autocorrelation {correlation}, tails {noise.tails}, spread {noise.spread}{few}"
+    heads = ("Result", "Rows", "RMS error", "Noise floor", "Reducible")
+    note = (
+        "The error is that of the model calibrated within its tolerances. Reducible is the share of the mean square "
+        "error that lies above the noise floor."
+    )
+    yield table_of("Error of the model as it is", heads, errors, (1, 2, 3, 4), note)
+    if found:
+        kinds = ("Result", "Kind", "What the residuals show", "How sure, the search paid for")
+        yield table_of("Structure in the residuals", kinds, found)
+    else:
+        yield Paragraph("At the level of 5 % the residuals show no bias, trend, order, step, wave or spread.")
+    about = ("Result", "Standard deviation", "Autocorrelation", "Tails", "Spread", "Suspected outliers")
+    yield table_of("The noise, once everything found is taken out", about, noises, (1, 2))
+    yield from _measured(diagnosis, drawn)
+
+
+def _outliers(noise: NoiseSummary, most: int) -> str:
+    """Name the rows of suspected outliers, so many at most."""
+    names = list(dict.fromkeys(file for file, _ in noise.outliers))
+    labels = dict(zip(names, file_labels(names), strict=True))
+    places = [f"{labels[file]}:{line}" for file, line in noise.outliers]
+    more = f" and {len(places) - most} more" if len(places) > most else ""
+    return ", ".join(places[:most]) + more
+
+
+def _measured(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[BlockView]:
+    for curves in figures.shown_curves(diagnosis):
+        title = f"Measured {spoken(curves.result)} against simulated"
+        colours = " Red circles before, blue points after." if figures.has_changed(curves) else ""
+        caption = f"{title}: as it is on the left, the difference on the right.{colours}"
+        caption += figures.thinning_words(diagnosis, curves)
+        yield drawn.view(title, partial(figures.against_simulated, diagnosis, curves), caption)
+
+
+# Cause
+
+
+def _cause(diagnosis: DiagnosisResult, drawn: Figures) -> Parts:
+    yield _verdict_line(diagnosis)
+    yield Paragraph(" ".join(_significance(diagnosis)))
+    if diagnosis.causes:
+        yield from _named(diagnosis)
+    yield from _near(diagnosis)
+    if diagnosis.ranking:
+        yield ranking_table(diagnosis)
+        title = "Ranking of the explanations"
+        caption = f"{title}; blue is what this data does not exclude."
+        yield drawn.view(title, partial(figures.ranking_bars, diagnosis), caption)
+    yield from _residuals(diagnosis, drawn)
+    sentences = list(map(prose, diagnosis.inseparable))
+    yield from sentences
+    yield from _sight(diagnosis)
+    if sentences:
+        rows = [(sentence.rstrip("."),) for sentence in sentences]
+        yield table_of("What this experiment can hardly tell apart", ("Because of its design",), rows)
+
+
+def _verdict_line(diagnosis: DiagnosisResult) -> str:
+    if not explanations_of(diagnosis):
+        said = "none" if diagnosis.verdict == "none" else f"undecided: {listed(list(reasons(diagnosis)))}"
+        return f"{said} ({p_text(diagnosis.p_any)})"
+    parts = [spoken(cause.effect) for cause in diagnosis.causes]
+    if diagnosis.remainder is not None:
+        parts.append(f"unregistered: {prose(diagnosis.remainder.shape)}")
+    second = f", of a second cause {p_text(diagnosis.p_second)}" if diagnosis.p_second is not None else ""
+    one_of = "; ".join(["", f"one of {len(explanations_of(diagnosis))}", *shared_words(diagnosis)])
+    open_ones = {"named": "; unique", "undecided": "; in doubt", "one_of": one_of}
+    return f"{' + '.join(parts)} ({p_text(diagnosis.p_any)}{second}{open_ones.get(diagnosis.verdict, '')})"
+
+
+def _named(diagnosis: DiagnosisResult) -> Parts:
+    """Say what the named causes are, what draws the same curve, and of several the shares."""
+    rows = []
+    for cause in diagnosis.causes:
+        effect = diagnosis.setup.model.known_effects.get(cause.effect)
+        about = "an input that must lie outside of its tolerance" if cause.effect.startswith("input:") else ""
+        about = about or ("" if effect is None else effect.why or effect.looks_like)
+        alike = listed([spoken(name) for name in cause.same_as])
+        rows.append((spoken(cause.effect), about or ABSENT, alike or "none", percent(cause.share)))
+    heads = ("Cause", "What it is", "The same curve on this data", "Share")
+    if len(rows) > 1:
+        yield f"shares of the correction: {', '.join(f'{name} {share}' for name, *_, share in rows)}"
+    for cause, (name, _, alike, _) in zip(diagnosis.causes, rows, strict=True):
+        if cause.same_as:
+            yield f"the same curve as {name} on this data: {alike}"
+    if len(rows) < 2:
+        yield table_of("Named", heads[:-1], [row[:-1] for row in rows])
+        return
+    note = "Share: of the mean squares of what the named causes add to the model, over all rows in units of the noise."
+    yield table_of("Named", heads, rows, (3,), note)
+
+
+def _near(diagnosis: DiagnosisResult) -> Iterator[str]:
+    """Say which explanations are not excluded, and which is the next behind them."""
+    for alternative in diagnosis.alternatives:
+        yield f"not excluded: {explanation(alternative)}{_distance(alternative)}"
+    rivals = _rivals(diagnosis)
+    if rivals and explanations_of(diagnosis):
+        yield f"next best: {explanation(rivals[0])}{_distance(rivals[0])}"
+
+
+def _rivals(diagnosis: DiagnosisResult) -> list[Alternative]:
+    """Return the explanations behind those that are not excluded, without those that only add to the named one."""
+    named = {cause.effect for cause in diagnosis.causes}
+    said = [alternative.causes for alternative in diagnosis.alternatives]
+    rivals = [
+        alternative
+        for alternative in diagnosis.ranking
+        if alternative.causes and alternative.behind > 0 and alternative.causes not in said
+    ]
+    return [item for item in rivals if item.separation >= WEAK and not (named and named <= set(item.causes))]
+
+
+def _distance(item: Alternative) -> str:
+    return f", {item.behind:.1f} score units behind, λ {score_text(item.separation)}"
+
+
+def _significance(diagnosis: DiagnosisResult) -> Iterator[str]:
+    if not explanations_of(diagnosis):
+        yield f"Nothing is named: the best of all explanations may be chance ({p_text(diagnosis.p_any)})."
+        if diagnosis.verdict == "undecided":
+            yield f"It is undecided whether anything is wrong: {listed(list(reasons(diagnosis)))}."
+        return
+    yield f"That anything is wrong is {certainty(diagnosis.p_any)}, every explanation that was tried paid for."
+    if diagnosis.p_second is not None:
+        yield f"A second cause: {certainty(diagnosis.p_second)}."
+    if diagnosis.remainder is not None:
+        remainder = diagnosis.remainder
+        over = listed([spoken(name) for name in remainder.depends_on])
+        beside = "beside it " if diagnosis.causes else ""
+        yield (
+            f"What {beside}no registered effect explains depends on {over}: {prose(remainder.shape)}, in "
+            f"{listed([spoken(name) for name in remainder.results])} ({p_text(remainder.p_value)})."
+        )
+    if diagnosis.verdict == "undecided":
+        yield f"The verdict is undecided: {'; '.join([listed(list(reasons(diagnosis))), *shared_words(diagnosis)])}."
+    if diagnosis.verdict == "named":
+        yield "The verdict is unique: no other explanation is near."
+    if diagnosis.verdict == "one_of":
+        names = [together(names) for names in explanations_of(diagnosis)]
+        which = "; ".join([listed(names, "or"), *shared_words(diagnosis)])
+        yield f"The verdict is one of {len(names)}, and this record cannot say which: {which}."
+
+
+def ranking_table(diagnosis: DiagnosisResult) -> TableView:
+    """Say the explanations that were compared, and what this data makes of each."""
+    items = figures.shown_ranking(diagnosis)
+    rows = [
+        (explanation(item), pretty(f"{item.behind:.1f}"), score_text(item.separation), _judged(item, diagnosis))
+        for item in items
+    ]
+    note = (
+        "Behind is the distance in score units (6 is a Bayes factor of about 20). λ is the loss of fit to expect if "
+        f"the best explanation is true and this one is fitted: from {APART:.0f} on the two can be told apart."
+    )
+    return table_of("Explanations, best first", ("Explanation", "Behind", "λ", "On this data"), rows, (1, 2), note)
+
+
+def _judged(item: Alternative, diagnosis: DiagnosisResult) -> str:
+    """Say what this data makes of an explanation beside the best one."""
+    best = diagnosis.ranking[0]
+    if item == best:
+        return "best"
+    if figures.is_open(item, diagnosis):
+        return "not excluded"
+    if best.causes and set(best.causes) < set(item.causes):
+        return "adds nothing"
+    return "excluded" if item.behind >= figures.NEAR else "needs more for the same"
+
+
+def _residuals(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[BlockView]:
+    for covariate in figures.main_covariates(diagnosis):
+        for curves in figures.shown_curves(diagnosis):
+            when = ", before and after" if figures.has_changed(curves) else ""
+            title = f"Residuals of {spoken(curves.result)} over {spoken(covariate.name)}{when}"
+            caption = f"{title}. The grey band is the noise floor.{figures.thinning_words(diagnosis, curves)}"
+            yield drawn.view(title, partial(figures.over_covariate, diagnosis, curves, covariate), caption)
+
+
+def _sight(diagnosis: DiagnosisResult) -> Parts:
+    """Say what this data could show: how small each effect may be, what is hidden, what was not excited or measured."""
+    lacking = [(spoken(effect), listed(list(needs))) for effect, needs in diagnosis.not_measured.items()]
+    yield from _seen(diagnosis)
+    if lacking:
+        yield f"not measured: {'; '.join(f'{effect} ({needs})' for effect, needs in lacking)}"
+    yield from _visible(diagnosis)
+    rows = [
+        (spoken(visible.name), amount_text(readable(visible.smallest)), str(visible.sight), visible.text)
+        for visible in diagnosis.seen
+    ]
+    rows += [(effect, ABSENT, "not measured", f"no column gives {needs}") for effect, needs in lacking]
+    if rows:
+        note = "Smallest visible: with a chance of 90 % this size is found, every explanation that is tried paid for."
+        yield table_of("What this data can show", ("Effect", "Smallest visible", "Sight", "Remark"), rows, (1,), note)
+
+
+def _others(diagnosis: DiagnosisResult) -> list[VisibleSize]:
+    """Return the sizes of effects that are not named."""
+    named = {cause.effect for cause in diagnosis.causes}
+    return [visible for visible in diagnosis.seen if visible.name.partition(".")[0] not in named]
+
+
+def _seen(diagnosis: DiagnosisResult) -> Iterator[str]:
+    for sight in ("not excited", "cannot be fitted", "hidden in the tolerances"):
+        found = [_blind(visible) for visible in _others(diagnosis) if visible.sight == sight]
+        if found:
+            yield f"{sight}: {_some(found)}"
+
+
+def _visible(diagnosis: DiagnosisResult) -> Iterator[str]:
+    visible: dict[str, str] = {}
+    for item in _others(diagnosis):
+        if item.sight == "visible" and item.smallest is not None:
+            said = f"{spoken(item.name)} {amount_text(readable(item.smallest))}"
+            visible.setdefault(item.name.partition(".")[0], said)
+    if visible:
+        yield f"would have been seen from: {_some(list(visible.values()))}"
+
+
+def _some(texts: Sequence[str]) -> str:
+    return "; ".join(texts[:MOST_SEEN]) + ("; the sheet lists all" if len(texts) > MOST_SEEN else "")
+
+
+def _blind(item: VisibleSize) -> str:
+    """Say what could not be seen, and from what size it would be."""
+    visible = f"visible from {amount_text(readable(item.smallest))}" if item.smallest is not None else ""
+    remark = item.text or (visible if item.sight == "hidden in the tolerances" else "")
+    return f"{spoken(item.name)} ({remark})" if remark else spoken(item.name)
+
+
+# Extended model
+
+
+def _model(diagnosis: DiagnosisResult) -> Parts:
+    yield from _sizes(diagnosis)
+    fitted = fitted_table(diagnosis)
+    if fitted.rows:
+        yield fitted
+    else:
+        yield Paragraph("Nothing was named, so no effect is switched on.")
+    others = [
+        row
+        for alternative in diagnosis.alternatives
+        for effect, unknowns in alternative.unknowns.items()
+        for unknown in unknowns
+        for row in _fitted(
+            f"{explanation(alternative)}: {spoken(effect)}" if len(alternative.causes) > 1 else spoken(effect), unknown
+        )
+        if effect != UNKNOWN
+    ]
+    if others:
+        yield table_of("The same for the explanations that are not excluded", ("Instead", *HEADS[1:]), others, (2, 3))
+    if diagnosis.calibrated:
+        note = "Within its tolerance an input may move freely; what matters is how far, in standard deviations."
+        yield table_of(
+            "Inputs as fitted to this machine", ("Input", "Nominal", "Fitted", "Moved, in its sd"),
+            list(_calibrated(diagnosis)), (1, 2, 3), note,
+        )  # fmt: skip
+    if diagnosis.causes or diagnosis.calibrated:
+        name = diagnosis.setup.model.name
+        yield Paragraph(f"{EVERYTHING} holds all of it; every verb accepts it: calc run {name} --inputs {EVERYTHING}.")
+    yield from _remainder(diagnosis)
+
+
+def _sizes(diagnosis: DiagnosisResult) -> Iterator[str]:
+    if not diagnosis.causes:
+        yield "nothing was named: the model stands as it is"
+    for cause in diagnosis.causes:
+        yield cause_text(cause)
+    for item in diagnosis.alternatives:
+        sizes = [fitted_text(unknown) for unknowns in item.unknowns.values() for unknown in unknowns]
+        if sizes:
+            yield f"or {explanation(item)}, {'; '.join(sizes)}"
+    moved = sorted(diagnosis.calibrated, key=lambda item: -abs(item.of_its_sd))[:MOST_MOVED]
+    if moved:
+        shifts = ", ".join(f"{spoken(item.name)} by {score_text(item.of_its_sd)}" for item in moved)
+        yield f"moved most within their tolerances (in standard deviations): {shifts}"
+
+
+def fitted_table(diagnosis: DiagnosisResult) -> TableView:
+    """Say the size of every cause that is named, with its interval."""
+    rows = [
+        row
+        for cause in diagnosis.causes
+        for unknown in cause.unknowns
+        for row in _fitted(spoken(cause.effect), unknown)
+    ]
+    return table_of("Unknowns as fitted", HEADS, rows, (2, 3), "Intervals hold if the named cause is the true one.")
+
+
+def _fitted(cause: str, unknown: FittedUnknown) -> Iterator[tuple[str, ...]]:
+    """Write an unknown as rows: one, or one for each file where every file has its own."""
+    labels = dict(zip(unknown.per_file, file_labels(list(unknown.per_file)), strict=True))
+    fits = {f", {labels[file]}": fit for file, fit in unknown.per_file.items()}
+    for suffix, fit in (fits or {"": (unknown.value, unknown.low, unknown.high)}).items():
+        value, low, high, unit = number_texts(unknown, fit)
+        yield cause, unknown.name.replace("_", " ") + suffix, value, f"{low} … {high}", unit or ABSENT
+
+
+def _calibrated(diagnosis: DiagnosisResult) -> Iterator[tuple[str, ...]]:
+    setup = diagnosis.setup
+    for calibrated in diagnosis.calibrated:
+        nominal = float(setup.nominal(calibrated.name))
+        fitted = amount_text(Amount(calibrated.value, calibrated.unit), FITTED_DIGITS)
+        if not nominal:
+            fitted = amount_text(readable(Amount(calibrated.value, calibrated.unit)))
+        stated = amount_text(Amount(nominal, calibrated.unit), STATED_DIGITS)
+        yield spoken(calibrated.name), stated, fitted, score_text(calibrated.of_its_sd)
+
+
+def _remainder(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
+    remainder = diagnosis.remainder
+    if remainder is None:
+        return
+    yield Paragraph(
+        f"The remainder ({prose(remainder.shape)}) is in no inputs file. new_effect.py holds its fitted shape as an "
+        "effect, ready to be made physical. It must not be extrapolated beyond the measured range."
+    )
+
+
+# Gain
+
+
+def _gain(diagnosis: DiagnosisResult, drawn: Figures) -> Parts:
+    if not diagnosis.gain:
+        yield Paragraph("No gain was estimated.")
+        return
+    rows, held = [], []
+    for gain in diagnosis.gain:
+        name, floor, removed = spoken(gain.result), amount_text(gain.noise_floor), percent(gain.reducible_removed)
+        before, after = amount_text(gain.rmse_before), amount_text(gain.rmse_after)
+        score, covered = score_text(gain.log_score_gain), percent(gain.coverage90)
+        p_value = pretty(format_number(gain.p_value, 2))
+        rows.append((name, before, after, floor, removed, score, p_value, covered))
+        yield (
+            f"{name}: RMS error {before} → {after} (noise floor {floor}) on rows not fitted; {removed} of the "
+            f"reducible error removed; log score {score} per row, {p_text(gain.p_value)}; "
+            f"90 % intervals cover {covered}"
+        )
+        if gain.held_out is not None:
+            before, after = (amount_text(replace(gain.rmse_before, value=value)) for value in gain.held_out)
+            held.append((name, before, after))
+            yield f"{name}: RMS error {before} → {after} on the rows held out on request"
+    heads = ("Result", "Before", "After", "Noise floor", "Removed", "Log score per row", "p", "Coverage")
+    note = (
+        "RMS errors on rows that were not fitted: the whole diagnosis is repeated in every fold of a blocked "
+        "cross-validation and compared with the model calibrated in the same fold. Removed is the share of the "
+        "reducible error. Coverage is that of the 90 % prediction intervals."
+    )
+    yield table_of("What the extension is worth", heads, rows, tuple(range(1, 8)), note)
+    if diagnosis.causes:
+        yield f"the same causes in {percent(diagnosis.stability)} of the folds"
+        yield Paragraph(f"The same causes were named in {percent(diagnosis.stability)} of the folds.")
+    if held:
+        yield table_of("On the rows that were held out on request", ("Result", "Before", "After"), held, (1, 2))
+    title = "Error before and after, and the noise floor"
+    yield drawn.view(title, partial(figures.gain_bars, diagnosis), f"{title}, on rows that were not fitted.")
+
+
+# Next measurement
+
+
+def _next(diagnosis: DiagnosisResult) -> Parts:
+    """Write the chapter on the next measurement."""
+    if not diagnosis.next and diagnosis.verdict == "one_of":
+        yield Paragraph("No setting can be proposed that tells the explanations apart.")
+    elif not diagnosis.next:
+        can_be_more = any(visible.sight == "not excited" for visible in diagnosis.seen) or diagnosis.not_measured
+        yield Paragraph(
+            ("More readings would decide." if diagnosis.verdict == "undecided" else "There is nothing to separate.")
+            + (" Of what was not excited or not measured (chapter 2) this data says nothing." if can_be_more else "")
+        )
+    else:
+        yield from _points(diagnosis)
+    yield from (tie_text(tie).rstrip(".") for tie in diagnosis.ties)
+    if not diagnosis.next and not diagnosis.ties:
+        yield "nothing to separate" if diagnosis.unique else "no setting is proposed"
+    yield from _ties(diagnosis)
+
+
+def _points(diagnosis: DiagnosisResult) -> Parts:
+    reasons = list(dict.fromkeys(point.why for point in diagnosis.next if point.why))
+    for index, point in enumerate(diagnosis.next, start=1):
+        yield f"{index}. {settings_text(point)}: {pair_text(point)} (λ then {score_text(point.separation)})"
+    yield from (f"   {reason}" for reason in reasons)
+    names = list(dict.fromkeys(name for point in diagnosis.next for name in (*point.measure, *point.settings)))
+    rows = [_point(index, point, names) for index, point in enumerate(diagnosis.next, start=1)]
+    heads = ("Point", *(spoken(name).capitalize() for name in names), "Separates", "λ then")
+    note = (
+        "λ then is the separation to expect once all points up to this one are measured; from "
+        f"{APART:.0f} on the two are apart."
+    )
+    yield table_of("Settings to measure", heads, rows, (*range(1, len(names) + 1), len(names) + 2), note)
+    for reason in reasons:
+        yield Paragraph(f"{reason[:1].upper()}{reason[1:].rstrip('.')}.")
+
+
+def _ties(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
+    """Say which facts decide between explanations that no measurement proposed here tells apart."""
+    for tie in diagnosis.ties:
+        names = listed([together([name]) for name in tie.explanations])
+        yield Paragraph(f"No measurement proposed here tells {names} apart; a fact from elsewhere does.")
+        facts = [
+            (
+                together([fact.explanation]), spoken(fact.quantity.removeprefix("input:")), fact.note or ABSENT,
+                amount_text(readable(fact.value)),
+            )
+            for fact in tie.facts
+        ]  # fmt: skip
+        if facts:
+            heads = ("If it is", "then this quantity", "that is", "has this value")
+            yield table_of("Facts that decide", heads, facts, (3,))
+
+
+def _point(place: int, point: NextPoint, names: Sequence[str]) -> tuple[str, ...]:
+    settings = ["measure" if name in point.measure else amount_text(point.settings.get(name), 4) for name in names]
+    pair = " / ".join(together([name]) for name in point.separates)
+    return str(place), *settings, pair, score_text(point.separation)
+
+
+# Data
+
+
+def _data(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
+    records = diagnosis.records
+    rows = []
+    for index, label in enumerate(file_labels(records.files)):
+        of_file = records.file_of == index
+        count, runs = records.counts[index], len(set(records.run_of[of_file].tolist()))
+        rows.append((label, str(count.in_file), str(count.used), str(count.unused), str(runs)))
+    held = int(records.held_out.sum())
+    note = f"{held} rows were held out: they judge and were not fitted." if held else ""
+    yield table_of("Files", ("File", "Rows in the file", "Used", "Left out", "Runs"), rows, (1, 2, 3, 4), note)
+    for label, count in zip(file_labels(records.files), records.counts, strict=True):
+        if count.unused:
+            yield Paragraph(f"{label}: {count.sentence()}.")
+    yield table_of("Covariates", ("Name", "From", "To", "Role", "Remark"), list(_covariates(diagnosis)), (1, 2))
+    for sentence in records.notes:
+        yield Paragraph(sentence.rstrip(".") + ".")
+
+
+def _covariates(diagnosis: DiagnosisResult) -> Iterator[tuple[str, ...]]:
+    for covariate in diagnosis.records.covariates.values():
+        finite = covariate.values[np.isfinite(covariate.values)]
+        ends = (float(finite.min()), float(finite.max())) if finite.size else (None, None)
+        low, high = (ABSENT if end is None else amount_text(Amount(end, covariate.unit), 4) for end in ends)
+        missing = len(covariate.values) - finite.size
+        remarks = [*(["never changes"] if covariate.is_constant else []), *([f"{missing} missing"] if missing else [])]
+        yield spoken(covariate.name), low, high, covariate.role, ", ".join(remarks) or ABSENT

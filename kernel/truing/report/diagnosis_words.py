@@ -189,7 +189,7 @@ def headline(diagnosis: DiagnosisResult) -> list[str]:
     if diagnosis.verdict == "undecided" and not diagnosis.causes:
         return list(_undecided(diagnosis))
     said = [
-        *_cause_sentences(diagnosis), *(f"{prose(each)}." for each in diagnosis.warnings),
+        *_cause_sentences(diagnosis), *(f"{prose(warning)}." for warning in diagnosis.warnings),
         *_gain_sentences(diagnosis), *_next_sentences(diagnosis),
     ]  # fmt: skip
     return [sentence[:1].upper() + sentence[1:] for sentence in said]
@@ -216,22 +216,22 @@ def reasons(diagnosis: DiagnosisResult) -> Iterator[str]:
 def _met(diagnosis: DiagnosisResult) -> str:
     return listed(
         [
-            f"{spoken(item.result)} to {amount_text(item.rmse)} (noise floor {amount_text(item.noise_floor)})"
-            for item in diagnosis.wrong
+            f"{spoken(wrong.result)} to {amount_text(wrong.rmse)} (noise floor {amount_text(wrong.noise_floor)})"
+            for wrong in diagnosis.wrong
         ]
     )
 
 
 def _blind(diagnosis: DiagnosisResult) -> Iterator[str]:
-    blind = [spoken(item.name) for item in diagnosis.seen if item.sight == "not excited"]
+    blind = [spoken(visible.name) for visible in diagnosis.seen if visible.sight == "not excited"]
     if blind:
         yield f"That says nothing of {listed(blind)}: this data does not excite {'it' if len(blind) == 1 else 'them'}."
 
 
 def wrong_results(diagnosis: DiagnosisResult) -> list[str]:
     """Return the results that are wrong: with findings or a gain, else those of the remainder, else all."""
-    found = [item.result for item in diagnosis.wrong if item.findings]
-    gained = [item.result for item in diagnosis.gain if is_gain(item)]
+    found = [wrong.result for wrong in diagnosis.wrong if wrong.findings]
+    gained = [gain.result for gain in diagnosis.gain if is_gain(gain)]
     names = [name for name in diagnosis.measured if name in {*found, *gained}]
     of_remainder = list(diagnosis.remainder.results) if diagnosis.remainder is not None else []
     return names or of_remainder or list(diagnosis.measured)
@@ -275,8 +275,8 @@ def _cause_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
 
 
 def _gain_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
-    gains = [item for item in diagnosis.gain if is_gain(item)]
-    perhaps = [item for item in diagnosis.gain if is_perhaps_gain(item)]
+    gains = [gain for gain in diagnosis.gain if is_gain(gain)]
+    perhaps = [gain for gain in diagnosis.gain if is_perhaps_gain(gain)]
     for item in gains:
         yield (
             f"on rows that were not fitted {_falls(item)} (noise floor "
@@ -299,14 +299,14 @@ def _falls(item: Gain) -> str:
 
 def _held_out_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
     """Say what became of the error on rows that were held out on request: the strongest test there is."""
-    for item in diagnosis.gain:
-        if item.held_out is not None:
-            before, after = (amount_text(replace(item.rmse_before, value=one)) for one in item.held_out)
-            how = "falls" if item.held_out[1] < item.held_out[0] else "GROWS"
+    for gain in diagnosis.gain:
+        if gain.held_out is not None:
+            before, after = (amount_text(replace(gain.rmse_before, value=row)) for row in gain.held_out)
+            how = "falls" if gain.held_out[1] < gain.held_out[0] else "GROWS"
             if how == "GROWS" and diagnosis.causes:
                 continue  # an alarm says so
             end = "." if how == "falls" else ": the extension does not carry over to them."
-            yield f"on the rows held out the error of {spoken(item.result)} {how} from {before} to {after}{end}"
+            yield f"on the rows held out the error of {spoken(gain.result)} {how} from {before} to {after}{end}"
 
 
 def _next_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import re
+from collections.abc import Sequence
 from functools import lru_cache
-from itertools import groupby
-from typing import Any
+from html import unescape
+from itertools import groupby, zip_longest
+from typing import Any, Final
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup, escape
@@ -14,7 +16,6 @@ from truing.formulas.symbols import printable
 from truing.formulas.write_mathml import MathMLWriter
 from truing.numbers import pretty, with_unit
 from truing.report import equations
-from truing.report.columns import with_room
 from truing.report.document import (
     MARKS,
     Aside,
@@ -32,8 +33,8 @@ from truing.report.document import (
     Text,
     Value,
 )
-from truing.report.templates import template_folder
 from truing.studies.checks import SHORT
+from truing.templating import template_folder
 
 COLUMN = equations.LINE
 """How wide a formula may be, in em, beside the words of its result; a wider one stands below them."""
@@ -56,12 +57,6 @@ def page(template: str, sheet: Any, *, styles: Sequence[str] = ("sheet.css",), *
     style = "".join((template_folder() / name).read_text(encoding="utf-8") for name in styles)
     style = _markup(style + page_style(sheet.head.footer))
     return with_room(_environment().get_template(template).render(sheet=sheet, style=style, **more)) + "\n"
-
-
-def blocks_html(blocks: Iterable[BlockView]) -> str:
-    """Write blocks as they stand on the page, without a style."""
-    module: Any = _environment().get_template("blocks.html.j2").module
-    return str(module.blocks(list(blocks)))
 
 
 def page_style(footer: str) -> str:
@@ -167,3 +162,47 @@ def _equation(equation: Equation) -> Any:
         mathematics = f'<math display="block"{label}><mrow>{line.markup}</mrow></math>'
         blocks.append(f'<div class="line{" next" if index else ""}"{room}>{mathematics}</div>')
     return _markup("".join(blocks))
+
+
+# How much room the columns of a table need, so that on paper they can share the page in proportion to it
+
+
+TABLE: Final = re.compile(r'<table class="grid.*?</table>', re.DOTALL)
+ROW: Final = re.compile(r"<tr\b.*?</tr>", re.DOTALL)
+CELL: Final = re.compile(r"<(t[hd]\b[^>]*)>(.*?)</t[hd]>", re.DOTALL)
+SHORT_CELL: Final = re.compile(r'^td\b.*class="[^"]*\b(number|units|given|date)\b', re.DOTALL)
+TAG: Final = re.compile(r"<(/?\w+)[^>]*>")
+BREAKS: Final = frozenset({"wbr", "br", "/span", "span"})
+"""Tags beside which a line may end."""
+
+ONE_LINE: Final = 20
+"""So many characters a number, a unit or a date may have to stand on one line; a longer one (an interval) may break."""
+LONGEST: Final = 24
+"""So many characters of a word stay together; a longer word breaks anywhere."""
+PADDING: Final = 2
+"""The gap to the next column, in characters."""
+
+
+def with_room(page: str) -> str:
+    """Write into the tables of a page how many characters their columns need: ``--own`` each, ``--room`` together.
+
+    The style sheet makes of them the least width of a column in print, and a smaller type where all do not fit.
+    """
+    return TABLE.sub(lambda table: _measured(table[0]), page)
+
+
+def _measured(table: str) -> str:
+    rows = [[_longest(*cell) for cell in CELL.findall(row)] for row in ROW.findall(table)]
+    needs = [max(column) + PADDING for column in zip_longest(*rows, fillvalue=0)]
+    head, tail = table.split("</tr>", 1)
+    widths = iter(needs)
+    head = re.sub(r"<th\b[^>]*", lambda start: f'{start[0]} style="--own: {next(widths, PADDING)}"', head)
+    return head.replace(">", f' style="--room: {sum(needs)}">', 1) + "</tr>" + tail
+
+
+def _longest(tag: str, markup: str) -> int:
+    """Return the characters of the longest part of a cell that should stay on one line."""
+    spaced = TAG.sub(lambda inner: "\n" if inner[1] in BREAKS else "", markup)
+    text = re.sub(r"[ \t]+", " ", unescape(spaced)).strip()
+    is_unbroken = SHORT_CELL.match(tag) and len(text) <= ONE_LINE
+    return min(LONGEST, max(map(len, text.split("\n") if is_unbroken else re.split(r"[ \n]|(?<=-)", text))))

@@ -16,9 +16,9 @@ from truing.errors import OutputError, UnitError
 from truing.numbers import ABSENT, counted, format_number, pretty, with_unit
 from truing.report.document import Head
 from truing.report.html_printer import page
-from truing.report.templates import template_folder
 from truing.runs.index import FolderEntry, ListedNumber, Listing, Other
 from truing.studies.checks import State
+from truing.templating import template_folder
 from truing.units import unit_text
 
 MARK = '<meta name="generator" content="calc index">'

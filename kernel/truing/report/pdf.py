@@ -73,24 +73,18 @@ def print_pdf(html: Path, pdf: Path, browser: Path | None = None, *, paper: str 
 
     Raises OutputError with one sentence: no browser (and how to print without), or what went wrong.
     """
-    browser = browser or find_browser()
-    if browser is None:
-        raise OutputError(f"no Chromium, Chrome or Edge was found for the PDF (CHROME_PATH names one); {HOW_TO_PRINT}")
-    with tempfile.TemporaryDirectory(prefix="truing-print-", ignore_cleanup_errors=True) as place:
-        page = Path(place, "sheet.html")
-        text = html.read_text(encoding="utf-8")
-        page.write_text(text.replace("</style>", f"@page {{ size: {paper} }}\n</style>", 1), encoding="utf-8")
-        made = Path(place, "sheet.pdf")
-        _run(browser, [f"--user-data-dir={Path(place, 'profile')}", f"--print-to-pdf={made}", page.as_uri()], made)
-        shutil.copyfile(made, pdf)
+    pdf.write_bytes(pdf_bytes(html.read_text(encoding="utf-8"), browser, paper=paper))
 
 
 def pdf_bytes(html: str, browser: Path | None = None, *, paper: str = "A4") -> bytes:
     """Print the text of a sheet and return the PDF; raises OutputError as ``print_pdf`` does."""
-    with tempfile.TemporaryDirectory(prefix="truing-print-", ignore_cleanup_errors=True) as place:
-        page, made = Path(place, "sheet.html"), Path(place, "sheet.pdf")
-        page.write_text(html, encoding="utf-8")
-        print_pdf(page, made, browser, paper=paper)
+    browser = browser or find_browser()
+    if browser is None:
+        raise OutputError(f"no Chromium, Chrome or Edge was found for the PDF (CHROME_PATH names one); {HOW_TO_PRINT}")
+    with tempfile.TemporaryDirectory(prefix="truing-print-", ignore_cleanup_errors=True) as folder:
+        page, made = Path(folder, "sheet.html"), Path(folder, "sheet.pdf")
+        page.write_text(html.replace("</style>", f"@page {{ size: {paper} }}\n</style>", 1), encoding="utf-8")
+        _run(browser, [f"--user-data-dir={Path(folder, 'profile')}", f"--print-to-pdf={made}", page.as_uri()], made)
         return made.read_bytes()
 
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 import getpass
 import platform
 import time
-from collections.abc import Mapping
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from truing.atomic import write_files
 from truing.calculation import Calculation
 from truing.cases import CasesTable
 from truing.errors import OutputError
@@ -19,41 +20,8 @@ from truing.report.html_printer import html_of
 from truing.report.markdown_printer import markdown_of
 from truing.report.pdf import pdf_bytes
 from truing.report.sheet import make_sheet
-from truing.runs.folder import write_run
 from truing.runs.provenance import provenance_of
 from truing.studies.bench import Progress, silent
-
-UNDISTURBED: Mapping[str, Any] = {"resumed": 0, "warnings": []}
-"""What run.json says beside ``run_info`` of a run in one process."""
-
-
-def write_calculation(
-    folder: Path,
-    calculation: Calculation,
-    offer: Offer,
-    *,
-    started: float,
-    computed: Mapping[str, Any] = UNDISTURBED,
-    cases: CasesTable | None = None,
-    pdf: bool = False,
-    excel: bool = False,
-    progress: Progress = silent,
-) -> str:
-    """Write sheets and folder of a finished calculation; return what became of the printing, nothing without one."""
-    sheet = sheet_of(calculation, offer, started=started, cases=cases, progress=progress)
-    if pdf:
-        progress("printing", 0, 0)
-    sheets, note = sheets_of(sheet, folder, pdf=pdf)
-    write_run(
-        folder,
-        calculation,
-        provenance=sheet.provenance,
-        run_info={**run_info(started), **computed},
-        sheets=sheets,
-        cases=cases,
-        excel=excel,
-    )
-    return note
 
 
 def sheet_of(
@@ -100,3 +68,24 @@ def run_info(started: float) -> dict[str, Any]:
         "user": user,
         "workers": {"count": 1, "lost": 0, "where": "serial"},
     }
+
+
+# Writing a sheet under a name that the user chooses
+
+
+def write_sheet(path: str | Path, make: Callable[[], Document]) -> Path:
+    """Write a sheet as HTML, Markdown or PDF, as the name ends, and return its path.
+
+    Raises OutputError for any other ending, for a PDF where no browser can print it, and where it cannot be written.
+    """
+    file = Path(path)
+    ending = file.suffix.lower()
+    if ending not in {".html", ".htm", ".md", ".pdf"}:
+        raise OutputError(f"{file}: a sheet ends in .html, .md or .pdf")
+    sheet = make()
+    if ending == ".md":
+        write_files({file: markdown_of(sheet)})
+    else:
+        page = html_of(sheet)
+        write_files({file: pdf_bytes(page) if ending == ".pdf" else page})
+    return file

@@ -1,32 +1,60 @@
-"""Putting a sheet together: from a finished calculation to everything that is printed, in order."""
+"""The calculation sheet: what it says of inputs, limits, printed numbers and provenance, put together in order."""
 
 from __future__ import annotations
 
 from base64 import b64encode
-from collections.abc import Iterator, Mapping, Sequence
-from pathlib import Path
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path, PurePath
 from typing import Any
 
 from truing.calculation import Calculation
 from truing.cases import CaseResult, CasesTable
-from truing.numbers import STATED_DIGITS, format_value, with_unit
-from truing.published import ComparedRow
-from truing.report.chapters import LONGEST_TABLE, Figures, Writing, numbered, result_chapters
-from truing.report.content import (
-    check_table,
-    check_value,
-    effect_blocks,
-    input_blocks,
-    least_margin,
-    provenance_items,
-    published_blocks,
-    tolerance_table,
+from truing.declare.fields import Given, InputField
+from truing.declare.goals import Require
+from truing.declare.published import rules_of
+from truing.declare.spreads import Distribution
+from truing.evaluate import acting_inputs
+from truing.inputs_file.values import halving_in_words
+from truing.numbers import (
+    ABSENT,
+    RESULT_DIGITS,
+    STATED_DIGITS,
+    format_chance,
+    format_difference,
+    format_number,
+    format_value,
+    with_unit,
 )
-from truing.report.document import Banner, Chapter, Column, Document, Head, Items, Strong, TableView, Value, joined
+from truing.published import ComparedRow, parted
+from truing.report.chapters import LONGEST_TABLE, Figures, Writing, numbered, result_chapters
+from truing.report.document import (
+    Aside,
+    Banner,
+    BlockView,
+    Break,
+    Chapter,
+    Code,
+    Column,
+    Document,
+    Head,
+    Items,
+    Judgement,
+    Paragraph,
+    Piece,
+    Strong,
+    Symbol,
+    TableView,
+    Text,
+    Value,
+    joined,
+    label_of,
+    with_source,
+)
 from truing.runs.provenance import Provenance
-from truing.setup import Setup
-from truing.studies.checks import HEADLINES, SHORT, Proposal
-from truing.studies.verdicts import sentence_of
+from truing.setup import Setup, SwitchedOn
+from truing.studies.checks import HEADLINES, SHORT, Check, Proposal, State, check_name, requirements
+from truing.studies.verdicts import NO_RESULT, NO_STUDY, sentence_of
 from truing.units import unit_text
 
 HEAD_FIELDS = {
@@ -265,3 +293,352 @@ def _case_value(setup: Setup, values: Mapping[str, Any], name: str) -> str:
     if isinstance(value, (str, bool)):
         return str(value)
     return format_value(value, setup.unit_of(name), STATED_DIGITS)[0]
+
+
+# What the sheet says of what was asked, of limits, of published numbers, and of where the numbers come from
+
+
+PLACES = {"inputs": "on the inputs", "results": "on the results", "reading": "on the reading"}
+LONGEST_SERIES = 8
+NOT_GIVEN = "not given"
+FEW = 6
+"""So many inputs at a default of 0 still have rows of their own."""
+
+
+@dataclass(frozen=True)
+class CheckRow:
+    """A limit and how far it is kept.
+
+    ``compared`` is what the value is; ``proposed`` the value of the design that a study proposes, ``remark`` says
+    which study would decide the limit, or what its bound is called; ``method`` how a probability was found.
+    """
+
+    name: str
+    symbol: str
+    note: str
+    compared: str
+    relation: str
+    value: Value
+    limit: Value
+    margin: Value
+    state: State
+    proposed: Value | None = None
+    remark: str = ""
+    method: str = ""
+
+
+def input_blocks(setup: Setup, detail: str) -> Iterator[BlockView]:
+    """Say every input; of many that are not given or at a default of 0 only the names, but on a full sheet."""
+    fields = setup.model.input_fields
+    values = {
+        name: input_value(setup, fields[name], value) for name, value in setup.model.read_inputs(setup.inputs).items()
+    }
+    idle = [name for name, value in values.items() if _is_idle(setup, name, value)]
+    if detail == "full" or len(idle) <= FEW:
+        idle = []
+    shown = {name: value for name, value in values.items() if name not in idle}
+    calibrated = any(name in setup.calibrated for name in shown)
+    columns = (
+        Column("Symbol", kind="symbol"), Column("Input", kind="name"), Column("Value", kind="number"),
+        Column("Unit", kind="units"), *((Column("Calibrated", kind="number"),) if calibrated else ()),
+        Column("Given", kind="given"), Column("Source"),
+    )  # fmt: skip
+    rows = tuple(_input_row(setup, name, value, calibrated=calibrated) for name, value in shown.items())
+    title = "What the calculation starts from; 'stated' stands in the inputs file, 'default' is the model's own value"
+    yield TableView(title, columns, rows, kind="inputs")
+    if idle:
+        called = joined(Symbol(fields[name].symbol) if fields[name].symbol else Code(name) for name in idle)
+        words = "Not given, or left at their default of 0 (inputs.toml names them): "
+        yield Paragraph((words, *called, "."), "aside")
+
+
+def _is_idle(setup: Setup, name: str, value: Value) -> bool:
+    has_source = setup.model.input_fields[name].spec.source
+    return name not in setup.source.stated and value.text in {"0", NOT_GIVEN} and not has_source
+
+
+def _input_row(setup: Setup, name: str, value: Value, *, calibrated: bool) -> tuple[Text, ...]:
+    item = setup.model.input_fields[name]
+    note = "; ".join(part for part in (item.spec.note, halving_in_words(item)) if part)
+    fitted = setup.calibrated.get(name)
+    own = "" if fitted is None else format_value(fitted, setup.print_unit(name), STATED_DIGITS)[0]
+    return (
+        Symbol(item.symbol) if item.symbol else "", label_of(note, name), value.text, value.unit,
+        *((own,) if calibrated else ()), "stated" if name in setup.source.stated else "default", item.spec.source,
+    )  # fmt: skip
+
+
+def input_value(setup: Setup, item: InputField, value: Any) -> Value:
+    """Write one input: a number in its printed unit, a choice, a switch, a file."""
+    if item.kind == "file":
+        if item.name in setup.source.tables:
+            return Value(PurePath(setup.source.tables[item.name]["file"]).name)
+        return Value(NOT_GIVEN if value is None else "default")
+    if isinstance(value, bool):
+        return Value("yes" if value else "no")
+    if isinstance(value, str) or (isinstance(item.spec, Given) and item.spec.unit is None):
+        return Value(str(value))
+    unit = setup.print_unit(item.name)
+    if item.kind == "series":
+        return series_value(value, unit)
+    if value != value:
+        return Value(NOT_GIVEN)
+    return Value(*format_value(value, unit, STATED_DIGITS))
+
+
+def series_value(value: Any, unit: str) -> Value:
+    """Write a series: all of it if it is short, otherwise its ends and its length."""
+    texts = [format_value(float(number), unit) for number in value]
+    if not texts:
+        return Value(ABSENT)
+    if len(texts) <= LONGEST_SERIES:
+        return Value(", ".join(text for text, _ in texts), texts[0][1])
+    return Value(f"{texts[0][0]} … {texts[-1][0]} ({len(texts)} values)", texts[0][1])
+
+
+def tolerance_table(setup: Setup) -> TableView:
+    """Say every tolerance that scatters, with the standard deviation of what it is on."""
+    columns = (
+        Column("Tolerance", kind="name"), Column("On"), Column("Spread"), Column("Standard deviation", kind="number"),
+        Column("Why"),
+    )  # fmt: skip
+    rows = []
+    for name, distributions in setup.distributions().items():
+        tolerance = setup.model.tolerances[name]
+        sds = [
+            Value(*format_difference(distribution.sd, setup.print_unit(on), 4))
+            for on, distribution in distributions.items()
+        ]
+        scatter: list[Piece] = [*joined(dict.fromkeys(sds))]
+        for shift in dict.fromkeys(_shifts(setup, distributions)):
+            scatter += [Break(), "mean ", shift]
+        targets = ", ".join(on.replace("_", " ") for on in distributions)
+        why = with_source(tolerance.why, tolerance.source)
+        rows.append((name.replace("_", " "), targets, setup.spread_of(name).text, tuple(scatter), why))
+    return TableView("How the inputs scatter about their nominal values", columns, tuple(rows), kind="tolerances")
+
+
+def _shifts(setup: Setup, distributions: Mapping[str, Distribution]) -> Iterator[Value]:
+    """Say how far the mean lies from the nominal, where it does."""
+    for name, distribution in distributions.items():
+        nominal = float(setup.nominal(name))
+        if abs(distribution.mean - nominal) > 1e-12 * max(abs(nominal), distribution.sd):
+            number, unit = format_difference(distribution.mean - nominal, setup.print_unit(name), 4)
+            yield Value(number if number.startswith("-") else f"+{number}", unit)
+
+
+def effect_blocks(setup: Setup) -> Iterator[BlockView]:
+    """Say every condition with its reference, and every effect that is on with its unknowns and what it changes."""
+    if setup.conditions:
+        title = "Conditions, and the references at which their effects vanish"
+        columns = (Column("Condition", kind="name"), Column("Value", kind="number"), Column("Reference", kind="number"))
+        yield TableView(title, columns, tuple(_condition_row(setup, name) for name in setup.conditions))
+    if not setup.effects:
+        yield Paragraph("No effect is on.")
+        return
+    heads = (Column("Effect", kind="name"), Column("Acts"), Column("Unknowns"), Column("Why"))
+    yield TableView("Effects that are on", heads, tuple(map(_effect_row, setup.effects)), kind="effects")
+    changed = list(_changed_inputs(setup))
+    if changed:
+        yield Paragraph(("With them the calculation runs with ", *joined(changed, "; "), "."), "aside")
+
+
+def _condition_row(setup: Setup, name: str) -> tuple[Text, ...]:
+    condition, unit = setup.model.known_conditions[name], setup.print_unit(name)
+    values = (Value(*format_value(number, unit, STATED_DIGITS)) for number in (setup.conditions[name], condition.zero))
+    return (label_of(condition.note, name), *values)
+
+
+def _effect_row(item: SwitchedOn) -> tuple[Text, ...]:
+    effect = item.effect
+    unknowns: list[Text] = []
+    for unknown in item.unknowns:
+        value = Value(*format_value(item.values[unknown.name], unknown.unit, RESULT_DIGITS))
+        sd = item.sds.get(unknown.name)
+        scatter = (" ± ", Value(*format_difference(sd, unknown.unit, 3)), " ", Aside("(sd)")) if sd else ()
+        unknowns.append((unknown.name.replace("_", " ") + " = ", value, *scatter))
+    why = with_source(effect.why or effect.looks_like, effect.source)
+    return (effect.name.replace("_", " "), PLACES[effect.place], joined(unknowns, Break()), why)
+
+
+def _changed_inputs(setup: Setup) -> Iterator[Text]:
+    """Say which inputs the effects that are on change, and to what."""
+    if not any(active.effect.place == "inputs" for active in setup.effects):
+        return
+    stated, acting = (setup.model.read_inputs(inputs) for inputs in (setup.inputs, acting_inputs(setup)))
+    for name, field in setup.model.input_fields.items():
+        before, after = stated[name], acting[name]
+        if field.varies and before != after and not (before != before and after != after):
+            unit = setup.print_unit(name)
+            old, new = (Value(*format_value(value, unit, digits)) for value, digits in ((before, 10), (after, 7)))
+            yield Symbol(field.symbol) if field.symbol else name.replace("_", " "), " = ", new, " instead of ", old
+
+
+def check_table(calculation: Calculation) -> TableView:
+    """Say every limit, and what is left of it."""
+    has_proposal = calculation.decided.proposal is not None
+    columns = (
+        Column("Check", kind="name"), Column("As stated" if has_proposal else "Value", kind="number"),
+        *((Column("As proposed", kind="number"),) if has_proposal else ()), Column("must be", kind="relation"),
+        Column("Limit", kind="number"), Column("Margin", kind="number"), Column("Verdict", kind="verdict-cell"),
+    )  # fmt: skip
+    checks = list(check_rows(calculation))
+    rows = []
+    for check in checks:
+        remark = "; ".join(filter(None, (check.remark, check.method)))
+        label = label_of(check.note, check.name, check.symbol)[:-1]
+        about = (*label, Code(check.compared, bracketed=True), *((Break(), Aside(remark)) if remark else ()))
+        proposed = (check.proposed or "",) if has_proposal else ()
+        rows.append((
+            about, check.value, *proposed, check.relation, check.limit, check.margin, Judgement(check.state)
+        ))  # fmt: skip
+    title = f"Limits, and what is left of them. A margin is {margins_words(calculation.checks)}; above zero is safe"
+    return TableView(title, columns, tuple(rows), states=tuple(check.state for check in checks), kind="checks")
+
+
+def check_rows(calculation: Calculation) -> Iterator[CheckRow]:
+    """Say every limit with what is left of it."""
+    setup = calculation.setup
+    fields = setup.model.result_fields
+    requires = requirements(setup)
+    named = {check_name(require, requires): require for require in requires}
+    relative = relative_margins(calculation.checks)
+    for check in calculation.checks:
+        require = named.get(check.name)
+        item = fields.get(check.name if require is None else require.result)
+        calculated = require is not None and not check.chance and require.limit in fields
+        yield CheckRow(
+            name=check.name,
+            symbol=item.symbol if item is not None and item.name == check.compared else "",
+            note=item.spec.note if item is not None else check.note,
+            compared=check.compared or check.name,
+            relation=check.relation,
+            value=check_value(check, check.value),
+            limit=check_value(check, check.limit, RESULT_DIGITS if calculated else STATED_DIGITS),
+            margin=margin_value(check, relative=relative),
+            state=check.state,
+            proposed=None if check.proposed is None else check_value(check, check.proposed.value),
+            remark=_remark(check, require, setup),
+            method=check.method,
+        )
+
+
+def check_value(check: Check, number: float, digits: int = RESULT_DIGITS) -> Value:
+    """Write a value or a limit of a check: a probability in per cent, a flag as yes or no."""
+    if number != number:
+        return Value(ABSENT)
+    if check.flag:
+        return Value("yes" if number >= 1 else "no")
+    if check.chance:
+        return Value(format_chance(number), "%")
+    return Value(format_number(number, digits), unit_text(check.unit))
+
+
+def relative_margins(checks: Iterable[Check]) -> bool:
+    """Tell whether the margins of a sheet are shares of their limits: where no limit is 0, else all are distances."""
+    return all(check.limit for check in checks if not check.flag)
+
+
+def margins_words(checks: Iterable[Check]) -> str:
+    """Say what the margins of a sheet are."""
+    return "in per cent of the limit" if relative_margins(checks) else "the distance to the limit"
+
+
+def margin_value(check: Check, *, relative: bool) -> Value:
+    """Write a margin, with per cent or its unit; a flag has none, and a value on its limit says so."""
+    if check.flag or check.margin != check.margin:
+        return Value(ABSENT)
+    if check.margin == 0:
+        return Value("on the limit")
+    if relative:
+        return Value(format_number(100 * check.margin, 3), "%")
+    distance = abs(check.value - check.limit) * (1 if check.margin > 0 else -1)
+    return (
+        Value(format_number(100 * distance, 3), "%")
+        if check.chance
+        else Value(format_number(distance, 3), unit_text(check.unit))
+    )
+
+
+def least_margin(checks: Sequence[Check]) -> Value:
+    """Write the smallest margin of the checks that are decided, as ``margin_value`` does."""
+    decided = [check for check in checks if not check.undecided]
+    if not decided:
+        return Value(ABSENT)
+    return margin_value(min(decided, key=lambda check: check.margin), relative=relative_margins(checks))
+
+
+def _remark(check: Check, require: Require | None, setup: Setup) -> str:
+    """Say which study would decide a limit; else what the bound of a probability is called."""
+    if check.undecided == NO_RESULT:
+        return "not decided: the result does not exist"
+    if check.undecided == NO_STUDY:
+        return f"{NO_STUDY} decides it"
+    if check.undecided:
+        return f"not decided: {check.undecided} would"
+    if require is None or not check.chance:
+        return check.note if check.note and check.compared else ""
+    known = require.limit in {*setup.model.input_fields, *setup.model.result_fields}
+    return f"bound: {require.limit.replace('_', ' ')}" if known else ""
+
+
+def published_blocks(setup: Setup, verified: Sequence[ComparedRow]) -> Iterator[BlockView]:
+    """Say what the paper prints beside what the calculation gives, first for the settings of this run."""
+    own, elsewhere = parted(setup, verified)
+    rules = "; ".join(rules_of(row.published for row in verified).values())
+    yield Paragraph(f"Judged by kind of figure: {rules}.", "aside")
+    if own:
+        yield _compared("Printed for the settings of this run", own, with_settings=False)
+    if elsewhere:
+        title = "Printed for other settings, calculated with those"
+        alone = "Calculated with the settings that each number is printed for; this run has others"
+        yield _compared(title if own else alone, elsewhere, with_settings=True)
+
+
+def _compared(title: str, compared: Sequence[ComparedRow], *, with_settings: bool) -> TableView:
+    columns = (
+        Column("Quantity", kind="name"), Column("Where"), Column("Paper", kind="number"), Column("Ours", kind="number"),
+        Column("Unit", kind="units"), Column("Ratio", kind="number"), Column("Verdict", kind="verdict-cell"),
+        *((Column("Settings"),) if with_settings else ()),
+    )  # fmt: skip
+    rows = []
+    before: Mapping[str, str] | None = None
+    for row in compared:
+        printed = row.published
+        calibrated = (" ", Aside("(calibrated)")) if printed.obtained == "calibrated" else ()
+        name = (printed.name, *calibrated, *((Break(": "), Aside(printed.why)) if printed.why else ()))
+        ratio = f"{row.ratio:.4f}" if row.ratio is not None else ABSENT
+        verdict = ("matches" if row.matches else "differs") + ("" if row.as_stated else ", not as stated")
+        settings = ", ".join(f"{name.replace('_', ' ')} = {text}" for name, text in printed.settings.items())
+        said = "as above" if printed.settings == before else settings or "defaults"
+        unit = unit_text(printed.unit) if printed.unit else ""
+        cells = (name, printed.where, *_digits(row), unit, ratio, verdict)
+        rows.append((*cells, said) if with_settings else cells)
+        before = printed.settings
+    states = tuple("agrees" if row.matches else "differs" for row in compared)
+    return TableView(title, columns, tuple(rows), states=states, kind="published")
+
+
+def _digits(row: ComparedRow) -> tuple[str, str]:
+    """Write the paper's number as it prints it and ours with as many digits, at least four."""
+    paper = format_number(row.published.value, 10)
+    digits = len(paper.partition("e")[0].replace(".", "").replace("-", "").lstrip("0"))
+    return paper, format_number(row.value, max(digits + 1, 4))
+
+
+def provenance_items(origin: Provenance) -> Items:
+    """Say where the numbers come from."""
+    packages = ", ".join(f"{name} {version}" for name, version in origin.packages.items())
+    said: list[tuple[str, Text]] = [
+        ("Calculation", f"{origin.plugin} {origin.plugin_version}"),
+        ("Kernel", f"truing {origin.kernel}, Python {origin.python}"),
+        ("Packages", packages),
+        ("Inputs", Code(origin.input_hash)),
+        *(("File", (f"{name} ", Code(digest))) for name, digest in origin.files.items()),
+        *(("Added", f"{what} by {plugin} {version}") for what, plugin, version in origin.added),
+        *(("Known exception", f"{promise}: {reason}") for promise, reason in origin.exceptions.items()),
+        ("Seed", str(origin.seed)),
+        *([("Calculated", origin.date)] if origin.date else []),
+    ]
+    labels, texts = zip(*said, strict=True)
+    return Items("provenance", texts, labels)

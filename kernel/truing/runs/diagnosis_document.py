@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from pathlib import PurePath
 from typing import Any
 
@@ -14,7 +15,6 @@ from truing.diagnosis.result import (
     FittedUnknown,
     Gain,
     NextPoint,
-    Remainder,
     Tie,
     Wrong,
     doubts,
@@ -42,7 +42,7 @@ def diagnosis_document(diagnosis: DiagnosisResult) -> dict[str, Any]:
         "input_hash": provenance.input_hash,
         "seed": provenance.seed,
         **_data(diagnosis),
-        "wrong": {item.result: _wrong(item, _labels(diagnosis)) for item in diagnosis.wrong},
+        "wrong": {wrong.result: _wrong(wrong, _labels(diagnosis)) for wrong in diagnosis.wrong},
         "verdict": diagnosis.verdict,
         "explanations": [list(names) for names in explanations_of(diagnosis)],
         "shared": list(shared_of(diagnosis)),
@@ -51,21 +51,18 @@ def diagnosis_document(diagnosis: DiagnosisResult) -> dict[str, Any]:
         "p_second": clean(diagnosis.p_second),
         "causes": [_cause(cause, _labels(diagnosis)) for cause in diagnosis.causes],
         "unique": bool(diagnosis.unique),
-        "alternatives": [_alternative(item) for item in diagnosis.alternatives],
-        "ranking": [_alternative(item) for item in diagnosis.ranking],
+        "alternatives": [_alternative(alternative) for alternative in diagnosis.alternatives],
+        "ranking": [_alternative(alternative) for alternative in diagnosis.ranking],
         "inseparable": list(diagnosis.inseparable),
-        "remainder": None if diagnosis.remainder is None else _remainder(diagnosis.remainder),
+        "remainder": None if diagnosis.remainder is None else clean(asdict(diagnosis.remainder)),
         **_sight(diagnosis),
         "calibrated": _calibrated(diagnosis),
-        "gain": {**{item.result: _gain(item) for item in diagnosis.gain}, "stability": clean(diagnosis.stability)},
+        "gain": {**{gain.result: _gain(gain) for gain in diagnosis.gain}, "stability": clean(diagnosis.stability)},
         "next": [_next(point) for point in diagnosis.next],
         "ties": [_tie(tie) for tie in diagnosis.ties],
         **_alarming(diagnosis),
         "notes": list(diagnosis.records.notes),
-        "unit_slips": [
-            {"column": unit_error.column, "factor": clean(unit_error.factor), "text": unit_error.text}
-            for unit_error in diagnosis.records.unit_errors
-        ],
+        "unit_slips": [clean(asdict(unit_error)) for unit_error in diagnosis.records.unit_errors],
         "warnings": list(diagnosis.warnings),
     }
 
@@ -77,26 +74,15 @@ def _alarming(diagnosis: DiagnosisResult) -> dict[str, Any]:
             {"effect": one.effect, "unknown": one.unknown, "first": _amount(one.first), "second": _amount(one.second)}
             for one in diagnosis.contradictions
         ],
-        "thinned": [
-            {"rows": one.rows, "causes": list(one.causes), "ahead": clean(one.ahead)} for one in diagnosis.thinned
-        ],
-        "trades": [
-            {
-                "effect": one.effect,
-                "unknown": one.unknown,
-                "input": one.input,
-                "correlation": clean(one.correlation),
-                "separation": clean(one.separation),
-            }
-            for one in diagnosis.trades
-        ],
+        "thinned": [clean(asdict(half)) for half in diagnosis.thinned],
+        "trades": [clean(asdict(trade)) for trade in diagnosis.trades],
     }
 
 
 def _calibrated(diagnosis: DiagnosisResult) -> dict[str, Any]:
     return {
-        item.name: {**_value(item.value, item.unit), "of_its_sd": clean(item.of_its_sd)}
-        for item in diagnosis.calibrated
+        calibrated.name: {**_value(calibrated.value, calibrated.unit), "of_its_sd": clean(calibrated.of_its_sd)}
+        for calibrated in diagnosis.calibrated
     }
 
 
@@ -125,8 +111,8 @@ def _data(diagnosis: DiagnosisResult) -> dict[str, Any]:
         "files": files,
         "held_out": int(records.held_out.sum()),
         "covariates": {
-            item.name: {"unit": item.unit, "role": item.role, "constant": item.is_constant}
-            for item in records.covariates.values()
+            covariate.name: {"unit": covariate.unit, "role": covariate.role, "constant": covariate.is_constant}
+            for covariate in records.covariates.values()
         },
     }
 
@@ -203,19 +189,6 @@ def _alternative(item: Alternative) -> dict[str, Any]:
             for effect, unknowns in item.unknowns.items()
         },
         "same_as": {effect: list(names) for effect, names in item.same_as.items()},
-    }
-
-
-def _remainder(remainder: Remainder) -> dict[str, Any]:
-    return {
-        "depends_on": list(remainder.depends_on),
-        "shape": remainder.shape,
-        "results": list(remainder.results),
-        "p_value": clean(remainder.p_value),
-        "terms": {
-            result: [{"expression": term.expression, "coefficient": clean(float(term.coefficient))} for term in terms]
-            for result, terms in remainder.terms.items()
-        },
     }
 
 

@@ -43,7 +43,7 @@ def results_document(
         "inputs": {name: _input_value(setup, model.input_fields[name], value) for name, value in inputs.items()},
         "tolerances": _tolerances(setup),
         "conditions": {name: _value(value, setup.print_unit(name)) for name, value in setup.conditions.items()},
-        "effects": {item.effect.name: _effect_values(item) for item in setup.effects},
+        "effects": {active.effect.name: _effect_values(active) for active in setup.effects},
         "results": {name: _result(calculation, name) for name in model.result_fields if name in calculation.answers},
         "verdict": calculation.verdict if cases is None else cases.verdict,
         "proposal": _proposal(calculation.decided.proposal),

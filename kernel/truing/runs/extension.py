@@ -24,7 +24,7 @@ def extended_setup(diagnosis: DiagnosisResult) -> Setup | None:
         return diagnosis.extended
     if not diagnosis.calibrated:
         return None
-    fitted = {item.name: item.value for item in diagnosis.calibrated}
+    fitted = {calibrated.name: calibrated.value for calibrated in diagnosis.calibrated}
     return replace(diagnosis.setup, calibrated={**diagnosis.setup.calibrated, **fitted})
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import zipfile
 from collections.abc import Mapping
 from io import BytesIO
@@ -15,13 +16,18 @@ import numpy as np
 from truing.atomic import place_folder, recover
 from truing.calculation import Calculation
 from truing.cases import CasesTable
-from truing.errors import OutputError, UnknownPluginError
+from truing.diagnosis.result import DiagnosisResult
+from truing.errors import OutputError, PluginError, UnknownPluginError
+from truing.runs.diagnosis_document import diagnosis_document, file_labels
 from truing.runs.documents import SCHEMA, large_arrays, results_document
+from truing.runs.extension import extended_text
 from truing.runs.inputs_written import complete_inputs
+from truing.runs.new_effect import new_effect_source
 from truing.runs.provenance import Provenance
 from truing.runs.spreadsheet import spreadsheets
-from truing.runs.study_files import study_files
 from truing.setup import Setup
+from truing.studies.bench import Outcome, files_of
+from truing.units import from_si
 
 RUN_SCHEMA = "truing.run/1"
 FolderKind = Literal["run", "diagnosis"]
@@ -179,3 +185,81 @@ def _loaded(folder: Path, kind: FolderKind) -> dict[str, Any]:
         verb = "run" if kind == "run" else "diagnose"
         raise UnknownPluginError(f"{path}: is no {schema} document; name a folder that calc {verb} has written")
     return document
+
+
+# The files that studies leave in a run folder beside the sheet: a made surface, a table to work on with
+
+
+NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,99}", re.ASCII)
+
+
+def study_files(outcomes: Mapping[str, Outcome], taken: Mapping[str, str | bytes]) -> dict[str, str | bytes]:
+    """Return what the outcomes' ``files`` hold, by file name; an outcome without any leaves none.
+
+    Raises PluginError for a name that is no plain file name, that a run folder or another study uses, and for content
+    that is neither text nor bytes.
+    """
+    found: dict[str, str | bytes] = {}
+    for study, outcome in outcomes.items():
+        for name, content in files_of(outcome).items():
+            if not NAME.fullmatch(name) or name.endswith("."):
+                raise PluginError(f"study '{study}' names its file {name!r}; a plain file name is wanted")
+            if name.casefold() in {other.casefold() for other in (*taken, *KEPT, *found)}:
+                raise PluginError(f"study '{study}' names its file '{name}', which the run folder has already")
+            if not isinstance(content, (str, bytes)):
+                raise PluginError(
+                    f"study '{study}' gives '{name}' as {type(content).__name__}; text or bytes is wanted"
+                )
+            found[name] = content
+    return found
+
+
+KEPT = (
+    "inputs.toml", "results.json", "run.json", "sheet.html", "sheet.md", "sheet.pdf", "arrays.npz", "results.csv",
+    "cases.csv",
+)  # fmt: skip
+"""Names that a run folder uses itself, or may use."""
+
+
+# The folder of a diagnosis: its document, its sheets, and the extended model, complete or absent
+
+
+def write_diagnosis(
+    folder: Path,
+    diagnosis: DiagnosisResult,
+    *,
+    provenance: Provenance,
+    run_info: Mapping[str, Any],
+    sheets: Mapping[str, str | bytes],
+) -> dict[str, Any]:
+    """Write the folder of a diagnosis and return diagnosis.json as data.
+
+    ``sheets`` holds files by name, ``run_info`` what run.json says of this one run. A folder that is there already is
+    replaced whole if it is a diagnosis of ours. Raises OutputError where it is not, or where nothing can be written.
+    """
+    document = diagnosis_document(diagnosis)
+    data = {"data": dict(diagnosis.records.digests)}
+    extension = {"extended.toml": extended_text(diagnosis, folder), "new_effect.py": new_effect_source(diagnosis)}
+    files = {"arrays.npz": npz_bytes(curve_arrays(diagnosis)), **sheets}
+    files |= {name: text for name, text in extension.items() if text}
+    setup, run_info = diagnosis.setup, {**run_info, **data}
+    write_outcome(folder, "diagnosis", setup, document, provenance=provenance, run_info=run_info, files=files)
+    return document
+
+
+def data_digests(diagnosis: DiagnosisResult) -> dict[str, str]:
+    """Return the SHA-256 of every data file by the name it is given on the sheet."""
+    records = diagnosis.records
+    labels = zip(file_labels(records.files), records.files, strict=True)
+    return {label: records.digests.get(file, "") for label, file in labels}
+
+
+def curve_arrays(diagnosis: DiagnosisResult) -> dict[str, Any]:
+    """Return what arrays.npz holds: per result measured, before and after in its printed unit; file, line and run."""
+    records = diagnosis.records
+    arrays: dict[str, Any] = {"file": records.file_of, "line": records.lines, "run": records.run_of}
+    for curves in diagnosis.curves:
+        unit = diagnosis.setup.print_unit(curves.result)
+        for name in ("measured", "before", "after"):
+            arrays[f"{curves.result}.{name}"] = from_si(getattr(curves, name), unit)
+    return arrays

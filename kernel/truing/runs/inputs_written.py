@@ -60,8 +60,8 @@ def _sections(setup: Setup, folder: Path | None) -> Iterator[tuple[str, dict[str
     yield "tolerances", {name: text for name in setup.spreads if (text := _spread(setup, name))}
     yield "conditions", {name: exact(value, setup.unit_of(name)) for name, value in setup.conditions.items()}
     yield "calibrated", {name: exact(value, setup.unit_of(name)) for name, value in setup.calibrated.items()}
-    for item in setup.effects:
-        yield f"effects.{item.effect.name}", _effect(item)
+    for active in setup.effects:
+        yield f"effects.{active.effect.name}", _effect(active)
     yield "studies", {"run": [study.name for study in setup.studies], "seed": setup.seed}
     declared = {study.name: study for study in setup.model.studies}
     for study in setup.studies:
@@ -184,8 +184,8 @@ def _options(study: Study, declared: Study | None) -> dict[str, Any]:
 
 
 def _remarks(setup: Setup) -> Iterator[tuple[tuple[str, str], str]]:
-    for name, item in setup.model.input_fields.items():
-        words = [printable(item.spec.note), "" if name in setup.source.stated else "default"]
+    for name, field in setup.model.input_fields.items():
+        words = [printable(field.spec.note), "" if name in setup.source.stated else "default"]
         yield ("inputs", name), ", ".join(word for word in words if word)
     for name, tolerance in setup.model.tolerances.items():
         yield ("tolerances", name), printable(tolerance.why)

@@ -13,32 +13,22 @@ import re
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from math import isfinite
+from typing import Any
 
 from truing.declare.sources import Condition
-from truing.diagnosis.result import DiagnosisResult, ShapeTerm
+from truing.diagnosis.result import DiagnosisResult, Remainder, ShapeTerm
 from truing.formulas.symbols import printable
 from truing.runs.diagnosis_document import file_labels
+from truing.templating import rendered
 
 NAME = "remainder"
-FACTOR = 5.0
-"""How many times the fitted shape may be, up and down."""
 FUNCTIONS = frozenset({
     "abs", "arctan", "clip", "cos", "cosh", "exp", "expm1", "floor", "heaviside", "log", "log1p", "maximum", "minimum",
     "power", "sign", "sin", "sinh", "sqrt", "square", "tan", "tanh", "where",
 })  # fmt: skip
 CONSTANTS = frozenset({"pi", "e"})
 TAKEN = frozenset({"np", "inputs", "results", "factor", "truing", "model", "replace", "Any", "Float", NAME})
-ADVICE = (
-    "#",
-    "# DO NOT EXTRAPOLATE: this is a curve through the measured rows, no physics. Beyond their range it is wrong.",
-    "#",
-    "# To make it physical: ask what in the machine follows these covariates, write that as the function, give the",
-    "# unknowns units and bounds (0 inside makes one an amplitude), and diagnose again. If the gauge errs and not the",
-    "# machine, say on_reading instead of on_results; if an input is what moves, write on_inputs(inputs, ...).",
-    "# To install it beside the model, put this file into a project of its own with these lines in pyproject.toml:",
-    '#     [project.entry-points."truing.plugins"]',
-    '#     my_new_effect = "new_effect"',
-)
 _NODES = (
     ast.Expression, ast.BinOp, ast.UnaryOp, ast.Compare, ast.Call, ast.Attribute, ast.Name, ast.Constant, ast.Load,
     ast.Add, ast.Sub, ast.Mult, ast.Div, ast.Pow, ast.Mod, ast.FloorDiv, ast.USub, ast.UAdd, ast.BitAnd, ast.BitOr,
@@ -61,13 +51,22 @@ def new_effect_source(diagnosis: DiagnosisResult) -> str:
 
     Applied with ``factor`` 1 the effect adds the fitted shape to the results it was fitted on.
     """
-    if diagnosis.remainder is None:
+    remainder = diagnosis.remainder
+    if remainder is None:
         return ""
     sources = tuple(_sources(diagnosis))
-    parts = ["\n\n".join(filter(None, [_head(diagnosis), _conditions(sources)]))]
-    parts += [_shape(result, terms, sources) for result, terms in _terms(diagnosis).items()]
-    parts += [_effect_function(diagnosis, sources), _declaration(diagnosis, sources), _hook(diagnosis)]
-    return "\n\n\n".join(parts) + "\n"
+    made = [source.code for source in sources if source.condition is not None]
+    return rendered("single/new_effect.py.j2", {
+        "about": _about(diagnosis, remainder),
+        "imports": ", ".join(_imports(diagnosis)),
+        "conditions": _conditions(sources),
+        "covariates": ", ".join(f"{source.code}: Float" for source in sources),
+        "shapes": [_shape(diagnosis, result, terms, sources) for result, terms in _terms(diagnosis).items()],
+        "measured": "".join(f", {code}: Float" for code in made),
+        "needs": ", ".join(code.upper() for code in made),
+        "looks_like": _quoted(remainder.shape),
+        "model": _quoted(diagnosis.setup.model.name),
+    })  # fmt: skip
 
 
 def _terms(diagnosis: DiagnosisResult) -> Mapping[str, Sequence[ShapeTerm]]:
@@ -168,27 +167,14 @@ def _comment(text: str) -> list[str]:
     return [f"# {line}" for line in textwrap.wrap(printable(text), 116)]
 
 
-def _head(diagnosis: DiagnosisResult) -> str:
-    remainder = diagnosis.remainder
-    assert remainder is not None
-    model = diagnosis.setup.model
+def _about(diagnosis: DiagnosisResult, remainder: Remainder) -> list[str]:
+    """Say where the shape comes from, as comments."""
     files = ", ".join(file_labels(diagnosis.records.files))
-    lines = ['"""A remainder that no registered effect explains, as a diagnosis fitted it. Make it physical."""', ""]
-    lines += _comment(f"From {files}, {len(diagnosis.records)} rows, model {model.name}.")
-    lines += _comment(
-        f"Shape: {remainder.shape}; over {', '.join(remainder.depends_on)}; seen in {', '.join(remainder.results)}."
-    )
-    lines += [
-        *ADVICE,
-        "",
-        "from dataclasses import replace",
-        "from typing import Any",
-        "",
-        "import numpy as np",
-        "",
-        f"from truing import {', '.join(_imports(diagnosis))}",
+    over, seen_in = ", ".join(remainder.depends_on), ", ".join(remainder.results)
+    return [
+        *_comment(f"From {files}, {len(diagnosis.records)} rows, model {diagnosis.setup.model.name}."),
+        *_comment(f"Shape: {remainder.shape}; over {over}; seen in {seen_in}."),
     ]
-    return "\n".join(lines)
 
 
 def _imports(diagnosis: DiagnosisResult) -> list[str]:
@@ -205,7 +191,8 @@ def _is_curve(diagnosis: DiagnosisResult, result: str) -> bool:
     return bool(diagnosis.setup.model.own_result_fields[result].along)
 
 
-def _conditions(sources: Sequence[_Source]) -> str:
+def _conditions(sources: Sequence[_Source]) -> list[str]:
+    """Declare the conditions that the shape needs."""
     lines = []
     for source in sources:
         if source.condition is None:
@@ -213,7 +200,7 @@ def _conditions(sources: Sequence[_Source]) -> str:
         if source.condition.name != source.name:
             lines += _comment(f"The column {source.name!r} of the data must be called {source.code} to be read here.")
         lines.append(f"{source.code.upper()} = {_condition(source.condition)}")
-    return "\n".join(lines)
+    return lines
 
 
 def _condition(condition: Condition) -> str:
@@ -225,44 +212,26 @@ def _condition(condition: Condition) -> str:
     return f"Condition({', '.join([_quoted(condition.name), _quoted(condition.unit), *more])})"
 
 
-def _shape(result: str, terms: Sequence[ShapeTerm], sources: Sequence[_Source]) -> str:
-    """Write the fitted shape of one result as a function of its covariates, all SI."""
+def _shape(
+    diagnosis: DiagnosisResult, result: str, terms: Sequence[ShapeTerm], sources: Sequence[_Source]
+) -> dict[str, Any]:
+    """Say the fitted shape of one result as code: a function of its covariates, all SI, and how it is added."""
     names = {source.name: source.code for source in sources}
-    arguments = ", ".join(f"{source.code}: Float" for source in sources)
-    lines = [f"def shape_of_{code_name(result)}({arguments}) -> Float:"]
-    lines.append('    """Return what the model misses, as it was fitted; SI in and out."""')
-    lines.append("    shape: Float = (")
-    left_out = []
-    written = 0
+    written, left_out = [], []
     for term in terms:
         expression = safe_expression(term.expression, names)
         coefficient = float(term.coefficient)
-        if expression is None or coefficient != coefficient or abs(coefficient) == float("inf"):
-            left_out.append(term.expression)
-            continue
-        lines.append(f"        {'+ ' if written else ''}({coefficient!r}) * ({expression})")
-        written += 1
-    if not written:
-        lines.append("        0.0")
-    lines += ["    )", "    return shape"]
-    for text in left_out:
-        lines += [
-            "    " + line for line in _comment(f"A term is left out, it is no arithmetic on covariates: {text!r}")
-        ]
-    return "\n".join(lines)
-
-
-def _effect_function(diagnosis: DiagnosisResult, sources: Sequence[_Source]) -> str:
-    """Write the function of the effect: it adds every shape to its result."""
-    conditions = "".join(f", {source.code}: Float" for source in sources if source.condition is not None)
-    lines = [f"def {NAME}(inputs: Any, results: Any, *, factor: Float{conditions}) -> Any:"]
-    lines.append('    """Add the fitted shape, so many times, to what the model says."""')
-    for result in _terms(diagnosis):
-        item = diagnosis.setup.model.own_result_fields[result]
-        arguments = ", ".join(_argument(diagnosis, result, source) for source in sources)
-        lines.append(f"    missing = factor * shape_of_{code_name(result)}({arguments})")
-        lines.append(f"    results = {_replaced(item.path)}")
-    return "\n".join([*lines, "    return results"])
+        if expression is None or not isfinite(coefficient):
+            left_out += _comment(f"A term is left out, it is no arithmetic on covariates: {term.expression!r}")
+        else:
+            written.append(f"({coefficient!r}) * ({expression})")
+    return {
+        "code": code_name(result),
+        "terms": written,
+        "left_out": left_out,
+        "arguments": ", ".join(_argument(diagnosis, result, source) for source in sources),
+        "replaced": _replaced(diagnosis.setup.model.own_result_fields[result].path),
+    }
 
 
 def _argument(diagnosis: DiagnosisResult, result: str, source: _Source) -> str:
@@ -279,29 +248,3 @@ def _replaced(path: Sequence[str]) -> str:
     for depth in range(len(path) - 1, -1, -1):
         inner = f"replace({'.'.join(('results', *path[:depth]))}, {path[depth]}={inner})"
     return inner
-
-
-def _declaration(diagnosis: DiagnosisResult, sources: Sequence[_Source]) -> str:
-    remainder = diagnosis.remainder
-    assert remainder is not None
-    needs = ", ".join(source.code.upper() for source in sources if source.condition is not None)
-    lines = [
-        f"{NAME.upper()}: Effect[Any, Any] = Effect(",
-        f"    {_quoted(NAME)},",
-        f"    on_results={NAME},",
-        f'    unknowns=[Unknown("factor", {-FACTOR}, {FACTOR}, "", note="1 is the shape as it was fitted")],',
-        *([f"    needs=[{needs}],"] if needs else []),
-        f"    looks_like={_quoted(remainder.shape)},",
-        ")",
-    ]
-    return "\n".join(lines)
-
-
-def _hook(diagnosis: DiagnosisResult) -> str:
-    name = _quoted(diagnosis.setup.model.name)
-    return "\n".join([
-        "@hookimpl",
-        "def truing_error_sources(model: Model[Any, Any]) -> list[Effect[Any, Any]]:",
-        '    """Offer the remainder to the model it was found in."""',
-        f"    return [{NAME.upper()}] if model.name == {name} else []",
-    ])  # fmt: skip

@@ -13,7 +13,7 @@ from typing import IO, Any
 
 from truing.errors import OutputError
 from truing.executors.kept import BatchLog
-from truing.kernel.source import code_hash
+from truing.kernel.loading import code_hash
 from truing.runs.folder import json_text
 from truing.runs.provenance import provenance_of
 from truing.setup import Setup
@@ -135,7 +135,7 @@ def _lock(file: IO[bytes]) -> None:
 
 def _demand_ours(place: Path) -> None:
     """Refuse a folder of that name that is somebody else's."""
-    strange = sorted(item.name for item in place.iterdir() if item.name not in OURS)
+    strange = sorted(path.name for path in place.iterdir() if path.name not in OURS)
     if strange:
         raise OutputError(f"{place}: holds '{strange[0]}', so it is none of ours; name another --output")
 

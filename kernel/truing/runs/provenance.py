@@ -44,7 +44,7 @@ def provenance_of(setup: Setup, *, date: str = "") -> Provenance:
         input_hash=input_hash(setup),
         seed=setup.seed,
         date=date,
-        added=tuple((item.what, item.plugin, item.version) for item in setup.source.added),
+        added=tuple((addition.what, addition.plugin, addition.version) for addition in setup.source.added),
         files=dict(setup.source.files),
         exceptions={str(name): reason for name, reason in setup.model.exceptions.items()},
     )

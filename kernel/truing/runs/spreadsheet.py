@@ -46,7 +46,7 @@ def _single(document: Mapping[str, Any], model: Model[Any, Any]) -> Iterator[Spr
 
 
 def _notes(model: Model[Any, Any]) -> dict[str, str]:
-    return {name: printable(item.spec.note) for name, item in (model.input_fields | model.result_fields).items()}
+    return {name: printable(field.spec.note) for name, field in (model.input_fields | model.result_fields).items()}
 
 
 def _named(part: str, items: Mapping[str, Any], notes: Mapping[str, str]) -> Iterator[SpreadsheetRow]:

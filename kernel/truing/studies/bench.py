@@ -13,7 +13,7 @@ from truing.prices import price_answers
 from truing.setup import Setup
 from truing.studies.checks import Check, Proposal
 from truing.studies.grades import with_widths
-from truing.studies.scatter import scatter_of
+from truing.studies.sampling import scatter_of
 
 Progress = Callable[[str, int, int], None]
 

@@ -7,15 +7,17 @@ zone, is included. Source: E. B. Haugen, Probabilistic Mechanical Design, Wiley 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ndtr
 
 from truing.studies.demands import Demand, normal_chance, results_needed
 from truing.studies.differences import Slopes, slopes
-from truing.studies.sampling import Machines
+from truing.studies.sampling import Machines, standard_rows
 
 
 @dataclass(frozen=True)
@@ -59,3 +61,126 @@ def _straight(demand: Demand, found: Slopes, machines: Machines, nominal: Mappin
 def chance(demand: Demand, straight: Straight) -> Any:
     """Return the first-order probability that the demand is met."""
     return normal_chance(straight.mean, straight.sd, demand.low, demand.high)
+
+
+# First-order reliability method: the most probable machine that just misses a limit, and the chance beyond it
+
+
+LimitState = Callable[[NDArray[np.float64]], NDArray[np.float64]]
+
+STEP = 1e-3
+ITERATIONS = 60
+CLOSE = 1e-6
+FARTHEST = 400.0  # standard deviations; no search goes beyond
+HALVINGS = 8
+
+
+@dataclass(frozen=True)
+class Side:
+    """One side of a limit: the reliability index, and the machine at the design point; or why there is none."""
+
+    status: str  # "converged", or why there is no number
+    beta: float | None = None
+    point: Mapping[str, float] = field(default_factory=dict)
+    iterations: int = 0
+
+    @property
+    def converged(self) -> bool:
+        """Whether the search arrived."""
+        return self.beta is not None
+
+
+@dataclass(frozen=True)
+class FormResult:
+    """FORM of one demand: its sides, and the probability of meeting it (None where a search did not arrive)."""
+
+    sides: Mapping[str, Side]
+    probability: float | None
+    status: str
+
+    def as_json(self) -> dict[str, Any]:
+        """Return plain data; a search that failed is a status with a reason, never a number."""
+        if self.probability is None:
+            return {"status": self.status}
+        beta = {name: side.beta for name, side in self.sides.items()}
+        return {"status": self.status, "probability": self.probability, "beta": beta}
+
+
+def form(machines: Machines, demand: Demand, nominal: Mapping[str, float]) -> FormResult:
+    """Find the reliability index of each side of a demand on a number."""
+    if machines.setup.model.own_result_fields[demand.result].along:
+        return FormResult({}, None, "not done: the result runs along an axis")
+    if not machines.scatter.dimension:
+        return FormResult({}, None, "not done: nothing scatters")
+    sides: dict[str, Side] = {}
+    for name, bound, sign in (("low", demand.low, 1.0), ("high", demand.high, -1.0)):
+        if np.isfinite(bound):
+            sides[name] = _search(_limit_state(machines, demand, nominal, (sign, bound)), machines)
+    failed = [f"{name} limit: {side.status}" for name, side in sides.items() if not side.converged]
+    if failed:
+        return FormResult(sides, None, "; ".join(failed))
+    missed = sum(float(ndtr(-side.beta)) for side in sides.values() if side.beta is not None)
+    return FormResult(sides, max(0.0, 1.0 - missed), "converged")
+
+
+def _limit_state(
+    machines: Machines, demand: Demand, nominal: Mapping[str, float], side: tuple[float, float]
+) -> LimitState:
+    """Return the distance from a limit in standard normal space: positive where it is kept, (d, n) -> (n,)."""
+    sign, bound = side
+    results = [name for name in machines.setup.model.own_result_fields if name in demand.wanted]
+
+    def distance(standard: NDArray[np.float64]) -> NDArray[np.float64]:
+        rows, columns = standard_rows(machines, standard, results)
+        answer: NDArray[np.float64] = sign * (demand.response(rows.results, columns, nominal) - bound)
+        return answer
+
+    return distance
+
+
+def _with_gradient(distance: LimitState, point: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
+    moves = STEP * np.eye(len(point))
+    batch = np.hstack([point[:, None], point[:, None] + moves, point[:, None] - moves])
+    values = distance(batch)
+    up, down = values[1 : 1 + len(point)], values[1 + len(point) :]
+    return float(values[0]), (up - down) / (2 * STEP)
+
+
+def _search(distance: LimitState, machines: Machines) -> Side:
+    """Walk to the point of the limit nearest to the origin."""
+    point = np.zeros(machines.scatter.dimension)
+    scale = 0.0
+    for iteration in range(1, ITERATIONS + 1):
+        value, gradient = _with_gradient(distance, point)
+        steepness = float(np.sqrt(gradient @ gradient))
+        if not np.isfinite(value) or not np.isfinite(steepness):
+            return Side("no convergence: the model has no answer on the way to the limit")
+        scale = max(scale, abs(value), steepness)
+        if steepness <= 1e-12 * scale or steepness == 0:
+            return Side("no convergence: nothing that scatters moves the result towards this limit")
+        normal = -gradient / steepness
+        ahead = float(normal @ point) + value / steepness
+        if abs(ahead) > FARTHEST and iteration > 3:
+            return Side("no convergence: the limit lies out of reach")
+        target = ahead * normal
+        if abs(value) <= CLOSE * steepness and np.abs(target - point).max() <= 1e-4 * max(1.0, abs(ahead)):
+            beta = float(normal @ point) + value / steepness
+            columns = machines.scatter.from_standard(point[:, None])
+            return Side("converged", beta, {name: float(values[0]) for name, values in columns.items()}, iteration)
+        point = point + _length(distance, point, target - point, (value, steepness)) * (target - point)
+    return Side(f"no convergence within {ITERATIONS} iterations")
+
+
+def _length(
+    distance: LimitState, point: NDArray[np.float64], direction: NDArray[np.float64], here: tuple[float, float]
+) -> float:
+    """Choose the longest step of 1, 1/2, 1/4 ... that lowers the merit function; all are tried in one batch."""
+    value, steepness = here
+    target = point + direction
+    penalty = 2 * max(np.sqrt(target @ target), np.sqrt(point @ point)) / steepness + 10 / steepness
+    lengths = 0.5 ** np.arange(HALVINGS)
+    tried = point[:, None] + direction[:, None] * lengths
+    merit = 0.5 * (tried * tried).sum(axis=0) + penalty * np.abs(distance(tried))
+    now = 0.5 * float(point @ point) + penalty * abs(value)
+    better = np.flatnonzero(np.isfinite(merit) & (merit < now))
+    return float(lengths[better[0]]) if better.size else float(lengths[-1])

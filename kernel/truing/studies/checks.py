@@ -111,7 +111,7 @@ def is_known(require: Require, setup: Setup, answers: Mapping[str, Any]) -> bool
 def requirements(setup: Setup) -> list[Require]:
     """Return the requirements of the model; one whose limit is an input that is not given asks for nothing."""
     fields = setup.model.input_fields
-    every = [item for item in setup.model.objectives if isinstance(item, Require)]
+    every = [objective for objective in setup.model.objectives if isinstance(objective, Require)]
     return [item for item in every if item.limit not in fields or not isnan(float(setup.nominal(item.limit)))]
 
 
@@ -140,20 +140,19 @@ def of_design(setup: Setup, result: str, answers: dict[str, Any]) -> Any:
     No part of the design are effects that are on, and deviations that the inputs state: inputs with a tolerance whose
     declared default is 0.
     """
-    acts = any(item.effect.place != "reading" for item in setup.effects)
-    deviating = dict.fromkeys(_deviations(setup), 0.0)
+    acts = any(active.effect.place != "reading" for active in setup.effects)
+    deviating = dict.fromkeys((name for name in sockets_of(setup) if setup.nominal(name) != 0), 0.0)
     if not (acts or deviating) or result not in setup.model.own_result_fields:
         return answers[result]
     design = replace(setup.changed(deviating), effects=())
     return setup.model.read_results(evaluate(design))[result]
 
 
-def _deviations(setup: Setup) -> list[str]:
-    """Return the names of the deviations that are not 0."""
+def sockets_of(setup: Setup) -> list[str]:
+    """Return the inputs that are deviations of the design: those with a tolerance whose declared default is 0."""
     fields = setup.model.input_fields
     names = {name for tolerance in setup.model.tolerances.values() for name in tolerance.on if name in fields}
-    sockets = [name for name in sorted(names) if getattr(fields[name].spec, "default", None) == 0]
-    return [name for name in sockets if setup.nominal(name) != 0]
+    return [name for name in sorted(names) if getattr(fields[name].spec, "default", None) == 0]
 
 
 def limit_amount(require: Require, setup: Setup, answers: dict[str, Any]) -> Any:

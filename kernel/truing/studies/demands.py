@@ -37,7 +37,7 @@ class Demand:
         if not self.moving:
             return values
         limit = results[self.moving] if self.moving in results else columns.get(self.moving, nominal.get(self.moving))
-        return values - _beside(limit, values)
+        return values - beside(limit, values)
 
     def slopes(self, of: Mapping[str, Mapping[str, Any]], columns: Sequence[str]) -> dict[str, Any]:
         """Return the derivatives of the response by column."""
@@ -45,7 +45,7 @@ class Demand:
         if not self.moving:
             return {column: own[column] for column in columns}
         if self.moving in of:
-            return {column: own[column] - _beside(of[self.moving][column], own[column]) for column in columns}
+            return {column: own[column] - beside(of[self.moving][column], own[column]) for column in columns}
         return {column: own[column] - float(column == self.moving) for column in columns}
 
     @property
@@ -54,7 +54,7 @@ class Demand:
         return (self.result, self.moving) if self.moving else (self.result,)
 
 
-def _beside(limit: Any, values: Any) -> Any:
+def beside(limit: Any, values: Any) -> Any:
     """Make one limit per row meet values along an axis."""
     deeper = np.ndim(values) - np.ndim(limit)
     return limit if deeper <= 0 or np.ndim(limit) == 0 else np.expand_dims(limit, tuple(range(-deeper, 0)))

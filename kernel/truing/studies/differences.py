@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from truing.errors import TruingError
 from truing.evaluate import evaluate_rows
 from truing.setup import Setup, effect_column
-from truing.studies.scatter import Scatter
+from truing.studies.sampling import Scatter
 from truing.units import unit_factor
 
 LEVELS = 15
@@ -42,10 +42,10 @@ class Slopes:
 
 def nominal_of(setup: Setup, column: str) -> float:
     """Return the value of an input, a condition or ``effects.NAME.UNKNOWN`` in force."""
-    for item in setup.effects:
-        for unknown in item.unknowns:
-            if column == effect_column(item.effect.name, unknown.name):
-                return float(item.values[unknown.name])
+    for active in setup.effects:
+        for unknown in active.unknowns:
+            if column == effect_column(active.effect.name, unknown.name):
+                return float(active.values[unknown.name])
     return float(setup.nominal(column))
 
 
@@ -83,7 +83,7 @@ def slopes(setup: Setup, results: Sequence[str], columns: Sequence[str], scatter
 
 def exact_slopes(setup: Setup) -> Mapping[str, Mapping[str, Any]]:
     """Return the derivatives that the model states, where they hold: not where an effect stands between."""
-    if setup.model.derivatives is None or any(item.effect.place != "reading" for item in setup.effects):
+    if setup.model.derivatives is None or any(active.effect.place != "reading" for active in setup.effects):
         return {}
     return setup.model.derivatives(setup.inputs)
 
@@ -112,9 +112,9 @@ def _sd_when_on(setup: Setup, column: str) -> float:
 
 
 def _one_unit(setup: Setup, column: str) -> float:
-    for item in setup.effects:
-        for unknown in item.unknowns:
-            if column == effect_column(item.effect.name, unknown.name):
+    for active in setup.effects:
+        for unknown in active.unknowns:
+            if column == effect_column(active.effect.name, unknown.name):
                 return (unknown.high - unknown.low) * unit_factor(unknown.unit) / WIDEST_SDS
     return unit_factor(setup.unit_of(column))
 

@@ -129,7 +129,9 @@ def open_problem(
 
     Widths can be bought only where every grade has a price too; otherwise they stay.
     """
-    graded = [item for item in setup.model.tolerances.values() if isinstance(setup.spread_of(item.name), Grade)]
+    graded = [
+        tolerance for tolerance in setup.model.tolerances.values() if isinstance(setup.spread_of(tolerance.name), Grade)
+    ]
     price_unit = _price_unit(setup, graded)
     priced = price_unit is not None
     variables = tolerance_variables(setup, straight, span) if priced or not graded else {}
@@ -296,7 +298,7 @@ def _strip(
         high=span[1] * width,
         price=price,
         variances={
-            name: sum((float(line.slopes[column]) * item.sd) ** 2 for column, item in inner.items())
+            name: sum((float(line.slopes[column]) * distribution.sd) ** 2 for column, distribution in inner.items())
             for name, line in straight.items()
         },
         pulls={name: pull * sum(float(line.slopes[column]) for column in inner) for name, line in straight.items()},

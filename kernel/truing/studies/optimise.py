@@ -16,9 +16,8 @@ from truing.evaluate import acting_inputs, evaluate
 from truing.fits import GRADES
 from truing.prices import price_answers
 from truing.setup import Setup
-from truing.studies.bench import Bench
-from truing.studies.checks import Check
-from truing.studies.demands import Demand, as_number, demands, wilson
+from truing.studies.bench import Bench, Outcome
+from truing.studies.demands import Demand, as_number, demands, wilson, worst
 from truing.studies.drawings import BLUE, GREY, ORANGE, WIDTH, labelled
 from truing.studies.optimise_problem import (
     Aim,
@@ -47,8 +46,7 @@ from truing.studies.optimise_search import (
     volume_of,
 )
 from truing.studies.reading import printed, spoken
-from truing.studies.sampling import Machines, SampleBudget, Tally, sample
-from truing.studies.scatter import scatter_of
+from truing.studies.sampling import Machines, SampleBudget, Tally, sample, scatter_of
 from truing.units import unit_text
 
 ALGORITHMS = ("nsga2",)
@@ -82,7 +80,23 @@ class Optimise:
     gives: Callable[[Optimum], Any] | None = None
 
     def __post_init__(self) -> None:
-        _check_options(self)
+        if self.algorithm not in ALGORITHMS:
+            raise UsageError(f"the algorithm '{self.algorithm}' is unknown; there is {', '.join(ALGORITHMS)}")
+        if self.chance not in CHANCES:
+            raise UsageError(f"chance takes {' or '.join(CHANCES)}, not '{self.chance}'")
+        if not 4 <= self.population <= 10_000:
+            raise UsageError(f"population = {self.population}, but a population has 4 to 10000 designs")
+        if not 1 <= self.generations <= 100_000:
+            raise UsageError(f"generations = {self.generations}, but a search has 1 to 100000 generations")
+        if not 0 < self.tightest < self.widest:
+            raise UsageError(
+                f"tightest = {self.tightest:g} and widest = {self.widest:g}, but widths run from a smaller factor "
+                "above 0 to a larger one"
+            )
+        if self.finest not in GRADES:
+            raise UsageError(f"'{self.finest}' is no tolerance grade; write IT1 to IT18")
+        if min(self.draws, self.verify, self.batch, self.parts) < 1:
+            raise UsageError("draws, verify, batch and parts are at least 1")
 
     def run(self, bench: Bench) -> Optimum:
         """Search, and verify the knee. Raises UsageError without a variable or an objective."""
@@ -91,10 +105,7 @@ class Optimise:
         if self.surrogate:
             problem = replace(problem, stand_in=_stand_in(bench, self.name))
         plan = SearchPlan(self.population, self.generations, setup.seed)
-
-        def done(generation: int, total: int) -> None:
-            bench.progress(self.name, generation, total + 1)
-
+        done = bench.part(self.name, 0.0, self.generations / (self.generations + 1))
         trail = search(problem, plan, lambda designs: answered(problem, designs, bench.executor), done)
         optimum = _optimum(self, problem, trail)
         return optimum if optimum.knee_place is None else self._verified(bench, problem, optimum, trail)
@@ -126,34 +137,10 @@ class Optimise:
         wanted = demands(setup, answers, with_goal=True)
         tally = None
         if wanted:
-
-            def done(draws: int, total: int) -> None:
-                bench.progress(self.name, self.generations * total + draws, (self.generations + 1) * total)
-
+            done = bench.part(self.name, self.generations / (self.generations + 1), 1.0)
             budget = SampleBudget(self.verify, self.batch, bench.executor, done)
             tally = sample(Machines(setup, scatter_of(setup)), wanted, answers, budget)
         return replace(optimum, exact=exact, demands=tuple(wanted), tally=tally)
-
-
-def _check_options(study: Optimise) -> None:
-    """Refuse options that make no sense, with one sentence."""
-    if study.algorithm not in ALGORITHMS:
-        raise UsageError(f"the algorithm '{study.algorithm}' is unknown; there is {', '.join(ALGORITHMS)}")
-    if study.chance not in CHANCES:
-        raise UsageError(f"chance takes {' or '.join(CHANCES)}, not '{study.chance}'")
-    if not 4 <= study.population <= 10_000:
-        raise UsageError(f"population = {study.population}, but a population has 4 to 10000 designs")
-    if not 1 <= study.generations <= 100_000:
-        raise UsageError(f"generations = {study.generations}, but a search has 1 to 100000 generations")
-    if not 0 < study.tightest < study.widest:
-        raise UsageError(
-            f"tightest = {study.tightest:g} and widest = {study.widest:g}, but widths run from a smaller factor "
-            "above 0 to a larger one"
-        )
-    if study.finest not in GRADES:
-        raise UsageError(f"'{study.finest}' is no tolerance grade; write IT1 to IT18")
-    if min(study.draws, study.verify, study.batch, study.parts) < 1:
-        raise UsageError("draws, verify, batch and parts are at least 1")
 
 
 def _stand_in(bench: Bench, study: str) -> ModelSubstitute:
@@ -266,7 +253,7 @@ def _designs(
 
 
 @dataclass(frozen=True, kw_only=True)
-class Optimum:
+class Optimum(Outcome):
     """The designs that no other beats, in the order of the first objective, and the knee among them.
 
     ``start`` is the design that the inputs file states. Without any feasible design ``front`` is empty, ``knee`` None
@@ -319,34 +306,58 @@ class Optimum:
     def verified(self) -> dict[str, float]:
         """The share of drawn machines of the knee that meets each goal."""
         tally = self.tally
-        return {} if tally is None else {name: _least(hits) / tally.draws for name, hits in tally.hits.items()}
+        return {} if tally is None else {name: worst(hits) / tally.draws for name, hits in tally.hits.items()}
 
     @property
     def interval(self) -> dict[str, tuple[float, float]]:
         """Wilson's 95 % interval of each of these shares."""
         tally = self.tally
-        return {} if tally is None else {name: wilson(_least(hits), tally.draws) for name, hits in tally.hits.items()}
+        return {} if tally is None else {name: wilson(worst(hits), tally.draws) for name, hits in tally.hits.items()}
 
     def as_json(self) -> dict[str, Any]:
         """Return front, knee, start, hypervolume and status in printed units."""
-        return optimum_json(self)
+        study = self.study
+        entry: dict[str, Any] = {
+            "status": self.status,
+            "variables": {variable.key: _variable_json(variable) for variable in self.variables},
+            "objectives": {aim.name: {"sense": aim.sense, "unit": aim.unit} for aim in self.aims},
+            "start": _design_json(self, self.start),
+            "front": [_design_json(self, design) for design in self.front],
+            "evaluations": self.evaluations,
+            "failed": self.failed,
+            "algorithm": study.algorithm,
+            "population": study.population,
+            "generations": study.generations,
+            "chance": study.chance,
+            "draws": study.draws if self.problem.cloud is not None else None,
+            "surrogate": study.surrogate,
+        }
+        if self.knee is not None:
+            entry["knee"] = _knee_json(self, self.knee)
+        if self.volume is not None:
+            volume = self.volume
+            entry["hypervolume"] = {
+                "reference": REFERENCE,
+                "ideal": _by_aim(self, volume.ideal),
+                "nadir": _by_aim(self, volume.nadir),
+                "history": [as_number(value) for value in volume.history],
+                "settled": volume.settled,
+            }
+        return entry
 
     def blocks(self) -> Sequence[Block]:
         """Return start against knee, the front, and both figures."""
-        return optimum_blocks(self)
-
-    def checks(self) -> Sequence[Check]:
-        """Return nothing: the checks judge the design that the inputs file states, and that is not the optimum."""
-        return ()
+        if self.knee is None:
+            return [Words(f"{self.status[:1].upper()}{self.status[1:]}.", "finding"), _comparison(self)]
+        blocks: list[Block] = [Words(_summary(self)), _comparison(self), *_undecided(self)]
+        if len(self.front) > 1:
+            blocks += [*fit_for_paper(_front(self)), Drawing("Front, start and knee", _drawn_front(self))]
+        blocks.append(Drawing("Hypervolume over the generations", _drawn_history(self), _history_words(self)))
+        return blocks
 
     def warnings(self) -> Sequence[str]:
         """Say what was not found, what the exact model contradicts, and whether the search had settled."""
         return [f"study '{self.name}': {text}" for text in optimum_warnings(self)]
-
-
-def _least(hits: Any) -> float:
-    """Return the smallest count along an axis, or the count itself."""
-    return float(np.min(hits))
 
 
 # How an optimum is written: results.json, the sheet, and what must be said of it
@@ -356,38 +367,6 @@ SHOWN = 20
 FLAT = 1e-6
 WIDEST = 7
 """So many columns with long names fit on A4 and letter."""
-
-
-def optimum_json(optimum: Optimum) -> dict[str, Any]:
-    """Return what results.json holds."""
-    study = optimum.study
-    entry: dict[str, Any] = {
-        "status": optimum.status,
-        "variables": {item.key: _variable_json(item) for item in optimum.variables},
-        "objectives": {aim.name: {"sense": aim.sense, "unit": aim.unit} for aim in optimum.aims},
-        "start": _design_json(optimum, optimum.start),
-        "front": [_design_json(optimum, design) for design in optimum.front],
-        "evaluations": optimum.evaluations,
-        "failed": optimum.failed,
-        "algorithm": study.algorithm,
-        "population": study.population,
-        "generations": study.generations,
-        "chance": study.chance,
-        "draws": study.draws if optimum.problem.cloud is not None else None,
-        "surrogate": study.surrogate,
-    }
-    if optimum.knee is not None:
-        entry["knee"] = _knee_json(optimum, optimum.knee)
-    if optimum.volume is not None:
-        volume = optimum.volume
-        entry["hypervolume"] = {
-            "reference": REFERENCE,
-            "ideal": _by_aim(optimum, volume.ideal),
-            "nadir": _by_aim(optimum, volume.nadir),
-            "history": [as_number(value) for value in volume.history],
-            "settled": volume.settled,
-        }
-    return entry
 
 
 def _by_aim(optimum: Optimum, values: Sequence[float]) -> dict[str, Any]:
@@ -437,22 +416,11 @@ def _input_unit(optimum: Optimum, name: str) -> str:
 
 
 def _width_unit(optimum: Optimum, name: str) -> str:
-    return next(item.unit for item in optimum.variables if not item.is_input and item.name == name)
+    return next(variable.unit for variable in optimum.variables if not variable.is_input and variable.name == name)
 
 
 def _width(optimum: Optimum, name: str, value: float | str) -> Any:
     return value if isinstance(value, str) else printed(value, _width_unit(optimum, name))
-
-
-def optimum_blocks(optimum: Optimum) -> Sequence[Block]:
-    """Return start against knee, the front, and the figures."""
-    if optimum.knee is None:
-        return [Words(f"{optimum.status[:1].upper()}{optimum.status[1:]}.", "finding"), _comparison(optimum)]
-    blocks: list[Block] = [Words(_summary(optimum)), _comparison(optimum), *_undecided(optimum)]
-    if len(optimum.front) > 1:
-        blocks += [*fit_for_paper(_front(optimum)), Drawing("Front, start and knee", _drawn_front(optimum))]
-    blocks.append(Drawing("Hypervolume over the generations", _drawn_history(optimum), _history_words(optimum)))
-    return blocks
 
 
 def _summary(optimum: Optimum) -> str:
@@ -672,6 +640,6 @@ def _undecided(optimum: Optimum) -> Iterator[Words]:
 
 
 def _goals(optimum: Optimum) -> Iterator[tuple[str, float, tuple[float, float]]]:
-    for item in optimum.demands:
-        if item.goal is not None:
-            yield item.name, item.goal, optimum.interval[item.name]
+    for demand in optimum.demands:
+        if demand.goal is not None:
+            yield demand.name, demand.goal, optimum.interval[demand.name]

@@ -28,7 +28,6 @@ from truing.declare.spreads import (
     Target,
     Zone,
     shift_per_width,
-    with_width,
 )
 from truing.errors import TruingError, UnitError, UsageError
 from truing.evaluate import evaluate_rows
@@ -39,10 +38,11 @@ from truing.inputs_file.values import broken_bound
 from truing.packed import Packed, pack, unpack
 from truing.prices import price_of, prices_at
 from truing.setup import Setup
-from truing.studies.checks import check_name, requirements
-from truing.studies.demands import normal_chance
+from truing.studies.checks import check_name, requirements, sockets_of
+from truing.studies.demands import beside, normal_chance
 from truing.studies.differences import nominal_of
-from truing.studies.scatter import Scatter, ScatterSource, generator, scatter_of
+from truing.studies.grades import with_grades, with_widths
+from truing.studies.sampling import Scatter, ScatterSource, generator, scatter_of
 from truing.units import read_quantity, to_si
 
 ROWS = 2**16  # of one call of the model, so that memory stays flat
@@ -121,13 +121,13 @@ class Answers:
 
     def __getitem__(self, rows: Any) -> Answers:
         """Return some of the designs."""
-        return Answers(**{item.name: getattr(self, item.name)[rows] for item in fields(self)})
+        return Answers(**{field.name: getattr(self, field.name)[rows] for field in fields(self)})
 
 
 def joined(parts: Sequence[Answers]) -> Answers:
     """Put the answers of several batches together, in their order."""
     return Answers(
-        **{item.name: np.concatenate([getattr(part, item.name) for part in parts]) for item in fields(Answers)}
+        **{field.name: np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Answers)}
     )
 
 
@@ -165,8 +165,8 @@ def _without_spread(spreads: Mapping[str, Any], count: int) -> NDArray[np.bool_]
     """Return the designs in which some tolerance has no width, as a grade that does not exist for their size."""
     missing = np.zeros(count, dtype=bool)
     for inner in spreads.values():
-        for item in inner.values():
-            missing |= ~np.isfinite(item.sd)
+        for distribution in inner.values():
+            missing |= ~np.isfinite(distribution.sd)
     return missing
 
 
@@ -189,9 +189,8 @@ def _own_results(problem: Problem, columns: Mapping[str, Any], count: int) -> di
     """Return the results from which ``within`` is measured, where they are not the nominal ones: see ``of_design``."""
     setup = problem.setup
     wanted = [bound.result for bound in problem.bounds if bound.require.kind == "within"]
-    names = {name for item in setup.model.tolerances.values() for name in item.on if name in setup.model.input_fields}
-    sockets = [name for name in sorted(names) if getattr(setup.model.input_fields[name].spec, "default", None) == 0]
-    acts = any(item.effect.place != "reading" for item in setup.effects)
+    sockets = sockets_of(setup)
+    acts = any(active.effect.place != "reading" for active in setup.effects)
     deviates = any(name in columns or setup.nominal(name) != 0 for name in sockets)
     if not wanted or not (acts or deviates):
         return {}
@@ -336,22 +335,16 @@ class World:
         return centre - beside(amount, centre), centre + beside(amount, centre)
 
 
-def beside(limit: Any, values: Any) -> Any:
-    """Make a number per design meet values that run along further axes."""
-    deeper = np.ndim(values) - np.ndim(limit)
-    return limit if deeper <= 0 or np.ndim(limit) == 0 else np.expand_dims(limit, tuple(range(-deeper, 0)))
-
-
 def aims_of(setup: Setup, study: str) -> tuple[Aim, ...]:
     """Return the objectives. Raises UsageError where there is none, or one that is no single number."""
     own = setup.model.own_result_fields
     aims = []
-    for item in setup.model.objectives:
-        if not isinstance(item, (Minimise, Maximise)) or (name := item.result) in given_by_studies(setup):
+    for objective in setup.model.objectives:
+        if not isinstance(objective, (Minimise, Maximise)) or (name := objective.result) in given_by_studies(setup):
             continue
         if name in own and own[name].along:
             raise UsageError(f"study '{study}': the objective '{name}' runs along an axis; it must be one number")
-        aims.append(Aim(name, isinstance(item, Maximise), setup.print_unit(name)))
+        aims.append(Aim(name, isinstance(objective, Maximise), setup.print_unit(name)))
     if not aims:
         raise UsageError(
             f"study '{study}': {setup.model.name} says of no result of its function and of no price that it should be "
@@ -371,7 +364,7 @@ def bounds_of(setup: Setup) -> tuple[Bound, ...]:
     known = {*setup.model.own_result_fields, TOTAL_PRICE}
     found: list[Bound] = []
     for item in sorted(
-        (item for item in requires if item.result in known), key=lambda item: item.reliability is not None
+        (require for require in requires if require.result in known), key=lambda item: item.reliability is not None
     ):
         name, by_chance = check_name(item, requires), item.reliability is not None
         taken = any(bound.name == name for bound in found)
@@ -383,8 +376,8 @@ def bounds_of(setup: Setup) -> tuple[Bound, ...]:
 def left_out(setup: Setup) -> tuple[str, ...]:
     """Say which objectives and limits the search cannot see."""
     theirs = given_by_studies(setup)
-    goals = [item for item in setup.model.objectives if isinstance(item, (Minimise, Maximise))]
-    named = [item.result for item in (*goals, *requirements(setup))]
+    goals = [objective for objective in setup.model.objectives if isinstance(objective, (Minimise, Maximise))]
+    named = [require.result for require in (*goals, *requirements(setup))]
     return tuple(
         f"'{name}' is given by a study once per run, so the search does not follow it"
         for name in dict.fromkeys(named)
@@ -394,7 +387,7 @@ def left_out(setup: Setup) -> tuple[str, ...]:
 
 def constants(setup: Setup, answers: Mapping[str, Any]) -> tuple[tuple[str, float], ...]:
     """Return the limits that are results of earlier studies: they stay what they are."""
-    limits = {item.limit for item in requirements(setup)}
+    limits = {require.limit for require in requirements(setup)}
     theirs = limits & given_by_studies(setup) & set(answers)
     return tuple((name, float(answers[name])) for name in sorted(theirs) if np.ndim(answers[name]) == 0)
 
@@ -497,7 +490,9 @@ class Space:
     @property
     def moved(self) -> frozenset[str]:
         """The inputs that differ between designs."""
-        return frozenset(item.name for item in self.variables if item.is_input) | {item.name for item in self.followers}
+        return frozenset(variable.name for variable in self.variables if variable.is_input) | {
+            item.name for item in self.followers
+        }
 
     @property
     def start(self) -> NDArray[np.float64]:
@@ -547,24 +542,17 @@ class Space:
     def setup_of(self, design: NDArray[np.float64]) -> Setup:
         """Return the setup of one design, as an inputs file would state it."""
         columns = {name: values[0].item() for name, values in self.columns(design[None, :]).items()}
-        setup = self.setup.changed(columns)
-        spreads = dict(setup.spreads)
-        for name, (variable, values) in self.choices(design[None, :]).items():
-            spread = setup.spread_of(name)
-            if variable.kind == "grade":
-                assert isinstance(spread, Grade)  # _of_tolerance has chosen these
-                spreads[name] = replace(spread, grade=GRADES[round(values[0])])
-            else:
-                first = next(iter(self.scatter[name]))
-                spreads[name] = with_width(spread, setup.target(first), float(values[0]))
-        return replace(setup, spreads=spreads)
+        chosen = [(variable, float(values[0])) for variable, values in self.choices(design[None, :]).values()]
+        grades = {variable.name: GRADES[round(value)] for variable, value in chosen if variable.kind == "grade"}
+        widths = {variable.name: value for variable, value in chosen if variable.kind == "width"}
+        return with_widths(with_grades(self.setup.changed(columns), grades), widths)
 
 
 def open_space(setup: Setup, brief: Brief) -> Space:
     """Collect what may be chosen. Raises UsageError where there is nothing, or a name or range makes no sense."""
-    stated = [item for item in setup.model.objectives if isinstance(item, Vary)]
+    stated = [objective for objective in setup.model.objectives if isinstance(objective, Vary)]
     inputs = [item for item in stated if not item.by]
-    tolerances = [item for item in setup.model.tolerances.values() if price_of(setup, item) is not None]
+    tolerances = [tolerance for tolerance in setup.model.tolerances.values() if price_of(setup, tolerance) is not None]
     _demand_known(setup, brief, {*(item.input for item in inputs), *(item.name for item in tolerances)})
 
     def kept(name: str) -> bool:
@@ -853,7 +841,7 @@ def by_draws(cloud: Cloud, designs: Designs, bounds: Sequence[Bound], answer: An
     results = answer(flat, designs.rows * cloud.draws, _wanted(bounds))
     each = {name: np.asarray(values).reshape(*shape, *np.shape(values)[1:]) for name, values in results.items()}
     found = np.empty((designs.rows, len(bounds)))
-    for place, bound in enumerate(bounds):
+    for index, bound in enumerate(bounds):
         low, high = _ends(designs.world, bound)
         response = each[bound.result]
         if _moves(designs.world, bound):
@@ -862,7 +850,7 @@ def by_draws(cloud: Cloud, designs: Designs, bounds: Sequence[Bound], answer: An
             response = response - beside(limit, response)
         with np.errstate(invalid="ignore"):
             inside = (response <= _per_design(high, response)) & (response >= _per_design(low, response))
-        found[:, place] = _worst(inside.mean(axis=1))
+        found[:, index] = _worst(inside.mean(axis=1))
     return found
 
 
@@ -927,7 +915,7 @@ def by_first_order(
     steps, variances, shifts = _moments(scatter, designs)
     values = _beside_the_designs(designs, columns, steps, _wanted(bounds), answer)
     found = np.empty((designs.rows, len(bounds)))
-    for place, bound in enumerate(bounds):
+    for index, bound in enumerate(bounds):
         centre, slopes = _line(designs, bound, values, (columns, steps))
         low, high = _ends(designs.world, bound)
         variance, mean = variances(slopes), centre
@@ -935,7 +923,7 @@ def by_first_order(
             mean = mean + slopes[column] * beside(shift, slopes[column])
         sd = np.sqrt(np.maximum(variance, 0.0))
         chance = _worst(np.asarray(normal_chance(mean, sd, beside(low, mean), beside(high, mean))))
-        found[:, place] = np.where(np.isfinite(chance), chance, 0.0)
+        found[:, index] = np.where(np.isfinite(chance), chance, 0.0)
     return found
 
 

@@ -57,9 +57,21 @@ def result_names(setup: Setup, names: tuple[str, ...], study: str) -> tuple[str,
     return names
 
 
+def single_numbers(setup: Setup, of: str | tuple[str, ...], study: str) -> tuple[str, ...]:
+    """Return the results that a study names, each once; raises UsageError for one that the function does not have.
+
+    Likewise for one that runs along an axis.
+    """
+    named = (of,) if isinstance(of, str) else tuple(dict.fromkeys(of))
+    for name in result_names(setup, named, study):
+        if setup.model.own_result_fields[name].along:
+            raise UsageError(f"study '{study}': '{name}' runs along an axis; name a result that is one number")
+    return named
+
+
 def scalar_results(setup: Setup) -> tuple[str, ...]:
     """Return the results of the function that are one number each."""
-    return tuple(name for name, item in setup.model.own_result_fields.items() if not item.along)
+    return tuple(name for name, field in setup.model.own_result_fields.items() if not field.along)
 
 
 def spoken(name: str) -> str:

@@ -15,14 +15,12 @@ from truing.errors import InfeasibleError, UsageError
 from truing.evaluate import acting_inputs, answered
 from truing.setup import Setup
 from truing.studies.bench import Bench
-from truing.studies.chances import chance, straightened
+from truing.studies.chances import FormResult, chance, form, straightened
 from truing.studies.checks import Check, chance_check, requirements
 from truing.studies.demands import Z95, Demand, as_number, demands, nominal_inputs, wilson, worst
 from truing.studies.drawings import labelled, lines
-from truing.studies.form import FormResult, form
 from truing.studies.reading import printed, printed_step, read_range, scattering_name, spoken
-from truing.studies.sampling import Machines, Moments, SampleBudget, Tally, sample
-from truing.studies.scatter import scatter_of
+from truing.studies.sampling import Machines, Moments, SampleBudget, Tally, sample, scatter_of
 from truing.units import difference_unit, from_si, unit_text
 
 METHODS = ("first_order", "monte_carlo", "form")
@@ -47,7 +45,15 @@ class Reliability:
     gives: Callable[[Odds], Any] | None = None
 
     def __post_init__(self) -> None:
-        _check_options(self)
+        unknown = [method for method in self.method if method not in METHODS]
+        if unknown or not self.method:
+            raise UsageError(f"method takes {', '.join(METHODS)}; not {', '.join(unknown) or 'nothing'}")
+        if "form" in self.method and "monte_carlo" not in self.method:
+            raise UsageError("form is printed only beside a sampling; add monte_carlo to method")
+        if self.draws < 1 or self.batch < 1:
+            raise UsageError("draws and batch are at least 1")
+        if not 2 <= self.points <= 1000:
+            raise UsageError(f"points = {self.points}, but a curve has 2 to 1000 points")
 
     def run(self, bench: Bench) -> Odds:
         """Answer at the stated inputs, then along ``over`` where asked. Raises UsageError where nothing is required."""
@@ -60,7 +66,7 @@ class Reliability:
 
     def _answer(self, bench: Bench, setup: Setup, answers: Mapping[str, Any], stage: int) -> Odds:
         wanted = demands(setup, answers)
-        if not any(item.result in setup.model.own_result_fields for item in requirements(setup)):
+        if not any(require.result in setup.model.own_result_fields for require in requirements(setup)):
             raise UsageError(
                 f"study '{self.name}': {setup.model.name} requires nothing; add Require(result, ...) to it"
             )
@@ -90,10 +96,7 @@ class Reliability:
             return None
         answers, stage = at
         stages = 1 + (self.points if self.over else 0)
-
-        def done(draws: int, total: int) -> None:
-            bench.progress(self.name, stage * total + draws, stages * total)
-
+        done = bench.part(self.name, stage / stages, (stage + 1) / stages)
         return sample(machines, wanted, answers, SampleBudget(self.draws, self.batch, bench.executor, done))
 
     def _form(
@@ -129,21 +132,8 @@ class Reliability:
 
 def _lacking(bench: Bench) -> list[str]:
     """Say which limits have no probability because their result does not exist."""
-    limited = dict.fromkeys(item.result for item in requirements(bench.setup) if item.result in bench.absent)
+    limited = dict.fromkeys(require.result for require in requirements(bench.setup) if require.result in bench.absent)
     return [f"'{name}' has no probability: {bench.absent[name]}" for name in limited]
-
-
-def _check_options(study: Reliability) -> None:
-    """Refuse options that make no sense, with one sentence."""
-    unknown = [method for method in study.method if method not in METHODS]
-    if unknown or not study.method:
-        raise UsageError(f"method takes {', '.join(METHODS)}; not {', '.join(unknown) or 'nothing'}")
-    if "form" in study.method and "monte_carlo" not in study.method:
-        raise UsageError("form is printed only beside a sampling; add monte_carlo to method")
-    if study.draws < 1 or study.batch < 1:
-        raise UsageError("draws and batch are at least 1")
-    if not 2 <= study.points <= 1000:
-        raise UsageError(f"points = {study.points}, but a curve has 2 to 1000 points")
 
 
 def _few_draws(study: Reliability, wanted: Sequence[Demand]) -> tuple[str, ...]:
@@ -294,11 +284,23 @@ class Odds:
 
     def as_json(self) -> dict[str, Any]:
         """Return the probabilities by check, and the curve under its input's name."""
-        return odds_json(self)
+        entries = {demand.name: _entry(self, demand) for demand in self.demands}
+        if self.curve is not None:
+            for name, entry in entries.items():
+                entry["curve"] = _curve(self.curve, name)
+        return entries
 
     def blocks(self) -> Sequence[Block]:
         """Return a table of probabilities, one of means and spreads, and the curve."""
-        return odds_blocks(self)
+        blocks: list[Block] = [_chances(self)]
+        if self.sampled:
+            blocks.append(_spreads(self))
+        for name, found in self.form.items():
+            if found.probability is None:
+                blocks.append(Words(f"FORM of the {spoken(name)}: {found.status}."))
+        if self.curve is not None and self.curve.probability:
+            blocks.append(_drawn(self, self.curve))
+        return blocks
 
     def checks(self) -> Sequence[Check]:
         """Compare each probability with its goal; along an axis the worst one."""
@@ -340,15 +342,6 @@ def max_of(value: Any) -> float:
 # How the outcome of a reliability study is written: results.json and the sheet
 
 
-def odds_json(odds: Odds) -> dict[str, Any]:
-    """Return what results.json holds: probability, interval and method by check."""
-    entries = {demand.name: _entry(odds, demand) for demand in odds.demands}
-    if odds.curve is not None:
-        for name, entry in entries.items():
-            entry["curve"] = _curve(odds.curve, name)
-    return entries
-
-
 def _entry(odds: Odds, demand: Demand) -> dict[str, Any]:
     name, unit = demand.name, odds.units[demand.result]
     interval = [as_number(end) for end in odds.interval[name]] if odds.sampled else None
@@ -385,19 +378,6 @@ def _curve(curve: Curve, name: str) -> dict[str, Any]:
         "first_order": as_number(curve.analytic[name]) if name in curve.analytic else None,
         "failed": [{"row": row, "reason": reason} for row, reason in curve.failed],
     }
-
-
-def odds_blocks(odds: Odds) -> Sequence[Block]:
-    """Return the tables of the sheet, and the curve where there is one."""
-    blocks: list[Block] = [_chances(odds)]
-    if odds.sampled:
-        blocks.append(_spreads(odds))
-    for name, found in odds.form.items():
-        if found.probability is None:
-            blocks.append(Words(f"FORM of the {spoken(name)}: {found.status}."))
-    if odds.curve is not None and odds.curve.probability:
-        blocks.append(_drawn(odds, odds.curve))
-    return blocks
 
 
 def _chances(odds: Odds) -> Table:

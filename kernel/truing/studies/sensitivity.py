@@ -17,13 +17,11 @@ from truing.errors import UsageError
 from truing.evaluate import acting_inputs
 from truing.heavy import stats
 from truing.setup import Setup, effect_column
-from truing.studies.bench import Bench, StepProgress
-from truing.studies.checks import Check
+from truing.studies.bench import Bench, Outcome, StepProgress
 from truing.studies.differences import exact_slopes, nominal_of, slopes
 from truing.studies.drawings import MOST_BARS, bars
-from truing.studies.reading import per, printed_step, result_names, scalar_results, spoken
-from truing.studies.sampling import Machines, standard_rows
-from truing.studies.scatter import Scatter, scatter_of
+from truing.studies.reading import per, printed_step, scalar_results, single_numbers, spoken
+from truing.studies.sampling import Machines, Scatter, scatter_of, standard_rows
 from truing.units import difference_unit, unit_factor, unit_text
 
 AGREES_TO = 1e-6
@@ -78,17 +76,10 @@ class Sensitivity:
         )
 
     def _results(self, setup: Setup) -> tuple[str, ...]:
-        named = (self.of,) if isinstance(self.of, str) else tuple(self.of)
+        if self.of:
+            return single_numbers(setup, self.of, self.name)
         scalar = scalar_results(setup)
-        if named:
-            result_names(setup, named, self.name)
-            for name in named:
-                if name not in scalar:
-                    raise UsageError(
-                        f"study '{self.name}': '{name}' runs along an axis; name a result that is one number"
-                    )
-            return named
-        goals = [item.result for item in setup.model.objectives if not isinstance(item, Vary)]
+        goals = [objective.result for objective in setup.model.objectives if not isinstance(objective, Vary)]
         return tuple(dict.fromkeys(name for name in goals if name in scalar)) or scalar
 
     def _indices(self, bench: Bench, scatter: Scatter, results: Sequence[str]) -> tuple[_Indices, _Indices, list[str]]:
@@ -104,12 +95,12 @@ def _sources(setup: Setup, named: tuple[str, ...], study: str) -> tuple[str, ...
     """Return what is varied: the names asked for, or whatever may be in error, or every number there is."""
     fields = setup.model.input_fields
     unknowns = [
-        effect_column(item.effect.name, unknown.name)
-        for item in setup.effects
-        if item.effect.place != "reading"
-        for unknown in item.unknowns
+        effect_column(active.effect.name, unknown.name)
+        for active in setup.effects
+        if active.effect.place != "reading"
+        for unknown in active.unknowns
     ]
-    numbers = [name for name, item in fields.items() if item.kind == "float"]
+    numbers = [name for name, field in fields.items() if field.kind == "float"]
     known = [*numbers, *setup.conditions, *unknowns]
     for name in named:
         if name not in known:
@@ -120,9 +111,9 @@ def _sources(setup: Setup, named: tuple[str, ...], study: str) -> tuple[str, ...
 
 
 def _unit(setup: Setup, source: str) -> str:
-    for item in setup.effects:
-        for unknown in item.unknowns:
-            if source == effect_column(item.effect.name, unknown.name):
+    for active in setup.effects:
+        for unknown in active.unknowns:
+            if source == effect_column(active.effect.name, unknown.name):
                 return unknown.unit
     return setup.print_unit(source)
 
@@ -156,7 +147,7 @@ def _agreement(numeric: Mapping[str, Mapping[str, float]], exact: Mapping[str, M
 
 
 @dataclass(frozen=True, kw_only=True)
-class Sensitivities:
+class Sensitivities(Outcome):
     """Derivatives in SI, shares of the first-order variance (0 where a spread is off), and Sobol indices where asked.
 
     ``derivatives[result][source]``, ``share[result][source]``, ``sd[result]``, ``sobol_first[result][source]``,
@@ -262,10 +253,6 @@ class Sensitivities:
             )
         return " ".join(words)
 
-    def checks(self) -> Sequence[Check]:
-        """Return nothing: a sensitivity decides no limit."""
-        return ()
-
     def warnings(self) -> Sequence[str]:
         """Say where stated and numeric derivatives disagree, and where there is no derivative."""
         disagree = [
@@ -310,8 +297,8 @@ class _Sampled:
         for start in range(0, count, ROWS):
             part = np.ascontiguousarray(standard[:, start : start + ROWS])
             rows, _ = standard_rows(self.machines, part, self.results)
-            for place, result in enumerate(self.results):
-                answers[place, start : start + ROWS] = rows.results[result]
+            for index, result in enumerate(self.results):
+                answers[index, start : start + ROWS] = rows.results[result]
             self.failed += int(rows.failed.sum())
             self.reason = self.reason or next(iter(rows.reasons.values()), "")
             self.run += part.shape[1]

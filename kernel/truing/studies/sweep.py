@@ -14,8 +14,7 @@ from truing.declare.blocks import Block, Drawing, Table, Words
 from truing.errors import UsageError
 from truing.evaluate import acting_inputs, evaluate_in_parts
 from truing.setup import Setup
-from truing.studies.bench import Bench
-from truing.studies.checks import Check
+from truing.studies.bench import Bench, Outcome
 from truing.studies.drawings import BLUE, WIDTH, labelled
 from truing.studies.reading import printed, read_range, scattering_name, spoken
 from truing.units import from_si, unit_text
@@ -83,7 +82,7 @@ def _values(setup: Setup, over: str, axis: NDArray[np.float64]) -> Any:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Swept:
+class Swept(Outcome):
     """The results along the swept input: ``axis`` (n,) and ``results[name]`` (n,) or (n, k) in SI, NaN where failed.
 
     ``inputs`` are those of the run, as effects leave them.
@@ -125,10 +124,6 @@ class Swept:
             count = f"{len(self.failed)} of {len(self.axis)} points have no answer"
             blocks.append(Words(f"{count}; the first is number {row + 1}: {reason}.", "warning"))
         return blocks
-
-    def checks(self) -> Sequence[Check]:
-        """Return nothing: a sweep decides no limit."""
-        return ()
 
     def warnings(self) -> Sequence[str]:
         """Name the points that failed."""

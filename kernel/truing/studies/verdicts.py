@@ -76,7 +76,9 @@ def decide(setup: Setup, answers: Mapping[str, Any], outcomes: Mapping[str, Outc
             checks[name] = replace(checks[name], compared=compared_words(require, setup, answers))
     chosen = _chosen([one for outcome in outcomes.values() for one in proposals_of(outcome)], checks)
     if chosen is not None:
-        checks |= {one.name: replace(checks[one.name], proposed=one) for one in chosen.checks if one.name in checks}
+        checks |= {
+            check.name: replace(checks[check.name], proposed=check) for check in chosen.checks if check.name in checks
+        }
     return Decided(tuple(checks.values()), chosen)
 
 
@@ -116,9 +118,11 @@ def _decider(require: Require, setup: Setup, answers: Mapping[str, Any]) -> str:
 
 def _chosen(proposals: Sequence[Proposal], stated: Mapping[str, Check]) -> Proposal | None:
     """Return the first of the proposals that miss fewest limits, among those that miss none which is kept as stated."""
-    missed = {id(one): [check for check in one.checks if not check.passed] for one in proposals}
+    missed = {id(proposal): [check for check in proposal.checks if not check.passed] for proposal in proposals}
     sound = [
-        one for one in proposals if not any(stated[each.name].passed for each in missed[id(one)] if each.name in stated)
+        proposal
+        for proposal in proposals
+        if not any(stated[each.name].passed for each in missed[id(proposal)] if each.name in stated)
     ]
     return min(sound, key=lambda one: len(missed[id(one)]), default=None)
 

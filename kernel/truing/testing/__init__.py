@@ -24,15 +24,13 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from truing.testing.finding import assert_finds, assert_finds_nothing, finds_every_effect
     from truing.testing.fixtures import Answer, Calc, CalcProcess
-    from truing.testing.hidden import Answered, Hidden, recorded
-    from truing.testing.hiding import hide
+    from truing.testing.hiding import Answered, Hidden, hide, recorded
     from truing.testing.kit import CHECKS, ConformanceCheck, conformance, failures
 
 _HOMES = {
     "truing.testing.finding": ("assert_finds", "assert_finds_nothing", "finds_every_effect"),
     "truing.testing.fixtures": ("Answer", "Calc", "CalcProcess"),
-    "truing.testing.hidden": ("Answered", "Hidden", "recorded"),
-    "truing.testing.hiding": ("hide",),
+    "truing.testing.hiding": ("Answered", "Hidden", "hide", "recorded"),
     "truing.testing.kit": ("CHECKS", "ConformanceCheck", "conformance", "failures"),
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names}

@@ -41,8 +41,8 @@ def units_are_known(subject: Subject) -> None:
 
 def _check_histories(subject: Subject) -> None:
     model = subject.model
-    units = {name: item.unit for name, item in model.input_fields.items()}
-    units |= {name: item.unit for name, item in model.conditions.items()}
+    units = {name: field.unit for name, field in model.input_fields.items()}
+    units |= {name: condition.unit for name, condition in model.conditions.items()}
     for name, condition in model.conditions.items():
         made_from = condition.made_from
         wanted = "" if condition.history == "direction" else units.get(made_from, condition.unit)
@@ -74,18 +74,17 @@ def goals_can_be_read(subject: Subject) -> None:
 
 def printed_numbers_are_of_results(subject: Subject) -> None:
     """Every printed number names a result of the model, in a unit of its kind, and settings that can be read."""
-    for item in subject.model.published:
-        field = subject.model.result_fields.get(item.result)
+    name = subject.model.name
+    for printed in subject.model.published:
+        field = subject.model.result_fields.get(printed.result)
         if field is None:
-            fail(f"{subject.model.name}: the printed number '{item.name}' names '{item.result}', which is no result")
-        if not same_dimension(item.unit, field.unit):
-            fail(
-                f"{subject.model.name}: '{item.name}' is printed in '{item.unit}', '{item.result}' is in '{field.unit}'"
-            )
-        if item.verdict == "differs" and not item.why:
-            fail(f"{subject.model.name}: the printed number '{item.name}' differs; say why")
-        with _stating(subject, f"settings of '{item.name}'"):
-            setup_from_settings(subject.offer, item.settings)
+            fail(f"{name}: the printed number '{printed.name}' names '{printed.result}', which is no result")
+        if not same_dimension(printed.unit, field.unit):
+            fail(f"{name}: '{printed.name}' is printed in '{printed.unit}', '{printed.result}' is in '{field.unit}'")
+        if printed.verdict == "differs" and not printed.why:
+            fail(f"{name}: the printed number '{printed.name}' differs; say why")
+        with _stating(subject, f"settings of '{printed.name}'"):
+            setup_from_settings(subject.offer, printed.settings)
 
 
 def sheet_is_in_order(subject: Subject) -> None:
@@ -130,7 +129,7 @@ def inputs_survive_a_file(subject: Subject) -> None:
 
 def _stated_files(subject: Subject) -> dict[str, Any]:
     """Return the data files as the example names them."""
-    needed = [name for name, item in subject.model.input_fields.items() if item.kind == "file"]
+    needed = [name for name, field in subject.model.input_fields.items() if field.kind == "file"]
     named = tomllib.loads(example_text(subject.offer)).get("inputs", {}) if needed else {}
     return {name: named[name] for name in needed if name in named}
 
@@ -183,10 +182,10 @@ Scope = Mapping[str, InputField | ResultField]
 
 def formulas_of(subject: Subject) -> Iterator[tuple[ResultField, Formula, bool, Scope]]:
     """Yield each result that prints a formula, the formula, whether it is numeric, and what its names mean."""
-    for item in subject.model.own_result_fields.values():
-        text = getattr(item.spec, "formula", "")
+    for field in subject.model.own_result_fields.values():
+        text = getattr(field.spec, "formula", "")
         if text:
-            yield item, parse(text), bool(getattr(item.spec, "numeric", False)), formula_scope(subject.model, item)
+            yield field, parse(text), bool(getattr(field.spec, "numeric", False)), formula_scope(subject.model, field)
 
 
 def formulas_have_the_unit(subject: Subject) -> None:

@@ -10,8 +10,7 @@ from truing.declare.sources import Effect
 from truing.diagnosis.result import Cause, DiagnosisResult, VisibleSize, explanations_of
 from truing.errors import UsageError
 from truing.report.diagnosis_words import cause_text, fitted_text, listed, settings_text
-from truing.testing.hidden import Hidden
-from truing.testing.hiding import hide
+from truing.testing.hiding import Hidden, hide
 from truing.testing.subject import fail
 from truing.units import difference_unit, from_si, unit_factor
 
@@ -198,7 +197,7 @@ def advice_on(hidden: Hidden) -> str:
         return f"not excited: {_vary(hidden)}"
     if diagnosis.remainder is not None and not diagnosis.causes:
         return f"what was hidden is not the curve of '{name}': look for a sign, a unit, the place where it acts"
-    rivals = [item for item in diagnosis.alternatives if name in item.causes]
+    rivals = [alternative for alternative in diagnosis.alternatives if name in alternative.causes]
     if rivals and diagnosis.causes:
         return f"cannot be told apart from '{diagnosis.causes[0].effect}': {_next(diagnosis)}"
     if seen is not None:
@@ -208,7 +207,7 @@ def advice_on(hidden: Hidden) -> str:
 
 def _seen(hidden: Hidden) -> VisibleSize | None:
     """Return what the diagnosis says of how small the effect may be."""
-    known = {item.name: item for item in hidden.answered.diagnosis.seen}
+    known = {visible.name: visible for visible in hidden.answered.diagnosis.seen}
     names = [hidden.effect, *(f"{hidden.effect}.{unknown}" for unknown in hidden.truth)]
     return next((known[name] for name in names if name in known), None)
 
@@ -232,7 +231,7 @@ def _too_small(hidden: Hidden, seen: VisibleSize, factor: float) -> str:
 
 def _size(hidden: Hidden) -> float:
     """Return the first amplitude that was hidden."""
-    amplitudes = [one.name for one in _effect(hidden).unknowns if one.is_amplitude]
+    amplitudes = [unknown.name for unknown in _effect(hidden).unknowns if unknown.is_amplitude]
     return next((abs(hidden.truth[name]) for name in amplitudes if hidden.truth.get(name)), 0.0)
 
 
@@ -265,7 +264,7 @@ def hidden_words(hidden: Hidden) -> str:
     """Say what was hidden, with its size."""
     if hidden.effect is None:
         return "something unregistered"
-    units = {one.name: one.unit for one in _effect(hidden).unknowns}
+    units = {unknown.name: unknown.unit for unknown in _effect(hidden).unknowns}
     sizes = ", ".join(f"{name} {quantity_text(value, units[name])}" for name, value in hidden.truth.items())
     return f"'{hidden.effect}' ({sizes})"
 

@@ -2,31 +2,48 @@
 
 from __future__ import annotations
 
+import inspect
+import json
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from time import perf_counter
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import qmc
 
+from truing.declare.fields import Axis
+from truing.declare.goals import Vary
 from truing.declare.model import Model
-from truing.errors import Fault, InputError, TruingError
-from truing.gauge import read_by_gauge
-from truing.inputs_file import setup_from_settings
+from truing.declare.near_miss import near_miss
+from truing.declare.sources import SINCE_START, Condition, Effect, Tolerance, Unknown
+from truing.diagnosis.engine import diagnose
+from truing.diagnosis.reading import read_records
+from truing.diagnosis.records import Records
+from truing.diagnosis.result import DiagnosisResult
+from truing.errors import Fault, InputError, TruingError, UsageError
+from truing.evaluate import evaluate
+from truing.gauge import one_machine, read_by_gauge
+from truing.inputs_file import setup_from_settings, setup_from_text
+from truing.inputs_file.values import broken_bound
+from truing.kernel import Offer, Origin
 from truing.measurements import read_rows, table_text
-from truing.setup import Setup
-from truing.studies.scatter import generator, scatter_of
-from truing.testing.designs import RecordDesign, columns_of
-from truing.testing.hidden import MEASURED, Hidden, offer_of
-from truing.testing.noises import RecordNoise, noise_of
-from truing.testing.planted import Size, Strange, check_by, effect_of, truth_of, wrong_machine
+from truing.measurements.table import WORDS, read_word
+from truing.runs.diagnosis_document import diagnosis_document
+from truing.runs.inputs_written import complete_inputs
+from truing.setup import Setup, SwitchedOn
+from truing.studies.reading import read_range
+from truing.studies.sampling import generator, scatter_of
+from truing.studies.sweep import Sweep
 from truing.testing.subject import Subject
-from truing.units import difference_unit, from_si, unit_factor
+from truing.units import difference_unit, from_si, read_quantity, split_quantity, to_si, unit_factor
 
-HELD_OUT = 200
+HELD_OUT_ROWS = 200
 
 
 def hide(
@@ -95,7 +112,7 @@ def _hidden(wish: _Wish, model: Model[Any, Any]) -> Hidden:
     setup = replace(setup, conditions={**setup.conditions, **known})
     plan = _Plan(setup, wrong_machine(setup.changed(off), effect, truth, wish.by), noises, wish.correlation, wish.seed)
     measured, _ = plan.recorded(design, 0)
-    held, left = plan.recorded(design if wish.runs > 1 or design.is_record else replace(design, rows=HELD_OUT), 1)
+    held, left = plan.recorded(design if wish.runs > 1 or design.is_record else replace(design, rows=HELD_OUT_ROWS), 1)
     return Hidden(
         setup=setup, measured=measured, held_out=held, effect=wish.effect, truth=truth, machine=off, noise=left,
         is_strange=effect is None and wish.by is not None,
@@ -181,3 +198,616 @@ def _check_counts(wish: _Wish, faults: list[str]) -> None:
 def _drawn(setup: Setup, seed: int) -> dict[str, float]:
     """Draw a machine from the tolerances: its inputs in SI."""
     return {name: float(values[0]) for name, values in scatter_of(setup).draw(seed, 0, 1).items()}
+
+
+# A record with what was hidden in it, and what a diagnosis answers to it
+
+
+MEASURED, HELD_OUT, INPUTS = "measured.csv", "held_out.csv", "inputs.toml"
+
+
+@dataclass(frozen=True)
+class Answered:
+    """What a diagnosis said, as result and as diagnosis.json, and what it is worth on rows it has never seen.
+
+    ``held`` and ``predicted`` are those rows as measured and as the extended model predicts them, by result, in SI;
+    nothing where no rows were held out. ``seconds`` is what the diagnosis took.
+    """
+
+    diagnosis: DiagnosisResult
+    document: Mapping[str, Any]
+    held: Mapping[str, NDArray[np.float64]]
+    predicted: Mapping[str, NDArray[np.float64]]
+    seconds: float
+
+    def error_of(self, result: str) -> float:
+        """Return the root mean square error on the rows held out, SI."""
+        return float(np.sqrt(np.nanmean((self.held[result] - self.predicted[result]) ** 2)))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Hidden:
+    """A measured record whose truth is known: what ``hide`` makes, and what ``assert_finds`` judges.
+
+    ``measured`` and ``held_out`` are CSV as a diagnosis reads it; rows held out are never fitted. ``setup`` is what the
+    engineer knows of the machine. ``truth`` holds the unknowns of the effect, ``machine`` what its inputs truly are
+    where they are off their nominals, ``noise`` the root mean square of what the gauge added to the rows held out, by
+    result; all in SI. Without an ``effect`` nothing registered is hidden: nothing at all, unless ``is_strange``.
+    """
+
+    setup: Setup
+    measured: str
+    held_out: str = ""
+    effect: str | None = None
+    truth: Mapping[str, float] = field(default_factory=dict)
+    machine: Mapping[str, float] = field(default_factory=dict)
+    noise: Mapping[str, float] = field(default_factory=dict)
+    is_strange: bool = False
+
+    @cached_property
+    def answered(self) -> Answered:
+        """Diagnose the record, once, and predict the rows held out."""
+        return _answered(self)
+
+    def write(self, folder: Path) -> None:
+        """Write inputs.toml, measured.csv and held_out.csv, to look at and to diagnose on the command line."""
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / INPUTS).write_text(complete_inputs(self.setup, folder), encoding="utf-8")
+        (folder / MEASURED).write_text(self.measured, encoding="utf-8")
+        if self.held_out:
+            (folder / HELD_OUT).write_text(self.held_out, encoding="utf-8")
+
+
+def recorded(
+    model: Model[Any, Any],
+    *,
+    inputs: str,
+    measured: str,
+    held_out: str = "",
+    effect: str | None = None,
+    truth: Mapping[str, float] | None = None,
+) -> Hidden:
+    """Return a record that was made elsewhere: by a generator of your own, or on a machine whose error is known.
+
+    ``inputs`` is the text of the inputs file, ``measured`` and ``held_out`` that of CSV files with units in the header,
+    ``truth`` holds the unknowns of the effect in SI. Raises InputError with every fault of the inputs.
+    """
+    setup = setup_from_text(inputs, Subject(model).offer, file=INPUTS, folder=Path())
+    return Hidden(setup=setup, measured=measured, held_out=held_out, effect=effect, truth=truth or {})
+
+
+def offer_of(setup: Setup) -> Offer:
+    """Return the model of a setup as the command line would offer it."""
+    name = setup.model.name
+    origin = setup.origin if setup.origin.name else Origin(name, "", "", "", f"entry:{name}")
+    return Offer(name, setup.model, origin)
+
+
+def _answered(hidden: Hidden) -> Answered:
+    records = records_of(hidden.setup, hidden.measured, MEASURED)
+    start = perf_counter()
+    diagnosis = diagnose(hidden.setup, records)
+    seconds = perf_counter() - start
+    document = json.loads(json.dumps(diagnosis_document(diagnosis)))
+    if not hidden.held_out:
+        return Answered(diagnosis, document, {}, {}, seconds)
+    judged = records_of(hidden.setup, hidden.held_out, HELD_OUT, with_unit_errors=False)
+    return Answered(diagnosis, document, judged.measured, predicted(diagnosis, hidden.setup, judged), seconds)
+
+
+def records_of(setup: Setup, text: str, name: str, *, with_unit_errors: bool = True) -> Records:
+    """Read a record as the command line does; without a search for wrong units where nobody is told of them."""
+    with TemporaryDirectory() as folder:
+        file = Path(folder) / name
+        file.write_text(text, encoding="utf-8")
+        return read_records([file], offer_of(setup), setup, with_unit_errors=with_unit_errors)
+
+
+def predicted(diagnosis: DiagnosisResult, setup: Setup, records: Records) -> dict[str, NDArray[np.float64]]:
+    """Predict rows that were not fitted, by every cause and shape that was found on the calibrated machine; SI."""
+    calibrated = {calibrated.name: calibrated.value for calibrated in diagnosis.calibrated}
+    machine = diagnosis.extended or replace(setup, calibrated={**setup.calibrated, **calibrated})
+    shown = read_by_gauge(one_machine(machine), records.rows, diagnosis.measured).results
+    known: dict[str, Any] = {name: covariate.values for name, covariate in records.covariates.items()}
+    found = {}
+    for result in diagnosis.measured:
+        values = shown[result]
+        for term in diagnosis.remainder.terms.get(result, ()) if diagnosis.remainder else ():
+            values = values + term.coefficient * np.asarray(eval(term.expression, {"np": np}, known))
+        found[result] = values
+    return found
+
+
+# What is hidden: an effect with its unknowns, made by its own function or by one of the author's own
+
+
+Size: TypeAlias = str | float | Mapping[str, str | float]
+Strange: TypeAlias = Callable[..., Any]
+STRANGE = "hidden_by_the_test"
+ENDLESS = 1e6
+"""Bounds as wide as these say nothing of how large an effect is."""
+
+
+def effect_of(model: Model[Any, Any], name: str | None, faults: list[str]) -> Effect[Any, Any] | None:
+    """Return the effect of this name, of the model or of the kernel."""
+    if name is None or name in model.known_effects:
+        return model.known_effects[name] if name is not None else None
+    known = list(model.known_effects)
+    faults.append(f"no effect '{name}'.{near_miss(name, known) or ' It has ' + ', '.join(known)}")
+    return None
+
+
+def truth_of(
+    effect: Effect[Any, Any] | None, size: Size | None, measured: Sequence[str], faults: list[str]
+) -> dict[str, float]:
+    """Return the unknowns of the effect in SI."""
+    if effect is None:
+        if size is not None and not faults:
+            faults.append(f"size is {size!r}, but no effect is hidden; leave it out")
+        return {}
+    stated = _stated(effect, size, measured, faults)
+    found: dict[str, float] = {}
+    for name, said in stated.items():
+        unknown = next((unknown for unknown in effect.unknowns if unknown.name == name), None)
+        if unknown is None:
+            known = [unknown.name for unknown in effect.unknowns]
+            faults.append(f"effect '{effect.name}' has no unknown '{name}'.{near_miss(name, known)}")
+            continue
+        try:
+            found[name] = _value(effect, unknown, said)
+        except TruingError as error:
+            faults.append(f"size of '{name}': {error}")
+    touched = [part for part in effect.groups() if any(one.name in stated for one in part)]
+    missing = [one.name for part in touched for one in part if one.name not in stated]
+    if missing:
+        faults.append(f"effect '{effect.name}': say {' and '.join(missing)} as well, size={{...}}")
+    if (
+        found
+        and not any(unknown.is_amplitude and found.get(unknown.name) for unknown in effect.unknowns)
+        and not missing
+    ):
+        faults.append(f"effect '{effect.name}' of size 0 hides nothing; hide(None, ...) does that")
+    return found
+
+
+def _stated(
+    effect: Effect[Any, Any], size: Size | None, measured: Sequence[str], faults: list[str]
+) -> Mapping[str, str | float]:
+    """Return what is said of each unknown; a plain size is that of the only amplitude."""
+    if isinstance(size, Mapping):
+        return size
+    parts = effect.groups()
+    if effect.parts:  # one gauge each: that of what is measured
+        parts = tuple(part for part in parts if any(one.name in measured for one in part)) or parts
+    if size is None:
+        return _half(effect, parts, faults)
+    if len(parts) == 1 and len(parts[0]) == 1:
+        return {parts[0][0].name: size}
+    names = [one.name for part in parts for one in part]
+    faults.append(
+        f"effect '{effect.name}' has the unknowns {', '.join(names)}: say which is {size}, "
+        f'size={{"{names[0]}": "{size}", ...}}'
+    )
+    return {}
+
+
+def _half(effect: Effect[Any, Any], parts: Sequence[Sequence[Unknown]], faults: list[str]) -> dict[str, str]:
+    """Take half of what the bounds of an amplitude allow, and the middle of those of a shape."""
+    if len(parts) != 1 or any(abs(one.high) >= ENDLESS for one in parts[0]):
+        faults.append(f"say how large '{effect.name}' is: size={{...}}; its bounds are no measure of it")
+        return {}
+    found = {}
+    for one in parts[0]:
+        if one.is_amplitude:
+            value = max((one.low, one.high), key=abs) / 2
+        else:
+            value = math.sqrt(one.low * one.high) if one.low > 0 else (one.low + one.high) / 2
+        found[one.name] = f"{round(value) if one.whole else value!r} {one.unit}".strip()
+    return found
+
+
+def _value(effect: Effect[Any, Any], unknown: Unknown, said: str | float) -> float:
+    """Read one unknown, SI. Raises UsageError where it is no quantity of its kind, or out of its bounds."""
+    value = float(read_quantity(said if isinstance(said, str) else repr(said), unknown.unit))
+    number = float(from_si(value, unknown.unit))
+    slack = 1e-9 * max(abs(unknown.low), abs(unknown.high))
+    if not unknown.low - slack <= number <= unknown.high + slack:
+        raise UsageError(
+            f"{said} lies outside of its bounds, {unknown.low:g} to {unknown.high:g} {unknown.unit}".rstrip()
+            + ", where no diagnosis looks"
+        )
+    if unknown.whole and not number.is_integer():
+        raise UsageError(f"{said} is no whole number")
+    return value
+
+
+def check_by(by: Strange | None, effect: Effect[Any, Any] | None, model: Model[Any, Any], faults: list[str]) -> None:
+    """Say where a function of the author's own does not take what the effect has."""
+    if by is None:
+        return
+    parameters = list(inspect.signature(by).parameters.values())
+    if any(item.kind is inspect.Parameter.VAR_KEYWORD for item in parameters):
+        return
+    named = {item.name for item in parameters[2:]}
+    if effect is None:
+        unknown = sorted(named - set(model.known_conditions))
+        if unknown:
+            faults.append(f"by takes {', '.join(unknown)}, which is no condition of the model")
+        return
+    wanted = {unknown.name for unknown in effect.unknowns} | {need.name for need in effect.needs}
+    needed = {item.name for item in parameters[2:] if item.default is inspect.Parameter.empty}
+    if len(parameters) < 2 or not needed <= wanted <= named:
+        faults.append(
+            f"by takes {', '.join(item.name for item in parameters) or 'nothing'}; it is called with inputs, results "
+            f"and the keywords {', '.join(sorted(wanted))}"
+        )
+
+
+def wrong_machine(
+    setup: Setup, effect: Effect[Any, Any] | None, truth: Mapping[str, float], by: Strange | None
+) -> Setup:
+    """Return the machine as it truly is: the effect on, made by its own function or by the author's."""
+    if by is None:
+        return replace(setup, effects=(SwitchedOn(effect, truth),)) if effect is not None else setup
+    model = setup.model
+    made = _by_hand(by, effect, model)
+    errors = [source for source in model.errors if source.name != made.name]
+    changed = replace(model, errors=[*errors, made])
+    on = SwitchedOn(made, truth if effect is not None else {made.unknowns[0].name: 1.0})
+    return replace(setup, model=changed, effects=(on,))
+
+
+def _by_hand(by: Strange, effect: Effect[Any, Any] | None, model: Model[Any, Any]) -> Effect[Any, Any]:
+    """Make an effect on the reading of the author's own function."""
+    if effect is not None:
+        return Effect(effect.name, on_reading=by, unknowns=effect.unknowns, needs=effect.needs, parts=effect.parts)
+    named = [*inspect.signature(by).parameters][2:]
+    needs = [model.known_conditions[name] for name in named if name in model.known_conditions]
+
+    def function(inputs: Any, results: Any, **known: Any) -> Any:
+        return by(inputs, results, **{name: known[name] for name in named})
+
+    return Effect(STRANGE, on_reading=function, unknowns=[Unknown("size", 0, 1)], needs=needs)
+
+
+# What the gauge scatters: which results are measured, and how well
+
+
+@dataclass(frozen=True)
+class RecordNoise:
+    """A standard deviation in SI, or a share of the span of what is shown."""
+
+    sd: float = 0.0
+    share: float = 0.0
+
+    def size(self, shown: NDArray[np.float64]) -> float:
+        """Return the standard deviation for these readings, SI."""
+        return self.sd or self.share * float(np.ptp(shown))
+
+
+def noise_of(setup: Setup, said: Any, measure: str | Sequence[str] | None, faults: list[str]) -> dict[str, RecordNoise]:
+    """Return the noise by measured result; what is wrong is added to ``faults``, a sentence each."""
+    gauged = gauged_results(setup)
+    named = [measure] if isinstance(measure, str) else list(measure or ())
+    if said is None:
+        like = f"{{'{named[0]}': ...}}" if named else "'0.1 kN'"
+        faults.append(f"noise is missing: say how far the gauge scatters, noise={like}, or '1 %' of the span")
+        return {}
+    if isinstance(said, Mapping):
+        texts = dict(said)
+    else:
+        names = named or _fitting(gauged, said, faults)
+        texts = dict.fromkeys(names, said)
+    found = {}
+    for name, text in texts.items():
+        if name not in gauged:
+            is_result = name in setup.model.result_fields
+            why = "is no result that a gauge can show" if is_result else f"is no result.{near_miss(name, gauged)}"
+            faults.append(f"'{name}' {why}")
+            continue
+        try:
+            found[name] = _read(text, gauged[name])
+        except TruingError as error:
+            faults.append(f"noise of '{name}': {error}")
+            continue
+        if not (found[name].sd > 0 or found[name].share > 0):
+            faults.append(f"noise of '{name}': {text} is no scatter; every gauge has some, by which it is judged")
+    missing = [name for name in named if name not in texts]
+    if missing:
+        faults.append(f"noise says nothing of {', '.join(missing)}, which is to be measured")
+    return found
+
+
+def gauged_results(setup: Setup) -> dict[str, str]:
+    """Return the results that can be measured, with their units: numbers and curves."""
+    fields = setup.model.own_result_fields
+    return {name: field.unit for name, field in fields.items() if not isinstance(field.spec, Axis)}
+
+
+def _fitting(gauged: Mapping[str, str], said: Any, faults: list[str]) -> list[str]:
+    """Return the one result that a noise can be of; of several the only one that is in the very unit of the noise."""
+    fits = [name for name, unit in gauged.items() if _is_share(said) or _fits(said, unit)]
+    if isinstance(said, str) and len(fits) > 1 and not _is_share(said):
+        same = [name for name in fits if gauged[name] == split_quantity(said).unit]
+        fits = same if len(same) == 1 else fits
+    if len(fits) == 1:
+        return fits
+    if fits:
+        faults.append(f"noise {said!r} may be of {', '.join(fits)}: say which is measured, measure='{fits[0]}'")
+    else:
+        units = ", ".join(f"{name} in {unit or 'pure numbers'}" for name, unit in gauged.items())
+        faults.append(f"noise {said!r} is of the kind of no result: {units}")
+    return []
+
+
+def _is_share(said: Any) -> bool:
+    return isinstance(said, str) and said.strip().endswith("%")
+
+
+def _fits(said: Any, unit: str) -> bool:
+    try:
+        _read(said, unit)
+    except TruingError:
+        return False
+    return True
+
+
+def _read(said: Any, unit: str) -> RecordNoise:
+    """Read a standard deviation, a difference in the unit of the result, or a share of its span."""
+    if _is_share(said):
+        noise = RecordNoise(share=read_quantity(said, ""))
+    else:
+        noise = RecordNoise(sd=read_quantity(said if isinstance(said, str) else repr(said), difference_unit(unit)))
+    return noise
+
+
+# How a hidden record is taken: which columns vary, between which ends, and where each row lies
+
+
+USUAL = {"time": "0..24 h", "temperature": "15..35 degC", "angle": "0..360 deg"}
+"""The ranges of the kernel's own conditions, which no model declares."""
+STEPS = 100_000
+"""A range is written in so many steps: as fine as any gauge, and short to read."""
+RUN = "run"
+
+
+@dataclass(frozen=True)
+class DesignColumn:
+    """A column that varies: the unit in its header, its ends (or the ``levels`` it takes) in that unit.
+
+    One that ``rises`` goes from end to end with the rows, as a clock does; one that ``places`` the rows on an axis does
+    so in every run. ``words`` are the values of a choice.
+    """
+
+    name: str
+    unit: str
+    low: float = 0.0
+    high: float = 0.0
+    levels: tuple[float, ...] = ()
+    words: tuple[str, ...] = ()
+    rises: bool = False
+    places: bool = False
+    whole: bool = False
+
+    def at(self, shares: NDArray[np.float64]) -> Any:
+        """Return the values (n,) at these shares of the range, 0 to 1."""
+        if self.words or self.levels:
+            chosen: Any = np.array(self.words or self.levels, dtype=object if self.words else float)
+            return chosen[np.minimum((shares * len(chosen)).astype(int), len(chosen) - 1)]
+        values = self.low + (self.high - self.low) * shares
+        decimals = 0 if self.whole else -math.floor(math.log10((self.high - self.low) / STEPS))
+        return np.clip(np.round(values, decimals), self.low, self.high)
+
+
+@dataclass(frozen=True)
+class RecordDesign:
+    """How many rows in how many runs, and what varies. Where a result runs along an axis every run is a record."""
+
+    columns: tuple[DesignColumn, ...]
+    rows: int
+    runs: int
+
+    @property
+    def is_record(self) -> bool:
+        """Whether the rows of a run are places on an axis."""
+        return any(column.places for column in self.columns)
+
+    def drawn(self, rng: np.random.Generator) -> dict[str, Any]:
+        """Return the columns by header, as they are written: space-filling, and in the order of the clock."""
+        count = self.rows * self.runs
+        spread = [column for column in self.columns if not (column.rises or column.places)]
+        points = self.runs if self.is_record else count
+        shares = qmc.Halton(max(len(spread), 1), seed=rng).random(points)
+        shares = np.repeat(shares, self.rows, axis=0) if self.is_record else shares
+        found: dict[str, Any] = {RUN: np.repeat(np.arange(1, self.runs + 1), self.rows)} if self.runs > 1 else {}
+        clock = (np.arange(count) + rng.random(count)) / count
+        for column in self.columns:
+            if column.places:
+                own = np.tile(np.linspace(0.0, 1.0, self.rows), self.runs)
+            else:
+                own = clock if column.rises else shares[:, spread.index(column)]
+            found[f"{column.name} [{column.unit or '1'}]" if not column.words else column.name] = column.at(own)
+        return found
+
+
+def columns_of(
+    setup: Setup, effect: Effect[Any, Any] | None, measured: Sequence[str], over: Mapping[str, Any] | None
+) -> tuple[list[DesignColumn], list[str]]:
+    """Return the columns that vary, and what is wrong with what was asked for, a sentence each.
+
+    ``over`` names them all; without it they are what the effect needs and what is declared to vary. The axis of a
+    measured result is a column in any case.
+    """
+    asked: dict[str, Any] = dict(over) if over is not None else dict(_by_default(setup, effect))
+    for axis in _axes(setup, measured):
+        asked.setdefault(axis, _whole_axis(setup, axis))
+    columns, faults = [], []
+    for name, said in asked.items():
+        try:
+            columns.append(_column(setup, name, said, measured))
+        except TruingError as error:
+            faults.append(f"over, '{name}': {error}")
+    faults += _not_varied(setup, effect, set(asked), is_stated=over is not None)
+    if not columns and not faults:
+        faults.append('nothing varies: say what is set from row to row, over={"load": "10..90 N"}')
+    return columns, faults
+
+
+def _by_default(setup: Setup, effect: Effect[Any, Any] | None) -> Iterator[tuple[str, str]]:
+    """Give what is declared to vary, and what the effect needs.
+
+    What a study sweeps over varies in use; only where none does it is what may be chosen (``Vary``), unless that is
+    made once, which its tolerance says.
+    """
+    yield from dict(_swept(setup) or _chosen(setup)).items()
+    for condition in effect.needs if effect is not None else ():
+        said = usual_range(condition)
+        if said and condition.made_from in {"", condition.name}:
+            yield condition.name, said
+
+
+def _swept(setup: Setup) -> list[tuple[str, str]]:
+    """Return the ranges over which the model's studies sweep."""
+    known = {*setup.model.input_fields, *setup.model.known_conditions}
+    sweeps = [study for study in setup.model.studies if isinstance(study, Sweep)]
+    return [(study.over, study.at) for study in sweeps if study.over in known and study.at]
+
+
+def _chosen(setup: Setup) -> list[tuple[str, str]]:
+    """Return the ranges of what may be chosen and has no tolerance."""
+    model = setup.model
+    made = {name for source in model.errors if isinstance(source, Tolerance) for name in source.on}
+    goals = [goal for goal in model.objectives if isinstance(goal, Vary) and not goal.by and goal.input not in made]
+    fields = model.input_fields
+    return [(goal.input, f"{goal.low}..{goal.high}") for goal in goals if fields[goal.input].kind == "float"]
+
+
+def usual_range(condition: Condition) -> str:
+    """Return the range of a condition that is declared, or usual for one of the kernel's, or nothing."""
+    if condition.low is not None and condition.high is not None:
+        return f"{condition.low}..{condition.high} {condition.unit}".strip()
+    return USUAL.get(condition.name, "")
+
+
+def _axes(setup: Setup, measured: Sequence[str]) -> Iterator[str]:
+    """Give the axes that the measured results run along."""
+    fields = setup.model.own_result_fields
+    for name in measured:
+        item = fields[name]
+        if item.along:
+            own = f"{item.along}_{item.scope}"
+            yield own if own in fields else item.along
+
+
+def _whole_axis(setup: Setup, axis: str) -> str:
+    """Return the range of an axis at the defaults."""
+    unit = setup.model.own_result_fields[axis].unit
+    places = from_si(np.asarray(setup.model.read_results(evaluate(setup))[axis], dtype=float), unit)
+    return f"{float(np.min(places))!r}..{float(np.max(places))!r} {unit}".strip()
+
+
+def _column(setup: Setup, name: str, said: Any, measured: Sequence[str]) -> DesignColumn:
+    """Read one range, or the values that a column takes. Raises UsageError with a sentence."""
+    model = setup.model
+    item = model.input_fields.get(name)
+    if item is not None and item.kind in WORDS:
+        return _words(item, said)
+    unit = _unit_of(setup, name, measured)
+    if unit is None:
+        known = [*model.input_fields, *model.known_conditions, *_sources(setup)]
+        raise UsageError(f"{model.name} has no input or condition of that name.{near_miss(name, known)}")
+    if item is not None and item.kind not in {"float", "whole"}:
+        raise UsageError("a file or a series cannot change from row to row")
+    low, high, levels, shown = _ends(said, unit)
+    if item is not None:
+        _demand_bounds(item, [low, high, *levels], shown)
+    return DesignColumn(
+        name, shown, low, high, levels,
+        rises=name == "time" or _is_counted(setup, name),
+        places=name in set(_axes(setup, measured)),
+        whole=item is not None and item.kind == "whole",
+    )  # fmt: skip
+
+
+def _ends(said: Any, unit: str) -> tuple[float, float, tuple[float, ...], str]:
+    """Read "low..high unit" or "a, b, c unit" in the unit in which it is written, checked against the declared one."""
+    text = said if isinstance(said, str) else ", ".join(str(one) for one in said)
+    values = read_range(text, unit, 2)
+    shown = split_quantity(text.replace("..", ",").split(",")[-1].strip()).unit or unit
+    written = [float(f"{float(from_si(float(value), shown)):.12g}") for value in values]
+    if ".." not in text:
+        return min(written), max(written), tuple(written), shown
+    low, high = written
+    if not low < high:
+        raise UsageError(f"it goes from {low:g} to {high:g} {shown}: lower end first".rstrip())
+    return low, high, (), shown
+
+
+def _words(item: Any, said: Any) -> DesignColumn:
+    """Read the values of a choice, a switch or a whole number. Raises UsageError with a sentence."""
+    words = [word.strip() for word in said.split(",")] if isinstance(said, str) else [str(word) for word in said]
+    for word in words:
+        try:
+            read_word(item, word, decimal_comma=False)
+        except ValueError as error:
+            raise UsageError(str(error)) from error
+    return DesignColumn(item.name, "", words=tuple(words))
+
+
+def _demand_bounds(item: Any, ends: Sequence[float], unit: str) -> None:
+    """Raise UsageError where a range leaves the bounds of an input."""
+    for end in ends:
+        broken = broken_bound(item, float(to_si(end, unit)))
+        if broken:
+            raise UsageError(broken)
+
+
+def _unit_of(setup: Setup, name: str, measured: Sequence[str]) -> str | None:
+    """Return the declared unit of a column, None where nobody knows it."""
+    model = setup.model
+    if name in model.input_fields:
+        return model.input_fields[name].unit
+    if name in model.known_conditions:
+        return model.known_conditions[name].unit
+    if name in set(_axes(setup, measured)):
+        return model.own_result_fields[name].unit
+    return _sources(setup).get(name)
+
+
+def _sources(setup: Setup) -> dict[str, str]:
+    """Return the columns from which conditions are made that are neither input nor condition, with their units."""
+    model = setup.model
+    made = [
+        condition
+        for condition in model.known_conditions.values()
+        if condition.made_from and condition.history != "direction"
+    ]
+    found = {item.made_from: item.unit for item in made}
+    axes = {name: field.unit for name, field in model.own_result_fields.items() if isinstance(field.spec, Axis)}
+    found |= {
+        condition.made_from: "" for condition in model.known_conditions.values() if condition.history == "direction"
+    } | found
+    return {name: unit for name, unit in found.items() if name not in axes}
+
+
+def _is_counted(setup: Setup, name: str) -> bool:
+    condition = setup.model.known_conditions.get(name)
+    return condition is not None and condition.history == SINCE_START
+
+
+def _not_varied(setup: Setup, effect: Effect[Any, Any] | None, asked: set[str], *, is_stated: bool) -> Iterator[str]:
+    """Say which columns an effect needs and nobody varies, one sentence each: without them it cannot be found."""
+    missing: dict[str, list[Condition]] = {}
+    for condition in effect.needs if effect is not None else ():
+        if condition.name not in asked and condition.made_from not in asked:
+            missing.setdefault(condition.made_from or condition.name, []).append(condition)
+    for source, conditions in missing.items():
+        names = " and ".join(f"'{condition.name}'" for condition in conditions)
+        made = f" (made from '{source}')" if source != conditions[0].name else ""
+        unit = _unit_of(setup, source, ()) or ""
+        usual = usual_range(conditions[0]) if not made else ""
+        why = "over does not vary it" if is_stated else "no range is declared for it"
+        yield (
+            f"effect '{effect.name if effect else ''}' needs {names}{made}, and {why}: "
+            f'add "{source}": "{usual or f"LOW..HIGH {unit}".strip()}" to over'
+        )

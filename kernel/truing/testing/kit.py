@@ -8,7 +8,7 @@ from typing import Any
 
 from truing.declare.checks import Promise
 from truing.declare.model import Model
-from truing.testing import batches, declared, running, sources
+from truing.testing import declared, running, sources
 from truing.testing.subject import Subject, fail
 
 
@@ -45,7 +45,7 @@ CHECKS: tuple[ConformanceCheck, ...] = (
     ConformanceCheck("sheet is in order", declared.sheet_is_in_order, needs_run=False),
     ConformanceCheck("formulas have the unit", declared.formulas_have_the_unit),
     ConformanceCheck("formulas equal the function", declared.formulas_equal_the_function),
-    ConformanceCheck("batch equals loop", batches.batch_equals_loop),
+    ConformanceCheck("batch equals loop", running.batch_equals_loop),
     ConformanceCheck("steps may be halved", running.steps_may_be_halved),
     ConformanceCheck("inputs untouched", running.inputs_untouched),
     ConformanceCheck("seeds decide", running.seeds_decide),

@@ -57,7 +57,9 @@ def zero_is_the_base(subject: Subject) -> None:
         base = _answers(setup)
         for effect in subject.model.effects.values():
             for share in SHAPES:
-                values = {item.name: 0.0 if item.is_amplitude else shape(item, share) for item in effect.unknowns}
+                values = {
+                    unknown.name: 0.0 if unknown.is_amplitude else shape(unknown, share) for unknown in effect.unknowns
+                }
                 changed = _changed(_answers(_with(setup, effect, values)), base)
                 if changed:
                     shapes = ", ".join(f"{key} = {value:g}" for key, value in values.items())
@@ -123,12 +125,12 @@ def only_last_results_are_edited(subject: Subject) -> None:
 
 def _users(subject: Subject) -> Iterator[tuple[str, str]]:
     """Yield each result that a formula names, with the result whose formula it is."""
-    for item in subject.model.own_result_fields.values():
-        text = getattr(item.spec, "formula", "")
+    for field in subject.model.own_result_fields.values():
+        text = getattr(field.spec, "formula", "")
         if text:
-            scope = formula_scope(subject.model, item)
+            scope = formula_scope(subject.model, field)
             meant = {scope[name].name for name in parse(text).names}
-            yield from ((name, item.name) for name in meant & set(subject.model.own_result_fields) - {item.name})
+            yield from ((name, field.name) for name in meant & set(subject.model.own_result_fields) - {field.name})
 
 
 def order_is_free(subject: Subject) -> None:
@@ -190,7 +192,8 @@ def switched(setup: Setup, effect: Effect[Any, Any]) -> Setup | None:
     """Return the setup with the effect on, half as large as it may be, or less; None where no size is possible."""
     for size in SIZES:
         values = {
-            item.name: amplitude(item, size) if item.is_amplitude else shape(item, 0.5) for item in effect.unknowns
+            unknown.name: amplitude(unknown, size) if unknown.is_amplitude else shape(unknown, 0.5)
+            for unknown in effect.unknowns
         }
         on = _with(setup, effect, values)
         try:

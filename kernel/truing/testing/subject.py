@@ -85,7 +85,7 @@ class Subject:
     @property
     def scattering(self) -> dict[str, InputField]:
         """The inputs that a batch can vary."""
-        return {name: item for name, item in self.model.input_fields.items() if item.varies}
+        return {name: field for name, field in self.model.input_fields.items() if field.varies}
 
     def at(self, point: Mapping[str, float]) -> Setup:
         """Return the setup with these inputs, SI."""

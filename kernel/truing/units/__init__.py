@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from truing.errors import UnitError
 from truing.units import grammar, names
 from truing.units.grammar import Quantity, shown
+from truing.units.grammar import split as split_quantity
 from truing.units.meaning import Dimension, Meaning, case_variants, meaning, registry, split_prefix, without_prefix
 
 __all__ = [
@@ -39,15 +40,6 @@ _DIMENSIONS = {
 ROUNDING_OF_ZERO = 1e-9
 """Kelvin below absolute zero that are rounding: -459.67 degF is 0 K."""
 _PER_SECOND = (("second", Fraction(-1)),)
-
-
-def split_quantity(text: str) -> Quantity:
-    """Take a text apart: "3136 N*m" is Quantity(3136.0, "N*m"), "5" is Quantity(5.0, "").
-
-    The unit is not looked up. Raises UnitError for a number that is none, not finite, or written with a comma, a band
-    or underscores. "1.5×10^-3 m" and "10^-3 m" are numbers too; ``2**3`` is not.
-    """
-    return grammar.split(text)
 
 
 def read_quantity(text: str, unit: str) -> float:
@@ -201,12 +193,8 @@ def _decimal(exponent: Fraction) -> str:
     return short if Fraction(short) == exponent else f"({exponent})"
 
 
-def quantity(text: str, unit: str) -> float:
-    """Read a quantity as an inputs file does, for readers of data files: ``quantity("0.4 um", "m")`` is 4e-7.
-
-    Raises TruingError with one sentence where the text is no quantity of that dimension.
-    """
-    return read_quantity(text, unit)
+quantity = read_quantity
+"""What readers of data files call it, who read as an inputs file is read: ``quantity("0.4 um", "m")`` is 4e-7."""
 
 
 def _example(value: float, unit: str) -> str:

@@ -96,7 +96,11 @@ def normalised(text: str) -> str:
 
 
 def split(text: str) -> Quantity:
-    """Take a text such as "3136 N*m" apart into its number and its unit text; see ``units.split_quantity``."""
+    """Take a text apart: "3136 N*m" is Quantity(3136.0, "N*m"), "5" is Quantity(5.0, "").
+
+    The unit is not looked up. Raises UnitError for a number that is none, not finite, or written with a comma, a band
+    or underscores. "1.5×10^-3 m" and "10^-3 m" are numbers too; ``2**3`` is not.
+    """
     _refuse_common_slips(text)
     plain = normalised(text)
     value, end = _leading_number(text, plain)

@@ -1,4 +1,4 @@
-"""Values as a user gives them in Python, written as ``--set`` reads them: one way in for what a file may say."""
+"""Values as a user gives them in Python, written as --set reads them, and results as quantities of pint."""
 
 from __future__ import annotations
 
@@ -7,11 +7,13 @@ from numbers import Real
 from typing import Any
 
 import numpy as np
+import pint
 
 from truing.declare.model import Model
 from truing.errors import UsageError
 from truing.inputs_file.assemble import toml_value
 from truing.units import from_si, pint_quantity
+from truing.units.names import CURRENCIES
 
 
 def settings_of(model: Model[Any, Any], values: Mapping[str, Any]) -> list[str]:
@@ -69,3 +71,18 @@ def _in_si(name: str, value: Any, unit: str) -> float:
     if value.dimensionality != pint_quantity(1.0, unit).dimensionality:
         raise UsageError(f"{name}: {value} cannot be written in {unit or 'a number without a unit'}")
     return float(value.to_base_units().magnitude)
+
+
+# Quantities of pint, as a user of pint has them: of the application's registry, in the unit that is printed
+
+
+def quantity_of(si: Any, unit: str) -> Any:
+    """Return a number or array in SI as a quantity in a unit; in base units where pint does not know its name."""
+    registry: Any = pint.get_application_registry()  # type: ignore[no-untyped-call]
+    for currency in CURRENCIES:
+        if currency not in registry:
+            registry.define(f"{currency} = [currency_{currency}]")
+    try:
+        return registry.Quantity(from_si(si, unit), registry.parse_units(unit))
+    except (pint.UndefinedUnitError, pint.DefinitionSyntaxError, ValueError):
+        return registry.Quantity(si, str(pint_quantity(1.0, unit).units))

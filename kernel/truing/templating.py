@@ -1,0 +1,32 @@
+"""Texts that are written from templates: where these are, and how one that is no page is filled in."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+
+def template_folder() -> Path:
+    """Return the folder of the templates, in a wheel and in an editable install alike."""
+    package = Path(__file__).resolve().parent
+    for folder in (package / "templates", package.parents[1] / "templates"):
+        if (folder / "sheet.html.j2").is_file():
+            return folder
+    raise FileNotFoundError(f"the templates of the sheets are missing from {package}; install truing again")
+
+
+def rendered(template: str, words: Mapping[str, Any]) -> str:
+    """Fill in a template; what a word holds is printed, never obeyed."""
+    return _environment().get_template(template).render(words)
+
+
+@lru_cache(maxsize=1)
+def _environment() -> Environment:
+    return Environment(
+        loader=FileSystemLoader(template_folder()), undefined=StrictUndefined, trim_blocks=True,
+        keep_trailing_newline=True,
+    )  # fmt: skip

@@ -1,0 +1,150 @@
+"""The machines in which effects of the plugins are hidden: right in themselves, by figures from outside."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from hidden_effects import gearing_cases, harmonic_cases, rv_cases, screw_cases
+from hidden_effects.clear import DRIVES, REDUCERS, SCREWS, SHAPES, STAGES
+from hidden_effects.gearing_cases import CONTACT, PLANET_ROOT, SUN_ROOT
+from hidden_effects.gearing_machine import Rows as StageRows
+from hidden_effects.gearing_machine import shown as shown_by_stage
+from hidden_effects.gearing_stage import Stage
+from hidden_effects.gearing_stress import spread
+from hidden_effects.harmonic_contact import Flanks, table
+from hidden_effects.harmonic_machine import MESH
+from hidden_effects.harmonic_surface import SurfaceWish, lines, structure, true_structure
+from hidden_effects.plugin_asking import model_of
+from hidden_effects.rv_machine import RATED, ROUGHNESS, Wearing, wear_after
+from hidden_effects.rv_machine import Rows as ReducerRows
+from hidden_effects.rv_machine import shown as shown_by_reducer
+from hidden_effects.screw_machine import ROLLER_FACTOR
+from hidden_effects.screw_machine import Rows as ScrewRows
+from hidden_effects.screw_machine import shown as shown_by_screw
+
+HELD = 40
+MAKERS: dict[str, Any] = {
+    "rv_gearing": replace(gearing_cases.CASES, held=HELD).made,
+    "rv_wear": replace(rv_cases.CASES, held=HELD).made,
+    "roller_screw_shift": replace(screw_cases.CASES, held=HELD).made,
+    "harmonic_fractal": harmonic_cases.make_case,
+}
+
+
+def stiff_or_soft(name: str, unknowns: dict[str, float], result: str) -> Any:
+    """A drive or, where no result of it shows the effect, a flank."""
+    hidden = {name: unknowns}
+    if not result:
+        return SurfaceWish(seed=3, hidden=hidden)
+    tooth = 2e7 if name == "engaged_pairs" else np.inf
+    design: harmonic_cases.Design = "points" if result == MESH else "loops"
+    return harmonic_cases.Wish(seed=3, hidden=hidden, results=(result,), design=design, tooth=tooth)
+
+
+def screw(name: str, unknowns: dict[str, float], results: tuple[str, ...]) -> screw_cases.Wish:
+    """A screw, worn where its flanks wear."""
+    design: screw_cases.Design = "endurance" if name == "flank_wear" else "bench"
+    return screw_cases.Wish(seed=3, hidden={name: unknowns}, results=results, design=design)
+
+
+CLEAR: list[tuple[str, Any]] = [
+    *(
+        ("rv_gearing", gearing_cases.Wish(seed=3, hidden={name: unknowns}, results=results, design=design))
+        for name, unknowns, results, design in STAGES
+    ),
+    *(
+        ("rv_wear", rv_cases.Wish(seed=3, hidden={name: unknowns}, design="fleet"))
+        for name, unknowns in REDUCERS.items()
+    ),
+    *(("roller_screw_shift", screw(*clear)) for clear in SCREWS),
+    *(("harmonic_fractal", stiff_or_soft(*clear)) for clear in DRIVES),
+]
+
+
+@pytest.mark.parametrize("plugin", MAKERS)
+def test_every_effect_is_hidden_by_the_benchmark(plugin: str) -> None:
+    hidden = {name for owner, wish in CLEAR if owner == plugin for name in wish.hidden}
+    assert hidden == set(model_of(plugin).effects)
+
+
+@pytest.mark.parametrize(("plugin", "wish"), CLEAR, ids=[f"{plugin}-{wish.title}" for plugin, wish in CLEAR])
+def test_what_is_hidden_is_hidden_and_zero_hides_nothing(plugin: str, wish: Any) -> None:
+    """The same seed is the same machine and noise: a change as large as the noise makes an error of its root of 2."""
+    ((effect, unknowns),) = wish.hidden.items()
+    shapes = SHAPES - {"exponent"} if effect == "load_exponent" else SHAPES
+    nothing = {effect: {name: value if name in shapes else 0.0 for name, value in unknowns.items()}}
+    changed, none, plain = (
+        MAKERS[plugin](replace(wish, hidden=hidden, count=20)) for hidden in (wish.hidden, nothing, {})
+    )
+    assert max(changed.left_over_noise(plain.held_true, name) for name in wish.results) > 2**0.5
+    for name in wish.results:
+        np.testing.assert_allclose(none.held_true[name], plain.held_true[name], rtol=1e-12, atol=1e-12)
+
+
+# Figures from outside
+
+
+def one_row(torque: float) -> StageRows:
+    """A row at the rated speed of the sun."""
+    given = {"time": 0.0, "load_torque": torque, "input_speed": 1665.0, "oil_temperature": 40.0, "input_angle": 0.0}
+    return StageRows(**{name: np.array([value]) for name, value in given.items()})
+
+
+def test_the_stage_is_stressed_as_the_standard_has_it() -> None:
+    """RV-110E at its rating, printed: 248.31 and 226.20 MPa at the roots, 1087.34 MPa on the flank."""
+    found = shown_by_stage(one_row(1285.75), Stage(), {})
+    for name, value in {SUN_ROOT: 248.31, PLANET_ROOT: 226.20, CONTACT: 1087.34}.items():
+        assert found[name][0] == pytest.approx(value, rel=5e-5)
+
+
+def test_a_face_carries_more_at_one_end_as_the_standard_has_it() -> None:
+    """ISO 6336-1: K_Hbeta is 1 + r up to r = 1 and 2 sqrt(r) from there."""
+    for ratio, factor in ((0.0, 1.0), (0.4, 1.4), (1.0, 2.0), (4.0, 4.0)):
+        found = spread(np.array([ratio * 2 * 60 / 14]), np.array([14.0]), np.array([60.0]))
+        assert found[0] == pytest.approx(factor, rel=3e-3)
+
+
+def test_the_reducer_wears_as_the_paper_prints() -> None:
+    """3.127 um after 6000 h and, with every factor at the middle of its zone, 0.698' new and 0.949' then."""
+    depth = wear_after(Wearing(RATED, ROUGHNESS), np.array([0.0, 5.4e6]))
+    assert depth[0] == 0
+    assert depth[1] * 1e3 == pytest.approx(3.127, rel=5e-3)
+    rows = rv_cases.measured("endurance", 2, np.random.default_rng(0))
+    ends = ReducerRows(**{**vars(rows), "working_time": np.array([0.0, 6000.0])})
+    assert shown_by_reducer(ends, {}, {})[rv_cases.BACKLASH] == pytest.approx([0.698, 0.949], abs=1.5e-3)
+
+
+def test_the_screw_has_the_root_stress_of_the_design() -> None:
+    """51.943 N at 10 kN on 4 mm of module 0.5 mm; no play on the drawing."""
+    zero = np.zeros(2)
+    rest = dict.fromkeys(("time", "screw_speed", "screw_angle", "cycles"), zero)
+    read = shown_by_screw(ScrewRows(axial_load=np.array([10.0, 20.0]), temperature=zero + 20, **rest), {}, {})
+    nominal = 51.943 / (4 * 0.5) * ROLLER_FACTOR
+    assert read[screw_cases.ROLLER] == pytest.approx([nominal, 2 * nominal], rel=1e-5)
+    assert read[screw_cases.BACKLASH] == pytest.approx([0, 0], abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("dimension", "roughness", "stiffness"),
+    [(2.3, 1e-11, 1.721e8), (2.4, 1e-11, 1.950e9), (2.4, 1e-10, 3.542e8), (2.5, 1e-9, 2.740e8)],
+)
+def test_a_pair_has_the_stiffness_of_the_closed_form(dimension: float, roughness: float, stiffness: float) -> None:
+    """At 25 N; reference: the closed form of equation 6 by hand."""
+    found, _ = table(dimension, roughness, 206e9 / (2 * 0.91)).at(np.array([25.0]))
+    assert found[0] == pytest.approx(stiffness, rel=1e-3)
+
+
+def test_the_mesh_has_the_stiffness_of_its_design() -> None:
+    """60 pairs of size 20 under 25 N m: 6.56e6 N m/rad by the closed form."""
+    assert Flanks().stiffness(np.array([25.0]))[0] == pytest.approx(6.56e6, rel=2e-3)
+
+
+def test_lines_have_the_structure_function_of_a_power_law() -> None:
+    wish = SurfaceWish(seed=0)
+    heights = lines(np.random.default_rng(1), wish, 400)
+    for step in (2, 10, 50):
+        each_line = structure(heights, step)
+        error = each_line.std(ddof=1) / len(each_line) ** 0.5
+        assert each_line.mean() == pytest.approx(true_structure(wish, np.array([0.2 * step]))[0], abs=4 * error)
