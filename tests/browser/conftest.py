@@ -140,14 +140,14 @@ def opened(browser: Browser, sheet: Path) -> Page:
 
 
 @pytest.fixture(scope="session")
-def shown(browser: Browser) -> dict[Path, Page]:
+def shown() -> dict[Path, Page]:
     """The page that is open, by its sheet."""
     return {}
 
 
 @pytest.fixture
 def page(browser: Browser, shown: dict[Path, Page], sheet: Path) -> Page:
-    """The sheet on a wide screen, one page for all tests that only look at it."""
+    """The sheet on a wide screen, one page for all tests that leave it as it is."""
     if sheet not in shown:
         for other in shown.values():
             other.context.close()
@@ -156,6 +156,22 @@ def page(browser: Browser, shown: dict[Path, Page], sheet: Path) -> Page:
     shown[sheet].set_viewport_size(SCREEN)
     shown[sheet].emulate_media(media="screen", color_scheme="light")
     return shown[sheet]
+
+
+@pytest.fixture
+def printed(page: Page, sheet: Path) -> Path:
+    """The sheet as the browser that shows it prints it, once for all tests."""
+    pdf = sheet.with_suffix(".pdf")
+    if not pdf.exists():
+        page.emulate_media(media="print")
+        page.pdf(path=pdf, format="A4", prefer_css_page_size=True)
+    return pdf
+
+
+@pytest.fixture(scope="session")
+def known() -> dict[str, str]:
+    """The letters that were looked at already, on whatever sheet, by their font."""
+    return {}
 
 
 @pytest.fixture

@@ -13,7 +13,7 @@ import pytest
 sys.path.append(str(Path(__file__).parents[1] / "unit"))
 
 from diagnosis_samples import SAMPLES, ambiguous
-from test_pdf import printed, test_pages_are_numbered_and_named, unescaped, words_of  # noqa: F401
+from test_pdf import test_pages_are_numbered_and_named, unescaped, words_of  # noqa: F401
 from test_sheet import (  # noqa: F401
     test_every_character_is_drawn,
     test_every_figure_has_a_title_for_those_who_cannot_see_it,
@@ -22,7 +22,6 @@ from test_sheet import (  # noqa: F401
     test_nothing_on_the_sheet_can_run,
     test_the_keyboard_reaches_every_table,
     test_the_page_is_no_wider_than_the_screen,
-    test_the_policy_stops_what_a_later_hand_adds,
     test_the_sheet_asks_for_nothing_and_says_nothing,
     test_what_is_wide_scrolls_in_its_own_box_on_a_phone,
 )
@@ -63,7 +62,7 @@ def sheet(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     return file
 
 
-def test_the_print_is_complete(sheet: Path, printed: Path) -> None:  # noqa: F811
+def test_the_print_is_complete(sheet: Path, printed: Path) -> None:
     """Every chapter's heading, every caption, every heading of a column and the end of the sheet are on paper."""
     text = re.sub(r"[\s-]+", "", words_of(printed))
     html = sheet.read_text(encoding="utf-8")

@@ -1,4 +1,4 @@
-"""The sheet on paper: printed by the browser as ``calc run --pdf`` does it."""
+"""The sheet on paper, and printed by the browser as ``calc run --pdf`` does it."""
 
 from __future__ import annotations
 
@@ -30,13 +30,6 @@ def sizes_of(pdf: Path) -> set[tuple[float, float]]:
     return {(round(float(width) * POINT), round(float(height) * POINT)) for width, height in boxes}
 
 
-@pytest.fixture(scope="session")
-def printed(sheet: Path, chromium: Path) -> Path:
-    pdf = sheet.with_suffix(".pdf")
-    print_pdf(sheet, pdf, chromium)
-    return pdf
-
-
 def test_the_print_is_complete(sheet: Path, printed: Path) -> None:
     """Every chapter's heading, the last row of every table and the end of the sheet are on paper."""
     text = words_of(printed)
@@ -61,22 +54,23 @@ def test_pages_are_numbered_and_named(sheet: Path, printed: Path) -> None:
 
 
 @ONE
-def test_the_paper_is_a4_unless_letter_is_asked_for(sheet: Path, printed: Path, chromium: Path, tmp_path: Path) -> None:
-    assert sizes_of(printed) == {(210, 297)}
-    print_pdf(sheet, tmp_path / "letter.pdf", chromium, paper="letter")
-    assert sizes_of(tmp_path / "letter.pdf") == {(216, 279)}
-
-
-@ONE
-def test_printing_touches_nothing_but_the_pdf(sheet: Path, chromium: Path, tmp_path: Path) -> None:
+def test_the_paper_is_a4_unless_letter_is_asked_for(sheet: Path, chromium: Path, tmp_path: Path) -> None:
+    """Nothing is touched but the PDF, which is as complete as what the browser prints that shows the sheet."""
     copy = tmp_path / "Ein Blatt & mehr" / "sheet.html"
     copy.parent.mkdir()
     shutil.copyfile(sheet, copy)
-    print_pdf(copy, copy.with_suffix(".pdf"), chromium)
+    pdf = copy.with_suffix(".pdf")
+    print_pdf(copy, pdf, chromium)
+    assert sizes_of(pdf) == {(210, 297)}
+    test_the_print_is_complete(sheet, pdf)
+    test_pages_are_numbered_and_named(sheet, pdf)
+    print_pdf(copy, pdf, chromium, paper="letter")
+    assert sizes_of(pdf) == {(216, 279)}
     assert sorted(path.name for path in copy.parent.iterdir()) == ["sheet.html", "sheet.pdf"]
     assert copy.read_bytes() == sheet.read_bytes()
 
 
+@ONE
 def test_a_browser_that_prints_nothing_is_said_in_one_sentence(sheet: Path, tmp_path: Path) -> None:
     dumb = shutil.which("true")
     if dumb is None:
@@ -86,6 +80,7 @@ def test_a_browser_that_prints_nothing_is_said_in_one_sentence(sheet: Path, tmp_
     assert list(tmp_path.iterdir()) == []
 
 
+@ONE
 def test_a_browser_that_is_not_there_is_said_in_one_sentence(
     sheet: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -1,16 +1,39 @@
-"""What tests of the command line share: refusals that leave nothing behind, and rows of results by name."""
+"""What tests of the command line share: refusals that leave nothing behind, rows of results, one diagnosis."""
 
 from __future__ import annotations
 
 import csv
 import io
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from measured import Diagnosed, calc_here, read_document
 from refusals import listing, sentences
+from shown_in_docs import EXAMPLES
 
+import truing
 from shared import Calc
+
+PRESS = EXAMPLES / "press_off_by_40_um"
+
+
+@pytest.fixture(scope="session")
+def play(tmp_path_factory: pytest.TempPathFactory) -> Diagnosed:
+    """The press with play, diagnosed from the command line as its README says."""
+    desk = tmp_path_factory.mktemp("play") / "desk"
+    shutil.copytree(PRESS, desk)
+    answer = calc_here(desk, "diagnose", "press_linkage", "--inputs", "inputs.toml", "--data", "measured.csv")
+    assert (answer.code, answer.err) == (0, "")
+    return Diagnosed(answer, read_document(desk / "runs" / "measured"), desk / "runs" / "measured")
+
+
+@pytest.fixture(scope="session")
+def diagnosis() -> truing.Diagnosis:
+    """The same, diagnosed by a call."""
+    press = truing.load("press_linkage")
+    return press.diagnose(truing.read(PRESS / "measured.csv", press), PRESS / "inputs.toml")
 
 
 @pytest.fixture

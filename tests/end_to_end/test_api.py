@@ -15,6 +15,7 @@ import pandas as pd
 import pint
 import pytest
 from matplotlib.figure import Figure
+from measured import Diagnosed
 
 import truing
 from shared import TESTS, Calc
@@ -40,11 +41,6 @@ def spring() -> truing.LoadedModel:
 @pytest.fixture(scope="module")
 def press() -> truing.LoadedModel:
     return truing.load("press_linkage")
-
-
-@pytest.fixture(scope="module")
-def diagnosis(press: truing.LoadedModel) -> truing.Diagnosis:
-    return press.diagnose(truing.read(PRESS / "measured.csv", press), PRESS / "inputs.toml")
 
 
 def measured_spring(rows: int = 60) -> pd.DataFrame:
@@ -389,15 +385,10 @@ def test_a_diagnosis_names_the_cause_with_its_size(diagnosis: truing.Diagnosis) 
         diagnosis.residuals.plot("link")
 
 
-def test_a_diagnosis_is_that_of_the_command_line(diagnosis: truing.Diagnosis, calc: Calc, tmp_path: Path) -> None:
-    there = tmp_path / "there"
-    asked = ("diagnose", "press_linkage", "-i", PRESS / "inputs.toml", "-d", PRESS / "measured.csv", "-o", there, "-q")
-    assert calc(*asked).code == 0
+def test_a_diagnosis_is_that_of_the_command_line(diagnosis: truing.Diagnosis, play: Diagnosed, tmp_path: Path) -> None:
     saved = diagnosis.save(tmp_path / "here")
-    assert json.loads((saved / "diagnosis.json").read_text("utf-8")) == json.loads(
-        (there / "diagnosis.json").read_text("utf-8")
-    )
-    assert (saved / "extended.toml").read_text("utf-8") == (there / "extended.toml").read_text("utf-8")
+    assert json.loads((saved / "diagnosis.json").read_text("utf-8")) == play.document
+    assert (saved / "extended.toml").read_text("utf-8") == (play.folder / "extended.toml").read_text("utf-8")
     assert not diagnosis.compare(diagnosis)
 
 

@@ -48,7 +48,7 @@ class Seen(HTMLParser):
         self.words.append(data)
 
 
-def shown_by(name: str) -> Iterator[Any]:
+def shown_by(name: str, diagnosis: truing.Diagnosis) -> Iterator[Any]:
     """Give the objects that show themselves, of a model with little and of one with much."""
     pin = truing.load(TESTS / "data" / "pin_wear.py")
     press = truing.load("press_linkage")
@@ -60,14 +60,12 @@ def shown_by(name: str) -> Iterator[Any]:
         yield from (pin.sweep("load", 50, 90, 3), pin.study(truing.Reliability(draws=4096)))
         yield pin.study(truing.Sensitivity())
     else:
-        record = truing.read(PRESS / "measured.csv", press)
-        found = press.diagnose(record, PRESS / "inputs.toml")
-        yield from (record, found, found.ranking)
+        yield from (truing.read(PRESS / "measured.csv", press), diagnosis, diagnosis.ranking)
 
 
 @pytest.mark.parametrize("name", ["model", "run", "study", "diagnosis"])
-def test_what_is_shown_is_small_and_asks_for_nothing(name: str) -> None:
-    for shown in shown_by(name):
+def test_what_is_shown_is_small_and_asks_for_nothing(name: str, diagnosis: truing.Diagnosis) -> None:
+    for shown in shown_by(name, diagnosis):
         html = shown._repr_html_()
         seen = Seen(html)
         assert len(html.encode()) < LARGEST
@@ -78,9 +76,8 @@ def test_what_is_shown_is_small_and_asks_for_nothing(name: str) -> None:
             assert allowed or (attribute == "src" and value.startswith("data:image/png;base64,")), attribute
 
 
-def test_a_diagnosis_shows_verdict_picture_and_the_rest_folded() -> None:
-    _, found, _ = shown_by("diagnosis")
-    html = found._repr_html_()
+def test_a_diagnosis_shows_verdict_picture_and_the_rest_folded(diagnosis: truing.Diagnosis) -> None:
+    html = diagnosis._repr_html_()
     before, _, folded = html.partition("<details>")
     assert "joint clearance, clearance" in before
     assert before.count("<img") == 1

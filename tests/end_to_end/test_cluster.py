@@ -10,6 +10,7 @@ import sys
 import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -68,9 +69,9 @@ class Cluster:
         return (self.folder / f"{self.processes.index(process)}.log").read_text(encoding="utf-8", errors="replace")
 
 
-@pytest.fixture
-def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
-    made = Cluster(tmp_path_factory.mktemp("cluster"))
+@contextmanager
+def new_cluster(folder: Path) -> Iterator[Cluster]:
+    made = Cluster(folder)
     try:
         made.start_scheduler()
         yield made
@@ -80,25 +81,35 @@ def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
             process.wait()
 
 
-@pytest.mark.parametrize("words", [("press_linkage",), (str(PIN), "--cases", "cases.csv")], ids=["press", "cases"])
-def test_a_cluster_answers_as_one_process(
-    cluster: Cluster, calc_process: Calc, tmp_path: Path, words: tuple[str, ...]
-) -> None:
-    cluster.start_workers(2)
+@pytest.fixture
+def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
+    """A cluster without workers, for a test that ends a part of it."""
+    with new_cluster(tmp_path_factory.mktemp("cluster")) as made:
+        yield made
+
+
+@pytest.fixture(scope="module")
+def pair(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
+    """A cluster of two workers, for all tests that leave it as it is."""
+    with new_cluster(tmp_path_factory.mktemp("pair")) as made:
+        made.start_workers(2)
+        yield made
+
+
+@pytest.mark.parametrize("words", [(), ("--cases", "cases.csv")], ids=["one", "cases"])
+def test_a_cluster_answers_as_one_process(pair: Cluster, calc: Calc, tmp_path: Path, words: tuple[str, ...]) -> None:
     (tmp_path / "cases.csv").write_text("load [N]\n140\n2200\n500000\n2230\n180\n")
-    there = calc_process("run", *words, "-q", "-o", "run", "--cluster", cluster.address)
+    there = calc("run", PIN, *words, "-q", "-o", "run", "--cluster", pair.address)
     (tmp_path / "run").rename(tmp_path / "there")
-    here = calc_process("run", *words, "-q", "-o", "run")
+    here = calc("run", PIN, *words, "-q", "-o", "run")
     assert (there.code, there.out, there.err) == (here.code, here.out, here.err)
     for name in ("results.json", "inputs.toml", "sheet.md"):
         assert (tmp_path / "run" / name).read_bytes() == (tmp_path / "there" / name).read_bytes()
-    assert run_of(tmp_path / "there")["workers"] == {"count": 2, "lost": 0, "where": cluster.address}
+    assert run_of(tmp_path / "there")["workers"] == {"count": 2, "lost": 0, "where": pair.address}
     assert run_of(tmp_path / "run")["workers"] == {"count": 1, "lost": 0, "where": "serial"}
 
 
-def test_a_worker_that_is_killed_changes_nothing_but_the_warning(
-    cluster: Cluster, calc_process: Calc, tmp_path: Path
-) -> None:
+def test_a_worker_that_is_killed_changes_nothing_but_the_warning(cluster: Cluster, calc: Calc, tmp_path: Path) -> None:
     workers = {worker.pid: worker for worker in cluster.start_workers(2)}
     pin = Gated.in_folder(tmp_path)
     process = pin.start("-o", "run", "--cluster", cluster.address)
@@ -114,7 +125,7 @@ def test_a_worker_that_is_killed_changes_nothing_but_the_warning(
     assert run["warnings"] == [lost]
     assert f"warning: {lost}\n" in err
     assert pin.calls > BATCHES  # what the killed one held was computed again
-    assert calc_process(*pin.words, "-q", "-o", "serial").code == 0
+    assert calc(*pin.words, "-q", "-o", "serial").code == 0
     for name in ("results.json", "inputs.toml", "sheet.md"):
         assert (tmp_path / "run" / name).read_bytes() == (tmp_path / "serial" / name).read_bytes()
 
@@ -147,32 +158,29 @@ def test_finished_batches_outlive_a_lost_scheduler(
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="a console signal there stops the test too")
-def test_an_interrupted_run_leaves_the_cluster_at_once(cluster: Cluster, tmp_path: Path) -> None:
-    cluster.start_workers(2)
+def test_an_interrupted_run_leaves_the_cluster_at_once(pair: Cluster, tmp_path: Path) -> None:
     pin = Gated.in_folder(tmp_path)
-    process = pin.start("-o", "run", "-q", "--cluster", cluster.address, launcher=hearing_interrupts)
+    process = pin.start("-o", "run", "-q", "--cluster", pair.address, launcher=hearing_interrupts)
     pin.at_the_gate(process, FREE + 1)
     process.send_signal(signal.SIGINT)
     _, err = process.communicate(timeout=PATIENCE)
     assert (process.returncode, err) == (130, "calc: interrupted; nothing was written\n")
     pin.open()
-    with distributed.Client(cluster.address, set_as_default=False) as client:
+    with distributed.Client(pair.address, set_as_default=False) as client:
         wait_until(lambda: not any(client.processing().values()), "the workers have nothing to do")
     assert pin.calls <= FREE + 2  # what the two workers held, and nothing that waited behind it
     assert not (tmp_path / "run").exists()
 
 
 def test_a_plugin_in_one_file_reaches_the_cluster_and_another_one_there_is_refused(
-    cluster: Cluster, calc_process: Calc, tmp_path: Path
+    cluster: Cluster, calc: Calc, calc_process: Calc, tmp_path: Path
 ) -> None:
     cluster.start_workers(1)
     file = tmp_path / "own_wear.py"
     file.write_text(PIN.read_text(encoding="utf-8"), encoding="utf-8")
     words = ("run", file, "-q", "--set", "studies.reliability.draws=40000")
-    here = calc_process(*words, "-o", "here")
-    there = calc_process(*words, "-o", "there", "--cluster", cluster.address)
-    assert (here.code, there.code) == (0, 0), there.err
-    assert (tmp_path / "here/results.json").read_bytes() == (tmp_path / "there/results.json").read_bytes()
+    there = calc(*words, "-o", "there", "--cluster", cluster.address)
+    assert there.code == 0, there.err
     assert run_of(tmp_path / "there")["warnings"] == []
     with file.open("a", encoding="utf-8") as more:
         more.write("\n# the worker has loaded the file without this line\n")

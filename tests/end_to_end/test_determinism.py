@@ -1,4 +1,4 @@
-"""The same inputs, seed and versions give the same bytes: again, elsewhere, with more workers."""
+"""The same inputs, seed and versions give the same bytes: again and elsewhere."""
 
 from __future__ import annotations
 
@@ -17,19 +17,10 @@ def results(folder: Path) -> bytes:
     return (folder / "results.json").read_bytes()
 
 
-def test_press_linkage_is_the_same_with_one_worker_and_with_two(calc_process: Calc, tmp_path: Path) -> None:
-    for folder, workers in (("one", "1"), ("two", "2")):
-        answer = calc_process("run", "press_linkage", "-q", "-o", folder, "--workers", workers)
-        assert answer.code == 0, answer.err
-    assert results(tmp_path / "one") == results(tmp_path / "two")
-    for name in ("sheet.md", "inputs.toml"):
-        assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
-
-
-def test_nothing_of_the_place_or_the_time_is_in_the_results(calc_process: Calc, tmp_path: Path) -> None:
+def test_nothing_of_the_place_or_the_time_is_in_the_results(calc: Calc, tmp_path: Path) -> None:
     for folder in ("here", "elsewhere far away"):
         (tmp_path / folder).mkdir()
-        answer = calc_process("run", PIN, "-q", "-o", "run", cwd=tmp_path / folder)
+        answer = calc("run", PIN, "-q", "-o", "run", cwd=tmp_path / folder)
         assert answer.code == 0, answer.err
     here = results(tmp_path / "here" / "run")
     assert here == results(tmp_path / "elsewhere far away" / "run")

@@ -27,8 +27,6 @@ from measured import (
     with_cells,
 )
 
-from shared import Calc
-
 pytestmark = pytest.mark.filterwarnings("error::RuntimeWarning")
 COMMAND = ("diagnose", "press_linkage", "--inputs", "inputs.toml")
 
@@ -260,13 +258,9 @@ def test_a_unit_that_is_probably_wrong_is_named_and_nothing_is_changed(desk: Pat
     assert measured == pytest.approx([1e3 * float(cell) for cell in press[HEIGHT]], rel=1e-12)  # as the header says
 
 
-def test_another_way_to_write_a_file_gives_the_same_bytes(calc_process: Calc, bench: Path, press: Columns) -> None:
+def test_another_way_to_write_a_file_gives_the_same_bytes(bench: Path, press: Columns, plain: Diagnosed) -> None:
     """A byte order mark, semicolons and decimal commas, spaces around them, other line ends and empty lines."""
-    plain = text_of(press)
-    german = plain.replace(",", " ; ").replace(".", ",").replace("\n", "\r\n\r\n")
-    for output, content in {"plain": plain.encode(), "german": b"\xef\xbb\xbf" + german.encode()}.items():
-        (bench / "m.csv").write_bytes(content)
-        answer = calc_process(*COMMAND, "--data", "m.csv", "-o", output, "-q")
-        assert answer.code == 0, answer.err
-    first, second = ((bench / output / "diagnosis.json").read_bytes() for output in ("plain", "german"))
+    german = text_of(press).replace(",", " ; ").replace(".", ",").replace("\n", "\r\n\r\n")
+    again = diagnose_here(bench, "plain", b"\xef\xbb\xbf" + german.encode())
+    first, second = ((found.folder / "diagnosis.json").read_bytes() for found in (plain, again))
     assert first == second

@@ -212,7 +212,9 @@ def test_a_strangers_own_effect_is_named_with_its_shape(desk: Path) -> None:
     demand_unknowns(found.document, {"extra": 9.0, "length": 1400.0})
 
 
-def test_an_installed_strangers_effect_is_named(calc_process: Calc, strangers: Path, tmp_path: Path) -> None:
+def test_an_installed_strangers_effect_is_named(
+    calc: Calc, strangers: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """VDI 2230 by hand: what is left of the preload after embedding, a working force and 12 um of later settling."""
     rng = np.random.default_rng(6)
     cycles, force = 10 ** rng.uniform(1, 6, ROWS), rng.uniform(0, 15, ROWS)
@@ -229,7 +231,8 @@ def test_an_installed_strangers_effect_is_named(calc_process: Calc, strangers: P
     }
     text = text_of(numbers({**columns, "clamp_left [kN]": left + rng.normal(0, 0.1, ROWS)}))
     (tmp_path / "joint.csv").write_text(text, encoding="utf-8")
-    answer = calc_process("diagnose", "screw_joint", "--data", "joint.csv", "--json", path=strangers)
+    monkeypatch.syspath_prepend(strangers)
+    answer = calc("diagnose", "screw_joint", "--data", "joint.csv", "--json")
     assert answer.code == 0, answer.err
     document = json.loads(answer.out)
     assert names(document) == ["settling"]
@@ -258,7 +261,9 @@ def test_what_nobody_registered_is_unknown_with_what_it_depends_on(oily: Diagnos
     assert {path.name for path in oily.folder.iterdir()} == CONTRACT | {"extended.toml", "new_effect.py"}
 
 
-def test_the_new_effect_is_installed_and_named(calc_process: Calc, oily: Diagnosed, tmp_path: Path) -> None:
+def test_the_new_effect_is_installed_and_named(
+    calc: Calc, oily: Diagnosed, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """As the file says: in a project of its own, installed as pip installs it, it is a candidate like any other."""
     project, installed = tmp_path / "project", tmp_path / "installed"
     project.mkdir()
@@ -271,18 +276,16 @@ def test_the_new_effect_is_installed_and_named(calc_process: Calc, oily: Diagnos
     data = oily.folder.parent
     for name in ("inputs.toml", "oily.csv"):
         (tmp_path / name).write_bytes((data / name).read_bytes())
-    plugins = calc_process("plugins", path=installed)
-    assert "adds 'remainder'" in plugins.out
-    answer = calc_process(
-        "diagnose", "press_linkage", "--inputs", "inputs.toml", "--data", "oily.csv", "--json", path=installed
-    )
+    monkeypatch.syspath_prepend(installed)
+    assert "adds 'remainder'" in calc("plugins").out
+    answer = calc("diagnose", "press_linkage", "--inputs", "inputs.toml", "--data", "oily.csv", "--json")
     assert answer.code == 0, answer.err
     document = json.loads(answer.out)
     assert document["remainder"] is None
     demand_unknowns(document, {"factor": 1.0})
     assert names(document) == ["remainder"]
     extended = ("--inputs", "runs/oily/extended.toml", "--rows", "oily.csv", "-o", "shown.csv")
-    assert calc_process("table", "press_linkage", *extended, path=installed).code == 0
+    assert calc("table", "press_linkage", *extended).code == 0
     shown, read = (columns_of((tmp_path / name).read_text(encoding="utf-8")) for name in ("shown.csv", "oily.csv"))
     errors = np.array(shown[HEIGHT], float) - np.array(read[HEIGHT], float)
     noise = oily.document["wrong"][POSITION]["noise_floor"]["value"] * 1e-3

@@ -146,11 +146,8 @@ def test_the_certified_line_hides_a_span_that_turns() -> None:
     assert in_order < min(others)
 
 
-@pytest.mark.parametrize("arrange", [list, shuffled])
-def test_the_span_that_turns_is_found(
-    diagnosed: Callable[..., Document], arrange: Callable[[list[str]], list[str]]
-) -> None:
-    document = diagnosed("ozone_monitor", arrange)
+def test_the_span_that_turns_is_found(diagnosed: Callable[..., Document]) -> None:
+    document = diagnosed("ozone_monitor", shuffled)
     assert document["verdict"] == "one_of"  # a declared span and the gain of any gauge are one curve
     assert all(names in explained(document) for names in SAME_SPAN)
     assert {"wrong_zero", "span_drift"} not in explained(document)
@@ -206,11 +203,8 @@ def test_the_certified_law_is_the_rule_of_degrees() -> None:
         assert plugin.insulation_ageing(sample).log_strength == pytest.approx(expected, rel=1e-9)
 
 
-@pytest.mark.parametrize("arrange", [list, shuffled])
-def test_heat_ages_the_insulation_and_less_and_less_so(
-    diagnosed: Callable[..., Document], arrange: Callable[[list[str]], list[str]]
-) -> None:
-    document = diagnosed("insulation_ageing", arrange)
+def test_heat_ages_the_insulation_and_less_and_less_so(diagnosed: Callable[..., Document]) -> None:
+    document = diagnosed("insulation_ageing", shuffled)
     assert document["verdict"] in {"named", "one_of"}
     assert all(names & {"arrhenius", "rule_of_degrees"} for names in explained(document))
     assert {"arrhenius", "fading_rate"} in explained(document)
@@ -273,11 +267,8 @@ def test_each_law_of_the_powder_is_one_that_nist_certifies(name: str) -> None:
     assert np.sum((plugin.adsorption(powder).volume - volume) ** 2) == pytest.approx(squares, rel=1e-7)
 
 
-@pytest.mark.parametrize("arrange", [list, shuffled])
-def test_places_run_out_and_how_is_left_open(
-    diagnosed: Callable[..., Document], arrange: Callable[[list[str]], list[str]]
-) -> None:
-    document = diagnosed("adsorption", arrange)
+def test_places_run_out_and_how_is_left_open(diagnosed: Callable[..., Document]) -> None:
+    document = diagnosed("adsorption", shuffled)
     assert document["verdict"] == "one_of"
     assert {"langmuir"} in explained(document)
     assert {"widely_unequal_places"} in explained(document)
@@ -300,4 +291,4 @@ def test_a_law_that_is_far_behind_is_excluded(diagnosed: Callable[..., Document]
     """Of 14 rows and as many parameters: 14 ln(0.1246 / 0.0410) is 15.6, and 6 is the limit of an alternative."""
     worst, best = MISRA["equal_places"][3], MISRA["widely_unequal_places"][3]
     assert 14 * np.log(worst / best) > 15
-    assert {"equal_places"} not in explained(diagnosed("adsorption"))
+    assert {"equal_places"} not in explained(diagnosed("adsorption", shuffled))

@@ -14,7 +14,6 @@ from example_rows import (
     as_they_stand,
     every_other,
     explanations,
-    shuffled,
     spoken_of,
     the_others,
 )
@@ -44,14 +43,14 @@ def ultrasonic() -> Any:
 
 
 def by_name(which: str) -> Callable[[Rows], Rows]:
-    return {"file": as_they_stand, "shuffled": shuffled, "sorted": sorted_by_distance}[which]
+    return {"file": as_they_stand, "sorted": sorted_by_distance}[which]
 
 
 def sorted_by_distance(rows: Rows) -> Rows:
     return sorted(rows, key=lambda row: float(row.split(",")[0]))
 
 
-ORDERS = ("file", "shuffled", "sorted")
+ORDERS = ("file", "sorted")
 
 
 @pytest.fixture(scope="module")
@@ -218,14 +217,10 @@ def test_the_scatter_depends_on_the_distance(order: str, orders: dict[str, Docum
 
 @pytest.mark.parametrize("taken", [every_other, the_others])
 def test_half_of_the_rows_leave_spreading_among_the_explanations(taken: Any, tmp_path: Path) -> None:
+    """And they are not surer than all: the law that draws the same curve is left too."""
     half = CHWIRUT.diagnosed(tmp_path, taken).document
     assert half["verdict"] in {"named", "one_of", "undecided"}  # 27 rows may say too little, never something else
     assert (frozenset({"beam_spreading"}) in explanations(half)) == (half["verdict"] != "undecided")
-
-
-@pytest.mark.parametrize("taken", [every_other, the_others])
-def test_half_of_the_rows_are_not_surer_than_all(taken: Any, tmp_path: Path) -> None:
-    half = CHWIRUT.diagnosed(tmp_path, taken).document
     both = {frozenset({"beam_spreading"}), frozenset({"pulse_hardening"})}
     assert both <= explanations(half) or half["verdict"] == "undecided"
 
@@ -245,4 +240,5 @@ def test_rows_held_out_are_predicted_as_well_as_by_the_certified_law(tmp_path: P
     more = ("--set", "studies.diagnose.hold_out=judged = judge")
     gain = CHWIRUT.diagnosed(tmp_path, as_they_stand, *more).document["gain"]["response"]["held_out"]
     assert gain["rmse_after"]["value"] == pytest.approx(by_hand, rel=0.1)
+    assert 3 <= gain["rmse_after"]["value"] < 4  # as the page says
     assert gain["rmse_before"]["value"] > 1.3 * by_hand

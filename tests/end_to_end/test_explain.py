@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from shared import Calc
@@ -102,8 +103,9 @@ def test_an_effect_is_tried_beside_the_model_without(calc: Calc) -> None:
     assert [row["name"] for row in probe["moves"]] == ["depth"]
     depth = told(calc, "depth")["value"]
     assert probe["moves"][0]["percent"] == pytest.approx(100 * 1.0 * 15 / depth, rel=1e-6)
-    running = told(calc, "running_in")
-    assert [item["name"] for item in running["inputs"]] == ["early_depth"]
+    (running,) = told(calc, "running_in", "--set", "time=200 s")["inputs"]  # 100 m; the length is 10 m to 5 km
+    assert running["name"] == "early_depth"
+    assert float(running["after"].split()[0]) == pytest.approx(25 * -np.expm1(-100 / np.sqrt(10 * 5e3)), rel=1e-6)
     lines = shown(calc, str(PIN), "warm_probe")
     assert "slope -2 .. 2 µm/K" in lines
     assert "probe_temperature reference 20 °C" in lines

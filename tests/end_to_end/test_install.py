@@ -133,10 +133,9 @@ def _lists_what_is_installed(fresh: Path, folder: Path) -> None:
 
 def _runs_the_press(fresh: Path, folder: Path) -> None:
     """One of ours, from its example, without the studies: they need nothing more."""
-    assert calc(fresh, folder, "init", "press_linkage", "-o", "press.toml").code == 0
-    done = calc(fresh, folder, "run", "press_linkage", "--inputs", "press.toml", "--set", "studies.run=[]")
+    done = calc(fresh, folder, "run", "press_linkage", "--set", "studies.run=[]")
     assert done.code == 1, done.err  # its limits on chances stay undecided
-    _is_a_run(folder / "runs" / "press", "press_linkage")
+    _is_a_run(folder / "runs" / "press_linkage", "press_linkage")
 
 
 def _is_a_run(folder: Path, plugin: str) -> None:
@@ -146,14 +145,12 @@ def _is_a_run(folder: Path, plugin: str) -> None:
 
 
 def _shares_the_work(fresh: Path, folder: Path) -> None:
-    """A stranger's calculation, once alone and once with two worker processes: byte for byte the same results."""
-    few = ("--set", "studies.reliability.draws=40000", "--output")
-    for name, workers in (("one", "1"), ("two", "2")):
-        done = calc(fresh, folder, "run", "screw_joint", "--workers", workers, *few, name)
-        assert done.code == 0, done.err
-        _is_a_run(folder / name, "screw_joint")
-    one, two = ((folder / name / "results.json").read_bytes() for name in ("one", "two"))
-    assert one == two
+    """A stranger's calculation with two worker processes, which find it too."""
+    few = ("--set", "studies.reliability.draws=40000", "--output", "two")
+    done = calc(fresh, folder, "run", "screw_joint", "--workers", "2", *few)
+    assert done.code == 0, done.err
+    _is_a_run(folder / "two", "screw_joint")
+    assert json.loads((folder / "two" / "run.json").read_text("utf-8"))["workers"]["count"] == 2
 
 
 def _writes_a_project(fresh: Path, folder: Path) -> None:

@@ -44,6 +44,7 @@ def texts(notebook: Any, form: str = "text/plain") -> list[str]:
 
 @pytest.mark.parametrize("blocked", [("polars", "pyarrow"), ("pandas", "pyarrow")], ids=["pandas", "polars"])
 def test_the_notebook_runs_in_a_fresh_kernel(tmp_path: Path, blocked: tuple[str, ...]) -> None:
+    """What the words between the cells say of its numbers is true."""
     notebook = executed(tmp_path, *blocked)
     said = "\n".join(texts(notebook))
     assert not [
@@ -59,13 +60,8 @@ def test_the_notebook_runs_in_a_fresh_kernel(tmp_path: Path, blocked: tuple[str,
     assert (
         sum("image/png" in output.get("data", {}) for cell in notebook.cells for output in cell.get("outputs", ())) == 1
     )
-
-
-def test_what_the_notebook_says_of_its_numbers_is_true(tmp_path: Path) -> None:
-    """The words between the cells name numbers; here they are asked from the calls."""
-    notebook = executed(tmp_path)
     words = "\n".join(cell.source for cell in notebook.cells if cell.cell_type == "markdown")
-    shown = "\n".join(texts(notebook, "text/html"))
+    shown = "\n".join(html)
     for number in ("609.5", "700 MPa", "13 %"):
         assert number in words
     assert "609.51 MPa" in shown

@@ -1,4 +1,4 @@
-"""The press linkage through the command line: the example, an idle effect and the printed numbers of the paper.
+"""The press linkage through the command line: the example, alone and shared out, and the paper's printed numbers.
 
 What it calculates is tested in tests/published, on the model.
 """
@@ -6,17 +6,34 @@ What it calculates is tested in tests/published, on the model.
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import pytest
+from measured import calc_here
 
 from shared import Calc
 
 
-def test_the_shipped_example_repeats_the_paper(calc_process: Calc) -> None:
-    """Text after Table 6, Table 4 and Figs. 2 and 3; three digits are printed of most."""
-    answer = calc_process("run", "press_linkage", "--json")
+@pytest.fixture(scope="module")
+def example(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The shipped example, run once in this process."""
+    folder = tmp_path_factory.mktemp("press") / "run"
+    answer = calc_here(folder.parent, "run", "press_linkage", "-q", "-o", "run")
     assert answer.code == 0, answer.err
-    found = json.loads(answer.out)
+    return folder
+
+
+def test_it_is_the_same_with_two_workers_in_another_process(calc_process: Calc, example: Path, tmp_path: Path) -> None:
+    answer = calc_process("run", "press_linkage", "-q", "-o", "two", "--workers", "2")
+    assert answer.code == 0, answer.err
+    for name in ("results.json", "sheet.md", "inputs.toml"):
+        assert (tmp_path / "two" / name).read_bytes() == (example / name).read_bytes()
+    assert json.loads((tmp_path / "two/run.json").read_text("utf-8"))["workers"]["count"] == 2
+
+
+def test_the_shipped_example_repeats_the_paper(example: Path) -> None:
+    """Text after Table 6, Table 4 and Figs. 2 and 3; three digits are printed of most."""
+    found = json.loads((example / "results.json").read_text("utf-8"))
     assert found["inputs"]["reading"]["value"] == "printed"
     ours = {name: item["value"] for name, item in found["results"].items()}
     assert ours["position_reliability"] == pytest.approx(0.5674, abs=5e-5)

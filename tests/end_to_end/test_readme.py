@@ -49,15 +49,13 @@ def test_windows_has_the_same_two() -> None:
 
 
 def test_the_first_command_runs_the_shipped_example_and_the_sheet_is_where_the_readme_says(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     calc = parts(lines_of("sh")[0])[-1]
-    inputs = ROOT / calc[-1]
     monkeypatch.chdir(tmp_path)
-    assert main([*calc[1:-1], str(inputs)]) == 0
+    assert main([*calc[1:-1], str(ROOT / calc[-1]), "--set", "studies.run=[]"]) == 1  # limits on chances stay undecided
     (place,) = re.findall(r"The sheet is then in `(.*?)`", README.read_text(encoding="utf-8"))
     assert (tmp_path / place).is_file()
-    assert f"sheet: {Path(place)}" in capsys.readouterr().out
 
 
 def test_ci_runs_the_test_command_of_the_readme() -> None:
@@ -71,6 +69,14 @@ def test_ci_runs_the_test_command_of_the_readme() -> None:
 def test_the_tour_does_what_it_shows(tmp_path: Path) -> None:
     faults = check_page(README, desk_in(tmp_path))
     assert not faults, "\n".join(faults)
+
+
+def test_the_diagnosis_is_that_of_the_tutorial() -> None:
+    (block,) = [block for block in blocks(README) if "my_press_is_off_by_40_um" in block.marked("not run")]
+    page = (ROOT / block.marked("not run").removesuffix(" runs it")).read_text(encoding="utf-8")
+    said = [line for line in block.text.splitlines()[1:] if line and "..." not in line]
+    assert len(said) > 3
+    assert [line for line in said if line not in page.splitlines()] == []
 
 
 def test_the_tour_visits_what_it_promises() -> None:

@@ -25,7 +25,7 @@ PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
 SMALL = ("run", PIN, "-q", "--set", 'studies.run=["reliability"]', "--set", "studies.reliability.draws=60000")
 
 
-def test_a_killed_run_goes_on_where_it_was(calc_process: Calc, tmp_path: Path) -> None:
+def test_a_killed_run_goes_on_where_it_was(calc: Calc, calc_process: Calc, tmp_path: Path) -> None:
     """Killed with two processes, interrupted with one, completed with one: no finished batch is computed twice."""
     pin = Gated.in_folder(tmp_path)
     process = pin.start("-o", "run", "--resume", "--workers", "2")
@@ -53,7 +53,7 @@ def test_a_killed_run_goes_on_where_it_was(calc_process: Calc, tmp_path: Path) -
     assert run_of(tmp_path / "run")["resumed"] == FREE
     assert pin.calls - before == BATCHES - FREE
     assert not (tmp_path / "run.partial").exists()
-    assert calc_process(*pin.words, "-q", "-o", "whole").code == 0
+    assert calc(*pin.words, "-q", "-o", "whole").code == 0
     assert run_of(tmp_path / "whole")["resumed"] == 0
     assert (tmp_path / "run/results.json").read_bytes() == (tmp_path / "whole/results.json").read_bytes()
 

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import json
-import sys
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from measured import calc_here
 
-from shared import Answer, process
+from shared import Answer
 
 STUDIES = (
     "validity", "modifications", "sweep", "sensitivity", "reliability", "costs", "surrogate", "new_machines",
@@ -23,9 +23,8 @@ STUDIES = (
 def example(tmp_path_factory: pytest.TempPathFactory) -> tuple[Answer, Path, dict[str, Any]]:
     """Write the example file and run it, once."""
     folder = tmp_path_factory.mktemp("reducer")
-    written = process([sys.executable, "-m", "truing", "init", "rv_wear", "-o", "reducer.toml"], folder)
-    assert written.code == 0, written.err
-    answer = process([sys.executable, "-m", "truing", "run", "rv_wear", "--inputs", "reducer.toml", "--json"], folder)
+    assert calc_here(folder, "init", "rv_wear", "-o", "reducer.toml").code == 0
+    answer = calc_here(folder, "run", "rv_wear", "--inputs", "reducer.toml", "--json")
     return answer, folder, json.loads(answer.out)
 
 

@@ -14,13 +14,10 @@ BROKEN = "plugin 'broken_guest' 0.0.7: IndexError: list index out of range"
 
 
 @pytest.fixture
-def stranger(calc_process: Calc, strangers: Path) -> Callable[..., Answer]:
+def stranger(calc: Calc, strangers: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Answer]:
     """Run ``calc`` with the strangers installed."""
-
-    def run(*arguments: str | Path) -> Answer:
-        return calc_process(*arguments, path=strangers)
-
-    return run
+    monkeypatch.syspath_prepend(strangers)
+    return calc
 
 
 def test_plugins_lists_the_stranger_and_names_the_broken_guest_once(
@@ -118,14 +115,15 @@ def test_the_effects_of_the_stranger_change_its_results(stranger: Callable[..., 
     assert worn["results"]["preload"] == base["results"]["preload"]
 
 
-def test_the_guests_effect_acts_on_our_model(stranger: Callable[..., Answer], tmp_path: Path) -> None:
-    few = ("press_linkage", "--set", "studies.run=[]")
+def test_the_guests_effect_acts_on_our_model(
+    stranger: Callable[..., Answer], tabled: Callable[..., list[dict[str, float]]], tmp_path: Path
+) -> None:
     settled = ("--set", "effects.frame_settling.lift=100 um", "--set", "hours_since_assembly=1000 h")
-    on = run_folder(stranger, tmp_path / "on", *few, *settled)
-    both = [("--set", f"ground_pivot_radius_deviation_{side}=-0.1 mm") for side in (1, 2)]
-    by_hand = run_folder(stranger, tmp_path / "by_hand", *few, *both[0], *both[1])
-    base = run_folder(stranger, tmp_path / "base", *few)
-    heights = [run["results"]["slider_position"]["value"] for run in (on, by_hand, base)]
+    on = run_folder(stranger, tmp_path / "on", "press_linkage", "--set", "studies.run=[]", *settled)
+    both = [f"ground_pivot_radius_deviation_{side}=-0.1 mm" for side in (1, 2)]
+    still = "crank_angle [deg]\n0\n"
+    (by_hand,), (base,) = tabled("press_linkage", still, *both), tabled("press_linkage", still)
+    heights = [on["results"]["slider_position"]["value"], by_hand["slider_position"], base["slider_position"]]
     assert heights[0] == pytest.approx(heights[1], rel=1e-12)
     assert abs(heights[0] - heights[2]) > 1e-5
     assert {item["plugin"] for item in on["added"]} == {"screw_joint"}

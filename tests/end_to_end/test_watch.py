@@ -110,6 +110,35 @@ def test_the_sheet_follows_inputs_and_code_and_survives_mistakes(tmp_path: Path)
         assert watch.says("calc: watched 3 runs; the sheet of .* stays")
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="a console signal there stops the test too")
+def test_a_diagnosis_follows_its_measured_rows(calc: Calc, tmp_path: Path) -> None:
+    shutil.copy(PIN, tmp_path / "pin.py")
+    saved(tmp_path / "pin.toml", '[inputs]\nload = "120 N"\n')
+    depth = 3e-8 * (120 / 28e-6) * 0.5 * 3600 / 2.1e9 * 1e6  # Archard, um per hour
+    scatter = (0.1, -0.2, 0.15, -0.05, 0.2, -0.1, 0.05, -0.15, 0.1, -0.05)
+    times = [20.0 * row for row in range(1, 11)]
+    rows = [f"{time},{depth * time + off:.3f}" for time, off in zip(times, scatter, strict=True)]
+    late = [f"{time},{depth * time + off + 900 * (time > 100):.3f}" for time, off in zip(times, scatter, strict=True)]
+    measured = tmp_path / "m.csv"
+    saved(measured, "\n".join(["time [h],depth [um]", *rows]))
+    with watching(tmp_path, "./pin.py", "--inputs", "pin.toml", "--data", "m.csv") as watch:
+        assert watch.says(r"Nothing found\. .*; sheet: runs.m.sheet\.html$")
+        saved(measured, "\n".join(["time [h],depth [um]", *late]))
+        assert watch.says(r"^\S+ \S+ s step new, .*; Cause named\. .*step")
+        saved(measured, "\n".join(["time [h],depth [N]", *late]))
+        assert watch.says(r"m\.csv:1: column 'depth \[N\]': 'N' is a force")
+        assert watch.says("not calculated; the sheet of .* stays")
+        assert watch.interrupted() == 1
+        assert watch.says("calc: watched 2 diagnoses; the sheet of .* stays")
+    for words, why in (
+        (["--data", "n.csv"], "n.csv: no such file"),
+        (["--data", "m.csv", "--workers", "2"], "for runs"),
+    ):
+        answer = calc("watch", "./pin.py", "--inputs", "pin.toml", *words, cwd=tmp_path)
+        assert answer.code == 2
+        assert why in answer.err
+
+
 GRAIN = '''"""A grain on a table: the heaviest of a file."""
 from truing import Float, Model, found, hookimpl, inputs, loaded, results
 from {package}.reading import heaviest

@@ -387,12 +387,9 @@ def test_without_studies_nothing_is_drawn_that_is_not_known() -> None:
 @pytest.mark.parametrize(
     "inputs",
     [
-        {"working_time": "0 h"},
-        {"output_torque": "1 N*m", "phases": 256},
-        {"equidistant_modification": "0 um", "shift_modification": "0 um"},
-        {"pin_count": 12, "eccentricity": "5 mm", "pin_radius": "12 mm"},
-        {"phases": 4, "load_sharing": "hertz"},
-        {"film_factor": 150.0, "output_speed": "200 r/min"},
+        {"working_time": "0 h", "phases": 4, "load_sharing": "hertz"},
+        {"output_torque": "1 N*m", "phases": 256, "equidistant_modification": "0 um", "shift_modification": "0 um"},
+        {"pin_count": 12, "eccentricity": "5 mm", "pin_radius": "12 mm", "film_factor": 150.0},
     ],
     ids=lambda inputs: next(iter(inputs)),
 )

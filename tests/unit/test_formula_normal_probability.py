@@ -1,9 +1,10 @@
 """The normal probability in formulas: values of the printed tables, printed form, dimension."""
 
 import pytest
+from formula_printed import latex, mathml
 
 from truing.errors import UnitError
-from truing.formulas import evaluate, evaluate_quantities, latex, mathml, parse
+from truing.formulas import evaluate, evaluate_quantities, parse
 from truing.units import registry
 
 TABLE = [(0.0, 0.5), (1.0, 0.8413), (1.645, 0.9500), (1.96, 0.9750), (2.576, 0.9950), (-1.0, 0.1587)]  # any handbook

@@ -146,6 +146,7 @@ def watch(
     context: typer.Context,
     plugin: Plugin,
     inputs: Annotated[Path, typer.Option("--inputs", "-i", help="The inputs file that is being edited.")],
+    data: Data = None,
     changed: Changed = None,
     cases: Cases = None,
     output: RunFolder = None,
@@ -153,7 +154,7 @@ def watch(
     workers: Annotated[int, typer.Option("--workers", min=1, help="Processes that share the work.")] = 1,
     every: Annotated[float, typer.Option("--every", min=0.02, help="Seconds without a change before it runs.")] = 0.5,
 ) -> None:
-    """Run, and run again whenever the inputs file, its data files or the plugin's code change; Ctrl-C ends it."""
+    """Run, or with --data diagnose, again whenever inputs, data files or the plugin's code change; Ctrl-C ends it."""
 
 
 @_loaded
@@ -175,9 +176,7 @@ def diagnose(
     plugin: Plugin,
     files: Annotated[list[Path] | None, typer.Argument(help="Further files of measured rows.")] = None,
     inputs: Inputs = None,
-    data: Annotated[
-        list[Path] | None, typer.Option("--data", "-d", help="A CSV file of measured rows; may be repeated.")
-    ] = None,
+    data: Data = None,
     changed: Changed = None,
     output: Annotated[
         Path | None, typer.Option("--output", "-o", help="The folder (default runs/STEM of the first data file).")
@@ -265,6 +264,9 @@ Inputs: TypeAlias = Annotated[
     Path | None, typer.Option("--inputs", "-i", help="The inputs file; without it the shipped example.")
 ]
 Cases: TypeAlias = Annotated[Path | None, typer.Option("--cases", help="A CSV file: every row is a case.")]
+Data: TypeAlias = Annotated[
+    list[Path] | None, typer.Option("--data", "-d", help="A CSV file of measured rows; may be repeated.")
+]
 RunFolder: TypeAlias = Annotated[
     Path | None, typer.Option("--output", "-o", help="The run folder (default runs/STEM).")
 ]

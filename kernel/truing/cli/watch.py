@@ -1,4 +1,4 @@
-"""calc watch: the sheet is made anew whenever the inputs, their data files or the plugin's code are saved."""
+"""calc watch: the sheet is made anew whenever the inputs, the data files or the plugin's code are saved."""
 
 from __future__ import annotations
 
@@ -10,16 +10,19 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from truing.api.model import LoadedModel
+from truing.api.model import Diagnosis, LoadedModel
+from truing.api.records import MeasuredRecord
 from truing.api.run import Run
 from truing.atomic import writings, written
 from truing.cli.console import Settings, out, say, sentence_of
 from truing.cli.load import LABEL, find_offer
+from truing.errors import UsageError
 from truing.inputs_file.files import refuse_file
 from truing.kernel import Offer
 from truing.numbers import counted
-from truing.runs.comparison import amount_of, changes, in_order
-from truing.runs.folder import demand_place
+from truing.report.diagnosis_words import verdict_word
+from truing.runs.comparison import amount_of, compared, in_order
+from truing.runs.folder import FolderKind, demand_place
 from truing.studies.checks import EXIT_CODES, SHORT
 from truing.texts import one_line
 from truing.watching import WatchedFiles, code_files, files_named_in, forget
@@ -34,6 +37,7 @@ def watch(
     *,
     plugin: str,
     inputs: Path,
+    data: list[Path] | None,
     changed: list[str] | None,
     cases: Path | None,
     output: Path | None,
@@ -41,14 +45,18 @@ def watch(
     workers: int,
     every: float,
 ) -> int:
-    """Run, and run again whenever the inputs file, its data files or the plugin's code change; Ctrl-C ends it."""
+    """Run, or with --data diagnose, again whenever inputs, data files or the plugin's code change; Ctrl-C ends it."""
     sys.dont_write_bytecode = True  # two savings within one second would otherwise be one to Python
     offer = find_offer(plugin, settings)
-    _demand_file(inputs)
-    folder = output or Path("runs") / inputs.stem
-    demand_place(folder)
-    how = {"cases": cases, "workers": workers, "excel": excel, "progress": not settings.quiet}
-    watcher = _Watcher(plugin, inputs, tuple(changed or ()), folder, how, settings)
+    measured = tuple(data or ())
+    if measured and (cases or excel or workers > 1):
+        raise UsageError("--cases, --excel and --workers are for runs; a diagnosis (--data) has none of them")
+    for file in (inputs, *measured):
+        _demand_file(file)
+    folder = output or Path("runs") / (measured or (inputs,))[0].stem
+    how = {} if measured else {"cases": cases, "workers": workers, "excel": excel}
+    watcher = _Watcher(plugin, inputs, measured, tuple(changed or ()), folder, how, settings)
+    demand_place(folder, watcher.kind)
     watched = WatchedFiles(every)
     settings.say(f"watching {inputs} and the code of {offer.name}; Ctrl-C ends it")
     try:
@@ -59,9 +67,10 @@ def watch(
             offer = watcher.loaded_anew(offer, watched.changed())
     except KeyboardInterrupt as end:
         if watcher.calculating:
-            end.args = (f"calc: interrupted in the middle of a run; {watcher.what_stays()}",)
+            end.args = (f"calc: interrupted in the middle of a {watcher.kind}; {watcher.what_stays()}",)
             raise
-        settings.say(f"calc: watched {counted(watcher.runs, 'run')}; {watcher.what_stays()}")
+        many = counted(watcher.runs, *(("diagnosis", "diagnoses") if measured else ("run",)))
+        settings.say(f"calc: watched {many}; {watcher.what_stays()}")
         return watcher.exit_code
 
 
@@ -76,6 +85,7 @@ class _Watcher:
 
     plugin: str
     inputs: Path
+    measured: tuple[Path, ...]
     overrides: tuple[str, ...]
     folder: Path
     how: Mapping[str, Any]
@@ -91,12 +101,17 @@ class _Watcher:
     exit_code: int = 1
     before: int = 0
 
+    @property
+    def kind(self) -> FolderKind:
+        """What is made again and again."""
+        return "diagnosis" if self.measured else "run"
+
     def files(self, offer: Offer) -> list[Path]:
         """Return everything whose change asks for another run."""
         if self.looks:  # once as loaded, once after a run, which may import more
             self.looks -= 1
             self.code |= code_files(offer)
-        given = [self.inputs, *([self.how["cases"]] if self.how["cases"] else [])]
+        given = [self.inputs, *self.measured, *filter(None, [self.how.get("cases")])]
         return [*given, *files_named_in(self.inputs, offer), *sorted(self.code)]
 
     def loaded_anew(self, offer: Offer, files: Sequence[Path]) -> Offer:
@@ -120,8 +135,7 @@ class _Watcher:
             return
         started, self.before, self.calculating = time.monotonic(), writings(), True
         try:
-            model = LoadedModel(offer, self.overrides, label=LABEL)
-            done = model.run(self.inputs, output=self.folder, **self.how)
+            done = self._made(LoadedModel(offer, self.overrides, label=LABEL))
         except Exception as error:
             self.calculating = False
             self._complain(error)
@@ -129,23 +143,35 @@ class _Watcher:
         self.calculating = False
         self._report(done, time.monotonic() - started)
 
-    def _report(self, done: Run, seconds: float) -> None:
+    def _made(self, model: LoadedModel) -> Run | Diagnosis:
+        """Run or diagnose, and write the folder."""
+        how = {"output": self.folder, "progress": not self.settings.quiet, **self.how}
+        if self.measured:
+            return model.diagnose(MeasuredRecord(self.measured), self.inputs, **how)
+        return model.run(self.inputs, **how)
+
+    def _report(self, done: Run | Diagnosis, seconds: float) -> None:
         self._warn(done)
         self.runs += 1
-        what = _words(self.last, done.document, self.folder)
+        state = _state(done.document) if isinstance(done, Run) else _verdict(done)
+        sheet = f"{state}; sheet: {self.folder / 'sheet.html'}"
+        what = sheet if self.last is None else f"{_changes(self.last, done.document)}; {state}"
         self.last, self.made_at = done.document, time.strftime("%H:%M:%S")
-        self.exit_code = EXIT_CODES[done.verdict]
+        self.exit_code = EXIT_CODES[done.verdict] if isinstance(done, Run) else 0
         if not out(one_line(f"{self.made_at} {seconds:.1f} s {what}")):
             raise KeyboardInterrupt
 
-    def _warn(self, done: Run) -> None:
-        """Say the warnings that the last run did not have, and the cases that failed."""
-        cases = done.cases.cases if done.cases is not None else ()
-        failed = [str(case.fault) for case in cases if case.reason is not None]
-        for text in (*(f"warning: {one_line(warning)}" for warning in done.warnings), *failed):
+    def _warn(self, done: Run | Diagnosis) -> None:
+        """Say the warnings that the last one did not have, and the cases that failed."""
+        said = [f"warning: {one_line(warning)}" for warning in done.warnings]
+        if isinstance(done, Diagnosis):
+            said += [f"note: {one_line(note)}" for note in done.notes]
+        elif done.cases is not None:
+            said += [str(case.fault) for case in done.cases.cases if case.reason is not None]
+        for text in said:
             if text not in self.warned:
                 self.settings.say(text)
-        self.warned = {*(f"warning: {one_line(warning)}" for warning in done.warnings), *failed}
+        self.warned = set(said)
 
     def _complain(self, error: Exception) -> None:
         self.exit_code = 1
@@ -161,23 +187,25 @@ class _Watcher:
         return f"the sheet of {self.made_at} stays" if self.made_at else "there is no sheet yet"
 
 
-def _words(before: Mapping[str, Any] | None, after: Mapping[str, Any], folder: Path) -> str:
-    """Say in one line what a run changed and which checks fail."""
-    checks = [*after["checks"], *(check for case in after.get("cases", []) for check in case["checks"])]
+def _state(document: Mapping[str, Any]) -> str:
+    """Say which checks of a run fail."""
+    checks = [*document["checks"], *(check for case in document.get("cases", []) for check in case["checks"])]
     of = {state: list(dict.fromkeys(check["name"] for check in checks if check["state"] == state)) for state in SHORT}
     said = [f"{SHORT[state]}: {', '.join(of[state])}" for state in ("fails", "undecided", "proposed") if of[state]]
-    state = "; ".join(said) or ("all checks pass" if checks else "no checks")
-    if before is None:
-        return f"{state}; sheet: {folder / 'sheet.html'}"
-    return f"{_changes(before, after)}; {state}"
+    return "; ".join(said) or ("all checks pass" if checks else "no checks")
+
+
+def _verdict(done: Diagnosis) -> str:
+    """Say what a diagnosis found."""
+    return f"{verdict_word(done.result)}. {done.sentences[0]}".rstrip(".")
 
 
 def _changes(before: Mapping[str, Any], after: Mapping[str, Any]) -> str:
-    """Say which checks flipped and which results moved most."""
-    found = in_order(changes(before, after))
-    flips = [f"{change.name} {amount_of(change).partition(',')[0]}" for change in found if change.flipped]
-    moved = [change for change in found if change.kind == "results"]
+    """Say which checks flipped and which results moved most, or what a diagnosis names anew."""
+    differing = in_order(compared(before, after))
+    flips = [f"{change.name} {amount_of(change).partition(',')[0]}" for change in differing if change.flipped]
+    moved = [change for change in differing if change.kind in {"results", "causes"}]
     moved.sort(key=lambda change: -abs(change.relative or 0.0))
     said = [f"{change.name} {amount_of(change)}".strip() for change in moved[:MOST]]
     more = [f"and {len(moved) - MOST} more"] if len(moved) > MOST else []
-    return ", ".join([*flips, *said, *more]) or ("results as before" if found else "nothing changed")
+    return ", ".join([*flips, *said, *more]) or ("results as before" if differing else "nothing changed")
