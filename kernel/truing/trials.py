@@ -45,8 +45,8 @@ def read_trials(
 
 
 def _changed(machine: Setup, rows: RowsFile, trial: Trial) -> tuple[Setup, RowsFile]:
-    """Return machine and rows of a trial: one value for all rows is the machine's, others are columns."""
-    columns = {name: value for name, value in trial.items() if np.ndim(value) > 0}
+    """Return machine and rows of a trial: one value for all rows is the machine's, others are columns of its own."""
+    columns = {name: np.array(value) for name, value in trial.items() if np.ndim(value) > 0}
     series = {name: columns.pop(name, values) for name, values in rows.series.items()}
     values = {name: value for name, value in trial.items() if np.ndim(value) == 0}
     moved = machine.changed(values) if values else machine

@@ -42,6 +42,21 @@ def test_each_trial_is_the_machine_with_that_input(tmp_path: Path) -> None:
         np.testing.assert_allclose(answer["depth"], alone.results["depth"], rtol=1e-12)
 
 
+@pytest.mark.parametrize("count", [1, 2])
+def test_a_model_may_change_its_columns_in_place(tmp_path: Path, count: int) -> None:
+    """A trial of one value for all rows may hold it once, as numpy repeats it: the model has a column of its own."""
+
+    def colder(given_: Wall) -> Course:
+        given_.flux[...] -= 1.0
+        return wall(given_)
+
+    setup, rows = rows_for(replace(WALL, function=colder), tmp_path / "rows.csv", "flux [W/m^2]\n10\n20\n30\n")
+    value = np.broadcast_to(11.0, (3,))
+    for answer in read_trials(setup, rows, [{"flux": value}] * count, ["inside"]):
+        np.testing.assert_allclose(answer["inside"] - 293.15, [1, 1, 1])
+    assert value[0] == 11.0
+
+
 def test_trials_are_one_call_and_not_too_many_rows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     counted, calls = counting()
     setup, rows = rows_for(replace(WALL, function=counted), tmp_path / "rows.csv", "flux [W/m^2]\n10\n20\n30\n")
