@@ -66,13 +66,13 @@ MOST = 6
 LONGEST_CHAIN = 24
 PLACES = {"inputs": "on the inputs", "results": "on the results", "reading": "on the reading"}
 Told = dict[str, Any]
-Parts: TypeAlias = Iterator[str | Chapter]
+ToldParts: TypeAlias = Iterator[str | Chapter]
 """Paragraphs, and chapters with a title."""
 
 
 def lines_of(document: Told, width: int) -> Iterator[str]:
     """Say everything that was told of one name."""
-    kinds: dict[str, Callable[[Told], Parts]] = {
+    kinds: dict[str, Callable[[Told], ToldParts]] = {
         "result": _result, "input": _input, "effect": _effect, "tolerance": _tolerance, "condition": _condition,
         "study": _study,
     }  # fmt: skip
@@ -88,7 +88,7 @@ def lines_of(document: Told, width: int) -> Iterator[str]:
         yield from wrapped(part, width) if isinstance(part, str) else chapter_lines(part, width)
 
 
-def _result(told: Told) -> Parts:
+def _result(told: Told) -> ToldParts:
     if told["study"]:
         run = "" if told["text"] != "–" else "; this inputs file does not ask for it"
         yield f"Given by the study {told['study']}{run}"
@@ -126,7 +126,7 @@ def one_line_held(text: str) -> str:
     return "".join(c if c.isprintable() or c == HOLD else " " for c in text)
 
 
-def _chain(told: Told) -> Parts:
+def _chain(told: Told) -> ToldParts:
     """Say what the result is made from, down to the inputs, as far down as there is room."""
     chain = told["chain"]
     if not chain:
@@ -146,7 +146,7 @@ def _chain(told: Told) -> Parts:
     yield Chapter("Made from", (_table(rows, note=note),))
 
 
-def _scatter(told: Told) -> Parts:
+def _scatter(told: Told) -> ToldParts:
     scatter = told["scatter"]
     if scatter is not None:
         rows = [(item["name"], _percent(item["share"]), _tolerance_words(item)) for item in scatter["shares"]]
@@ -159,7 +159,7 @@ def _tolerance_words(item: Told) -> str:
     return item["spread"] if names in {"", item["name"]} else f"{item['spread']}, tolerance {names}"
 
 
-def _slopes(told: Told) -> Parts:
+def _slopes(told: Told) -> ToldParts:
     remarks = tuple(map(Paragraph, told["remarks"]))
     if told["slopes"]:
         rows = [(item["name"], _plus(item["change"]), _per_cent(item["percent"])) for item in told["slopes"]]
@@ -169,7 +169,7 @@ def _slopes(told: Told) -> Parts:
         yield from told["remarks"]
 
 
-def _limits(sentences: Sequence[str]) -> Parts:
+def _limits(sentences: Sequence[str]) -> ToldParts:
     if sentences:
         yield Chapter("Limits that rest on it", (Items("limits", tuple(sentences)),))
 
@@ -185,7 +185,7 @@ def _limit_words(limit: Told) -> str:
     return f"{limit['says']}: {value} {verdict}, margin {format_number(check['margin'], 3)}"
 
 
-def _published(told: Told) -> Parts:
+def _published(told: Told) -> ToldParts:
     if told["published"]:
         title = "What the source prints, and ours"
         yield Chapter(title, (Items("published", tuple(map(_published_words, told["published"]))),))
@@ -200,7 +200,7 @@ def _published_words(item: Told) -> str:
     return f"{format_number(item['paper'], 6)}{unit}, {ours}: {item['verdict']} ({where}{settings})"
 
 
-def _effects(title: str, effects: Sequence[Told]) -> Parts:
+def _effects(title: str, effects: Sequence[Told]) -> ToldParts:
     if effects:
         rows = [
             (item["name"], PLACES[item["acts_on"]] + (", is on" if item["on"] else ""), item["looks_like"])
@@ -209,14 +209,14 @@ def _effects(title: str, effects: Sequence[Told]) -> Parts:
         yield Chapter(title, (_table(rows),))
 
 
-def _followed(told: Told) -> Parts:
+def _followed(told: Told) -> ToldParts:
     direct, further = told["followed_by"], told["then"]
     if direct:
         more = [Paragraph(f"and through these: {', '.join(further)}")] if further else []
         yield Chapter("Results that follow from it", (Paragraph(", ".join(direct)), *more))
 
 
-def _input(told: Told) -> Parts:
+def _input(told: Told) -> ToldParts:
     stated = "stated by the inputs file" if told["stated"] else "the default"
     allowed = " | ".join(told["choices"]) or told["bounds"]
     yield f"{stated}; {allowed}" if allowed else stated
@@ -238,7 +238,7 @@ def _spread_words(item: Told) -> str:
     return f"scatters by the tolerance {item['name']}: {item['spread']}{sd}{why}"
 
 
-def _moves(told: Told) -> Parts:
+def _moves(told: Told) -> ToldParts:
     """Say which results an input or a tolerance moves: the largest share of their scatter first, then the steepest."""
     rows = told["moves"]
     if rows is None:
@@ -256,7 +256,7 @@ def _moves(told: Told) -> Parts:
     yield Chapter(f"Results it moves{by}", (_table(cells, (1, 2, 3) if slopes else (1,), 2 * MOST),))
 
 
-def _tolerance(told: Told) -> Parts:
+def _tolerance(told: Told) -> ToldParts:
     yield _spread_words(told).removeprefix("scatters by the tolerance ")
     yield from _said("Source", told["source"])
     for price in told["price"]:
@@ -266,7 +266,7 @@ def _tolerance(told: Told) -> Parts:
     yield from _moves(told)
 
 
-def _effect(told: Told) -> Parts:
+def _effect(told: Told) -> ToldParts:
     state = "is on" if told["on"] else "is off"
     yield f"acts {PLACES[told['acts_on']]}; {state}; looks like: {told['looks_like'] or '–'}"
     yield from _said("Why", told["why"])
@@ -290,7 +290,7 @@ def _effect(told: Told) -> Parts:
     yield from _tried(told)
 
 
-def _tried(told: Told) -> Parts:
+def _tried(told: Told) -> ToldParts:
     """Say what changed when the effect was tried."""
     if not told["tried_at"]:
         return
@@ -303,14 +303,14 @@ def _tried(told: Told) -> Parts:
         yield Chapter("through these inputs", (_table(pairs, most=2 * MOST),))
 
 
-def _condition(told: Told) -> Parts:
+def _condition(told: Told) -> ToldParts:
     yield f"reference {told['reference']}: there its effects vanish"
     yield from _said("Range", told["range"])
     yield from _said("Made", told["derived"])
     yield from _effects("Effects that need it", told["effects"])
 
 
-def _study(told: Told) -> Parts:
+def _study(told: Told) -> ToldParts:
     yield "asked for by this inputs file" if told["asked"] else "not asked for by this inputs file"
     if told["gives"]:
         yield Chapter("Results it gives", (Paragraph(", ".join(told["gives"])),))

@@ -11,7 +11,7 @@ from pydantic import ValidationError
 from truing.errors import InputError
 from truing.inputs_file import assemble
 from truing.inputs_file.assemble import names_stated, part_faults
-from truing.inputs_file.document import UNREADABLE, Document, apply_overrides, read_document
+from truing.inputs_file.document import UNREADABLE, InputsDocument, apply_overrides, read_document
 from truing.inputs_file.file_model import file_model
 from truing.inputs_file.files import read_text
 from truing.inputs_file.sentences import each, faults_of, in_order
@@ -47,7 +47,7 @@ def setup_from_text(
 
 def setup_from_settings(offer: Offer, settings: Mapping[str, str]) -> Setup:
     """Return the defaults with these settings, named as with ``--set``. Raises InputError with every fault."""
-    document = Document("settings")
+    document = InputsDocument("settings")
     apply_overrides(document, offer.model, [f"{name}={value}" for name, value in settings.items()], "settings")
     return _setup(document, offer, Path())
 
@@ -59,7 +59,7 @@ def json_schema(offer: Offer) -> dict[str, Any]:
     return {**head, **{key: value for key, value in schema.items() if key != "title"}}
 
 
-def _setup(document: Document, offer: Offer, folder: Path) -> Setup:
+def _setup(document: InputsDocument, offer: Offer, folder: Path) -> Setup:
     reading = InputsRead(folder)
     faults, more = document.faults, 0
     unreadable = _prune(document.data, ())

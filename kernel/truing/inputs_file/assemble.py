@@ -14,7 +14,7 @@ from truing.declare.specs import Given
 from truing.declare.spreads import ByChoice, Drawn, Off, Spread, Target
 from truing.errors import Fault, TruingError
 from truing.inputs_file.checks import renamed
-from truing.inputs_file.document import Document
+from truing.inputs_file.document import InputsDocument
 from truing.inputs_file.study_options import diagnose_options
 from truing.inputs_file.values import InputsRead, StatedValues, plain
 from truing.kernel import Offer
@@ -49,7 +49,7 @@ def take_old_names(offer: Offer, reading: InputsRead) -> Iterator[tuple[tuple[st
         reading.values["warnings", old] = f"'{old}' is now called '{new}'; the old name goes with {until}"
 
 
-def unexplained(model: Model[Any, Any], document: Document) -> Iterator[tuple[tuple[str, ...], str]]:
+def unexplained(model: Model[Any, Any], document: InputsDocument) -> Iterator[tuple[tuple[str, ...], str]]:
     """Say which inputs are stated without the one that tells what they mean."""
     section = document.data.get("inputs")
     stated = section if isinstance(section, dict) else {}
@@ -66,7 +66,7 @@ def _next_major(plugin: str, version: str) -> str:
     return f"{plugin} {int(major) + 1}.0" if major.isdigit() else f"the next major release of {plugin}"
 
 
-def spread_faults(model: Model[Any, Any], document: Document, values: StatedValues) -> Iterator[Fault]:
+def spread_faults(model: Model[Any, Any], document: InputsDocument, values: StatedValues) -> Iterator[Fault]:
     """Resolve every tolerance against the nominals, so that a wrong unit or grade is known by its line."""
     nominals = nominals_of(model, values)
     for tolerance in model.tolerances.values():
@@ -142,7 +142,7 @@ def _with_options(study: Study, options: Mapping[str, Any]) -> tuple[Study, dict
     return (study if wrong else changed), wrong
 
 
-def make_setup(offer: Offer, reading: InputsRead, studies: tuple[Study, ...], document: Document) -> Setup:
+def make_setup(offer: Offer, reading: InputsRead, studies: tuple[Study, ...], document: InputsDocument) -> Setup:
     """Put the checked values together."""
     model, values = offer.model, reading.values
     fields: Mapping[str, InputField] = model.input_fields
@@ -190,7 +190,7 @@ def _conditions_in_force(
     return {**zeros, **stated}
 
 
-def places_of(model: Model[Any, Any], document: Document) -> dict[str, tuple[str, int | None]]:
+def places_of(model: Model[Any, Any], document: InputsDocument) -> dict[str, tuple[str, int | None]]:
     """Return where each input, condition, effect and option of a diagnosis is stated; "" is the section of inputs."""
     old = renamed(model)
     found = {"": document.places.get(("inputs",)) or document.places.get((), (document.file, None))}

@@ -39,7 +39,7 @@ _PLACE = re.compile(r" \(at (?:line \d+, column \d+|end of document)\)$")
 
 
 @dataclass
-class Document:
+class InputsDocument:
     """What a text says: nested data, the file and line of every name, and what was wrong with its spelling.
 
     ``overrides`` are the places that are no lines of the file, in the order given.
@@ -71,9 +71,9 @@ class Statement:
     text: str
 
 
-def read_document(text: str, file: str) -> Document:
+def read_document(text: str, file: str) -> InputsDocument:
     """Read a TOML text; what cannot be read stands in ``faults`` and the rest in ``data``."""
-    document = Document(file, places={(): (file, 1)})
+    document = InputsDocument(file, places={(): (file, 1)})
     text = text.replace("\r\n", "\n")
     long_key = _long_key(text)
     if long_key is not None:
@@ -172,7 +172,7 @@ def _parts(key: str) -> KeyPath:
     return tuple(path)
 
 
-def _note_places(document: Document, found: list[Statement]) -> None:
+def _note_places(document: InputsDocument, found: list[Statement]) -> None:
     section: KeyPath = ()
     for statement in found:
         header = _HEADER.fullmatch(statement.text)
@@ -186,7 +186,7 @@ def _note_places(document: Document, found: list[Statement]) -> None:
         _note(document, path, statement.line)
 
 
-def _note(document: Document, path: KeyPath, line: int) -> None:
+def _note(document: InputsDocument, path: KeyPath, line: int) -> None:
     for length in range(1, len(path) + 1):
         document.places.setdefault(path[:length], (document.file, line))
 
@@ -194,7 +194,7 @@ def _note(document: Document, path: KeyPath, line: int) -> None:
 class _Repair:
     """Reads a broken text statement by statement, naming every broken one and keeping what was meant."""
 
-    def __init__(self, document: Document) -> None:
+    def __init__(self, document: InputsDocument) -> None:
         self.document = document
         self.section: KeyPath | None = ()
         self.headings: dict[KeyPath, int] = {}
@@ -349,7 +349,7 @@ SECTIONS = {
 """The sections of an inputs file, and what each holds."""
 
 
-def apply_overrides(document: Document, model: Model[Any, Any], overrides: Sequence[str], label: str) -> None:
+def apply_overrides(document: InputsDocument, model: Model[Any, Any], overrides: Sequence[str], label: str) -> None:
     """Write every "name=value" into the document; faults of these are named ``LABEL name=value``."""
     for text in overrides:
         name, equals, value = text.partition("=")
@@ -400,7 +400,7 @@ def _value(path: tuple[str, ...], text: str, model: Model[Any, Any]) -> Any:
         return text
 
 
-def _open_table(document: Document, name: str, place: str) -> None:
+def _open_table(document: InputsDocument, name: str, place: str) -> None:
     """Let options stand beside the data file of an input, also where the file is all that was written."""
     inputs = document.data.get("inputs")
     if isinstance(inputs, dict) and isinstance(inputs.get(name), str):
@@ -408,7 +408,7 @@ def _open_table(document: Document, name: str, place: str) -> None:
     document.places["inputs", name] = (place, None)
 
 
-def _put(document: Document, path: tuple[str, ...], value: Any, place: str) -> None:
+def _put(document: InputsDocument, path: tuple[str, ...], value: Any, place: str) -> None:
     inner: Any = document.data
     for length, name in enumerate(path[:-1], start=1):
         inner = inner.setdefault(name, {})

@@ -11,7 +11,7 @@ from typing import Any
 from truing.declare.model import Model
 from truing.declare.near_miss import near_miss
 from truing.errors import Fault, InfeasibleError, InputError
-from truing.inputs_file.document import SECTIONS, Document
+from truing.inputs_file.document import SECTIONS, InputsDocument
 from truing.inputs_file.file_model import HEAD
 from truing.setup import Setup
 from truing.units.grammar import shown
@@ -21,7 +21,7 @@ _MOST_NEAR_MISSES = 50
 
 
 def faults_of(
-    error: Any, document: Document, model: Model[Any, Any], unreadable: Collection[tuple[str, ...]]
+    error: Any, document: InputsDocument, model: Model[Any, Any], unreadable: Collection[tuple[str, ...]]
 ) -> tuple[list[Fault], int]:
     """Turn a pydantic ValidationError into faults with places; what was named as unreadable is not missing too.
 
@@ -36,7 +36,7 @@ def faults_of(
     return faults, len(found) - len(faults)
 
 
-def _order(document: Document, place: tuple[str, int | None]) -> tuple[int, int]:
+def _order(document: InputsDocument, place: tuple[str, int | None]) -> tuple[int, int]:
     """Return the order of places: lines of the file, then overrides as given."""
     file, line = place
     return (
@@ -48,7 +48,7 @@ def _order(document: Document, place: tuple[str, int | None]) -> tuple[int, int]
 class _Words:
     """Says one fault; near misses are looked for only for the first fifty unknown names."""
 
-    def __init__(self, document: Document, model: Model[Any, Any]) -> None:
+    def __init__(self, document: InputsDocument, model: Model[Any, Any]) -> None:
         self.document = document
         self.model = model
         self.near_misses = 0
@@ -159,14 +159,14 @@ class _Words:
         )
 
 
-def in_order(faults: Sequence[Fault], document: Document, more: int = 0) -> list[Fault]:
+def in_order(faults: Sequence[Fault], document: InputsDocument, more: int = 0) -> list[Fault]:
     """Sort faults by line, those of overrides behind them as given; beyond 200 they are counted, with ``more``."""
     unique = list(dict.fromkeys(sorted(faults, key=lambda fault: _order(document, (fault.file, fault.line)))))
     more += max(len(unique) - MOST_FAULTS, 0)
     return [*unique[:MOST_FAULTS], *([Fault(f"and {more} faults more", document.file)] if more else [])]
 
 
-def each(faults: Sequence[tuple[tuple[str, ...], str]], document: Document) -> Iterator[Fault]:
+def each(faults: Sequence[tuple[tuple[str, ...], str]], document: InputsDocument) -> Iterator[Fault]:
     """Give faults that are known by the path of their name."""
     for path, sentence in faults:
         yield document.fault(path, sentence)

@@ -25,7 +25,7 @@ from truing.report.document import (
     Paragraph,
     ResultEntry,
     Strong,
-    Symbol,
+    SymbolText,
     TableView,
     Text,
     Value,
@@ -156,7 +156,7 @@ def _entry(writing: Writing, name: str, *, with_formula: bool) -> ResultEntry:
     absent = writing.calculation.absent.get(name, "")
     is_scalar = _is_scalar(answers[name])
     equation = equation_of(writing.setup, answers, item) if with_formula and not (absent and is_scalar) else None
-    symbol = (Symbol(item.symbol), " ") if item.symbol else ()
+    symbol = (SymbolText(item.symbol), " ") if item.symbol else ()
     value: Text = ""
     if absent:
         value = (*symbol, *(("has ",) if symbol else ()), Strong("no value"), ": ", Aside(absent))

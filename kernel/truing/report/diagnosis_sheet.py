@@ -131,7 +131,7 @@ MOST_SEEN, MOST_MOVED, FEW_OUTLIERS = 8, 4, 5
 """So many effects, inputs and outliers a terminal names at most."""
 WEAK = 10.0
 """A rival that loses less fit than this is not worth a line of its own."""
-Parts: TypeAlias = Iterator[BlockView | str]
+ChapterParts: TypeAlias = Iterator[BlockView | str]
 """What a chapter says: blocks for the sheet, and the lines that a terminal and a notebook print instead."""
 HEADS = ("Cause", "Unknown", "Value", "95 % interval", "Unit")
 
@@ -146,7 +146,7 @@ def diagnosis_chapters(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[C
     yield _chapter("data", "Data", _data(diagnosis))
 
 
-def _chapter(ident: str, title: str, parts: Parts) -> Chapter:
+def _chapter(ident: str, title: str, parts: ChapterParts) -> Chapter:
     said = list(parts)
     lines = tuple(part for part in said if isinstance(part, str))
     return Chapter(title, tuple(part for part in said if not isinstance(part, str)), ident, lines=lines)
@@ -155,7 +155,7 @@ def _chapter(ident: str, title: str, parts: Parts) -> Chapter:
 # What is wrong
 
 
-def _wrong(diagnosis: DiagnosisResult, drawn: Figures) -> Parts:
+def _wrong(diagnosis: DiagnosisResult, drawn: Figures) -> ChapterParts:
     errors, found, noises = [], [], []
     for wrong in diagnosis.wrong:
         name, noise = spoken(wrong.result), wrong.noise
@@ -210,7 +210,7 @@ def _measured(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[BlockView]
 # Cause
 
 
-def _cause(diagnosis: DiagnosisResult, drawn: Figures) -> Parts:
+def _cause(diagnosis: DiagnosisResult, drawn: Figures) -> ChapterParts:
     yield _verdict_line(diagnosis)
     yield Paragraph(" ".join(_significance(diagnosis)))
     if diagnosis.causes:
@@ -243,7 +243,7 @@ def _verdict_line(diagnosis: DiagnosisResult) -> str:
     return f"{' + '.join(parts)} ({p_text(diagnosis.p_any)}{second}{open_ones.get(diagnosis.verdict, '')})"
 
 
-def _named(diagnosis: DiagnosisResult) -> Parts:
+def _named(diagnosis: DiagnosisResult) -> ChapterParts:
     """Say what the named causes are, what draws the same curve, and of several the shares."""
     rows = []
     for cause in diagnosis.causes:
@@ -352,7 +352,7 @@ def _residuals(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[BlockView
             yield drawn.view(title, partial(figures.over_covariate, diagnosis, curves, covariate), caption)
 
 
-def _sight(diagnosis: DiagnosisResult) -> Parts:
+def _sight(diagnosis: DiagnosisResult) -> ChapterParts:
     """Say what this data could show: how small each effect may be, what is hidden, what was not excited or measured."""
     lacking = [(spoken(effect), listed(list(needs))) for effect, needs in diagnosis.not_measured.items()]
     yield from _seen(diagnosis)
@@ -406,7 +406,7 @@ def _blind(item: VisibleSize) -> str:
 # Extended model
 
 
-def _model(diagnosis: DiagnosisResult) -> Parts:
+def _model(diagnosis: DiagnosisResult) -> ChapterParts:
     yield from _sizes(diagnosis)
     fitted = fitted_table(diagnosis)
     if fitted.rows:
@@ -496,7 +496,7 @@ def _remainder(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
 # Gain
 
 
-def _gain(diagnosis: DiagnosisResult, drawn: Figures) -> Parts:
+def _gain(diagnosis: DiagnosisResult, drawn: Figures) -> ChapterParts:
     if not diagnosis.gain:
         yield Paragraph("No gain was estimated.")
         return
@@ -535,7 +535,7 @@ def _gain(diagnosis: DiagnosisResult, drawn: Figures) -> Parts:
 # Next measurement
 
 
-def _next(diagnosis: DiagnosisResult) -> Parts:
+def _next(diagnosis: DiagnosisResult) -> ChapterParts:
     """Write the chapter on the next measurement."""
     if not diagnosis.next and diagnosis.verdict == "one_of":
         yield Paragraph("No setting can be proposed that tells the explanations apart.")
@@ -553,7 +553,7 @@ def _next(diagnosis: DiagnosisResult) -> Parts:
     yield from _ties(diagnosis)
 
 
-def _points(diagnosis: DiagnosisResult) -> Parts:
+def _points(diagnosis: DiagnosisResult) -> ChapterParts:
     reasons = list(dict.fromkeys(point.why for point in diagnosis.next if point.why))
     for index, point in enumerate(diagnosis.next, start=1):
         yield f"{index}. {settings_text(point)}: {pair_text(point)} (λ then {score_text(point.separation)})"

@@ -34,7 +34,7 @@ class Value:
 
 
 @dataclass(frozen=True)
-class Symbol:
+class SymbolText:
     """The symbol of a quantity, as declared: h_0."""
 
     text: str
@@ -63,7 +63,7 @@ class Aside:
 
 
 @dataclass(frozen=True)
-class Source:
+class SourceText:
     """The literature that something is taken from."""
 
     text: str
@@ -83,13 +83,14 @@ class Judgement:
     state: State
 
 
-Piece: TypeAlias = str | Value | Symbol | Code | Strong | Aside | Source | Break | Judgement
+Piece: TypeAlias = str | Value | SymbolText | Code | Strong | Aside | SourceText | Break | Judgement
 Text: TypeAlias = Piece | tuple[Piece, ...]
 
 
 def label_of(note: str, name: str, symbol: str = "") -> tuple[Piece, ...]:
     """Say what a quantity is, and its name in files."""
-    return (note or name.replace("_", " "), *((" ", Symbol(symbol)) if symbol else ()), " ", Code(name, bracketed=True))
+    shown = (" ", SymbolText(symbol)) if symbol else ()
+    return (note or name.replace("_", " "), *shown, " ", Code(name, bracketed=True))
 
 
 def joined(parts: Iterable[Text], between: Piece = ", ") -> tuple[Piece, ...]:
@@ -111,11 +112,11 @@ def _plain(piece: Piece) -> str:
             return pretty(piece)
         case Value(number, unit):
             return with_unit(pretty(number), unit)
-        case Symbol(symbol):
+        case SymbolText(symbol):
             return symbol_text(symbol)
         case Code(name, bracketed):
             return f"({name})" if bracketed else name
-        case Source(source):
+        case SourceText(source):
             return f"({source})"
         case Break(instead):
             return instead
@@ -127,7 +128,7 @@ def _plain(piece: Piece) -> str:
 
 def with_source(words: str, source: str) -> Text:
     """Return words with the literature behind them."""
-    return joined(filter(None, (words, Source(source) if source else "")), " ")
+    return joined(filter(None, (words, SourceText(source) if source else "")), " ")
 
 
 # Blocks

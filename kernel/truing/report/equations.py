@@ -25,7 +25,7 @@ INPUT_DIGITS = 7
 
 
 @dataclass(frozen=True)
-class Line:
+class EquationLine:
     """One line of a formula, finished markup, with its width in em as estimated."""
 
     markup: str
@@ -107,16 +107,16 @@ def _results(setup: Setup, item: ResultField, value: Any, *, numeric: bool) -> t
     return (last,)
 
 
-def lines(writer: Writer, equation: Equation, *, limit: float = LINE) -> list[Line]:
+def lines(writer: Writer, equation: Equation, *, limit: float = LINE) -> list[EquationLine]:
     """Set an equation: on one line if it fits, otherwise a line each for expression, numbers and result."""
     formula = equation.formula
-    name = Line(_left_hand(writer, equation), _width(Name(equation.name), {equation.name: equation.symbol}))
+    name = EquationLine(_left_hand(writer, equation), _width(Name(equation.name), {equation.name: equation.symbol}))
     if formula.left is not None:
         return _solved(writer, equation, name)
     said = _broken(writer, formula, equation, None, limit - name.width)
     steps = [_after(writer, "", said[0]), *said[1:]]
-    steps[0] = Line(writer.infix(name.markup, "==", said[0].markup), name.width + said[0].width + 1.2)
-    rest = [_after(writer, "==", Line(*_quantity(writer, value))) for value in equation.results]
+    steps[0] = EquationLine(writer.infix(name.markup, "==", said[0].markup), name.width + said[0].width + 1.2)
+    rest = [_after(writer, "==", EquationLine(*_quantity(writer, value))) for value in equation.results]
     if equation.numbers is not None and formula.names:
         numbers = _broken(writer, formula, equation, equation.numbers, limit)
         rest = [_after(writer, "==", numbers[0]), *numbers[1:], *rest]
@@ -127,17 +127,17 @@ def _left_hand(writer: Writer, equation: Equation) -> str:
     return writer.symbol(equation.symbol) if equation.symbol else writer.word(equation.name)
 
 
-def _solved(writer: Writer, equation: Equation, name: Line) -> list[Line]:
+def _solved(writer: Writer, equation: Equation, name: EquationLine) -> list[EquationLine]:
     """Set what is solved for: the equation that holds, then the solution."""
     formula = equation.formula
     width = _width(formula.right, equation.symbols) + 1.2
     width += _width(formula.left, equation.symbols) if formula.left is not None else 0.0
-    found = [Line(symbolic(writer, formula, equation.symbols), width)]
+    found = [EquationLine(symbolic(writer, formula, equation.symbols), width)]
     if equation.results:
         markup = name.markup
         for value in equation.results:
             markup = writer.infix(markup, "==", _quantity(writer, value)[0])
-        found.append(Line(markup, name.width + 8))
+        found.append(EquationLine(markup, name.width + 8))
     return found
 
 
@@ -145,22 +145,24 @@ def _quantity(writer: Writer, value: Value) -> tuple[str, float]:
     return writer.quantity(value.text, value.unit), 0.55 * len(value.text) + 0.6 * len(value.unit)
 
 
-def _after(writer: Writer, sign: str, line: Line) -> Line:
+def _after(writer: Writer, sign: str, line: EquationLine) -> EquationLine:
     """Begin a line with a sign, as the continuation of the line above."""
-    return Line(writer.infix(EMPTY[type(writer).__name__], sign, line.markup), line.width + 1.2) if sign else line
+    if not sign:
+        return line
+    return EquationLine(writer.infix(EMPTY[type(writer).__name__], sign, line.markup), line.width + 1.2)
 
 
 EMPTY = {"MathMLWriter": "<mrow></mrow>", "LatexWriter": "{}"}
 """What stands before a sign at the beginning of a line, so that it is set as a sign between two sides."""
 
 
-def _packed(steps: list[Line], limit: float) -> list[Line]:
+def _packed(steps: list[EquationLine], limit: float) -> list[EquationLine]:
     """Put as many steps on a line as fit: markup of a step that begins with a sign joins directly."""
     found = [steps[0]]
     for step in steps[1:]:
         last = found[-1]
         if last.width + step.width <= limit:
-            found[-1] = Line(last.markup + step.markup, last.width + step.width)
+            found[-1] = EquationLine(last.markup + step.markup, last.width + step.width)
         else:
             found.append(step)
     return found
@@ -168,18 +170,18 @@ def _packed(steps: list[Line], limit: float) -> list[Line]:
 
 def _broken(
     writer: Writer, formula: Formula, equation: Equation, numbers: Mapping[str, tuple[str, str]] | None, limit: float
-) -> list[Line]:
+) -> list[EquationLine]:
     """Set one side, in one line or, if it is a sum too wide for that, in lines that begin with plus or minus."""
     texts = equation.symbols if numbers is None else {name: " ".join(pair) for name, pair in numbers.items()}
     layout = _layout(writer, equation, numbers)
     width = _width(formula.right, texts)
     (_, first), *others = _terms(formula.right)
     if width <= limit or not others:
-        return [Line(layout.formula(replace(formula, left=None)), width)]
-    found = [Line(layout.at_least(simplified(first), Binding.SUM).markup, _width(first, texts))]
+        return [EquationLine(layout.formula(replace(formula, left=None)), width)]
+    found = [EquationLine(layout.at_least(simplified(first), Binding.SUM).markup, _width(first, texts))]
     for sign, node in others:
         piece = layout.at_least(simplified(node), Binding.SUM if sign == "+" else Binding.PRODUCT, signed=False)
-        found.append(_after(writer, sign, Line(piece.markup, _width(node, texts))))
+        found.append(_after(writer, sign, EquationLine(piece.markup, _width(node, texts))))
     return _packed(found, limit)
 
 

@@ -27,9 +27,9 @@ from truing.report.document import (
     Judgement,
     Piece,
     ResultEntry,
-    Source,
+    SourceText,
     Strong,
-    Symbol,
+    SymbolText,
     Text,
     Value,
 )
@@ -116,7 +116,7 @@ def _piece(piece: Piece) -> str:
         case Value(text, unit):
             number = _one_line(with_unit(pretty(text), unit))
             return escape(number.replace(" ", "\u00a0") if len(number) < UNBROKEN else number)
-        case Symbol(text):
+        case SymbolText(text):
             return f"<math>{MathMLWriter().symbol(text)}</math>"
         case Code(name):
             return f"<code>{_breakable(name)}</code>"
@@ -124,7 +124,7 @@ def _piece(piece: Piece) -> str:
             return f"<strong>{_piece(text)}</strong>"
         case Aside(text):
             return f'<span class="aside">{_piece(text)}</span>'
-        case Source(text):
+        case SourceText(text):
             return f'<span class="aside">[{_piece(text)}]</span>'
         case Break():
             return "<br>"
@@ -147,7 +147,7 @@ def _is_wide(entry: ResultEntry) -> bool:
     return entry.equation is not None and max(line.width for line in _lines(entry.equation)) > COLUMN
 
 
-def _lines(equation: Equation) -> list[equations.Line]:
+def _lines(equation: Equation) -> list[equations.EquationLine]:
     return equations.lines(MathMLWriter(), equation)
 
 

@@ -25,9 +25,9 @@ from truing.report.document import (
     Paragraph,
     Piece,
     ResultEntry,
-    Source,
+    SourceText,
     Strong,
-    Symbol,
+    SymbolText,
     TableView,
     Text,
     Value,
@@ -139,9 +139,9 @@ def _piece(piece: Piece, *, begins: bool = True) -> str:
     match piece:
         case str():
             return _words(piece, begins=begins)
-        case Value() | Code() | Source():
+        case Value() | Code() | SourceText():
             return escaped(plain_text(piece))
-        case Symbol(text):
+        case SymbolText(text):
             return f"${LatexWriter().symbol(text)}$"
         case Strong(text):
             return _piece(text)

@@ -43,7 +43,7 @@ from truing.report.document import (
     Paragraph,
     Piece,
     Strong,
-    Symbol,
+    SymbolText,
     TableView,
     Text,
     Value,
@@ -347,7 +347,7 @@ def input_blocks(setup: Setup, detail: str) -> Iterator[BlockView]:
     title = "What the calculation starts from; 'stated' stands in the inputs file, 'default' is the model's own value"
     yield TableView(title, columns, rows, kind="inputs")
     if idle:
-        called = joined(Symbol(fields[name].symbol) if fields[name].symbol else Code(name) for name in idle)
+        called = joined(SymbolText(fields[name].symbol) if fields[name].symbol else Code(name) for name in idle)
         words = "Not given, or left at their default of 0 (inputs.toml names them): "
         yield Paragraph((words, *called, "."), "aside")
 
@@ -363,7 +363,7 @@ def _input_row(setup: Setup, name: str, value: Value, *, calibrated: bool) -> tu
     fitted = setup.calibrated.get(name)
     own = "" if fitted is None else format_value(fitted, setup.print_unit(name), STATED_DIGITS)[0]
     return (
-        Symbol(item.symbol) if item.symbol else "", label_of(note, name), value.text, value.unit,
+        SymbolText(item.symbol) if item.symbol else "", label_of(note, name), value.text, value.unit,
         *((own,) if calibrated else ()), "stated" if name in setup.source.stated else "default", item.spec.source,
     )  # fmt: skip
 
@@ -471,7 +471,7 @@ def _changed_inputs(setup: Setup) -> Iterator[Text]:
         if field.varies and before != after and not (before != before and after != after):
             unit = setup.print_unit(name)
             old, new = (Value(*format_value(value, unit, digits)) for value, digits in ((before, 10), (after, 7)))
-            yield Symbol(field.symbol) if field.symbol else name.replace("_", " "), " = ", new, " instead of ", old
+            yield SymbolText(field.symbol) if field.symbol else name.replace("_", " "), " = ", new, " instead of ", old
 
 
 def check_table(calculation: Calculation) -> TableView:
