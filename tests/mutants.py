@@ -251,7 +251,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ("(k + 1.0) ** exponent - 2.0 * k**exponent", "(k + 1.0) ** exponent - 1.0 * k**exponent"),
     ),
     *changes(
-        "plugins/harmonic_fractal/structure.py", "unit/test_harmonic_structure.py",
+        "plugins/harmonic_fractal/structure.py", "unit/test_harmonic_power_law.py published/test_harmonic_effects.py",
         ("roughness * ratio ** (1.0 / (2.0", "roughness * ratio ** (1.0 / (1.0"),
         ("scale * x ** (-exponent / 2.0), 1.0)", "scale * x ** (exponent / 2.0), 1.0)"),
     ),
