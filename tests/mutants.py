@@ -258,6 +258,9 @@ MUTANTS: tuple[Mutant, ...] = (
     *changes(
         "plugins/harmonic_fractal/estimate.py", "unit/test_harmonic_estimate.py",
         ("2.0 - slopes / 2.0", "2.0 - slopes"),
+    ),
+    *changes(
+        "plugins/harmonic_fractal/estimate.py", "unit/test_harmonic_noise.py",
         ("curve.pooled - 2.0 * noise**2", "curve.pooled - 1.0 * noise**2"),
     ),
     *changes(

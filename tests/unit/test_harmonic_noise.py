@@ -95,6 +95,7 @@ def test_a_noisy_fractal_is_accepted_with_its_noise_taken_off() -> None:
     assert found.is_accepted
     assert found.dimension == pytest.approx(1.4, abs=0.05)
     assert found.lags[0] == pytest.approx(0.4e-6)
+    np.testing.assert_allclose(found.local_dimensions[:3], 1.4, atol=0.08)  # half of the noise left: 1.6 and more
     assert found.resampled.shape == (50, 2)
 
 
