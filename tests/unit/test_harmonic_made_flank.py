@@ -78,6 +78,8 @@ def test_one_truth_in_any_convention_is_one_power_law(kind: str, convention: str
     np.testing.assert_allclose(answer.power_law, constant * 2e-11 * answer.lag, rtol=1e-12)
     np.testing.assert_allclose(answer.exact, answer.power_law, rtol=0.05)  # ripple, and the ends of the band
     assert answer.areal_roughness == pytest.approx(2e-11 * constant / (2.0 * np.pi), rel=1e-12)
+    true_by_error = answer.fitted_roughness / 10**answer.roughness_error  # decades
+    assert true_by_error == pytest.approx(answer.areal_roughness, rel=1e-12)
 
 
 @pytest.mark.parametrize("directions", [1, 2, 3, 5, 40])
