@@ -180,11 +180,11 @@ def _best(
     """Return the best points that do not draw the same, with what each is worth in score."""
     chosen: list[int] = []
     for place in np.argsort(-gains, kind="stable")[:200].tolist():
-        pairs = [(span.vectors(place), span.vectors(other)) for other in chosen] if gains[place] > 0 else []
-        if gains[place] > 0 and not any(np.linalg.norm(a @ b.T) ** 2 > AS_ONE * min(len(a), len(b)) for a, b in pairs):
-            chosen.append(place)
-        if len(chosen) == KEPT:
+        if not gains[place] > 0 or len(chosen) == KEPT:  # the gains fall from here on
             break
+        own, others = span.vectors(place), [span.vectors(other) for other in chosen]
+        if not any(np.linalg.norm(own @ each.T) ** 2 > AS_ONE * min(len(own), len(each)) for each in others):
+            chosen.append(place)
     known, whole = conditional.sample.known, float(conditional.left @ conditional.left)
     rest = np.maximum(1 - gains[chosen] / max(whole, known, 1.0), 1e-9)  # of the squares; the noise is what is left
     return tuple(zip((-known * np.log(rest)).tolist(), values[chosen], strict=True))

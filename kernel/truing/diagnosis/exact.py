@@ -10,7 +10,6 @@ of its mean square is what a fit makes small.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from math import inf
 
 import numpy as np
@@ -44,7 +43,7 @@ NEARER = 30
 FIRST_DAMPING, LARGEST_DAMPING = 1e-3, 1e8
 """Of a step, in units of the curvature: where it begins, and where no step is left that leads down."""
 MOST_KEPT = 1_000_000
-"""So many derivatives are kept with a fit; those of a longer record are made anew where they are asked for."""
+"""So many derivatives by the inputs are kept with a fit; on a longer record they are made anew where asked for."""
 GOOD = 0.25
 """Share of what a step promised from which on its corrected derivatives are good enough for the next one."""
 
@@ -359,11 +358,9 @@ class Fitting:
         moved = self.b - self.anchor
         predicted = {name: shown + self.moves[name] @ moved for name, shown in self.predicted.items()}
         values = tuple(parts_of(self.causes, self.outward(self.u)))
-        answer = Fit(self.causes, values, self.b, predicted, self.left, self.cost, self.sample)
-        if sum(drawn.size for each in (self.drawn, self.moves) for drawn in each.values()) > MOST_KEPT:
-            return answer
         slopes = {name: each / np.where(self.log, 1.0, self.sizes) for name, each in self.drawn.items()}
-        return replace(answer, slopes=slopes, moves=self.moves)
+        moves = self.moves if sum(each.size for each in self.moves.values()) <= MOST_KEPT else {}
+        return Fit(self.causes, values, self.b, predicted, self.left, self.cost, self.sample, slopes, moves)
 
 
 def _corrected(slopes: Matrix, change: Matrix, way: Matrix) -> Matrix:
