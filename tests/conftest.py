@@ -30,6 +30,11 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> WorkSteal
     return WorkStealingScheduling(config, log)
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Let the tests that fork come first, while this process is small: the larger it is, the longer a fork takes."""
+    items.sort(key=lambda item: "torture" not in item.path.parts)
+
+
 @pytest.fixture(scope="session")
 def full_torture(request: pytest.FixtureRequest) -> bool:
     """Return whether the torture tests run at full size; the suite runs them at a modest one."""
