@@ -1,5 +1,6 @@
 """What tests share beside the fixtures of ``truing.testing``: the size of torture tests, the strangers' plugins."""
 
+import gc
 import os
 import sys
 from pathlib import Path
@@ -33,6 +34,12 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> WorkSteal
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Let the tests that fork come first, while this process is small: the larger it is, the longer a fork takes."""
     items.sort(key=lambda item: "torture" not in item.path.parts)
+
+
+def pytest_collection_finish() -> None:
+    """Take what ten thousand collected tests hold out of every later collection of garbage."""
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture(scope="session")

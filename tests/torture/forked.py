@@ -49,7 +49,6 @@ def forked(
     child = os.fork()
     if child == 0:
         _be_the_command(words, folder, (stdout or (lambda: out_there), stderr or (lambda: err_there)), encoding, before)
-    gc.unfreeze()
     os.close(out_there)
     os.close(err_there)
     status, said = _heard(child, (out, err))
