@@ -20,8 +20,11 @@ from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 from numpy.typing import NDArray
 
-USUAL_ROOM = (0.7, 0.5, 0.1, 0.3)
-"""Inches left, below, right and above of a panel with ordinary labels: where it stands when it is measured first."""
+USUAL_ROOM, UNLABELLED_ROOM = (0.5, 0.4, 0.0, 0.05), (0.5, 0.08, 0.0, 0.05)
+"""Inches left, below, right and above of a panel, with and without a label below, where it is measured first.
+
+They are the medians of the panels of the gallery: near its final size a panel has its final ticks.
+"""
 STEADY = 1.0
 """Pixels by which the sides of a panel may still change when its place is taken as final: less cannot be seen."""
 MOST_ROUNDS = 4
@@ -78,7 +81,8 @@ def _grid_arranged(figure: Any, renderer: Any, engine: Any) -> Bbox:
     """Set panels so that their labels, and what else is drawn beyond them, have room; return the box around it all."""
     panels: list[Axes] = figure.axes
     padding = figure.dpi * np.array([engine.get()["w_pad"], engine.get()["h_pad"]])
-    sizes = _set_in_grid(figure, np.tile(figure.dpi * np.array(USUAL_ROOM), (len(panels), 1)), padding)
+    usual = [USUAL_ROOM if axes.get_xlabel() else UNLABELLED_ROOM for axes in panels]
+    sizes = _set_in_grid(figure, figure.dpi * np.array(usual), padding)
     labels: list[_Labels | None] = [None] * len(panels)
     for _ in range(MOST_ROUNDS):
         measured = [_labels(axes, renderer, known) for axes, known in zip(panels, labels, strict=True)]
