@@ -127,7 +127,7 @@ def test_a_fit_and_its_noise_are_those_of_the_tobit_likelihood(tmp_path: Path) -
     growth, sd = tobit()
     assert_allclose(size_of(found, "growth"), growth * UM, rtol=2e-3)
     assert_allclose(made.sample.noise["deflection"].scale, sd * UM, rtol=2e-3)
-    ((*_, square),) = made.sample.scaled(found.left)
+    (square,) = made.sample.squares(found.left)
     assert_allclose(square, 1, rtol=1e-3)
     noise, predicted = made.sample.noise["deflection"], found.predicted["deflection"]
     errors = errors_of(made.sample.machine, "deflection", noise, predicted)

@@ -58,10 +58,6 @@ def inverse_root(rho: float, lengths: Sequence[int]) -> Array:
 # Rows
 
 
-def squares_of(made: Sample, left: Array) -> list[float]:
-    return [square for *_, square in made.scaled(left)]
-
-
 def test_a_run_starts_anew_where_its_first_row_is_missing() -> None:
     assert starts_of(np.array([0, 0, 0, 1, 1, 2]), np.array([1, 2, 4, 5])).tolist() == [True, False, True, True]
 
@@ -101,7 +97,7 @@ def test_the_cost_in_heavy_tails_is_the_likelihood_of_students_t_profiled_over_i
     assert_allclose(2 * made.roots(lefts[1]) ** 2 * lefts[1], slopes, rtol=1e-4, atol=1e-4)
     assert_allclose(
         np.diff([made.losses(left, lefts[0]).sum() for left in lefts]),
-        np.diff([-2 * t(4, scale=squares_of(made, lefts[0])[0] ** 0.5).logpdf(left).sum() for left in lefts]),
+        np.diff([-2 * t(4, scale=made.squares(lefts[0])[0] ** 0.5).logpdf(left).sum() for left in lefts]),
         rtol=1e-9,
     )
 
@@ -179,7 +175,7 @@ def test_noise_is_no_smaller_than_the_rounding_of_the_gauge(tmp_path: Path) -> N
     (channel,) = sample(rounded).channels
     assert_allclose(channel.least, 25 / 12, rtol=1e-6)
     made = sample(rounded)
-    assert_allclose(squares_of(made, np.full(150, 1e-3)), [25 / 12], rtol=1e-6)
+    assert_allclose(made.squares(np.full(150, 1e-3)), [25 / 12], rtol=1e-6)
 
 
 def test_a_stated_standard_deviation_is_a_weight(tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import chain
 from math import inf
 from pathlib import PurePath
@@ -109,15 +110,21 @@ class Candidate:
         """How many numbers it has."""
         return len(self.numbers)
 
-    @property
+    @cached_property
     def amplitudes(self) -> list[int]:
         """Places of the numbers that switch it off at zero."""
         return [index for index, number in enumerate(self.numbers) if number.is_amplitude]
 
-    @property
+    @cached_property
     def shapes(self) -> list[int]:
         """Places of the numbers that give it its shape."""
         return [index for index, number in enumerate(self.numbers) if not number.is_amplitude]
+
+    @cached_property
+    def ends(self) -> tuple[Matrix, Matrix]:
+        """Lower and upper bounds of the amplitudes, SI."""
+        numbers = [self.numbers[index] for index in self.amplitudes]
+        return np.array([number.low for number in numbers]), np.array([number.high for number in numbers])
 
     @property
     def kept(self) -> list[int]:

@@ -194,10 +194,11 @@ def _starts(bundle: Bundle, places: Indices, right: Matrix, normal: Matrix) -> t
     """Return what each point lowers the sum of squares by within the bounds of the cause, and the numbers there."""
     points, right, normal = bundle.points[places], right[places], normal[places]
     scale = np.sqrt(np.maximum(np.einsum("mqq->mq", normal), 1e-300))
-    scaled = normal / (scale[:, :, None] * scale[:, None, :]) + 1e-9 * np.eye(normal.shape[1])
+    scaled = normal / (scale[:, :, None] * scale[:, None, :])
+    np.einsum("mqq->mq", scaled)[...] += 1e-9
     solved = np.linalg.solve(scaled, (right / scale)[..., None])[..., 0] / scale
     values, own = np.array(points), bundle.cause.amplitudes
-    low, high = np.array([(bundle.cause.numbers[place].low, bundle.cause.numbers[place].high) for place in own]).T
+    low, high = bundle.cause.ends
     if bundle.is_straight:
         values[:, own] = solved = np.clip(solved, low, high)
     else:  # below its smallest amplitudes a curve is in proportion, if anywhere

@@ -239,7 +239,8 @@ def _duels(chosen: Chosen, several: Sequence[Fit], settings: Mapping[str, Matrix
 
 def _spreads(sample: Sample, best: Fit) -> dict[str, float]:
     """Return the standard deviation of one new value of every result as the winner leaves it, SI."""
-    return {each.name: each.scale * square**0.5 for each, _, square in sample.scaled(sample.left(best.predicted))}
+    squares = sample.squares(sample.left(best.predicted))
+    return {each.name: each.scale * square**0.5 for each, square in zip(sample.channels, squares, strict=True)}
 
 
 def _duel(true: _Seen, rival: _Seen, roots: Matrix, spreads: Matrix) -> _Duel:

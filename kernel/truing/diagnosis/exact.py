@@ -138,16 +138,18 @@ class Fitting:
         """Return the inputs that go best with what is left without them, what is then left, and its cost."""
         b = self.b
         left = bare - self.slopes @ b
+        squares = self.sample.squares(left)
         for _ in range(MOST_INPUT_ROUNDS if len(b) else 0):
-            roots = self.sample.roots(left)
+            roots = self.sample.roots(left, squares)
             weighted = self.slopes * roots[:, None]
             downward = weighted.T @ (roots * left) - b
-            moved = np.linalg.solve(weighted.T @ weighted + np.eye(len(b)), downward)
+            moved = np.linalg.solve(_plus_one(weighted.T @ weighted), downward)
             b = b + self.sample.stride * moved
             left = bare - self.slopes @ b
+            squares = self.sample.squares(left)
             if moved @ downward < INPUTS_SETTLED:
                 break
-        return b, left, self.sample.cost(left, b)
+        return b, left, self.sample.cost(left, b, squares)
 
     def derivatives(self) -> None:
         """Take the derivatives of what the model shows by all free numbers, in one call of it."""
@@ -190,23 +192,28 @@ class Fitting:
         right = -(roots * self.left)
         normal, gradient = slope.T @ slope, slope.T @ right
         if len(self.b):
-            factor, cross = cho_factor(slopes.T @ slopes + np.eye(len(self.b))), slopes.T @ slope
+            factor, cross = cho_factor(_plus_one(slopes.T @ slopes)), slopes.T @ slope
             normal = normal - cross.T @ cho_solve(factor, cross)
             gradient = gradient - cross.T @ cho_solve(factor, slopes.T @ right + self.b)
+        curvature = normal.diagonal()
+        damped = normal.copy()
+        np.fill_diagonal(damped, curvature + (self.damping + 1e-12) * curvature)
         moved = np.zeros(len(self.u))
-        active = self.free & (np.diag(normal) > 0)
+        active = self.free & (curvature > 0)
         for _ in range(len(self.u) + 1):
-            places = np.flatnonzero(active)
-            if not len(places):
+            if active.all():
+                moved = _solved(damped, gradient)
+            elif active.any():
+                held = ~active
+                target = gradient[active] - normal[active][:, held] @ moved[held]
+                moved[active] = _solved(damped[active][:, active], target)
+            else:
                 break
-            held = np.flatnonzero(~active)
-            target = gradient[places] - normal[np.ix_(places, held)] @ moved[held]
-            own = normal[np.ix_(places, places)]
-            moved[places] = _solved(own + np.diag((self.damping + 1e-12) * np.diag(own)), target)
-            beyond = (self.u + moved < self.low) | (self.u + moved > self.high)
-            if not (beyond & active).any():
+            tried = self.u + moved
+            beyond = ((tried < self.low) | (tried > self.high)) & active
+            if not beyond.any():
                 break
-            moved = np.where(beyond & active, np.clip(self.u + moved, self.low, self.high) - self.u, moved)
+            moved = np.where(beyond, np.clip(tried, self.low, self.high) - self.u, moved)
             active = active & ~beyond
         promised = float(2 * gradient @ moved - moved @ normal @ moved)
         return moved, promised
@@ -368,8 +375,14 @@ def _corrected(slopes: Matrix, change: Matrix, way: Matrix) -> Matrix:
     return slopes + np.outer(change - slopes @ way, way) / max(float(way @ way), 1e-300)
 
 
+def _plus_one(square: Matrix) -> Matrix:
+    """Add the unit matrix to a matrix (k, k), in place."""
+    square.reshape(-1)[:: len(square) + 1] += 1.0
+    return square
+
+
 def _solved(normal: Matrix, right: Matrix) -> Matrix:
-    scale = np.sqrt(np.maximum(np.diag(normal), 1e-300))
+    scale = np.sqrt(np.maximum(normal.diagonal(), 1e-300))
     return np.asarray(np.linalg.lstsq(normal / np.outer(scale, scale), right / scale, rcond=1e-14)[0] / scale)
 
 

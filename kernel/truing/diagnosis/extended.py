@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import accumulate
 from math import inf
 from typing import Any
 
@@ -87,6 +88,7 @@ class Extended:
         self._setups: dict[frozenset[str], Setup] = {}
         self._shown: dict[Key, Mapping[str, Matrix]] = {}
         self._machines: dict[Key, Setup] = {}
+        self._terms: dict[tuple[str, tuple[float, ...]], list[Matrix]] = {}
 
     def at(self, causes: Sequence[Candidate], points: Sequence[Point]) -> list[dict[str, Matrix]]:
         """Return what the gauges show at several points, by result, SI on all rows; NaN where the model fails.
@@ -99,17 +101,33 @@ class Extended:
         tags = frozenset(cause.tag for cause in bare_causes)
         keys = [(tags, b"".join(np.asarray(each).tobytes() for each in (*values, moved))) for values, moved in bare]
         new = {key: point for key, point in zip(keys, bare, strict=True) if key not in self._shown}
-        shown = {**self._shown, **dict(zip(new, self._called(bare_causes, list(new.values())), strict=True))}
-        kept = min(REMEMBERED, max(1, ROWS_KEPT // max(len(self.machine.records), 1)))  # a fit goes on from the last
-        self._shown = dict(list({**self._shown, **{key: shown[key] for key in keys}}.items())[-kept:])
+        self._shown.update(zip(new, self._called(bare_causes, list(new.values())), strict=True))
+        shown = {key: self._shown[key] for key in keys}
+        for old in list(self._shown)[: -self._most_shown]:  # a fit goes on from the last
+            del self._shown[old]
         return [self._with_shapes(shown[key], causes, values) for key, (values, _) in zip(keys, points, strict=True)]
+
+    @property
+    def _most_shown(self) -> int:
+        """So many answers of the model are kept."""
+        return min(REMEMBERED, max(1, ROWS_KEPT // max(len(self.machine.records), 1)))
 
     def _with_shapes(
         self, shown: Mapping[str, Matrix], causes: Sequence[Candidate], values: Sequence[Matrix]
     ) -> dict[str, Matrix]:
         """Return what is shown with what unregistered shapes add to it, SI, (n,)."""
-        added = [shape_added(self.machine, cause, own) for cause, own in zip(causes, values, strict=True)]
+        pairs = zip(causes, values, strict=True)
+        added = [_added(cause, own, self._terms_of(cause, own)) for cause, own in pairs if cause.shape is not None]
         return {name: base + sum(each[name] for each in added if name in each) for name, base in shown.items()}
+
+    def _terms_of(self, cause: Candidate, values: Matrix) -> list[Matrix]:
+        """Return the terms of an unregistered shape; a fit asks for the same ones again and again."""
+        key = cause.tag, tuple(float(values[index]) for index in cause.shapes)
+        if key not in self._terms:
+            if len(self._terms) >= self._most_shown:
+                self._terms.clear()
+            self._terms[key] = terms_of(self.machine, cause, values)
+        return self._terms[key]
 
     def _called(self, causes: Sequence[Candidate], points: Sequence[Point]) -> list[Mapping[str, Matrix]]:
         """Call the model at several points, as one batch where it can be."""
@@ -211,19 +229,31 @@ def _columns(settings: Iterable[tuple[str, int, float]], files: Indices) -> dict
     """Return columns (n,) that have each value in the rows of its file, or in all where the file is -1."""
     made: dict[str, Any] = {}
     for name, file, value in settings:
-        everywhere = np.broadcast_to(value, (len(files),))
-        made[name] = everywhere if file < 0 else np.where(files == file, value, made.get(name, 0.0))
+        everywhere = file < 0
+        made[name] = _alike(value, len(files)) if everywhere else np.where(files == file, value, made.get(name, 0.0))
     return made
+
+
+def _alike(value: float, rows: int) -> Matrix:
+    """Return a column that has one value, as ``numpy.broadcast_to`` does in ten times its time."""
+    return np.ndarray((rows,), float, np.float64(value), strides=(0,))
 
 
 def shape_added(machine: Calibration, cause: Candidate, values: Matrix) -> dict[str, Matrix]:
     """Return what a shape that nobody registered adds, by result it acts on, SI on all rows."""
-    shape = cause.shape
-    if shape is None:
-        return {}
-    terms = shape.terms([float(values[place]) for place in cause.shapes], machine.records.covariates)
-    amplitudes = iter([float(values[place]) for place in cause.amplitudes])
-    return {name: np.asarray(sum(next(amplitudes) * term.values for term in terms)) for name in shape.results}
+    return {} if cause.shape is None else _added(cause, values, terms_of(machine, cause, values))
+
+
+def terms_of(machine: Calibration, cause: Candidate, values: Matrix) -> list[Matrix]:
+    """Return the terms of a shape that nobody registered, all rows, for these numbers of its shape."""
+    numbers = [float(values[index]) for index in cause.shapes]
+    return [term.values for term in cause.shape.terms(numbers, machine.records.covariates)] if cause.shape else []
+
+
+def _added(cause: Candidate, values: Matrix, terms: Sequence[Matrix]) -> dict[str, Matrix]:
+    amplitudes = iter([float(values[index]) for index in cause.amplitudes])
+    results = cause.shape.results if cause.shape else ()
+    return {name: np.asarray(sum(next(amplitudes) * term for term in terms)) for name in results}
 
 
 def elsewhere(extended: Extended, machine: Calibration) -> Extended:
@@ -235,8 +265,8 @@ def elsewhere(extended: Extended, machine: Calibration) -> Extended:
 
 def parts_of(causes: Sequence[Candidate], flat: Matrix) -> list[Matrix]:
     """Cut the numbers of all causes, one behind another, into those of each."""
-    ends = np.cumsum([cause.size for cause in causes])[:-1]
-    return [np.asarray(part) for part in np.split(flat, ends)] if causes else []
+    ends = list(accumulate(cause.size for cause in causes))
+    return [flat[end - cause.size : end] for cause, end in zip(causes, ends, strict=True)]
 
 
 def switched_on(causes: Sequence[Candidate], values: Sequence[Matrix], machine: Calibration) -> Iterator[SwitchedOn]:

@@ -8,7 +8,7 @@ where they are those of Student's t, a reading far out says little, but the fart
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
@@ -216,15 +216,18 @@ class Sample:
             return self.whole.moves
         return {name: slopes @ self.directions for name, slopes in self.machine.slopes.items()}
 
-    def scaled(self, left: Matrix) -> Iterator[tuple[Channel, slice, float]]:
-        """Give every channel, where its values stand, and the square of the scale of what is left of them."""
-        for channel, part in zip(self.channels, self.parts, strict=True):
-            yield channel, part, channel.square(left[part])
+    def squares(self, left: Matrix) -> list[float]:
+        """Return by channel the square of the scale of what is left of its values."""
+        return [channel.square(left[part]) for channel, part in zip(self.channels, self.parts, strict=True)]
 
-    def cost(self, left: Matrix, inputs: Matrix) -> float:
-        """Return -2 log likelihood of what is left, noise of every result free, plus the prior of the inputs."""
+    def cost(self, left: Matrix, inputs: Matrix, squares: Sequence[float] | None = None) -> float:
+        """Return -2 log likelihood of what is left, noise of every result free, plus the prior of the inputs.
+
+        ``squares`` are those of what is left, where they are known.
+        """
         total = float(inputs @ inputs)
-        for channel, part, square in self.scaled(left):
+        squares = self.squares(left) if squares is None else squares
+        for channel, part, square in zip(self.channels, self.parts, squares, strict=True):
             total += channel.known * log(square)
             if channel.freedom < inf:
                 total += float(channel.losses(left[part], square).sum())
@@ -232,11 +235,12 @@ class Sample:
 
     def losses(self, left: Matrix, judge: Matrix) -> Matrix:
         """Return by row what is left as -2 log likelihood in noise of the scale that ``judge`` leaves, (rows,)."""
-        return np.concatenate([channel.losses(left[part], square) for channel, part, square in self.scaled(judge)])
+        each = zip(self.channels, self.parts, self.squares(judge), strict=True)
+        return np.concatenate([channel.losses(left[part], square) for channel, part, square in each])
 
-    def roots(self, left: Matrix) -> Matrix:
+    def roots(self, left: Matrix, squares: Sequence[float] | None = None) -> Matrix:
         """Return by row what makes squares of what is left count: its noise is the one that it shows, (rows,)."""
-        each = self.scaled(left)
+        each = zip(self.channels, self.parts, self.squares(left) if squares is None else squares, strict=True)
         return np.concatenate([np.sqrt(channel.shares(left[part], square) / square) for channel, part, square in each])
 
     @cached_property

@@ -5,6 +5,7 @@ from __future__ import annotations
 import platform
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from importlib import metadata
 
 from truing.runs.inputs_written import input_hash
@@ -50,6 +51,7 @@ def provenance_of(setup: Setup, *, date: str = "") -> Provenance:
     )
 
 
+@cache
 def _version(name: str) -> str:
     try:
         return metadata.version(name)
