@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter, deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import accumulate, chain, islice
+from itertools import accumulate, islice
 from math import inf
 from typing import Any
 
@@ -28,7 +28,7 @@ LEAST_PER_EFFECT = 40
 """Calls for every effect on the inputs that are given however long they take: fewer show none of them as it is."""
 MORE = 4
 """So many times the budget is proposed where it ended first."""
-Key = tuple[frozenset[str], bytes]
+Key = tuple[tuple[str, ...], bytes]
 Point = tuple[Sequence[Matrix], Matrix]
 """The numbers of every cause, SI, and how far each tolerated input is moved, in standard deviations from its mean."""
 Request = tuple[Sequence[Candidate], Sequence[Point]]
@@ -49,6 +49,11 @@ class _Asked:
     def acts_on_inputs(self) -> bool:
         """Whether the model runs again at every point."""
         return any(cause.acts_on_inputs for cause in self.causes)
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """The effects of the plugin that are on."""
+        return tuple(cause.tag for cause in self.causes if cause.effect is not None and not cause.is_kernel)
 
 
 @dataclass
@@ -103,7 +108,7 @@ class Extended:
         self.grain: dict[str, float] = {}
         """By result: by how much the answers of the model jump or scatter by themselves, SI."""
         self._asked: deque[tuple[tuple[str, ...], bytes, bytes]] = deque(maxlen=REPEATED)
-        self._setups: dict[frozenset[str], Setup] = {}
+        self._setups: dict[tuple[str, ...], Setup] = {}
         self._shown: dict[Key, Mapping[str, Matrix]] = {}
         self._machines: dict[Key, Setup] = {}
         self._terms: dict[tuple[str, tuple[float, ...]], list[Matrix]] = {}
@@ -192,7 +197,7 @@ class Extended:
         setup, trials = self._with(causes), [_unknowns(self.machine, causes, values) for values, _ in points]
         is_plain = all(cause.tolerated < 0 for cause in causes) and all(item.file < 0 for item in self.machine.inputs)
         if is_plain and all(np.array_equal(moved, points[0][1]) for _, moved in points):  # the inputs of all rows
-            setup = self._moved(setup, frozenset(cause.tag for cause in causes), points[0][1])
+            setup = self._moved(setup, tuple(cause.tag for cause in causes), points[0][1])
         else:
             trials = [{**own, **self._inputs(causes, *point)} for own, point in zip(trials, points, strict=True)]
         return self._survived(setup, trials)
@@ -237,14 +242,14 @@ class Extended:
 
     def _with(self, causes: Sequence[Candidate]) -> Setup:
         """Return the setup with the effects of these causes on; parts of one effect are on together."""
-        tags = frozenset(cause.tag for cause in causes if cause.effect is not None)
+        tags = tuple(cause.tag for cause in causes if cause.effect is not None)
         if tags not in self._setups:
             resting = ((cause.effect, at_rest(cause, self.machine)) for cause in causes)
             on = [SwitchedOn(effect, rest) for effect, rest in resting if effect is not None]
             self._setups[tags] = self.machine.start.with_effects(on) if on else self.machine.start
         return self._setups[tags]
 
-    def _moved(self, setup: Setup, tags: frozenset[str], moved: Matrix) -> Setup:
+    def _moved(self, setup: Setup, tags: tuple[str, ...], moved: Matrix) -> Setup:
         """Return a setup with its tolerated inputs moved."""
         key = tags, np.asarray(moved).tobytes()
         if key not in self._machines:
@@ -270,18 +275,20 @@ class Extended:
 
 
 def _asked(causes: Sequence[Candidate], points: Sequence[Point]) -> _Asked:
-    """Return what a request asks of the model itself."""
-    own = [index for index, cause in enumerate(causes) if cause.shape is None]
-    tags = frozenset(causes[index].tag for index in own)
+    """Return what a request asks of the model itself; effects act in the order in which they are declared."""
+    own = sorted((i for i, cause in enumerate(causes) if cause.shape is None), key=lambda i: causes[i].tag)
+    tags = tuple(causes[index].tag for index in own)
     bare: list[Point] = [([values[index] for index in own], moved) for values, moved in points]
     keys = [(tags, b"".join(np.asarray(each).tobytes() for each in (*values, moved))) for values, moved in bare]
     return _Asked([causes[index] for index in own], bare, keys)
 
 
 def _grouped(several: Sequence[_Asked]) -> list[list[_Asked]]:
-    """Part requests into those that may be one call: causes in one order, and no two that set one unknown.
+    """Part requests into those that may be one call.
 
-    Where nothing acts on the inputs the model is called for one point alone, so that all of these must have the same.
+    They have the same effects of the plugin on, since one at rest may still set what another one acts on; readings and
+    inputs of the kernel add nothing at rest. Where nothing acts on the inputs the model is called for one point alone,
+    so that all of these must have the same.
     """
     groups: list[list[_Asked]] = []
     for asked in several:
@@ -295,15 +302,13 @@ def _grouped(several: Sequence[_Asked]) -> list[list[_Asked]]:
 
 
 def _go_together(group: Sequence[_Asked]) -> bool:
-    if len({asked.acts_on_inputs for asked in group}) > 1:
+    if len({(asked.acts_on_inputs, asked.effects) for asked in group}) > 1:
         return False
     if not group[0].acts_on_inputs and len({moved.tobytes() for asked in group for _, moved in asked.points}) > 1:
         return False
-    causes = list({cause.tag: cause for asked in group for cause in asked.causes}.values())
-    order = {cause.tag: index for index, cause in enumerate(causes)}
-    unknowns = Counter(chain.from_iterable({(cause.name, each.name) for each in cause.numbers} for cause in causes))
-    places = ([order[cause.tag] for cause in asked.causes] for asked in group)
-    return max(unknowns.values(), default=1) == 1 and all(own == sorted(own) for own in places)
+    causes = {cause.tag: cause for asked in group for cause in asked.causes}.values()
+    unknowns = Counter((cause.name, name) for cause in causes for name in {number.name for number in cause.numbers})
+    return max(unknowns.values(), default=1) == 1
 
 
 def _unknowns(machine: Calibration, causes: Sequence[Candidate], values: Sequence[Matrix]) -> dict[str, Any]:
