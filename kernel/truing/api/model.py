@@ -343,12 +343,12 @@ class Diagnosis:
 
     def save(self, folder: str | Path, *, pdf: bool = False) -> Path:
         """Write the folder that ``calc diagnose`` writes; an earlier diagnosis there goes. Raises OutputError."""
-        place = Path(folder)
-        demand_place(place, "diagnosis")
-        note = self.written(place, pdf=pdf)
+        target = Path(folder)
+        demand_place(target, "diagnosis")
+        note = self.written(target, pdf=pdf)
         if note.startswith("no PDF"):
             warnings.warn(note, stacklevel=2)
-        return place
+        return target
 
     def written(self, folder: Path, *, pdf: bool = False) -> str:
         """Write the folder and return what became of the PDF."""

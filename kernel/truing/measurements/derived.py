@@ -37,9 +37,11 @@ def histories(
     Shapes and order are those of ``derive``.
     """
     return {
-        item.name: derive(item, columns, runs, time)
-        for item in conditions
-        if item.derived and item.made_from in columns and (item.made_from == item.name or item.name not in columns)
+        condition.name: derive(condition, columns, runs, time)
+        for condition in conditions
+        if condition.derived
+        and condition.made_from in columns
+        and (condition.made_from == condition.name or condition.name not in columns)
     }
 
 
@@ -85,11 +87,11 @@ def _history(word: str, values: NDArray[np.float64]) -> NDArray[np.float64]:
     known = np.isfinite(values)
     made = np.full(len(values), np.nan)
     if known.any():
-        found = _HISTORIES[word](values[known])
+        history = _HISTORIES[word](values[known])
         latest = np.cumsum(known) - 1
-        made[latest >= 0] = found[latest[latest >= 0]]
+        made[latest >= 0] = history[latest[latest >= 0]]
         if word == "direction":
-            made[latest < 0] = found[0]
+            made[latest < 0] = history[0]
     return made
 
 
