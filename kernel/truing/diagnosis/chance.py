@@ -96,13 +96,13 @@ def _largest(made: Competition, seen: Mapping[str, ConditionalGain], drawn: Matr
         for tag, each in seen.items():
             inner = each.span.inner(drawn, passed)
             squares = np.sum(inner**2, axis=1)
-            place = squares.argmax(axis=0)
-            lowered = np.take_along_axis(squares, place[None], 0)[0]
+            index = squares.argmax(axis=0)
+            lowered = np.take_along_axis(squares, index[None], 0)[0]
             gain = -known * np.log(np.maximum(1 - lowered / np.maximum(whole, 1e-300), 1e-9)) - prices[tag]
             better = np.flatnonzero(gain > best)
             best[better] = gain[better]
             for draw in better.tolist() if steps > 1 else ():
-                chosen[draw] = each, int(place[draw]), inner[place[draw], :, draw]
+                chosen[draw] = each, int(index[draw]), inner[index[draw], :, draw]
         summed += best
         for draw, (each, point, size) in chosen.items():
             drawn[:, draw] -= each.span.vectors(point).T @ size

@@ -329,7 +329,7 @@ def _columns_of(made: Competition, fit: Fit, cause: Candidate) -> Iterator[Matri
         return
     values = fit.of(cause)
     records = made.sample.machine.records
-    terms = shape.terms([float(values[place]) for place in cause.shapes], records.covariates)
+    terms = shape.terms([float(values[index]) for index in cause.shapes], records.covariates)
     for name in shape.results:
         for term in terms:
             added = {each: np.zeros(len(records)) for each in records.measured}

@@ -82,7 +82,7 @@ def laid_out(machine: Calibration) -> Competition:
 
 def _check_options(setup: Setup) -> None:
     known = {*setup.model.known_effects, *setup.model.input_fields}
-    known |= {f"{name}.{one.name}" for name, item in setup.model.known_effects.items() for one in item.unknowns}
+    known |= {f"{name}.{one.name}" for name, effect in setup.model.known_effects.items() for one in effect.unknowns}
     for name in setup.diagnose.per_file:
         if name not in known:
             near = near_miss(name, known)

@@ -112,7 +112,7 @@ def _structure(chosen: Chosen, name: str, unit: str) -> Iterator[ResidualFinding
             singles[label[1]] = max(gain, singles.get(label[1], gain))
     least = SHADOW * (plain - made.score(made.ranked()[0]))
     kept = []
-    for label, (gain, fit) in sorted(best.items(), key=lambda item: -item[1][0]):
+    for label, (gain, fit) in sorted(best.items(), key=lambda pair: -pair[1][0]):
         plainer = max((singles[each] + PAIR_BETTER for each in label[1:] if each in singles), default=gain)
         if gain >= least and (len(label) != 3 or gain >= plainer):
             kept.append((gain, fit))

@@ -109,16 +109,16 @@ def _chosen_again(chosen: Chosen, base: Fit, again: list[Fit]) -> Fit:
     return best if made.score(best) < made.score(base) else base
 
 
-def _judge(judged: HeldOutAnswers, place: int, fits: tuple[Fit, Fit], test: Mask) -> None:
+def _judge(judged: HeldOutAnswers, index: int, fits: tuple[Fit, Fit], test: Mask) -> None:
     """Fill in the rows of one fold for one result, from the fits of base and extension without them."""
-    sample, channel, machine = fits[0].sample, fits[0].sample.channels[place], fits[0].sample.machine
+    sample, channel, machine = fits[0].sample, fits[0].sample.channels[index], fits[0].sample.machine
     name, noise = channel.name, sample.noise[channel.name]
     known, weights = machine.records.known(name), noise.weights[test] / channel.scale
     logs = []
     for fit, errors in zip(fits, (judged.before, judged.after), strict=True):
         off = errors_of(machine, name, noise, fit.predicted[name])
         errors[test] = off[test]
-        left = fit.left[sample.parts[place]]
+        left = fit.left[sample.parts[index]]
         sd = sqrt(max(float(np.sum(left**2)) / channel.known, channel.least))
         density = _log_density(errors[test] * weights / sd, noise.tails.freedom) + np.log(weights / sd)
         logs.append(np.where(known[test], density, _log_chance(machine, name, noise, fit)[test]))

@@ -47,11 +47,11 @@ def contradictions_of(chosen: Chosen) -> tuple[Contradiction, ...]:
     certain = [certainty_of(fit, extended) for fit in fitted]
     made = []
     for cause in best.causes:
-        for place, number in zip(places_of(best, cause), cause.numbers, strict=True):
+        for index, number in zip(places_of(best, cause), cause.numbers, strict=True):
             if cause.effect is None or not number.is_amplitude or number.file >= 0:
                 continue
-            first, second = (value_of(fit, place) for fit in fitted)
-            error = hypot(*(each.in_si([place])[0][0] ** 0.5 for each in certain))
+            first, second = (value_of(fit, index) for fit in fitted)
+            error = hypot(*(each.in_si([index])[0][0] ** 0.5 for each in certain))
             if error > 0 and abs(first - second) > CONTRADICTING * error:
                 unit = next(each.unit for each in cause.effect.unknowns if each.name == number.name)
                 made.append(Contradiction(cause.name, number.name, Amount(first, unit), Amount(second, unit)))

@@ -527,12 +527,12 @@ def explanations_of(diagnosis: DiagnosisResult) -> tuple[Explanation, ...]:
         return ()
     best = [cause.effect for cause in diagnosis.causes]
     same: Mapping[str, Sequence[str]] = {cause.effect: cause.same_as for cause in diagnosis.causes}
-    found = [([*best, UNKNOWN] if diagnosis.remainder is not None else best, same)]
+    explanations = [([*best, UNKNOWN] if diagnosis.remainder is not None else best, same)]
     for rival in diagnosis.alternatives:
         over = [f"{UNKNOWN}:{','.join(rival.depends_on)}" if name == UNKNOWN else name for name in rival.causes]
-        found.append((over, rival.same_as))
+        explanations.append((over, rival.same_as))
     once: dict[frozenset[str], Explanation] = {}
-    for names, same in found:
+    for names, same in explanations:
         for each in product(*((name, *same.get(name, ())) for name in names)):
             once.setdefault(frozenset(each), each)
     return tuple(once.values())

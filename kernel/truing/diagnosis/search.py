@@ -119,17 +119,17 @@ def _exchanged(made: Competition) -> None:
             return
 
 
-def exchange(made: Competition, now: Fit, place: int) -> None:
+def exchange(made: Competition, now: Fit, index: int) -> None:
     """Fit an explanation with one of its causes exchanged for others, the rest refitted without it and held; once."""
-    if (now.key, now.causes[place].tag) in made.exchanged:
+    if (now.key, now.causes[index].tag) in made.exchanged:
         return
-    made.exchanged.add((now.key, now.causes[place].tag))
-    rest = made.without(now, place)
+    made.exchanged.add((now.key, now.causes[index].tag))
+    rest = made.without(now, index)
     if rest is not None:
         made.forward(rest, JOINED, lambda cause: _is_quick(cause) and cause.tag not in now.key)
     if len(now.causes) > 1:
-        causes = now.causes[:place] + now.causes[place + 1 :]
-        values = now.values[:place] + now.values[place + 1 :]
+        causes = now.causes[:index] + now.causes[index + 1 :]
+        values = now.values[:index] + now.values[index + 1 :]
         (predicted,) = made.extended.at(causes, [(values, now.moved)])
         left = made.sample.left(predicted)
         if np.isfinite(left).all():

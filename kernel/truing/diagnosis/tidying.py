@@ -125,8 +125,8 @@ def _joined(angles: Matrix) -> tuple[Matrix, int]:
 
 def keeps_bounds(name: str, values: Matrix, model: Model[Any, Any]) -> bool:
     """Whether values (n,), SI, lie within the bounds of an input; anything else has none."""
-    item = model.input_fields.get(name)
-    return item is None or not any(broken_bound(item, float(end)) for end in (np.nanmin(values), np.nanmax(values)))
+    field = model.input_fields.get(name)
+    return field is None or not any(broken_bound(field, float(end)) for end in (np.nanmin(values), np.nanmax(values)))
 
 
 def is_angle(unit: str) -> bool:

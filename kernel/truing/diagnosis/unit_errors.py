@@ -71,7 +71,7 @@ def suspected_unit_errors(joined: DataRows, setup: Setup) -> tuple[SuspectedUnit
     gauges = _gauges(few, setup)
     far = [one for one in gauges if _is_far(one.measured, one.answer)]
     beyond = [one for one in far if any(one.off(mode) > TIMES_NEARER * one.reach[mode] for mode in (0, 1))]
-    own = {one.name: found for one in beyond if (found := _own_slip(one, few, setup))}
+    own = {one.name: slip for one in beyond if (slip := _own_slip(one, few, setup))}
     if len(beyond) > len(own) or len(own) > 1:
         shared = _input_slip(few, gauges, beyond, setup)
         if shared is not None:
@@ -109,13 +109,13 @@ def _gauges(few: DataRows, setup: Setup) -> list[_Gauge]:
     scatter = [(name, each.sd) for by_input in setup.distributions().values() for name, each in by_input.items()]
     moved = [{name: few.columns.get(name, machine.nominal(name)) + sd} for name, sd in scatter]
     answers, *others = read_trials(machine, rows_of(few), [{}, *moved], few.named("measured"))
-    found = []
+    gauges = []
     for name, values in answers.items():
         measured = few.columns[name]
         sizes = np.array([_size(other[name] - values, mode) for other in others for mode in (0, 1)]).reshape(-1, 2)
         raw, about = np.sqrt(np.sum(np.where(np.isfinite(sizes), sizes, 0.0) ** 2, axis=0)).tolist()
-        found.append(_Gauge(name, measured, np.where(np.isfinite(measured), values, np.nan), (raw, about)))
-    return found
+        gauges.append(_Gauge(name, measured, np.where(np.isfinite(measured), values, np.nan), (raw, about)))
+    return gauges
 
 
 def _factors(unit: str) -> Mapping[float, str]:
@@ -141,8 +141,8 @@ def _input_slip(few: DataRows, gauges: list[_Gauge], beyond: list[_Gauge], setup
     best: tuple[float, SuspectedUnit] | None = None
     trials = list(_trials(few, setup))
     scaled = [{name: few.columns[name] * factor} for name, factor, _ in trials]
-    found = read_trials(one_machine(setup), rows_of(few), scaled, few.named("measured"))
-    for (name, factor, words), answers in zip(trials, found, strict=True):
+    answers_by_trial = read_trials(one_machine(setup), rows_of(few), scaled, few.named("measured"))
+    for (name, factor, words), answers in zip(trials, answers_by_trial, strict=True):
         gains = [one.gain(one.measured, answers[one.name]) for one in beyond]
         off = ((_size(one.measured - answers[one.name], 0), max(one.off(0), one.reach[0])) for one in gauges)
         if not all(gains) or any(after > LIKE * TIMES_NEARER * before for after, before in off):
@@ -155,7 +155,7 @@ def _input_slip(few: DataRows, gauges: list[_Gauge], beyond: list[_Gauge], setup
 
 def _trials(few: DataRows, setup: Setup) -> Iterator[tuple[str, float, str]]:
     """Give every column that the model sees with every factor that its bounds allow."""
-    seen, units = {need.name for item in setup.effects for need in item.effect.needs}, declared_units(setup.model)
+    seen, units = {need.name for active in setup.effects for need in active.effect.needs}, declared_units(setup.model)
     for name, values in few.named("input", "series", "condition").items():
         if name in setup.model.input_fields or name in seen:
             for factor, words in _factors(units[name]).items():

@@ -113,8 +113,8 @@ def _ordered(covariate: Covariate, registered: Sequence[int], *, has_steps: bool
     if covariate.role == "time":
         if not has_steps:
             ends = (float(values.min() + ENDS * span), float(values.max() - ENDS * span))
-            place = Parameter("place", *ends, is_amplitude=False, along=covariate.name)
-            yield "step", on, 1, (place,), _step
+            position = Parameter("place", *ends, is_amplitude=False, along=covariate.name)
+            yield "step", on, 1, (position,), _step
         reach = (SHORTEST_SETTLING * span, LONGEST_SETTLING * span)
         yield "settling", on, 2, (Parameter("constant", *reach, is_amplitude=False),), _settling
 
@@ -162,8 +162,8 @@ def _waves(turn: float, name: str, values: Matrix, number: float) -> list[Term]:
     return [Term(f"np.{word}({angle!r} * {name})", getattr(np, word)(angle * values)) for word in ("sin", "cos")]
 
 
-def _step(name: str, values: Matrix, place: float) -> list[Term]:
-    return [Term(f"({name} >= {place!r})", (values >= place).astype(float))]
+def _step(name: str, values: Matrix, position: float) -> list[Term]:
+    return [Term(f"({name} >= {position!r})", (values >= position).astype(float))]
 
 
 def _settling(name: str, values: Matrix, constant: float) -> list[Term]:
