@@ -120,9 +120,9 @@ def made(cls: type[Any], values: Mapping[tuple[str, ...], Any]) -> Any:
 
 
 def _plain_effect(
-    switched: SwitchedOn,
+    active: SwitchedOn,
 ) -> tuple[str, dict[str, float], dict[str, float], tuple[tuple[float, ...], ...]]:
-    return switched.effect.name, dict(switched.values), dict(switched.sds), switched.covariance
+    return active.effect.name, dict(active.values), dict(active.sds), active.covariance
 
 
 def _file_hash(ref: str) -> str:

@@ -185,7 +185,7 @@ def _conditions_in_force(
 ) -> dict[str, float]:
     """Return the model's own conditions in SI, and of the kernel's those that are stated or that an effect needs."""
     zeros = {name: condition.zero for name, condition in model.conditions.items()}
-    zeros |= {need.name: need.zero for switched in effects for need in switched.effect.needs if need.name not in zeros}
+    zeros |= {need.name: need.zero for active in effects for need in active.effect.needs if need.name not in zeros}
     stated = {path[1]: float(value) for path, value in values.items() if len(path) == 2 and path[0] == "conditions"}
     return {**zeros, **stated}
 

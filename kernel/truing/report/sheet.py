@@ -449,12 +449,12 @@ def _condition_row(setup: Setup, name: str) -> tuple[Text, ...]:
     return (label_of(condition.note, name), *values)
 
 
-def _effect_row(switched: SwitchedOn) -> tuple[Text, ...]:
-    effect = switched.effect
+def _effect_row(active: SwitchedOn) -> tuple[Text, ...]:
+    effect = active.effect
     unknowns: list[Text] = []
-    for unknown in switched.unknowns:
-        value = Value(*format_value(switched.values[unknown.name], unknown.unit, RESULT_DIGITS))
-        sd = switched.sds.get(unknown.name)
+    for unknown in active.unknowns:
+        value = Value(*format_value(active.values[unknown.name], unknown.unit, RESULT_DIGITS))
+        sd = active.sds.get(unknown.name)
         scatter = (" ± ", Value(*format_difference(sd, unknown.unit, 3)), " ", Aside("(sd)")) if sd else ()
         unknowns.append((unknown.name.replace("_", " ") + " = ", value, *scatter))
     why = with_source(effect.why or effect.looks_like, effect.source)

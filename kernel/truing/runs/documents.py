@@ -174,11 +174,11 @@ def _tolerances(setup: Setup) -> dict[str, Any]:
     return said
 
 
-def _effect_values(switched: SwitchedOn) -> dict[str, Any]:
+def _effect_values(active: SwitchedOn) -> dict[str, Any]:
     said = {}
-    for unknown in switched.unknowns:
-        value = _value(switched.values[unknown.name], unknown.unit)
-        sd = switched.sds.get(unknown.name)
+    for unknown in active.unknowns:
+        value = _value(active.values[unknown.name], unknown.unit)
+        sd = active.sds.get(unknown.name)
         if sd is not None:
             value["sd"] = _number(sd / unit_factor(difference_unit(unknown.unit)))
         said[unknown.name] = value

@@ -158,17 +158,17 @@ def _spread(setup: Setup, name: str) -> str:
     return spread.text
 
 
-def _effect(switched: SwitchedOn) -> dict[str, Any]:
+def _effect(active: SwitchedOn) -> dict[str, Any]:
     said: dict[str, Any] = {}
-    for unknown in switched.unknowns:
-        value = exact(switched.values[unknown.name], unknown.unit)
-        sd = switched.sds.get(unknown.name)
+    for unknown in active.unknowns:
+        value = exact(active.values[unknown.name], unknown.unit)
+        sd = active.sds.get(unknown.name)
         scale = difference_unit(unknown.unit)
         said[unknown.name] = value if sd is None else {"value": value, "sd": exact(sd, scale)}
-    if switched.covariance:
-        factors = [unit_factor(unknown.unit) for unknown in switched.unknowns]
+    if active.covariance:
+        factors = [unit_factor(unknown.unit) for unknown in active.unknowns]
         said["covariance"] = [
-            [one / factors[i] / factors[j] for j, one in enumerate(row)] for i, row in enumerate(switched.covariance)
+            [one / factors[i] / factors[j] for j, one in enumerate(row)] for i, row in enumerate(active.covariance)
         ]
     return said
 

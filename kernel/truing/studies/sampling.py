@@ -378,21 +378,21 @@ def _stand_in(spread: Drawn, columns: tuple[str, ...]) -> NDArray[np.float64]:
     return root_of(np.atleast_2d(np.cov(joint)))
 
 
-def _of_effect(switched: SwitchedOn) -> ScatterSource | None:
+def _of_effect(active: SwitchedOn) -> ScatterSource | None:
     """Return the uncertainty with which an effect was diagnosed, or None where it is known exactly or only read."""
-    if switched.effect.place == "reading":
+    if active.effect.place == "reading":
         return None
-    names = [unknown.name for unknown in switched.unknowns]
-    sds = [float(switched.sds.get(name, 0.0)) for name in names]
-    covariance = np.array(switched.covariance, dtype=float) if switched.covariance else np.diag(np.square(sds))
+    names = [unknown.name for unknown in active.unknowns]
+    sds = [float(active.sds.get(name, 0.0)) for name in names]
+    covariance = np.array(active.covariance, dtype=float) if active.covariance else np.diag(np.square(sds))
     if not covariance.any():
         return None
-    values = tuple(float(switched.values[name]) for name in names)
-    columns = tuple(effect_column(switched.effect.name, name) for name in names)
+    values = tuple(float(active.values[name]) for name in names)
+    columns = tuple(effect_column(active.effect.name, name) for name in names)
     spread = np.sqrt(np.diag(covariance))
     distributions = tuple(Distribution(value, float(sd)) for value, sd in zip(values, spread, strict=True))
-    mixing = root_of(covariance) if switched.covariance else None
-    return ScatterSource(f"effects.{switched.effect.name}", columns, values, distributions, mixing)
+    mixing = root_of(covariance) if active.covariance else None
+    return ScatterSource(f"effects.{active.effect.name}", columns, values, distributions, mixing)
 
 
 def root_of(covariance: NDArray[np.float64]) -> NDArray[np.float64]:
