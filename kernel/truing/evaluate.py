@@ -234,7 +234,7 @@ def _as_rows(case: Case, name: str, flat: Mapping[str, Any], rows: int) -> NDArr
 def _sorted_columns(case: Case, columns: Mapping[str, Any], rows: int) -> tuple[dict[str, Any], dict[str, Any]]:
     """Check the columns and part them: those a batch is split by, and numbers (arrays where they differ)."""
     fields = case.model.input_fields
-    unknowns = {effect_column(on.effect.name, each.name) for on in case.effects for each in on.effect.unknowns}
+    unknowns = {effect_column(on.effect.name, unknown.name) for on in case.effects for unknown in on.effect.unknowns}
     fixed: dict[str, Any] = {}
     arrays: dict[str, Any] = {}
     for name, values in columns.items():

@@ -159,16 +159,16 @@ def read_each(
     """
     along = {name: machine.model.axes[name] for name in _readable(machine, rows, wanted)}
     asked, machine = {*along, *filter(None, along.values())}, _at_places(machine, rows)
-    made = [_Answer({name: np.full(len(rows), np.nan) for name in along}) for _ in trials]
+    answers = [_Answer({name: np.full(len(rows), np.nan) for name in along}) for _ in trials]
     for record in _records(rows):
         series = {name: column[record] for name, column in rows.series.items()}
         for several, repeats in _calls(record, machine, rows, trials):
-            columns = {name: _one_or_each([each.values[name] for each in several]) for name in several[0].values}
+            columns = {name: _one_or_each([alike.values[name] for alike in several]) for name in several[0].values}
             changed, size = columns | series, len(several)
             computed = evaluate_rows(machine, changed, size, reading=True, wanted=asked, repeats=repeats)
-            for number, each in enumerate(several):
-                made[each.trial].take(computed, number, each.places, along=along, rows=rows)
-    done = [answer.rows(len(rows)) for answer in made]
+            for number, alike in enumerate(several):
+                answers[alike.trial].take(computed, number, alike.places, along=along, rows=rows)
+    done = [answer.rows(len(rows)) for answer in answers]
     return done if wanted is None else [answer.complete() for answer in done]
 
 

@@ -92,7 +92,7 @@ class BuiltinReading:
 def builtin_effects(model: Declared) -> dict[str, Effect[Any, Any]]:
     """Return the kernel's effects on the readings of this model, by name, without those whose name it has taken."""
     results = tuple(_gauged(model))
-    made = [
+    effects = [
         *_made(_OFFSET, results, [None]),
         *_made(_GAIN, results, [None]),
         *_made(_DRIFT, results, time_of(model)),
@@ -100,7 +100,7 @@ def builtin_effects(model: Declared) -> dict[str, Effect[Any, Any]]:
         *_made(_ORDER, results, angles(model)),
         *_made(_STEP, results, time_of(model)),
     ]
-    return {effect.name: effect for effect in made if effect.name not in model.effects}
+    return {effect.name: effect for effect in effects if effect.name not in model.effects}
 
 
 def may_stand(effect: Effect[Any, Any]) -> bool:
@@ -126,13 +126,13 @@ def _made(
     fitting = [(seen, [result for result in results if seen is None or seen.by(result)]) for seen in seen_by]
     for index, (seen, items) in enumerate((seen, items) for seen, items in fitting if items):
         unknowns = list(_named_apart(kind, items, seen))
-        roles = tuple((result, {role: one.name for role, one in own.items()}) for result, own in unknowns)
+        roles = tuple((result, {role: unknown.name for role, unknown in own.items()}) for result, own in unknowns)
         needs = [seen.condition] if seen is not None and seen.condition is not None else []
         yield Effect(
             f"{kind.name}_of_{seen.name}" if index and seen is not None else kind.name,
             on_reading=BuiltinReading(kind, roles, seen),
-            unknowns=[one for _, own in unknowns for one in own.values()],
-            parts=[[one.name for one in own.values()] for _, own in unknowns],
+            unknowns=[unknown for _, own in unknowns for unknown in own.values()],
+            parts=[[unknown.name for unknown in own.values()] for _, own in unknowns],
             needs=needs,
             reads=[seen.name] if seen is not None and not needs else [],
             looks_like=kind.looks_like.format(seen=seen.name if seen is not None else ""),
@@ -151,7 +151,7 @@ def _named_apart(
     taken = {seen.name} if seen is not None else set()
     for result in items:
         own = kind.unknowns(result)
-        names = {one.name for one in own.values()}
+        names = {unknown.name for unknown in own.values()}
         if not names & taken:
             yield result, own
         taken |= names

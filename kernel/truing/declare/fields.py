@@ -182,8 +182,8 @@ def results(cls: type[T]) -> type[T]:
 def _declared(cls: type[T], allowed: tuple[type[Any], ...]) -> type[T]:
     where, is_inputs = _spoken(cls), Given in allowed
     try:
-        made = dataclass(frozen=True, kw_only=True)(cls)
-        specs = _specs(made)
+        declared = dataclass(frozen=True, kw_only=True)(cls)
+        specs = _specs(declared)
     except (TypeError, DeclarationError) as error:  # dataclass refuses a field without annotation by a TypeError
         raise DeclarationError(f"{where}: {error}") from None
     for name, spec in specs.items():
@@ -192,7 +192,7 @@ def _declared(cls: type[T], allowed: tuple[type[Any], ...]) -> type[T]:
             raise DeclarationError(f"{where}: '{name}' is declared with the wrong word; {words}")
         if isinstance(spec, Part) and _is_inputs(spec.of) is not is_inputs:
             raise DeclarationError(f"{where}: the part '{name}' of {spec.of.__name__} mixes inputs and results")
-    return made
+    return declared
 
 
 @dataclass(frozen=True, kw_only=True)

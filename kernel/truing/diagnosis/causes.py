@@ -179,7 +179,7 @@ def effects_of(machine: Calibration) -> list[Candidate]:
     Effects, and parts of effects, that are on already are part of the model; an effect whose conditions nobody measured
     is left out, and so is one that follows only what never moved.
     """
-    model, made = machine.start.model, list[Candidate]()
+    model, candidates = machine.start.model, list[Candidate]()
     for order, effect in enumerate(model.known_effects.values()):
         if any(need.name in machine.records.absent for need in effect.needs) or _stands_still(effect, machine):
             continue
@@ -189,8 +189,8 @@ def effects_of(machine: Calibration) -> list[Candidate]:
             if not set(part) & set(machine.on.get(effect.name, ())):
                 tag = effect.name if len(parts) == 1 else f"{effect.name}.{index}"
                 numbers = tuple(_numbers(effect, part, machine))
-                made.append(Candidate(effect.name, tag, numbers, order, effect, is_kernel=is_kernel))
-    return [cause for cause in made if not cause.is_kernel or _is_offered(cause, machine)]
+                candidates.append(Candidate(effect.name, tag, numbers, order, effect, is_kernel=is_kernel))
+    return [cause for cause in candidates if not cause.is_kernel or _is_offered(cause, machine)]
 
 
 def _numbers(effect: Effect[Any, Any], part: Sequence[str], machine: Calibration) -> Iterator[Parameter]:

@@ -140,7 +140,7 @@ def _grouped(bundles: Iterable[Bundle]) -> Iterator[list[Bundle]]:
 
 def compared(bundles: list[Bundle], conditional: Conditional) -> Iterator[tuple[str, ConditionalGain]]:
     """Compare the curves of causes with what an explanation leaves; those that draw nothing here are left out."""
-    curves = np.concatenate([each.curves for each in bundles]) if len(bundles) > 1 else bundles[0].curves
+    curves = np.concatenate([bundle.curves for bundle in bundles]) if len(bundles) > 1 else bundles[0].curves
     kept, is_own, basis, right, normal = _weighed(curves, conditional)
     begin = 0
     for bundle in bundles:
@@ -183,7 +183,7 @@ def _best(
         if not gains[index] > 0 or len(chosen) == KEPT:  # the gains fall from here on
             break
         own, others = span.vectors(index), [span.vectors(other) for other in chosen]
-        if not any(np.linalg.norm(own @ each.T) ** 2 > AS_ONE * min(len(own), len(each)) for each in others):
+        if not any(np.linalg.norm(own @ other.T) ** 2 > AS_ONE * min(len(own), len(other)) for other in others):
             chosen.append(index)
     known, whole = conditional.sample.known, float(conditional.left @ conditional.left)
     rest = np.maximum(1 - gains[chosen] / max(whole, known, 1.0), 1e-9)  # of the squares; the noise is what is left

@@ -68,10 +68,10 @@ class ResponseCurves:
             return self._made(cause, _Place(self.extended, conditional, conditional.causes))
         if cause.tag in self._alone:
             return self._alone[cause.tag]
-        made = self._first(cause, _Place(self.extended, conditional, ()))
-        if made.curves.size <= VALUES_KEPT:
-            self._alone[cause.tag] = made
-        return made
+        bundle = self._first(cause, _Place(self.extended, conditional, ()))
+        if bundle.curves.size <= VALUES_KEPT:
+            self._alone[cause.tag] = bundle
+        return bundle
 
     def _matters(self, cause: Candidate, conditional: Fit) -> bool:
         """Whether an effect may draw something else beside an explanation than alone."""
@@ -82,11 +82,11 @@ class ResponseCurves:
     def _first(self, cause: Candidate, beside: _Place) -> Bundle:
         """Return the curves of a cause beside nothing; none where the budget of calls does not last for them."""
         if self.extended.lasts or not self.extended.costs(cause):
-            made = self._made(cause, beside)
-            if made.lost:
+            bundle = self._made(cause, beside)
+            if bundle.lost:
                 lost, tried = self.lost.get(cause.name, (0, 0))
-                self.lost[cause.name] = lost + made.lost, tried + made.lost + len(made.points)
-            return made
+                self.lost[cause.name] = lost + bundle.lost, tried + bundle.lost + len(bundle.points)
+            return bundle
         self.extended.budget.unseen.append(cause.name)
         return Bundle(cause, np.zeros((0, cause.size)), np.zeros((0, 1, beside.readings)), is_straight=False)
 
@@ -168,13 +168,13 @@ class _Place:
             for side in filter(None, (cause.numbers[index].low, cause.numbers[index].high))
             for share in (1.0, 0.1, LEVELS[-1])
         ]
-        made = self.changes(cause, np.array([*points, together]))
-        if not (np.isfinite(made) | np.isnan(made).all(axis=0)).all():
+        changes = self.changes(cause, np.array([*points, together]))
+        if not (np.isfinite(changes) | np.isnan(changes).all(axis=0)).all():
             return False
-        rows, made = len(self.machine.records), np.nan_to_num(made)
+        rows, curves = len(self.machine.records), np.nan_to_num(changes)
         grain = np.repeat([4 * self.extended.grain.get(name, 0.0) for name in self.machine.records.measured], rows)
-        slopes = {index: np.zeros(made.shape[1]) for index in ends}
-        for point, curve in zip(points, made, strict=False):
+        slopes = {index: np.zeros(curves.shape[1]) for index in ends}
+        for point, curve in zip(points, curves, strict=False):
             (moved,) = (each for each in ends if point[each])
             slope, largest = curve / point[moved], np.abs(curve).max() / abs(point[moved])
             if not slopes[moved].any():
@@ -184,9 +184,9 @@ class _Place:
                 > STRAIGHT * max(largest, np.abs(slopes[moved]).max()) + grain / abs(point[moved])
             ):
                 return False
-        summed = sum((slopes[index] * together[index] for index in ends), np.zeros(made.shape[1]))
+        summed = sum((slopes[index] * together[index] for index in ends), np.zeros(curves.shape[1]))
         few = STRAIGHT * max(float(np.abs(summed).max()), 1e-300) * len(ends)
-        return bool(np.all(np.abs(made[-1] - summed) <= few + 2 * len(ends) * grain))
+        return bool(np.all(np.abs(curves[-1] - summed) <= few + 2 * len(ends) * grain))
 
     def slopes(self, cause: Candidate, shapes: Matrix) -> Matrix:
         """Return the change per unit of every amplitude at some shapes (M, shape numbers), (M, q, readings)."""

@@ -146,28 +146,30 @@ def rival_fits(chosen: Chosen) -> list[Fit]:
 
 def _renamed(chosen: Chosen) -> Iterator[Fit]:
     """Give the winner with one cause exchanged for each that draws the same curve, as large as that is here."""
-    best, made = chosen.best, chosen.competition
+    best, competition = chosen.best, chosen.competition
     for index, cause in enumerate(best.causes):
         for name in chosen.same.get(cause.tag, ()):
-            others = [other for other in made.causes if other.name == name and other.tag not in best.key]
+            others = [other for other in competition.causes if other.name == name and other.tag not in best.key]
             keys = [(best.key - {cause.tag}) | {other.tag} for other in others]
-            fits = [made.known[key] for key in keys if key in made.known]
-            fits = fits or [each for other in others for each in _exchanged(made, best, index, other)]
+            fits = [competition.known[key] for key in keys if key in competition.known]
+            fits = fits or [fit for other in others for fit in _exchanged(competition, best, index, other)]
             if fits:
-                yield min(fits, key=lambda each: each.cost)
+                yield min(fits, key=lambda fit: fit.cost)
 
 
-def _exchanged(made: Competition, best: Fit, index: int, other: Candidate) -> Iterator[Fit]:
+def _exchanged(competition: Competition, best: Fit, index: int, other: Candidate) -> Iterator[Fit]:
     """Give exact fits of an explanation with one cause exchanged for another, from where its curves say."""
     causes, values = list(best.causes), list(best.values)
     del causes[index], values[index]
-    (predicted,) = made.extended.at(causes, [(values, best.moved)])
+    (predicted,) = competition.extended.at(causes, [(values, best.moved)])
     held = replace(best, causes=tuple(causes), values=tuple(values), predicted=predicted, slopes={})
-    held = held.in_sample(made.sample)
-    seen = look(made.curves, held, [other]).get(other.tag) if np.isfinite(held.left).all() else None
+    held = held.in_sample(competition.sample)
+    seen = look(competition.curves, held, [other]).get(other.tag) if np.isfinite(held.left).all() else None
     for _, start in seen.starts if seen is not None else ():
         several = (*causes[:index], other, *causes[index:])
-        fit = fit_from(made.sample, made.extended, several, (*values[:index], start, *values[index:]), held)
+        fit = fit_from(
+            competition.sample, competition.extended, several, (*values[:index], start, *values[index:]), held
+        )
         if fit is not None:
             yield fit
 
@@ -229,11 +231,11 @@ class _Seen:
 
 def _duels(chosen: Chosen, several: Sequence[Fit], settings: Mapping[str, Matrix]) -> list[_Duel]:
     """Set up every explanation, believed, against every other one, unless that is the same with something added."""
-    made = chosen.competition
-    tried = elsewhere(made.extended, machine_there(made.sample.machine, settings))
-    roots = made.sample.roots(chosen.best.in_sample(made.sample).left)
-    seen = [_seen(fit.in_sample(made.sample), made.extended, tried) for fit in several]
-    spreads = np.array(list(_spreads(made.sample, chosen.best).values()))[:, None]
+    competition = chosen.competition
+    tried = elsewhere(competition.extended, machine_there(competition.sample.machine, settings))
+    roots = competition.sample.roots(chosen.best.in_sample(competition.sample).left)
+    seen = [_seen(fit.in_sample(competition.sample), competition.extended, tried) for fit in several]
+    spreads = np.array(list(_spreads(competition.sample, chosen.best).values()))[:, None]
     return [_duel(a, b, roots, spreads) for a, b in permutations(seen, 2) if not a.fit.key <= b.fit.key]
 
 
@@ -296,10 +298,10 @@ def _why(chosen: Chosen, settings: Mapping[str, Matrix], index: int, duel: _Duel
     unit = readable_unit(sample.machine.start.print_unit(name), spread)
     words = f"{duel.names[0]} and {duel.names[1]} there differ by {in_unit(float(gaps.max()) * spread, unit)} in {name}"
     known = sample.machine.start.model.known_effects
-    effects = [known[each] for name in duel.names for each in name.split(" + ") if each in known]
+    effects = [known[effect_name] for name in duel.names for effect_name in name.split(" + ") if effect_name in known]
     asked = {key for effect in effects for key in (*(need.name for need in effect.needs), *effect.reads)}
     beyond, reach = "", 0.05
-    for key in [each for each in settings if not asked or each in asked]:
+    for key in [setting for setting in settings if not asked or setting in asked]:
         covariate, value = sample.machine.records.covariates[key], float(settings[key][index])
         low, high = float(np.nanmin(covariate.values)), float(np.nanmax(covariate.values))
         out = max(low - value, value - high) / max(high - low, 1e-300)

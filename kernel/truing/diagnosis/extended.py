@@ -160,7 +160,7 @@ class Extended:
             self.calls += len(points)
             return
         for values, moved in points:
-            own = [(each.tag, value) for each, value in zip(causes, values, strict=True) if each.acts_on_inputs]
+            own = [(cause.tag, value) for cause, value in zip(causes, values, strict=True) if cause.acts_on_inputs]
             sizes = b"".join(np.asarray(value).tobytes() for _, value in own)
             key = tuple(tag for tag, _ in own), sizes, moved.tobytes()
             if key not in self._asked:

@@ -64,15 +64,15 @@ class Nested:
 
 def nested(chosen: Chosen, done: Callable[[int, int], None] = lambda count, of: None) -> Nested:
     """Fit and choose anew in every fold, and judge on the rows left out."""
-    made = chosen.competition
-    folds = folds_of(made.sample)
-    size = len(made.sample.machine.records)
-    judged = {name: HeldOutAnswers(*(np.full(size, np.nan) for _ in range(4))) for name in made.sample.noise}
+    competition = chosen.competition
+    folds = folds_of(competition.sample)
+    size = len(competition.sample.machine.records)
+    judged = {name: HeldOutAnswers(*(np.full(size, np.nan) for _ in range(4))) for name in competition.sample.noise}
     several, same = contenders(chosen), 0
     for fold in range(folds.count):
         done(fold, folds.count)
         test = folds.test(fold)
-        base, *again = refitted([chosen.null, *several], made.extended, test)
+        base, *again = refitted([chosen.null, *several], competition.extended, test)
         if base is None:
             continue
         best = _chosen_again(chosen, base, [fit for fit in again if fit is not None])
@@ -84,29 +84,29 @@ def nested(chosen: Chosen, done: Callable[[int, int], None] = lambda count, of: 
 
 def contenders(chosen: Chosen) -> list[Fit]:
     """Return what competes with the chosen explanation in a fold: named explanations where it is one itself."""
-    made, best = chosen.competition, chosen.best
+    competition, best = chosen.competition, chosen.best
     if not best.causes:
         return []
     plain = all(cause.effect is not None for cause in best.causes)
-    near = made.ranked(
+    near = competition.ranked(
         lambda fit: (
             0 < len(fit.causes) <= len(best.causes)
             and fit.key != best.key
             and (not plain or all(cause.effect is not None for cause in fit.causes))
         )
     )
-    return [made.known[best.key], *near[:CONTENDERS]]
+    return [competition.known[best.key], *near[:CONTENDERS]]
 
 
 def _chosen_again(chosen: Chosen, base: Fit, again: list[Fit]) -> Fit:
     """Return what is chosen without the rows of a fold: the choice, unless another one is better by ``CLOSE``."""
-    made = chosen.competition
+    competition = chosen.competition
     if not again:
         return base
     own = next((fit for fit in again if fit.key == chosen.best.key), None)
-    top = min(again, key=made.score)
-    best = own if own is not None and made.score(own) < made.score(top) + CLOSE else top
-    return best if made.score(best) < made.score(base) else base
+    top = min(again, key=competition.score)
+    best = own if own is not None and competition.score(own) < competition.score(top) + CLOSE else top
+    return best if competition.score(best) < competition.score(base) else base
 
 
 def _judge(judged: HeldOutAnswers, index: int, fits: tuple[Fit, Fit], test: Mask) -> None:

@@ -103,7 +103,7 @@ def certainty_of(fit: Fit, extended: Extended) -> Certainty:
     """
     sample, units = fit.sample, unit_of(fit)
     roots = sample.roots(fit.left)
-    told = np.concatenate([np.full(len(each), sqrt(1 - 2 / (each.freedom + 3))) for each in sample.channels])
+    told = np.concatenate([np.full(len(channel), sqrt(1 - 2 / (channel.freedom + 3))) for channel in sample.channels])
     slopes = np.column_stack(slopes_at(fit, extended)) * (roots * told)[:, None]
     prior = np.diag(np.append(np.zeros(len(units)), np.ones(len(fit.inputs))))
     normal = slopes.T @ slopes
@@ -171,7 +171,7 @@ def amplitude_interval(fit: Fit, extended: Extended, certainty: Certainty, index
 
     Where its cause has a whole number, it holds the intervals at every one that is not excluded.
     """
-    (cause,) = (each for each in fit.causes if index in places_of(fit, each))
+    (cause,) = (cause for cause in fit.causes if index in places_of(fit, cause))
     numbers, begin = [cause.numbers[shape] for shape in cause.shapes], places_of(fit, cause)[0]
     own = interval(fit, certainty, index)
     if any(number.is_free for number in numbers):
@@ -179,7 +179,7 @@ def amplitude_interval(fit: Fit, extended: Extended, certainty: Certainty, index
         return None if low is None else min(low, own[0]), None if high is None else max(high, own[1])
     whole = [begin + shape for shape in cause.shapes if cause.numbers[shape].whole]
     fits = (each for shape in whole for each in whole_left(fit, extended, shape))
-    several = [own, *(interval(each, certainty_of(each, extended), index) for each in fits)]
+    several = [own, *(interval(fit, certainty_of(fit, extended), index) for fit in fits)]
     return min(low for low, _ in several), max(high for _, high in several)
 
 

@@ -37,7 +37,7 @@ def causes_of(chosen: Chosen, fit: Fit) -> tuple[Cause, ...]:
 def _input(fit: Fit, known: Certainty, effect: str) -> Cause:
     """Return an input that lies outside its band, with the interval of its value, in every file that has its own."""
     machine = fit.sample.machine
-    made: dict[int, Sized] = {}
+    by_file: dict[int, Sized] = {}
     for cause in [cause for cause in fit.causes if cause.name == effect]:
         given = machine.inputs[cause.tolerated]
         own = np.zeros(len(known.covariance))
@@ -45,8 +45,8 @@ def _input(fit: Fit, known: Certainty, effect: str) -> Cause:
         if len(fit.inputs):
             own[-len(fit.inputs) :] = fit.sample.directions[cause.tolerated]
         value, reach = input_value(fit, cause.tolerated), known.reach(own) * given.sd
-        made[given.file] = value, value - reach, value + reach
-    return Cause(effect, (_of_files(fit, given.name, made, machine.start.unit_of(given.name)),))
+        by_file[given.file] = value, value - reach, value + reach
+    return Cause(effect, (_of_files(fit, given.name, by_file, machine.start.unit_of(given.name)),))
 
 
 def _of_files(fit: Fit, name: str, made: Mapping[int, Sized], unit: str) -> FittedUnknown:
@@ -67,7 +67,7 @@ def _effect(chosen: Chosen, fit: Fit, known: Certainty, effect: Effect[Any, Any]
         own = [index for index in places if numbers[index].name == unknown.name]
         if own:
             sized: dict[int, Sized] = {
-                numbers[each].file: (value_of(fit, each), *ends_of(fit, extended, known, each)) for each in own
+                numbers[index].file: (value_of(fit, index), *ends_of(fit, extended, known, index)) for index in own
             }
             unknowns.append(_of_files(fit, unknown.name, sized, unknown.unit))
             kept.append(own[0])
@@ -92,7 +92,8 @@ def by_share(chosen: Chosen, causes: tuple[Cause, ...]) -> tuple[Cause, ...]:
         return causes
     added, channels = added_by(chosen.best, chosen.competition.extended), chosen.best.sample.channels
     drawn = [
-        [added[one.effect][each.name][each.rows] * each.factors / each.weights for each in channels] for one in causes
+        [added[cause.effect][channel.name][channel.rows] * channel.factors / channel.weights for channel in channels]
+        for cause in causes
     ]
     squares = np.array([sum(float(np.sum(part**2)) for part in parts) for parts in drawn])
     if not squares.sum() > 0:
@@ -165,11 +166,11 @@ def remainder_of(chosen: Chosen, units: Mapping[str, str]) -> Remainder | None:
         shape = cause.shape
         if shape is None:
             continue
-        made = shape.terms([float(values[index]) for index in cause.shapes], machine.records.covariates)
+        shape_terms = shape.terms([float(values[index]) for index in cause.shapes], machine.records.covariates)
         sizes = iter([float(values[index]) for index in cause.amplitudes])
         for name, added in shape_added(machine, cause, values).items():
             words.setdefault(name, []).append(shape_in_words(machine, cause, values, added, units[name]))
-            own = (ShapeTerm(term.expression, next(sizes)) for term in made)
+            own = (ShapeTerm(term.expression, next(sizes)) for term in shape_terms)
             terms[name] = (*terms.get(name, ()), *own)
     if not words:
         return None

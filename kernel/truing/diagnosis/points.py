@@ -90,11 +90,11 @@ def thinned(points: Matrix, most: int) -> Matrix:
 
 
 def refined(
-    shapes: Sequence[Parameter], u: Matrix, made: Matrix, make: Callable[[Matrix], Matrix], most: int = FINEST
+    shapes: Sequence[Parameter], u: Matrix, curves: Matrix, make: Callable[[Matrix], Matrix], most: int = FINEST
 ) -> tuple[Matrix, Matrix]:
     """Put points between neighbours that are no longer alike, until all are or there are enough."""
     while len(u) < most:
-        flat = np.nan_to_num(made.reshape(len(made), -1))
+        flat = np.nan_to_num(curves.reshape(len(curves), -1))
         size = np.linalg.norm(flat, axis=1)
         cosine = np.abs(np.einsum("ij,ij->i", flat[1:], flat[:-1])) / np.maximum(size[1:] * size[:-1], 1e-300)
         gaps = np.flatnonzero((cosine < NEXT_TO) & (np.diff(u[:, 0]) > 1e-5) & (np.minimum(size[1:], size[:-1]) > 0))
@@ -102,9 +102,9 @@ def refined(
             break
         new = (u[gaps] + u[gaps + 1])[: most - len(u)] / 2
         order = np.argsort(np.concatenate([u, new])[:, 0], kind="stable")
-        made = np.concatenate([made, make(placed(shapes, new))])[order]
+        curves = np.concatenate([curves, make(placed(shapes, new))])[order]
         u = np.concatenate([u, new])[order]
-    return u, made
+    return u, curves
 
 
 def spread(cause: Candidate, count: int, most: int = FINEST) -> Matrix:

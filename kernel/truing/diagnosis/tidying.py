@@ -50,7 +50,7 @@ def each_block_once(data: DataRows) -> DataRows:
     if time is None or not (np.diff(time) < 0).any():
         return data
     cells = (data.runs, *data.columns.values())
-    like = first_alike([numbered(each) if each.dtype == object else each for each in cells])
+    like = first_alike([numbered(cell) if cell.dtype == object else cell for cell in cells])
     is_again = np.zeros(len(data), dtype=bool)
     for start in np.flatnonzero((np.diff(time) < 0) & (like[1:] <= np.arange(len(time) - 1))) + 1:
         first = like[start]

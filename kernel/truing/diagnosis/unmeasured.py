@@ -127,9 +127,11 @@ def _result_to_measure(
     few = machine.records.part(np.arange(0, len(machine.records), max(1, len(machine.records) // ROWS)))
     there = calibration_of(start, replace(few, measured={name: np.zeros(len(few)) for name in names}, sigma={}))
     predictions: list[tuple[str, Predicted]] = []
-    for each in explanations:
-        setup = start.with_effects(switched_on(each.causes, each.values, machine)).changed(_shifted(each))
-        predictions.append((name_of(each), predict(setup, there.records)))
+    for explanation in explanations:
+        setup = start.with_effects(switched_on(explanation.causes, explanation.values, machine)).changed(
+            _shifted(explanation)
+        )
+        predictions.append((name_of(explanation), predict(setup, there.records)))
     goals = {goal.result for goal in start.model.objectives if isinstance(goal, (Require, Minimise, Maximise))}
     ranked: list[tuple[tuple[Any, ...], list[_Gap]]] = []
     for index, name in enumerate(names):

@@ -42,15 +42,15 @@ def shapes_of(records: Records, registered: Mapping[str, Sequence[int]], *, has_
     moved = _apart(records.moved)
     results = tuple(records.measured)
     groups = [(name,) for name in results] + ([results] if len(results) > 1 else [])
-    made = []
+    shapes = []
     for kind, on, count, numbers, terms in _families(moved, registered, has_steps=has_steps, rows=len(records)):
         for group in groups:
             shape = UnregisteredShape(kind, on, group, terms)
             amplitudes = [Parameter(f"{name}:{index}", -inf, inf) for name in group for index in range(count)]
             detail = f".{count}" if kind in {"trend", "product"} else ""
             tag = f"{UNKNOWN}:{kind}{detail}:{','.join(on)}:{','.join(group)}"
-            made.append(Candidate(UNKNOWN, tag, (*amplitudes, *numbers), 10**6, shape=shape))
-    return made
+            shapes.append(Candidate(UNKNOWN, tag, (*amplitudes, *numbers), 10**6, shape=shape))
+    return shapes
 
 
 def _apart(moved: Sequence[Covariate]) -> list[Covariate]:

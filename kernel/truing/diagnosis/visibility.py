@@ -237,7 +237,7 @@ def trades_of(chosen: Chosen) -> tuple[Trade, ...]:
     A cause that is far from zero even with every input free is separated all the same: only what ``APART`` calls
     separable at most weakly is returned.
     """
-    best, inputs, made = chosen.best, chosen.best.sample.machine.inputs, list[Trade]()
+    best, inputs, trades = chosen.best, chosen.best.sample.machine.inputs, list[Trade]()
     named = [cause for cause in best.causes if cause.effect is not None]
     if not named or not len(best.inputs):
         return ()
@@ -253,8 +253,8 @@ def trades_of(chosen: Chosen) -> tuple[Trade, ...]:
         separation = float(values @ inverse @ values)  # the squares that are lost without the cause, all else free
         if abs(correlation) > TRADED and separation < APART:
             unknown = cause.numbers[cause.amplitudes[number]].name
-            made.append(Trade(cause.name, unknown, inputs[column].name, correlation, separation))
-    return tuple(made)
+            trades.append(Trade(cause.name, unknown, inputs[column].name, correlation, separation))
+    return tuple(trades)
 
 
 def _correlations(best: Fit, certainty: Certainty) -> Matrix:

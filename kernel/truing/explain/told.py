@@ -144,7 +144,7 @@ def of_input(setup: Setup, name: str) -> dict[str, Any]:
     field = model.input_fields[name]
     direct, further = following(made_from(model), name)
     scattering = [tolerance for tolerance in model.tolerances.values() if name in tolerance.on]
-    changed = [effect for effect, one in all_touched(setup).items() if name in one.inputs]
+    changed = [effect for effect, change in all_touched(setup).items() if name in change.inputs]
     moves = _moves(setup, [name]) if field.kind == "float" and _is_given(setup, name) else None
     moved = {*direct, *further, *(row["name"] for row in moves or ())}
     return {
@@ -158,10 +158,12 @@ def of_input(setup: Setup, name: str) -> dict[str, Any]:
         "followed_by": list(direct),
         "then": list(further),
         "moves": moves,
-        "limits": [require_words(one, "") for one in _requires(setup) if one.result in moved],
+        "limits": [require_words(require, "") for require in _requires(setup) if require.result in moved],
         "tolerances": [_tolerance(setup, tolerance) for tolerance in scattering],
         "namesake": list(model.tolerances[name].on) if name in model.tolerances and not _is_on(setup, name) else [],
-        "limit_of": [require_words(one, "") for one in _requires(setup) if name in {one.limit, one.reliability}],
+        "limit_of": [
+            require_words(require, "") for require in _requires(setup) if name in {require.limit, require.reliability}
+        ],
         "varied": [
             _vary_words(objective)
             for objective in model.objectives
@@ -202,7 +204,7 @@ def _is_table(field: Any) -> bool:
 
 
 def _row(setup: Setup, moved_by: Influences, result: str, sources: Sequence[str]) -> dict[str, Any] | None:
-    of = [one for one in moved_by.of[result] if one.source in sources and one.moves]
+    of = [influence for influence in moved_by.of[result] if influence.source in sources and influence.moves]
     if not of:
         return None
     alone = of[0] if len(sources) == 1 else None
@@ -211,7 +213,7 @@ def _row(setup: Setup, moved_by: Influences, result: str, sources: Sequence[str]
         "note": setup.model.own_result_fields[result].spec.note,
         "change": step_text(setup, result, alone.step) if alone is not None else "",
         "percent": 100 * alone.relative if alone is not None and alone.relative is not None else None,
-        "share": sum(one.share for one in of),
+        "share": sum(influence.share for influence in of),
     }
 
 
@@ -460,11 +462,14 @@ def _moved_by(setup: Setup, field: ResultField, answer: Any, progress: Progress)
     if moved_by.sd[name] > 0:
         scatter = {
             "sd": step_text(setup, name, moved_by.sd[name]),
-            "shares": [{"name": one.source, "share": one.share, **_because(setup, one.source)} for one in by_share(of)],
+            "shares": [
+                {"name": influence.source, "share": influence.share, **_because(setup, influence.source)}
+                for influence in by_share(of)
+            ],
         }
     return {
         "scatter": scatter,
-        "slopes": [slope_row(setup, name, one) for one in by_slope(of)],
+        "slopes": [slope_row(setup, name, influence) for influence in by_slope(of)],
         "remarks": list(moved_by.warnings),
     }
 

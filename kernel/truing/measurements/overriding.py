@@ -142,13 +142,11 @@ def read_rows(path: TableSource, offer: Offer, setup: Setup) -> RowsFile:
         for condition in setup.model.known_conditions.values()
         if condition.derived and condition.name in known
     ]
-    sources = {
-        past_condition.made_from: Source(None, past_condition.name) for past_condition in past
-    }  # anything that is a number has a direction
+    sources = {condition.made_from: Source(None, condition.name) for condition in past}  # any number has a direction
     sources |= {
-        past_condition.made_from: Source(past_condition.unit, past_condition.name)
-        for past_condition in past
-        if past_condition.history != "direction"
+        condition.made_from: Source(condition.unit, condition.name)
+        for condition in past
+        if condition.history != "direction"
     }
     table, faults = read_table(path, {**sources, **axes, **known}, is_measured=False)
     faults.raise_any()
@@ -169,7 +167,7 @@ def read_rows(path: TableSource, offer: Offer, setup: Setup) -> RowsFile:
     made = histories(past, raw, np.array(runs) if runs else None, raw.get(TIME))
     columns |= {name: _filled(name, column, setup) for name, column in made.items()}
     used = {*columns, *series, *places, *([RUN] if series else [])}
-    for condition in (each for each in past if each.name in made):
+    for condition in [condition for condition in past if condition.name in made]:
         used |= {condition.made_from, TIME, *([RUN] if condition.history != SINCE_START else [])}
     others = tuple(name for name in table.units if name not in used)
     return RowsFile(str(path), columns, series, table.cells, table.lines, others, places, runs, table.count)

@@ -213,13 +213,13 @@ class _Numbers(_Column):
         if unit in PURE:
             return values
         with np.errstate(over="ignore"):
-            made = in_si(values, unit)
-        odd = np.isfinite(values) & (~np.isfinite(made) | (made < 0) | ((made == 0) & (values != 0)))
+            converted = in_si(values, unit)
+        odd = np.isfinite(values) & (~np.isfinite(converted) | (converted < 0) | ((converted == 0) & (values != 0)))
         for row in np.flatnonzero(odd).tolist():
-            if fault := si_fault(float(values[row]), float(made[row]), self.declared or ""):
+            if fault := si_fault(float(values[row]), float(converted[row]), self.declared or ""):
                 written = f"{cells[row].strip()} {unit}"
                 faults.add(f"{self.header.name}: {shown(written)} {fault}", lines[row])
-        return made
+        return converted
 
     def made(self, lines: Sequence[int], file: CsvFile) -> NDArray[np.float64] | None:
         """Return the column in SI, NaN where a cell is empty."""

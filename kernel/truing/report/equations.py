@@ -220,7 +220,7 @@ def _width(node: Node, texts: Mapping[str, str]) -> float:
         case Call(("cases" | "either"), arguments):
             values, conditions = arguments[::2], arguments[1::2]
             widest = max(_width(value, texts) for value in values)
-            return widest + max((_width(one, texts) for one in conditions), default=4.0) + 3
+            return widest + max((_width(condition, texts) for condition in conditions), default=4.0) + 3
         case Call(function, arguments):
             inner = sum(_width(argument, texts) for argument in arguments)
             return inner + (1.0 if function == "sqrt" else 0.5 * len(function) + 0.8)

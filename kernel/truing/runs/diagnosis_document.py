@@ -148,8 +148,13 @@ def _wrong(wrong: Wrong, labels: Mapping[str, str]) -> dict[str, Any]:
             "outliers": [{"file": labels.get(file, file), "line": int(line)} for file, line in noise.outliers],
         },
         "findings": [
-            {"kind": one.kind, "covariate": one.covariate, "p_value": clean(one.p_value), "text": one.text}
-            for one in wrong.findings
+            {
+                "kind": finding.kind,
+                "covariate": finding.covariate,
+                "p_value": clean(finding.p_value),
+                "text": finding.text,
+            }
+            for finding in wrong.findings
         ],
     }
 

@@ -691,11 +691,11 @@ def scattered(
         variable, values = choices.get(name, (None, None))
         spread = space.setup.spread_of(name)
         grades = values if variable is not None and variable.kind == "grade" else None
-        each = {
+        by_column = {
             column: _resolved(space, spread, column, (base, columns, grades, len(designs)))
             for column, base in inner.items()
         }
-        scatter[name] = _widened(tolerance, spread, each, values) if _is_width(variable) else each
+        scatter[name] = _widened(tolerance, spread, by_column, values) if _is_width(variable) else by_column
     return scatter
 
 
@@ -703,9 +703,11 @@ def _is_width(variable: Variable | None) -> bool:
     return variable is not None and variable.kind == "width"
 
 
-def _widened(tolerance: Tolerance, spread: Spread, each: Mapping[str, Scattered], widths: Any) -> dict[str, Scattered]:
+def _widened(
+    tolerance: Tolerance, spread: Spread, by_column: Mapping[str, Scattered], widths: Any
+) -> dict[str, Scattered]:
     """Bring a band to its chosen width (that of its first input); a zone grows where it says."""
-    first = next(iter(each.values())).width
+    first = next(iter(by_column.values())).width
     with np.errstate(all="ignore"):
         factor = widths / first
     shift = shift_per_width(spread)
@@ -715,7 +717,7 @@ def _widened(tolerance: Tolerance, spread: Spread, each: Mapping[str, Scattered]
             mean=distribution.mean + shift * (factor - 1) * distribution.width,
             sd=distribution.sd * factor,
         )
-        for column, distribution in each.items()
+        for column, distribution in by_column.items()
     }
 
 

@@ -357,8 +357,8 @@ def truth_of(
             sizes[name] = _value(effect, unknown, said)
         except TruingError as error:
             faults.append(f"size of '{name}': {error}")
-    touched = [part for part in effect.groups() if any(one.name in stated for one in part)]
-    missing = [one.name for part in touched for one in part if one.name not in stated]
+    touched = [part for part in effect.groups() if any(unknown.name in stated for unknown in part)]
+    missing = [unknown.name for part in touched for unknown in part if unknown.name not in stated]
     if missing:
         faults.append(f"effect '{effect.name}': say {' and '.join(missing)} as well, size={{...}}")
     if (
@@ -378,12 +378,12 @@ def _stated(
         return size
     parts = effect.groups()
     if effect.parts:  # one gauge each: that of what is measured
-        parts = tuple(part for part in parts if any(one.name in measured for one in part)) or parts
+        parts = tuple(part for part in parts if any(unknown.name in measured for unknown in part)) or parts
     if size is None:
         return _half(effect, parts, faults)
     if len(parts) == 1 and len(parts[0]) == 1:
         return {parts[0][0].name: size}
-    names = [one.name for part in parts for one in part]
+    names = [unknown.name for part in parts for unknown in part]
     faults.append(
         f"effect '{effect.name}' has the unknowns {', '.join(names)}: say which is {size}, "
         f'size={{"{names[0]}": "{size}", ...}}'
@@ -393,16 +393,16 @@ def _stated(
 
 def _half(effect: Effect[Any, Any], parts: Sequence[Sequence[Unknown]], faults: list[str]) -> dict[str, str]:
     """Take half of what the bounds of an amplitude allow, and the middle of those of a shape."""
-    if len(parts) != 1 or any(abs(one.high) >= ENDLESS for one in parts[0]):
+    if len(parts) != 1 or any(abs(unknown.high) >= ENDLESS for unknown in parts[0]):
         faults.append(f"say how large '{effect.name}' is: size={{...}}; its bounds are no measure of it")
         return {}
     sizes = {}
-    for one in parts[0]:
-        if one.is_amplitude:
-            value = max((one.low, one.high), key=abs) / 2
+    for unknown in parts[0]:
+        if unknown.is_amplitude:
+            value = max((unknown.low, unknown.high), key=abs) / 2
         else:
-            value = math.sqrt(one.low * one.high) if one.low > 0 else (one.low + one.high) / 2
-        sizes[one.name] = f"{round(value) if one.whole else value!r} {one.unit}".strip()
+            value = math.sqrt(unknown.low * unknown.high) if unknown.low > 0 else (unknown.low + unknown.high) / 2
+        sizes[unknown.name] = f"{round(value) if unknown.whole else value!r} {unknown.unit}".strip()
     return sizes
 
 
@@ -777,12 +777,12 @@ def _unit_of(setup: Setup, name: str, measured: Sequence[str]) -> str | None:
 def _sources(setup: Setup) -> dict[str, str]:
     """Return the columns from which conditions are made that are neither input nor condition, with their units."""
     model = setup.model
-    made = [
+    conditions = [
         condition
         for condition in model.known_conditions.values()
         if condition.made_from and condition.history != "direction"
     ]
-    units = {condition.made_from: condition.unit for condition in made}
+    units = {condition.made_from: condition.unit for condition in conditions}
     axes = {name: field.unit for name, field in model.own_result_fields.items() if isinstance(field.spec, Axis)}
     units |= {
         condition.made_from: "" for condition in model.known_conditions.values() if condition.history == "direction"
