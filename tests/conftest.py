@@ -1,5 +1,6 @@
 """What tests share beside the fixtures of ``truing.testing``: the size of torture tests, the strangers' plugins."""
 
+import gc
 import os
 import sys
 from pathlib import Path
@@ -28,6 +29,12 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> WorkStealingScheduling:
     """Give every worker tests that stand one after another, so that what these share is made once."""
     return WorkStealingScheduling(config, log)
+
+
+def pytest_collection_finish() -> None:
+    """Take what ten thousand collected tests hold out of every later collection of garbage."""
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture(scope="session")

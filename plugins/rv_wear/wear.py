@@ -136,18 +136,24 @@ def growth(teeth: Teeth, unworn: Loads) -> Rate:
 def _power_law(factor: Array, power: float, film: Float | None) -> Rate:
     """Factor times force to a power, 0 for a force of 0, less where a film carries; ``film`` is Lambda at 1 N.
 
-    The power of 0 would take three times as long as any other.
+    The power of 0 would take three times as long as any other; of two powers a common logarithm is the shorter way.
     """
     slight = np.full_like(factor, SLIGHT)
-    least = (slight.reshape(-1)[:8] ** power)[0]
+    few = slight.reshape(-1)[:8]
+    least = (few**power)[0] if film is None else np.exp(power * np.log(few))[0]
 
     def rate_of(force: Array) -> Array:
         reached = np.maximum(force, slight)
-        rate: Array = reached**power
+        if film is None:
+            rate: Array = reached**power
+            rate -= least
+            rate *= factor
+            return rate
+        logarithm = np.log(reached)
+        rate = np.exp(power * logarithm)
         rate -= least
         rate *= factor
-        if film is not None:
-            rate *= unworn_share(film * reached**-0.13)
+        rate *= unworn_share(film * np.exp(-0.13 * logarithm))
         return rate
 
     return rate_of
