@@ -142,12 +142,9 @@ def read_rows(path: TableSource, offer: Offer, setup: Setup) -> RowsFile:
         for condition in setup.model.known_conditions.values()
         if condition.derived and condition.name in known
     ]
+    with_unit = [condition for condition in past if condition.history != "direction"]
     sources = {condition.made_from: Source(None, condition.name) for condition in past}  # any number has a direction
-    sources |= {
-        condition.made_from: Source(condition.unit, condition.name)
-        for condition in past
-        if condition.history != "direction"
-    }
+    sources |= {condition.made_from: Source(condition.unit, condition.name) for condition in with_unit}
     table, faults = read_table(path, {**sources, **axes, **known}, is_measured=False)
     faults.raise_any()
     numbers = {name: column for name, column in table.columns.items() if is_number(column)}
