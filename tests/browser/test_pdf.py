@@ -15,7 +15,7 @@ from truing.errors import OutputError
 from truing.report.pdf import find_browser, pdf_bytes, print_pdf
 
 POINT = 25.4 / 72
-ONE = pytest.mark.parametrize("sheet", ["press"], indirect=True)  # what does not depend on the sheet
+ONE = pytest.mark.parametrize("sheet", ["hostile"], indirect=True)  # what does not depend on the sheet
 
 
 def words_of(pdf: Path) -> str:

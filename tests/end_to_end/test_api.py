@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import subprocess
 import sys
 import warnings
@@ -276,47 +275,6 @@ def test_an_interrupted_run_is_taken_up(pin: truing.LoadedModel, tmp_path: Path)
     assert taken_up.computed["resumed"] > 0
     assert [file.name for file in tmp_path.iterdir()] == ["run"]
     assert taken_up.document == pin.run(draws=500_000).document
-
-
-DEADLY = """
-import os
-from pathlib import Path
-from truing import Float, Model, Reliability, Require, Tolerance, found, given, hookimpl, inputs, normal, results
-
-@inputs
-class Given:
-    x: Float = given(1.0, "mm")
-
-@results
-class Answer:
-    y: Float = found("mm", formula="x")
-
-def same(item: Given) -> Answer:
-    mark = Path(__file__).with_name("died")
-    if os.getpid() != {parent} and not mark.exists():
-        mark.touch()
-        os._exit(1)
-    return Answer(y=item.x)
-
-@hookimpl
-def truing_models():
-    spread = Tolerance("x", normal(sd="1 %"), why="")
-    limit = Require("y", at_most="2 mm", reliability=0.9)
-    return [Model(name="deadly", title="Dies once", function=same, errors=[spread], objectives=[limit],
-                  studies=[Reliability(draws=60_000)])]
-"""
-
-
-def test_a_worker_that_is_lost_is_told(tmp_path: Path) -> None:
-    (tmp_path / "deadly.py").write_text(DEADLY.format(parent=os.getpid()), encoding="utf-8")
-    deadly = truing.load(tmp_path / "deadly.py")
-    lost = deadly.run(workers=2)
-    assert (tmp_path / "died").exists()
-    (told,) = lost.warnings
-    assert told.startswith("a worker process ended without an answer once")
-    assert told in lost._repr_html_()
-    assert lost.computed["workers"]["lost"] == 1
-    assert lost.document == deadly.run().document
 
 
 SCRIPT = """

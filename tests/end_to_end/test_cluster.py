@@ -96,8 +96,9 @@ def pair(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
         yield made
 
 
-@pytest.mark.parametrize("words", [(), ("--cases", "cases.csv")], ids=["one", "cases"])
-def test_a_cluster_answers_as_one_process(pair: Cluster, calc: Calc, tmp_path: Path, words: tuple[str, ...]) -> None:
+def test_a_cluster_answers_as_one_process(pair: Cluster, calc: Calc, tmp_path: Path) -> None:
+    """With cases; that a single run does, the test of a worker that is killed shows."""
+    words = ("--cases", "cases.csv")
     (tmp_path / "cases.csv").write_text("load [N]\n140\n2200\n500000\n2230\n180\n")
     there = calc("run", PIN, *words, "-q", "-o", "run", "--cluster", pair.address)
     (tmp_path / "run").rename(tmp_path / "there")
@@ -173,18 +174,17 @@ def test_an_interrupted_run_leaves_the_cluster_at_once(pair: Cluster, tmp_path: 
 
 
 def test_a_plugin_in_one_file_reaches_the_cluster_and_another_one_there_is_refused(
-    cluster: Cluster, calc: Calc, calc_process: Calc, tmp_path: Path
+    pair: Cluster, calc: Calc, calc_process: Calc, tmp_path: Path
 ) -> None:
-    cluster.start_workers(1)
     file = tmp_path / "own_wear.py"
     file.write_text(PIN.read_text(encoding="utf-8"), encoding="utf-8")
     words = ("run", file, "-q", "--set", "studies.reliability.draws=40000")
-    there = calc(*words, "-o", "there", "--cluster", cluster.address)
+    there = calc(*words, "-o", "there", "--cluster", pair.address)
     assert there.code == 0, there.err
     assert run_of(tmp_path / "there")["warnings"] == []
     with file.open("a", encoding="utf-8") as more:
-        more.write("\n# the worker has loaded the file without this line\n")
-    changed = calc_process(*words, "-o", "there", "--cluster", cluster.address)
+        more.write("\n# the workers have loaded the file without this line\n")
+    changed = calc_process(*words, "-o", "there", "--cluster", pair.address)
     assert changed.code == 3
     assert changed.err.endswith(f"a worker has another {file}; bring the same file there and start it again\n")
 

@@ -1,4 +1,4 @@
-"""The press linkage through the command line: the example, alone and shared out, and the paper's printed numbers.
+"""The press linkage through the command line: the example, and the paper's printed numbers.
 
 What it calculates is tested in tests/published, on the model.
 """
@@ -21,14 +21,6 @@ def example(tmp_path_factory: pytest.TempPathFactory) -> Path:
     answer = calc_here(folder.parent, "run", "press_linkage", "-q", "-o", "run")
     assert answer.code == 0, answer.err
     return folder
-
-
-def test_it_is_the_same_with_two_workers_in_another_process(calc_process: Calc, example: Path, tmp_path: Path) -> None:
-    answer = calc_process("run", "press_linkage", "-q", "-o", "two", "--workers", "2")
-    assert answer.code == 0, answer.err
-    for name in ("results.json", "sheet.md", "inputs.toml"):
-        assert (tmp_path / "two" / name).read_bytes() == (example / name).read_bytes()
-    assert json.loads((tmp_path / "two/run.json").read_text("utf-8"))["workers"]["count"] == 2
 
 
 def test_the_shipped_example_repeats_the_paper(example: Path) -> None:

@@ -21,10 +21,11 @@ STUDIES = (
 
 @pytest.fixture(scope="module")
 def example(tmp_path_factory: pytest.TempPathFactory) -> tuple[Answer, Path, dict[str, Any]]:
-    """Write the example file and run it, once."""
+    """Write the example file and run it, once, with half the generations of the search."""
     folder = tmp_path_factory.mktemp("reducer")
     assert calc_here(folder, "init", "rv_wear", "-o", "reducer.toml").code == 0
-    answer = calc_here(folder, "run", "rv_wear", "--inputs", "reducer.toml", "--json")
+    fewer = ("--set", "studies.optimise.generations=100")
+    answer = calc_here(folder, "run", "rv_wear", "--inputs", "reducer.toml", "--json", *fewer)
     return answer, folder, json.loads(answer.out)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import io
 import os
 import select
@@ -44,6 +45,7 @@ def forked(
 ) -> End:
     """Run ``calc`` in a fork, in a folder; ``before`` is called there at last, to inject what it likes."""
     (out, out_there), (err, err_there) = os.pipe(), os.pipe()  # a file might be limited with all others
+    gc.freeze()  # else the fork looks through all that the tests before have left, and copies every page of it
     child = os.fork()
     if child == 0:
         _be_the_command(words, folder, (stdout or (lambda: out_there), stderr or (lambda: err_there)), encoding, before)

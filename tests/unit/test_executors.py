@@ -58,21 +58,15 @@ def die(_: int) -> int:
     os._exit(1)
 
 
-@pytest.fixture(scope="module")
-def two():
-    with open_executor("processes:2") as executor:
-        yield executor
-
-
-def test_answers_come_in_the_order_of_the_jobs(two):
+def test_answers_come_in_the_order_of_the_jobs(two_processes):
     expected = [number * number for number in range(20)]
-    assert list(in_order(two, slow_when_even, range(20))) == expected
+    assert list(in_order(two_processes, slow_when_even, range(20))) == expected
     assert list(in_order(SerialExecutor(), slow_when_even, range(6))) == expected[:6]
 
 
 @pytest.mark.parametrize("serial", [True, False])
-def test_an_error_is_raised_where_it_stands_in_the_order(two, serial):
-    answers = in_order(SerialExecutor() if serial else two, fail_at_three, range(10))
+def test_an_error_is_raised_where_it_stands_in_the_order(two_processes, serial):
+    answers = in_order(SerialExecutor() if serial else two_processes, fail_at_three, range(10))
     assert [next(answers) for _ in range(3)] == [0, 1, 2]
     with pytest.raises(ValueError, match="three"):
         next(answers)
@@ -217,14 +211,14 @@ def counted(job: tuple[int, str]) -> int:
     return number * 10
 
 
-def test_what_was_answered_is_not_asked_again(tmp_path, two):
+def test_what_was_answered_is_not_asked_again(tmp_path, two_processes):
     marker = tmp_path / "calls"
     jobs = [(number, str(marker)) for number in range(12)]
     for finished, count in ((5, 5), (12, 12), (12, 12)):
         log = BatchLog(tmp_path / "log")
-        kept = KeptExecutor(two, log)
+        kept = KeptExecutor(two_processes, log)
         assert list(in_order(kept, counted, jobs[:finished])) == [number * 10 for number in range(finished)]
-        assert kept.where == two.where
+        assert kept.where == two_processes.where
         log.close()
         assert len(marker.read_text()) == count
     assert kept.resumed == 12

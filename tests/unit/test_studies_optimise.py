@@ -30,7 +30,7 @@ from truing import (
 from truing.calculation import Calculation, calculate
 from truing.errors import DeclarationError, InputError, UsageError
 from truing.evaluate import evaluate, evaluate_rows
-from truing.executors import BatchLog, KeptExecutor, SerialExecutor, open_executor
+from truing.executors import BatchLog, KeptExecutor, SerialExecutor, WorkerPool
 from truing.fits import GRADES, tolerance
 from truing.inputs_file import read_setup
 from truing.kernel import Offer, Origin
@@ -351,11 +351,10 @@ def test_the_same_seed_gives_the_same_front_and_another_one_another() -> None:
 
 
 @pytest.mark.parametrize("chance_", ["draws", "first_order"])
-def test_processes_give_the_same_bytes(chance_: Any) -> None:
+def test_processes_give_the_same_bytes(chance_: Any, two_processes: WorkerPool) -> None:
     study = replace(SMALL, tightest=0.25, chance=chance_, parts=3)
     setup = replace(setup_of(PAIR) if chance_ == "draws" else grown(), studies=(study,))
-    with open_executor("processes:2") as executor:
-        apart = calculate(setup, executor=executor).outcomes["optimise"]
+    apart = calculate(setup, executor=two_processes).outcomes["optimise"]
     assert written(apart) == written(calculate(setup).outcomes["optimise"])  # type: ignore[arg-type]
 
 

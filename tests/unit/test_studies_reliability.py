@@ -29,7 +29,6 @@ from truing import Reliability, Require, Tolerance, normal
 from truing.calculation import calculate
 from truing.declare.spreads import Off
 from truing.errors import UsageError
-from truing.executors import open_executor
 from truing.setup import SwitchedOn
 from truing.studies.chances import FormResult
 from truing.studies.demands import normal_chance, wilson
@@ -314,12 +313,6 @@ def test_form_stands_only_beside_a_sampling():
 
 
 # ---- seeds and workers --------------------------------------------------------------------------------------------
-
-
-@pytest.fixture(scope="module")
-def two_processes():
-    with open_executor("processes:2") as executor:
-        yield executor
 
 
 @pytest.mark.parametrize("model", [CHAIN, ROOT, JOINT, WEAR])

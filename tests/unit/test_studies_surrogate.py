@@ -17,7 +17,7 @@ from threadpoolctl import threadpool_info, threadpool_limits
 from truing import Emulated, Model, Surrogate, Table
 from truing.calculation import calculate
 from truing.errors import UsageError
-from truing.executors import open_executor
+from truing.executors import SerialExecutor, WorkerPool
 from truing.inputs_file.study_options import options_of, read_option
 from truing.setup import Setup, SwitchedOn
 from truing.studies.surrogate import Speed, designed, open_box
@@ -202,14 +202,14 @@ def test_a_band_that_holds_too_little_is_a_warning(found: Emulated) -> None:
         assert any(f"only {inside} of 200" in text for text in words) == warned
 
 
-def test_the_same_seed_gives_the_same_numbers_wherever_it_is_computed() -> None:
+def test_the_same_seed_gives_the_same_numbers_wherever_it_is_computed(two_processes: WorkerPool) -> None:
     over = {"rate": "0.5..8 um/h", "working_time": "1..100 h"}
     study = Surrogate(of="depth", over=over, design=40, batch=16, compare=0)
     setup = replace(setup_of(WEAR), studies=(study,))
-    texts = []
-    for address in ("serial", "processes:2"):
-        with open_executor(address) as executor:
-            texts.append(json.dumps(calculate(setup, executor=executor).outcomes["surrogate"].as_json()))
+    texts = [
+        json.dumps(calculate(setup, executor=place).outcomes["surrogate"].as_json())
+        for place in (SerialExecutor(), two_processes)
+    ]
     assert texts[0] == texts[1]
     other = calculate(replace(setup, seed=1)).outcomes["surrogate"]
     assert json.dumps(other.as_json()) != texts[0]

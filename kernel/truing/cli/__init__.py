@@ -5,8 +5,11 @@ from __future__ import annotations
 import os
 import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
+from functools import cache
+
+import typer.main
 
 from truing.cli.app import app
 from truing.cli.candidates import answer_the_shell
@@ -47,7 +50,7 @@ def _run(words: list[str], *, is_program: bool) -> int:
     kept = [word for word in words[:end] if word not in FLAGS] + words[end:]
     code: object = 0
     try:
-        app(args=kept, prog_name="calc", obj=Settings(**dict.fromkeys(said, True)))
+        _command()(args=kept, prog_name="calc", obj=Settings(**dict.fromkeys(said, True)))
     except SystemExit as end_:
         if isinstance(getattr(end_.__context__, "__cause__", None), KeyboardInterrupt):  # before the verb had begun
             raise KeyboardInterrupt from end_
@@ -57,3 +60,9 @@ def _run(words: list[str], *, is_program: bool) -> int:
         lose_output(error)
         code = 2
     return after_output(code if isinstance(code, int) else 2)
+
+
+@cache
+def _command() -> Callable[..., object]:
+    """Return what reads the words of a verb, which is made of the declarations once per process."""
+    return typer.main.get_command(app)

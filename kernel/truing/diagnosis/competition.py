@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import chain
 from math import lgamma, log, log1p
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from truing.arrays import Matrix
 from truing.diagnosis.causes import Candidate, are_exclusive
 from truing.diagnosis.conditional import ConditionalGain, look
 from truing.diagnosis.curves import ResponseCurves
-from truing.diagnosis.exact import EXACTLY, ROUGHLY, fit_from, nothing, refit
+from truing.diagnosis.exact import EXACTLY, ROUGHLY, fitting, nothing, refitting, together
 from truing.diagnosis.extended import Extended, shape_added
 from truing.diagnosis.fitted import Fit, signs_of_wrong
 from truing.diagnosis.learning import as_noise, learnt
@@ -35,8 +36,18 @@ NOISE_SETTLED, MOST_RENEWALS = 0.02, 4
 """The noise is learnt anew until its scale changes by a smaller share, and so often at most."""
 ROWS_PER_NUMBER = 4
 """Fewer rows for every number are followed by any curve, noise or not."""
+AT_ONCE, ROWS_AT_ONCE = 8, 20_000
+"""So many fits ask the model together, of records of no more than so many rows among all."""
 AGAIN, TO_THE_END = "fits in the noise that was learnt", "fits to the end"
 """What a budget that has ended leaves out, in words."""
+
+
+class Start(NamedTuple):
+    """Where a fit begins: causes, their numbers in SI, and a fit that is near; see ``exact.fitting``."""
+
+    causes: Sequence[Candidate]
+    values: Sequence[Matrix]
+    near: Fit | None
 
 
 @dataclass
@@ -131,21 +142,45 @@ class Competition:
         self.fresh.add(fit.key)
         return self.known[fit.key]
 
+    @property
+    def at_once(self) -> int:
+        """So many fits ask the model together; where calls are counted, one after another."""
+        rows = len(self.sample.machine.records)
+        return 1 if self.extended.budget.is_dear else max(1, min(AT_ONCE, ROWS_AT_ONCE // rows))
+
+    def fit_each(self, starts: Sequence[Start]) -> list[Fit | None]:
+        """Fit explanations from their starts and keep them; what is known of one that is not fitted."""
+        made: list[Fit | None] = []
+        for begin in range(0, len(starts), self.at_once):
+            several = starts[begin : begin + self.at_once]
+            begun = [start for start in several if self._may_begin(start)]
+            asking = [fitting(self.sample, self.extended, *start, until=ROUGHLY) for start in begun]
+            fits = dict(zip(map(id, begun), together(self.extended, asking), strict=True))
+            made += [
+                self.keep(fits[id(start)]) if id(start) in fits else self.known.get(key_of(start.causes))
+                for start in several
+            ]
+        return made
+
+    def _may_begin(self, start: Start) -> bool:
+        """Whether an explanation can be fitted to so many rows, and the budget of calls lasts for it."""
+        size = sum(cause.size for cause in start.causes)
+        if size * ROWS_PER_NUMBER > self.sample.known or are_exclusive(start.causes):
+            return False
+        if not self.extended.allows(self.stage):
+            return False
+        self.begun.add(_begins(start.causes, start.values))
+        return True
+
     def fitted(self, causes: Sequence[Candidate], values: Sequence[Matrix], near: Fit | None) -> Fit | None:
         """Fit an explanation from a start and keep it."""
-        if sum(cause.size for cause in causes) * ROWS_PER_NUMBER > self.sample.known or are_exclusive(causes):
-            return None
-        if not self.extended.allows(self.stage):
-            return self.known.get(frozenset(cause.tag for cause in causes))
-        self.begun.add(_begins(causes, values))
-        return self.keep(fit_from(self.sample, self.extended, causes, values, near, until=ROUGHLY))
+        (fit,) = self.fit_each([Start(causes, values, near)])
+        return fit
 
     def joined(self, at: Fit, cause: Candidate, starts: Iterable[tuple[float, Matrix]]) -> Fit | None:
         """Fit an explanation with one more cause, from each of its starts."""
-        made = None
-        for _, values in starts:
-            made = self.fitted((*at.causes, cause), (*at.values, values), at) or made
-        return made
+        fits = [fit for fit in self.fit_each(beside(at, cause, starts)) if fit is not None]
+        return fits[-1] if fits else None
 
     def look(self, at: Fit, causes: Sequence[Candidate] | None = None) -> Mapping[str, ConditionalGain]:
         """Compare the curves of causes with what an explanation leaves, and count their independent curves."""
@@ -165,13 +200,14 @@ class Competition:
         """Fit the most promising causes beside an explanation; half as many beside several."""
         if len(at.causes) >= MOST_CAUSES or not self.extended.allows(self.stage):
             return
-        seen = self.look(at, [cause for cause in self.causes if accept(cause)])
+        seen, wanted = self.look(at, [cause for cause in self.causes if accept(cause)]), []
         for cause in self.promising(seen)[: count if len(at.causes) < 2 else count // 2]:
             starts, fit = seen[cause.tag].starts, self.known.get(at.key | {cause.tag})
             if fit is None or fit.key not in self.fresh:
-                self.joined(at, cause, starts)
+                wanted += beside(at, cause, starts)
             elif at.cost - starts[0][0] < fit.cost - MARGIN:  # it begins elsewhere
-                self.joined(at, cause, starts[:1])
+                wanted += beside(at, cause, starts[:1])
+        self.fit_each(wanted)
 
     def promising(self, seen: Mapping[str, ConditionalGain]) -> list[Candidate]:
         """Return causes by what their curves promise once they are paid for, of those of one curve the weakest."""
@@ -220,28 +256,40 @@ class Competition:
     def exact(self, fit: Fit) -> Fit:
         """Return an explanation fitted to the end; where the budget has ended, of several the best alone."""
         if self.extended.lasts or self.known[fit.key] is self.ranked()[0]:
-            self._again(fit, EXACTLY)
+            self._again([fit], EXACTLY)
         return self.known[fit.key]
 
     def again(self, several: Iterable[Fit], until: float = ROUGHLY) -> None:
         """Fit explanations again from where they are, in the present noise."""
-        for fit in several:
-            is_due = fit.key not in self.fresh or until < ROUGHLY
-            if is_due and (not fit.causes or self.extended.allows(AGAIN if until >= ROUGHLY else TO_THE_END)):
-                self._again(fit, until)
+        due = list({fit.key: fit for fit in several if fit.key not in self.fresh or until < ROUGHLY}.values())
+        what = AGAIN if until >= ROUGHLY else TO_THE_END
+        for begin in range(0, len(due), self.at_once):
+            some = due[begin : begin + self.at_once]
+            self._again([fit for fit in some if not fit.causes or self.extended.allows(what)], until)
 
-    def _again(self, fit: Fit, until: float) -> None:
-        made = refit(fit, self.sample, self.extended, until=until)
-        self.fresh.discard(fit.key)
-        if made is not None and until < ROUGHLY and not self.extended.grain:  # a rough end may have promised too much
-            del self.known[fit.key]
-        self.keep(made)
+    def _again(self, several: Sequence[Fit], until: float) -> None:
+        asking = [refitting(fit, self.sample, self.extended, until=until) for fit in several]
+        for fit, made in zip(several, together(self.extended, asking), strict=True):
+            self.fresh.discard(fit.key)
+            if made is not None and until < ROUGHLY and not self.extended.grain:  # what was rough may promise too much
+                del self.known[fit.key]
+            self.keep(made)
 
     def refresh(self) -> None:
         """Fit again what lies near the best, since the noise was learnt anew; and the model as it is."""
         top = self.score(self.ranked()[0])
         near = [fit for fit in self.ranked()[:RENEWED] if self.score(fit) < top + WITHIN]
         self.again([self.null, *near])
+
+
+def key_of(causes: Sequence[Candidate]) -> frozenset[str]:
+    """Return what tells an explanation by these causes from others."""
+    return frozenset(cause.tag for cause in causes)
+
+
+def beside(at: Fit, cause: Candidate, starts: Iterable[tuple[float, Matrix]]) -> list[Start]:
+    """Return where fits of an explanation with one more cause begin."""
+    return [Start((*at.causes, cause), (*at.values, values), at) for _, values in starts]
 
 
 def _begins(causes: Sequence[Candidate], values: Sequence[Matrix]) -> tuple[frozenset[str], tuple[float, ...]]:

@@ -9,8 +9,9 @@ of its mean square is what a fit makes small.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
 from math import inf
+from typing import Any, TypeVar
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
@@ -18,9 +19,13 @@ from scipy.optimize import least_squares
 
 from truing.arrays import Matrix
 from truing.diagnosis.causes import Candidate, Parameter
-from truing.diagnosis.extended import Extended, parts_of
+from truing.diagnosis.extended import Extended, Predictions, Request, parts_of
 from truing.diagnosis.fitted import STEP, Fit, inward, moved_by, size_of, steps_of
 from truing.diagnosis.sample import Sample
+
+T = TypeVar("T")
+Asking = Generator[Request, Any, T]
+"""Something that asks what the gauges show at some points, is sent the answers, and returns what it was to find."""
 
 EXACTLY, CLOSELY, ROUGHLY = 1e-5, 1e-3, 1e-2
 """A fit ends where a step promises less than so much of the score."""
@@ -58,23 +63,59 @@ def fit_from(
     until: float = EXACTLY,
     held: Sequence[Parameter] = (),
 ) -> Fit | None:
+    """Fit an explanation from a start, as ``fitting`` says."""
+    (fit,) = together(extended, [fitting(sample, extended, causes, values, near, until=until, held=held)])
+    return fit
+
+
+def together(extended: Extended, several: Sequence[Asking[T]]) -> list[T]:
+    """Return what each of several finds; what they ask at one time is one call of the model where it can be."""
+    ended: dict[int, T] = {}
+    answers: dict[int, Predictions | None] = dict.fromkeys(range(len(several)))
+    while answers:
+        requests: dict[int, Request] = {}
+        for index, answer in answers.items():
+            try:
+                requests[index] = several[index].send(answer)
+            except StopIteration as end:
+                ended[index] = end.value
+        answers = dict(zip(requests, extended.at_each(list(requests.values())), strict=True))
+    return [ended[index] for index in range(len(several))]
+
+
+def fitting(
+    sample: Sample,
+    extended: Extended,
+    causes: Sequence[Candidate],
+    values: Sequence[Matrix],
+    near: Fit | None = None,
+    *,
+    until: float = EXACTLY,
+    held: Sequence[Parameter] = (),
+) -> Asking[Fit | None]:
     """Fit an explanation from a start: numbers of every cause, SI.
 
     Numbers in ``held`` keep their start. ``near`` is a fit to begin with: its inputs, what they draw, and what its
     numbers draw where it is of the same causes. None where the model fails however small the causes are.
     """
     state = Fitting(sample, extended, tuple(causes), near, held=held)
-    if not state.begin(np.concatenate(values) if causes else np.zeros(0)):
+    if not (yield from state.begin(np.concatenate(values) if causes else np.zeros(0))):
         return None
     if near is not None and near.slopes and near.causes == state.causes and not extended.grain:
         state.carry(near.slopes)
-    state.settle(until)
+    yield from state.settle(until)
     return state.answer()
 
 
-def refit(fit: Fit, sample: Sample, extended: Extended, *, until: float = ROUGHLY) -> Fit | None:
+def refitting(fit: Fit, sample: Sample, extended: Extended, *, until: float = ROUGHLY) -> Asking[Fit | None]:
     """Fit an explanation again from where it is: in other noise, or to other rows."""
-    return fit_from(sample, extended, fit.causes, fit.values, fit, until=until)
+    return fitting(sample, extended, fit.causes, fit.values, fit, until=until)
+
+
+def refit(fit: Fit, sample: Sample, extended: Extended, *, until: float = ROUGHLY) -> Fit | None:
+    """Fit an explanation again, as ``refitting`` says."""
+    (again,) = together(extended, [refitting(fit, sample, extended, until=until)])
+    return again
 
 
 class Fitting:
@@ -104,29 +145,30 @@ class Fitting:
         self.anchor = np.array(near.inputs) if near is not None and is_alike else np.zeros(self.slopes.shape[1])
         self.damping = FIRST_DAMPING
         self.drawn: dict[str, Matrix] = {}
+        self.predicted: dict[str, Matrix] = {}
         self.is_fresh = False
 
     def outward(self, u: Matrix) -> Matrix:
         """Return numbers in SI."""
         return np.where(self.log, np.exp(np.where(self.log, u, 0.0)), u * self.sizes)
 
-    def shown(self, points: Sequence[Matrix], anchor: Matrix) -> list[dict[str, Matrix]]:
-        """Return what the gauges show at several points, with the inputs at an anchor."""
+    def asked(self, points: Sequence[Matrix], anchor: Matrix) -> Request:
+        """Return several points, with the inputs at an anchor, as the model is asked for them."""
         moved = moved_by(self.sample, anchor)
-        return self.extended.at(self.causes, [(parts_of(self.causes, self.outward(u)), moved) for u in points])
+        return self.causes, [(parts_of(self.causes, self.outward(u)), moved) for u in points]
 
     def bare(self, shown: dict[str, Matrix]) -> Matrix:
         """Return what is left if the inputs were at their means, as far as their slopes tell."""
         return self.sample.left(shown) + self.slopes @ self.anchor
 
-    def begin(self, values: Matrix) -> bool:
+    def begin(self, values: Matrix) -> Asking[bool]:
         """Take a start, or so much nearer to no cause that the model does not fail; False where it always does."""
         u = np.where(self.log, np.log(np.where(self.log, values, 1.0)), values / self.sizes)
         u = np.clip(u, self.low, self.high)
         amplitudes = np.array([number.is_amplitude for number in self.numbers], dtype=bool)
         for halving in range(NEARER):
             tried = np.where(amplitudes, u / 2**halving, u)
-            (shown,) = self.shown([tried], self.anchor)
+            (shown,) = yield self.asked([tried], self.anchor)
             bare = self.bare(shown)
             if np.isfinite(bare).all():
                 self.u, self.predicted, self.b = tried, shown, self.anchor
@@ -151,26 +193,27 @@ class Fitting:
                 break
         return b, left, self.sample.cost(left, b, squares)
 
-    def derivatives(self) -> None:
+    def derivatives(self) -> Asking[None]:
         """Take the derivatives of what the model shows by all free numbers, in one call of it."""
         places = np.flatnonzero(self.free)
         steps = steps_of(self.u, self.log, is_rough=bool(self.extended.grain))
         steps = np.where(self.u + steps > self.high, -steps, steps)
         points = [self.u + step * unit for step, unit in zip(steps[places], np.eye(len(self.u))[places], strict=True)]
         drawn = {name: np.zeros((len(base), len(self.u))) for name, base in self.predicted.items()}
-        for index, shown in zip(places, self.shown(points, self.anchor) if points else [], strict=True):
+        answers = (yield self.asked(points, self.anchor)) if points else []
+        for index, shown in zip(places, answers, strict=True):
             if not np.isfinite(self.sample.left(shown)).all():
-                shown = self._other_side(int(index), float(steps[index]))
+                shown = yield from self._other_side(int(index), float(steps[index]))
             for name, base in self.predicted.items():
                 drawn[name][:, index] = (shown[name] - base) / steps[index]
         self._draw(drawn)
         self.is_fresh = True
 
-    def _other_side(self, index: int, step: float) -> dict[str, Matrix]:
+    def _other_side(self, index: int, step: float) -> Asking[dict[str, Matrix]]:
         """Return what the model would show a step on, as the other side has it; what it shows where that fails too."""
         point = self.u.copy()
         point[index] -= step
-        (shown,) = self.shown([point], self.anchor)
+        (shown,) = yield self.asked([point], self.anchor)
         if not np.isfinite(self.sample.left(shown)).all():
             return self.predicted
         return {name: 2 * base - shown[name] for name, base in self.predicted.items()}
@@ -218,15 +261,15 @@ class Fitting:
         promised = float(2 * gradient @ moved - moved @ normal @ moved)
         return moved, promised
 
-    def settle(self, until: float) -> None:
+    def settle(self, until: float) -> Asking[None]:
         """Step down until little is promised; then move the anchor of the inputs, where slopes miss what they do."""
         if until < ROUGHLY and len(self.b):  # with the causes on, and where the inputs begin
-            self._draw_inputs()
+            yield from self._draw_inputs()
         bends = False
         for _ in range(MOST_ANCHORS):
-            self._descend(until)
+            yield from self._descend(until)
             is_near = until >= ROUGHLY and float(np.abs(self.b - self.anchor).max(initial=0.0)) < 1.0
-            if not len(self.b) or is_near or not self._anchored():
+            if not len(self.b) or is_near or not (yield from self._anchored()):
                 break
             bends = True
         if bends and until < ROUGHLY and not self.extended.grain:
@@ -254,7 +297,7 @@ class Fitting:
                 weighted, start, sloped, (low, high), ftol=until / len(roots), x_scale="jac", max_nfev=MOST_STEPS
             )
             u, b = self._parted(solved.x)
-            (shown,) = self.shown([u], b)
+            (shown,) = self.extended.at(*self.asked([u], b))
             left = self.sample.left(shown)
             cost = self.sample.cost(left, b) if np.isfinite(left).all() else inf
             if cost > self.cost - until:
@@ -275,26 +318,26 @@ class Fitting:
         left = [np.append(roots * self.sample.left(each), b) for each, (_, b) in zip(made, parted, strict=True)]
         return np.where(np.isfinite(left), left, FAILED)
 
-    def _descend(self, until: float) -> None:
+    def _descend(self, until: float) -> Asking[None]:
         if not self.free.any():
             return
         self.damping = FIRST_DAMPING
         if not self.drawn:
-            self.derivatives()
+            yield from self.derivatives()
         is_enough = until >= ROUGHLY and not self.extended.grain  # derivatives that were corrected, of a smooth model
         for _ in range(MOST_STEPS if until < ROUGHLY else MOST_ROUGH):
             moved, promised = self.step()
             if promised < until and (self.is_fresh or is_enough or promised < 1e-3 * until):
                 if until < ROUGHLY and promised > 0:
-                    self._taken(moved)
+                    yield from self._taken(moved)
                 return
             if promised < until:
-                self.derivatives()
+                yield from self.derivatives()
                 continue
-            gained = self._taken(moved)
+            gained = yield from self._taken(moved)
             if gained is None or gained <= 0:
                 if not self.is_fresh:
-                    self.derivatives()
+                    yield from self.derivatives()
                 elif self.damping < LARGEST_DAMPING:
                     self.damping = max(self.damping, 1e-6) * 10
                 else:
@@ -302,14 +345,14 @@ class Fitting:
                 continue
             self.damping = max(self.damping / 5, 1e-12) if gained > GOOD * promised else self.damping * 3
             if gained < GOOD * promised and not self.is_fresh:
-                self.derivatives()
+                yield from self.derivatives()
             elif gained < until and self.is_fresh:
                 return
 
-    def _taken(self, moved: Matrix) -> float | None:
+    def _taken(self, moved: Matrix) -> Asking[float | None]:
         """Take a step if it leads down, and correct the derivatives by what it shows; return how far it led down."""
         tried = np.clip(self.u + moved, self.low, self.high)
-        (shown,) = self.shown([tried], self.anchor)
+        (shown,) = yield self.asked([tried], self.anchor)
         bare = self.bare(shown)
         if not np.isfinite(bare).all():
             return None
@@ -323,13 +366,13 @@ class Fitting:
             self.is_fresh = False
         return gained
 
-    def _anchored(self) -> bool:
+    def _anchored(self) -> Asking[bool]:
         """Move the anchor to the inputs, or as far as leads down; whether the slopes missed enough to go on."""
         start, wanted = self.anchor, self.b
         before = self.sample.cost(self.sample.left(self.predicted), start)
         for share in WAYS:
             tried = start + share * (wanted - start)
-            (shown,) = self.shown([self.u], tried)
+            (shown,) = yield self.asked([self.u], tried)
             exact = self.sample.left(shown)
             cost = self.sample.cost(exact, tried) if np.isfinite(exact).all() else inf
             if cost <= before:
@@ -340,20 +383,20 @@ class Fitting:
         is_off = bool(missed @ missed > MOVED)
         self.anchor, self.b, self.predicted, self.left, self.cost = tried, tried, shown, exact, cost
         if is_off:
-            self._draw_inputs()
+            yield from self._draw_inputs()
         return is_off
 
-    def _draw_inputs(self) -> None:
+    def _draw_inputs(self) -> Asking[None]:
         """Take the slopes of the inputs about the anchor, and the inputs that go best with them."""
-        self.slopes = self.slopes_of_inputs()
+        self.slopes = yield from self.slopes_of_inputs()
         self.b, self.left, self.cost = self.calibrated(self.bare(self.predicted))
 
-    def slopes_of_inputs(self) -> Matrix:
+    def slopes_of_inputs(self) -> Asking[Matrix]:
         """Return what the directions of the inputs draw about the anchor, (rows, K), in one call of the model."""
         k, own = len(self.anchor), parts_of(self.causes, self.outward(self.u))
         aside = 10 * ASIDE if self.extended.grain else ASIDE
         ends = [self.anchor + sign * aside * np.eye(k)[index] for index in range(k) for sign in (1, -1)]
-        made = self.extended.at(self.causes, [(own, moved_by(self.sample, end)) for end in ends])
+        made = yield self.causes, [(own, moved_by(self.sample, end)) for end in ends]
         for name, before in self.moves.items() if made else ():
             rises = zip(made[::2], made[1::2], strict=True)
             taken = np.column_stack([(up[name] - down[name]) / (2 * aside) for up, down in rises])
@@ -403,10 +446,15 @@ def slopes_at(fit: Fit, extended: Extended) -> tuple[Matrix, Matrix]:
     Shapes (rows, numbers) per unit of the number as the fit sees it, 0 for what keeps its start, and (rows, K); those
     of the inputs are taken where the fit has put them.
     """
-    state = Fitting(fit.sample, extended, fit.causes, fit, held=())
-    state.begin(np.concatenate(fit.values) if fit.causes else np.zeros(0))
-    state.derivatives()
-    return -state.slope, state.slopes_of_inputs()
+
+    def asking() -> Asking[tuple[Matrix, Matrix]]:
+        state = Fitting(fit.sample, extended, fit.causes, fit, held=())
+        yield from state.begin(np.concatenate(fit.values) if fit.causes else np.zeros(0))
+        yield from state.derivatives()
+        return -state.slope, (yield from state.slopes_of_inputs())
+
+    (slopes,) = together(extended, [asking()])
+    return slopes
 
 
 def slopes_left(fit: Fit, extended: Extended) -> tuple[Matrix, Matrix]:

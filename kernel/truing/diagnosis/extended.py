@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import accumulate
+from itertools import accumulate, chain, islice
 from math import inf
 from typing import Any
 
@@ -31,6 +31,24 @@ MORE = 4
 Key = tuple[frozenset[str], bytes]
 Point = tuple[Sequence[Matrix], Matrix]
 """The numbers of every cause, SI, and how far each tolerated input is moved, in standard deviations from its mean."""
+Request = tuple[Sequence[Candidate], Sequence[Point]]
+"""Causes that are on, and points of them at which the model is asked what the gauges show."""
+Predictions = list[dict[str, Matrix]]
+"""What the gauges show at several points, by result, SI on all rows."""
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """What a request asks of the model itself: its causes but for shapes, its points, and what tells these apart."""
+
+    causes: list[Candidate]
+    points: list[Point]
+    keys: list[Key]
+
+    @property
+    def acts_on_inputs(self) -> bool:
+        """Whether the model runs again at every point."""
+        return any(cause.acts_on_inputs for cause in self.causes)
 
 
 @dataclass
@@ -90,22 +108,60 @@ class Extended:
         self._machines: dict[Key, Setup] = {}
         self._terms: dict[tuple[str, tuple[float, ...]], list[Matrix]] = {}
 
-    def at(self, causes: Sequence[Candidate], points: Sequence[Point]) -> list[dict[str, Matrix]]:
+    def at(self, causes: Sequence[Candidate], points: Sequence[Point]) -> Predictions:
         """Return what the gauges show at several points, by result, SI on all rows; NaN where the model fails.
 
         Shapes that nobody registered are added to what the model shows: points that differ in them alone are one call.
         """
-        own = [index for index, cause in enumerate(causes) if cause.shape is None]
-        bare_causes = [causes[index] for index in own]
-        bare = [([values[index] for index in own], moved) for values, moved in points]
-        tags = frozenset(cause.tag for cause in bare_causes)
-        keys = [(tags, b"".join(np.asarray(each).tobytes() for each in (*values, moved))) for values, moved in bare]
-        new = {key: point for key, point in zip(keys, bare, strict=True) if key not in self._shown}
-        self._shown.update(zip(new, self._called(bare_causes, list(new.values())), strict=True))
-        shown = {key: self._shown[key] for key in keys}
+        (shown,) = self.at_each([(causes, points)])
+        return shown
+
+    def at_each(self, requests: Sequence[Request]) -> list[Predictions]:
+        """Return the same for several requests; what has to be calculated is one call of the model where it can be."""
+        every = [_asked(*request) for request in requests]
+        new, waiting = [], set(self._shown)
+        for asked in every:
+            rest = {key: p for key, p in zip(asked.keys, asked.points, strict=True) if key not in waiting}
+            waiting.update(rest)
+            if rest:
+                new.append(_Asked(asked.causes, list(rest.values()), list(rest)))
+        for group in _grouped(new):
+            for asked, answers in zip(group, self._answered(group), strict=True):
+                self._shown.update(zip(asked.keys, answers, strict=True))
+        shown = [[self._shown[key] for key in asked.keys] for asked in every]
         for old in list(self._shown)[: -self._most_shown]:  # a fit goes on from the last
             del self._shown[old]
-        return [self._with_shapes(shown[key], causes, values) for key, (values, _) in zip(keys, points, strict=True)]
+        return [
+            [self._with_shapes(base, causes, values) for base, (values, _) in zip(own, points, strict=True)]
+            for own, (causes, points) in zip(shown, requests, strict=True)
+        ]
+
+    def _answered(self, group: Sequence[_Asked]) -> Iterator[list[Mapping[str, Matrix]]]:
+        """Give the answers of every request of a group: of one call, with the causes of the others on at rest.
+
+        A request whose answers have gaps is asked once more for itself: another one's cause may not bear these rows.
+        """
+        for asked in group:
+            self._count(asked.causes, asked.points)
+        if len(group) == 1:
+            yield self._called(group[0].causes, group[0].points)
+            return
+        causes = list({cause.tag: cause for asked in group for cause in asked.causes}.values())
+        points = [(self._resting(causes, asked.causes, values), m) for asked in group for values, m in asked.points]
+        answers = iter(self._called(causes, points))
+        for asked in group:
+            own = list(islice(answers, len(asked.points)))
+            is_whole = all(np.isfinite(values).all() for shown in own for values in shown.values())
+            yield own if is_whole else self._called(asked.causes, asked.points)
+
+    def _resting(self, causes: Sequence[Candidate], own: Sequence[Candidate], values: Sequence[Matrix]) -> list[Matrix]:
+        """Return numbers of causes of which some have their own; the others are where they do nothing."""
+        known = {cause.tag: value for cause, value in zip(own, values, strict=True)}
+        return [known[cause.tag] if cause.tag in known else self._rest_of(cause) for cause in causes]
+
+    def _rest_of(self, cause: Candidate) -> Matrix:
+        rest = at_rest(cause, self.machine)
+        return np.array([rest.get(number.name, 0.0) for number in cause.numbers])
 
     @property
     def _most_shown(self) -> int:
@@ -141,7 +197,6 @@ class Extended:
             setup = self._moved(setup, frozenset(cause.tag for cause in causes), points[0][1])
         else:
             trials = [{**own, **self._inputs(causes, *point)} for own, point in zip(trials, points, strict=True)]
-        self._count(causes, points)
         return self._survived(setup, trials)
 
     def _survived(self, setup: Setup, trials: Sequence[Trial]) -> list[Mapping[str, Matrix]]:
@@ -217,6 +272,43 @@ class Extended:
         inputs = zip(self.machine.inputs, off, strict=True)
         settings = ((given.name, given.file, self._value(given, sds)) for given, sds in inputs)
         return _columns(settings, self.machine.records.file_of)
+
+
+def _asked(causes: Sequence[Candidate], points: Sequence[Point]) -> _Asked:
+    """Return what a request asks of the model itself."""
+    own = [index for index, cause in enumerate(causes) if cause.shape is None]
+    tags = frozenset(causes[index].tag for index in own)
+    bare: list[Point] = [([values[index] for index in own], moved) for values, moved in points]
+    keys = [(tags, b"".join(np.asarray(each).tobytes() for each in (*values, moved))) for values, moved in bare]
+    return _Asked([causes[index] for index in own], bare, keys)
+
+
+def _grouped(several: Sequence[_Asked]) -> list[list[_Asked]]:
+    """Part requests into those that may be one call: causes in one order, and no two that set one unknown.
+
+    Where nothing acts on the inputs the model is called for one point alone, so that all of these must have the same.
+    """
+    groups: list[list[_Asked]] = []
+    for asked in several:
+        for group in groups:
+            if _go_together([*group, asked]):
+                group.append(asked)
+                break
+        else:
+            groups.append([asked])
+    return groups
+
+
+def _go_together(group: Sequence[_Asked]) -> bool:
+    if len({asked.acts_on_inputs for asked in group}) > 1:
+        return False
+    if not group[0].acts_on_inputs and len({moved.tobytes() for asked in group for _, moved in asked.points}) > 1:
+        return False
+    causes = list({cause.tag: cause for asked in group for cause in asked.causes}.values())
+    order = {cause.tag: index for index, cause in enumerate(causes)}
+    unknowns = Counter(chain.from_iterable({(cause.name, each.name) for each in cause.numbers} for cause in causes))
+    places = ([order[cause.tag] for cause in asked.causes] for asked in group)
+    return max(unknowns.values(), default=1) == 1 and all(own == sorted(own) for own in places)
 
 
 def _unknowns(machine: Calibration, causes: Sequence[Candidate], values: Sequence[Matrix]) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from itertools import combinations
 import numpy as np
 
 from truing.diagnosis.causes import Candidate
-from truing.diagnosis.competition import MARGIN, MOST_CAUSES, RENEWED, TO_THE_END, Competition
+from truing.diagnosis.competition import MARGIN, MOST_CAUSES, RENEWED, TO_THE_END, Competition, Start, beside
 from truing.diagnosis.exact import CLOSELY
 from truing.diagnosis.fitted import Fit, differ
 from truing.studies.bench import StepProgress, unheard
@@ -55,8 +55,9 @@ def _singles(competition: Competition) -> None:
     seen = competition.look(competition.null)
     order = competition.promising(seen)
     chosen = [*order[:SINGLES], *(cause for cause in order[SINGLES:] if cause.is_registered)]
-    for cause in chosen:
-        competition.joined(competition.null, cause, seen[cause.tag].starts)
+    competition.fit_each(
+        [start for cause in chosen for start in beside(competition.null, cause, seen[cause.tag].starts)]
+    )
 
 
 def _distinct(
@@ -77,9 +78,14 @@ def _pairs(competition: Competition) -> None:
     placed = {cause for fit in several.values() for cause in fit.causes if cause.kept}
     for at in list(several.values())[:BEAM]:
         competition.forward(at, JOINED, placed.__contains__)
-    for one, other in sorted(combinations(several.values(), 2), key=lambda pair: sum(map(competition.score, pair))):
-        if one.causes[0].is_registered or other.causes[0].is_registered:  # two shapes: no second name is needed
-            competition.fitted(one.causes + other.causes, one.values + other.values, one)
+    pairs = sorted(combinations(several.values(), 2), key=lambda pair: sum(map(competition.score, pair)))
+    competition.fit_each(
+        [
+            Start(one.causes + other.causes, one.values + other.values, one)
+            for one, other in pairs
+            if one.causes[0].is_registered or other.causes[0].is_registered  # two shapes: no second name is needed
+        ]
+    )
 
 
 def _registered(competition: Competition, count: int) -> list[Fit]:

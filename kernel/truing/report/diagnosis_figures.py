@@ -27,6 +27,8 @@ NEAR = 6.0
 ENLARGED = 4.0
 """Residuals that became smaller by this factor are drawn on a scale of their own."""
 MOST_BARS = 8
+MOST_STEPS = 7
+"""Steps between the ticks of a panel that takes half of the width: more only cost time, with fewer some have two."""
 
 
 @dataclass(frozen=True)
@@ -142,6 +144,7 @@ def over_covariate(diagnosis: DiagnosisResult, curves: ResultCurves, covariate: 
         axes.axhline(0.0, color=NEUTRAL, linewidth=0.7)
         axes.plot(place, values[kept], ".", color=colour, markersize=3.5)
         _mark_censored(diagnosis, shown.result, axes, places=place, values=values[kept], colour=colour)
+        axes.locator_params(nbins=MOST_STEPS)
         axes.set_title(when, loc="left")
         axes.set_xlabel(_label(covariate.name, covariate.unit))
     places[0].set_ylabel(_label(shown.result, shown.unit) + "\nmeasured − simulated")
@@ -176,6 +179,7 @@ def against_simulated(diagnosis: DiagnosisResult, curves: ResultCurves) -> Figur
     if has_changed(curves):
         right.legend(loc="best", frameon=True, framealpha=0.8, edgecolor="none", handletextpad=0.2)
     for axes in (left, right):
+        axes.locator_params(nbins=MOST_STEPS)
         axes.set_xlabel(f"simulated {_label(curves.result, unit)}")
     return figure
 
