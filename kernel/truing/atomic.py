@@ -145,17 +145,17 @@ def _inode(path: Path) -> int:
 @contextmanager
 def _made_parents(parent: Path) -> Iterator[None]:
     """Make the folders above; those that were made go again if the writing does not get there."""
-    missing = [place for place in (parent, *parent.parents) if not place.exists()]
-    for place in (parent, *parent.parents):
-        if place.exists() and not place.is_dir():
-            raise NotADirectoryError(errno.ENOTDIR, f"{place} is a file and no folder", str(place))
+    missing = [folder for folder in (parent, *parent.parents) if not folder.exists()]
+    for folder in (parent, *parent.parents):
+        if folder.exists() and not folder.is_dir():
+            raise NotADirectoryError(errno.ENOTDIR, f"{folder} is a file and no folder", str(folder))
     try:
         parent.mkdir(parents=True, exist_ok=True)
         yield
     except BaseException:
-        for place in missing:
+        for folder in missing:
             with suppress(OSError):
-                place.rmdir()
+                folder.rmdir()
         raise
 
 

@@ -106,9 +106,9 @@ def _idle_effects(setup: Setup) -> list[str]:
     return idle
 
 
-def _acts(setup: Setup, item: SwitchedOn) -> bool:
+def _acts(setup: Setup, active: SwitchedOn) -> bool:
     """Whether an effect changes what is shown all the same: as the sign of a load, or the cosine of an angle, may."""
-    others = tuple(other for other in setup.effects if other is not item)
+    others = tuple(other for other in setup.effects if other is not active)
     try:
         with_it, without = (
             setup.model.read_results(evaluate(replace(setup, effects=effects), reading=True))

@@ -114,10 +114,10 @@ class CasesTable:
     @property
     def verdict(self) -> State:
         """The worst verdict of all cases; where they pass with different changes only, no single design passes."""
-        found = worst(case.verdict for case in self.cases)
+        worst_verdict = worst(case.verdict for case in self.cases)
         needed = {case.decided.proposal for case in self.cases if case.verdict == "proposed"}
         changes = {one.changes for one in needed if one is not None}
-        return "fails" if found == "proposed" and len(changes) > 1 else found
+        return "fails" if worst_verdict == "proposed" and len(changes) > 1 else worst_verdict
 
 
 def case_setup(setup: Setup, case: StatedCase) -> Setup:
@@ -140,7 +140,7 @@ def run_cases(
     of_each = replace(setup, studies=_studies_of_each(setup))
     done = (_one_by_one if of_each.studies else _in_blocks)(of_each, cases, executor, progress)
     while alive := [index for index, case in enumerate(done) if case.reason is None]:
-        governing = min(alive, key=lambda place: done[place].margin)
+        governing = min(alive, key=lambda index: done[index].margin)
         try:
             full = calculate(case_setup(setup, cases[governing]), executor=executor, progress=progress)
         except UsageError as error:  # a study asks more than the calculation alone, a full turn for example
@@ -183,8 +183,8 @@ def _one_by_one(setup: Setup, cases: Sequence[StatedCase], executor: Executor, p
         )
     done = []
     progress("cases", 0, FINE)
-    for case, (found, decided, reason, absent) in zip(cases, answers, strict=True):
-        done.append(CaseResult(case, found, decided, reason, absent))
+    for case, (values, decided, reason, absent) in zip(cases, answers, strict=True):
+        done.append(CaseResult(case, values, decided, reason, absent))
         progress("cases", round(FINE * len(done) / len(cases)), FINE)
     return done
 
@@ -198,18 +198,18 @@ def _packed_case(packed: Packed) -> CaseAnswer:
         return _case_answer(unpack(packed), alone)
 
 
-def _of_case(setup: Setup, place: int, count: int, progress: Progress) -> Progress:
+def _of_case(setup: Setup, index: int, count: int, progress: Progress) -> Progress:
     """Return what reports the studies of one case as its part of all cases."""
-    return within(progress, "cases", place / count, (place + 1) / count, [study.name for study in setup.studies])
+    return within(progress, "cases", index / count, (index + 1) / count, [study.name for study in setup.studies])
 
 
 def _case_answer(setup: Setup, executor: Executor, progress: Progress = silent) -> CaseAnswer:
     """Return what a case answers and its checks, or why it failed."""
     try:
-        found = calculate(setup, executor=executor, progress=progress)
+        calculation = calculate(setup, executor=executor, progress=progress)
     except UsageError as error:  # impossible, or a tolerance that its size outgrows
         return {}, UNDECIDED, str(error), {}
-    return found.answers, found.decided, None, found.absent
+    return calculation.answers, calculation.decided, None, calculation.absent
 
 
 def _in_blocks(setup: Setup, cases: Sequence[StatedCase], executor: Executor, progress: Progress) -> list[CaseResult]:
@@ -223,8 +223,8 @@ def _in_blocks(setup: Setup, cases: Sequence[StatedCase], executor: Executor, pr
         packed = pack(setup)
         answers = in_order(executor, _packed_block, ((packed, rows) for rows in jobs))
     done: list[CaseResult] = []
-    for block, found in zip(blocks, answers, strict=True):
-        done += [_block_case(setup, case, *answer) for case, answer in zip(block, found, strict=True)]
+    for block, block_answers in zip(blocks, answers, strict=True):
+        done += [_block_case(setup, case, *answer) for case, answer in zip(block, block_answers, strict=True)]
         progress("cases", len(done), len(cases))
     return done
 

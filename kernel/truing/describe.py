@@ -57,38 +57,38 @@ def description(offer: Offer) -> dict[str, Any]:
     }
 
 
-def _input(item: InputField) -> dict[str, Any]:
-    spec = item.spec
+def _input(field: InputField) -> dict[str, Any]:
+    spec = field.spec
     default = spec.default if isinstance(spec, Given) else None
     return {
-        "name": item.name,
-        "symbol": item.symbol,
-        "kind": item.kind,
-        "unit": item.unit,
+        "name": field.name,
+        "symbol": field.symbol,
+        "kind": field.kind,
+        "unit": field.unit,
         "default": list(default) if isinstance(default, tuple) else default,
-        "optional": item.is_optional,
-        "choices": list(item.choices),
+        "optional": field.is_optional,
+        "choices": list(field.choices),
         "options": list(inspect.signature(spec.reader).parameters)[1:] if isinstance(spec, Loaded) else [],
-        "bounds": bounds_in_words(item, with_unit=False),
+        "bounds": bounds_in_words(field, with_unit=False),
         "note": spec.note,
         "source": spec.source,
     }
 
 
-def _result(item: ResultField) -> dict[str, Any]:
-    spec = item.spec
+def _result(field: ResultField) -> dict[str, Any]:
+    spec = field.spec
     formula = spec.formula if isinstance(spec, Found) else ""
     kind = ("table" if spec.is_table else "axis") if isinstance(spec, Axis) else "result"
     return {
-        "name": item.name,
-        "symbol": item.symbol,
+        "name": field.name,
+        "symbol": field.symbol,
         "kind": kind,
-        "unit": item.unit,
+        "unit": field.unit,
         "note": spec.note,
         "formula": formula,
         "method": spec.method if isinstance(spec, Found) else "",
         "source": spec.source if isinstance(spec, Found) else "",
-        "along": item.along if kind == "result" else "",
+        "along": field.along if kind == "result" else "",
     }
 
 
@@ -99,8 +99,8 @@ JUDGED = ("within", "verdict", "obtained", "why")
 """What is said of an unknown before its kind, of a condition, and of a printed number before and behind its kind."""
 
 
-def _named(item: Any, names: Sequence[str]) -> dict[str, Any]:
-    return {name: getattr(item, name) for name in names}
+def _named(declared: Any, names: Sequence[str]) -> dict[str, Any]:
+    return {name: getattr(declared, name) for name in names}
 
 
 def _tolerance(tolerance: Tolerance) -> dict[str, Any]:
@@ -130,86 +130,94 @@ def _effect(effect: Any) -> dict[str, Any]:
     }
 
 
-def _published(item: Published) -> dict[str, Any]:
-    said = {**_named(item, PUBLISHED), "kind": item.rule, **_named(item, JUDGED)}
-    return {**said, "settings": dict(item.settings)}
+def _published(published: Published) -> dict[str, Any]:
+    said = {**_named(published, PUBLISHED), "kind": published.rule, **_named(published, JUDGED)}
+    return {**said, "settings": dict(published.settings)}
 
 
-def _objective(item: Any) -> dict[str, Any]:
+def _objective(objective: Any) -> dict[str, Any]:
     kinds: Mapping[type[Any], str] = {Vary: "vary", Minimise: "minimise", Maximise: "maximise", Require: "require"}
-    own = {field.name: getattr(item, field.name) for field in dataclasses.fields(item) if field.name != "kind"}
-    limit = {"limit_kind": item.kind} if isinstance(item, Require) else {}
-    return {"kind": kinds[type(item)], **own, **limit}
+    own = {
+        field.name: getattr(objective, field.name) for field in dataclasses.fields(objective) if field.name != "kind"
+    }
+    limit = {"limit_kind": objective.kind} if isinstance(objective, Require) else {}
+    return {"kind": kinds[type(objective)], **own, **limit}
 
 
 def sections(said: Mapping[str, Any]) -> dict[str, list[Sequence[str]]]:
     """Return a description as tables for people: rows of texts by title, those that have any."""
-    results = [item["name"] for item in said["results"]]
-    built_in = [_built_in_row(item, results) for item in said["built_in"]["effects"]]
+    results = [result["name"] for result in said["results"]]
+    built_in = [_built_in_row(effect, results) for effect in said["built_in"]["effects"]]
     measured = [row for row in WHERE_MEASURED if _is_among(row[0], said["built_in"]["where_measured"])]
-    found: dict[str, list[Sequence[str]]] = {
+    tables: dict[str, list[Sequence[str]]] = {
         "Inputs": [_input_row(entry) for entry in said["inputs"]],
-        "Results": [(item["name"], _symbol(item), _unit(item["unit"]), item["note"]) for item in said["results"]],
-        "Tolerances": [
-            (item["name"], item["spread"], "on " + ", ".join(item["on"]), item["why"]) for item in said["tolerances"]
+        "Results": [
+            (result["name"], _symbol(result), _unit(result["unit"]), result["note"]) for result in said["results"]
         ],
-        "Effects": [_effect_row(item) for item in said["effects"]],
-        "Conditions": [_condition_row(item) for item in said["conditions"]],
+        "Tolerances": [
+            (tolerance["name"], tolerance["spread"], "on " + ", ".join(tolerance["on"]), tolerance["why"])
+            for tolerance in said["tolerances"]
+        ],
+        "Effects": [_effect_row(effect) for effect in said["effects"]],
+        "Conditions": [_condition_row(condition) for condition in said["conditions"]],
         "Built-in effects, on the reading of each RESULT": [*built_in, *measured],
-        "Built-in conditions": [_condition_row(item) for item in said["built_in"]["conditions"]],
-        "Objectives": [(*_objective_words(item), "", "") for item in said["objectives"]],
+        "Built-in conditions": [_condition_row(condition) for condition in said["built_in"]["conditions"]],
+        "Objectives": [(*_objective_words(objective), "", "") for objective in said["objectives"]],
     }
-    return {title: rows for title, rows in found.items() if rows}
+    return {title: rows for title, rows in tables.items() if rows}
 
 
-def _symbol(item: dict[str, Any]) -> str:
-    return symbol_text(item["symbol"]) if item["symbol"] else ""
+def _symbol(described: dict[str, Any]) -> str:
+    return symbol_text(described["symbol"]) if described["symbol"] else ""
 
 
 def _unit(unit: str) -> str:
     return unit_text(unit) or "-"
 
 
-def _input_row(item: dict[str, Any]) -> tuple[str, ...]:
-    default = "optional" if item["default"] is None and item["optional"] else item["default"]
-    unit = " | ".join(item["choices"]) or ("a file" if item["kind"] == "file" else _unit(item["unit"]))
-    options = f"options: {', '.join(item['options'])}" if item["options"] else ""
-    note = "; ".join(text for text in (item["note"], item["bounds"], options, item["source"]) if text)
-    return (item["name"], _symbol(item), "" if default is None else str(default), unit, note)
+def _input_row(described: dict[str, Any]) -> tuple[str, ...]:
+    default = "optional" if described["default"] is None and described["optional"] else described["default"]
+    unit = " | ".join(described["choices"]) or ("a file" if described["kind"] == "file" else _unit(described["unit"]))
+    options = f"options: {', '.join(described['options'])}" if described["options"] else ""
+    note = "; ".join(text for text in (described["note"], described["bounds"], options, described["source"]) if text)
+    return (described["name"], _symbol(described), "" if default is None else str(default), unit, note)
 
 
-def _condition_row(item: dict[str, Any]) -> tuple[str, ...]:
-    made = f"made: {item['derived']}" if item["derived"] else ""
-    words = "; ".join(text for text in (item["note"], made) if text)
-    return (item["name"], f"reference {item['reference']:g}", _unit(item["unit"]), words)
+def _condition_row(condition: dict[str, Any]) -> tuple[str, ...]:
+    made = f"made: {condition['derived']}" if condition["derived"] else ""
+    words = "; ".join(text for text in (condition["note"], made) if text)
+    return (condition["name"], f"reference {condition['reference']:g}", _unit(condition["unit"]), words)
 
 
-def _built_in_row(item: dict[str, Any], results: list[str]) -> tuple[str, ...]:
+def _built_in_row(effect: dict[str, Any], results: list[str]) -> tuple[str, ...]:
     """Name the unknowns of any result by those of the first."""
-    first = item["parts"][0]
+    first = effect["parts"][0]
     own = max((name for name in results if all(one.startswith(name) for one in first)), key=len)
     unknowns = ", ".join("RESULT" + name.removeprefix(own) for name in first)
-    needs = "needs " + ", ".join(item["needs"]) if item["needs"] else ""
-    return (item["name"], unknowns, needs, item["looks_like"])
+    needs = "needs " + ", ".join(effect["needs"]) if effect["needs"] else ""
+    return (effect["name"], unknowns, needs, effect["looks_like"])
 
 
 def _is_among(name: str, effects: list[dict[str, Any]]) -> bool:
     """Whether one of the effects is of the kind of this name."""
-    return any(item["name"].startswith(name.removesuffix("_of_INPUT")) for item in effects)
+    return any(effect["name"].startswith(name.removesuffix("_of_INPUT")) for effect in effects)
 
 
-def _effect_row(item: dict[str, Any]) -> tuple[str, ...]:
+def _effect_row(effect: dict[str, Any]) -> tuple[str, ...]:
     unknowns = ", ".join(
-        f"{one['name']} {one['low']:g}..{one['high']:g} {_unit(one['unit'])}" for one in item["unknowns"]
+        f"{one['name']} {one['low']:g}..{one['high']:g} {_unit(one['unit'])}" for one in effect["unknowns"]
     )
-    needs = "needs " + ", ".join(item["needs"]) if item["needs"] else ""
-    return (item["name"], f"on {item['acts_on']}", unknowns, needs, item["looks_like"])
+    needs = "needs " + ", ".join(effect["needs"]) if effect["needs"] else ""
+    return (effect["name"], f"on {effect['acts_on']}", unknowns, needs, effect["looks_like"])
 
 
-def _objective_words(item: dict[str, Any]) -> tuple[str, str]:
-    if item["kind"] == "vary":
-        return f"vary {item['input']}", item["by"] or f"{item['low']} .. {item['high']}"
-    if item["kind"] == "require":
-        goal = f" with reliability {item['reliability']}" if item["reliability"] is not None else ""
-        return f"require {item['result']}", f"{item['limit_kind'].replace('_', ' ')} {item['limit']}{goal}"
-    return f"{item['kind']} {item['result']}", ""
+def _objective_words(objective: dict[str, Any]) -> tuple[str, str]:
+    if objective["kind"] == "vary":
+        return f"vary {objective['input']}", objective["by"] or f"{objective['low']} .. {objective['high']}"
+    if objective["kind"] == "require":
+        goal = f" with reliability {objective['reliability']}" if objective["reliability"] is not None else ""
+        return (
+            f"require {objective['result']}",
+            f"{objective['limit_kind'].replace('_', ' ')} {objective['limit']}{goal}",
+        )
+    return f"{objective['kind']} {objective['result']}", ""

@@ -215,17 +215,17 @@ def _one_call(
 
 def _as_rows(case: Case, name: str, flat: Mapping[str, Any], rows: int) -> NDArray[np.float64]:
     """Bring a result to shape (rows,) or (rows, k); raises PluginError for any other shape."""
-    item = case.model.own_result_fields[name]
+    result = case.model.own_result_fields[name]
     try:
         array = np.asarray(flat[name], dtype=float)
-        if not item.along:
+        if not result.along:
             return np.broadcast_to(array, (rows,))
         axis = flat.get(case.model.axes[name], array)
         return np.broadcast_to(array, (rows, np.asarray(axis).shape[-1] if np.ndim(axis) else 1))
     except (TypeError, ValueError):
         shape = getattr(flat[name], "shape", None)
         what = f"has the shape {shape}" if shape is not None else f"is {flat[name]!r:.60}"
-        wanted = "(n, k), with column(x) for a value per row" if item.along else "a number or an array (n,)"
+        wanted = "(n, k), with column(x) for a value per row" if result.along else "a number or an array (n,)"
         raise PluginError(
             f"{case.model.name}: the result '{name}' {what} in a call of {rows}; it is {wanted}"
         ) from None
@@ -234,7 +234,7 @@ def _as_rows(case: Case, name: str, flat: Mapping[str, Any], rows: int) -> NDArr
 def _sorted_columns(case: Case, columns: Mapping[str, Any], rows: int) -> tuple[dict[str, Any], dict[str, Any]]:
     """Check the columns and part them: those a batch is split by, and numbers (arrays where they differ)."""
     fields = case.model.input_fields
-    unknowns = {effect_column(on.effect.name, each.name) for on in case.effects for each in on.effect.unknowns}
+    unknowns = {effect_column(on.effect.name, unknown.name) for on in case.effects for unknown in on.effect.unknowns}
     fixed: dict[str, Any] = {}
     arrays: dict[str, Any] = {}
     for name, values in columns.items():
@@ -257,21 +257,21 @@ def _apply(case: Case, columns: Mapping[str, Any], calculate: Callable[[Any], An
     ``calculate`` is the function of the model, or what remembers its results.
     """
     model = case.model
-    switched = [(item, _keywords(item, case, columns)) for item in case.effects]
+    switched = [(active, _keywords(active, case, columns)) for active in case.effects]
     try:
         inputs = _inputs(case, columns)
-        for item, keywords in switched:
-            if item.effect.place == "inputs":
-                inputs = item.effect.function(inputs, **keywords)
+        for active, keywords in switched:
+            if active.effect.place == "inputs":
+                inputs = active.effect.function(inputs, **keywords)
         results = calculate(inputs)
-        for place in ("results", "reading") if reading else ("results",):
-            for item, keywords in switched:
-                if item.effect.place == place:
-                    results = item.effect.function(inputs, results, **keywords)
+        for acts_on in ("results", "reading") if reading else ("results",):
+            for active, keywords in switched:
+                if active.effect.place == acts_on:
+                    results = active.effect.function(inputs, results, **keywords)
     except TruingError:
         raise
     except (Exception, SystemExit) as error:
-        functions = [model.function, *(item.effect.function for item in case.effects)]
+        functions = [model.function, *(active.effect.function for active in case.effects)]
         file, line = place_of(error, [home for function in functions if (home := home_of(function))])
         where = f"{file}:{line}: " if file else ""
         raise PluginError(f"{where}{model.name} failed: {type(error).__name__}: {error}") from error
@@ -290,30 +290,30 @@ def _inputs(case: Case, columns: Mapping[str, Any]) -> Any:
 def acting_inputs(case: Case) -> Any:
     """Return the inputs as the effects that are on leave them: what the calculation itself is called with."""
     inputs = case.inputs
-    for item in case.effects:
-        if item.effect.place == "inputs":
-            inputs = item.effect.function(inputs, **_keywords(item, case, {}))
+    for active in case.effects:
+        if active.effect.place == "inputs":
+            inputs = active.effect.function(inputs, **_keywords(active, case, {}))
     return inputs
 
 
-def _keywords(item: SwitchedOn, case: Case, columns: Mapping[str, Any]) -> dict[str, Any]:
+def _keywords(active: SwitchedOn, case: Case, columns: Mapping[str, Any]) -> dict[str, Any]:
     """Return what an effect is called with: unknowns and conditions, from the columns, else as they are held."""
     held: dict[str, Any] = {}
-    for unknown in item.effect.unknowns:
-        column = effect_column(item.effect.name, unknown.name)
+    for unknown in active.effect.unknowns:
+        column = effect_column(active.effect.name, unknown.name)
         if column in columns:
             held[unknown.name] = columns[column]
-        elif unknown.name in item.values or not (item.effect.parts and item.effect.takes_any):
-            held[unknown.name] = np.float64(_held(item, unknown))
-    for need in item.effect.needs:
+        elif unknown.name in active.values or not (active.effect.parts and active.effect.takes_any):
+            held[unknown.name] = np.float64(_held(active, unknown))
+    for need in active.effect.needs:
         held[need.name] = columns.get(need.name, np.float64(case.conditions.get(need.name, need.zero)))
     return held
 
 
-def _held(item: SwitchedOn, unknown: Unknown) -> float:
+def _held(active: SwitchedOn, unknown: Unknown) -> float:
     """Return the value of an unknown; in a part that is off 0, or the lower bound of a shape. Raises UsageError."""
-    if unknown.name in item.values:
-        return item.values[unknown.name]
-    if not item.effect.parts:
-        raise UsageError(f"effect '{item.effect.name}' is on, so its unknown '{unknown.name}' must be given")
+    if unknown.name in active.values:
+        return active.values[unknown.name]
+    if not active.effect.parts:
+        raise UsageError(f"effect '{active.effect.name}' is on, so its unknown '{unknown.name}' must be given")
     return 0.0 if unknown.is_amplitude else to_si(unknown.low, unknown.unit)

@@ -84,23 +84,23 @@ def _comment(text: str, mark: str = "# ") -> list[str]:
     return [f"{mark}{line}" for line in textwrap.wrap(text, WIDTH - len(mark))]
 
 
-def _input(item: InputField) -> Iterator[str]:
-    words = described(item)
-    if item.choices:
-        words = "; ".join(part for part in (words, " or ".join(toml_value(choice) for choice in item.choices)) if part)
+def _input(field: InputField) -> Iterator[str]:
+    words = described(field)
+    if field.choices:
+        words = "; ".join(part for part in (words, " or ".join(toml_value(choice) for choice in field.choices)) if part)
     yield from _comment(words)
-    yield _assignment(item)
+    yield _assignment(field)
 
 
-def _assignment(item: InputField) -> str:
-    default = default_of(item)
+def _assignment(field: InputField) -> str:
+    default = default_of(field)
     if default is not None:
-        return f"{item.name} = {toml_value(default)}"
-    if item.kind == "file":
-        is_open = item.spec.default is not MISSING
-        return f'{"# " if is_open else ""}{item.name} = {{ file = "{item.name}.txt" }}'
-    like = "..." if item.kind in {"choice", "text"} else f"1 {item.unit}".strip()
-    return f"# {item.name} = {toml_value(like)}"
+        return f"{field.name} = {toml_value(default)}"
+    if field.kind == "file":
+        is_open = field.spec.default is not MISSING
+        return f'{"# " if is_open else ""}{field.name} = {{ file = "{field.name}.txt" }}'
+    like = "..." if field.kind in {"choice", "text"} else f"1 {field.unit}".strip()
+    return f"# {field.name} = {toml_value(like)}"
 
 
 def _heading(title: str, words: str) -> list[str]:

@@ -43,7 +43,7 @@ def shown_by_gauge(setup: Setup, rows: RowsFile) -> Shown:
     machine = one_machine(setup)
     evaluated = read_by_gauge(machine, rows)
     if not evaluated.results:
-        axes = sorted({item.along for item in machine.model.own_result_fields.values() if item.along})
+        axes = sorted({result.along for result in machine.model.own_result_fields.values() if result.along})
         raise UsageError(f"every result of {machine.model.name} runs along {' or '.join(axes)}: give that column")
     units = {name: machine.print_unit(name) for name in evaluated.results}
     values = {name: from_si(value, units[name]) for name, value in evaluated.results.items()}
@@ -71,12 +71,12 @@ def read_by_gauge(machine: Setup, rows: RowsFile, wanted: Collection[str] | None
     ``repeats``: see ``evaluate_rows``.
     """
     if answers_many(machine, rows, wanted):
-        (found,) = read_each(machine, rows, [{}], wanted)
-        return found
+        (answer,) = read_each(machine, rows, [{}], wanted)
+        return answer
     names, columns = set(_readable(machine, rows, wanted)), seen_columns(machine, rows.columns)
     machine = _at_places(machine, rows)
-    found = evaluate_rows(machine, columns, len(rows), reading=True, wanted=names, repeats=repeats)
-    return found if wanted is None else found.complete()
+    answer = evaluate_rows(machine, columns, len(rows), reading=True, wanted=names, repeats=repeats)
+    return answer if wanted is None else answer.complete()
 
 
 def answers_many(machine: Setup, rows: RowsFile, wanted: Collection[str] | None = None) -> bool:
@@ -93,8 +93,8 @@ def seen_columns(machine: Setup, columns: Mapping[str, Any]) -> dict[str, Any]:
 def _at_places(machine: Setup, rows: RowsFile) -> Setup:
     """Put the places of the rows into the input series that an axis follows, unless a column holds that series."""
     changes: dict[str, Any] = {}
-    for name, item in machine.model.own_result_fields.items():
-        series = item.spec.follows if isinstance(item.spec, Axis) else ""
+    for name, result in machine.model.own_result_fields.items():
+        series = result.spec.follows if isinstance(result.spec, Axis) else ""
         if series and series not in rows.series and name in rows.axes:
             places = np.unique(rows.axes[name][np.isfinite(rows.axes[name])])
             changes |= {series: places} if len(places) else {}
@@ -106,10 +106,10 @@ def without_place(evaluated: Rows, machine: Setup, rows: RowsFile) -> dict[int, 
     reasons: dict[int, str] = {}
     for name, values in evaluated.results.items():
         axis = machine.model.axes[name]
-        for place in np.flatnonzero(np.isnan(values)) if axis else ():
-            is_empty = np.isnan(rows.axes[axis][place])
+        for row in np.flatnonzero(np.isnan(values)) if axis else ():
+            is_empty = np.isnan(rows.axes[axis][row])
             words = f"'{axis}' is not given" if is_empty else f"it lies beyond the axis '{axis}'"
-            reasons.setdefault(int(place), f"'{name}' cannot be read at this row: {words}")
+            reasons.setdefault(int(row), f"'{name}' cannot be read at this row: {words}")
     return reasons
 
 
@@ -131,15 +131,15 @@ class _Answer:
     absent: dict[str, dict[int, str]] = field(default_factory=dict)
 
     def take(
-        self, found: Rows, number: int, places: NDArray[np.intp], *, along: Mapping[str, str], rows: RowsFile
+        self, computed: Rows, number: int, places: NDArray[np.intp], *, along: Mapping[str, str], rows: RowsFile
     ) -> None:
         """Take one calculation of several for the rows that it answers for, read at their places on the axes."""
         for name, values in self.values.items():
-            value, axis = found.results[name][number], along[name]
-            values[places] = _read_at(rows.axes[axis][places], found.results[axis][number], value) if axis else value
-        if found.failed[number]:
-            self.reasons.update(dict.fromkeys(places.tolist(), found.reasons[number]))
-        for name, lacking in found.absent.items():
+            value, axis = computed.results[name][number], along[name]
+            values[places] = _read_at(rows.axes[axis][places], computed.results[axis][number], value) if axis else value
+        if computed.failed[number]:
+            self.reasons.update(dict.fromkeys(places.tolist(), computed.reasons[number]))
+        for name, lacking in computed.absent.items():
             if number in lacking:
                 self.absent.setdefault(name, {}).update(dict.fromkeys(places.tolist(), lacking[number]))
 
@@ -159,16 +159,16 @@ def read_each(
     """
     along = {name: machine.model.axes[name] for name in _readable(machine, rows, wanted)}
     asked, machine = {*along, *filter(None, along.values())}, _at_places(machine, rows)
-    made = [_Answer({name: np.full(len(rows), np.nan) for name in along}) for _ in trials]
+    answers = [_Answer({name: np.full(len(rows), np.nan) for name in along}) for _ in trials]
     for record in _records(rows):
         series = {name: column[record] for name, column in rows.series.items()}
         for several, repeats in _calls(record, machine, rows, trials):
-            columns = {name: _one_or_each([each.values[name] for each in several]) for name in several[0].values}
+            columns = {name: _one_or_each([alike.values[name] for alike in several]) for name in several[0].values}
             changed, size = columns | series, len(several)
-            found = evaluate_rows(machine, changed, size, reading=True, wanted=asked, repeats=repeats)
-            for number, each in enumerate(several):
-                made[each.trial].take(found, number, each.places, along=along, rows=rows)
-    done = [answer.rows(len(rows)) for answer in made]
+            computed = evaluate_rows(machine, changed, size, reading=True, wanted=asked, repeats=repeats)
+            for number, alike in enumerate(several):
+                answers[alike.trial].take(computed, number, alike.places, along=along, rows=rows)
+    done = [answer.rows(len(rows)) for answer in answers]
     return done if wanted is None else [answer.complete() for answer in done]
 
 
@@ -202,10 +202,10 @@ def _records(rows: RowsFile) -> Sequence[NDArray[np.intp]]:
 @lru_cache(maxsize=8)
 def _places_by_run(runs: tuple[str, ...]) -> tuple[NDArray[np.intp], ...]:
     """Return the places of the rows of each run; a fit asks for the same ones again and again."""
-    found: dict[str, list[int]] = {}
+    rows_by_run: dict[str, list[int]] = {}
     for index, name in enumerate(runs):
-        found.setdefault(name, []).append(index)
-    return tuple(np.array(places) for places in found.values())
+        rows_by_run.setdefault(name, []).append(index)
+    return tuple(np.array(places) for places in rows_by_run.values())
 
 
 def _alike(
@@ -217,7 +217,7 @@ def _alike(
     for name in varying if rows.series else ():
         if name in machine.model.input_fields:
             column = columns[name]
-            line = next(rows.lines[place] for place in record if column[place] != column[record[0]])
+            line = next(rows.lines[row] for row in record if column[row] != column[record[0]])
             raise UsageError(f"{rows.file}:{line}: {name} changes within a run, but a record is one calculation")
     for places in _grouped(record, [columns[name] for name in varying]):
         yield places, {name: _value_at(column, places[0]) for name, column in columns.items()}
@@ -225,10 +225,10 @@ def _alike(
 
 def _grouped(record: NDArray[np.intp], columns: Sequence[Any]) -> Iterator[NDArray[np.intp]]:
     """Give the rows of a record in which no column differs."""
-    found: dict[tuple[Any, ...], list[int]] = {}
-    for place in record.tolist() if columns else ():
-        found.setdefault(tuple(column[place] for column in columns), []).append(place)
-    yield from (np.array(places) for places in found.values()) if columns else (record,)
+    groups: dict[tuple[Any, ...], list[int]] = {}
+    for row in record.tolist() if columns else ():
+        groups.setdefault(tuple(column[row] for column in columns), []).append(row)
+    yield from (np.array(places) for places in groups.values()) if columns else (record,)
 
 
 def _is_column(column: Any) -> bool:
@@ -238,14 +238,14 @@ def _is_column(column: Any) -> bool:
 def _varies(column: Any, places: NDArray[np.intp]) -> bool:
     """Whether a column has more than one value at these places; NaN is a value of its own."""
     if isinstance(column, list):
-        return any(column[place] != column[places[0]] for place in places)
+        return any(column[row] != column[places[0]] for row in places)
     few = places[:1] if getattr(column, "strides", ()) == (0,) else places
     return _is_column(column) and bool((column[few] != column[places[0]]).any())
 
 
-def _value_at(column: Any, place: int) -> Any:
+def _value_at(column: Any, row: int) -> Any:
     """Return the one value of a row."""
-    value = column[place] if _is_column(column) else column
+    value = column[row] if _is_column(column) else column
     return value if isinstance(value, (str, bool, int)) else float(value)
 
 

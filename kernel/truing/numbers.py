@@ -111,11 +111,11 @@ def _is_bare(unit: str, value: Any) -> bool:
 
 def pretty(text: str) -> str:
     """Make a number's text fit for print: a true minus, powers of ten written out (1.2 × 10⁻⁵); other texts stay."""
-    found = _NUMBER.fullmatch(text)
-    if found is None:
+    match = _NUMBER.fullmatch(text)
+    if match is None:
         return text
-    digits = ("−" if found["minus"] else "") + found["digits"]
-    if found["exponent"] is None:
+    digits = ("−" if match["minus"] else "") + match["digits"]
+    if match["exponent"] is None:
         return digits
-    exponent = ("-" if found["sign"] == "-" else "") + found["exponent"]
+    exponent = ("-" if match["sign"] == "-" else "") + match["exponent"]
     return f"{digits} × 10{exponent.translate(_RAISED)}"

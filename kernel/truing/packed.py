@@ -119,8 +119,10 @@ def made(cls: type[Any], values: Mapping[tuple[str, ...], Any]) -> Any:
     return cls(**own)
 
 
-def _plain_effect(item: SwitchedOn) -> tuple[str, dict[str, float], dict[str, float], tuple[tuple[float, ...], ...]]:
-    return item.effect.name, dict(item.values), dict(item.sds), item.covariance
+def _plain_effect(
+    active: SwitchedOn,
+) -> tuple[str, dict[str, float], dict[str, float], tuple[tuple[float, ...], ...]]:
+    return active.effect.name, dict(active.values), dict(active.sds), active.covariance
 
 
 def _file_hash(ref: str) -> str:
@@ -143,7 +145,7 @@ def _model(ref: str, plugin: str, name: str) -> tuple[Model[Any, Any], Origin]:
     for offer in _kernel(ref).offers.values():
         if offer.model.name == name and offer.origin.name == plugin:
             return offer.model, offer.origin
-    broken = [str(item) for item in _kernel(ref).broken if item.plugin == plugin]
+    broken = [str(left_out) for left_out in _kernel(ref).broken if left_out.plugin == plugin]
     raise PluginError(
         f"a worker process found no model '{name}' in {ref}: {broken[0] if broken else 'not offered there'}"
     )

@@ -23,7 +23,9 @@ def uniform_parts(
             raise UsageError(f"the column '{name}' has {len(values)} values for {rows} rows")
     common = {name: values for name, values in fixed.items() if per_row[name] is None}
     differing = {name: values for name, values in per_row.items() if values is not None}
-    alone = any(isinstance(item.spec, Axis) and item.spec.is_table for item in case.model.own_result_fields.values())
+    alone = any(
+        isinstance(result.spec, Axis) and result.spec.is_table for result in case.model.own_result_fields.values()
+    )
     vary = differing or any(isinstance(values, np.ndarray) for values in arrays.values())
     groups = [np.array([row]) for row in range(rows)] if alone and vary else _groups(differing, rows)
     for index in groups:

@@ -78,7 +78,7 @@ def _compared(offer: Offer, progress: Progress, known: Calculation | None) -> li
         if known is not None and key not in missing:
             return known
         names = [study.name for study in wanted[key].studies]
-        begin, end = (place / len(missing) for place in (missing.index(key), missing.index(key) + 1))
+        begin, end = (count / len(missing) for count in (missing.index(key), missing.index(key) + 1))
         progress(TASK, round(FINE * begin), FINE)
         return calculate(wanted[key], progress=within(progress, TASK, begin, end, names))
 
@@ -91,23 +91,27 @@ def _covers(known: Setup, wanted: Setup) -> bool:
     return asked == list(wanted.studies)
 
 
-def compare_one(item: Published, calculation: Calculation) -> ComparedRow:
+def compare_one(number: Published, calculation: Calculation) -> ComparedRow:
     """Compare one printed number with a calculation that was made under its settings."""
     fields = calculation.setup.model.result_fields
-    if item.result not in fields:
-        raise DeclarationError(f"the published number '{item.name}' names '{item.result}', which is no result")
-    answer = calculation.answers.get(item.result, float("nan"))
+    if number.result not in fields:
+        raise DeclarationError(f"the published number '{number.name}' names '{number.result}', which is no result")
+    answer = calculation.answers.get(number.result, float("nan"))
     if getattr(answer, "ndim", 0):
-        raise DeclarationError(f"the published number '{item.name}' names '{item.result}', which is no single number")
-    value = float(from_si(float(answer), item.unit))
-    matches = item.agrees(value)
-    ratio = value / item.value if item.value and math.isfinite(value) else None
-    return ComparedRow(item, value, ratio, matches, matches == (item.verdict == "matches"))
+        raise DeclarationError(
+            f"the published number '{number.name}' names '{number.result}', which is no single number"
+        )
+    value = float(from_si(float(answer), number.unit))
+    matches = number.agrees(value)
+    ratio = value / number.value if number.value and math.isfinite(value) else None
+    return ComparedRow(number, value, ratio, matches, matches == (number.verdict == "matches"))
 
 
-def holds_for(setup: Setup, item: Published) -> bool:
+def holds_for(setup: Setup, number: Published) -> bool:
     """Tell whether a run has just the settings that a printed number holds for, so that ours is its own result."""
-    wanted = setup_from_settings(Offer(setup.model.name, setup.model, setup.origin, setup.source.added), item.settings)
+    wanted = setup_from_settings(
+        Offer(setup.model.name, setup.model, setup.origin, setup.source.added), number.settings
+    )
     return same_run(setup, wanted)
 
 
@@ -141,7 +145,7 @@ def _same_scatter(setup: Setup, wanted: Setup) -> bool:
 def parted(setup: Setup, rows: Sequence[ComparedRow]) -> tuple[list[ComparedRow], list[ComparedRow]]:
     """Part the rows into those that this run reproduces and those that hold for other settings."""
     settings = {frozenset(row.published.settings.items()): row.published for row in rows}
-    own = {key for key, item in settings.items() if holds_for(setup, item)}
+    own = {key for key, number in settings.items() if holds_for(setup, number)}
     parts: tuple[list[ComparedRow], list[ComparedRow]] = [], []
     for row in rows:
         parts[frozenset(row.published.settings.items()) not in own].append(row)

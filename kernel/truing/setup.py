@@ -98,7 +98,7 @@ class Case:
 
     def __post_init__(self) -> None:
         """Put the effects in the order in which they act: the model's own as declared, then the kernel's."""
-        names = [item.effect.name for item in self.effects]
+        names = [active.effect.name for active in self.effects]
         own = set(names) <= set(self.model.effects)
         order = list(self.model.effects if own else self.model.known_effects)
         for name in names:
@@ -106,14 +106,14 @@ class Case:
                 raise UsageError(f"{self.model.name} has no effect '{name}'.{near_miss(name, order)}")
             if names.count(name) > 1:
                 raise UsageError(f"the effect '{name}' is switched on twice")
-        ordered = sorted(self.effects, key=lambda item: order.index(item.effect.name))
+        ordered = sorted(self.effects, key=lambda active: order.index(active.effect.name))
         object.__setattr__(self, "effects", tuple(ordered))
 
     @cached_property
     def numpy_inputs(self) -> Any:
         """The inputs with numpy's numbers, so that 1/0 is infinite in a call of one value as it is in a batch."""
-        varying = (item for item in self.model.input_fields.values() if item.varies)
-        values = ((item.path, read(self.inputs, item.path)) for item in varying)
+        varying = (input_field for input_field in self.model.input_fields.values() if input_field.varies)
+        values = ((input_field.path, read(self.inputs, input_field.path)) for input_field in varying)
         numbers = {path: value if isinstance(value, np.ndarray) else np.float64(value) for path, value in values}
         return with_values(self.inputs, numbers)
 
@@ -135,23 +135,23 @@ class Case:
 
     def with_effects(self, more: Iterable[SwitchedOn]) -> Self:
         """Return the case with further effects on; parts of one that is on join those that are stated."""
-        on = {item.effect.name: item for item in self.effects}
-        for item in more:
-            before = on.get(item.effect.name)
-            on[item.effect.name] = item if before is None else before.joined(item)
+        on = {active.effect.name: active for active in self.effects}
+        for active in more:
+            before = on.get(active.effect.name)
+            on[active.effect.name] = active if before is None else before.joined(active)
         return replace(self, effects=tuple(on.values()))
 
     def nominal(self, name: str) -> Any:
         """Return the nominal value in SI of an input or condition."""
-        item = self.model.input_fields.get(name)
-        if item is not None:
-            return read(self.inputs, item.path)
+        input_field = self.model.input_fields.get(name)
+        if input_field is not None:
+            return read(self.inputs, input_field.path)
         return self.conditions[name] if name in self.conditions else self.model.known_conditions[name].zero
 
     def unit_of(self, name: str) -> str:
         """Return the declared unit of an input or condition."""
-        item = self.model.input_fields.get(name)
-        return item.unit if item is not None else self.model.known_conditions[name].unit
+        input_field = self.model.input_fields.get(name)
+        return input_field.unit if input_field is not None else self.model.known_conditions[name].unit
 
     def target(self, name: str) -> Target:
         """Return what a spread needs to know of the input it acts on."""
@@ -207,8 +207,8 @@ class Setup(Case):
         """Return the unit in which a result or input is printed."""
         if name in self.units:
             return self.units[name]
-        item = self.model.result_fields.get(name)
-        return item.unit if item is not None else self.unit_of(name)
+        result = self.model.result_fields.get(name)
+        return result.unit if result is not None else self.unit_of(name)
 
     def settled(self, spread: Spread) -> Spread:
         """Return a spread itself, or of one that follows a choice the branch that is chosen."""
@@ -220,7 +220,7 @@ class Setup(Case):
 
     def distributions(self) -> dict[str, dict[str, Distribution]]:
         """Return, by tolerance and input, every scatter that is not off; an input left open does not scatter."""
-        found: dict[str, dict[str, Distribution]] = {}
+        distributions: dict[str, dict[str, Distribution]] = {}
         for tolerance in self.model.tolerances.values():
             spread = self.spread_of(tolerance.name)
             if isinstance(spread, Off):
@@ -229,8 +229,8 @@ class Setup(Case):
             resolved = {target.name: spread.resolve(target) for target in targets if not isnan(target.nominal)}
             kept = {name: distribution for name, distribution in resolved.items() if distribution is not None}
             if kept:
-                found[tolerance.name] = kept
-        return found
+                distributions[tolerance.name] = kept
+        return distributions
 
 
 def default_setup(model: Model[Any, Any], origin: Origin | None = None, **values: Any) -> Setup:

@@ -75,8 +75,8 @@ def _behind(name: str, machine: Setup, rows: RowsFile, trials: Sequence[Trial]) 
     if not any(name in trial for trial in trials):
         return np.tile(np.broadcast_to(values, (len(rows),)), len(trials))
     column = np.empty((len(trials), len(rows)))
-    for place, trial in enumerate(trials):
-        column[place] = trial.get(name, values)
+    for index, trial in enumerate(trials):
+        column[index] = trial.get(name, values)
     return column.ravel()
 
 

@@ -65,8 +65,8 @@ class WatchedFiles:
 
     def _listen(self) -> bool:
         """Listen to the folders of all files, or the nearest above; tell whether they are others than before."""
-        places = {place for path in self._contents for place in (path, path.resolve())}  # what a link leads to, too
-        near = {next(folder for folder in place.parents if folder.is_dir()) for place in places}
+        places = {watched for path in self._contents for watched in (path, path.resolve())}  # what a link leads to, too
+        near = {next(folder for folder in watched.parents if folder.is_dir()) for watched in places}
         folders = {folder: folder.stat().st_ino for folder in near}
         if folders == self._folders:
             return False
@@ -94,8 +94,8 @@ def files_named_in(inputs: Path, offer: Offer) -> Iterator[Path]:
     stated = document.get("inputs")
     head = document.get("sheet")
     names = [head.get("logo")] if isinstance(head, Mapping) else []
-    for name, item in offer.model.input_fields.items():
-        if item.kind == "file" and isinstance(stated, Mapping):
+    for name, input_field in offer.model.input_fields.items():
+        if input_field.kind == "file" and isinstance(stated, Mapping):
             value: Any = stated.get(name)
             names.append(value.get("file") if isinstance(value, Mapping) else value)
     yield from (inputs.parent / name for name in names if isinstance(name, str) and name and "\0" not in name)
@@ -108,15 +108,15 @@ def code_files(offer: Offer) -> set[Path]:
     """
     model = offer.model
     functions = [model.function, *(effect.function for effect in model.effects.values())]
-    found = set(_own_files(Path(offer.origin.file)))
-    found |= {path for function in functions if (path := _file_of(sys.modules.get(function.__module__))) is not None}
-    new = list(found)
+    files = set(_own_files(Path(offer.origin.file)))
+    files |= {path for function in functions if (path := _file_of(sys.modules.get(function.__module__))) is not None}
+    new = list(files)
     while new:
         for path in _imported_by(new.pop()):
-            if path not in found and not str(path).startswith(_homes()):
-                found.add(path)
+            if path not in files and not str(path).startswith(_homes()):
+                files.add(path)
                 new.append(path)
-    return found
+    return files
 
 
 def _imported_by(file: Path) -> Iterator[Path]:

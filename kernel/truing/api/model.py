@@ -210,9 +210,9 @@ class LoadedModel:
             demand_place(Path(output), "diagnosis")
         with progress_bar(progress) as report, told_by_line(setup):
             started, records = time.time(), read_records(record.files, self.offer, setup)
-            made = Diagnosis(self.offer, diagnose(setup, records, progress=_as_one(report)), started)
+            diagnosis = Diagnosis(self.offer, diagnose(setup, records, progress=_as_one(report)), started)
             report("sheet and PDF" if pdf else "sheet", 0, 0)
-            return made if output is None else replace(made, note=made.written(Path(output), pdf=pdf))
+            return diagnosis if output is None else replace(diagnosis, note=diagnosis.written(Path(output), pdf=pdf))
 
     def describe(self) -> dict[str, Any]:
         """Return everything the model declares, as ``calc describe --json`` prints it."""
@@ -343,12 +343,12 @@ class Diagnosis:
 
     def save(self, folder: str | Path, *, pdf: bool = False) -> Path:
         """Write the folder that ``calc diagnose`` writes; an earlier diagnosis there goes. Raises OutputError."""
-        place = Path(folder)
-        demand_place(place, "diagnosis")
-        note = self.written(place, pdf=pdf)
+        target = Path(folder)
+        demand_place(target, "diagnosis")
+        note = self.written(target, pdf=pdf)
         if note.startswith("no PDF"):
             warnings.warn(note, stacklevel=2)
-        return place
+        return target
 
     def written(self, folder: Path, *, pdf: bool = False) -> str:
         """Write the folder and return what became of the PDF."""

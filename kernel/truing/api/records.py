@@ -80,7 +80,9 @@ class MeasuredRecord:
         """Show what each column is to the model, and what it holds."""
         shown = []
         for file, columns in zip(self.files, self.columns, strict=False):
-            rows = [(item.name, unit_text(item.unit), item.part, item.values, *_ends(item)) for item in columns]
+            rows = [
+                (column.name, unit_text(column.unit), column.part, column.values, *_ends(column)) for column in columns
+            ]
             shown += [heading(file.name), html_table(rows, ("column", "unit", "is", "values", "from", "to"))]
         return joined(*shown, paragraphs([f"{counted(self.rows)} measured"]))
 

@@ -170,12 +170,12 @@ class Run:
         ``pdf`` prints the sheet where a browser is installed, ``excel`` adds tables for a spreadsheet. Raises
         OutputError where the folder is something else, or cannot be written.
         """
-        place = Path(folder)
-        demand_place(place)
-        note = self.written(Order(place, pdf=pdf, excel=excel), silent)
+        target = Path(folder)
+        demand_place(target)
+        note = self.written(Order(target, pdf=pdf, excel=excel), silent)
         if note.startswith("no PDF"):
             warnings.warn(note, stacklevel=2)
-        return place
+        return target
 
     def written(self, order: Order, progress: Progress) -> str:
         """Write the folder of an order and return what became of the PDF."""
@@ -216,11 +216,11 @@ class Run:
         for name, value in self.si.items():
             if getattr(value, "ndim", 0) or name not in fields:
                 continue
-            unit, item = self._setup.print_unit(name), fields[name]
+            unit, result = self._setup.print_unit(name), fields[name]
             number, printed = format_value(value, unit)
             yield {
-                "name": name, "symbol": symbol_text(item.symbol) if item.symbol else "",
-                "value": float(from_si(value, unit)), "unit": unit, "note": item.spec.note,
+                "name": name, "symbol": symbol_text(result.symbol) if result.symbol else "",
+                "value": float(from_si(value, unit)), "unit": unit, "note": result.spec.note,
                 "text": with_unit(number, printed),
             }  # fmt: skip
 
@@ -243,12 +243,12 @@ def performed(setup: Setup, offer: Offer, order: Order, progress: Progress | boo
 
 def _calculated(setup: Setup, offer: Offer, order: Order, *, progress: Progress, log: BatchLog | None) -> Run:
     started = time.time()
-    with open_executor(order.place) as place:
+    with open_executor(order.place) as pool:
         if order.cluster:
-            place.compare(code_of(setup))
-        executor = place if log is None else KeptExecutor(place, log)
+            pool.compare(code_of(setup))
+        executor = pool if log is None else KeptExecutor(pool, log)
         calculation, cases = _with_cases(setup, offer, order, executor=executor, progress=progress)
-        place.settle()
+        pool.settle()
         computed = {
             "workers": {"count": executor.workers, "lost": executor.losses, "where": executor.where},
             "resumed": executor.resumed if isinstance(executor, KeptExecutor) else 0,

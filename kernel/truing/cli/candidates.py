@@ -96,8 +96,8 @@ def changes(context: typer.Context, incomplete: str) -> Iterator[OfferedWord]:
 def runs(incomplete: str) -> Iterator[OfferedWord]:
     """Offer folders of runs and diagnoses, and the folders on the way to them."""
     above = incomplete.rpartition("/")[0]
-    place = Path(f"{above}/" if above or incomplete.startswith("/") else ".")
-    folders = sorted(entry for entry in place.iterdir() if entry.is_dir() and not entry.name.startswith("."))
+    searched = Path(f"{above}/" if above or incomplete.startswith("/") else ".")
+    folders = sorted(entry for entry in searched.iterdir() if entry.is_dir() and not entry.name.startswith("."))
     for folder in folders:
         name = f"{incomplete[: len(incomplete) - len(incomplete.rpartition('/')[2])]}{folder.name}"
         kind = _kind(folder)

@@ -20,19 +20,19 @@ from truing.texts import one_line
 
 def compare(settings: Settings, *, first: Path, second: Path, as_json: bool) -> int:
     """Show inputs, results and checks that changed: exit 0 when equal, 1 when different."""
-    found = compared(load_either(first), load_either(second))
+    changes = compared(load_either(first), load_either(second))
     if as_json:
-        out_json({"equal": not found, "changes": [asdict(change) for change in found]})
-    elif not found:
+        out_json({"equal": not changes, "changes": [asdict(change) for change in changes]})
+    elif not changes:
         out("equal")
     else:
-        _print(found, (str(first), str(second)))
-    return 1 if found else 0
+        _print(changes, (str(first), str(second)))
+    return 1 if changes else 0
 
 
-def _print(found: list[Change], titles: tuple[str, str]) -> None:
+def _print(changes: list[Change], titles: tuple[str, str]) -> None:
     """Print a row for each change, checks that flipped above all others; where there is colour it repeats the words."""
-    ordered = in_order(found)
+    ordered = in_order(changes)
     rows = [("what", "name", *map(one_line, titles), "change"), *map(words_of, ordered)]
     out_table(rows, [("",) * 5, *map(styles_of, ordered)])
 

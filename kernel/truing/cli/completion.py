@@ -31,12 +31,12 @@ def _present_shell() -> Shell:
     """Return the shell that has called; raises UsageError where that cannot be seen."""
     known = {shell.value: shell for shell in Shell} | {"pwsh": Shell.powershell}
     try:
-        found = str(import_module("shellingham").detect_shell()[0])
+        name = str(import_module("shellingham").detect_shell()[0])
     except Exception:
-        found = Path(os.environ.get("SHELL", "")).name
-    if found not in known:
+        name = Path(os.environ.get("SHELL", "")).name
+    if name not in known:
         raise UsageError(f"which shell? name it: calc completion {' | '.join(Shell)}")
-    return known[found]
+    return known[name]
 
 
 def _installed(shell: Shell, text: str) -> list[str]:

@@ -102,7 +102,7 @@ def out_json(document: Any) -> None:
 def json_text(document: Any, *, indent: int | None = 1) -> str:
     """Return a document as JSON; what a terminal would obey is written as an escape, so that it reads back alike."""
     text = json.dumps(document, ensure_ascii=False, indent=indent, allow_nan=False)
-    return _ORDERS.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
+    return _ORDERS.sub(lambda match: f"\\u{ord(match[0]):04x}", text)
 
 
 def say(text: str) -> None:

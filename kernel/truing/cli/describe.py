@@ -35,5 +35,5 @@ def _lines(said: dict[str, Any]) -> Iterator[str]:
     if said["studies"]:
         yield ""
         yield "Studies: " + ", ".join(said["studies"])
-    for item in said["added"]:
-        yield f"'{item['what']}' was added by {item['plugin']} {item['version']}"
+    for addition in said["added"]:
+        yield f"'{addition['what']}' was added by {addition['plugin']} {addition['version']}"

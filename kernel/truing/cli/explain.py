@@ -97,7 +97,7 @@ def _result(told: Told) -> ToldParts:
     yield from _chain(told)
     yield from _scatter(told)
     yield from _slopes(told)
-    yield from _limits([_limit_words(item) for item in told["limits"]])
+    yield from _limits([_limit_words(limit) for limit in told["limits"]])
     yield from _published(told)
     yield from _effects("Effects that change it", told["effects"])
     yield from _followed(told)
@@ -131,17 +131,17 @@ def _chain(told: Told) -> ToldParts:
     chain = told["chain"]
     if not chain:
         return
-    deepest = max(item["depth"] for item in chain)
-    while deepest > 1 and sum(item["depth"] <= deepest for item in chain) > LONGEST_CHAIN:
+    deepest = max(link["depth"] for link in chain)
+    while deepest > 1 and sum(link["depth"] <= deepest for link in chain) > LONGEST_CHAIN:
         deepest -= 1
-    shown = [item for item in chain if item["depth"] <= deepest]
+    shown = [link for link in chain if link["depth"] <= deepest]
     rows = [
-        (INDENT * (item["depth"] - 1) + item["name"], item["symbol"], "(see above)" if item["again"] else item["text"],
-         item["note"])
-        for item in shown
+        (INDENT * (link["depth"] - 1) + link["name"], link["symbol"], "(see above)" if link["again"] else link["text"],
+         link["note"])
+        for link in shown
     ]  # fmt: skip
-    said = {item["name"] for item in shown}
-    left = list(dict.fromkeys(item["name"] for item in chain if item["name"] not in said))
+    said = {link["name"] for link in shown}
+    left = list(dict.fromkeys(link["name"] for link in chain if link["name"] not in said))
     note = f"and these further down: {', '.join(left)}" if left else ""
     yield Chapter("Made from", (_table(rows, note=note),))
 
@@ -149,20 +149,20 @@ def _chain(told: Told) -> ToldParts:
 def _scatter(told: Told) -> ToldParts:
     scatter = told["scatter"]
     if scatter is not None:
-        rows = [(item["name"], _percent(item["share"]), _tolerance_words(item)) for item in scatter["shares"]]
+        rows = [(share["name"], _percent(share["share"]), _tolerance_words(share)) for share in scatter["shares"]]
         title = f"Scatter of the tolerances in force: standard deviation {scatter['sd']}, of which"
         yield Chapter(title, (_table(rows, (1,), MOST),))
 
 
-def _tolerance_words(item: Told) -> str:
-    names = ", ".join(item["tolerances"])
-    return item["spread"] if names in {"", item["name"]} else f"{item['spread']}, tolerance {names}"
+def _tolerance_words(share: Told) -> str:
+    names = ", ".join(share["tolerances"])
+    return share["spread"] if names in {"", share["name"]} else f"{share['spread']}, tolerance {names}"
 
 
 def _slopes(told: Told) -> ToldParts:
     remarks = tuple(map(Paragraph, told["remarks"]))
     if told["slopes"]:
-        rows = [(item["name"], _plus(item["change"]), _per_cent(item["percent"])) for item in told["slopes"]]
+        rows = [(slope["name"], _plus(slope["change"]), _per_cent(slope["percent"])) for slope in told["slopes"]]
         title = "One per cent more of an input (1 K of a temperature) changes it by"
         yield Chapter(title, (_table(rows, (1, 2), MOST), *remarks))
     else:
@@ -191,20 +191,20 @@ def _published(told: Told) -> ToldParts:
         yield Chapter(title, (Items("published", tuple(map(_published_words, told["published"]))),))
 
 
-def _published_words(item: Told) -> str:
-    unit = f" {item['unit']}" if item["unit"] else ""
-    ours = f"ours {format_number(item['ours'], 5)}" if item["ours"] is not None else "ours by calc verify"
-    with_ = ", ".join(f"{name} = {value}" for name, value in item["settings"].items())
+def _published_words(number: Told) -> str:
+    unit = f" {number['unit']}" if number["unit"] else ""
+    ours = f"ours {format_number(number['ours'], 5)}" if number["ours"] is not None else "ours by calc verify"
+    with_ = ", ".join(f"{name} = {value}" for name, value in number["settings"].items())
     settings = f"; with {with_}" if with_ else ""
-    where = item["where"] or item["name"]
-    return f"{format_number(item['paper'], 6)}{unit}, {ours}: {item['verdict']} ({where}{settings})"
+    where = number["where"] or number["name"]
+    return f"{format_number(number['paper'], 6)}{unit}, {ours}: {number['verdict']} ({where}{settings})"
 
 
 def _effects(title: str, effects: Sequence[Told]) -> ToldParts:
     if effects:
         rows = [
-            (item["name"], PLACES[item["acts_on"]] + (", is on" if item["on"] else ""), item["looks_like"])
-            for item in effects
+            (effect["name"], PLACES[effect["acts_on"]] + (", is on" if effect["on"] else ""), effect["looks_like"])
+            for effect in effects
         ]
         yield Chapter(title, (_table(rows),))
 
@@ -223,8 +223,8 @@ def _input(told: Told) -> ToldParts:
     yield from _said("Source", told["source"])
     yield from map(_spread_words, told["tolerances"])
     if told["namesake"]:
-        place = f"{told['model']}.tolerances.{told['name']}"
-        yield f"the tolerance of this name scatters {', '.join(told['namesake'])}: see {place}"
+        address = f"{told['model']}.tolerances.{told['name']}"
+        yield f"the tolerance of this name scatters {', '.join(told['namesake'])}: see {address}"
     yield from (*told["varied"], *(f"is the limit of {result}" for result in told["limit_of"]))
     yield from _moves(told)
     yield from _limits(told["limits"])
@@ -232,10 +232,10 @@ def _input(told: Told) -> ToldParts:
     yield from _effects("Effects that change it", told["effects"])
 
 
-def _spread_words(item: Told) -> str:
-    sd = f" (standard deviation {', '.join(item['sd'][:3])})" if item["sd"] else ""
-    why = f", {item['why']}" if item["why"] else ""
-    return f"scatters by the tolerance {item['name']}: {item['spread']}{sd}{why}"
+def _spread_words(scatter: Told) -> str:
+    sd = f" (standard deviation {', '.join(scatter['sd'][:3])})" if scatter["sd"] else ""
+    why = f", {scatter['why']}" if scatter["why"] else ""
+    return f"scatters by the tolerance {scatter['name']}: {scatter['spread']}{sd}{why}"
 
 
 def _moves(told: Told) -> ToldParts:
@@ -261,7 +261,7 @@ def _tolerance(told: Told) -> ToldParts:
     yield from _said("Source", told["source"])
     for price in told["price"]:
         yield from _said("Price", price)
-    rows = [(item["name"], item["text"]) for item in told["on"]]
+    rows = [(result["name"], result["text"]) for result in told["on"]]
     yield Chapter("Inputs that scatter by it, each on its own", (_table(rows),))
     yield from _moves(told)
 
@@ -294,12 +294,12 @@ def _tried(told: Told) -> ToldParts:
     """Say what changed when the effect was tried."""
     if not told["tried_at"]:
         return
-    at = ", ".join(f"{item['name']} {item['text']}" for item in told["tried_at"])
-    rows = [(item["name"], _per_cent(item["percent"]) or "from 0", item["note"]) for item in told["moves"]]
+    at = ", ".join(f"{setting['name']} {setting['text']}" for setting in told["tried_at"])
+    rows = [(move["name"], _per_cent(move["percent"]) or "from 0", move["note"]) for move in told["moves"]]
     shown = _table(rows, (1,), 2 * MOST) if rows else Paragraph("no result changes there")
     yield Chapter(f"Tried at {at}", (shown,))
     if told["inputs"]:
-        pairs = [(item["name"], f"{item['before']} -> {item['after']}") for item in told["inputs"]]
+        pairs = [(change["name"], f"{change['before']} -> {change['after']}") for change in told["inputs"]]
         yield Chapter("through these inputs", (_table(pairs, most=2 * MOST),))
 
 
@@ -379,7 +379,7 @@ def table_lines(table: TableView, width: int) -> Iterator[str]:
     """Give a table without its headings, indented, without columns that hold nothing; then its note."""
     cells = [[INDENT + plain_text(row[0]), *(one_line(plain_text(cell)) for cell in row[1:])] for row in table.rows]
     kept = [index for index, column in enumerate(zip(*cells, strict=True)) if any(column)]
-    right = [place for place, index in enumerate(kept) if table.columns[index].kind == "number"]
+    right = [position for position, index in enumerate(kept) if table.columns[index].kind == "number"]
     rows = [[row[index] for index in kept] for row in cells]
     yield from aligned(rows, right=right, width=width)
     yield from wrapped(table.note, width, INDENT)

@@ -107,12 +107,12 @@ def _model(word: str) -> Model[Any, Any]:
 
 def _declared(model: Model[Any, Any]) -> Iterator[OfferedWord]:
     """Give results, inputs, effects and tolerances, each name once."""
-    found: dict[str, str] = {}
+    notes: dict[str, str] = {}
     for fields in (model.result_fields, model.input_fields):
         for name, field in fields.items():
-            found.setdefault(name, ", ".join(part for part in (field.spec.note, field.unit) if part))
+            notes.setdefault(name, ", ".join(part for part in (field.spec.note, field.unit) if part))
     for effect in model.effects.values():
-        found.setdefault(effect.name, effect.why or effect.looks_like)
+        notes.setdefault(effect.name, effect.why or effect.looks_like)
     for tolerance in model.tolerances.values():
-        found.setdefault(tolerance.name, tolerance.why)
-    yield from found.items()
+        notes.setdefault(tolerance.name, tolerance.why)
+    yield from notes.items()

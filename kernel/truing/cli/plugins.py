@@ -43,5 +43,5 @@ def _document(kernel: Kernel) -> dict[str, object]:
             }
             for offer in kernel.offers.values()
         ],
-        "broken": [asdict(item) for item in kernel.broken],
+        "broken": [asdict(broken) for broken in kernel.broken],
     }

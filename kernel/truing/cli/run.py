@@ -196,12 +196,12 @@ def _groups(calculation: Calculation) -> Iterator[tuple[str, Sequence[str]]]:
 
 
 def _result_row(calculation: Calculation, name: str) -> tuple[str, ...]:
-    item = calculation.setup.model.result_fields[name]
+    result = calculation.setup.model.result_fields[name]
     value, print_unit = calculation.answers[name], calculation.setup.print_unit(name)
     if getattr(value, "ndim", 0):
         low, high, unit = format_ends(value, print_unit)
-        return (name, f"{low} .. {high}" if low else ABSENT, unit, one_line(item.spec.note))
-    return (name, *format_value(value, print_unit, item.digits), one_line(item.spec.note))
+        return (name, f"{low} .. {high}" if low else ABSENT, unit, one_line(result.spec.note))
+    return (name, *format_value(value, print_unit, result.digits), one_line(result.spec.note))
 
 
 def _checks(calculation: Calculation) -> str:

@@ -68,8 +68,8 @@ def _demand_new(output: Path | None, *read: Path) -> None:
 
 def _with_commas(header: str, cells: Sequence[str], setup: Setup) -> Sequence[str]:
     """Return a column as written, its numbers with decimal commas; names of runs and words are no numbers."""
-    item = setup.model.input_fields.get(name_in(header))
-    is_word = item.kind in {"choice", "text"} if item is not None else name_in(header) in {"run", *NAMES, *REMARKS}
+    field = setup.model.input_fields.get(name_in(header))
+    is_word = field.kind in {"choice", "text"} if field is not None else name_in(header) in {"run", *NAMES, *REMARKS}
     return cells if is_word else with_comma(cells)
 
 

@@ -71,26 +71,28 @@ class BuiltinReading:
     def __call__(self, inputs: Any, results: Any, **stated: Any) -> Any:
         """Return what the gauge reads, from SI numbers or arrays (n,)."""
         changed = {}
-        for item, names in self.roles:
-            own = {role: _met(stated[name], item) for role, name in names.items() if name in stated}
+        for result, names in self.roles:
+            own = {role: _met(stated[name], result) for role, name in names.items() if name in stated}
             if own:
-                value = read(results, item.path)
-                changed[item.path] = value + self.kind.added(own, self._sight(value, item, (inputs, results, stated)))
+                value = read(results, result.path)
+                changed[result.path] = value + self.kind.added(
+                    own, self._sight(value, result, (inputs, results, stated))
+                )
         return with_values(results, changed)
 
-    def _sight(self, value: Float, item: ResultField, held: tuple[Any, Any, Mapping[str, Float]]) -> Float:
+    def _sight(self, value: Float, result: ResultField, held: tuple[Any, Any, Mapping[str, Float]]) -> Float:
         """Return what the effect looks at, SI: time, temperature or angle, else the reading from its zero."""
         if self.seen is None:
-            zero = zero_of(item)
+            zero = zero_of(result)
             return value - zero if zero else value
-        observed = self.seen.of(*held, item)
+        observed = self.seen.of(*held, result)
         return observed - self.seen.zero if self.kind.is_from_zero and self.seen.zero else observed
 
 
 def builtin_effects(model: Declared) -> dict[str, Effect[Any, Any]]:
     """Return the kernel's effects on the readings of this model, by name, without those whose name it has taken."""
     results = tuple(_gauged(model))
-    made = [
+    effects = [
         *_made(_OFFSET, results, [None]),
         *_made(_GAIN, results, [None]),
         *_made(_DRIFT, results, time_of(model)),
@@ -98,7 +100,7 @@ def builtin_effects(model: Declared) -> dict[str, Effect[Any, Any]]:
         *_made(_ORDER, results, angles(model)),
         *_made(_STEP, results, time_of(model)),
     ]
-    return {effect.name: effect for effect in made if effect.name not in model.effects}
+    return {effect.name: effect for effect in effects if effect.name not in model.effects}
 
 
 def may_stand(effect: Effect[Any, Any]) -> bool:
@@ -110,27 +112,27 @@ def may_stand(effect: Effect[Any, Any]) -> bool:
 def _gauged(model: Declared) -> Iterator[ResultField]:
     """Give the results that a gauge can show: numbers and curves; no axes, and nothing of a table."""
     fields = model.own_result_fields
-    for item in fields.values():
-        axis = fields.get(f"{item.along}_{item.scope}") or fields.get(item.along)
+    for result in fields.values():
+        axis = fields.get(f"{result.along}_{result.scope}") or fields.get(result.along)
         in_table = axis is not None and isinstance(axis.spec, Axis) and axis.spec.is_table
-        if not isinstance(item.spec, Axis) and not in_table:
-            yield item
+        if not isinstance(result.spec, Axis) and not in_table:
+            yield result
 
 
 def _made(
     kind: _Kind, results: Sequence[ResultField], seen_by: Sequence[Observed | None]
 ) -> Iterator[Effect[Any, Any]]:
     """Make an effect for each quantity that is seen, over the results that can be set against it."""
-    fitting = [(seen, [item for item in results if seen is None or seen.by(item)]) for seen in seen_by]
+    fitting = [(seen, [result for result in results if seen is None or seen.by(result)]) for seen in seen_by]
     for index, (seen, items) in enumerate((seen, items) for seen, items in fitting if items):
         unknowns = list(_named_apart(kind, items, seen))
-        roles = tuple((item, {role: one.name for role, one in own.items()}) for item, own in unknowns)
+        roles = tuple((result, {role: unknown.name for role, unknown in own.items()}) for result, own in unknowns)
         needs = [seen.condition] if seen is not None and seen.condition is not None else []
         yield Effect(
             f"{kind.name}_of_{seen.name}" if index and seen is not None else kind.name,
             on_reading=BuiltinReading(kind, roles, seen),
-            unknowns=[one for _, own in unknowns for one in own.values()],
-            parts=[[one.name for one in own.values()] for _, own in unknowns],
+            unknowns=[unknown for _, own in unknowns for unknown in own.values()],
+            parts=[[unknown.name for unknown in own.values()] for _, own in unknowns],
             needs=needs,
             reads=[seen.name] if seen is not None and not needs else [],
             looks_like=kind.looks_like.format(seen=seen.name if seen is not None else ""),
@@ -147,65 +149,67 @@ def _named_apart(
     So it is with the step of a result ``depth_after`` beside that of ``depth``.
     """
     taken = {seen.name} if seen is not None else set()
-    for item in items:
-        own = kind.unknowns(item)
-        names = {one.name for one in own.values()}
+    for result in items:
+        own = kind.unknowns(result)
+        names = {unknown.name for unknown in own.values()}
         if not names & taken:
-            yield item, own
+            yield result, own
         taken |= names
 
 
-def _met(value: Float, item: ResultField) -> Float:
-    return column(value) if item.along else value
+def _met(value: Float, result: ResultField) -> Float:
+    return column(value) if result.along else value
 
 
 def _amplitude(name: str, unit: str, note: str) -> Unknown:
     return Unknown(name, -WIDE, WIDE, unit, note=note)
 
 
-def _difference(item: ResultField, per: str = "") -> str:
+def _difference(result: ResultField, per: str = "") -> str:
     """Return the unit of a difference of this result, or of one per something."""
-    unit = difference_unit(item.unit)
+    unit = difference_unit(result.unit)
     return (f"1/{per}" if unit in PURE else f"{unit}/{per}") if per else unit
 
 
-def _offset_of(item: ResultField) -> dict[str, Unknown]:
-    return {"size": _amplitude(item.name, _difference(item), f"zero of the gauge of {item.name}")}
+def _offset_of(result: ResultField) -> dict[str, Unknown]:
+    return {"size": _amplitude(result.name, _difference(result), f"zero of the gauge of {result.name}")}
 
 
-def _gain_of(item: ResultField) -> dict[str, Unknown]:
-    return {"size": Unknown(item.name, -1, 1, "", note=f"of what the gauge of {item.name} shows, too much")}
+def _gain_of(result: ResultField) -> dict[str, Unknown]:
+    return {"size": Unknown(result.name, -1, 1, "", note=f"of what the gauge of {result.name} shows, too much")}
 
 
-def _drift_of(item: ResultField) -> dict[str, Unknown]:
-    return {"size": _amplitude(item.name, _difference(item, "h"), f"drift of the gauge of {item.name}")}
+def _drift_of(result: ResultField) -> dict[str, Unknown]:
+    return {"size": _amplitude(result.name, _difference(result, "h"), f"drift of the gauge of {result.name}")}
 
 
-def _thermal_of(item: ResultField) -> dict[str, Unknown]:
+def _thermal_of(result: ResultField) -> dict[str, Unknown]:
     return {
-        "size": _amplitude(item.name, _difference(item, "K"), f"drift of the gauge of {item.name} with temperature")
+        "size": _amplitude(
+            result.name, _difference(result, "K"), f"drift of the gauge of {result.name} with temperature"
+        )
     }
 
 
-def _order_of(item: ResultField) -> dict[str, Unknown]:
-    unit, of = _difference(item), f"part of the wave on {item.name}"
+def _order_of(result: ResultField) -> dict[str, Unknown]:
+    unit, of = _difference(result), f"part of the wave on {result.name}"
     return {
-        "sine": _amplitude(f"{item.name}_sine", unit, f"sine {of}"),
-        "cosine": _amplitude(f"{item.name}_cosine", unit, f"cosine {of}"),
-        "order": Unknown(f"{item.name}_order", 1, HIGHEST_ORDER, "", note="waves per turn", whole=True),
+        "sine": _amplitude(f"{result.name}_sine", unit, f"sine {of}"),
+        "cosine": _amplitude(f"{result.name}_cosine", unit, f"cosine {of}"),
+        "order": Unknown(f"{result.name}_order", 1, HIGHEST_ORDER, "", note="waves per turn", whole=True),
     }
 
 
-def _step_of(item: ResultField) -> dict[str, Unknown]:
+def _step_of(result: ResultField) -> dict[str, Unknown]:
     return {
-        "size": _amplitude(item.name, _difference(item), f"height of the step of {item.name}"),
-        "after": Unknown(f"{item.name}_after", 0, LONGEST, "h", note="when the step comes", along="time"),
+        "size": _amplitude(result.name, _difference(result), f"height of the step of {result.name}"),
+        "after": Unknown(f"{result.name}_after", 0, LONGEST, "h", note="when the step comes", along="time"),
     }
 
 
-def zero_of(item: ResultField) -> float:
+def zero_of(result: ResultField) -> float:
     """Return the zero of the unit of a result in SI: 273.15 K for degC, 0 for all that are no levels."""
-    return float(to_si(0.0, item.unit))
+    return float(to_si(0.0, result.unit))
 
 
 def _constant(own: Mapping[str, Float], observed: Float) -> Float:
@@ -276,20 +280,20 @@ class Observed:
     axes: frozenset[str] = frozenset()
     may_stand: bool = False
 
-    def by(self, item: ResultField) -> bool:
+    def by(self, result: ResultField) -> bool:
         """Whether a result can be set against it, value by value."""
-        return self.place in {"condition", "input"} or bool(self.axes & _axes_of(item))
+        return self.place in {"condition", "input"} or bool(self.axes & _axes_of(result))
 
-    def of(self, inputs: Any, results: Any, conditions: Mapping[str, Float], item: ResultField) -> Float:
+    def of(self, inputs: Any, results: Any, conditions: Mapping[str, Float], result: ResultField) -> Float:
         """Return its values, SI, in a shape that meets this result."""
         if self.place in {"condition", "input"}:
             value = conditions[self.name] if self.place == "condition" else read(inputs, self.path)
-            return column(value) if item.along else value
+            return column(value) if result.along else value
         return np.asarray(read(inputs if self.place == "series" else results, self.path), dtype=float)
 
 
-def _axes_of(item: ResultField) -> set[str]:
-    return {item.along, f"{item.along}_{item.scope}"} - {""}
+def _axes_of(result: ResultField) -> set[str]:
+    return {result.along, f"{result.along}_{result.scope}"} - {""}
 
 
 def time_of(model: Declared) -> list[Observed]:
@@ -343,29 +347,29 @@ def _condition(condition: Condition) -> Observed:
 
 
 def _conditions(model: Declared, unit: str) -> Iterator[Observed]:
-    return (_condition(item) for item in model.conditions.values() if _is_like(item.unit, unit))
+    return (_condition(condition) for condition in model.conditions.values() if _is_like(condition.unit, unit))
 
 
 def _inputs(model: Declared, unit: str) -> Iterator[Observed]:
     """Give the inputs of a dimension that are always given: numbers, and series along an axis."""
-    for name, item in model.input_fields.items():
-        if item.is_optional or not _is_like(item.unit, unit):
+    for name, field in model.input_fields.items():
+        if field.is_optional or not _is_like(field.unit, unit):
             continue
-        if item.varies:
-            yield Observed(name, "input", item.path, zero=float(_default(item)))
-        elif item.kind == "series":
-            yield Observed(name, "series", item.path, axes=frozenset({name, item.spec.along} - {""}))
+        if field.varies:
+            yield Observed(name, "input", field.path, zero=float(_default(field)))
+        elif field.kind == "series":
+            yield Observed(name, "series", field.path, axes=frozenset({name, field.spec.along} - {""}))
 
 
-def _default(item: InputField) -> Any:
-    initial = getattr(item.spec, "initial", None)
+def _default(field: InputField) -> Any:
+    initial = getattr(field.spec, "initial", None)
     return initial() if initial is not None else 0.0
 
 
 def _result_axes(model: Declared, unit: str) -> Iterator[Observed]:
-    for name, item in model.own_result_fields.items():
-        if isinstance(item.spec, Axis) and not item.spec.is_table and _is_like(item.unit, unit):
-            yield Observed(name, "axis", item.path, axes=frozenset({name}))
+    for name, result in model.own_result_fields.items():
+        if isinstance(result.spec, Axis) and not result.spec.is_table and _is_like(result.unit, unit):
+            yield Observed(name, "axis", result.path, axes=frozenset({name}))
 
 
 def _is_like(unit: str, wanted: str) -> bool:

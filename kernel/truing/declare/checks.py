@@ -68,17 +68,17 @@ def _twice(names: Iterable[str]) -> list[str]:
 def _of_axes(model: Declared) -> Iterator[str]:
     """Say which results and series run along an axis that nobody declares."""
     fields = model.own_result_fields
-    axes = {name for name, item in fields.items() if isinstance(item.spec, Axis)}
-    axes |= {name for name, item in model.input_fields.items() if item.kind == "series"}
+    axes = {name for name, field in fields.items() if isinstance(field.spec, Axis)}
+    axes |= {name for name, field in model.input_fields.items() if field.kind == "series"}
     for name, result in fields.items():
         own = f"{result.along}_{result.scope}" if result.scope else result.along
         if isinstance(result.spec, Found) and result.along and not {own, result.along} & axes:
             yield f"the result '{name}' runs along '{result.along}', which is no axis.{near_miss(result.along, axes)}"
-    for name, item in model.input_fields.items():
-        along = item.spec.along
+    for name, field in model.input_fields.items():
+        along = field.spec.along
         if along and along not in axes:
             yield f"the input '{name}' runs along '{along}', which is no axis.{near_miss(along, axes)}"
-    series = [name for name, item in model.input_fields.items() if item.kind == "series"]
+    series = [name for name, field in model.input_fields.items() if field.kind == "series"]
     for name, result in fields.items():
         followed = result.spec.follows if isinstance(result.spec, Axis) else ""
         if followed and followed not in series:
@@ -87,8 +87,8 @@ def _of_axes(model: Declared) -> Iterator[str]:
 
 def _of_companions(model: Declared) -> Iterator[str]:
     """Say which inputs are to be stated with one that does not exist."""
-    for name, item in model.input_fields.items():
-        other = item.spec.stated_with
+    for name, field in model.input_fields.items():
+        other = field.spec.stated_with
         if other and (other == name or other not in model.input_fields):
             meant = near_miss(other, model.input_fields)
             yield f"the input '{name}' is stated with '{other}', which is no other input.{meant}"
@@ -97,11 +97,11 @@ def _of_companions(model: Declared) -> Iterator[str]:
 def _of_halving(model: Declared) -> Iterator[str]:
     """Say which numerical steps are no numbers, promise nothing, or name what is no result."""
     fields = model.own_result_fields
-    for name, item in model.input_fields.items():
-        share, but = getattr(item.spec, "halving", None), getattr(item.spec, "halving_but", {})
+    for name, field in model.input_fields.items():
+        share, but = getattr(field.spec, "halving", None), getattr(field.spec, "halving_but", {})
         if share is None and but:
             yield f"the input '{name}' has a halving_but without a halving; give the share for all other results"
-        if share is not None and (item.kind not in {"float", "whole", "integer"} or not 0 < share < 1):
+        if share is not None and (field.kind not in {"float", "whole", "integer"} or not 0 < share < 1):
             yield f"the input '{name}' has the halving {share!r}; it is a share from 0 to 1, of a number or count"
         for result in but:
             if result not in fields:
@@ -120,7 +120,7 @@ def _of_errors(model: Declared) -> Iterator[str]:
                     yield f"the condition '{condition.name}' is declared in two ways"
         else:
             yield f"{source!r} is neither a Tolerance nor an Effect"
-    units = sorted({price.unit for item in model.tolerances.values() for price in prices_in(item.price)})
+    units = sorted({price.unit for tolerance in model.tolerances.values() for price in prices_in(tolerance.price)})
     if len(units) > 1:
         yield f"the prices are in {' and '.join(units)}; give all of them in one unit, so that they can be added"
 
@@ -131,7 +131,7 @@ def of_effect(source: Effect[Any, Any], model: Declared) -> Iterator[str]:
         for known, kind in ((model.input_fields, "an input"), (model.result_fields, "a result")):
             if condition.name in known:
                 yield f"the condition '{condition.name}' has the name of {kind}"
-    axes = {name for name, item in model.own_result_fields.items() if isinstance(item.spec, Axis)}
+    axes = {name for name, result in model.own_result_fields.items() if isinstance(result.spec, Axis)}
     readable = {*model.input_fields, *axes}
     for name in source.reads:
         if name not in readable:
@@ -149,11 +149,11 @@ def of_effect(source: Effect[Any, Any], model: Declared) -> Iterator[str]:
 def of_tolerance(source: Tolerance, model: Declared) -> Iterator[str]:
     """Say what a tolerance names that the model does not have."""
     for name in source.on:
-        item = model.input_fields.get(name)
+        field = model.input_fields.get(name)
         condition = name in model.conditions
-        if item is None and not condition:
+        if field is None and not condition:
             yield f"tolerance '{source.name}' is on '{name}', which is no input.{near_miss(name, model.input_fields)}"
-        elif item is not None and not item.varies:
+        elif field is not None and not field.varies:
             yield f"tolerance '{source.name}' is on '{name}', which cannot scatter: only a Float can"
     for fault in _of_spread(source.spread, model):
         yield f"tolerance '{source.name}' {fault}"
@@ -175,13 +175,13 @@ def _of_price(source: Tolerance, model: Declared) -> Iterator[str]:
 
 def _of_choices(chooser: str, branches: Mapping[str, Any], what: str, model: Declared) -> Iterator[str]:
     """Say why an input cannot choose among these branches."""
-    item = model.input_fields.get(chooser)
-    if item is None:
+    field = model.input_fields.get(chooser)
+    if field is None:
         yield f"names '{chooser}', which is no input.{near_miss(chooser, model.input_fields)}"
-    elif not item.choices:
+    elif not field.choices:
         yield f"is chosen by '{chooser}', which offers no choices"
-    elif set(item.choices) != set(branches):
-        yield f"has a {what} for {', '.join(branches)}, but '{chooser}' offers {', '.join(item.choices)}"
+    elif set(field.choices) != set(branches):
+        yield f"has a {what} for {', '.join(branches)}, but '{chooser}' offers {', '.join(field.choices)}"
 
 
 def _of_spread(spread: Spread, model: Declared) -> Iterator[str]:
@@ -277,39 +277,39 @@ def of_section(section: Any, results: Mapping[str, ResultField]) -> Iterator[str
 
 
 def _of_formulas(model: Declared) -> Iterator[str]:
-    for item in model.result_fields.values():
-        text = getattr(item.spec, "formula", "")
+    for result in model.result_fields.values():
+        text = getattr(result.spec, "formula", "")
         if not text:
             continue
         try:
-            scope = formula_scope(model, item)
+            scope = formula_scope(model, result)
             formula = parse(text)
             missing = [name for name in formula.names if name not in scope]
         except DeclarationError as error:
-            yield f"formula of '{item.name}': {error}"
+            yield f"formula of '{result.name}': {error}"
             continue
         if missing:
             named = ", ".join(sorted(missing)) + f", which is neither input nor result.{near_miss(missing[0], scope)}"
-            yield f"formula of '{item.name}' names {named}"
-        elif formula.left is None and any(scope[name] is item for name in formula.names):
-            yield f"formula of '{item.name}' names itself; write an equation with == for what is solved"
+            yield f"formula of '{result.name}' names {named}"
+        elif formula.left is None and any(scope[name] is result for name in formula.names):
+            yield f"formula of '{result.name}' names itself; write an equation with == for what is solved"
 
 
 # Which quantity a name in a formula means: that of its own part first
 
 
-def formula_scope(model: Declared, item: ResultField) -> Mapping[str, InputField | ResultField]:
-    """Return what each name means in the formula of ``item``: own part first, then the flat names.
+def formula_scope(model: Declared, result: ResultField) -> Mapping[str, InputField | ResultField]:
+    """Return what each name means in the formula of ``result``: own part first, then the flat names.
 
     The function's results know each other; what a study gives knows the results of all studies besides.
     """
-    own_result = item.name in model.own_result_fields
+    own_result = result.name in model.own_result_fields
     known: dict[str, InputField | ResultField] = {
         **model.input_fields, **(model.own_result_fields if own_result else model.result_fields),
     }  # fmt: skip
-    if not item.scope:
+    if not result.scope:
         return known
-    ending = "_" + item.scope
+    ending = "_" + result.scope
     own = {name.removesuffix(ending): field for name, field in known.items() if name.endswith(ending)}
     return {**known, **own}
 

@@ -132,7 +132,7 @@ def _specs(cls: type[Any]) -> dict[str, Spec]:
     """Return the declarations of a class by attribute; refuses a class that declares nothing."""
     if not dataclasses.is_dataclass(cls):
         raise DeclarationError(f"{_spoken(cls)} is declared neither by @inputs nor by @results")
-    return {item.name: spec_of(item) for item in dataclasses.fields(cls)}
+    return {declared.name: spec_of(declared) for declared in dataclasses.fields(cls)}
 
 
 def _spoken(cls: Any) -> str:
@@ -157,12 +157,12 @@ def make(cls: type[T], values: Mapping[tuple[str, ...], Any], defaults: Mapping[
     return cls(**own)
 
 
-def spec_of(item: dataclasses.Field[Any]) -> Spec:
+def spec_of(declared: dataclasses.Field[Any]) -> Spec:
     """Return the declaration behind a dataclass field."""
-    spec: Spec | None = item.metadata.get(KEY)
+    spec: Spec | None = declared.metadata.get(KEY)
     if spec is None:
         raise DeclarationError(
-            f"field '{item.name}' is not declared: write given(...), loaded(...), found(...) or part(...)"
+            f"field '{declared.name}' is not declared: write given(...), loaded(...), found(...) or part(...)"
         )
     return spec
 
@@ -182,8 +182,8 @@ def results(cls: type[T]) -> type[T]:
 def _declared(cls: type[T], allowed: tuple[type[Any], ...]) -> type[T]:
     where, is_inputs = _spoken(cls), Given in allowed
     try:
-        made = dataclass(frozen=True, kw_only=True)(cls)
-        specs = _specs(made)
+        declared = dataclass(frozen=True, kw_only=True)(cls)
+        specs = _specs(declared)
     except (TypeError, DeclarationError) as error:  # dataclass refuses a field without annotation by a TypeError
         raise DeclarationError(f"{where}: {error}") from None
     for name, spec in specs.items():
@@ -192,7 +192,7 @@ def _declared(cls: type[T], allowed: tuple[type[Any], ...]) -> type[T]:
             raise DeclarationError(f"{where}: '{name}' is declared with the wrong word; {words}")
         if isinstance(spec, Part) and _is_inputs(spec.of) is not is_inputs:
             raise DeclarationError(f"{where}: the part '{name}' of {spec.of.__name__} mixes inputs and results")
-    return made
+    return declared
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -284,17 +284,17 @@ def _indexed(symbol: str, index: str) -> str:
     return f"{symbol}{index}" if "_" in symbol else f"{symbol}_{index}"
 
 
-def hints_of(item: Any) -> dict[str, Any]:
+def hints_of(annotated: Any) -> dict[str, Any]:
     """Return the annotations of a class or function; a name that is not found is a fault of the declaration."""
     try:
-        return get_type_hints(item, include_extras=True)
+        return get_type_hints(annotated, include_extras=True)
     except NameError as error:
-        name = getattr(item, "__qualname__", repr(item))
+        name = getattr(annotated, "__qualname__", repr(annotated))
         raise DeclarationError(f"{name}: {error}; annotations must name what the module itself imports") from error
 
 
-def _kind(place: _Place) -> tuple[InputKind, tuple[str, ...]]:
-    annotation, spec = place.annotation, place.spec
+def _kind(visited: _Place) -> tuple[InputKind, tuple[str, ...]]:
+    annotation, spec = visited.annotation, visited.spec
     if isinstance(spec, Loaded):
         return "file", ()
     if annotation is Float or annotation is float:
@@ -309,7 +309,7 @@ def _kind(place: _Place) -> tuple[InputKind, tuple[str, ...]]:
     if (get_origin(annotation) or annotation) in {tuple, list, _array_type()}:
         return "series", ()
     raise DeclarationError(
-        f"input '{place.path[-1]}' is annotated {annotation}; "
+        f"input '{visited.path[-1]}' is annotated {annotation}; "
         "write Float, int, bool, str, Literal[...], a tuple, or loaded(...) for a data file"
     )
 
@@ -323,21 +323,21 @@ def _array_type() -> Any:
 def input_fields(cls: type[Any]) -> dict[str, InputField]:
     """Return every input by its flat name, in the order of declaration."""
     fields: dict[str, InputField] = {}
-    for place in _walk(cls):
-        name = "_".join((place.path[-1], *place.suffixes))
+    for visited in _walk(cls):
+        name = "_".join((visited.path[-1], *visited.suffixes))
         _refuse_twice(name, fields)
-        if not isinstance(place.spec, (Given, Loaded)):
+        if not isinstance(visited.spec, (Given, Loaded)):
             raise DeclarationError(f"'{name}' of {_spoken(cls)} is no input: the class must be declared by @inputs")
-        kind, choices = _kind(place)
-        if kind in {"float", "whole"} and place.spec.unit is None:
+        kind, choices = _kind(visited)
+        if kind in {"float", "whole"} and visited.spec.unit is None:
             raise DeclarationError(f'input \'{name}\' has no unit: write given(default, "mm"), or "" for a pure number')
-        if kind in {"switch", "choice", "text", "integer"} and place.spec.unit:
-            raise DeclarationError(f"input '{name}' has the unit '{place.spec.unit}', but its annotation allows none")
-        if choices and str(getattr(place.spec, "default", "")) not in choices:
+        if kind in {"switch", "choice", "text", "integer"} and visited.spec.unit:
+            raise DeclarationError(f"input '{name}' has the unit '{visited.spec.unit}', but its annotation allows none")
+        if choices and str(getattr(visited.spec, "default", "")) not in choices:
             raise DeclarationError(f"input '{name}' is by default none of {', '.join(choices)}")
-        symbol = _indexed(place.spec.symbol, place.index)
+        symbol = _indexed(visited.spec.symbol, visited.index)
         fields[name] = InputField(
-            name=name, path=place.path, spec=place.spec, kind=kind, symbol=symbol, choices=choices
+            name=name, path=visited.path, spec=visited.spec, kind=kind, symbol=symbol, choices=choices
         )
     return fields
 
@@ -345,14 +345,14 @@ def input_fields(cls: type[Any]) -> dict[str, InputField]:
 def result_fields(cls: type[Any]) -> dict[str, ResultField]:
     """Return every result by its flat name, in the order of declaration."""
     fields: dict[str, ResultField] = {}
-    for place in _walk(cls):
-        name = "_".join((place.path[-1], *place.suffixes))
+    for visited in _walk(cls):
+        name = "_".join((visited.path[-1], *visited.suffixes))
         _refuse_twice(name, fields)
-        if not isinstance(place.spec, (Found, Axis)):
+        if not isinstance(visited.spec, (Found, Axis)):
             raise DeclarationError(f"'{name}' of {_spoken(cls)} is no result: the class must be declared by @results")
-        symbol = _indexed(place.spec.symbol, place.index)
+        symbol = _indexed(visited.spec.symbol, visited.index)
         fields[name] = ResultField(
-            name=name, path=place.path, spec=place.spec, symbol=symbol, scope="_".join(place.suffixes)
+            name=name, path=visited.path, spec=visited.spec, symbol=symbol, scope="_".join(visited.suffixes)
         )
     return fields
 

@@ -68,7 +68,7 @@ class Record(Generic[I, R]):
 
     def outcome(self, kind: type[T]) -> T | None:
         """Return the outcome of the first study of this kind, None where none ran."""
-        return next((found for found in self.studies.values() if isinstance(found, kind)), None)
+        return next((outcome for outcome in self.studies.values() if isinstance(outcome, kind)), None)
 
 
 @dataclass(frozen=True, init=False)
@@ -166,18 +166,18 @@ class Model(Generic[I, R]):
     def axes(self) -> dict[str, str]:
         """The flat name of the axis that each result runs along, its own part's where that has one; "" for a number."""
         fields = self.own_result_fields
-        own = {name: f"{item.along}_{item.scope}" for name, item in fields.items()}
-        return {name: own[name] if own[name] in fields else item.along for name, item in fields.items()}
+        own = {name: f"{result.along}_{result.scope}" for name, result in fields.items()}
+        return {name: own[name] if own[name] in fields else result.along for name, result in fields.items()}
 
     @cached_property
     def measurable(self) -> list[str]:
         """The results that rows of a record can hold: numbers and curves, no axes and nothing of a table."""
         fields = self.own_result_fields
-        tables = {name for name, item in fields.items() if isinstance(item.spec, Axis) and item.spec.is_table}
+        tables = {name for name, result in fields.items() if isinstance(result.spec, Axis) and result.spec.is_table}
         return [
             name
-            for name, item in fields.items()
-            if not isinstance(item.spec, Axis) and not {item.along, f"{item.along}_{item.scope}"} & tables
+            for name, result in fields.items()
+            if not isinstance(result.spec, Axis) and not {result.along, f"{result.along}_{result.scope}"} & tables
         ]
 
     @cached_property
@@ -199,17 +199,17 @@ class Model(Generic[I, R]):
         """Every result: the function's, the studies', and where tolerances have prices the sum of these."""
         fields = dict(self.own_result_fields)
         for of_study in self.study_result_fields.values():
-            for name, item in of_study.items():
+            for name, result in of_study.items():
                 if name in fields:
                     raise DeclarationError(f"{self.name}: the result '{name}' occurs twice")
-                fields[name] = item
-        for name, item in self._price_field().items():
-            fields.setdefault(name, item)
+                fields[name] = result
+        for name, result in self._price_field().items():
+            fields.setdefault(name, result)
         return fields
 
     def _price_field(self) -> dict[str, ResultField]:
         """Return the sum of the prices as a result, where any tolerance has one."""
-        units = [price.unit for item in self.tolerances.values() for price in prices_in(item.price)]
+        units = [price.unit for tolerance in self.tolerances.values() for price in prices_in(tolerance.price)]
         if not units:
             return {}
         note, method = "price of all tolerances in force", "sum of their prices, each at its full width"
@@ -249,17 +249,17 @@ class Model(Generic[I, R]):
         """Make inputs by flat name; texts carry units (``load="3 kN"``), numbers are SI, the rest is default."""
         changed = {}
         for name, value in values.items():
-            item = self.input_fields.get(name)
-            if item is None:
+            input_field = self.input_fields.get(name)
+            if input_field is None:
                 raise UsageError(f"{self.name} has no input '{name}'.{near_miss(name, self.input_fields)}")
-            if item.choices and str(value) not in item.choices:
-                raise UsageError(f"'{name}' of {self.name} is one of {', '.join(item.choices)}, not '{value}'")
-            changed[item.path] = _in_si(value, item)
+            if input_field.choices and str(value) not in input_field.choices:
+                raise UsageError(f"'{name}' of {self.name} is one of {', '.join(input_field.choices)}, not '{value}'")
+            changed[input_field.path] = _in_si(value, input_field)
         return make(self.input_type, changed)
 
     def read_inputs(self, inputs: I) -> dict[str, Any]:
         """Return every input by flat name, SI."""
-        return {name: read(inputs, item.path) for name, item in self.input_fields.items()}
+        return {name: read(inputs, input_field.path) for name, input_field in self.input_fields.items()}
 
     def read_results(self, results: R, names: Iterable[str] | None = None) -> dict[str, Any]:
         """Return these results of the function by flat name, SI; all by default."""
@@ -267,15 +267,15 @@ class Model(Generic[I, R]):
         return {name: read(results, fields[name].path) for name in (fields if names is None else names)}
 
 
-def _in_si(value: Any, item: InputField) -> Any:
+def _in_si(value: Any, input_field: InputField) -> Any:
     """Turn texts, alone or in a series, into SI; everything else is SI already."""
-    if item.kind not in {"float", "whole", "series"}:
+    if input_field.kind not in {"float", "whole", "series"}:
         return value
     if isinstance(value, str):
-        return in_si(value, item.unit)
+        return in_si(value, input_field.unit)
     if not isinstance(value, (tuple, list)):
         return value
-    numbers = tuple(in_si(number, item.unit) if isinstance(number, str) else number for number in value)
-    if not item.spec.along:
+    numbers = tuple(in_si(number, input_field.unit) if isinstance(number, str) else number for number in value)
+    if not input_field.spec.along:
         return numbers
     return np.array(numbers, dtype=float)

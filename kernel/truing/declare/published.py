@@ -85,7 +85,7 @@ class Published:
 
 def rules_of(published: Iterable[Published]) -> dict[PublishedKind, str]:
     """Return the rules by which these numbers are judged, by kind."""
-    kinds = {item.rule for item in published}
+    kinds = {number.rule for number in published}
     return {kind: rule for kind, rule in RULES.items() if kind in kinds}
 
 

@@ -68,9 +68,9 @@ def _declared_units(model: Model[Any, Any]) -> Iterator[tuple[str, str, Any]]:
 
 
 def _bounds(fields: Mapping[str, InputField]) -> Iterator[Unread]:
-    for name, item in fields.items():
-        for word in BOUNDS if isinstance(item.spec, Given) else ():
-            bound = getattr(item.spec, word)
+    for name, field in fields.items():
+        for word in BOUNDS if isinstance(field.spec, Given) else ():
+            bound = getattr(field.spec, word)
             if bound is not None and (isinstance(bound, bool) or not isinstance(bound, (int, float))):
                 yield Unread(name, bound, f"'{name}' has the bound {word}={bound!r}; it is a number in its unit")
 
@@ -102,11 +102,11 @@ def _spreads(model: Model[Any, Any]) -> Iterator[Unread]:
     nominals: dict[str, Any] = {
         name: condition.zero for name, condition in model.conditions.items() if _is_known(condition.unit)
     }
-    for name, item in model.input_fields.items():
-        if isinstance(item.spec, Given) and _is_known(item.unit):
-            faults = [*_refused(name, item.spec.default, f"the default of '{name}'", item.spec.initial)]
+    for name, field in model.input_fields.items():
+        if isinstance(field.spec, Given) and _is_known(field.unit):
+            faults = [*_refused(name, field.spec.default, f"the default of '{name}'", field.spec.initial)]
             yield from faults
-            nominals |= {} if faults else {name: item.spec.initial()}
+            nominals |= {} if faults else {name: field.spec.initial()}
     for tolerance in model.tolerances.values():
         for name in tolerance.on:
             nominal = nominals.get(name)
@@ -119,8 +119,8 @@ def _spreads(model: Model[Any, Any]) -> Iterator[Unread]:
 
 def _not_finite(model: Model[Any, Any]) -> Iterator[Unread]:
     """Give defaults that are no finite numbers."""
-    for name, item in model.input_fields.items():
-        default = item.spec.default if isinstance(item.spec, Given) else None
+    for name, field in model.input_fields.items():
+        default = field.spec.default if isinstance(field.spec, Given) else None
         if isinstance(default, float) and not math.isfinite(default):
             yield Unread(name, f"{default}", f"the default of '{name}' is {default}, which is no finite number")
 
@@ -151,8 +151,8 @@ def _widths(model: Model[Any, Any]) -> Iterator[Unread]:
 
 
 def _unit_of(name: str, model: Model[Any, Any]) -> str:
-    item = model.input_fields.get(name)
-    return item.unit if item is not None else model.conditions[name].unit
+    field = model.input_fields.get(name)
+    return field.unit if field is not None else model.conditions[name].unit
 
 
 def _is_known(*units: Any) -> bool:

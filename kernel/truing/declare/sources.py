@@ -235,7 +235,7 @@ class Effect(Generic[I, R]):
     def takes_any(self) -> bool:
         """Whether the function takes whatever unknowns are stated (``**unknowns``)."""
         parameters = inspect.signature(self.function).parameters.values()
-        return any(item.kind is inspect.Parameter.VAR_KEYWORD for item in parameters)
+        return any(parameter.kind is inspect.Parameter.VAR_KEYWORD for parameter in parameters)
 
     def groups(self) -> tuple[tuple[Unknown, ...], ...]:
         """Return the unknowns by part, in the order declared; without parts all of them are one."""
@@ -290,9 +290,9 @@ def _check_keywords(effect: Effect[Any, Any], wanted: set[str]) -> None:
         return
     parameters = list(inspect.signature(effect.function).parameters.values())
     named = parameters[1 if effect.place == "inputs" else 2 :]
-    needed = {item.name for item in named if item.default is inspect.Parameter.empty}
-    if not needed <= wanted <= {item.name for item in named}:
-        have = ", ".join(item.name for item in named) or "none"
+    needed = {parameter.name for parameter in named if parameter.default is inspect.Parameter.empty}
+    if not needed <= wanted <= {parameter.name for parameter in named}:
+        have = ", ".join(parameter.name for parameter in named) or "none"
         function = getattr(effect.function, "__name__", repr(effect.function))
         raise DeclarationError(
             f"effect '{effect.name}': {function} takes the keywords {have}, "

@@ -106,9 +106,9 @@ def in_si(value: Any, unit: str | None, is_series: bool = False) -> Any:
     if unit is None or isinstance(value, bool):
         return value
     if is_series and not isinstance(value, str):
-        return np.array([in_si(item, unit) for item in value], dtype=float)
+        return np.array([in_si(member, unit) for member in value], dtype=float)
     if isinstance(value, (tuple, list)):
-        return tuple(in_si(item, unit) for item in value)
+        return tuple(in_si(member, unit) for member in value)
     if isinstance(value, str):
         return read_quantity(value, unit)
     if isinstance(value, int) and unit in PURE:

@@ -161,9 +161,9 @@ def gauged(cause: Candidate, measured: Iterable[str]) -> str:
     """Return the measured result whose reading a part of a built-in effect changes, or nothing."""
     reading = None if cause.effect is None else reading_of(cause.effect)
     names = {number.name for number in cause.numbers}
-    for item, roles in reading.roles if reading is not None else ():
-        if item.name in set(measured) and names == set(roles.values()):
-            return item.name
+    for result, roles in reading.roles if reading is not None else ():
+        if result.name in set(measured) and names == set(roles.values()):
+            return result.name
     return ""
 
 
@@ -179,7 +179,7 @@ def effects_of(machine: Calibration) -> list[Candidate]:
     Effects, and parts of effects, that are on already are part of the model; an effect whose conditions nobody measured
     is left out, and so is one that follows only what never moved.
     """
-    model, made = machine.start.model, list[Candidate]()
+    model, candidates = machine.start.model, list[Candidate]()
     for order, effect in enumerate(model.known_effects.values()):
         if any(need.name in machine.records.absent for need in effect.needs) or _stands_still(effect, machine):
             continue
@@ -189,8 +189,8 @@ def effects_of(machine: Calibration) -> list[Candidate]:
             if not set(part) & set(machine.on.get(effect.name, ())):
                 tag = effect.name if len(parts) == 1 else f"{effect.name}.{index}"
                 numbers = tuple(_numbers(effect, part, machine))
-                made.append(Candidate(effect.name, tag, numbers, order, effect, is_kernel=is_kernel))
-    return [cause for cause in made if not cause.is_kernel or _is_offered(cause, machine)]
+                candidates.append(Candidate(effect.name, tag, numbers, order, effect, is_kernel=is_kernel))
+    return [cause for cause in candidates if not cause.is_kernel or _is_offered(cause, machine)]
 
 
 def _numbers(effect: Effect[Any, Any], part: Sequence[str], machine: Calibration) -> Iterator[Parameter]:
@@ -208,10 +208,10 @@ def _numbers(effect: Effect[Any, Any], part: Sequence[str], machine: Calibration
 def _within_record(unknown: Unknown, machine: Calibration) -> tuple[float, float]:
     """Return between which places of the record something may begin: not at its very ends."""
     low, high = si_bounds(unknown)
-    item = machine.records.covariates.get(unknown.along)
-    if item is None or item.is_constant:
+    covariate = machine.records.covariates.get(unknown.along)
+    if covariate is None or covariate.is_constant:
         return low, high
-    first, last = float(np.nanmin(item.values)), float(np.nanmax(item.values))
+    first, last = float(np.nanmin(covariate.values)), float(np.nanmax(covariate.values))
     return max(low, first + ENDS * (last - first)), min(high, last - ENDS * (last - first))
 
 
@@ -221,7 +221,7 @@ def _is_offered(cause: Candidate, machine: Calibration) -> bool:
     if effect is None or not gauged(cause, machine.records.measured):
         return False
     own = [covariates[name] for name in effect.reads if name in covariates]
-    return not may_stand(effect) or any(not is_angle(item.unit) or item.goes_round for item in own)
+    return not may_stand(effect) or any(not is_angle(covariate.unit) or covariate.goes_round for covariate in own)
 
 
 def _stands_still(effect: Effect[Any, Any], machine: Calibration) -> bool:
@@ -237,9 +237,12 @@ def inputs_of(machine: Calibration) -> list[Candidate]:
     """Return every tolerated input that moves a measured result, as a cause that shifts it by standard deviations."""
     return [
         Candidate(
-            INPUT + item.name, f"{INPUT}{item.name}.{item.file}", (Parameter(item.name, -inf, inf),), tolerated=index
+            INPUT + tolerated.name,
+            f"{INPUT}{tolerated.name}.{tolerated.file}",
+            (Parameter(tolerated.name, -inf, inf),),
+            tolerated=index,
         )
-        for index, item in enumerate(machine.inputs)
+        for index, tolerated in enumerate(machine.inputs)
         if any(np.any(slopes[:, index]) for slopes in machine.slopes.values())
     ]
 
@@ -285,8 +288,8 @@ def failure_of(machine: Calibration, cause: Candidate) -> str:
             row = next((row for row in sorted(reasons) if measured[row]), None)
             if row is not None:
                 records = machine.records
-                place = f"{PurePath(records.files[records.file_of[row]]).name}:{records.lines[row]}"
-                return f"the model fails with it, in {place} as the first row: {reasons[row]}"
+                source_line = f"{PurePath(records.files[records.file_of[row]]).name}:{records.lines[row]}"
+                return f"the model fails with it, in {source_line} as the first row: {reasons[row]}"
     return ""
 
 

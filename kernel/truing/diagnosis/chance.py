@@ -47,21 +47,21 @@ def carried(rho: float, rows: int) -> float:
     return min(LARGEST_RHO, rho + (1 + 3 * rho) / rows + 0.5 * sqrt(max(1 - rho**2, 0.0) / rows)) if rho else 0.0
 
 
-def law_of(made: Competition, at: Fit, more: Fit, *, seed: int) -> Law:
+def law_of(competition: Competition, at: Fit, more: Fit, *, seed: int) -> Law:
     """Simulate how much the best explanation with as many causes as ``more`` gains where ``at`` is all there is.
 
     Stops early where the answer is plain.
     """
     generator = np.random.Generator(np.random.SFC64(seed))
-    seen, conditional = made.look(at), conditional_on(at, made.extended)
-    gain, steps = made.score(at) - made.score(more), len(more.causes) - len(at.causes)
-    many, on = len(made.causes), len(at.causes)
+    seen, conditional = competition.look(at), conditional_on(at, competition.extended)
+    gain, steps = competition.score(at) - competition.score(more), len(more.causes) - len(at.causes)
+    many, on = len(competition.causes), len(at.causes)
     choice = 2 * (log(comb(many, on + steps)) - log(comb(many, on)))
     gains = np.zeros(0)
     while len(gains) < DRAWS and (gains >= gain).sum() < HOPELESS:
         drawn = _drawn(at, more, DRAWS - len(gains) if len(gains) else FIRST_DRAWS, generator)
         drawn -= conditional.taken @ (conditional.taken.T @ drawn)
-        gains = np.concatenate([gains, _largest(made, seen, drawn, made.sample.known, steps) - choice])
+        gains = np.concatenate([gains, _largest(competition, seen, drawn, competition.sample.known, steps) - choice])
     return Law(gains, float((1 + (gains >= gain).sum()) / (1 + len(gains))))
 
 
@@ -84,25 +84,27 @@ def _drawn(at: Fit, more: Fit, count: int, generator: np.random.Generator) -> Ma
     return np.concatenate([*parts, generator.standard_normal((len(at.inputs), count))])
 
 
-def _largest(made: Competition, seen: Mapping[str, ConditionalGain], drawn: Matrix, known: float, steps: int) -> Matrix:
+def _largest(
+    competition: Competition, seen: Mapping[str, ConditionalGain], drawn: Matrix, known: float, steps: int
+) -> Matrix:
     """Return by draw the largest gain of so many causes, one after another, each paid for, (draws,)."""
     summed, drawn = np.zeros(drawn.shape[1]), np.array(drawn)
-    prices = {cause.tag: made.price_of(cause) for cause in made.causes}
+    prices = {cause.tag: competition.price_of(cause) for cause in competition.causes}
     for _ in range(steps):
         whole = np.sum(drawn**2, axis=0)
         best = np.full(drawn.shape[1], -np.inf)
         chosen: dict[int, tuple[ConditionalGain, int, Matrix]] = {}
         passed: dict[Pass, Matrix] = {}
-        for tag, each in seen.items():
-            inner = each.span.inner(drawn, passed)
+        for tag, gains in seen.items():
+            inner = gains.span.inner(drawn, passed)
             squares = np.sum(inner**2, axis=1)
-            place = squares.argmax(axis=0)
-            lowered = np.take_along_axis(squares, place[None], 0)[0]
+            index = squares.argmax(axis=0)
+            lowered = np.take_along_axis(squares, index[None], 0)[0]
             gain = -known * np.log(np.maximum(1 - lowered / np.maximum(whole, 1e-300), 1e-9)) - prices[tag]
             better = np.flatnonzero(gain > best)
             best[better] = gain[better]
             for draw in better.tolist() if steps > 1 else ():
-                chosen[draw] = each, int(place[draw]), inner[place[draw], :, draw]
+                chosen[draw] = gains, int(index[draw]), inner[index[draw], :, draw]
         summed += best
         for draw, (each, point, size) in chosen.items():
             drawn[:, draw] -= each.span.vectors(point).T @ size

@@ -88,39 +88,41 @@ class Chosen:
         return self.competition.null
 
 
-def choose(made: Competition, *, seed: int) -> Chosen:
+def choose(competition: Competition, *, seed: int) -> Chosen:
     """Decide how many causes there are and which, and gather what is near."""
-    decision = steps_from(made, Decision(made.null, Law(np.zeros(0), 1.0)), seed=seed)
+    decision = steps_from(competition, Decision(competition.null, Law(np.zeros(0), 1.0)), seed=seed)
     for _ in range(MOST_CHOICES if decision.at.causes else 0):
-        before = len(made.known)
-        best = _exchanged(made, decision.at)
-        if best.key == decision.at.key and len(made.known) == before:
+        before = len(competition.known)
+        best = _exchanged(competition, decision.at)
+        if best.key == decision.at.key and len(competition.known) == before:
             break
-        again = steps_from(made, replace(decision, at=best), seed=seed + 1)
+        again = steps_from(competition, replace(decision, at=best), seed=seed + 1)
         if again.at.key == decision.at.key:
             break
         decision = again
-    best = _certain(made, made.backward(decision.at))
+    best = _certain(competition, competition.backward(decision.at))
     if best.causes:
-        named = _registered(made, best)
-        best = _taking_least(made, _named_weakest(made, best if named.key == best.key else _exchanged(made, named)))
-    best = made.exact(best)
-    near = [Rival(made.exact(rival.fit), rival.behind) for rival in _rivals(made, best, seed)]
-    near = [rival for rival in near if not _adds_nothing(made, best, rival.fit)]
-    return Chosen(made, best, tuple(near), _same(made, best), decision.law, decision.p_further)
+        named = _registered(competition, best)
+        best = _taking_least(
+            competition, _named_weakest(competition, best if named.key == best.key else _exchanged(competition, named))
+        )
+    best = competition.exact(best)
+    near = [Rival(competition.exact(rival.fit), rival.behind) for rival in _rivals(competition, best, seed)]
+    near = [rival for rival in near if not _adds_nothing(competition, best, rival.fit)]
+    return Chosen(competition, best, tuple(near), _same(competition, best), decision.law, decision.p_further)
 
 
-def _certain(made: Competition, best: Fit) -> Fit:
+def _certain(competition: Competition, best: Fit) -> Fit:
     """Leave out effects whose every amplitude may as well be zero, unless without them much is lost.
 
     The interval of an amplitude that saturates may hold zero although nothing else will do.
     """
     while best.causes:
-        best = made.exact(best)
-        certainty = certainty_of(best, made.extended)
+        best = competition.exact(best)
+        certainty = certainty_of(best, competition.extended)
         for index, cause in enumerate(best.causes):
-            less = made.without(best, index) if cause.effect is not None else None
-            if less is None or made.score(less) - made.score(best) >= SURELY:
+            less = competition.without(best, index) if cause.effect is not None else None
+            if less is None or competition.score(less) - competition.score(best) >= SURELY:
                 continue
             if may_be_zero(best, certainty, cause):
                 best = less
@@ -130,23 +132,23 @@ def _certain(made: Competition, best: Fit) -> Fit:
     return best
 
 
-def _adds_nothing(made: Competition, best: Fit, fit: Fit) -> bool:
+def _adds_nothing(competition: Competition, best: Fit, fit: Fit) -> bool:
     """Whether an explanation is the winner and a cause whose every amplitude may as well be zero."""
     added = [cause for cause in fit.causes if cause.tag not in best.key] if best.key < fit.key else []
-    return any(may_be_zero(fit, certainty_of(fit, made.extended), cause) for cause in added)
+    return any(may_be_zero(fit, certainty_of(fit, competition.extended), cause) for cause in added)
 
 
-def _exchanged(made: Competition, best: Fit) -> Fit:
+def _exchanged(competition: Competition, best: Fit) -> Fit:
     """Exchange every cause of the winner for every other one, and take what is better."""
     kinds = _kinds(best)
     for _ in range(2):
         for index in range(len(best.causes)):
-            exchange(made, best, index)
-        top = next(iter(made.ranked(lambda fit: is_sensible(fit) and _kinds(fit) == kinds)), best)
+            exchange(competition, best, index)
+        top = next(iter(competition.ranked(lambda fit: is_sensible(fit) and _kinds(fit) == kinds)), best)
         if top.key == best.key:
             break
-        best = made.exact(top)
-    return made.exact(best)
+        best = competition.exact(top)
+    return competition.exact(best)
 
 
 def _kinds(fit: Fit) -> tuple[int, int, int]:
@@ -156,58 +158,58 @@ def _kinds(fit: Fit) -> tuple[int, int, int]:
     return len(fit.causes) - shapes - inputs, inputs, shapes
 
 
-def _registered(made: Competition, best: Fit) -> Fit:
+def _registered(competition: Competition, best: Fit) -> Fit:
     """Return the fewest registered causes that are about as good as a shape that nobody registered."""
     if all(cause.is_registered for cause in best.causes):
         return best
-    near = made.ranked(
+    near = competition.ranked(
         lambda fit: (
             0 < len(fit.causes) <= len(best.causes) + 1
             and all(cause.effect is not None for cause in fit.causes)
-            and made.score(fit) < made.score(best) + CLOSE
+            and competition.score(fit) < competition.score(best) + CLOSE
         )
     )
-    return min(near, key=lambda fit: (len(fit.causes), made.score(fit)), default=best)
+    return min(near, key=lambda fit: (len(fit.causes), competition.score(fit)), default=best)
 
 
-def _taking_least(made: Competition, best: Fit) -> Fit:
+def _taking_least(competition: Competition, best: Fit) -> Fit:
     """Return, of shapes over the same covariates that are about as good beside names, the one that leaves them most."""
     if shapes_in(best) in (0, len(best.causes)):
         return best
-    near = [fit for fit in made.known.values() if made.score(fit) < made.score(best) + CLOSE]
+    near = [fit for fit in competition.known.values() if competition.score(fit) < competition.score(best) + CLOSE]
     alike = [fit for fit in near if len(fit.causes) == len(best.causes) and _says_the_same(best, fit)]
-    return max(alike, key=lambda fit: _worth_of_names(made, fit))
+    return max(alike, key=lambda fit: _worth_of_names(competition, fit))
 
 
-def _worth_of_names(made: Competition, fit: Fit) -> float:
+def _worth_of_names(competition: Competition, fit: Fit) -> float:
     """Return what the score loses at least without one of the causes that have a name."""
     named = (index for index, cause in enumerate(fit.causes) if cause.shape is None)
-    less = (made.without(fit, index) for index in named)
-    return min((made.score(each) - made.score(fit) for each in less if each is not None), default=0.0)
+    less = (competition.without(fit, index) for index in named)
+    return min((competition.score(each) - competition.score(fit) for each in less if each is not None), default=0.0)
 
 
-def _named_weakest(made: Competition, best: Fit) -> Fit:
+def _named_weakest(competition: Competition, best: Fit) -> Fit:
     """Return the explanation under the weakest of its names, where several causes draw one curve."""
-    alike = [fit for fit in _like(made, best) if made.score(fit) < made.score(best) + 1.0]
+    alike = [fit for fit in _like(competition, best) if competition.score(fit) < competition.score(best) + 1.0]
     return min([best, *alike], key=lambda fit: sorted(cause.weakest_first for cause in fit.causes))
 
 
-def _like(made: Competition, best: Fit) -> Iterator[Fit]:
+def _like(competition: Competition, best: Fit) -> Iterator[Fit]:
     """Give explanations that exchange one cause for another one and draw the same, the inputs no farther off."""
-    for fit in made.known.values():
+    for fit in competition.known.values():
         own = fit.key - best.key
         is_other = len(fit.causes) == len(best.causes) and len(own) == 1 and fit.cost < best.cost + CLOSE
         if is_other and all(cause.effect is not None for cause in fit.causes) and differ(best, fit) < ALIKE:
             yield fit
 
 
-def _same(made: Competition, best: Fit) -> dict[str, tuple[str, ...]]:
+def _same(competition: Competition, best: Fit) -> dict[str, tuple[str, ...]]:
     """Return by cause of the winner the names of others that draw its curve as it was fitted.
 
     One with more amplitudes that the record tells apart holds the winner as a special case: that is no other name.
     """
     names: dict[str, list[str]] = {}
-    for fit in _like(made, best):
+    for fit in _like(competition, best):
         (gone,) = (cause for cause in best.causes if cause.tag not in fit.key)
         (other,) = (cause for cause in fit.causes if cause.tag not in best.key)
         if other.name != gone.name and _felt(fit, other) <= _felt(best, gone):
@@ -229,7 +231,7 @@ def unsure(one: Fit, other: Fit) -> float:
     return sqrt(one.sample.rows) * float(np.std(losses[0] - losses[1]))
 
 
-def _rivals(made: Competition, best: Fit, seed: int) -> list[Rival]:
+def _rivals(competition: Competition, best: Fit, seed: int) -> list[Rival]:
     """Return what lies near the winner and is neither another name for it nor a vaguer word.
 
     What may be there as well is not told where it, in the place of a cause of the winner, explains as much; a shape
@@ -237,57 +239,59 @@ def _rivals(made: Competition, best: Fit, seed: int) -> list[Rival]:
     """
     if not best.causes:
         return []
-    alike = {fit.key for fit in _like(made, best)}
-    top = made.score(best)
+    alike = {fit.key for fit in _like(competition, best)}
+    top = competition.score(best)
     near: list[Fit] = []
-    for fit in made.ranked(lambda each: bool(each.causes) and not best.key <= each.key and is_sensible(each)):
-        if made.score(fit) - top > 10 * CLOSE or len(near) >= MOST_RIVALS:
+    for fit in competition.ranked(lambda fit: bool(fit.causes) and not best.key <= fit.key and is_sensible(fit)):
+        if competition.score(fit) - top > 10 * CLOSE or len(near) >= MOST_RIVALS:
             break
-        if fit.key not in alike and _is_near(made, best, fit):
+        if fit.key not in alike and _is_near(competition, best, fit):
             near.append(fit)
-    more = [fit for fit in _with_more(made, best, seed) if not any(fit.key > each.key for each in near)]
-    return [Rival(fit, max(0.0, made.score(fit) - top)) for fit in sorted((*near, *more), key=made.score)]
+    more = [fit for fit in _with_more(competition, best, seed) if not any(fit.key > other.key for other in near)]
+    return [Rival(fit, max(0.0, competition.score(fit) - top)) for fit in sorted((*near, *more), key=competition.score)]
 
 
-def _with_more(made: Competition, best: Fit, seed: int) -> list[Fit]:
+def _with_more(competition: Competition, best: Fit, seed: int) -> list[Fit]:
     """Return the winner with one cause more that may be there as well; with a shape where it is with no effect."""
     wider = [
-        each
-        for each in made.ranked(lambda each: best.key < each.key and len(each.causes) == len(best.causes) + 1)
-        if all(cause.tolerated < 0 or cause.tag in best.key for cause in each.causes)
+        fit
+        for fit in competition.ranked(lambda fit: best.key < fit.key and len(fit.causes) == len(best.causes) + 1)
+        if all(cause.tolerated < 0 or cause.tag in best.key for cause in fit.causes)
     ]
     if not wider:
         return []
-    law, folds = law_of(made, best, wider[0], seed=seed), folds_of(made.sample)
+    law, folds = law_of(competition, best, wider[0], seed=seed), folds_of(competition.sample)
     near = [
-        each
-        for each in wider
-        if (not shapes_in(best) or shapes_in(each) == shapes_in(best))
-        and law.p_of(_gained(made, best, each)) <= MAYBE
-        and carries_over(best, each, made.extended, folds) >= CARRIED
+        fit
+        for fit in wider
+        if (not shapes_in(best) or shapes_in(fit) == shapes_in(best))
+        and law.p_of(_gained(competition, best, fit)) <= MAYBE
+        and carries_over(best, fit, competition.extended, folds) >= CARRIED
     ]
-    return [each for each in near if shapes_in(each) == shapes_in(best)] or near
+    return [fit for fit in near if shapes_in(fit) == shapes_in(best)] or near
 
 
-def _gained(made: Competition, best: Fit, fit: Fit) -> float:
+def _gained(competition: Competition, best: Fit, fit: Fit) -> float:
     """Return by how much the winner is better with one cause more, in noise with a memory in its own noise as well."""
-    gain = made.score(best) - made.score(fit)
-    return max(gain, made.own_score(best) - made.own_score(fit)) if made.sample.has_memory else gain
+    gain = competition.score(best) - competition.score(fit)
+    return (
+        max(gain, competition.own_score(best) - competition.own_score(fit)) if competition.sample.has_memory else gain
+    )
 
 
-def _is_near(made: Competition, best: Fit, fit: Fit) -> bool:
+def _is_near(competition: Competition, best: Fit, fit: Fit) -> bool:
     """Whether an explanation is a rival of the winner."""
-    behind = made.score(fit) - made.score(best)
+    behind = competition.score(fit) - competition.score(best)
     if len(fit.causes) > len(best.causes) or (fit.key < best.key and behind >= CLOSE):
         return False
     if (shifts_inputs(fit) and not shifts_inputs(best)) or shapes_in(fit) > max(shapes_in(best), 1):
         return False
     if behind >= max(CLOSE, SURE * unsure(best, fit)):
         return False
-    return not _is_vaguer(made, best, fit) and not _acts_beside(made, best, fit)
+    return not _is_vaguer(competition, best, fit) and not _acts_beside(competition, best, fit)
 
 
-def _is_vaguer(made: Competition, best: Fit, fit: Fit) -> bool:
+def _is_vaguer(competition: Competition, best: Fit, fit: Fit) -> bool:
     """Whether a shape that nobody registered draws what the winner has in its place, and fits no better.
 
     A polynomial always fits a little better: it draws anything.
@@ -298,9 +302,9 @@ def _is_vaguer(made: Competition, best: Fit, fit: Fit) -> bool:
         return _says_the_same(best, fit)
     if fit.cost < best.cost - CLOSE and not any(draws_anything(cause) for cause in shapes):
         return False
-    wanted = _curve_of(made, best, gone)
-    columns = [column for cause in shapes for column in _columns_of(made, fit, cause)]
-    basis = np.linalg.qr(np.column_stack([*columns, made.sample.drawn]))[0]
+    wanted = _curve_of(competition, best, gone)
+    columns = [column for cause in shapes for column in _columns_of(competition, fit, cause)]
+    basis = np.linalg.qr(np.column_stack([*columns, competition.sample.drawn]))[0]
     drawn = basis.T @ wanted
     return float(drawn @ drawn) >= TWIN * float(wanted @ wanted)
 
@@ -313,31 +317,31 @@ def _says_the_same(best: Fit, fit: Fit) -> bool:
     return said[0] == said[1] and shapes_in(best) > 0
 
 
-def _curve_of(made: Competition, fit: Fit, places: list[int]) -> Matrix:
+def _curve_of(competition: Competition, fit: Fit, places: list[int]) -> Matrix:
     """Return what some causes of an explanation add to it, in units of the noise."""
     kept = [index for index in range(len(fit.causes)) if index not in places]
     causes, values = [fit.causes[index] for index in kept], [fit.values[index] for index in kept]
-    (without,) = made.extended.at(causes, [(values, fit.moved)])
-    (whole,) = made.extended.at(fit.causes, [(fit.values, fit.moved)])
-    return np.nan_to_num(made.sample.left(without) - made.sample.left(whole))
+    (without,) = competition.extended.at(causes, [(values, fit.moved)])
+    (whole,) = competition.extended.at(fit.causes, [(fit.values, fit.moved)])
+    return np.nan_to_num(competition.sample.left(without) - competition.sample.left(whole))
 
 
-def _columns_of(made: Competition, fit: Fit, cause: Candidate) -> Iterator[Matrix]:
+def _columns_of(competition: Competition, fit: Fit, cause: Candidate) -> Iterator[Matrix]:
     """Give the terms of a shape as it was fitted, in units of the noise."""
     shape = cause.shape
     if shape is None:
         return
     values = fit.of(cause)
-    records = made.sample.machine.records
-    terms = shape.terms([float(values[place]) for place in cause.shapes], records.covariates)
+    records = competition.sample.machine.records
+    terms = shape.terms([float(values[index]) for index in cause.shapes], records.covariates)
     for name in shape.results:
         for term in terms:
             added = {each: np.zeros(len(records)) for each in records.measured}
             added[name] = term.values
-            yield made.sample.curve(added)
+            yield competition.sample.curve(added)
 
 
-def _acts_beside(made: Competition, best: Fit, fit: Fit) -> bool:
+def _acts_beside(competition: Competition, best: Fit, fit: Fit) -> bool:
     """Whether a rival draws something else than the winner does: both together are far better than the winner."""
-    union = made.known.get(best.key | fit.key)
-    return union is not None and made.score(union) < made.score(best) - CLOSE
+    union = competition.known.get(best.key | fit.key)
+    return union is not None and competition.score(union) < competition.score(best) - CLOSE

@@ -218,11 +218,11 @@ class Competition:
         }
         return sorted(worth, key=lambda cause: (-worth[cause], cause.weakest_first))
 
-    def without(self, fit: Fit, place: int) -> Fit | None:
+    def without(self, fit: Fit, index: int) -> Fit | None:
         """Fit an explanation without one of its causes."""
         causes, values = (
-            fit.causes[:place] + fit.causes[place + 1 :],
-            fit.values[:place] + fit.values[place + 1 :],
+            fit.causes[:index] + fit.causes[index + 1 :],
+            fit.values[:index] + fit.values[index + 1 :],
         )
         begin = _begins(causes, values)
         if begin[0] in self.fresh and (not begin[1] or begin in self.begun):

@@ -52,9 +52,9 @@ class Spanned:
         flat = self.basis.reshape(-1, self.basis.shape[-1])
         return np.asarray((flat @ drawn.astype(flat.dtype)).reshape(*self.basis.shape[:2], -1))
 
-    def vectors(self, place: int) -> Matrix:
+    def vectors(self, index: int) -> Matrix:
         """Return the curves at one of the points, (q, rows + K)."""
-        return np.asarray(self.basis[place])
+        return np.asarray(self.basis[index])
 
 
 @dataclass(frozen=True)
@@ -100,10 +100,10 @@ def _swept(
     """Compare a table with what an explanation leaves; each result is passed through once."""
     shape, names = bundle.cause.shape, [channel.name for channel in conditional.sample.channels]
     places = [names.index(name) for name in (shape.results if shape is not None else ())]
-    for place in places:
-        if (table, place) not in passes:
-            passes[table, place] = Pass(table, conditional, place)
-    own = tuple(passes[table, place] for place in places)
+    for index in places:
+        if (table, index) not in passes:
+            passes[table, index] = Pass(table, conditional, index)
+    own = tuple(passes[table, index] for index in places)
     raw, normal, following = without_taken(own)
     sizes = [np.sqrt(np.maximum(np.einsum("mqq->mq", each), 0.0)) for each in (normal, raw)]
     points, is_own = np.flatnonzero(_draws(*sizes)), (sizes[0] > OWN * sizes[1]).any(axis=1)
@@ -140,7 +140,7 @@ def _grouped(bundles: Iterable[Bundle]) -> Iterator[list[Bundle]]:
 
 def compared(bundles: list[Bundle], conditional: Conditional) -> Iterator[tuple[str, ConditionalGain]]:
     """Compare the curves of causes with what an explanation leaves; those that draw nothing here are left out."""
-    curves = np.concatenate([each.curves for each in bundles]) if len(bundles) > 1 else bundles[0].curves
+    curves = np.concatenate([bundle.curves for bundle in bundles]) if len(bundles) > 1 else bundles[0].curves
     kept, is_own, basis, right, normal = _weighed(curves, conditional)
     begin = 0
     for bundle in bundles:
@@ -179,12 +179,12 @@ def _best(
 ) -> tuple[tuple[float, Matrix], ...]:
     """Return the best points that do not draw the same, with what each is worth in score."""
     chosen: list[int] = []
-    for place in np.argsort(-gains, kind="stable")[:200].tolist():
-        if not gains[place] > 0 or len(chosen) == KEPT:  # the gains fall from here on
+    for index in np.argsort(-gains, kind="stable")[:200].tolist():
+        if not gains[index] > 0 or len(chosen) == KEPT:  # the gains fall from here on
             break
-        own, others = span.vectors(place), [span.vectors(other) for other in chosen]
-        if not any(np.linalg.norm(own @ each.T) ** 2 > AS_ONE * min(len(own), len(each)) for each in others):
-            chosen.append(place)
+        own, others = span.vectors(index), [span.vectors(other) for other in chosen]
+        if not any(np.linalg.norm(own @ other.T) ** 2 > AS_ONE * min(len(own), len(other)) for other in others):
+            chosen.append(index)
     known, whole = conditional.sample.known, float(conditional.left @ conditional.left)
     rest = np.maximum(1 - gains[chosen] / max(whole, known, 1.0), 1e-9)  # of the squares; the noise is what is left
     return tuple(zip((-known * np.log(rest)).tolist(), values[chosen], strict=True))

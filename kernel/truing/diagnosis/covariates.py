@@ -34,7 +34,7 @@ def covariates_of(joined: DataRows, setup: Setup) -> tuple[dict[str, Covariate],
 
     Where no time was measured, the place in the record stands for it.
     """
-    found: dict[str, Covariate] = {}
+    covariates: dict[str, Covariate] = {}
     effects = [effect for name, effect in setup.model.known_effects.items() if name.startswith("periodic_order")]
     known = [effect for effect in effects if reading_of(effect) is not None and not may_stand(effect)]
     turning = {name for effect in known for name in (*effect.reads, *(need.name for need in effect.needs))}
@@ -48,20 +48,20 @@ def covariates_of(joined: DataRows, setup: Setup) -> tuple[dict[str, Covariate],
             unit = "" if part == "other" and unit in PURE else unit
             if np.isfinite(values).any():
                 is_time = name == TIME and unit not in PURE and same_dimension(unit, "s")
-                item = Covariate(name, values, unit, "time" if is_time else usual, is_angle(unit))
-                is_design = part in {"input", "series"} and name not in turning and not item.goes_round
-                found[name] = replace(item, is_angle=False) if is_design else item
-    if not any(item.role == "time" for item in found.values()):
-        name = ORDER if ORDER not in found else "row order"
-        found[name] = Covariate(name, np.arange(len(joined), dtype=float), "", "order")
-    notes = _of_others(joined, setup, found)
-    if still := [shown(item.name) for item in found.values() if item.is_constant]:
+                covariate = Covariate(name, values, unit, "time" if is_time else usual, is_angle(unit))
+                is_design = part in {"input", "series"} and name not in turning and not covariate.goes_round
+                covariates[name] = replace(covariate, is_angle=False) if is_design else covariate
+    if not any(known_covariate.role == "time" for known_covariate in covariates.values()):
+        name = ORDER if ORDER not in covariates else "row order"
+        covariates[name] = Covariate(name, np.arange(len(joined), dtype=float), "", "order")
+    notes = _of_others(joined, setup, covariates)
+    if still := [shown(known_covariate.name) for known_covariate in covariates.values() if known_covariate.is_constant]:
         columns = counted(len(still), "column never changes", "columns never change")
         notes.append(f"{columns}, so nothing can be seen of what depends on it: {', '.join(still)}")
-    return found, notes
+    return covariates, notes
 
 
-def _of_others(joined: DataRows, setup: Setup, found: dict[str, Covariate]) -> list[str]:
+def _of_others(joined: DataRows, setup: Setup, covariates: dict[str, Covariate]) -> list[str]:
     """Say which columns nobody declared, and what they are taken for."""
     model = setup.model
     known = [*model.measurable, *model.known_conditions, *model.input_fields]
@@ -69,10 +69,10 @@ def _of_others(joined: DataRows, setup: Setup, found: dict[str, Covariate]) -> l
     asked_for = {setup.diagnose.held_out[0], *setup.diagnose.flags}
     for name in joined.named("other", "label"):
         is_label = joined.parts[name] == "label" and any(joined.columns[name].tolist())
-        if name in asked_for and (is_label or name not in found):
+        if name in asked_for and (is_label or name not in covariates):
             continue
         words = "it is kept as words, on which nothing can depend" if is_label else "it holds no value and is not used"
-        use = "it is kept as something an error may depend on" if name in found else words
+        use = "it is kept as something an error may depend on" if name in covariates else words
         near = near_miss(name[:80], known)
         hint = near if near and near.split("'")[1] not in joined.columns else ""
         notes.append(f"column {shown(name)} is neither input, result nor condition; {use}.{hint}".rstrip("."))
@@ -85,27 +85,27 @@ def held_out_rows(joined: DataRows, setup: Setup) -> DataRows:
     column, word = setup.diagnose.held_out
     if not column:
         return joined
-    found = _marked("hold_out", column, word, joined, setup)
-    sentence = f"{counted(int(found.sum()), 'row only judges', 'rows only judge')}: {column} = {word}"
-    return replace(joined, held_out=found).noted(sentence)
+    marked = _marked("hold_out", column, word, joined, setup)
+    sentence = f"{counted(int(marked.sum()), 'row only judges', 'rows only judge')}: {column} = {word}"
+    return replace(joined, held_out=marked).noted(sentence)
 
 
 def _marked(option: str, column: str, word: str, joined: DataRows, setup: Setup) -> Mask:
     """Mark the rows that hold a word, or the number it is, in a column. Raises InputError where there are none."""
-    place = setup.source.places.get(f"studies.diagnose.{option}", (setup.source.file, None))
+    source_line = setup.source.places.get(f"studies.diagnose.{option}", (setup.source.file, None))
     cells = joined.runs if column == "run" else joined.columns.get(column)
     if cells is None:
         near = near_miss(column[:80], list(joined.columns))
-        raise InputError([Fault(f"{option}: no file has a column {shown(column)}.{near}", *place)])
-    unit, found = joined.units.get(column, ""), np.zeros(len(cells), dtype=bool)
+        raise InputError([Fault(f"{option}: no file has a column {shown(column)}.{near}", *source_line)])
+    unit, marked = joined.units.get(column, ""), np.zeros(len(cells), dtype=bool)
     if cells.dtype == object:
-        found = np.array([str(cell).strip() == word for cell in cells.tolist()], dtype=bool)
+        marked = np.array([str(cell).strip() == word for cell in cells.tolist()], dtype=bool)
     else:
         with suppress(ValueError):  # no number is a word
-            found = np.isclose(cells, float(word) if unit in PURE else to_si(float(word), unit), rtol=1e-9, atol=0)
-    if not found.any():
-        raise InputError([Fault(f"{option}: no row has {shown(word)} in the column {shown(column)}", *place)])
-    return found
+            marked = np.isclose(cells, float(word) if unit in PURE else to_si(float(word), unit), rtol=1e-9, atol=0)
+    if not marked.any():
+        raise InputError([Fault(f"{option}: no row has {shown(word)} in the column {shown(column)}", *source_line)])
+    return marked
 
 
 def censored_rows(joined: DataRows, setup: Setup) -> tuple[DataRows, dict[str, Sides], list[str]]:

@@ -68,10 +68,10 @@ class ResponseCurves:
             return self._made(cause, _Place(self.extended, conditional, conditional.causes))
         if cause.tag in self._alone:
             return self._alone[cause.tag]
-        made = self._first(cause, _Place(self.extended, conditional, ()))
-        if made.curves.size <= VALUES_KEPT:
-            self._alone[cause.tag] = made
-        return made
+        bundle = self._first(cause, _Place(self.extended, conditional, ()))
+        if bundle.curves.size <= VALUES_KEPT:
+            self._alone[cause.tag] = bundle
+        return bundle
 
     def _matters(self, cause: Candidate, conditional: Fit) -> bool:
         """Whether an effect may draw something else beside an explanation than alone."""
@@ -79,30 +79,30 @@ class ResponseCurves:
         acts = cause.effect is not None and bool(on) and any(each.acts_on_inputs for each in (cause, *on))
         return acts and self.extended.lasts
 
-    def _first(self, cause: Candidate, place: _Place) -> Bundle:
+    def _first(self, cause: Candidate, beside: _Place) -> Bundle:
         """Return the curves of a cause beside nothing; none where the budget of calls does not last for them."""
         if self.extended.lasts or not self.extended.costs(cause):
-            made = self._made(cause, place)
-            if made.lost:
+            bundle = self._made(cause, beside)
+            if bundle.lost:
                 lost, tried = self.lost.get(cause.name, (0, 0))
-                self.lost[cause.name] = lost + made.lost, tried + made.lost + len(made.points)
-            return made
+                self.lost[cause.name] = lost + bundle.lost, tried + bundle.lost + len(bundle.points)
+            return bundle
         self.extended.budget.unseen.append(cause.name)
-        return Bundle(cause, np.zeros((0, cause.size)), np.zeros((0, 1, place.readings)), is_straight=False)
+        return Bundle(cause, np.zeros((0, cause.size)), np.zeros((0, 1, beside.readings)), is_straight=False)
 
-    def _made(self, cause: Candidate, place: _Place) -> Bundle:
+    def _made(self, cause: Candidate, beside: _Place) -> Bundle:
         if cause.shape is not None:
-            return self._of_shape(cause, cause.shape, place)
+            return self._of_shape(cause, cause.shape, beside)
         if cause.tolerated >= 0:
             slopes = [each[:, cause.tolerated] for each in self.extended.machine.slopes.values()]
             return Bundle(cause, np.zeros((1, 1)), np.concatenate(slopes)[None, None, :], is_straight=True)
         if cause.tag not in self._straight:
-            self._straight[cause.tag] = place.is_straight(cause)
+            self._straight[cause.tag] = beside.is_straight(cause)
         if self._straight[cause.tag]:
-            return _swept(cause, lambda values: place.slopes(cause, values), most=place.most(cause))
-        return place.bent(cause)
+            return _swept(cause, lambda values: beside.slopes(cause, values), most=beside.most(cause))
+        return beside.bent(cause)
 
-    def _of_shape(self, cause: Candidate, shape: UnregisteredShape, place: _Place) -> Bundle:
+    def _of_shape(self, cause: Candidate, shape: UnregisteredShape, beside: _Place) -> Bundle:
         """Return the curves of a shape; of one with many, on a long record, a table that all results share."""
         records = self.extended.machine.records
         shapes = [cause.numbers[number] for number in cause.shapes]
@@ -111,15 +111,15 @@ class ResponseCurves:
         def terms(values: Matrix) -> list[list[Matrix]]:
             return [[term.values for term in shape.terms(each.tolist(), records.covariates)] for each in values]
 
-        if len(u) * len(cause.amplitudes) * place.readings <= LARGE:
+        if len(u) * len(cause.amplitudes) * beside.readings <= LARGE:
             acts = np.array([[float(each == name) for each in records.measured] for name in shape.results])
-            several = len(cause.amplitudes), place.readings
+            several = len(cause.amplitudes), beside.readings
             return _swept(cause, lambda v: np.einsum("rs,mtn->mrtsn", acts, terms(v)).reshape(-1, *several))
         family = shape.kind, *shape.depends_on
         values = placed(shapes, u)
         if family not in self._tables:
             self._tables[family] = TermTable(np.array(terms(values), dtype=np.float32))
-        curves = np.zeros((0, len(cause.amplitudes), place.readings))
+        curves = np.zeros((0, len(cause.amplitudes), beside.readings))
         return Bundle(cause, _points(cause, values), curves, is_straight=True, table=self._tables[family])
 
 
@@ -163,30 +163,30 @@ class _Place:
         ends, together = cause.amplitudes, still.copy()
         together[ends] = 0.5 * _largest(cause)
         points = [
-            np.where(np.arange(cause.size) == place, side * share, still)
-            for place in ends
-            for side in filter(None, (cause.numbers[place].low, cause.numbers[place].high))
+            np.where(np.arange(cause.size) == index, side * share, still)
+            for index in ends
+            for side in filter(None, (cause.numbers[index].low, cause.numbers[index].high))
             for share in (1.0, 0.1, LEVELS[-1])
         ]
-        made = self.changes(cause, np.array([*points, together]))
-        if not (np.isfinite(made) | np.isnan(made).all(axis=0)).all():
+        changes = self.changes(cause, np.array([*points, together]))
+        if not (np.isfinite(changes) | np.isnan(changes).all(axis=0)).all():
             return False
-        rows, made = len(self.machine.records), np.nan_to_num(made)
+        rows, curves = len(self.machine.records), np.nan_to_num(changes)
         grain = np.repeat([4 * self.extended.grain.get(name, 0.0) for name in self.machine.records.measured], rows)
-        slopes = {place: np.zeros(made.shape[1]) for place in ends}
-        for point, curve in zip(points, made, strict=False):
-            (place,) = (each for each in ends if point[each])
-            slope, largest = curve / point[place], np.abs(curve).max() / abs(point[place])
-            if not slopes[place].any():
-                slopes[place] = slope
+        slopes = {index: np.zeros(curves.shape[1]) for index in ends}
+        for point, curve in zip(points, curves, strict=False):
+            (moved,) = (each for each in ends if point[each])
+            slope, largest = curve / point[moved], np.abs(curve).max() / abs(point[moved])
+            if not slopes[moved].any():
+                slopes[moved] = slope
             elif np.any(
-                np.abs(slope - slopes[place])
-                > STRAIGHT * max(largest, np.abs(slopes[place]).max()) + grain / abs(point[place])
+                np.abs(slope - slopes[moved])
+                > STRAIGHT * max(largest, np.abs(slopes[moved]).max()) + grain / abs(point[moved])
             ):
                 return False
-        summed = sum((slopes[place] * together[place] for place in ends), np.zeros(made.shape[1]))
+        summed = sum((slopes[index] * together[index] for index in ends), np.zeros(curves.shape[1]))
         few = STRAIGHT * max(float(np.abs(summed).max()), 1e-300) * len(ends)
-        return bool(np.all(np.abs(made[-1] - summed) <= few + 2 * len(ends) * grain))
+        return bool(np.all(np.abs(curves[-1] - summed) <= few + 2 * len(ends) * grain))
 
     def slopes(self, cause: Candidate, shapes: Matrix) -> Matrix:
         """Return the change per unit of every amplitude at some shapes (M, shape numbers), (M, q, readings)."""
@@ -204,7 +204,7 @@ class _Place:
 
 def _largest(cause: Candidate) -> Matrix:
     """Return the bound of every amplitude that is farther from zero, SI."""
-    return np.array([max((cause.numbers[place].low, cause.numbers[place].high), key=abs) for place in cause.amplitudes])
+    return np.array([max((cause.numbers[index].low, cause.numbers[index].high), key=abs) for index in cause.amplitudes])
 
 
 def _points(cause: Candidate, values: Matrix) -> Matrix:
@@ -228,7 +228,7 @@ def _bundle(cause: Candidate, points: Matrix, made: Matrix, *, is_straight: bool
 
 def _swept(cause: Candidate, make: Callable[[Matrix], Matrix], most: int = FINEST) -> Bundle:
     """Return curves over all shapes of a cause; along one number as finely as they change."""
-    shapes = [cause.numbers[place] for place in cause.shapes]
+    shapes = [cause.numbers[index] for index in cause.shapes]
     u = places_over(shapes, most)
     values = placed(shapes, u)
     made = make(values)

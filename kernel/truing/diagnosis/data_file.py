@@ -137,9 +137,9 @@ def is_missing(values: NDArray[Any]) -> Mask:
 
 def part_of(name: str, model: Model[Any, Any], *, is_number: bool = True) -> ColumnRole:
     """Return the part that a column of this name plays."""
-    item = model.input_fields.get(name)
-    if item is not None:
-        return "word" if item.kind in WORDS else "series" if item.kind == "series" else "input"
+    input_field = model.input_fields.get(name)
+    if input_field is not None:
+        return "word" if input_field.kind in WORDS else "series" if input_field.kind == "series" else "input"
     if name in model.known_conditions:
         return "condition"
     if name in model.own_result_fields:
@@ -152,10 +152,14 @@ def part_of(name: str, model: Model[Any, Any], *, is_number: bool = True) -> Col
 def declared_units(model: Model[Any, Any]) -> dict[str, str]:
     """Return the declared unit of every column that is known by name."""
     conditions = model.known_conditions.values()
-    sources = {item.made_from: item.unit for item in conditions if item.derived and item.history != "direction"}
-    results = {name: item.unit for name, item in model.own_result_fields.items()}
-    inputs = {name: item.unit for name, item in model.input_fields.items()}
-    return sources | results | {item.name: item.unit for item in conditions} | inputs
+    sources = {
+        condition.made_from: condition.unit
+        for condition in conditions
+        if condition.derived and condition.history != "direction"
+    }
+    results = {name: result.unit for name, result in model.own_result_fields.items()}
+    inputs = {name: input_field.unit for name, input_field in model.input_fields.items()}
+    return sources | results | {condition.name: condition.unit for condition in conditions} | inputs
 
 
 def _known(model: Model[Any, Any]) -> dict[str, Known]:

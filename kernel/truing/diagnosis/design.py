@@ -80,9 +80,9 @@ class _Duel:
                 return count
         return None
 
-    def measure(self, place: int) -> None:
+    def measure(self, index: int) -> None:
         """Add one setting to the data: the rival refits (exact rank-one update)."""
-        for signal, row in zip(self.signal[:, place], self.rows[:, place], strict=True):
+        for signal, row in zip(self.signal[:, index], self.rows[:, index], strict=True):
             carried = self.inverse @ row
             scale = 1 + float(row @ carried)
             left = float(signal - row @ self.coefficients)
@@ -146,28 +146,30 @@ def rival_fits(chosen: Chosen) -> list[Fit]:
 
 def _renamed(chosen: Chosen) -> Iterator[Fit]:
     """Give the winner with one cause exchanged for each that draws the same curve, as large as that is here."""
-    best, made = chosen.best, chosen.competition
+    best, competition = chosen.best, chosen.competition
     for index, cause in enumerate(best.causes):
         for name in chosen.same.get(cause.tag, ()):
-            others = [other for other in made.causes if other.name == name and other.tag not in best.key]
+            others = [other for other in competition.causes if other.name == name and other.tag not in best.key]
             keys = [(best.key - {cause.tag}) | {other.tag} for other in others]
-            fits = [made.known[key] for key in keys if key in made.known]
-            fits = fits or [each for other in others for each in _exchanged(made, best, index, other)]
+            fits = [competition.known[key] for key in keys if key in competition.known]
+            fits = fits or [fit for other in others for fit in _exchanged(competition, best, index, other)]
             if fits:
-                yield min(fits, key=lambda each: each.cost)
+                yield min(fits, key=lambda fit: fit.cost)
 
 
-def _exchanged(made: Competition, best: Fit, place: int, other: Candidate) -> Iterator[Fit]:
+def _exchanged(competition: Competition, best: Fit, index: int, other: Candidate) -> Iterator[Fit]:
     """Give exact fits of an explanation with one cause exchanged for another, from where its curves say."""
     causes, values = list(best.causes), list(best.values)
-    del causes[place], values[place]
-    (predicted,) = made.extended.at(causes, [(values, best.moved)])
+    del causes[index], values[index]
+    (predicted,) = competition.extended.at(causes, [(values, best.moved)])
     held = replace(best, causes=tuple(causes), values=tuple(values), predicted=predicted, slopes={})
-    held = held.in_sample(made.sample)
-    seen = look(made.curves, held, [other]).get(other.tag) if np.isfinite(held.left).all() else None
+    held = held.in_sample(competition.sample)
+    seen = look(competition.curves, held, [other]).get(other.tag) if np.isfinite(held.left).all() else None
     for _, start in seen.starts if seen is not None else ():
-        several = (*causes[:place], other, *causes[place:])
-        fit = fit_from(made.sample, made.extended, several, (*values[:place], start, *values[place:]), held)
+        several = (*causes[:index], other, *causes[index:])
+        fit = fit_from(
+            competition.sample, competition.extended, several, (*values[:index], start, *values[index:]), held
+        )
         if fit is not None:
             yield fit
 
@@ -187,12 +189,12 @@ def _greedy(duels: Sequence[_Duel]) -> list[int]:
     for _ in range(POINTS):
         worth = np.sum([np.log1p(duel.separation + duel.gains()) for duel in now], axis=0)
         worth[chosen] = -np.inf
-        place = int(np.argmax(np.where(np.isfinite(worth), worth, -np.inf)))
-        if not np.isfinite(worth[place]):
+        index = int(np.argmax(np.where(np.isfinite(worth), worth, -np.inf)))
+        if not np.isfinite(worth[index]):
             break
-        chosen.append(place)
+        chosen.append(index)
         for duel in now:
-            duel.measure(place)
+            duel.measure(index)
     return chosen
 
 
@@ -200,15 +202,15 @@ def _points(chosen: Chosen, settings: Mapping[str, Matrix], live: Sequence[_Duel
     """Give the settings with what they are for, and how many like them are needed to tell all pairs apart."""
     taken, start = _greedy(live), chosen.competition.sample.machine.start
     needed = max((duel.needed(taken) or MOST_POINTS for duel in live), default=0)
-    for count, place in enumerate(taken, start=1):
+    for count, index in enumerate(taken, start=1):
         weakest = min(live, key=lambda duel: duel.separation)
-        why = _why(chosen, settings, place, weakest)
+        why = _why(chosen, settings, index, weakest)
         for duel in live:
-            duel.measure(place)
+            duel.measure(index)
         if count == len(taken) < needed:
             why += f"; {needed} points like these would be needed to tell them apart"
         least = min(duel.separation for duel in live)
-        amounts = {name: Amount(float(values[place]), start.print_unit(name)) for name, values in settings.items()}
+        amounts = {name: Amount(float(values[index]), start.print_unit(name)) for name, values in settings.items()}
         yield NextPoint(amounts, weakest.names, why, least, needed=needed)
 
 
@@ -229,11 +231,11 @@ class _Seen:
 
 def _duels(chosen: Chosen, several: Sequence[Fit], settings: Mapping[str, Matrix]) -> list[_Duel]:
     """Set up every explanation, believed, against every other one, unless that is the same with something added."""
-    made = chosen.competition
-    tried = elsewhere(made.extended, machine_there(made.sample.machine, settings))
-    roots = made.sample.roots(chosen.best.in_sample(made.sample).left)
-    seen = [_seen(fit.in_sample(made.sample), made.extended, tried) for fit in several]
-    spreads = np.array(list(_spreads(made.sample, chosen.best).values()))[:, None]
+    competition = chosen.competition
+    tried = elsewhere(competition.extended, machine_there(competition.sample.machine, settings))
+    roots = competition.sample.roots(chosen.best.in_sample(competition.sample).left)
+    seen = [_seen(fit.in_sample(competition.sample), competition.extended, tried) for fit in several]
+    spreads = np.array(list(_spreads(competition.sample, chosen.best).values()))[:, None]
     return [_duel(a, b, roots, spreads) for a, b in permutations(seen, 2) if not a.fit.key <= b.fit.key]
 
 
@@ -285,25 +287,25 @@ def _seen(fit: Fit, extended: Extended, tried: Extended) -> _Seen:
     return _Seen(fit, own[:, free], base, np.stack(slopes, axis=-1)[..., free])
 
 
-def _why(chosen: Chosen, settings: Mapping[str, Matrix], place: int, duel: _Duel) -> str:
+def _why(chosen: Chosen, settings: Mapping[str, Matrix], index: int, duel: _Duel) -> str:
     """Say what makes a setting worth measuring: how far the two then differ, and what leaves the record farthest.
 
     Only what the effects of the two explanations follow is looked at, where they follow anything.
     """
     sample = chosen.competition.sample
-    gaps = np.abs(duel.left()[:, place])
+    gaps = np.abs(duel.left()[:, index])
     name, spread = list(_spreads(sample, chosen.best).items())[int(np.argmax(gaps))]
     unit = readable_unit(sample.machine.start.print_unit(name), spread)
     words = f"{duel.names[0]} and {duel.names[1]} there differ by {in_unit(float(gaps.max()) * spread, unit)} in {name}"
     known = sample.machine.start.model.known_effects
-    effects = [known[each] for name in duel.names for each in name.split(" + ") if each in known]
+    effects = [known[effect_name] for name in duel.names for effect_name in name.split(" + ") if effect_name in known]
     asked = {key for effect in effects for key in (*(need.name for need in effect.needs), *effect.reads)}
     beyond, reach = "", 0.05
-    for key in [each for each in settings if not asked or each in asked]:
-        item, value = sample.machine.records.covariates[key], float(settings[key][place])
-        low, high = float(np.nanmin(item.values)), float(np.nanmax(item.values))
+    for key in [setting for setting in settings if not asked or setting in asked]:
+        covariate, value = sample.machine.records.covariates[key], float(settings[key][index])
+        low, high = float(np.nanmin(covariate.values)), float(np.nanmax(covariate.values))
         out = max(low - value, value - high) / max(high - low, 1e-300)
         if out > reach:
-            begin = format_number(float(from_si(low, item.unit)), 3)
-            beyond, reach = f"; {key} was only {begin} to {in_unit(high, item.unit, 3)} so far", out
+            begin = format_number(float(from_si(low, covariate.unit)), 3)
+            beyond, reach = f"; {key} was only {begin} to {in_unit(high, covariate.unit, 3)} so far", out
     return words + beyond

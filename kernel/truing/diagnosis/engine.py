@@ -82,7 +82,7 @@ def laid_out(machine: Calibration) -> Competition:
 
 def _check_options(setup: Setup) -> None:
     known = {*setup.model.known_effects, *setup.model.input_fields}
-    known |= {f"{name}.{one.name}" for name, item in setup.model.known_effects.items() for one in item.unknowns}
+    known |= {f"{name}.{one.name}" for name, effect in setup.model.known_effects.items() for one in effect.unknowns}
     for name in setup.diagnose.per_file:
         if name not in known:
             near = near_miss(name, known)
@@ -132,10 +132,10 @@ def _answer(chosen: Chosen, setup: Setup, progress: Progress) -> DiagnosisResult
 
 def _ranking(chosen: Chosen) -> tuple[Alternative, ...]:
     """Return the best explanations, the winner first, every one with how far it lies behind."""
-    made = chosen.competition
-    top = made.score(made.known[chosen.best.key])
-    others = [fit for fit in made.ranked() if fit.key != chosen.best.key][: RANKED - 1]
-    ranked = [Rival(chosen.best, 0.0), *(Rival(fit, max(0.0, made.score(fit) - top)) for fit in others)]
+    competition = chosen.competition
+    top = competition.score(competition.known[chosen.best.key])
+    others = [fit for fit in competition.ranked() if fit.key != chosen.best.key][: RANKED - 1]
+    ranked = [Rival(chosen.best, 0.0), *(Rival(fit, max(0.0, competition.score(fit) - top)) for fit in others)]
     return tuple(alternative_of(chosen, each) for each in ranked)
 
 
@@ -150,16 +150,16 @@ def units_of(chosen: Chosen) -> dict[str, str]:
 
 def _hard(chosen: Chosen, units: Mapping[str, str]) -> list[str]:
     """Say where the model is rough, and at what share of the points that were tried it fails with an effect."""
-    made = chosen.competition
+    competition = chosen.competition
     rough = [
         f"the model's {name} jumps or scatters by itself by up to {in_unit(grain, units[name])}: derivatives are taken "
         "over wide steps, and no effect much smaller is seen"
-        for name, grain in made.extended.grain.items()
+        for name, grain in competition.extended.grain.items()
     ]
     lost = [
         f"the model fails with {name} at {100 * lost / tried:.0f} % of the points tried ({lost} of {tried}); sizes and "
         "shapes there are left out"
-        for name, (lost, tried) in made.curves.lost.items()
+        for name, (lost, tried) in competition.curves.lost.items()
     ]
     return rough + lost
 

@@ -201,18 +201,18 @@ class Fitting:
         points = [self.u + step * unit for step, unit in zip(steps[places], np.eye(len(self.u))[places], strict=True)]
         drawn = {name: np.zeros((len(base), len(self.u))) for name, base in self.predicted.items()}
         answers = (yield self.asked(points, self.anchor)) if points else []
-        for place, shown in zip(places, answers, strict=True):
+        for index, shown in zip(places, answers, strict=True):
             if not np.isfinite(self.sample.left(shown)).all():
-                shown = yield from self._other_side(int(place), float(steps[place]))
+                shown = yield from self._other_side(int(index), float(steps[index]))
             for name, base in self.predicted.items():
-                drawn[name][:, place] = (shown[name] - base) / steps[place]
+                drawn[name][:, index] = (shown[name] - base) / steps[index]
         self._draw(drawn)
         self.is_fresh = True
 
-    def _other_side(self, place: int, step: float) -> Asking[dict[str, Matrix]]:
+    def _other_side(self, index: int, step: float) -> Asking[dict[str, Matrix]]:
         """Return what the model would show a step on, as the other side has it; what it shows where that fails too."""
         point = self.u.copy()
-        point[place] -= step
+        point[index] -= step
         (shown,) = yield self.asked([point], self.anchor)
         if not np.isfinite(self.sample.left(shown)).all():
             return self.predicted

@@ -195,7 +195,9 @@ class Extended:
         if not points:
             return []
         setup, trials = self._with(causes), [_unknowns(self.machine, causes, values) for values, _ in points]
-        is_plain = all(cause.tolerated < 0 for cause in causes) and all(item.file < 0 for item in self.machine.inputs)
+        is_plain = all(cause.tolerated < 0 for cause in causes) and all(
+            tolerated.file < 0 for tolerated in self.machine.inputs
+        )
         if is_plain and all(np.array_equal(moved, points[0][1]) for _, moved in points):  # the inputs of all rows
             setup = self._moved(setup, tuple(cause.tag for cause in causes), points[0][1])
         else:
@@ -218,7 +220,7 @@ class Extended:
             self.calls += len(points)
             return
         for values, moved in points:
-            own = [(each.tag, value) for each, value in zip(causes, values, strict=True) if each.acts_on_inputs]
+            own = [(cause.tag, value) for cause, value in zip(causes, values, strict=True) if cause.acts_on_inputs]
             sizes = b"".join(np.asarray(value).tobytes() for _, value in own)
             key = tuple(tag for tag, _ in own), sizes, moved.tobytes()
             if key not in self._asked:
@@ -255,7 +257,10 @@ class Extended:
         if key not in self._machines:
             if len(self._machines) >= REMEMBERED:
                 self._machines.clear()
-            values = {item.name: self._value(item, sds) for item, sds in zip(self.machine.inputs, moved, strict=True)}
+            values = {
+                tolerated.name: self._value(tolerated, sds)
+                for tolerated, sds in zip(self.machine.inputs, moved, strict=True)
+            }
             self._machines[key] = setup.changed(values)
         return self._machines[key]
 

@@ -95,14 +95,14 @@ def _structure(chosen: Chosen, name: str, unit: str) -> Iterator[ResidualFinding
 
     Shapes that explain little beside the best explanation are its shadows (a jump has waves of every order).
     """
-    made = chosen.competition
-    alone = [fit for fit in made.known.values() if len(fit.causes) == 1]
+    competition = chosen.competition
+    alone = [fit for fit in competition.known.values() if len(fit.causes) == 1]
     offsets = [fit for fit in alone if fit.causes[0].name == "sensor_offset"]
     constant = [fit for fit in offsets if gauged(fit.causes[0], [name])]
-    plain = min(made.score(fit) for fit in (made.null, *constant))  # what a trend must beat to be one
+    plain = min(competition.score(fit) for fit in (competition.null, *constant))  # what a trend must beat to be one
     best: dict[tuple[str, ...], tuple[float, Fit]] = {}
     for fit in alone:
-        label, gain = _label(fit, name), plain - made.score(fit)
+        label, gain = _label(fit, name), plain - competition.score(fit)
         is_found = bool(label) and chosen.law.p_of(gain) <= SIGNIFICANT
         if is_found and (label not in best or gain > best[label][0]):
             best[label] = (gain, fit)
@@ -110,14 +110,14 @@ def _structure(chosen: Chosen, name: str, unit: str) -> Iterator[ResidualFinding
     for label, (gain, _) in best.items():
         if len(label) == 2:
             singles[label[1]] = max(gain, singles.get(label[1], gain))
-    least = SHADOW * (plain - made.score(made.ranked()[0]))
+    least = SHADOW * (plain - competition.score(competition.ranked()[0]))
     kept = []
-    for label, (gain, fit) in sorted(best.items(), key=lambda item: -item[1][0]):
+    for label, (gain, fit) in sorted(best.items(), key=lambda pair: -pair[1][0]):
         plainer = max((singles[each] + PAIR_BETTER for each in label[1:] if each in singles), default=gain)
         if gain >= least and (len(label) != 3 or gain >= plainer):
             kept.append((gain, fit))
     for gain, fit in kept[:LARGEST_COUNT]:
-        yield _finding(fit, made.extended, chosen.law.p_of(gain), name, unit)
+        yield _finding(fit, competition.extended, chosen.law.p_of(gain), name, unit)
 
 
 def _label(fit: Fit, name: str) -> tuple[str, ...]:
@@ -144,20 +144,21 @@ def _acting(chosen: Chosen) -> dict[str, list[Candidate]]:
     added = added_by(best, chosen.competition.extended) if best.causes else {}
     registered = [cause for cause in best.causes if cause.effect is not None]
     return {
-        each.name: [
+        channel.name: [
             cause
             for cause in registered
-            if np.sum((added[cause.name][each.name][each.rows] * each.factors) ** 2) > SHOWS**2  # all rows together
+            # all rows together
+            if np.sum((added[cause.name][channel.name][channel.rows] * channel.factors) ** 2) > SHOWS**2
         ]
-        for each in best.sample.channels
+        for channel in best.sample.channels
     }
 
 
 def _with_named(chosen: Chosen, acting: Sequence[Candidate], findings: list[ResidualFinding]) -> list[ResidualFinding]:
     """Add what the named causes follow, where no shape has shown it: a cause is a sharper eye than any shape."""
-    made = chosen.competition
-    gain = made.score(made.null) - made.score(made.known[chosen.best.key])
-    covariates = made.sample.machine.records.covariates
+    competition = chosen.competition
+    gain = competition.score(competition.null) - competition.score(competition.known[chosen.best.key])
+    covariates = competition.sample.machine.records.covariates
     for cause in acting:
         effect = cause.effect
         follows = [*(need.name for need in effect.needs), *effect.reads] if effect is not None else []

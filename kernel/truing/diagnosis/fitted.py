@@ -106,13 +106,13 @@ def differ(one: Fit, other: Fit) -> float:
     return float(np.sum((sample.roots(one.left) * apart) ** 2))
 
 
-def input_value(fit: Fit, place: int) -> float:
+def input_value(fit: Fit, index: int) -> float:
     """Return a tolerated input as calibrated and shifted, SI."""
     machine = fit.sample.machine
     shifts = zip(fit.causes, fit.values, strict=True)
-    off = float(fit.moved[place]) + sum(float(values[0]) for cause, values in shifts if cause.tolerated == place)
-    item = machine.inputs[place]
-    return float(machine.start.nominal(item.name)) + item.mean + off * item.sd
+    off = float(fit.moved[index]) + sum(float(values[0]) for cause, values in shifts if cause.tolerated == index)
+    tolerated = machine.inputs[index]
+    return float(machine.start.nominal(tolerated.name)) + tolerated.mean + off * tolerated.sd
 
 
 def signs_of_wrong(fit: Fit) -> int:
@@ -133,5 +133,7 @@ def is_at_bound(number: Parameter, value: float) -> bool:
 def far_inputs(fit: Fit) -> list[int]:
     """Return the places of inputs that no cause shifts and that were moved far beyond their tolerances."""
     shifted = {cause.tolerated for cause in fit.causes}
-    free = [(index, item) for index, item in enumerate(fit.sample.machine.inputs) if index not in shifted]
-    return [index for index, item in free if abs((input_value(fit, index) - item.design) / item.sd) > OUTSIDE]
+    free = [(index, tolerated) for index, tolerated in enumerate(fit.sample.machine.inputs) if index not in shifted]
+    return [
+        index for index, tolerated in free if abs((input_value(fit, index) - tolerated.design) / tolerated.sd) > OUTSIDE
+    ]

@@ -46,7 +46,7 @@ def folds_of(sample: Sample) -> Folds:
     usable = np.flatnonzero(sample.mask)
     block_of = np.full(len(records), -1, dtype=np.intp)
     if not has_order(sample.machine):
-        covariates = (each.values for each in records.covariates.values() if each.role != "order")
+        covariates = (covariate.values for covariate in records.covariates.values() if covariate.role != "order")
         order = np.lexsort([values[usable] for values in (*covariates, *records.measured.values())])  # not of the file
         block_of[usable[order]] = np.random.Generator(np.random.SFC64(1)).permutation(len(usable))
         return Folds(block_of, min(FOLDS, max(len(usable), 1)))

@@ -64,15 +64,15 @@ class Nested:
 
 def nested(chosen: Chosen, done: Callable[[int, int], None] = lambda count, of: None) -> Nested:
     """Fit and choose anew in every fold, and judge on the rows left out."""
-    made = chosen.competition
-    folds = folds_of(made.sample)
-    size = len(made.sample.machine.records)
-    judged = {name: HeldOutAnswers(*(np.full(size, np.nan) for _ in range(4))) for name in made.sample.noise}
+    competition = chosen.competition
+    folds = folds_of(competition.sample)
+    size = len(competition.sample.machine.records)
+    judged = {name: HeldOutAnswers(*(np.full(size, np.nan) for _ in range(4))) for name in competition.sample.noise}
     several, same = contenders(chosen), 0
     for fold in range(folds.count):
         done(fold, folds.count)
         test = folds.test(fold)
-        base, *again = refitted([chosen.null, *several], made.extended, test)
+        base, *again = refitted([chosen.null, *several], competition.extended, test)
         if base is None:
             continue
         best = _chosen_again(chosen, base, [fit for fit in again if fit is not None])
@@ -84,41 +84,41 @@ def nested(chosen: Chosen, done: Callable[[int, int], None] = lambda count, of: 
 
 def contenders(chosen: Chosen) -> list[Fit]:
     """Return what competes with the chosen explanation in a fold: named explanations where it is one itself."""
-    made, best = chosen.competition, chosen.best
+    competition, best = chosen.competition, chosen.best
     if not best.causes:
         return []
     plain = all(cause.effect is not None for cause in best.causes)
-    near = made.ranked(
+    near = competition.ranked(
         lambda fit: (
             0 < len(fit.causes) <= len(best.causes)
             and fit.key != best.key
             and (not plain or all(cause.effect is not None for cause in fit.causes))
         )
     )
-    return [made.known[best.key], *near[:CONTENDERS]]
+    return [competition.known[best.key], *near[:CONTENDERS]]
 
 
 def _chosen_again(chosen: Chosen, base: Fit, again: list[Fit]) -> Fit:
     """Return what is chosen without the rows of a fold: the choice, unless another one is better by ``CLOSE``."""
-    made = chosen.competition
+    competition = chosen.competition
     if not again:
         return base
     own = next((fit for fit in again if fit.key == chosen.best.key), None)
-    top = min(again, key=made.score)
-    best = own if own is not None and made.score(own) < made.score(top) + CLOSE else top
-    return best if made.score(best) < made.score(base) else base
+    top = min(again, key=competition.score)
+    best = own if own is not None and competition.score(own) < competition.score(top) + CLOSE else top
+    return best if competition.score(best) < competition.score(base) else base
 
 
-def _judge(judged: HeldOutAnswers, place: int, fits: tuple[Fit, Fit], test: Mask) -> None:
+def _judge(judged: HeldOutAnswers, index: int, fits: tuple[Fit, Fit], test: Mask) -> None:
     """Fill in the rows of one fold for one result, from the fits of base and extension without them."""
-    sample, channel, machine = fits[0].sample, fits[0].sample.channels[place], fits[0].sample.machine
+    sample, channel, machine = fits[0].sample, fits[0].sample.channels[index], fits[0].sample.machine
     name, noise = channel.name, sample.noise[channel.name]
     known, weights = machine.records.known(name), noise.weights[test] / channel.scale
     logs = []
     for fit, errors in zip(fits, (judged.before, judged.after), strict=True):
         off = errors_of(machine, name, noise, fit.predicted[name])
         errors[test] = off[test]
-        left = fit.left[sample.parts[place]]
+        left = fit.left[sample.parts[index]]
         sd = sqrt(max(float(np.sum(left**2)) / channel.known, channel.least))
         density = _log_density(errors[test] * weights / sd, noise.tails.freedom) + np.log(weights / sd)
         logs.append(np.where(known[test], density, _log_chance(machine, name, noise, fit)[test]))

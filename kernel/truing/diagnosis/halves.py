@@ -45,17 +45,17 @@ def contradictions_of(chosen: Chosen) -> tuple[Contradiction, ...]:
     if len(fitted) < 2:
         return ()
     certain = [certainty_of(fit, extended) for fit in fitted]
-    made = []
+    contradictions = []
     for cause in best.causes:
-        for place, number in zip(places_of(best, cause), cause.numbers, strict=True):
+        for index, number in zip(places_of(best, cause), cause.numbers, strict=True):
             if cause.effect is None or not number.is_amplitude or number.file >= 0:
                 continue
-            first, second = (value_of(fit, place) for fit in fitted)
-            error = hypot(*(each.in_si([place])[0][0] ** 0.5 for each in certain))
+            first, second = (value_of(fit, index) for fit in fitted)
+            error = hypot(*(each.in_si([index])[0][0] ** 0.5 for each in certain))
             if error > 0 and abs(first - second) > CONTRADICTING * error:
-                unit = next(each.unit for each in cause.effect.unknowns if each.name == number.name)
-                made.append(Contradiction(cause.name, number.name, Amount(first, unit), Amount(second, unit)))
-    return tuple(made)
+                unit = next(unknown.unit for unknown in cause.effect.unknowns if unknown.name == number.name)
+                contradictions.append(Contradiction(cause.name, number.name, Amount(first, unit), Amount(second, unit)))
+    return tuple(contradictions)
 
 
 def _are_few(best: Fit) -> bool:
@@ -83,7 +83,7 @@ def thinned_of(chosen: Chosen) -> tuple[Thinned, ...]:
     several = [fit for fit in contenders(chosen) if not (fit.key < best.key or best.key < fit.key)]
     others = [fit for fit in several if set(fit.names) != set(best.names)][:RIVALS_THINNED]
     turn = _in_turn(best.sample)
-    words, made = ORDERED if has_order(best.sample.machine) else UNORDERED, []
+    words, thinned = ORDERED if has_order(best.sample.machine) else UNORDERED, []
     for begin, said in enumerate(words):
         sample = _thinned(best.sample, turn[begin::2])
         if not all(len(channel) for channel in sample.channels):  # a result was read in the other rows alone
@@ -91,16 +91,16 @@ def thinned_of(chosen: Chosen) -> tuple[Thinned, ...]:
         ahead = {fit: _score(chosen, fit, sample) for fit in (best, *others)}
         top = min(ahead, key=ahead.__getitem__)
         if ahead[top] < ahead[best] - CLOSE < np.inf:
-            made.append(Thinned(said, top.names, ahead[best] - ahead[top]))
-    return tuple(made)
+            thinned.append(Thinned(said, top.names, ahead[best] - ahead[top]))
+    return tuple(thinned)
 
 
 def _score(chosen: Chosen, fit: Fit, sample: Sample) -> float:
     """Return the score of an explanation on half of the rows, where it pays half of its price."""
-    made = chosen.competition
-    again = refit(fit, sample, made.extended)
-    whole = made.known[fit.key]
-    return np.inf if again is None else again.cost + (made.score(whole) - whole.cost) / 2
+    competition = chosen.competition
+    again = refit(fit, sample, competition.extended)
+    whole = competition.known[fit.key]
+    return np.inf if again is None else again.cost + (competition.score(whole) - whole.cost) / 2
 
 
 def _thinned(sample: Sample, rows: Indices) -> Sample:

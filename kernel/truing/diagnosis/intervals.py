@@ -66,9 +66,9 @@ class Certainty:
         squared = max(float(weights @ self.covariance @ weights), 0.0)
         return float(stdtrit(self.freedom, QUANTILE)) * sqrt(squared)
 
-    def reach_of(self, place: int) -> float:
+    def reach_of(self, index: int) -> float:
         """Return half of the 95 % interval of one number, as the fit sees it."""
-        return self.reach(np.eye(len(self.covariance))[place])
+        return self.reach(np.eye(len(self.covariance))[index])
 
     def in_si(self, places: Sequence[int]) -> tuple[tuple[float, ...], ...]:
         """Return the covariance of some numbers in SI."""
@@ -84,14 +84,14 @@ def numbers_of(fit: Fit) -> list[Parameter]:
 
 def places_of(fit: Fit, cause: Candidate) -> range:
     """Return the places of the numbers of a cause among those of all."""
-    place = [each.tag for each in fit.causes].index(cause.tag)
-    begin = sum(each.size for each in fit.causes[:place])
+    position = [each.tag for each in fit.causes].index(cause.tag)
+    begin = sum(each.size for each in fit.causes[:position])
     return range(begin, begin + cause.size)
 
 
-def value_of(fit: Fit, place: int) -> float:
+def value_of(fit: Fit, index: int) -> float:
     """Return one of all numbers, SI."""
-    return float(np.concatenate(fit.values)[place])
+    return float(np.concatenate(fit.values)[index])
 
 
 def certainty_of(fit: Fit, extended: Extended) -> Certainty:
@@ -103,7 +103,7 @@ def certainty_of(fit: Fit, extended: Extended) -> Certainty:
     """
     sample, units = fit.sample, unit_of(fit)
     roots = sample.roots(fit.left)
-    told = np.concatenate([np.full(len(each), sqrt(1 - 2 / (each.freedom + 3))) for each in sample.channels])
+    told = np.concatenate([np.full(len(channel), sqrt(1 - 2 / (channel.freedom + 3))) for channel in sample.channels])
     slopes = np.column_stack(slopes_at(fit, extended)) * (roots * told)[:, None]
     prior = np.diag(np.append(np.zeros(len(units)), np.ones(len(fit.inputs))))
     normal = slopes.T @ slopes
@@ -134,83 +134,83 @@ def _scores(slopes: Matrix, left: Matrix, inverse: Matrix) -> Matrix:
     return made
 
 
-def interval(fit: Fit, certainty: Certainty, place: int) -> tuple[float, float]:
+def interval(fit: Fit, certainty: Certainty, index: int) -> tuple[float, float]:
     """Return the 95 % interval of an amplitude in SI, within its bounds."""
-    number, value = numbers_of(fit)[place], value_of(fit, place)
-    reach = certainty.reach_of(place) * float(certainty.units[place])
+    number, value = numbers_of(fit)[index], value_of(fit, index)
+    reach = certainty.reach_of(index) * float(certainty.units[index])
     return max(value - reach, min(number.low, value)), min(value + reach, max(number.high, value))
 
 
 def may_be_zero(fit: Fit, certainty: Certainty, cause: Candidate) -> bool:
     """Tell whether the 95 % interval of every amplitude of a cause contains zero."""
     own = places_of(fit, cause)
-    ends = [interval(fit, certainty, own[place]) for place in cause.amplitudes]
+    ends = [interval(fit, certainty, own[index]) for index in cause.amplitudes]
     return all(low <= 0 <= high for low, high in ends)
 
 
-def ends_of(fit: Fit, extended: Extended, certainty: Certainty, place: int) -> Ends:
+def ends_of(fit: Fit, extended: Extended, certainty: Certainty, index: int) -> Ends:
     """Return the 95 % interval of any number, SI: of a whole one between those that are not excluded."""
-    number = numbers_of(fit)[place]
+    number = numbers_of(fit)[index]
     if number.whole:
-        values = [value_of(each, place) for each in (fit, *whole_left(fit, extended, place))]
+        values = [value_of(each, index) for each in (fit, *whole_left(fit, extended, index))]
         return min(values), max(values)
     if number.along:
-        return place_interval(fit, extended, place)
-    return (amplitude_interval if number.is_amplitude else shape_interval)(fit, extended, certainty, place)
+        return place_interval(fit, extended, index)
+    return (amplitude_interval if number.is_amplitude else shape_interval)(fit, extended, certainty, index)
 
 
-def shape_interval(fit: Fit, extended: Extended, certainty: Certainty, place: int) -> Ends:
+def shape_interval(fit: Fit, extended: Extended, certainty: Certainty, index: int) -> Ends:
     """Return the 95 % profile interval of a number in SI; an end is None where the profile stays open to its bound."""
-    profile = _Profile(fit, extended, certainty, place)
+    profile = _Profile(fit, extended, certainty, index)
     low, high = (profile.end(bound) for bound in profile.bounds)
     return low, high
 
 
-def amplitude_interval(fit: Fit, extended: Extended, certainty: Certainty, place: int) -> Ends:
+def amplitude_interval(fit: Fit, extended: Extended, certainty: Certainty, index: int) -> Ends:
     """Return the 95 % interval of an amplitude in SI, with its profile where its cause has a shape that is free.
 
     Where its cause has a whole number, it holds the intervals at every one that is not excluded.
     """
-    (cause,) = (each for each in fit.causes if place in places_of(fit, each))
+    (cause,) = (cause for cause in fit.causes if index in places_of(fit, cause))
     numbers, begin = [cause.numbers[shape] for shape in cause.shapes], places_of(fit, cause)[0]
-    own = interval(fit, certainty, place)
+    own = interval(fit, certainty, index)
     if any(number.is_free for number in numbers):
-        low, high = shape_interval(fit, extended, certainty, place)
+        low, high = shape_interval(fit, extended, certainty, index)
         return None if low is None else min(low, own[0]), None if high is None else max(high, own[1])
     whole = [begin + shape for shape in cause.shapes if cause.numbers[shape].whole]
     fits = (each for shape in whole for each in whole_left(fit, extended, shape))
-    several = [own, *(interval(each, certainty_of(each, extended), place) for each in fits)]
+    several = [own, *(interval(fit, certainty_of(fit, extended), index) for fit in fits)]
     return min(low for low, _ in several), max(high for _, high in several)
 
 
-def whole_left(fit: Fit, extended: Extended, place: int) -> list[Fit]:
+def whole_left(fit: Fit, extended: Extended, index: int) -> list[Fit]:
     """Return the fits at other whole numbers that the readings do not exclude."""
-    number, own = numbers_of(fit)[place], round(value_of(fit, place))
+    number, own = numbers_of(fit)[index], round(value_of(fit, index))
     ends = max(number.low, own - MOST_WHOLE), min(number.high, own + MOST_WHOLE)
     others = [value for value in range(round(ends[0]), round(ends[1]) + 1) if value != own]
-    fits = (_kept_at(fit, extended, place, float(value)) for value in others)
+    fits = (_kept_at(fit, extended, index, float(value)) for value in others)
     return [each for each in fits if each is not None and each.cost < fit.cost + WHOLE]
 
 
-def _kept_at(near: Fit, extended: Extended, place: int, value: float) -> Fit | None:
+def _kept_at(near: Fit, extended: Extended, index: int, value: float) -> Fit | None:
     """Fit again from nearby with one number held at another value, SI."""
     flat = np.concatenate(near.values)
-    flat[place] = value
-    held = [numbers_of(near)[place]]
+    flat[index] = value
+    held = [numbers_of(near)[index]]
     return fit_from(near.sample, extended, near.causes, parts_of(near.causes, flat), near, until=CLOSELY, held=held)
 
 
-def place_interval(fit: Fit, extended: Extended, place: int) -> tuple[float, float]:
+def place_interval(fit: Fit, extended: Extended, index: int) -> tuple[float, float]:
     """Return the rows of the record, SI, between which lies, at 95 %, a place at which something begins."""
-    number, value = numbers_of(fit)[place], value_of(fit, place)
-    item = fit.sample.machine.records.covariates.get(number.along)
-    if item is None:
+    number, value = numbers_of(fit)[index], value_of(fit, index)
+    covariate = fit.sample.machine.records.covariates.get(number.along)
+    if covariate is None:
         return value, value
-    rows = np.unique(item.values[np.isfinite(item.values)])
+    rows = np.unique(covariate.values[np.isfinite(covariate.values)])
     own = int(np.searchsorted(rows, value))
 
     def holds(gap: int) -> bool:
-        made = _kept_at(fit, extended, place, float(rows[gap - 1 : gap + 1].mean()))
+        made = _kept_at(fit, extended, index, float(rows[gap - 1 : gap + 1].mean()))
         return made is not None and made.cost <= fit.cost + PLACE_LIMIT
 
     last = len(rows) - 1
@@ -234,17 +234,17 @@ def _farthest(holds: Callable[[int], bool], limit: int) -> int:
 class _Profile:
     """The least cost with one number held, everything else fitted again from the nearest point that is known."""
 
-    def __init__(self, fit: Fit, extended: Extended, certainty: Certainty, place: int) -> None:
-        self.extended, self.place, self.number = extended, place, numbers_of(fit)[place]
-        self.unit = 1.0 if self.number.is_log else float(certainty.units[place])
+    def __init__(self, fit: Fit, extended: Extended, certainty: Certainty, index: int) -> None:
+        self.extended, self.place, self.number = extended, index, numbers_of(fit)[index]
+        self.unit = 1.0 if self.number.is_log else float(certainty.units[index])
         self.bounds = inward(self.number, self.unit)
-        value = value_of(fit, place)
+        value = value_of(fit, index)
         self.start = log(value) if self.number.is_log else value / self.unit
-        self.known = {self.start: _kept_at(fit, extended, place, self.outward(self.start)) or fit}
+        self.known = {self.start: _kept_at(fit, extended, index, self.outward(self.start)) or fit}
         student = float(stdtrit(certainty.freedom, QUANTILE))
         known = fit.sample.known
         self.allowed = known * log1p(student**2 * certainty.variance / known)
-        self.reach = certainty.reach_of(place)
+        self.reach = certainty.reach_of(index)
 
     def outward(self, u: float) -> float:
         """Return the number in SI."""

@@ -128,9 +128,9 @@ def complete_rows(joined: DataRows, setup: Setup) -> DataRows:
     """
     notes: list[str] = []
     for name in joined.named("input", "word", "series", "condition"):
-        item = setup.model.input_fields.get(name)
+        field = setup.model.input_fields.get(name)
         empty = is_missing(joined.columns[name])
-        if empty.any() and not (item is not None and item.is_optional):
+        if empty.any() and not (field is not None and field.is_optional):
             joined = joined.without(empty, f"'{name}' is empty")
             notes.append(f"{counted(int(empty.sum()), 'row is', 'rows are')} left out where '{name}' is empty")
     before, joined = len(joined), measured_rows(joined)

@@ -36,7 +36,7 @@ FEWEST_OF_MEMORY = 20
 
 def first_noise(machine: Calibration) -> dict[str, NoiseModel]:
     """Return a first idea of the noise: what the tolerated inputs and powers of all covariates cannot explain."""
-    made = {}
+    noise = {}
     drivers = [standardised(covariate.values) for covariate in machine.records.moved]
     for name, values in residuals_of(machine).items():
         here = np.flatnonzero(np.isfinite(values) & ~machine.records.held_out)
@@ -51,8 +51,8 @@ def first_noise(machine: Calibration) -> dict[str, NoiseModel]:
         scale = max(_unexplained(triangle, len(here)), rounding(values[here]), 1e-300)
         given = _stated(machine, name, typical)
         at = machine.base[name] if typical or name in machine.records.sides else None
-        made[name] = NoiseModel(scale, given, given, typical=typical, at=at)
-    return made
+        noise[name] = NoiseModel(scale, given, given, typical=typical, at=at)
+    return noise
 
 
 def _unexplained(triangle: Matrix, rows: int) -> float:

@@ -43,18 +43,22 @@ def on_all_rows(chosen: Chosen, machine: Calibration) -> Chosen:
     if len(few.sample.machine.records) == len(machine.records):
         return chosen
     sample = sample_of(machine, first_noise(machine), ~machine.records.held_out)
-    made = competition_of(Extended(machine), few.causes, sample)
-    made.stage, made.extended.grain = "fits to all rows", few.extended.grain
-    made.extended.budget = few.extended.budget.of_rows(len(machine.records) / len(few.sample.machine.records))
-    made.tries = dict(few.tries)
+    competition = competition_of(Extended(machine), few.causes, sample)
+    competition.stage, competition.extended.grain = "fits to all rows", few.extended.grain
+    competition.extended.budget = few.extended.budget.of_rows(len(machine.records) / len(few.sample.machine.records))
+    competition.tries = dict(few.tries)
     few.gains_seen = {}  # much, and needed no more
     rivals_there = [few.known[rival.fit.key] for rival in chosen.rivals]
     wanted = [few.known[chosen.best.key], *rivals_there, *few.ranked()[:RANKED]]
     for fit in {fit.key: fit for fit in wanted}.values():
-        made.fitted(fit.causes, fit.values, None)
-    made.renew()
-    made.refresh()
-    best = made.known.get(chosen.best.key, made.null)
-    ends = [made.exact(made.known[rival.fit.key]) for rival in chosen.rivals if rival.fit.key in made.known]
-    rivals = tuple(Rival(fit, max(0.0, made.score(fit) - made.score(best))) for fit in ends)
-    return replace(chosen, competition=made, best=made.exact(best), rivals=rivals, of_some_rows=chosen)
+        competition.fitted(fit.causes, fit.values, None)
+    competition.renew()
+    competition.refresh()
+    best = competition.known.get(chosen.best.key, competition.null)
+    ends = [
+        competition.exact(competition.known[rival.fit.key])
+        for rival in chosen.rivals
+        if rival.fit.key in competition.known
+    ]
+    rivals = tuple(Rival(fit, max(0.0, competition.score(fit) - competition.score(best))) for fit in ends)
+    return replace(chosen, competition=competition, best=competition.exact(best), rivals=rivals, of_some_rows=chosen)

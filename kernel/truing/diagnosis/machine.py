@@ -66,12 +66,12 @@ class Calibration:
     @cached_property
     def on(self) -> Mapping[str, Mapping[str, float]]:
         """By effect that is on at the start: its unknowns, SI."""
-        return {item.effect.name: item.values for item in self.start.effects}
+        return {active.effect.name: active.values for active in self.start.effects}
 
     @cached_property
     def shifts(self) -> Predicted:
         """By result (n,): what the means of the tolerances add to the prediction at the start."""
-        means = np.array([item.mean / item.sd for item in self.inputs])
+        means = np.array([tolerated.mean / tolerated.sd for tolerated in self.inputs])
         return {name: times(slopes, means) for name, slopes in self.slopes.items()}
 
     @cached_property
@@ -82,8 +82,8 @@ class Calibration:
             if cause.function is None:
                 continue
             covariance = cause.covariance()
-            places = [(one, index) for index, item in enumerate(self.inputs)
-                      for one, column in enumerate(cause.columns) if column == item.name]  # fmt: skip
+            places = [(one, index) for index, tolerated in enumerate(self.inputs)
+                      for one, column in enumerate(cause.columns) if column == tolerated.name]  # fmt: skip
             for (one, here), (other, there) in permutations(places, 2):
                 first, second = self.inputs[here], self.inputs[there]
                 if first.file == second.file:
@@ -116,15 +116,15 @@ def tolerated_inputs(setup: Setup, records: Records) -> list[Tolerated]:
             mean, sd = priors.get(name, (0.0, 0.0))
             off = distribution.mean - float(setup.nominal(name))
             priors[name] = (mean + off, float((sd**2 + distribution.sd**2) ** 0.5))
-    found: list[Tolerated] = []
+    tolerated: list[Tolerated] = []
     for name, (mean, sd) in priors.items():
         if name in records.rows.columns or name in records.rows.series or sd <= 0:
             continue
         design = float(setup.nominal(name))
         offset = design + mean - float(start.nominal(name))
         files = range(len(records.files)) if name in per_file else (-1,)
-        found += [Tolerated(name, offset, sd, design, file) for file in files]
-    return found
+        tolerated += [Tolerated(name, offset, sd, design, file) for file in files]
+    return tolerated
 
 
 def calibration_of(setup: Setup, records: Records) -> Calibration:
@@ -137,18 +137,18 @@ def calibration_of(setup: Setup, records: Records) -> Calibration:
         name: np.zeros((len(records), len(inputs)), dtype=kind, order="F") for name in records.measured
     }
     for changed, own in _slopes(start, records, inputs):
-        for place, item in enumerate(inputs):
-            if item.name != changed:
+        for index, tolerated in enumerate(inputs):
+            if tolerated.name != changed:
                 continue
-            here = slice(None) if item.file < 0 else records.file_of == item.file
+            here = slice(None) if tolerated.file < 0 else records.file_of == tolerated.file
             for name, slope in own.items():
-                slopes[name][here, place] = slope[here]
+                slopes[name][here, index] = slope[here]
     return Calibration(setup, start, records, base, tuple(inputs), slopes)
 
 
 def _slopes(start: Setup, records: Records, inputs: Sequence[Tolerated]) -> Iterator[tuple[str, dict[str, Matrix]]]:
     """Give by input the central difference of every result over one standard deviation, 0 where the model fails."""
-    moves = {item.name: INPUT_STEP * item.sd for item in inputs}
+    moves = {tolerated.name: INPUT_STEP * tolerated.sd for tolerated in inputs}
     ends = [{name: float(start.nominal(name)) + sign * move} for name, move in moves.items() for sign in (1, -1)]
     answers = predict_each(start, records, ends)
     for name, up, down in zip(moves, answers, answers, strict=False):

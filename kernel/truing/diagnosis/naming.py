@@ -37,7 +37,7 @@ def causes_of(chosen: Chosen, fit: Fit) -> tuple[Cause, ...]:
 def _input(fit: Fit, known: Certainty, effect: str) -> Cause:
     """Return an input that lies outside its band, with the interval of its value, in every file that has its own."""
     machine = fit.sample.machine
-    made: dict[int, Sized] = {}
+    by_file: dict[int, Sized] = {}
     for cause in [cause for cause in fit.causes if cause.name == effect]:
         given = machine.inputs[cause.tolerated]
         own = np.zeros(len(known.covariance))
@@ -45,8 +45,8 @@ def _input(fit: Fit, known: Certainty, effect: str) -> Cause:
         if len(fit.inputs):
             own[-len(fit.inputs) :] = fit.sample.directions[cause.tolerated]
         value, reach = input_value(fit, cause.tolerated), known.reach(own) * given.sd
-        made[given.file] = value, value - reach, value + reach
-    return Cause(effect, (_of_files(fit, given.name, made, machine.start.unit_of(given.name)),))
+        by_file[given.file] = value, value - reach, value + reach
+    return Cause(effect, (_of_files(fit, given.name, by_file, machine.start.unit_of(given.name)),))
 
 
 def _of_files(fit: Fit, name: str, made: Mapping[int, Sized], unit: str) -> FittedUnknown:
@@ -61,17 +61,17 @@ def _effect(chosen: Chosen, fit: Fit, known: Certainty, effect: Effect[Any, Any]
     """Return an effect with all its unknowns that were fitted."""
     extended, numbers = chosen.competition.extended, numbers_of(fit)
     parts = [cause for cause in fit.causes if cause.effect is effect]
-    places = [place for cause in parts for place in places_of(fit, cause)]
+    places = [index for cause in parts for index in places_of(fit, cause)]
     unknowns, kept = [], []
     for unknown in effect.unknowns:
-        own = [place for place in places if numbers[place].name == unknown.name]
+        own = [index for index in places if numbers[index].name == unknown.name]
         if own:
             sized: dict[int, Sized] = {
-                numbers[each].file: (value_of(fit, each), *ends_of(fit, extended, known, each)) for each in own
+                numbers[index].file: (value_of(fit, index), *ends_of(fit, extended, known, index)) for index in own
             }
             unknowns.append(_of_files(fit, unknown.name, sized, unknown.unit))
             kept.append(own[0])
-    is_whole = all(numbers[place].is_free and numbers[place].file < 0 for place in kept)
+    is_whole = all(numbers[index].is_free and numbers[index].file < 0 for index in kept)
     covariance = known.in_si(kept) if is_whole else ()
     return Cause(effect.name, tuple(unknowns), covariance, _other_names(chosen, fit, effect.name))
 
@@ -92,7 +92,8 @@ def by_share(chosen: Chosen, causes: tuple[Cause, ...]) -> tuple[Cause, ...]:
         return causes
     added, channels = added_by(chosen.best, chosen.competition.extended), chosen.best.sample.channels
     drawn = [
-        [added[one.effect][each.name][each.rows] * each.factors / each.weights for each in channels] for one in causes
+        [added[cause.effect][channel.name][channel.rows] * channel.factors / channel.weights for channel in channels]
+        for cause in causes
     ]
     squares = np.array([sum(float(np.sum(part**2)) for part in parts) for parts in drawn])
     if not squares.sum() > 0:
@@ -119,9 +120,12 @@ def extended_setup(chosen: Chosen, causes: Sequence[Cause]) -> Setup:
     """Return the model brought true: causes on, conditions as measured (their means), inputs calibrated."""
     machine, on = chosen.best.sample.machine, tuple(_switched_on(chosen.best, causes))
     start = machine.start
-    seen = {need.name for item in on for need in item.effect.needs} | set(start.conditions)
-    measured = {name: item for name, item in machine.records.covariates.items() if name in seen}
-    conditions = {**start.conditions, **{name: float(np.nanmean(item.values)) for name, item in measured.items()}}
+    seen = {need.name for active in on for need in active.effect.needs} | set(start.conditions)
+    measured = {name: covariate for name, covariate in machine.records.covariates.items() if name in seen}
+    conditions = {
+        **start.conditions,
+        **{name: float(np.nanmean(covariate.values)) for name, covariate in measured.items()},
+    }
     calibrated = {**start.calibrated, **{name: value for name, (value, _) in input_values(chosen.best).items()}}
     setup = replace(start, inputs=machine.design.inputs, conditions=conditions, calibrated=calibrated)
     return setup.with_effects(on)
@@ -141,9 +145,9 @@ def _switched_on(best: Fit, causes: Sequence[Cause]) -> Iterator[SwitchedOn]:
 def input_values(fit: Fit) -> Mapping[str, tuple[float, float]]:
     """Return every tolerated input as calibrated, SI, and how far it moved in units of its sd (the first file's)."""
     made: dict[str, tuple[float, float]] = {}
-    for index, item in enumerate(fit.sample.machine.inputs):
+    for index, tolerated in enumerate(fit.sample.machine.inputs):
         value = input_value(fit, index)
-        made.setdefault(item.name, (value, (value - item.design) / item.sd))
+        made.setdefault(tolerated.name, (value, (value - tolerated.design) / tolerated.sd))
     return made
 
 
@@ -162,11 +166,11 @@ def remainder_of(chosen: Chosen, units: Mapping[str, str]) -> Remainder | None:
         shape = cause.shape
         if shape is None:
             continue
-        made = shape.terms([float(values[place]) for place in cause.shapes], machine.records.covariates)
-        sizes = iter([float(values[place]) for place in cause.amplitudes])
+        shape_terms = shape.terms([float(values[index]) for index in cause.shapes], machine.records.covariates)
+        sizes = iter([float(values[index]) for index in cause.amplitudes])
         for name, added in shape_added(machine, cause, values).items():
             words.setdefault(name, []).append(shape_in_words(machine, cause, values, added, units[name]))
-            own = (ShapeTerm(term.expression, next(sizes)) for term in made)
+            own = (ShapeTerm(term.expression, next(sizes)) for term in shape_terms)
             terms[name] = (*terms.get(name, ()), *own)
     if not words:
         return None

@@ -90,11 +90,11 @@ def thinned(points: Matrix, most: int) -> Matrix:
 
 
 def refined(
-    shapes: Sequence[Parameter], u: Matrix, made: Matrix, make: Callable[[Matrix], Matrix], most: int = FINEST
+    shapes: Sequence[Parameter], u: Matrix, curves: Matrix, make: Callable[[Matrix], Matrix], most: int = FINEST
 ) -> tuple[Matrix, Matrix]:
     """Put points between neighbours that are no longer alike, until all are or there are enough."""
     while len(u) < most:
-        flat = np.nan_to_num(made.reshape(len(made), -1))
+        flat = np.nan_to_num(curves.reshape(len(curves), -1))
         size = np.linalg.norm(flat, axis=1)
         cosine = np.abs(np.einsum("ij,ij->i", flat[1:], flat[:-1])) / np.maximum(size[1:] * size[:-1], 1e-300)
         gaps = np.flatnonzero((cosine < NEXT_TO) & (np.diff(u[:, 0]) > 1e-5) & (np.minimum(size[1:], size[:-1]) > 0))
@@ -102,9 +102,9 @@ def refined(
             break
         new = (u[gaps] + u[gaps + 1])[: most - len(u)] / 2
         order = np.argsort(np.concatenate([u, new])[:, 0], kind="stable")
-        made = np.concatenate([made, make(placed(shapes, new))])[order]
+        curves = np.concatenate([curves, make(placed(shapes, new))])[order]
         u = np.concatenate([u, new])[order]
-    return u, made
+    return u, curves
 
 
 def spread(cause: Candidate, count: int, most: int = FINEST) -> Matrix:
@@ -112,24 +112,24 @@ def spread(cause: Candidate, count: int, most: int = FINEST) -> Matrix:
 
     There are at most so many, evenly from all.
     """
-    shapes = [cause.numbers[place] for place in cause.shapes]
+    shapes = [cause.numbers[index] for index in cause.shapes]
     points = []
     if len(cause.amplitudes) == 1 and len(shapes) <= 1:
-        (place,), places = cause.amplitudes, places_over(shapes)
-        ends = filter(None, (cause.numbers[place].low, cause.numbers[place].high))
+        (index,), places = cause.amplitudes, places_over(shapes)
+        ends = filter(None, (cause.numbers[index].low, cause.numbers[index].high))
         for end, level, values in product(ends, LEVELS, placed(shapes, places[:: max(1, len(places) // FIRST)])):
             point = np.zeros(cause.size)
-            point[cause.shapes], point[place] = values, level * end
+            point[cause.shapes], point[index] = values, level * end
             points.append(point)
         return thinned(np.array(points), most)
     for u in evenly(cause.size + 1, count):
         point = np.zeros(cause.size)
         point[cause.shapes] = placed(shapes, u[None, : len(shapes)])[0]
         level = 10 ** (-3 * u[-1])
-        for v, place in zip(u[len(shapes) :], cause.amplitudes, strict=False):
-            number = cause.numbers[place]
+        for v, index in zip(u[len(shapes) :], cause.amplitudes, strict=False):
+            number = cause.numbers[index]
             side = number.high if (v >= 0.5 or not number.low) and number.high else number.low
             share = abs(2 * v - 1) if number.low and number.high else v
-            point[place] = level * side * (0.05 + 0.95 * share)
+            point[index] = level * side * (0.05 + 0.95 * share)
         points.append(point)
     return thinned(np.array(points), most)

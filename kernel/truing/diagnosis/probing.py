@@ -41,17 +41,19 @@ ROUNDING = 1e-12
 """Share of the largest answer by which two calls may differ: how libraries round depends on where an array lies."""
 
 
-def probe(made: Competition) -> None:
+def probe(competition: Competition) -> None:
     """Give a search its budget of calls, and say how rough the model is.
 
     Where nothing that competes moves the model itself it is called for nothing more: it needs neither.
     """
-    extended, machine = made.extended, made.extended.machine
-    costly = [cause for cause in made.causes if extended.costs(cause)]
+    extended, machine = competition.extended, competition.extended.machine
+    costly = [cause for cause in competition.causes if extended.costs(cause)]
     tried: list[Candidate] = [] if machine.inputs else costly[:1]
     if not machine.inputs and not costly:
         return
-    values = [np.array([each.low + 0.1 * PROBE * (each.high - each.low) for each in cause.numbers]) for cause in tried]
+    values = [
+        np.array([number.low + 0.1 * PROBE * (number.high - number.low) for number in cause.numbers]) for cause in tried
+    ]
     point = values, np.full(len(machine.inputs), PROBE)
     extended.budget = budget_of(machine.start.diagnose.budget, len(costly), lambda: extended.at(tried, [point]))
     if extended.budget.is_dear:

@@ -109,14 +109,14 @@ def _demand_rows(joined: DataRows, most: int | None = None) -> None:
 
 def _sigma(joined: DataRows) -> tuple[dict[str, Matrix], list[str]]:
     """Return the standard deviations that are given, by result; one of 0 is none."""
-    found, notes = {}, []
+    deviations, notes = {}, []
     for name, values in joined.named("sigma").items():
         result = name.removeprefix(SIGMA)
         if result in joined.columns:
-            found[result] = np.where(values > 0, values, np.nan)
+            deviations[result] = np.where(values > 0, values, np.nan)
             if zero := int((values == 0).sum()):
                 notes.append(f"'{name}' is 0 in {counted(zero)}, which no gauge is; it counts as not given there")
-    return found, notes
+    return deviations, notes
 
 
 def _demand_logarithms(joined: DataRows, setup: Setup) -> None:
@@ -156,18 +156,18 @@ def _enough_values(joined: DataRows, setup: Setup) -> DataRows:
 def _answered(joined: DataRows, setup: Setup) -> DataRows:
     """Hold the rows against the model as it stands; leave out those in which it fails."""
     measured = joined.named("measured")
-    found = read_by_gauge(one_machine(setup), rows_of(joined), measured)
+    shown = read_by_gauge(one_machine(setup), rows_of(joined), measured)
     notes: list[str] = []
-    joined = replace(joined, answers=found.results)
-    if found.failed.any():
-        first, reason = next(iter(found.reasons.items()))
-        why = {row: f"the model fails: {each}" for row, each in found.reasons.items()}
-        failed = counted(int(found.failed.sum()), "row is", "rows are")
-        place = f"{joined.files[joined.file_of[first]]}:{joined.lines[first]}"
-        notes.append(f"{failed} left out where the model fails; the first is {place}: {reason}")
-        if found.failed.mean() > MOST_FAILED:
+    joined = replace(joined, answers=shown.results)
+    if shown.failed.any():
+        first, reason = next(iter(shown.reasons.items()))
+        why = {row: f"the model fails: {each}" for row, each in shown.reasons.items()}
+        failed = counted(int(shown.failed.sum()), "row is", "rows are")
+        source_line = f"{joined.files[joined.file_of[first]]}:{joined.lines[first]}"
+        notes.append(f"{failed} left out where the model fails; the first is {source_line}: {reason}")
+        if shown.failed.mean() > MOST_FAILED:
             notes += factor_that_works(joined, setup)
-        joined = joined.without(found.failed, why)
+        joined = joined.without(shown.failed, why)
     columns = dict(joined.columns)
     for name in measured:
         unusable = {"that its axis does not reach": np.isnan(joined.answers[name])}

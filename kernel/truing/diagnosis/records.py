@@ -102,7 +102,9 @@ class Records:
         """Number of measured values that may be fitted; those of rows that differ in their order alone count once."""
         known = [np.where(self.known(name), values, np.nan) for name, values in self.measured.items()]
         measured = np.column_stack(known)[~self.held_out]
-        settings = [item.values[~self.held_out] for item in self.covariates.values() if item.role != "order"]
+        settings = [
+            covariate.values[~self.held_out] for covariate in self.covariates.values() if covariate.role != "order"
+        ]
         return int(np.isfinite(measured[np.unique(first_alike([*measured.T, *settings]))]).sum())
 
     @property
@@ -128,7 +130,9 @@ class Records:
             lines=self.lines[places],
             measured={name: values[places] for name, values in self.measured.items()},
             sigma={name: values[places] for name, values in self.sigma.items()},
-            covariates={name: replace(item, values=item.values[places]) for name, item in self.covariates.items()},
+            covariates={
+                name: replace(covariate, values=covariate.values[places]) for name, covariate in self.covariates.items()
+            },
             held_out=self.held_out[places],
             sides={name: values[places] for name, values in self.sides.items()},
         )

@@ -449,10 +449,11 @@ def _unstable(diagnosis: DiagnosisResult) -> Iterator[str]:
 
 def _torn(diagnosis: DiagnosisResult) -> Iterator[str]:
     """Give the amplitudes that parts of the record, or tolerances, do not let be what all rows say."""
-    for each in diagnosis.contradictions:
+    for contradiction in diagnosis.contradictions:
+        first, second = _amount(contradiction.first), _amount(contradiction.second)
         yield (
-            f"{each.unknown} of {each.effect} is {_amount(each.first)} in one half of the rows and "
-            f"{_amount(each.second)} in the other: the two contradict one another; look at what changed between them"
+            f"{contradiction.unknown} of {contradiction.effect} is {first} in one half of the rows and {second} in the "
+            "other: the two contradict one another; look at what changed between them"
         )
     for half in diagnosis.thinned:
         yield (
@@ -527,14 +528,14 @@ def explanations_of(diagnosis: DiagnosisResult) -> tuple[Explanation, ...]:
         return ()
     best = [cause.effect for cause in diagnosis.causes]
     same: Mapping[str, Sequence[str]] = {cause.effect: cause.same_as for cause in diagnosis.causes}
-    found = [([*best, UNKNOWN] if diagnosis.remainder is not None else best, same)]
+    explanations = [([*best, UNKNOWN] if diagnosis.remainder is not None else best, same)]
     for rival in diagnosis.alternatives:
         over = [f"{UNKNOWN}:{','.join(rival.depends_on)}" if name == UNKNOWN else name for name in rival.causes]
-        found.append((over, rival.same_as))
+        explanations.append((over, rival.same_as))
     once: dict[frozenset[str], Explanation] = {}
-    for names, same in found:
-        for each in product(*((name, *same.get(name, ())) for name in names)):
-            once.setdefault(frozenset(each), each)
+    for names, same in explanations:
+        for explanation in product(*((name, *same.get(name, ())) for name in names)):
+            once.setdefault(frozenset(explanation), explanation)
     return tuple(once.values())
 
 

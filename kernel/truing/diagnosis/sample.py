@@ -259,7 +259,7 @@ class Sample:
 def has_order(machine: Calibration) -> bool:
     """Whether rows follow one another in a way that means something: a time that goes on, or an axis of the model."""
     records = machine.records
-    has_time = any(item.role == "time" and not item.is_constant for item in records.covariates.values())
+    has_time = any(covariate.role == "time" and not covariate.is_constant for covariate in records.covariates.values())
     return has_time or bool(records.rows.series)
 
 

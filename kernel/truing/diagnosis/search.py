@@ -31,7 +31,7 @@ STARTS = 2
 """So many of the best explanations of one size get one more cause."""
 
 
-def search(made: Competition, done: StepProgress = unheard) -> None:
+def search(competition: Competition, done: StepProgress = unheard) -> None:
     """Fit everything that may explain the record; ``done`` hears of the stages."""
     stages = (
         (_singles, 0.6, "causes alone"),
@@ -41,27 +41,31 @@ def search(made: Competition, done: StepProgress = unheard) -> None:
         (_exchanged, 0.85, "exchanges"),
         (_exactly, 0.95, TO_THE_END),
     )  # of the budget of calls every stage may spend so much, all before it included
-    for count, (stage, share, made.stage) in enumerate(stages):
+    for count, (stage, share, competition.stage) in enumerate(stages):
         done(count, len(stages))
-        made.extended.budget.share = share
-        stage(made)
+        competition.extended.budget.share = share
+        stage(competition)
         if count < len(stages) - 1:
-            made.renew()
-            made.refresh()
-    made.stage, made.extended.budget.share = "trials of the decision", 1.0
+            competition.renew()
+            competition.refresh()
+    competition.stage, competition.extended.budget.share = "trials of the decision", 1.0
 
 
-def _singles(made: Competition) -> None:
-    seen = made.look(made.null)
-    order = made.promising(seen)
+def _singles(competition: Competition) -> None:
+    seen = competition.look(competition.null)
+    order = competition.promising(seen)
     chosen = [*order[:SINGLES], *(cause for cause in order[SINGLES:] if cause.is_registered)]
-    made.fit_each([start for cause in chosen for start in beside(made.null, cause, seen[cause.tag].starts)])
+    competition.fit_each(
+        [start for cause in chosen for start in beside(competition.null, cause, seen[cause.tag].starts)]
+    )
 
 
-def _distinct(made: Competition, size: int, count: int, accept: Callable[[Fit], bool] = lambda _: True) -> list[Fit]:
+def _distinct(
+    competition: Competition, size: int, count: int, accept: Callable[[Fit], bool] = lambda _: True
+) -> list[Fit]:
     """Return the best accepted explanations of one size that do not draw the same."""
     kept: list[Fit] = []
-    for fit in made.ranked(lambda each: len(each.causes) == size and accept(each)):
+    for fit in competition.ranked(lambda each: len(each.causes) == size and accept(each)):
         if all(differ(fit, other) > 1.0 for other in kept):
             kept.append(fit)
         if len(kept) == count:
@@ -69,13 +73,13 @@ def _distinct(made: Competition, size: int, count: int, accept: Callable[[Fit], 
     return kept
 
 
-def _pairs(made: Competition) -> None:
-    several = {fit.key: fit for fit in (*_distinct(made, 1, BEAM), *_registered(made, BEAM))}
+def _pairs(competition: Competition) -> None:
+    several = {fit.key: fit for fit in (*_distinct(competition, 1, BEAM), *_registered(competition, BEAM))}
     placed = {cause for fit in several.values() for cause in fit.causes if cause.kept}
     for at in list(several.values())[:BEAM]:
-        made.forward(at, JOINED, placed.__contains__)
-    pairs = sorted(combinations(several.values(), 2), key=lambda pair: sum(map(made.score, pair)))
-    made.fit_each(
+        competition.forward(at, JOINED, placed.__contains__)
+    pairs = sorted(combinations(several.values(), 2), key=lambda pair: sum(map(competition.score, pair)))
+    competition.fit_each(
         [
             Start(one.causes + other.causes, one.values + other.values, one)
             for one, other in pairs
@@ -84,15 +88,15 @@ def _pairs(made: Competition) -> None:
     )
 
 
-def _registered(made: Competition, count: int) -> list[Fit]:
+def _registered(competition: Competition, count: int) -> list[Fit]:
     """Return the best single causes that somebody registered and that do not draw the same."""
-    return _distinct(made, 1, count, accept=lambda fit: fit.causes[0].is_registered)
+    return _distinct(competition, 1, count, accept=lambda fit: fit.causes[0].is_registered)
 
 
-def _beside_firsts(made: Competition) -> None:
-    firsts = {fit.key: fit for fit in (*_distinct(made, 1, FIRSTS), *_registered(made, FIRSTS // 2))}
+def _beside_firsts(competition: Competition) -> None:
+    firsts = {fit.key: fit for fit in (*_distinct(competition, 1, FIRSTS), *_registered(competition, FIRSTS // 2))}
     for at in firsts.values():
-        made.forward(at, JOINED, _is_quick)
+        competition.forward(at, JOINED, _is_quick)
 
 
 def _is_quick(cause: Candidate) -> bool:
@@ -100,50 +104,51 @@ def _is_quick(cause: Candidate) -> bool:
     return all(number.name != "frequency" for number in cause.numbers)
 
 
-def _more(made: Competition) -> None:
-    now = made.ranked()[0]
+def _more(competition: Competition) -> None:
+    now = competition.ranked()[0]
     while 1 <= len(now.causes) < MOST_CAUSES:
-        for at in _distinct(made, len(now.causes), STARTS):
-            made.forward(at, JOINED)
-        best = made.best(len(now.causes) + 1)
-        if best is None or made.score(best) >= made.score(now):
+        for at in _distinct(competition, len(now.causes), STARTS):
+            competition.forward(at, JOINED)
+        best = competition.best(len(now.causes) + 1)
+        if best is None or competition.score(best) >= competition.score(now):
             return
-        made.backward(best)
-        made.renew()
-        made.refresh()
-        now = made.ranked()[0]
+        competition.backward(best)
+        competition.renew()
+        competition.refresh()
+        now = competition.ranked()[0]
 
 
-def _exchanged(made: Competition) -> None:
+def _exchanged(competition: Competition) -> None:
     for _ in range(2):
-        now = made.ranked()[0]
+        now = competition.ranked()[0]
         for index in range(len(now.causes)):
-            exchange(made, now, index)
-        if made.ranked()[0].key == now.key:
+            exchange(competition, now, index)
+        if competition.ranked()[0].key == now.key:
             return
 
 
-def exchange(made: Competition, now: Fit, place: int) -> None:
+def exchange(competition: Competition, now: Fit, index: int) -> None:
     """Fit an explanation with one of its causes exchanged for others, the rest refitted without it and held; once."""
-    if (now.key, now.causes[place].tag) in made.exchanged:
+    if (now.key, now.causes[index].tag) in competition.exchanged:
         return
-    made.exchanged.add((now.key, now.causes[place].tag))
-    rest = made.without(now, place)
+    competition.exchanged.add((now.key, now.causes[index].tag))
+    rest = competition.without(now, index)
     if rest is not None:
-        made.forward(rest, JOINED, lambda cause: _is_quick(cause) and cause.tag not in now.key)
+        competition.forward(rest, JOINED, lambda cause: _is_quick(cause) and cause.tag not in now.key)
     if len(now.causes) > 1:
-        causes = now.causes[:place] + now.causes[place + 1 :]
-        values = now.values[:place] + now.values[place + 1 :]
-        (predicted,) = made.extended.at(causes, [(values, now.moved)])
-        left = made.sample.left(predicted)
+        causes = now.causes[:index] + now.causes[index + 1 :]
+        values = now.values[:index] + now.values[index + 1 :]
+        (predicted,) = competition.extended.at(causes, [(values, now.moved)])
+        left = competition.sample.left(predicted)
         if np.isfinite(left).all():
-            held = Fit(causes, values, now.inputs, predicted, left, made.sample.cost(left, now.inputs), made.sample)
-            made.forward(held, JOINED, lambda cause: _is_quick(cause) and cause.tag not in now.key)
+            cost = competition.sample.cost(left, now.inputs)
+            held = Fit(causes, values, now.inputs, predicted, left, cost, competition.sample)
+            competition.forward(held, JOINED, lambda cause: _is_quick(cause) and cause.tag not in now.key)
 
 
-def _exactly(made: Competition) -> None:
+def _exactly(competition: Competition) -> None:
     """Fit to the end what lies near, the best of every size, and single causes: a rough fit may stop far from it."""
-    top = made.score(made.ranked()[0])
-    near = [fit for fit in made.ranked()[:RENEWED] if made.score(fit) < top + 4 * MARGIN]
-    sized = [best for size in range(1, MOST_CAUSES) if (best := made.best(size)) is not None]
-    made.again([made.null, *near, *sized, *_registered(made, BEAM)], CLOSELY)
+    top = competition.score(competition.ranked()[0])
+    near = [fit for fit in competition.ranked()[:RENEWED] if competition.score(fit) < top + 4 * MARGIN]
+    sized = [best for size in range(1, MOST_CAUSES) if (best := competition.best(size)) is not None]
+    competition.again([competition.null, *near, *sized, *_registered(competition, BEAM)], CLOSELY)

@@ -25,8 +25,8 @@ FEW_VALUES = 3
 def settings_of(machine: Calibration, tried: int = TRIED) -> dict[str, Matrix]:
     """Return the settings that are tried, by input or condition, SI: so many corners of the box and points in it."""
     covariates = machine.records.covariates
-    found = ((name, _box(machine, name, item)) for name, item in covariates.items())
-    boxes = {name: box for name, box in found if box is not None and box[1] > box[0]}
+    ranges = ((name, _box(machine, name, covariate)) for name, covariate in covariates.items())
+    boxes = {name: box for name, box in ranges if box is not None and box[1] > box[0]}
     if not boxes:
         return {}
     unit = evenly(len(boxes), tried)
@@ -42,26 +42,26 @@ def settings_of(machine: Calibration, tried: int = TRIED) -> dict[str, Matrix]:
     return settings
 
 
-def _box(machine: Calibration, name: str, item: Covariate) -> tuple[float, float] | None:
+def _box(machine: Calibration, name: str, covariate: Covariate) -> tuple[float, float] | None:
     """Return the range in which something can be set: asked for, declared, or half as wide again as measured."""
     start = machine.start
     if name in start.diagnose.box:
         return start.diagnose.box[name]
     condition, field = start.model.known_conditions.get(name), start.model.input_fields.get(name)
     if condition is not None:
-        low = np.nanmin(item.values) if condition.low is None else to_si(condition.low, condition.unit)
-        high = np.nanmax(item.values) if condition.high is None else to_si(condition.high, condition.unit)
+        low = np.nanmin(covariate.values) if condition.low is None else to_si(condition.low, condition.unit)
+        high = np.nanmax(covariate.values) if condition.high is None else to_si(condition.high, condition.unit)
         return float(low), float(high)
     if field is None or not field.varies:
         return None
-    low, high = float(np.nanmin(item.values)), float(np.nanmax(item.values))
+    low, high = float(np.nanmin(covariate.values)), float(np.nanmax(covariate.values))
     declared = [getattr(field.spec, key, None) for key in ("at_least", "above", "at_most", "below")]
     lows = [float(to_si(value, field.unit)) for value in declared[:2] if isinstance(value, (int, float))]
     highs = [float(to_si(value, field.unit)) for value in declared[2:] if isinstance(value, (int, float))]
     if is_angle(field.unit) and not lows and not highs:
         return min(low, -pi), max(high, pi)
     reach = (high - low) / 2
-    lows += [min(low, 0.0)] if item.role == "time" else []
+    lows += [min(low, 0.0)] if covariate.role == "time" else []
     return max([low - reach, *lows]), min([high + reach, *highs])
 
 

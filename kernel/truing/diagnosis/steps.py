@@ -58,13 +58,13 @@ class _Step:
     is_believed: bool
 
 
-def steps_from(made: Competition, start: Decision, *, seed: int) -> Decision:
+def steps_from(competition: Competition, start: Decision, *, seed: int) -> Decision:
     """Go from an explanation to more and more causes, as long as a step is believed; a step may be of two at once."""
     now = start
-    is_short = min(made.sample.known, made.sample.machine.records.readings) < FEWEST_READINGS
-    folds = folds_of(made.sample)
+    is_short = min(competition.sample.known, competition.sample.machine.records.readings) < FEWEST_READINGS
+    folds = folds_of(competition.sample)
     while len(now.at.causes) < MOST_CAUSES:
-        tried = list(_tried(made, now.at, folds, seed))
+        tried = list(_tried(competition, now.at, folds, seed))
         first = now.law if now.at.causes or not tried else tried[0].law
         taken = tried[-1] if tried and tried[-1].is_believed and not is_short else None
         if taken is None:
@@ -73,37 +73,37 @@ def steps_from(made: Competition, start: Decision, *, seed: int) -> Decision:
     return now
 
 
-def _tried(made: Competition, at: Fit, folds: Folds, seed: int) -> Iterator[_Step]:
+def _tried(competition: Competition, at: Fit, folds: Folds, seed: int) -> Iterator[_Step]:
     """Give the steps that are judged, up to the first one that is believed."""
     for steps in (1, 2):
-        for more in _candidates(made, at, len(at.causes) + steps):
-            step = _step(made, at, more, folds, seed=seed + 10 * len(at.causes) + steps)
+        for more in _candidates(competition, at, len(at.causes) + steps):
+            step = _step(competition, at, more, folds, seed=seed + 10 * len(at.causes) + steps)
             yield step
             if step.is_believed:
                 return
 
 
-def _candidates(made: Competition, at: Fit, size: int) -> Iterator[Fit]:
+def _candidates(competition: Competition, at: Fit, size: int) -> Iterator[Fit]:
     """Give what may follow an explanation: the best of so many causes; before a shape, what is registered and near it.
 
     A polynomial draws anything. What the model itself declares and draws nearly all of it is the better word, and a
     shape is then what is left beside it.
     """
-    if at.causes and made.best(len(at.causes)) is not at:  # the search went on from another one
-        made.forward(at, FURTHER)
-    best = _best(made, at, size)
+    if at.causes and competition.best(len(at.causes)) is not at:  # the search went on from another one
+        competition.forward(at, FURTHER)
+    best = _best(competition, at, size)
     if best is None or not any(draws_anything(cause) and cause.tag not in at.key for cause in best.causes):
         yield from [] if best is None else [best]
         return
-    null = made.null
+    null = competition.null
     least = NEARLY_ALL * (_squares(best, null) - _squares(best, best))
-    named = made.ranked(
+    named = competition.ranked(
         lambda fit: len(fit.causes) == size and _is_own(fit) and _squares(best, null) - _squares(best, fit) >= least
     )
     yield from named[:1]
     if at.causes and _is_own(at) and _squares(best, null) - _squares(best, at) >= least:
-        made.forward(at, FURTHER)
-        yield from made.ranked(lambda fit: len(fit.causes) == size and fit.key > at.key)[:1]
+        competition.forward(at, FURTHER)
+        yield from competition.ranked(lambda fit: len(fit.causes) == size and fit.key > at.key)[:1]
         return
     yield best
 
@@ -123,7 +123,7 @@ def _squares(judge: Fit, fit: Fit) -> float:
     return float(np.sum((judge.sample.roots(judge.left) * fit.left) ** 2))
 
 
-def _best(made: Competition, at: Fit, size: int) -> Fit | None:
+def _best(competition: Competition, at: Fit, size: int) -> Fit | None:
     """Return the best explanation of so many causes, with one new shape at most, no input named without need.
 
     Beside a cause with a name there is one shape in all: a second one takes from what the cause draws.
@@ -133,11 +133,15 @@ def _best(made: Competition, at: Fit, size: int) -> Fit | None:
         many = shapes_in(fit)
         return many <= (max(shapes_in(at), 1) if many < size else shapes_in(at) + 1)
 
-    sized = made.ranked(lambda fit: len(fit.causes) == size and is_sensible(fit) and allows(fit))
+    sized = competition.ranked(lambda fit: len(fit.causes) == size and is_sensible(fit) and allows(fit))
     if not sized:
         return None
     named = next((fit for fit in sized if not shifts_inputs(fit)), None)
-    if shifts_inputs(sized[0]) and named is not None and made.score(named) < made.score(sized[0]) + MARGIN:
+    if (
+        shifts_inputs(sized[0])
+        and named is not None
+        and competition.score(named) < competition.score(sized[0]) + MARGIN
+    ):
         return named
     return sized[0]
 
@@ -158,38 +162,42 @@ def is_sensible(fit: Fit) -> bool:
     return all(abs(float(values[0])) > OUTSIDE for cause, values in pairs if cause.tolerated >= 0)
 
 
-def _step(made: Competition, at: Fit, more: Fit, folds: Folds, *, seed: int) -> _Step:
+def _step(competition: Competition, at: Fit, more: Fit, folds: Folds, *, seed: int) -> _Step:
     """Judge one step: chance, memory, rows left out; a registered cause that mends a rough shape is none."""
-    gain = made.score(at) - made.score(more)
+    gain = competition.score(at) - competition.score(more)
     if gain <= 0:
-        law = Law(np.zeros(0), 1.0) if at.causes else law_of(made, at, more, seed=seed)
+        law = Law(np.zeros(0), 1.0) if at.causes else law_of(competition, at, more, seed=seed)
         return _Step(more, law, False)
     is_certain = bool(at.causes) and gain > CERTAIN
-    law = Law(np.zeros(0), 1 / 300) if is_certain else law_of(made, at, more, seed=seed)
+    law = Law(np.zeros(0), 1 / 300) if is_certain else law_of(competition, at, more, seed=seed)
     level, is_more = FURTHER_LEVEL if at.causes else ANY_LEVEL, more.size > at.size
     added = len(more.causes) - len(at.causes) if is_more or at.key < more.key else 0
     is_believed = (
         law.p_value <= level
         and gain >= (LEAST_IN_PLACE if is_more and not at.key < more.key else 0.0)
-        and made.own_score(at) - made.own_score(more) >= (WANDER if at.causes else 0.0)
-        and not _mends(made, at, more, gain)
-        and carries_over(at, more, made.extended, folds) >= CARRIED * added
-        and not _beats(made, at, more)
+        and competition.own_score(at) - competition.own_score(more) >= (WANDER if at.causes else 0.0)
+        and not _mends(competition, at, more, gain)
+        and carries_over(at, more, competition.extended, folds) >= CARRIED * added
+        and not _beats(competition, at, more)
     )
     return _Step(more, law, is_believed)
 
 
-def _beats(made: Competition, at: Fit, more: Fit) -> bool:
+def _beats(competition: Competition, at: Fit, more: Fit) -> bool:
     """Whether a further wave only beats with one that is there: then it does not carry over to the ends."""
-    before, after = (sum(made.tries.get(cause.tag, 1.0) > MANY_CURVES for cause in each.causes) for each in (at, more))
-    return after > before > 0 and carries_over(at, more, made.extended, ends_of(made.sample)) < 2 * CARRIED
+    before, after = (
+        sum(competition.tries.get(cause.tag, 1.0) > MANY_CURVES for cause in each.causes) for each in (at, more)
+    )
+    return (
+        after > before > 0 and carries_over(at, more, competition.extended, ends_of(competition.sample)) < 2 * CARRIED
+    )
 
 
-def _mends(made: Competition, at: Fit, more: Fit, gain: float) -> bool:
+def _mends(competition: Competition, at: Fit, more: Fit, gain: float) -> bool:
     """Whether what is added only mends what a shape that nobody registered leaves."""
     shapes = [index for index, cause in enumerate(more.causes) if cause.shape is not None]
     if not shapes or not at.key < more.key or not at.causes:
         return False
-    rest = [made.without(more, index) for index in shapes]
-    worth = max((made.score(each) - made.score(more) for each in rest if each is not None), default=0.0)
+    rest = [competition.without(more, index) for index in shapes]
+    worth = max((competition.score(each) - competition.score(more) for each in rest if each is not None), default=0.0)
     return gain < min(MENDED_SHARE * worth, MENDED)

@@ -67,9 +67,9 @@ class Pass:
     result stand among all rows of the sample.
     """
 
-    def __init__(self, table: TermTable, conditional: Conditional, place: int) -> None:
+    def __init__(self, table: TermTable, conditional: Conditional, index: int) -> None:
         self.table, self.conditional = table, conditional
-        self.channel, self.part = conditional.sample.channels[place], conditional.sample.parts[place]
+        self.channel, self.part = conditional.sample.channels[index], conditional.sample.parts[index]
         against = np.column_stack([conditional.left[self.part], conditional.taken[self.part]])
         shared, normal, following = [], [], []
         last = np.zeros((0, table.terms.shape[1], len(self.channel)))
@@ -116,9 +116,9 @@ class ProjectedCurves:
         raw = np.concatenate([known[each][self.points] for each in self.passes], axis=1)
         return np.asarray(self.units[self.points] @ raw)
 
-    def vectors(self, place: int) -> Matrix:
+    def vectors(self, index: int) -> Matrix:
         """Return the orthonormal curves at one of the points, (q, rows + K)."""
-        conditional, at = self.passes[0].conditional, int(self.points[place])
+        conditional, at = self.passes[0].conditional, int(self.points[index])
         rows = np.zeros((len(self.passes), self.units.shape[1] // len(self.passes), conditional.sample.rows))
         for each, kept in zip(self.passes, rows, strict=True):
             kept[:, each.part] = each.rows(slice(at, at + 1))[0]

@@ -50,7 +50,7 @@ def each_block_once(data: DataRows) -> DataRows:
     if time is None or not (np.diff(time) < 0).any():
         return data
     cells = (data.runs, *data.columns.values())
-    like = first_alike([numbered(each) if each.dtype == object else each for each in cells])
+    like = first_alike([numbered(cell) if cell.dtype == object else cell for cell in cells])
     is_again = np.zeros(len(data), dtype=bool)
     for start in np.flatnonzero((np.diff(time) < 0) & (like[1:] <= np.arange(len(time) - 1))) + 1:
         first = like[start]
@@ -125,8 +125,8 @@ def _joined(angles: Matrix) -> tuple[Matrix, int]:
 
 def keeps_bounds(name: str, values: Matrix, model: Model[Any, Any]) -> bool:
     """Whether values (n,), SI, lie within the bounds of an input; anything else has none."""
-    item = model.input_fields.get(name)
-    return item is None or not any(broken_bound(item, float(end)) for end in (np.nanmin(values), np.nanmax(values)))
+    field = model.input_fields.get(name)
+    return field is None or not any(broken_bound(field, float(end)) for end in (np.nanmin(values), np.nanmax(values)))
 
 
 def is_angle(unit: str) -> bool:

@@ -69,9 +69,9 @@ def suspected_unit_errors(joined: DataRows, setup: Setup) -> tuple[SuspectedUnit
         return out_of_range
     few = joined.taken(_some_rows(joined))
     gauges = _gauges(few, setup)
-    far = [one for one in gauges if _is_far(one.measured, one.answer)]
-    beyond = [one for one in far if any(one.off(mode) > TIMES_NEARER * one.reach[mode] for mode in (0, 1))]
-    own = {one.name: found for one in beyond if (found := _own_slip(one, few, setup))}
+    far = [gauge for gauge in gauges if _is_far(gauge.measured, gauge.answer)]
+    beyond = [gauge for gauge in far if any(gauge.off(mode) > TIMES_NEARER * gauge.reach[mode] for mode in (0, 1))]
+    own = {gauge.name: slip for gauge in beyond if (slip := _own_slip(gauge, few, setup))}
     if len(beyond) > len(own) or len(own) > 1:
         shared = _input_slip(few, gauges, beyond, setup)
         if shared is not None:
@@ -106,16 +106,20 @@ def _some_rows(joined: DataRows) -> Indices:
 def _gauges(few: DataRows, setup: Setup) -> list[_Gauge]:
     """Return every measured result on these rows, with how far one standard deviation of each tolerance reaches."""
     machine = one_machine(setup)
-    scatter = [(name, each.sd) for by_input in setup.distributions().values() for name, each in by_input.items()]
+    scatter = [
+        (name, distribution.sd)
+        for by_input in setup.distributions().values()
+        for name, distribution in by_input.items()
+    ]
     moved = [{name: few.columns.get(name, machine.nominal(name)) + sd} for name, sd in scatter]
     answers, *others = read_trials(machine, rows_of(few), [{}, *moved], few.named("measured"))
-    found = []
+    gauges = []
     for name, values in answers.items():
         measured = few.columns[name]
         sizes = np.array([_size(other[name] - values, mode) for other in others for mode in (0, 1)]).reshape(-1, 2)
         raw, about = np.sqrt(np.sum(np.where(np.isfinite(sizes), sizes, 0.0) ** 2, axis=0)).tolist()
-        found.append(_Gauge(name, measured, np.where(np.isfinite(measured), values, np.nan), (raw, about)))
-    return found
+        gauges.append(_Gauge(name, measured, np.where(np.isfinite(measured), values, np.nan), (raw, about)))
+    return gauges
 
 
 def _factors(unit: str) -> Mapping[float, str]:
@@ -141,10 +145,10 @@ def _input_slip(few: DataRows, gauges: list[_Gauge], beyond: list[_Gauge], setup
     best: tuple[float, SuspectedUnit] | None = None
     trials = list(_trials(few, setup))
     scaled = [{name: few.columns[name] * factor} for name, factor, _ in trials]
-    found = read_trials(one_machine(setup), rows_of(few), scaled, few.named("measured"))
-    for (name, factor, words), answers in zip(trials, found, strict=True):
-        gains = [one.gain(one.measured, answers[one.name]) for one in beyond]
-        off = ((_size(one.measured - answers[one.name], 0), max(one.off(0), one.reach[0])) for one in gauges)
+    answers_by_trial = read_trials(one_machine(setup), rows_of(few), scaled, few.named("measured"))
+    for (name, factor, words), answers in zip(trials, answers_by_trial, strict=True):
+        gains = [gauge.gain(gauge.measured, answers[gauge.name]) for gauge in beyond]
+        off = ((_size(gauge.measured - answers[gauge.name], 0), max(gauge.off(0), gauge.reach[0])) for gauge in gauges)
         if not all(gains) or any(after > LIKE * TIMES_NEARER * before for after, before in off):
             continue
         if best is None or min(gains) > best[0]:
@@ -155,7 +159,7 @@ def _input_slip(few: DataRows, gauges: list[_Gauge], beyond: list[_Gauge], setup
 
 def _trials(few: DataRows, setup: Setup) -> Iterator[tuple[str, float, str]]:
     """Give every column that the model sees with every factor that its bounds allow."""
-    seen, units = {need.name for item in setup.effects for need in item.effect.needs}, declared_units(setup.model)
+    seen, units = {need.name for active in setup.effects for need in active.effect.needs}, declared_units(setup.model)
     for name, values in few.named("input", "series", "condition").items():
         if name in setup.model.input_fields or name in seen:
             for factor, words in _factors(units[name]).items():

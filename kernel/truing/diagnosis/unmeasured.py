@@ -86,26 +86,26 @@ def _tie(names: Sequence[str], explanations: Sequence[Fit]) -> Tie:
     return Tie(tuple(names), tuple(fact for fact in facts if len(tied) < 2 or stated[fact.quantity] < len(tied)))
 
 
-def _facts(found: Fit) -> Iterator[Fact]:
+def _facts(fit: Fit) -> Iterator[Fact]:
     """Give the quantities that an explanation states: unknowns that are not zero, and inputs outside of their band."""
-    start = found.sample.machine.start
-    for on in switched_on(found.causes, found.values, found.sample.machine):
+    start = fit.sample.machine.start
+    for on in switched_on(fit.causes, fit.values, fit.sample.machine):
         for unknown in on.effect.unknowns:
             if value := on.values.get(unknown.name, 0.0):
                 quantity = f"{on.effect.name}.{unknown.name}"
-                yield Fact(name_of(found), quantity, Amount(float(value), unknown.unit), unknown.note)
-    for name, value in _shifted(found).items():
+                yield Fact(name_of(fit), quantity, Amount(float(value), unknown.unit), unknown.note)
+    for name, value in _shifted(fit).items():
         declared, known = start.model.input_fields.get(name), start.model.known_conditions
         note = known[name].note if declared is None else declared.spec.note
-        yield Fact(name_of(found), f"input:{name}", Amount(value, start.unit_of(name)), note)
+        yield Fact(name_of(fit), f"input:{name}", Amount(value, start.unit_of(name)), note)
 
 
-def _shifted(found: Fit) -> dict[str, float]:
+def _shifted(fit: Fit) -> dict[str, float]:
     """Return the inputs that an explanation has outside of their band, SI; of files the first one's."""
     made: dict[str, float] = {}
-    for cause in found.causes:
+    for cause in fit.causes:
         if cause.tolerated >= 0:
-            made.setdefault(found.sample.machine.inputs[cause.tolerated].name, input_value(found, cause.tolerated))
+            made.setdefault(fit.sample.machine.inputs[cause.tolerated].name, input_value(fit, cause.tolerated))
     return made
 
 
@@ -120,23 +120,27 @@ def _result_to_measure(
     """
     start, measured = machine.start, machine.records.measured
     fields = start.model.own_result_fields
-    alone = [name for name, item in fields.items() if not item.along and not isinstance(item.spec, Axis)]
+    alone = [name for name, field in fields.items() if not field.along and not isinstance(field.spec, Axis)]
     names = [name for name in alone if name not in measured]
     if not names or machine.records.rows.series or len(explanations) < 2:
         return None, set()
     few = machine.records.part(np.arange(0, len(machine.records), max(1, len(machine.records) // ROWS)))
     there = calibration_of(start, replace(few, measured={name: np.zeros(len(few)) for name in names}, sigma={}))
-    found: list[tuple[str, Predicted]] = []
-    for each in explanations:
-        setup = start.with_effects(switched_on(each.causes, each.values, machine)).changed(_shifted(each))
-        found.append((name_of(each), predict(setup, there.records)))
+    predictions: list[tuple[str, Predicted]] = []
+    for explanation in explanations:
+        setup = start.with_effects(switched_on(explanation.causes, explanation.values, machine)).changed(
+            _shifted(explanation)
+        )
+        predictions.append((name_of(explanation), predict(setup, there.records)))
     goals = {goal.result for goal in start.model.objectives if isinstance(goal, (Require, Minimise, Maximise))}
     ranked: list[tuple[tuple[Any, ...], list[_Gap]]] = []
     for index, name in enumerate(names):
-        pairs = (_gap(there, name, (a, b), one[name] - other[name]) for (a, one), (b, other) in combinations(found, 2))
+        pairs = (
+            _gap(there, name, (a, b), one[name] - other[name]) for (a, one), (b, other) in combinations(predictions, 2)
+        )
         gaps = sorted((gap for gap in pairs if gap is not None), key=lambda gap: gap.clearness)
         if gaps:
-            parted = sum(found[0][0] in gap.names for gap in gaps)
+            parted = sum(predictions[0][0] in gap.names for gap in gaps)
             is_goal, clearness = name in goals, float(f"{gaps[0].clearness:.2g}")
             has_gauge = is_goal or fields[name].unit not in PURE
             ranked.append(((has_gauge, parted, is_goal, len(gaps), clearness, -index), gaps))
@@ -152,15 +156,15 @@ def _gap(there: Calibration, name: str, names: tuple[str, str], apart: Matrix) -
     slopes = there.slopes[name] if there.together is None else there.slopes[name] @ there.together
     scatter = np.sqrt(np.sum(slopes**2, axis=1))
     largest, model = float(np.nanmax(np.abs(there.base[name]), initial=0.0)), there.start.model
-    jumps = [getattr(item.spec, "halving_but", {}).get(name) for item in model.input_fields.values()]
+    jumps = [getattr(field.spec, "halving_but", {}).get(name) for field in model.input_fields.values()]
     resolutions = [read_quantity(most, model.own_result_fields[name].unit) for most in jumps if most]
     least = max(LEAST_SHARE * largest, *resolutions, 0.0)  # a numerical step alone moves a result that jumps
     seen = np.isfinite(apart + there.base[name]) & (apart > least) & (apart > CLEAR * scatter)
     if not seen.any():
         return None
     worth = np.where(seen, apart, 0.0) / np.maximum(scatter, np.where(seen, 1e-6 * apart, 1e-300))
-    place = int(np.argmax(np.where(worth > NEARLY * worth.max(), apart, -1.0)))
-    size, alone = float(apart[place]), float(scatter[place])
+    index = int(np.argmax(np.where(worth > NEARLY * worth.max(), apart, -1.0)))
+    size, alone = float(apart[index]), float(scatter[index])
     return _Gap(name, names, size, alone, size / alone if alone > 0 else 1e6)
 
 

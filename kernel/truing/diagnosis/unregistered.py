@@ -42,15 +42,15 @@ def shapes_of(records: Records, registered: Mapping[str, Sequence[int]], *, has_
     moved = _apart(records.moved)
     results = tuple(records.measured)
     groups = [(name,) for name in results] + ([results] if len(results) > 1 else [])
-    made = []
+    shapes = []
     for kind, on, count, numbers, terms in _families(moved, registered, has_steps=has_steps, rows=len(records)):
         for group in groups:
             shape = UnregisteredShape(kind, on, group, terms)
             amplitudes = [Parameter(f"{name}:{index}", -inf, inf) for name in group for index in range(count)]
             detail = f".{count}" if kind in {"trend", "product"} else ""
             tag = f"{UNKNOWN}:{kind}{detail}:{','.join(on)}:{','.join(group)}"
-            made.append(Candidate(UNKNOWN, tag, (*amplitudes, *numbers), 10**6, shape=shape))
-    return made
+            shapes.append(Candidate(UNKNOWN, tag, (*amplitudes, *numbers), 10**6, shape=shape))
+    return shapes
 
 
 def _apart(moved: Sequence[Covariate]) -> list[Covariate]:
@@ -113,8 +113,8 @@ def _ordered(covariate: Covariate, registered: Sequence[int], *, has_steps: bool
     if covariate.role == "time":
         if not has_steps:
             ends = (float(values.min() + ENDS * span), float(values.max() - ENDS * span))
-            place = Parameter("place", *ends, is_amplitude=False, along=covariate.name)
-            yield "step", on, 1, (place,), _step
+            position = Parameter("place", *ends, is_amplitude=False, along=covariate.name)
+            yield "step", on, 1, (position,), _step
         reach = (SHORTEST_SETTLING * span, LONGEST_SETTLING * span)
         yield "settling", on, 2, (Parameter("constant", *reach, is_amplitude=False),), _settling
 
@@ -162,8 +162,8 @@ def _waves(turn: float, name: str, values: Matrix, number: float) -> list[Term]:
     return [Term(f"np.{word}({angle!r} * {name})", getattr(np, word)(angle * values)) for word in ("sin", "cos")]
 
 
-def _step(name: str, values: Matrix, place: float) -> list[Term]:
-    return [Term(f"({name} >= {place!r})", (values >= place).astype(float))]
+def _step(name: str, values: Matrix, position: float) -> list[Term]:
+    return [Term(f"({name} >= {position!r})", (values >= position).astype(float))]
 
 
 def _settling(name: str, values: Matrix, constant: float) -> list[Term]:

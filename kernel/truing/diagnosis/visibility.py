@@ -102,15 +102,15 @@ def smallest_visible(chosen: Chosen) -> list[VisibleSize]:
     skipped = {*failing, *unseen}
     limit = needed(len(effects) + comb(len(effects), 2))
     names = [cause.name for cause in effects]
-    found: dict[str, list[VisibleSize]] = {}
+    sizes: dict[str, list[VisibleSize]] = {}
     for cause in effects:
-        amplitudes = {cause.numbers[place].name for place in cause.amplitudes}
+        amplitudes = {cause.numbers[index].name for index in cause.amplitudes}
         several = names.count(cause.name) > 1 or len(amplitudes) > 1
-        for place in cause.amplitudes if cause.name not in skipped else ():
-            number, look = cause.numbers[place], _look(chosen, eye, cause, place, limit)
+        for index in cause.amplitudes if cause.name not in skipped else ():
+            number, look = cause.numbers[index], _look(chosen, eye, cause, index, limit)
             name = f"{cause.name}.{number.name}" if several else cause.name
-            found.setdefault(name, []).append(_seen(name, cause, number, look))
-    smallest = [min(each, key=lambda seen: seen.smallest.value if seen.smallest else inf) for each in found.values()]
+            sizes.setdefault(name, []).append(_seen(name, cause, number, look))
+    smallest = [min(each, key=lambda seen: seen.smallest.value if seen.smallest else inf) for each in sizes.values()]
     still = [VisibleSize(name, None, "not excited") for name in idle_of(machine) if name not in failing]
     return [*smallest, *still, *(VisibleSize(name, None, "cannot be fitted", why) for name, why in failing.items())]
 
@@ -126,13 +126,13 @@ def _seen(name: str, cause: Candidate, number: Parameter, look: _Look | None) ->
     return VisibleSize(name, Amount(look.size, unit), sight)
 
 
-def _look(chosen: Chosen, eye: _Eye, cause: Candidate, place: int, limit: float) -> _Look | None:
+def _look(chosen: Chosen, eye: _Eye, cause: Candidate, index: int, limit: float) -> _Look | None:
     """Return how an amplitude of a cause is seen best; None where nothing moves with it.
 
     A curve that bends stands for sizes from its own down and up to the next level.
     """
-    number, best = cause.numbers[place], None
-    for amplitude, curve in _curves(chosen, cause, place):
+    number, best = cause.numbers[index], None
+    for amplitude, curve in _curves(chosen, cause, index):
         end = abs(number.high if amplitude > 0 else number.low) if amplitude else max(abs(number.low), abs(number.high))
         own = abs(amplitude) or 1.0
         raw = eye.raw(curve)
@@ -150,7 +150,7 @@ def _look(chosen: Chosen, eye: _Eye, cause: Candidate, place: int, limit: float)
     return best
 
 
-def _curves(chosen: Chosen, cause: Candidate, place: int) -> Iterator[tuple[float, Matrix]]:
+def _curves(chosen: Chosen, cause: Candidate, index: int) -> Iterator[tuple[float, Matrix]]:
     """Give the curves of one amplitude of a cause alone, (readings,), SI, with its size.
 
     Of a cause in proportion the size is 0, and the curve is the one per unit.
@@ -158,17 +158,17 @@ def _curves(chosen: Chosen, cause: Candidate, place: int) -> Iterator[tuple[floa
     searched = chosen.searched
     bundle = searched.competition.curves.of(cause, searched.null)
     if bundle.is_straight:
-        column = cause.amplitudes.index(place)
+        column = cause.amplitudes.index(index)
         yield from ((0.0, curve) for curve in bundle.curves[:, column])
     elif len(cause.amplitudes) == 1:
-        yield from zip(bundle.points[:, place].tolist(), bundle.curves[:, 0], strict=True)
+        yield from zip(bundle.points[:, index].tolist(), bundle.curves[:, 0], strict=True)
     elif len(bundle.points):
-        yield from _one_by_one(searched, cause, place, bundle.points[:FEW_SHAPES])
+        yield from _one_by_one(searched, cause, index, bundle.points[:FEW_SHAPES])
 
 
-def _one_by_one(chosen: Chosen, cause: Candidate, place: int, shapes: Matrix) -> Iterator[tuple[float, Matrix]]:
+def _one_by_one(chosen: Chosen, cause: Candidate, index: int, shapes: Matrix) -> Iterator[tuple[float, Matrix]]:
     """Give the curves of one amplitude of a cause that bends in several, the others at zero."""
-    number, extended = cause.numbers[place], chosen.competition.extended
+    number, extended = cause.numbers[index], chosen.competition.extended
     sizes = [level * end for end in (number.low, number.high) if end for level in LEVELS]
     distinct = shapes if cause.shapes else shapes[:1]
     still = np.zeros(len(extended.machine.inputs))
@@ -176,7 +176,7 @@ def _one_by_one(chosen: Chosen, cause: Candidate, place: int, shapes: Matrix) ->
     for values in distinct:
         points = np.tile(values, (len(sizes), 1))
         points[:, cause.amplitudes] = 0.0
-        points[:, place] = sizes
+        points[:, index] = sizes
         for size, shown in zip(sizes, extended.at((cause,), [([point], still) for point in points]), strict=True):
             yield size, np.nan_to_num(np.concatenate([shown[name] - base[name] for name in base]))
 
@@ -209,7 +209,7 @@ def _alike(chosen: Chosen) -> Iterator[str]:
 
 def _moved_alike(machine: Calibration) -> Iterator[str]:
     """Say which covariates are tied, and which conditions that can have either sign had one sign only."""
-    moved = [item for item in machine.records.covariates.values() if not item.is_constant]
+    moved = [covariate for covariate in machine.records.covariates.values() if not covariate.is_constant]
     for first, second in combinations(moved, 2):
         if first.moves_with(second, TIED):
             yield (
@@ -217,10 +217,15 @@ def _moved_alike(machine: Calibration) -> Iterator[str]:
                 "what follows the other"
             )
     for name, condition in machine.start.model.known_conditions.items():
-        item = machine.records.covariates.get(name)
-        if item is None or condition.low is None or condition.high is None or not condition.low < 0 < condition.high:
+        covariate = machine.records.covariates.get(name)
+        if (
+            covariate is None
+            or condition.low is None
+            or condition.high is None
+            or not condition.low < 0 < condition.high
+        ):
             continue
-        low, high = np.nanmin(item.values), np.nanmax(item.values)
+        low, high = np.nanmin(covariate.values), np.nanmax(covariate.values)
         if low >= 0 or high <= 0:
             yield f"{name} never changed its sign: what jumps with the sign looks like a constant here"
 
@@ -232,7 +237,7 @@ def trades_of(chosen: Chosen) -> tuple[Trade, ...]:
     A cause that is far from zero even with every input free is separated all the same: only what ``APART`` calls
     separable at most weakly is returned.
     """
-    best, inputs, made = chosen.best, chosen.best.sample.machine.inputs, list[Trade]()
+    best, inputs, trades = chosen.best, chosen.best.sample.machine.inputs, list[Trade]()
     named = [cause for cause in best.causes if cause.effect is not None]
     if not named or not len(best.inputs):
         return ()
@@ -240,16 +245,16 @@ def trades_of(chosen: Chosen) -> tuple[Trade, ...]:
     alike = _correlations(best, certainty)
     alike[:, [cause.tolerated for cause in best.causes if cause.tolerated >= 0]] = 0.0
     for cause in named:
-        places = [places_of(best, cause)[place] for place in cause.amplitudes]
-        number, item = np.unravel_index(int(np.argmax(np.abs(alike[places]))), (len(places), len(inputs)))
-        correlation = float(alike[places[number], item])
-        values = np.array([value_of(best, place) for place in places]) / certainty.units[places]
+        places = [places_of(best, cause)[index] for index in cause.amplitudes]
+        number, column = np.unravel_index(int(np.argmax(np.abs(alike[places]))), (len(places), len(inputs)))
+        correlation = float(alike[places[number], column])
+        values = np.array([value_of(best, index) for index in places]) / certainty.units[places]
         inverse = np.linalg.pinv(certainty.covariance[np.ix_(places, places)], hermitian=True)
         separation = float(values @ inverse @ values)  # the squares that are lost without the cause, all else free
         if abs(correlation) > TRADED and separation < APART:
             unknown = cause.numbers[cause.amplitudes[number]].name
-            made.append(Trade(cause.name, unknown, inputs[item].name, correlation, separation))
-    return tuple(made)
+            trades.append(Trade(cause.name, unknown, inputs[column].name, correlation, separation))
+    return tuple(trades)
 
 
 def _correlations(best: Fit, certainty: Certainty) -> Matrix:
@@ -279,9 +284,9 @@ def separation(true: Fit, rival: Fit, extended: Extended) -> float:
     slopes = np.column_stack(slopes_at(moved, extended)) * roots[:, None]
     columns = np.concatenate([slopes, np.eye(k, moved.size + k, moved.size)])
     ends = np.full((2, columns.shape[1]), [[-inf], [inf]])
-    for place, (number, unit) in enumerate(zip(numbers_of(moved), unit_of(moved).tolist(), strict=True)):
-        low, high = np.subtract(inward(number, unit), log(unit) if number.is_log else value_of(moved, place) / unit)
-        ends[:, place] = min(low, -1e-12), max(high, 1e-12)
+    for index, (number, unit) in enumerate(zip(numbers_of(moved), unit_of(moved).tolist(), strict=True)):
+        low, high = np.subtract(inward(number, unit), log(unit) if number.is_log else value_of(moved, index) / unit)
+        ends[:, index] = min(low, -1e-12), max(high, 1e-12)
     size = np.linalg.norm(columns, axis=0)
     used = size > 0
     target = np.concatenate([apart, np.zeros(k)])

@@ -261,13 +261,13 @@ def versions_here(code: tuple[str, ...] = ()) -> dict[str, str]:
     A place is the name of a package or module, or the path of a Python file. The answer is that of the first call: what
     a process has loaded does not change when a file does.
     """
-    found = {"python": platform.python_version()}
+    versions = {"python": platform.python_version()}
     for name in PACKAGES:
         try:
-            found[name] = metadata.version(name)
+            versions[name] = metadata.version(name)
         except metadata.PackageNotFoundError:
-            found[name] = ""
-    return {**found, **{f"the code of {Path(place).name}": code_hash(place) for place in code}}
+            versions[name] = ""
+    return {**versions, **{f"the code of {Path(source).name}": code_hash(source) for source in code}}
 
 
 def differences(here: Mapping[str, str], workers: Mapping[str, Mapping[str, str]]) -> list[str]:

@@ -115,8 +115,8 @@ def in_order(executor: Executor, function: Callable[[J], A], jobs: Iterable[J], 
     Short jobs travel together, as many as are computed in a moment. Jobs that were under way when a worker was lost are
     handed out again. For a place that is not this process (``SerialExecutor``) function and jobs must be picklable.
     """
-    place = executor if isinstance(executor, WorkerPool) else _Foreign(executor)
-    work = _Work(place, function, 1 if place.where == "serial" else window)
+    pool = executor if isinstance(executor, WorkerPool) else _Foreign(executor)
+    work = _Work(pool, function, 1 if pool.where == "serial" else window)
     try:
         for job in jobs:
             yield from work.after(job)
@@ -148,8 +148,8 @@ class _Part(Generic[J, A]):
 class _Work(Generic[J, A]):
     """The jobs under way, oldest first, and those that wait until enough of them can travel together."""
 
-    def __init__(self, place: WorkerPool, function: Callable[[J], A], window: int) -> None:
-        self._place = place
+    def __init__(self, pool: WorkerPool, function: Callable[[J], A], window: int) -> None:
+        self._place = pool
         self._function = function
         self._window = window
         self._pending: deque[_Part[J, A]] = deque()

@@ -99,13 +99,13 @@ def _slopes(
             remarks.append(f"one calculation takes so long that these were not differentiated by: {left}")
             break
         try:
-            found = slopes(setup, results, [column], scatter)
+            derivatives = slopes(setup, results, [column], scatter)
         except TruingError as error:
             remarks.append(f"no derivative by '{column}': {error}")
             continue
-        remarks += found.warnings
+        remarks += derivatives.warnings
         for result in results:
-            of[result][column] = found.of[result][column]
+            of[result][column] = derivatives.of[result][column]
     return of, remarks
 
 
@@ -141,14 +141,14 @@ def _mean(value: Any) -> float:
     return float(value.mean()) if value.size else math.nan
 
 
-def by_share(found: Sequence[Influence]) -> list[Influence]:
+def by_share(sources: Sequence[Influence]) -> list[Influence]:
     """Return what scatters, the largest share of the scatter first."""
-    return sorted((one for one in found if one.share), key=lambda one: -abs(one.share))
+    return sorted((one for one in sources if one.share), key=lambda one: -abs(one.share))
 
 
-def by_slope(found: Sequence[Influence]) -> list[Influence]:
+def by_slope(sources: Sequence[Influence]) -> list[Influence]:
     """Return what moves the result, the steepest first."""
-    return sorted((one for one in found if one.moves and one.step), key=lambda one: -abs(one.step or 0.0))
+    return sorted((one for one in sources if one.moves and one.step), key=lambda one: -abs(one.step or 0.0))
 
 
 # What an effect changes: the model is run with it, at a size it may have, beside the model without
@@ -247,10 +247,10 @@ def all_touched(setup: Setup) -> dict[str, Touched]:
     return {name: touched(setup, effect) for name, effect in setup.model.effects.items()}
 
 
-def effects_on(found: Mapping[str, Touched], names: Sequence[str]) -> dict[str, float]:
+def effects_on(by_effect: Mapping[str, Touched], names: Sequence[str]) -> dict[str, float]:
     """Return the effects that change any of these results, the largest relative change first."""
     sizes = {effect: max((abs(one.results[name]) for name in names if name in one.results), default=0.0)
-             for effect, one in found.items()}  # fmt: skip
+             for effect, one in by_effect.items()}  # fmt: skip
     return dict(sorted(((effect, size) for effect, size in sizes.items() if size), key=lambda pair: -pair[1]))
 
 
@@ -259,7 +259,7 @@ def effects_on(found: Mapping[str, Touched], names: Sequence[str]) -> dict[str, 
 
 def made_from(model: Model[Any, Any]) -> Mapping[str, tuple[str, ...]]:
     """Return, for every result with a formula, the inputs and results that it names, in the order of its text."""
-    found: dict[str, tuple[str, ...]] = {}
+    links: dict[str, tuple[str, ...]] = {}
     for name, field in model.result_fields.items():
         if not isinstance(field.spec, Found) or not field.spec.formula:
             continue
@@ -268,8 +268,8 @@ def made_from(model: Model[Any, Any]) -> Mapping[str, tuple[str, ...]]:
         sides = [side for side in (formula.left, formula.right) if side is not None]
         written = [node.name for side in sides for node in walk(side) if isinstance(node, Name)]
         names = dict.fromkeys(scope[word].name for word in written if word in scope)
-        found[name] = tuple(other for other in names if other != name)
-    return found
+        links[name] = tuple(other for other in names if other != name)
+    return links
 
 
 def following(links: Mapping[str, tuple[str, ...]], name: str) -> tuple[tuple[str, ...], tuple[str, ...]]:

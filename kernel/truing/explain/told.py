@@ -86,11 +86,11 @@ SECTIONS: Mapping[str, Topic] = {
 
 def known_names(model: Model[Any, Any]) -> Mapping[str, Topic]:
     """Return every name that can be explained and what it means; of two meanings the first in this order."""
-    found: dict[str, Topic] = {}
+    topics: dict[str, Topic] = {}
     for kind, names in _by_kind(model).items():
         for name in names:
-            found.setdefault(name, kind)
-    return found
+            topics.setdefault(name, kind)
+    return topics
 
 
 def _by_kind(model: Model[Any, Any]) -> dict[Topic, list[str]]:
@@ -130,8 +130,8 @@ def kind_of(model: Model[Any, Any], name: str) -> Topic:
 
 
 def _described(model: Model[Any, Any], name: str, kind: Topic) -> str:
-    item: Any = model.result_fields.get(name) or model.input_fields.get(name)
-    note = item.spec.note if kind in {"result", "input"} and item is not None else ""
+    field: Any = model.result_fields.get(name) or model.input_fields.get(name)
+    note = field.spec.note if kind in {"result", "input"} and field is not None else ""
     return ", ".join(part for part in (kind, note) if part)
 
 
@@ -141,27 +141,29 @@ def _described(model: Model[Any, Any], name: str, kind: Topic) -> str:
 def of_input(setup: Setup, name: str) -> dict[str, Any]:
     """Explain an input: value, bounds, scatter, the results it moves, limits and effects that have to do with it."""
     model = setup.model
-    item = model.input_fields[name]
+    field = model.input_fields[name]
     direct, further = following(made_from(model), name)
     scattering = [tolerance for tolerance in model.tolerances.values() if name in tolerance.on]
-    changed = [effect for effect, one in all_touched(setup).items() if name in one.inputs]
-    moves = _moves(setup, [name]) if item.kind == "float" and _is_given(setup, name) else None
+    changed = [effect for effect, change in all_touched(setup).items() if name in change.inputs]
+    moves = _moves(setup, [name]) if field.kind == "float" and _is_given(setup, name) else None
     moved = {*direct, *further, *(row["name"] for row in moves or ())}
     return {
-        "symbol": symbol_text(item.symbol) if item.symbol else "",
-        "note": item.spec.note,
-        "source": item.spec.source,
+        "symbol": symbol_text(field.symbol) if field.symbol else "",
+        "note": field.spec.note,
+        "source": field.spec.source,
         **amount(setup, name, model.read_inputs(setup.inputs)[name]),
         "stated": name in setup.source.stated,
-        "choices": list(item.choices),
-        "bounds": bounds_in_words(item),
+        "choices": list(field.choices),
+        "bounds": bounds_in_words(field),
         "followed_by": list(direct),
         "then": list(further),
         "moves": moves,
-        "limits": [require_words(one, "") for one in _requires(setup) if one.result in moved],
+        "limits": [require_words(require, "") for require in _requires(setup) if require.result in moved],
         "tolerances": [_tolerance(setup, tolerance) for tolerance in scattering],
         "namesake": list(model.tolerances[name].on) if name in model.tolerances and not _is_on(setup, name) else [],
-        "limit_of": [require_words(one, "") for one in _requires(setup) if name in {one.limit, one.reliability}],
+        "limit_of": [
+            require_words(require, "") for require in _requires(setup) if name in {require.limit, require.reliability}
+        ],
         "varied": [
             _vary_words(objective)
             for objective in model.objectives
@@ -184,25 +186,25 @@ def _requires(setup: Setup) -> list[Require]:
     return [objective for objective in setup.model.objectives if isinstance(objective, Require)]
 
 
-def _vary_words(item: Vary) -> str:
-    return f"follows {item.by}" if item.by else f"may be chosen from {item.low} to {item.high}"
+def _vary_words(vary: Vary) -> str:
+    return f"follows {vary.by}" if vary.by else f"may be chosen from {vary.low} to {vary.high}"
 
 
 def _moves(setup: Setup, sources: Sequence[str]) -> list[dict[str, Any]]:
     """Say of each result of the function what one per cent of the sources, and their scatter, do to it."""
     answers = setup.model.read_results(evaluate(setup))
     results = [name for name, field in setup.model.own_result_fields.items() if not _is_table(field)]
-    found = influences(setup, {name: answers[name] for name in results}, sources)
-    rows = [row for result in results if (row := _row(setup, found, result, sources)) is not None]
+    moved_by = influences(setup, {name: answers[name] for name in results}, sources)
+    rows = [row for result in results if (row := _row(setup, moved_by, result, sources)) is not None]
     return sorted(rows, key=lambda row: (-row["share"], -abs(row["percent"] or 0.0)))
 
 
-def _is_table(item: Any) -> bool:
-    return bool(getattr(item.spec, "is_table", False))
+def _is_table(field: Any) -> bool:
+    return bool(getattr(field.spec, "is_table", False))
 
 
-def _row(setup: Setup, found: Influences, result: str, sources: Sequence[str]) -> dict[str, Any] | None:
-    of = [one for one in found.of[result] if one.source in sources and one.moves]
+def _row(setup: Setup, moved_by: Influences, result: str, sources: Sequence[str]) -> dict[str, Any] | None:
+    of = [influence for influence in moved_by.of[result] if influence.source in sources and influence.moves]
     if not of:
         return None
     alone = of[0] if len(sources) == 1 else None
@@ -211,7 +213,7 @@ def _row(setup: Setup, found: Influences, result: str, sources: Sequence[str]) -
         "note": setup.model.own_result_fields[result].spec.note,
         "change": step_text(setup, result, alone.step) if alone is not None else "",
         "percent": 100 * alone.relative if alone is not None and alone.relative is not None else None,
-        "share": sum(one.share for one in of),
+        "share": sum(influence.share for influence in of),
     }
 
 
@@ -245,8 +247,8 @@ def of_effect(setup: Setup, name: str) -> dict[str, Any]:
     model = setup.model
     effect = model.known_effects[name]
     built_in = name not in model.effects
-    found = Touched({}, {}, {}) if built_in else touched(setup, effect)
-    ranked = sorted(found.results.items(), key=lambda pair: -abs(pair[1]))
+    tried = Touched({}, {}, {}) if built_in else touched(setup, effect)
+    ranked = sorted(tried.results.items(), key=lambda pair: -abs(pair[1]))
     return {
         **_effect_row(setup, effect),
         "why": effect.why,
@@ -254,11 +256,11 @@ def of_effect(setup: Setup, name: str) -> dict[str, Any]:
         "built_in": built_in,
         "unknowns": [] if built_in else list(_unknowns(setup, effect)),
         "needs": [_need(setup, need.name) for need in effect.needs],
-        "tried_at": [{"name": key, "text": _tried(setup, effect, key, value)} for key, value in found.at.items()],
+        "tried_at": [{"name": key, "text": _tried(setup, effect, key, value)} for key, value in tried.at.items()],
         "moves": [_touched_row(setup, key, size) for key, size in ranked],
         "inputs": [
             {"name": key, "before": text_of(setup, key, before), "after": text_of(setup, key, after)}
-            for key, (before, after) in found.inputs.items()
+            for key, (before, after) in tried.inputs.items()
         ],
     }
 
@@ -381,17 +383,17 @@ def item_of(setup: Setup, name: str, value: Any) -> dict[str, Any]:
 def of_result(setup: Setup, offer: Offer, name: str, progress: Progress) -> dict[str, Any]:
     """Explain one result under a setup; studies are run as far as the result needs them."""
     model = setup.model
-    item, study = model.result_fields[name], study_of(model, name)
+    field, study = model.result_fields[name], study_of(model, name)
     calculation = calculate(replace(setup, studies=_needed(setup, study)), progress=progress)
     answers = calculation.answers
     links = made_from(model)
     direct, further = following(links, name)
     known = {**model.read_inputs(setup.inputs), **answers}
     return {
-        **_declared(item),
+        **_declared(field),
         **amount(setup, name, answers.get(name)),
         "study": study,
-        "formula": formula_of(setup, answers, item),
+        "formula": formula_of(setup, answers, field),
         "made_from": [item_of(setup, source, known.get(source)) for source in links.get(name, ())],
         "chain": [
             {**item_of(setup, source, known.get(source)), "depth": depth, "again": again}
@@ -399,7 +401,7 @@ def of_result(setup: Setup, offer: Offer, name: str, progress: Progress) -> dict
         ],
         "followed_by": list(direct),
         "then": list(further),
-        **_moved_by(setup, item, answers.get(name), progress),
+        **_moved_by(setup, field, answers.get(name), progress),
         "limits": list(_limits(setup, name, calculation, {*direct, *further})),
         "published": list(_published(setup, offer, name, calculation)),
         "effects": _effects(setup, name, study, links),
@@ -418,19 +420,19 @@ def _needed(setup: Setup, study: str) -> tuple[Study, ...]:
     return tuple(setup.studies[: names.index(study) + 1]) if study in names else ()
 
 
-def _declared(item: ResultField) -> dict[str, Any]:
+def _declared(field: ResultField) -> dict[str, Any]:
     return {
-        "symbol": symbol_text(item.symbol) if item.symbol else "",
-        "note": item.spec.note,
-        "along": "" if isinstance(item.spec, Axis) else item.along,
-        "method": getattr(item.spec, "method", ""),
-        "source": getattr(item.spec, "source", ""),
+        "symbol": symbol_text(field.symbol) if field.symbol else "",
+        "note": field.spec.note,
+        "along": "" if isinstance(field.spec, Axis) else field.along,
+        "method": getattr(field.spec, "method", ""),
+        "source": getattr(field.spec, "source", ""),
     }
 
 
-def formula_of(setup: Setup, answers: Mapping[str, Any], item: ResultField) -> dict[str, Any] | None:
+def formula_of(setup: Setup, answers: Mapping[str, Any], field: ResultField) -> dict[str, Any] | None:
     """Return the formula of a result as text: in symbols, with numbers, and the result; None where it has none."""
-    equation = equation_of(setup, answers, item)
+    equation = equation_of(setup, answers, field)
     if equation is None:
         return None
     writer, formula = TextWriter(), equation.formula
@@ -441,7 +443,7 @@ def formula_of(setup: Setup, answers: Mapping[str, Any], item: ResultField) -> d
     shown = [with_unit(pretty(value.text), value.unit) for value in equation.results if value.text != ABSENT]
     return {
         "text": formula.text,
-        "left": "" if formula.left is not None else writer.symbol(item.symbol) if item.symbol else item.name,
+        "left": "" if formula.left is not None else writer.symbol(field.symbol) if field.symbol else field.name,
         "symbols": symbolic(writer, formula, symbols),
         "numbers": numbers,
         "results": shown,
@@ -449,23 +451,26 @@ def formula_of(setup: Setup, answers: Mapping[str, Any], item: ResultField) -> d
     }
 
 
-def _moved_by(setup: Setup, item: ResultField, answer: Any, progress: Progress) -> dict[str, Any]:
+def _moved_by(setup: Setup, field: ResultField, answer: Any, progress: Progress) -> dict[str, Any]:
     """Say what moves the result: its scatter by source, and the change per one per cent of each input."""
-    name = item.name
+    name = field.name
     if name not in setup.model.own_result_fields:
         return {"scatter": None, "slopes": [], "remarks": []}
-    found = influences(setup, {name: answer}, differentiable(setup), progress=progress)
-    of = found.of[name]
+    moved_by = influences(setup, {name: answer}, differentiable(setup), progress=progress)
+    of = moved_by.of[name]
     scatter = None
-    if found.sd[name] > 0:
+    if moved_by.sd[name] > 0:
         scatter = {
-            "sd": step_text(setup, name, found.sd[name]),
-            "shares": [{"name": one.source, "share": one.share, **_because(setup, one.source)} for one in by_share(of)],
+            "sd": step_text(setup, name, moved_by.sd[name]),
+            "shares": [
+                {"name": influence.source, "share": influence.share, **_because(setup, influence.source)}
+                for influence in by_share(of)
+            ],
         }
     return {
         "scatter": scatter,
-        "slopes": [slope_row(setup, name, one) for one in by_slope(of)],
-        "remarks": list(found.warnings),
+        "slopes": [slope_row(setup, name, influence) for influence in by_slope(of)],
+        "remarks": list(moved_by.warnings),
     }
 
 
@@ -488,22 +493,24 @@ def _limits(setup: Setup, name: str, calculation: Calculation, below: set[str]) 
     """Say the limits and goals on a result and on those ``below`` it, and those that it sets for others."""
     requires = [objective for objective in setup.model.objectives if isinstance(objective, Require)]
     checks = {check.name: check for check in calculation.checks}
-    for item in sorted(setup.model.objectives, key=lambda item: getattr(item, "result", "") != name):
-        if isinstance(item, (Minimise, Maximise)) and item.result == name:
+    for objective in sorted(setup.model.objectives, key=lambda objective: getattr(objective, "result", "") != name):
+        if isinstance(objective, (Minimise, Maximise)) and objective.result == name:
             yield {
-                "says": "should be small" if isinstance(item, Minimise) else "should be large",
+                "says": "should be small" if isinstance(objective, Minimise) else "should be large",
                 "check": None,
             }
-        if isinstance(item, Require) and (name in {item.result, item.limit, item.reliability} or item.result in below):
-            check = checks.get(check_name(item, requires))
-            yield {"says": require_words(item, name), "check": None if check is None else check_data(check)}
+        if isinstance(objective, Require) and (
+            name in {objective.result, objective.limit, objective.reliability} or objective.result in below
+        ):
+            check = checks.get(check_name(objective, requires))
+            yield {"says": require_words(objective, name), "check": None if check is None else check_data(check)}
 
 
-def require_words(item: Require, name: str) -> str:
+def require_words(require: Require, name: str) -> str:
     """Write a requirement: at most 80 MPa, with reliability 0.99; named by its result where that is another."""
-    subject = "" if item.result == name else f"{item.result} "
-    goal = f", with reliability {item.reliability}" if item.reliability is not None else ""
-    return f"{subject}{item.kind.replace('_', ' ')} {item.limit}{goal}"
+    subject = "" if require.result == name else f"{require.result} "
+    goal = f", with reliability {require.reliability}" if require.reliability is not None else ""
+    return f"{subject}{require.kind.replace('_', ' ')} {require.limit}{goal}"
 
 
 def check_data(check: Any) -> dict[str, Any]:
@@ -542,5 +549,5 @@ def _effects(setup: Setup, name: str, study: str, links: Mapping[str, Sequence[s
         if name in model.own_result_fields
         else [one for one in links.get(name, ()) if one in model.own_result_fields]
     )
-    found = all_touched(setup) if names else {}
-    return [_effect_row(setup, model.effects[effect]) for effect in effects_on(found, names)]
+    by_effect = all_touched(setup) if names else {}
+    return [_effect_row(setup, model.effects[effect]) for effect in effects_on(by_effect, names)]

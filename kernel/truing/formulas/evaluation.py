@@ -301,8 +301,8 @@ class _Proof:
         return ()
 
     def pure(self, node: Node, sentence: str) -> None:
-        if found := self.of(node):
-            self.fail(f"{sentence}, not {_spoken(found)} ('{source(node)}')")
+        if dimension := self.of(node):
+            self.fail(f"{sentence}, not {_spoken(dimension)} ('{source(node)}')")
 
     def power(self, node: Node, base: Node, exponent: Node) -> FormulaDimension | None:
         self.pure(exponent, f"'{source(node)}': an exponent must be a pure number")
@@ -319,15 +319,15 @@ class _Proof:
         """Return the dimension all nodes share; a literal zero shares any."""
         first: tuple[Node, FormulaDimension] | None = None
         for node in nodes:
-            found = self.of(node)
-            if found is None:
+            dimension = self.of(node)
+            if dimension is None:
                 continue
             if first is None:
-                first = (node, found)
-            elif found != first[1]:
+                first = (node, dimension)
+            elif dimension != first[1]:
                 self.fail(
                     f"{sentence} must have one dimension, but '{source(first[0])}' is {_spoken(first[1])} "
-                    f"and '{source(node)}' is {_spoken(found)}"
+                    f"and '{source(node)}' is {_spoken(dimension)}"
                 )
         return None if first is None else first[1]
 

@@ -105,8 +105,8 @@ def _expression(text: str) -> ast.expr:
     stripped = re.sub(r"[ \t\r\n]+", " ", text).strip()
     if not stripped:
         raise _RefusalError("it is empty; leave the formula out where there is none")
-    if found := FORBIDDEN.search(stripped):
-        raise _RefusalError(f"the character {found.group()!r} is not allowed")
+    if forbidden := FORBIDDEN.search(stripped):
+        raise _RefusalError(f"the character {forbidden.group()!r} is not allowed")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -198,9 +198,9 @@ def _count_arguments(function: str, count: int) -> None:
         raise _RefusalError(f"{function} takes {wanted} argument{'' if wanted == '1' else 's'}, here it has {count}")
 
 
-def _case_part(place: int, arguments: list[ast.expr]) -> Node:
-    is_condition = place % 2 == 1
-    return _condition(arguments[place]) if is_condition else _value(arguments[place])
+def _case_part(index: int, arguments: list[ast.expr]) -> Node:
+    is_condition = index % 2 == 1
+    return _condition(arguments[index]) if is_condition else _value(arguments[index])
 
 
 def _condition(node: ast.expr) -> Node:

@@ -125,11 +125,11 @@ class Decimal:
 
 def read_number(text: str) -> Decimal | None:
     """Take a printed number apart; None for a text that is no number ("–", "not given")."""
-    found = NUMBER.fullmatch(text.strip())
-    if found is None:
+    match = NUMBER.fullmatch(text.strip())
+    if match is None:
         return None
-    exponent = found["exponent"]
+    exponent = match["exponent"]
     if exponent is not None:
         exponent = exponent.lstrip("0") or "0"
-        exponent = f"−{exponent}" if found["exponent_sign"] in ("-", "−") and exponent != "0" else exponent
-    return Decimal(found["sign"] in ("-", "−") and found["sign"] != "", found["digits"], exponent or "")
+        exponent = f"−{exponent}" if match["exponent_sign"] in ("-", "−") and exponent != "0" else exponent
+    return Decimal(match["sign"] in ("-", "−") and match["sign"] != "", match["digits"], exponent or "")

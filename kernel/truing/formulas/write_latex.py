@@ -74,8 +74,8 @@ def escaped(text: str) -> str:
     return re.sub(f"[{''.join(SUPERSCRIPTS)}]+|.", _character, printable(text))
 
 
-def _character(found: re.Match[str]) -> str:
-    character = found.group()
+def _character(match: re.Match[str]) -> str:
+    character = match.group()
     if character[0] in SUPERSCRIPTS:
         return f"^{{{''.join(SUPERSCRIPTS[digit] for digit in character)}}}"
     return ESCAPES.get(character, character)

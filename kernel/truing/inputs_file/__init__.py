@@ -69,8 +69,8 @@ def _setup(document: InputsDocument, offer: Offer, folder: Path) -> Setup:
     try:
         file_model(offer.model).model_validate(document.data, context=reading)
     except ValidationError as error:
-        found, more = faults_of(error, document, offer.model, unreadable)
-        faults += found
+        listed, more = faults_of(error, document, offer.model, unreadable)
+        faults += listed
     late = [
         *reading.faults,
         *part_faults(offer.model, reading.stated),

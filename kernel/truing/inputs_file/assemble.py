@@ -24,16 +24,16 @@ from truing.units.names import PURE
 
 def nominals_of(model: Model[Any, Any], values: StatedValues) -> dict[str, Any]:
     """Return every input and condition in SI: as stated, else as declared; files without a default are left out."""
-    found: dict[str, Any] = {name: condition.zero for name, condition in model.conditions.items()}
+    nominals: dict[str, Any] = {name: condition.zero for name, condition in model.conditions.items()}
     for name, field in model.input_fields.items():
         if hasattr(field.spec, "initial"):
-            found[name] = field.spec.initial()
+            nominals[name] = field.spec.initial()
         elif getattr(field.spec, "default", dataclasses.MISSING) is not dataclasses.MISSING:
-            found[name] = field.spec.default
+            nominals[name] = field.spec.default
     for (section, name, *_), value in ((path, value) for path, value in values.items() if len(path) == 2):
         if section in {"inputs", "conditions"}:
-            found[name] = value
-    return found
+            nominals[name] = value
+    return nominals
 
 
 def take_old_names(offer: Offer, reading: InputsRead) -> Iterator[tuple[tuple[str, ...], str]]:
@@ -78,9 +78,9 @@ def spread_faults(model: Model[Any, Any], document: InputsDocument, values: Stat
             except (TruingError, ValueError, KeyError) as error:
                 sentence = str(error)
             if sentence:
-                place = ("tolerances", tolerance.name) if stated else ("inputs", name)
+                key = ("tolerances", tolerance.name) if stated else ("inputs", name)
                 own = "" if sentence.startswith("'" + name) else f"{tolerance.name}: "
-                yield document.fault(place, own + sentence if stated else f"tolerance '{tolerance.name}': {sentence}")
+                yield document.fault(key, own + sentence if stated else f"tolerance '{tolerance.name}': {sentence}")
                 break
 
 
@@ -91,8 +91,8 @@ def _unresolved(spread: Spread, name: str, model: Model[Any, Any], nominals: Map
     nominal = float(nominals[name])
     if math.isnan(nominal):
         return f"'{name}' is not given, so it has no tolerance; state it or write \"off\"" if stated else ""
-    item = model.input_fields.get(name)
-    unit = item.unit if item is not None else model.conditions[name].unit
+    field = model.input_fields.get(name)
+    unit = field.unit if field is not None else model.conditions[name].unit
     resolved = spread.resolve(Target(name, nominal, unit, nominals.__getitem__))
     if resolved is not None and not (math.isfinite(resolved.mean) and math.isfinite(resolved.sd)):
         return f"the tolerance of '{name}' is not finite"
@@ -102,12 +102,12 @@ def _unresolved(spread: Spread, name: str, model: Model[Any, Any], nominals: Map
 def spreads_of(model: Model[Any, Any], values: StatedValues) -> dict[str, Spread]:
     """Return the tolerances in force; one on inputs that are not given is off."""
     nominals = nominals_of(model, values)
-    found: dict[str, Spread] = {}
+    spreads: dict[str, Spread] = {}
     for tolerance in model.tolerances.values():
         stated = values.get(("tolerances", tolerance.name))
         absent = all(_is_nan(nominals.get(name)) for name in tolerance.on)
-        found[tolerance.name] = Off() if absent and stated is None else stated or tolerance.spread
-    return found
+        spreads[tolerance.name] = Off() if absent and stated is None else stated or tolerance.spread
+    return spreads
 
 
 def _is_nan(value: Any) -> bool:
@@ -185,7 +185,7 @@ def _conditions_in_force(
 ) -> dict[str, float]:
     """Return the model's own conditions in SI, and of the kernel's those that are stated or that an effect needs."""
     zeros = {name: condition.zero for name, condition in model.conditions.items()}
-    zeros |= {need.name: need.zero for item in effects for need in item.effect.needs if need.name not in zeros}
+    zeros |= {need.name: need.zero for active in effects for need in active.effect.needs if need.name not in zeros}
     stated = {path[1]: float(value) for path, value in values.items() if len(path) == 2 and path[0] == "conditions"}
     return {**zeros, **stated}
 
@@ -193,13 +193,13 @@ def _conditions_in_force(
 def places_of(model: Model[Any, Any], document: InputsDocument) -> dict[str, tuple[str, int | None]]:
     """Return where each input, condition, effect and option of a diagnosis is stated; "" is the section of inputs."""
     old = renamed(model)
-    found = {"": document.places.get(("inputs",)) or document.places.get((), (document.file, None))}
-    for path, place in document.places.items():
+    places = {"": document.places.get(("inputs",)) or document.places.get((), (document.file, None))}
+    for path, source_line in document.places.items():
         if len(path) == 2 and path[0] in {"inputs", "conditions", "effects", "calibrated"}:
-            found[f"effects.{path[1]}" if path[0] == "effects" else old.get(path[1], path[1])] = place
+            places[f"effects.{path[1]}" if path[0] == "effects" else old.get(path[1], path[1])] = source_line
         elif len(path) == 3 and path[:2] == ("studies", "diagnose"):
-            found[".".join(path)] = place
-    return found
+            places[".".join(path)] = source_line
+    return places
 
 
 _STATED = {"inputs", "conditions", "tolerances"}
@@ -208,22 +208,22 @@ _STATED = {"inputs", "conditions", "tolerances"}
 # Declared values as an inputs file writes them
 
 
-def default_of(item: InputField) -> Any:
+def default_of(field: InputField) -> Any:
     """Return the default of an input as a TOML value ("120 N", true, "a word"), or None where it has none."""
-    default: Any = item.spec.default
-    if not isinstance(item.spec, Given):
+    default: Any = field.spec.default
+    if not isinstance(field.spec, Given):
         return None
-    return None if default is None else _stated(default, item)
+    return None if default is None else _stated(default, field)
 
 
-def _stated(value: Any, item: InputField) -> Any:
+def _stated(value: Any, field: InputField) -> Any:
     if isinstance(value, (str, bool)):
         return value
     if isinstance(value, (int, float)):
-        if item.kind == "choice":
+        if field.kind == "choice":
             return str(value)
-        return value if item.unit in PURE else f"{plain(value)} {item.unit}"
-    return [_stated(one.item() if hasattr(one, "item") else one, item) for one in value]
+        return value if field.unit in PURE else f"{plain(value)} {field.unit}"
+    return [_stated(one.item() if hasattr(one, "item") else one, field) for one in value]
 
 
 def spread_text(spread: Spread, choose: Mapping[str, Any] | None = None) -> str:
@@ -274,11 +274,11 @@ def names_stated(data: Mapping[str, Any], unreadable: Collection[tuple[str, ...]
     """Return what stands under each [effects.NAME], readable or not."""
     effects = data.get("effects")
     tables = effects if isinstance(effects, dict) else {}
-    found = {name: set(table) for name, table in tables.items() if isinstance(table, dict)}
+    stated = {name: set(table) for name, table in tables.items() if isinstance(table, dict)}
     for path in unreadable:
-        if len(path) == 3 and path[0] == "effects" and path[1] in found:
-            found[path[1]].add(path[2])
-    return {name: frozenset(names) for name, names in found.items()}
+        if len(path) == 3 and path[0] == "effects" and path[1] in stated:
+            stated[path[1]].add(path[2])
+    return {name: frozenset(names) for name, names in stated.items()}
 
 
 def part_faults(model: Model[Any, Any], stated: Mapping[str, frozenset[str]]) -> Iterator[tuple[tuple[str, ...], str]]:

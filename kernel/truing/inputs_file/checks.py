@@ -70,15 +70,15 @@ def one_of(choices: Sequence[str]) -> Callable[[Any], str]:
     return read
 
 
-def of_input(key: tuple[str, str], item: InputField, raw: Any, reading: InputsRead) -> None:
+def of_input(key: tuple[str, str], field: InputField, raw: Any, reading: InputsRead) -> None:
     """Check an input, and keep its value under a key."""
-    reading.values[key] = read_input(item, raw, reading)
+    reading.values[key] = read_input(field, raw, reading)
 
 
 def renamed(model: Model[Any, Any]) -> Mapping[str, str]:
     """Return old input names that keep answering: ``RENAMED = {"k_wear": "rate"}`` beside the model's function."""
-    found = getattr(sys.modules.get(model.function.__module__), "RENAMED", {})
-    return found if isinstance(found, dict) else {}
+    old_names = getattr(sys.modules.get(model.function.__module__), "RENAMED", {})
+    return old_names if isinstance(old_names, dict) else {}
 
 
 def of_tolerance(tolerance: Tolerance, raw: Any, reading: InputsRead) -> None:

@@ -80,19 +80,19 @@ def read_document(text: str, file: str) -> InputsDocument:
         line = text.count("\n", 0, long_key) + 1
         document.faults.append(Fault(_TOO_LONG, file, line))
         return document
-    found = list(statements(text))
-    if len(found) > MOST_STATEMENTS:
-        many = f"holds {len(found)} names and headings; at most {MOST_STATEMENTS} are read"
-        document.faults.append(Fault(many, file, found[MOST_STATEMENTS].line))
+    stated = list(statements(text))
+    if len(stated) > MOST_STATEMENTS:
+        many = f"holds {len(stated)} names and headings; at most {MOST_STATEMENTS} are read"
+        document.faults.append(Fault(many, file, stated[MOST_STATEMENTS].line))
         return document
     try:
         document.data = tomllib.loads(text)
     except (ValueError, RecursionError) as error:
-        _Repair(document).run(found)
+        _Repair(document).run(stated)
         if not document.faults:
             document.faults.append(Fault(_sentence(error), file, _line(error) or text.count("\n") + 1))
         return document
-    _note_places(document, found)
+    _note_places(document, stated)
     return document
 
 
@@ -172,9 +172,9 @@ def _parts(key: str) -> KeyPath:
     return tuple(path)
 
 
-def _note_places(document: InputsDocument, found: list[Statement]) -> None:
+def _note_places(document: InputsDocument, stated: list[Statement]) -> None:
     section: KeyPath = ()
-    for statement in found:
+    for statement in stated:
         header = _HEADER.fullmatch(statement.text)
         assignment = None if header else _ASSIGNMENT.match(statement.text)
         if header:
@@ -199,9 +199,9 @@ class _Repair:
         self.section: KeyPath | None = ()
         self.headings: dict[KeyPath, int] = {}
 
-    def run(self, found: list[Statement]) -> None:
+    def run(self, stated: list[Statement]) -> None:
         """Read all statements."""
-        for statement in found:
+        for statement in stated:
             try:
                 self.read(statement)
             except (ValueError, RecursionError) as error:
@@ -329,8 +329,8 @@ def _sentence(error: ValueError | RecursionError) -> str:
 
 
 def _line(error: ValueError | RecursionError) -> int | None:
-    found = re.search(r"\(at line (\d+),", str(error))
-    return int(found[1]) if found else None
+    match = re.search(r"\(at line (\d+),", str(error))
+    return int(match[1]) if match else None
 
 
 # What ``--set name=value`` puts in the place of what the file says
@@ -354,15 +354,15 @@ def apply_overrides(document: InputsDocument, model: Model[Any, Any], overrides:
     for text in overrides:
         name, equals, value = text.partition("=")
         name, value = name.strip(), value.strip()
-        place = f"{label} {_one_line(text)}".strip()
-        document.overrides.append(place)
+        override = f"{label} {_one_line(text)}".strip()
+        document.overrides.append(override)
         if not equals or not name:
-            document.faults.append(Fault("write name=value, such as load='3 kN'", place))
+            document.faults.append(Fault("write name=value, such as load='3 kN'", override))
             continue
         path = _path(name, model)
         if len(path) == 3 and path[0] == "inputs":
-            _open_table(document, path[1], place)
-        _put(document, path, _value(path, value, model), place)
+            _open_table(document, path[1], override)
+        _put(document, path, _value(path, value, model), override)
 
 
 def _one_line(text: str) -> str:
@@ -390,8 +390,10 @@ def _path(name: str, model: Model[Any, Any]) -> tuple[str, ...]:
 
 def _value(path: tuple[str, ...], text: str, model: Model[Any, Any]) -> Any:
     """Return the TOML value that a text on the command line means in this place."""
-    item = model.input_fields.get(path[1]) if path[0] in {"inputs", "calibrated"} else None
-    as_toml = path[0] == "studies" or (item is not None and item.kind in {"switch", "integer", "series", "file"})
+    input_field = model.input_fields.get(path[1]) if path[0] in {"inputs", "calibrated"} else None
+    as_toml = path[0] == "studies" or (
+        input_field is not None and input_field.kind in {"switch", "integer", "series", "file"}
+    )
     if not as_toml and not text.startswith(("{", "[", '"', "'")):
         return text
     try:
@@ -400,20 +402,20 @@ def _value(path: tuple[str, ...], text: str, model: Model[Any, Any]) -> Any:
         return text
 
 
-def _open_table(document: InputsDocument, name: str, place: str) -> None:
+def _open_table(document: InputsDocument, name: str, override: str) -> None:
     """Let options stand beside the data file of an input, also where the file is all that was written."""
     inputs = document.data.get("inputs")
     if isinstance(inputs, dict) and isinstance(inputs.get(name), str):
         inputs[name] = {"file": inputs[name]}
-    document.places["inputs", name] = (place, None)
+    document.places["inputs", name] = (override, None)
 
 
-def _put(document: InputsDocument, path: tuple[str, ...], value: Any, place: str) -> None:
+def _put(document: InputsDocument, path: tuple[str, ...], value: Any, override: str) -> None:
     inner: Any = document.data
     for length, name in enumerate(path[:-1], start=1):
         inner = inner.setdefault(name, {})
         if not isinstance(inner, dict):
             return
-        document.places.setdefault(path[:length], (place, None))
+        document.places.setdefault(path[:length], (override, None))
     inner[path[-1]] = value
-    document.places[path] = (place, None)
+    document.places[path] = (override, None)

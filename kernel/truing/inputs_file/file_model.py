@@ -110,8 +110,8 @@ def _sheet() -> dict[str, SectionEntry]:
     return {**entries, "detail": SectionEntry(checks.stored(("sheet", "detail"), check), schema)}
 
 
-def _is_required(item: InputField) -> bool:
-    return isinstance(item.spec, Loaded) and item.spec.default is MISSING
+def _is_required(field: InputField) -> bool:
+    return isinstance(field.spec, Loaded) and field.spec.default is MISSING
 
 
 def _inputs(model: Model[Any, Any]) -> dict[str, SectionEntry]:
@@ -129,8 +129,8 @@ def _inputs(model: Model[Any, Any]) -> dict[str, SectionEntry]:
 def _calibrated(model: Model[Any, Any]) -> dict[str, SectionEntry]:
     varying = {name: field for name, field in model.input_fields.items() if field.varies}
     return {
-        name: SectionEntry(partial(checks.of_input, ("calibrated", name), item), input_schema(item))
-        for name, item in varying.items()
+        name: SectionEntry(partial(checks.of_input, ("calibrated", name), field), input_schema(field))
+        for name, field in varying.items()
     }
 
 
@@ -144,7 +144,8 @@ def _tolerances(model: Model[Any, Any]) -> dict[str, SectionEntry]:
 def _conditions(model: Model[Any, Any]) -> dict[str, SectionEntry]:
     known = model.known_conditions
     return {
-        name: SectionEntry(partial(checks.of_condition, item), condition_schema(item)) for name, item in known.items()
+        name: SectionEntry(partial(checks.of_condition, condition), condition_schema(condition))
+        for name, condition in known.items()
     }
 
 
@@ -197,47 +198,49 @@ def _units(model: Model[Any, Any]) -> dict[str, SectionEntry]:
 # What an editor shows of every entry of an inputs file: descriptions, examples, defaults, as JSON Schema
 
 
-def described(item: InputField) -> str:
+def described(field: InputField) -> str:
     """Say in one line what an input is: symbol, note, bounds, source."""
-    parts = [f"{item.symbol}: {item.spec.note}" if item.symbol and item.spec.note else item.symbol or item.spec.note]
-    parts += [bounds_in_words(item), "optional" if item.is_optional else ""]
-    parts += [f"source: {item.spec.source}" if item.spec.source else ""]
+    parts = [
+        f"{field.symbol}: {field.spec.note}" if field.symbol and field.spec.note else field.symbol or field.spec.note
+    ]
+    parts += [bounds_in_words(field), "optional" if field.is_optional else ""]
+    parts += [f"source: {field.spec.source}" if field.spec.source else ""]
     return "; ".join(part for part in parts if part)
 
 
-def input_schema(item: InputField) -> dict[str, Any]:
+def input_schema(field: InputField) -> dict[str, Any]:
     """Return the schema of one input."""
-    schema: dict[str, Any] = {"description": described(item), **_type_of(item)}
-    default = default_of(item)
+    schema: dict[str, Any] = {"description": described(field), **_type_of(field)}
+    default = default_of(field)
     if default is not None:
         schema["default"] = default
-    extra = {"x-symbol": item.symbol, "x-unit": item.unit}
+    extra = {"x-symbol": field.symbol, "x-unit": field.unit}
     return {**schema, **{key: value for key, value in extra.items() if value}}
 
 
-def _type_of(item: InputField) -> dict[str, Any]:
-    if item.kind in {"float", "whole", "integer"}:
-        return _number_type(item)
-    if item.kind == "choice":
-        return {"enum": list(item.choices)}
-    if item.kind == "file":
+def _type_of(field: InputField) -> dict[str, Any]:
+    if field.kind in {"float", "whole", "integer"}:
+        return _number_type(field)
+    if field.kind == "choice":
+        return {"enum": list(field.choices)}
+    if field.kind == "file":
         table = {"type": "object", "properties": {"file": {"type": "string"}}, "required": ["file"]}
         return {"anyOf": [{"type": "string"}, table], "examples": [{"file": "data.txt"}]}
-    if item.kind == "series":
+    if field.kind == "series":
         values = {"type": "array", "minItems": 1}
         table = {"type": "object", "properties": {"values": values, "unit": {"type": "string"}}}
-        return {"anyOf": [values, table]} if item.unit not in PURE else values
-    return {"type": {"switch": "boolean", "text": "string"}[item.kind]}
+        return {"anyOf": [values, table]} if field.unit not in PURE else values
+    return {"type": {"switch": "boolean", "text": "string"}[field.kind]}
 
 
-def _number_type(item: InputField) -> dict[str, Any]:
-    if item.unit not in PURE:
-        default = default_of(item)
-        return {"type": "string", "examples": [default if isinstance(default, str) else f"1 {item.unit}"]}
-    spec: Any = item.spec
+def _number_type(field: InputField) -> dict[str, Any]:
+    if field.unit not in PURE:
+        default = default_of(field)
+        return {"type": "string", "examples": [default if isinstance(default, str) else f"1 {field.unit}"]}
+    spec: Any = field.spec
     bounds = {"exclusiveMinimum": spec.above, "exclusiveMaximum": spec.below}
     bounds |= {"minimum": spec.at_least, "maximum": spec.at_most}
-    kind = "integer" if item.kind == "integer" else ["number", "string"]
+    kind = "integer" if field.kind == "integer" else ["number", "string"]
     return {"type": kind, **{key: bound for key, bound in bounds.items() if bound is not None}}
 
 

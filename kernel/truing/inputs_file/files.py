@@ -78,7 +78,11 @@ def _broken_link(path: Path) -> str:
 
 def _nearby(path: Path) -> str:
     try:
-        names = [item.name for _, item in zip(range(1000), path.parent.iterdir(), strict=False) if item != path]
+        names = [
+            neighbour.name
+            for _, neighbour in zip(range(1000), path.parent.iterdir(), strict=False)
+            if neighbour != path
+        ]
     except OSError:
         return ""
     meant = near_miss(path.name, names)

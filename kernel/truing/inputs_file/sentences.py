@@ -27,18 +27,20 @@ def faults_of(
 
     Sentences are made for the first two hundred in the order of the file; the others are only counted.
     """
-    found = [(tuple(map(str, item["loc"])), item) for item in error.errors(include_url=False, include_input=False)]
-    found = [(path, item) for path, item in found if item["type"] != "missing" or path not in unreadable]
-    if len(found) > MOST_FAULTS:
-        found.sort(key=lambda fault: _order(document, document.place(fault[0])))
+    errors = [
+        (tuple(map(str, detail["loc"])), detail) for detail in error.errors(include_url=False, include_input=False)
+    ]
+    kept = [(path, detail) for path, detail in errors if detail["type"] != "missing" or path not in unreadable]
+    if len(kept) > MOST_FAULTS:
+        kept.sort(key=lambda fault: _order(document, document.place(fault[0])))
     words = _Words(document, model)
-    faults = [document.fault(path, words.sentence(path, item)) for path, item in found[:MOST_FAULTS]]
-    return faults, len(found) - len(faults)
+    faults = [document.fault(path, words.sentence(path, detail)) for path, detail in kept[:MOST_FAULTS]]
+    return faults, len(kept) - len(faults)
 
 
-def _order(document: InputsDocument, place: tuple[str, int | None]) -> tuple[int, int]:
+def _order(document: InputsDocument, source_line: tuple[str, int | None]) -> tuple[int, int]:
     """Return the order of places: lines of the file, then overrides as given."""
-    file, line = place
+    file, line = source_line
     return (
         document.overrides.index(file) + 1 if file != document.file and file in document.overrides else 0,
         line or 0,
@@ -53,9 +55,9 @@ class _Words:
         self.model = model
         self.near_misses = 0
 
-    def sentence(self, path: tuple[str, ...], item: Mapping[str, Any]) -> str:
+    def sentence(self, path: tuple[str, ...], detail: Mapping[str, Any]) -> str:
         """Return the sentence for one of pydantic's errors."""
-        kind = item["type"]
+        kind = detail["type"]
         if kind == "extra_forbidden":
             return self.unknown(path)
         if kind == "missing":
@@ -63,8 +65,8 @@ class _Words:
         if kind in {"model_type", "model_attributes_type", "dict_type"}:
             heading = f"[{'.'.join(path)}]"
             return f"{shown(path[-1])} is a section; write {heading} and its entries below it"
-        stated = item.get("ctx", {}).get("error")
-        return str(stated) if stated is not None else str(item["msg"])
+        stated = detail.get("ctx", {}).get("error")
+        return str(stated) if stated is not None else str(detail["msg"])
 
     def unknown(self, path: tuple[str, ...]) -> str:
         """Say that a name is unknown, and what was probably meant."""
@@ -135,8 +137,8 @@ class _Words:
         if not meant:
             return ""
         close = meant.split("'")[1]
-        item: Any = self.model.input_fields.get(close) or self.model.result_fields.get(close)
-        details = [item.symbol, item.spec.note, item.unit] if item is not None else []
+        field: Any = self.model.input_fields.get(close) or self.model.result_fields.get(close)
+        details = [field.symbol, field.spec.note, field.unit] if field is not None else []
         inside = ", ".join(detail for detail in details if detail)
         return f" Did you mean '{close}' ({inside})?" if inside else meant
 
@@ -152,8 +154,8 @@ class _Words:
             unknown = next(unknown for unknown in self.model.known_effects[path[1]].unknowns if unknown.name == name)
             bounds = f"from {unknown.low:g} to {unknown.high:g} {unknown.unit}".strip()
             return f"effect '{path[1]}' is on, so its unknown '{name}' must be given ({bounds})"
-        item = self.model.input_fields[name]
-        note = f" ({item.spec.note})" if item.spec.note else ""
+        field = self.model.input_fields[name]
+        note = f" ({field.spec.note})" if field.spec.note else ""
         return (
             f"{self.model.name} needs the input '{name}'{note}; write {name} = {{ file = \"data.txt\" }} under [inputs]"
         )
@@ -193,7 +195,7 @@ def located(setup: Setup, sentence: str) -> Fault:
     names = set(re.findall(r"\w+", sentence))
     changed = _changed(setup)
     stated = [name for name in setup.source.places if name]
-    ranked = sorted(enumerate(stated), key=lambda item: (item[1] in changed, item[1] in names, item[0]))
+    ranked = sorted(enumerate(stated), key=lambda numbered: (numbered[1] in changed, numbered[1] in names, numbered[0]))
     likeliest = ranked[-1][1] if ranked and (ranked[-1][1] in changed or ranked[-1][1] in names) else ""
     return Fault(sentence, *setup.source.places.get(likeliest, ("", None)))
 

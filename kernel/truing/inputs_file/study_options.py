@@ -32,17 +32,17 @@ def options_of(study: Study) -> dict[str, Any]:
     }
 
 
-def _hint(owner: type[Any], item: dataclasses.Field[Any], value: Any) -> Any:
+def _hint(owner: type[Any], option: dataclasses.Field[Any], value: Any) -> Any:
     """Return the annotation, or the type of the present value where the annotation names what is not imported."""
-    if not isinstance(item.type, str):
-        return item.type
+    if not isinstance(option.type, str):
+        return option.type
 
     class Holder:
         pass
 
-    Holder.__annotations__ = {item.name: item.type}
+    Holder.__annotations__ = {option.name: option.type}
     try:
-        return get_type_hints(Holder, globalns=vars(sys.modules[owner.__module__]))[item.name]
+        return get_type_hints(Holder, globalns=vars(sys.modules[owner.__module__]))[option.name]
     except NameError:
         return type(value) if value is not None else Any
 
@@ -176,8 +176,8 @@ def _settable(model: Model[Any, Any]) -> Iterator[str]:
 
 
 def _unit(name: str, model: Model[Any, Any]) -> str:
-    item = model.input_fields.get(name)
-    return item.unit if item is not None else model.known_conditions[name].unit
+    field = model.input_fields.get(name)
+    return field.unit if field is not None else model.known_conditions[name].unit
 
 
 def _per_file(raw: Any, model: Model[Any, Any]) -> tuple[str, ...]:
@@ -235,9 +235,9 @@ def _box(raw: Any, model: Model[Any, Any]) -> dict[str, tuple[float, float]]:
 
 def _range(name: str, raw: Any, model: Model[Any, Any]) -> tuple[float, float]:
     """Return "low..high unit" in SI; the unit of the upper end holds for a lower one without."""
-    item = model.input_fields.get(name)
+    field = model.input_fields.get(name)
     low, high = _ends("box", name, raw, _unit(name, model))
-    sentence = "" if item is None else broken_bound(item, low) or broken_bound(item, high)
+    sentence = "" if field is None else broken_bound(field, low) or broken_bound(field, high)
     if sentence:
         raise SentenceError(f"study '{NAME}': box: {sentence}")
     return low, high

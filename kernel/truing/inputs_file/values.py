@@ -48,18 +48,18 @@ ValueCheck = Callable[[Any, InputsRead], Any]
 """Checks one value of an inputs file and returns it as it is used, or raises with a sentence."""
 
 
-def read_input(item: InputField, raw: Any, reading: InputsRead) -> Any:
+def read_input(input_field: InputField, raw: Any, reading: InputsRead) -> Any:
     """Return an input as the function sees it. Raises ValueError with one sentence."""
-    if item.kind in {"float", "whole"}:
-        value = read_number(item.name, raw, item.unit)
-        keep_bounds(item, value)
+    if input_field.kind in {"float", "whole"}:
+        value = read_number(input_field.name, raw, input_field.unit)
+        keep_bounds(input_field, value)
         return value
     readers: dict[str, Callable[[InputField, Any], Any]] = {
         "switch": _switch, "integer": _integer, "choice": _choice, "text": _text, "series": _series,
     }  # fmt: skip
-    if item.kind == "file":
-        return _loaded(item, raw, reading)
-    return readers[item.kind](item, raw)
+    if input_field.kind == "file":
+        return _loaded(input_field, raw, reading)
+    return readers[input_field.kind](input_field, raw)
 
 
 def read_number(name: str, raw: Any, unit: str) -> float:
@@ -108,19 +108,19 @@ def plain(value: float) -> str:
     return str(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
 
 
-def keep_bounds(item: InputField, value: float) -> None:
+def keep_bounds(input_field: InputField, value: float) -> None:
     """Raise with a sentence where a value in SI breaks a declared bound; NaN (not given) breaks none."""
-    sentence = broken_bound(item, value)
+    sentence = broken_bound(input_field, value)
     if sentence:
         raise SentenceError(sentence)
 
 
-def broken_bound(item: InputField, value: float) -> str:
+def broken_bound(input_field: InputField, value: float) -> str:
     """Return what to say of a value in SI that breaks a declared bound, or nothing."""
-    spec = item.spec
+    spec = input_field.spec
     if not isinstance(spec, Given) or value != value:
         return ""
-    unit = item.unit
+    unit = input_field.unit
     for words, bound, sign in (
         ("above", spec.above, 1),
         ("below", spec.below, -1),
@@ -129,10 +129,10 @@ def broken_bound(item: InputField, value: float) -> str:
     ):
         if bound is not None and _breaks(value, to_si(bound, unit), sign, strict=words in {"above", "below"}):
             here = _quantity(from_si(value, unit), unit)
-            return f"{item.name} is {here}; it must be {words} {_quantity(bound, unit)}"
+            return f"{input_field.name} is {here}; it must be {words} {_quantity(bound, unit)}"
     number = from_si(value, unit)
     if spec.whole and abs(number - round(number)) > 1e-9 * max(1.0, abs(number)):
-        return f"{item.name} is {_quantity(number, unit)}; it must be a whole number"
+        return f"{input_field.name} is {_quantity(number, unit)}; it must be a whole number"
     return ""
 
 
@@ -148,132 +148,141 @@ def _quantity(value: float, unit: str) -> str:
     return short if unit in PURE else f"{short} {unit}"
 
 
-def bounds_in_words(item: InputField, *, with_unit: bool = True) -> str:
+def bounds_in_words(input_field: InputField, *, with_unit: bool = True) -> str:
     """Return the bounds of an input as a phrase, such as "above 0 m, at most 2 m"; nothing where there are none.
 
     Of a numerical step it says behind them what halving it changes.
     """
-    spec = item.spec
+    spec = input_field.spec
     if not isinstance(spec, Given):
         return ""
     named = (("above", spec.above), ("below", spec.below), ("at least", spec.at_least), ("at most", spec.at_most))
-    unit = item.unit if with_unit else ""
+    unit = input_field.unit if with_unit else ""
     words = [f"{word} {_quantity(bound, unit)}" for word, bound in named if bound is not None]
     bounds = ", ".join([*words, "whole number"] if spec.whole else words)
-    return "; ".join(part for part in (bounds, halving_in_words(item)) if part)
+    return "; ".join(part for part in (bounds, halving_in_words(input_field)) if part)
 
 
-def halving_in_words(item: InputField) -> str:
+def halving_in_words(input_field: InputField) -> str:
     """Say of a numerical step how much halving it (a count: doubling it) changes; nothing of any other input."""
-    spec = item.spec
+    spec = input_field.spec
     if not isinstance(spec, Given) or spec.halving is None:
         return ""
     but = "".join(f"; {name} by at most {most}" for name, most in spec.halving_but.items())
-    step = "doubling" if item.is_count else "halving"
+    step = "doubling" if input_field.is_count else "halving"
     return f"numerical: {step} it changes no result by more than {100 * spec.halving:g} %{but}"
 
 
-def _switch(item: InputField, raw: Any) -> bool:
+def _switch(input_field: InputField, raw: Any) -> bool:
     if not isinstance(raw, bool):
         raise SentenceError(
-            f"{item.name} = {written(raw)} is no switch; write {item.name} = true or {item.name} = false"
+            f"{input_field.name} = {written(raw)} is no switch; "
+            f"write {input_field.name} = true or {input_field.name} = false"
         )
     return raw
 
 
-def _integer(item: InputField, raw: Any) -> int:
+def _integer(input_field: InputField, raw: Any) -> int:
     whole = int(raw) if isinstance(raw, float) and raw.is_integer() else raw
     if isinstance(whole, bool) or not isinstance(whole, int):
-        raise SentenceError(f"{item.name} = {written(raw)} is no whole number; write {item.name} = 3")
+        raise SentenceError(f"{input_field.name} = {written(raw)} is no whole number; write {input_field.name} = 3")
     if abs(whole) > 2**53:
-        raise SentenceError(f"{item.name} is too large for a whole number")
-    keep_bounds(item, whole)
+        raise SentenceError(f"{input_field.name} is too large for a whole number")
+    keep_bounds(input_field, whole)
     return whole
 
 
-def _choice(item: InputField, raw: Any) -> Any:
+def _choice(input_field: InputField, raw: Any) -> Any:
     text = written(raw) if isinstance(raw, (bool, int)) else raw
-    if not isinstance(text, str) or text not in item.choices:
-        offered = " or ".join(f"'{choice}'" for choice in item.choices)
-        meant = near_miss(text[:80], item.choices) if isinstance(text, str) else ""
-        raise SentenceError(f"{item.name} = {written(raw)} is not offered; choose {offered}.{meant}")
-    default = getattr(item.spec, "default", None)
+    if not isinstance(text, str) or text not in input_field.choices:
+        offered = " or ".join(f"'{choice}'" for choice in input_field.choices)
+        meant = near_miss(text[:80], input_field.choices) if isinstance(text, str) else ""
+        raise SentenceError(f"{input_field.name} = {written(raw)} is not offered; choose {offered}.{meant}")
+    default = getattr(input_field.spec, "default", None)
     return int(text) if isinstance(default, int) and not isinstance(default, bool) else text
 
 
-def _text(item: InputField, raw: Any) -> str:
+def _text(input_field: InputField, raw: Any) -> str:
     if not isinstance(raw, str):
-        raise SentenceError(f'{item.name} = {written(raw)} is no text; write {item.name} = "..."')
+        raise SentenceError(f'{input_field.name} = {written(raw)} is no text; write {input_field.name} = "..."')
     return raw
 
 
-def _series(item: InputField, raw: Any) -> Any:
+def _series(input_field: InputField, raw: Any) -> Any:
     """Read a list of quantities, or {values = [1, 2], unit = "um"}; an array along an axis, else a tuple."""
-    unit = item.unit if item.spec.unit is not None else None
+    unit = input_field.unit if input_field.spec.unit is not None else None
     given = raw
     if isinstance(raw, dict) and set(raw) == {"values", "unit"} and isinstance(raw["values"], list):
         given = [f"{plain(v)} {raw['unit']}" if _is_number(v) else v for v in raw["values"]]
     if not isinstance(given, list) or not given:
         raise SentenceError(
-            f'{item.name} is a series; write {item.name} = ["1 {unit}", ...]' if unit else _list_like(item)
+            f'{input_field.name} is a series; write {input_field.name} = ["1 {unit}", ...]'
+            if unit
+            else _list_like(input_field)
         )
     if unit is None:
-        return _plain_series(item, given)
-    values = [read_number(f"{item.name}[{index}]", one, unit) for index, one in enumerate(given, start=1)]
+        return _plain_series(input_field, given)
+    values = [read_number(f"{input_field.name}[{index}]", one, unit) for index, one in enumerate(given, start=1)]
     for value in values:
-        keep_bounds(item, value)
-    if not item.spec.along:
+        keep_bounds(input_field, value)
+    if not input_field.spec.along:
         return tuple(values)
     return np.array(values, dtype=float)
 
 
-def _list_like(item: InputField) -> str:
-    return f"{item.name} is a series; write {item.name} = [...]"
+def _list_like(input_field: InputField) -> str:
+    return f"{input_field.name} is a series; write {input_field.name} = [...]"
 
 
 def _is_number(value: Any) -> bool:
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
-def _plain_series(item: InputField, given: list[Any]) -> tuple[Any, ...]:
+def _plain_series(input_field: InputField, given: list[Any]) -> tuple[Any, ...]:
     """Read a list without units: every item of the kind that the default's items have."""
-    default = getattr(item.spec, "default", None)
+    default = getattr(input_field.spec, "default", None)
     kind = type(default[0]) if isinstance(default, (tuple, list)) and default else type(given[0])
     if kind is float and all(_is_number(value) for value in given):
-        return tuple(read_number(f"{item.name}[{index}]", value, "") for index, value in enumerate(given, start=1))
+        return tuple(
+            read_number(f"{input_field.name}[{index}]", value, "") for index, value in enumerate(given, start=1)
+        )
     for index, value in enumerate(given, start=1):
         if type(value) is not kind:
             word = {int: "whole number", float: "number", str: "text", bool: "switch"}.get(kind, "value of its kind")
-            raise SentenceError(f"{item.name}[{index}] = {written(value)} is no {word}")
+            raise SentenceError(f"{input_field.name}[{index}] = {written(value)} is no {word}")
     return tuple(given)
 
 
-def _loaded(item: InputField, raw: Any, reading: InputsRead) -> Any:
+def _loaded(input_field: InputField, raw: Any, reading: InputsRead) -> Any:
     """Read a data file once, through the reader the input declares; remember its hash."""
-    spec = item.spec
+    spec = input_field.spec
     assert isinstance(spec, Loaded)
     table: Mapping[str, Any] = {"file": raw} if isinstance(raw, str) else raw
     if not isinstance(table, dict) or not isinstance(table.get("file"), str) or not table["file"]:
-        raise SentenceError(f'{item.name} is read from a data file; write {item.name} = {{ file = "data.txt" }}')
+        raise SentenceError(
+            f'{input_field.name} is read from a data file; write {input_field.name} = {{ file = "data.txt" }}'
+        )
     options = {key: value for key, value in table.items() if key != "file"}
-    _check_options(item, spec.reader, options)
+    _check_options(input_field, spec.reader, options)
     path = reading.folder / table["file"]
     try:
         if not path.is_file():
-            raise SentenceError(f"{item.name}: there is no file {shown(table['file'])} beside the inputs file ({path})")
+            raise SentenceError(
+                f"{input_field.name}: there is no file {shown(table['file'])} beside the inputs file ({path})"
+            )
         with path.open("rb") as stream:
-            reading.files[item.name] = hashlib.file_digest(stream, "sha256").hexdigest()
-        reading.tables[item.name] = {"file": str(path.absolute()), **options}
+            reading.files[input_field.name] = hashlib.file_digest(stream, "sha256").hexdigest()
+        reading.tables[input_field.name] = {"file": str(path.absolute()), **options}
         return spec.reader(path, **options)
     except SentenceError:
         raise
     except (Exception, SystemExit) as error:  # whatever a reader says of a file is the user's to mend
         kind = "" if isinstance(error, (TruingError, ValueError, OSError)) else f"{type(error).__name__}: "
         words = getattr(error, "strerror", None) or str(error) or type(error).__name__
-        raise SentenceError(f"{item.name}: {shown(table['file'])} cannot be read: {kind}{words}") from error
+        raise SentenceError(f"{input_field.name}: {shown(table['file'])} cannot be read: {kind}{words}") from error
 
 
-def _check_options(item: InputField, reader: Callable[..., Any], options: Mapping[str, Any]) -> None:
+def _check_options(input_field: InputField, reader: Callable[..., Any], options: Mapping[str, Any]) -> None:
     parameters = list(inspect.signature(reader).parameters.values())[1:]
     named = [p for p in parameters if p.kind not in {p.VAR_KEYWORD, p.VAR_POSITIONAL}]
     known = ", ".join(parameter.name for parameter in named) or "none"
@@ -281,9 +290,9 @@ def _check_options(item: InputField, reader: Callable[..., Any], options: Mappin
     if strange and not any(parameter.kind is parameter.VAR_KEYWORD for parameter in parameters):
         meant = near_miss(strange[0][:80], [parameter.name for parameter in named])
         raise SentenceError(
-            f"{item.name}: the reader takes no {shown(strange[0])}; beside file it takes: {known}.{meant}"
+            f"{input_field.name}: the reader takes no {shown(strange[0])}; beside file it takes: {known}.{meant}"
         )
     missing = [p.name for p in named if p.default is p.empty and p.name not in options]
     if missing:
-        like = f'{item.name} = {{ file = "...", {missing[0]} = ... }}'
-        raise SentenceError(f"{item.name}: the reader needs {', '.join(missing)} too; write {like}")
+        like = f'{input_field.name} = {{ file = "...", {missing[0]} = ... }}'
+        raise SentenceError(f"{input_field.name}: the reader needs {', '.join(missing)} too; write {like}")

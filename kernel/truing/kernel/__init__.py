@@ -47,9 +47,9 @@ class Broken:
     reason: str
 
     def __str__(self) -> str:
-        place = f"{self.file}:{self.line}" if self.line else self.file
+        source_line = f"{self.file}:{self.line}" if self.line else self.file
         name = f"'{self.plugin}' {self.version}".rstrip()
-        return f"{place}: plugin {name}: {self.reason}"
+        return f"{source_line}: plugin {name}: {self.reason}"
 
 
 @dataclass(frozen=True)
@@ -163,9 +163,11 @@ class Kernel:
         known = ", ".join(sorted(offers)) or "none"
         raise UnknownPluginError(f"no plugin offers {shown(name)}.{near_miss(name[:80], offers)} Installed: {known}.")
 
-    def _note(self, where: list[Broken], origin: Origin, error: BaseException, place: SourceLine | None = None) -> None:
+    def _note(
+        self, where: list[Broken], origin: Origin, error: BaseException, source_line: SourceLine | None = None
+    ) -> None:
         reason = f"{type(error).__name__}: {error}"
-        file, line = place or getattr(error, "place", None) or place_of(error, _homes(origin))
+        file, line = source_line or getattr(error, "place", None) or place_of(error, _homes(origin))
         broken = Broken(origin.name, origin.version, file or _file_of(origin), line if file else None, reason)
         if self.strict:
             raise PluginError(str(broken)) from error
@@ -174,7 +176,7 @@ class Kernel:
     def _answers(self, hook: str, **arguments: Any) -> Iterator[tuple[Origin, HookImpl, list[Any]]]:
         """Ask every plugin on its own, in the order of their names."""
         caller = getattr(self._manager.hook, hook)
-        for implementation in sorted(caller.get_hookimpls(), key=lambda item: item.plugin_name):
+        for implementation in sorted(caller.get_hookimpls(), key=lambda implementation: implementation.plugin_name):
             origin = self.origins[implementation.plugin_name]
             wanted = {name: arguments[name] for name in implementation.argnames if name in arguments}
             try:
@@ -183,23 +185,25 @@ class Kernel:
                     raise DeclarationError(f"{hook} returned {answer!r:.60}; it returns a list")
                 items = list(answer)
             except (Exception, SystemExit) as error:
-                place = place_of(error, _homes(origin))
-                self._note(self._left_out, origin, error, place if place[0] else line_of(implementation.function))
+                source_line = place_of(error, _homes(origin))
+                self._note(
+                    self._left_out, origin, error, source_line if source_line[0] else line_of(implementation.function)
+                )
                 continue
             yield origin, implementation, items
 
     def _make_offers(self) -> dict[str, Offer]:
-        found: list[tuple[Origin, HookImpl, Model[Any, Any]]] = []
+        accepted: list[tuple[Origin, HookImpl, Model[Any, Any]]] = []
         for origin, hook, models in self._answers("truing_models"):
             for model in models:
-                fault = self._fault_of_model(model, [twin for owner, _, twin in found if owner == origin])
+                fault = self._fault_of_model(model, [twin for owner, _, twin in accepted if owner == origin])
                 if fault:
                     self._note(self._left_out, origin, DeclarationError(fault), line_of(hook.function))
                 else:
-                    found.append((origin, hook, model))
+                    accepted.append((origin, hook, model))
         offers: dict[str, Offer] = {}
-        for origin, hook, model in found:
-            owners = [owner for owner, _, twin in found if twin.name == model.name]
+        for origin, hook, model in accepted:
+            owners = [owner for owner, _, twin in accepted if twin.name == model.name]
             if len(owners) > 1:
                 both = " and ".join(f"{owner.name} ({owner.distribution or owner.file})" for owner in owners)
                 fault = f"the model name '{model.name}' is used by {both}; write {origin.name}.{model.name}"
@@ -221,15 +225,15 @@ class Kernel:
         added: list[Added] = []
         for hook in ("truing_error_sources", "truing_objectives", "truing_reports"):
             for origin, implementation, items in self._answers(hook, model=model):
-                for item in items:
+                for addition in items:
                     try:
-                        model = _with(model, hook, item)
+                        model = _with(model, hook, addition)
                     except DeclarationError as error:
-                        fault = DeclarationError(f"'{_name_of(item)}' is left out of '{model.name}': {error}")
+                        fault = DeclarationError(f"'{_name_of(addition)}' is left out of '{model.name}': {error}")
                         self._note(self._left_out, origin, fault, line_of(implementation.function))
                         continue
                     if origin != owner:
-                        added.append(Added(_name_of(item), origin.name, origin.version))
+                        added.append(Added(_name_of(addition), origin.name, origin.version))
         return model, tuple(added)
 
 
@@ -239,16 +243,16 @@ def demand_readable(offer: Offer) -> None:
     This is asked when a model is used, for it needs the table of units; what guests add is not held against the model.
     """
     guests = {added.what for added in offer.added}
-    unread = [item for item in unread_quantities(offer.model) if item.owner not in guests]
+    unread = [quantity for quantity in unread_quantities(offer.model) if quantity.owner not in guests]
     if not unread:
         return
     homes = [*_homes(offer.origin), *filter(None, [home_of(offer.model.function)])]
     said = []
-    for item in dict.fromkeys(unread):
-        file, line = line_of_words(dict.fromkeys(homes), item.owner, item.written)
-        place = (file, line) if file else line_of(offer.model.function)
+    for quantity in dict.fromkeys(unread):
+        file, line = line_of_words(dict.fromkeys(homes), quantity.owner, quantity.written)
+        source_line = (file, line) if file else line_of(offer.model.function)
         origin = offer.origin
-        said.append(str(Broken(origin.name, origin.version, *place, f"DeclarationError: {item.sentence}")))
+        said.append(str(Broken(origin.name, origin.version, *source_line, f"DeclarationError: {quantity.sentence}")))
     raise PluginError("\n".join(said))
 
 
@@ -256,17 +260,17 @@ def _giving(plugin: ModuleType) -> Callable[[], ModuleType]:
     return lambda: plugin
 
 
-def _with(model: Model[Any, Any], hook: str, item: Any) -> Model[Any, Any]:
+def _with(model: Model[Any, Any], hook: str, addition: Any) -> Model[Any, Any]:
     """Return the model with what one hook adds; raises DeclarationError where it does not fit."""
     if hook == "truing_error_sources":
-        if not isinstance(item, (Tolerance, Effect)):
-            raise DeclarationError(f"{item!r:.60} is neither a Tolerance nor an Effect")
-        return replace(model, errors=[*model.errors, item])
+        if not isinstance(addition, (Tolerance, Effect)):
+            raise DeclarationError(f"{addition!r:.60} is neither a Tolerance nor an Effect")
+        return replace(model, errors=[*model.errors, addition])
     if hook == "truing_objectives":
-        return replace(model, objectives=[*model.objectives, item])
-    if not isinstance(item, Section):
-        raise DeclarationError(f"{item!r:.60} is no Section")
-    return replace(model, sheet=[*model.sheet, item])
+        return replace(model, objectives=[*model.objectives, addition])
+    if not isinstance(addition, Section):
+        raise DeclarationError(f"{addition!r:.60} is no Section")
+    return replace(model, sheet=[*model.sheet, addition])
 
 
 def _origin(entry: metadata.EntryPoint) -> Origin:
@@ -293,8 +297,13 @@ def _file_of(origin: Origin) -> str:
     return (spec.origin if spec is not None else None) or origin.file
 
 
-def _name_of(item: Any) -> str:
-    return str(getattr(item, "name", None) or getattr(item, "title", None) or getattr(item, "result", None) or item)
+def _name_of(addition: Any) -> str:
+    return str(
+        getattr(addition, "name", None)
+        or getattr(addition, "title", None)
+        or getattr(addition, "result", None)
+        or addition
+    )
 
 
 def kernel_for(ref: str, *, strict: bool = False) -> Kernel:

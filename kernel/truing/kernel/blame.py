@@ -69,11 +69,11 @@ def line_of_words(homes: Iterable[Path], owner: str, written: Any) -> SourceLine
 def _lines_of(node: ast.AST, owner: str, written: Any) -> list[int]:
     """Return the lines in a call or a field where *written* stands, if it names *owner* too."""
     inner = list(ast.walk(node))
-    constants = [item for item in inner if isinstance(item, ast.Constant)]
-    names = {item.value for item in constants if isinstance(item.value, str)}
-    names |= {item.id for item in inner if isinstance(item, ast.Name)}
-    names |= {item.arg for item in inner if isinstance(item, ast.keyword) and item.arg}
-    return [item.lineno for item in constants if _is_part(item.value, written)] if owner in names else []
+    constants = [part for part in inner if isinstance(part, ast.Constant)]
+    names = {constant.value for constant in constants if isinstance(constant.value, str)}
+    names |= {part.id for part in inner if isinstance(part, ast.Name)}
+    names |= {part.arg for part in inner if isinstance(part, ast.keyword) and part.arg}
+    return [constant.lineno for constant in constants if _is_part(constant.value, written)] if owner in names else []
 
 
 def _is_part(value: Any, written: Any) -> bool:

@@ -73,30 +73,30 @@ def check_hooks(manager: PluginManager, plugin: Any, name: str) -> None:
         if inspect.isfunction(function) and key not in marked:
             raise DeclarationError(f"{key}() is not marked: write @hookimpl above it", line_of(function))
     if not marked:
-        place = (getattr(plugin, "__file__", None) or name, None)
+        source_line = (getattr(plugin, "__file__", None) or name, None)
         raise DeclarationError(
-            "it offers nothing: it needs a function such as truing_models() marked with @hookimpl", place
+            "it offers nothing: it needs a function such as truing_models() marked with @hookimpl", source_line
         )
 
 
 # The source of a plugin as a hash: whether two processes, or two runs, compute with the same code
 
 
-def code_hash(place: str) -> str:
+def code_hash(source: str) -> str:
     """Return the SHA-256 of the source of a package or file, line ends aside; empty where there is none."""
-    files = sorted(_files_of(place))
+    files = sorted(_files_of(source))
     digest = hashlib.sha256()
     for file in files:
         digest.update(file.name.encode() + b"\0" + file.read_bytes().replace(b"\r\n", b"\n") + b"\0")
     return digest.hexdigest()[:16] if files else ""
 
 
-def _files_of(place: str) -> Iterable[Path]:
-    path = Path(place)
+def _files_of(source: str) -> Iterable[Path]:
+    path = Path(source)
     if path.suffix == ".py":
         return [path] if path.is_file() else []
     try:
-        spec = find_spec(place)
+        spec = find_spec(source)
     except (ImportError, ValueError):
         return []
     if spec is None or not spec.origin:

@@ -141,7 +141,7 @@ class CsvFile:
     def count(self) -> RowCount:
         """Return how many rows the file holds as far as it is read, with those that are no rows left out."""
         left = tuple(LeftOut(reason, tuple(lines)) for reason, lines in self.left_out.items())
-        return RowCount(self.faults.file, self.rows + sum(len(item.lines) for item in left), left)
+        return RowCount(self.faults.file, self.rows + sum(len(left_out.lines) for left_out in left), left)
 
     def chunks(self) -> Iterator[Chunk]:
         """Give the rows as columns of text, some thousands at a time; lines that are no rows are faults."""
@@ -415,8 +415,8 @@ def all_unguarded(row: Sequence[str]) -> list[str]:
 
 
 def _may_be_formula(cell: str) -> bool:
-    found = _FORMULA.fullmatch(cell)
-    return found is not None and not NUMBER.fullmatch(found["words"].strip().replace(",", ".", 1))
+    match = _FORMULA.fullmatch(cell)
+    return match is not None and not NUMBER.fullmatch(match["words"].strip().replace(",", ".", 1))
 
 
 def with_comma(cells: Sequence[str]) -> Sequence[str]:
@@ -468,8 +468,8 @@ class RowCount:
         if not taken:
             return self
         before = {omission.reason: omission.lines for omission in self.left_out}
-        found = {**before, reason: tuple(sorted((*before.get(reason, ()), *taken)))}
-        return replace(self, left_out=tuple(LeftOut(*item) for item in found.items()))
+        by_reason = {**before, reason: tuple(sorted((*before.get(reason, ()), *taken)))}
+        return replace(self, left_out=tuple(LeftOut(*reason_and_lines) for reason_and_lines in by_reason.items()))
 
     def without_all(self, lines: Mapping[str, Iterable[int]]) -> RowCount:
         """Return the count with rows left out for several reasons."""
@@ -483,8 +483,8 @@ class RowCount:
         rows = counted(self.in_file)
         if not self.left_out:
             return f"{rows}, all used"
-        named = [f"{_where(item.lines)} ({item.reason})" for item in self.left_out[:MOST_REASONS]]
-        more = sum(len(item.lines) for item in self.left_out[MOST_REASONS:])
+        named = [f"{_where(left_out.lines)} ({left_out.reason})" for left_out in self.left_out[:MOST_REASONS]]
+        more = sum(len(left_out.lines) for left_out in self.left_out[MOST_REASONS:])
         named += [f"{more} more for other reasons"] if more else []
         return f"{rows}, {self.used} used; {self.unused} left out: {', '.join(named)}"
 

@@ -37,9 +37,11 @@ def histories(
     Shapes and order are those of ``derive``.
     """
     return {
-        item.name: derive(item, columns, runs, time)
-        for item in conditions
-        if item.derived and item.made_from in columns and (item.made_from == item.name or item.name not in columns)
+        condition.name: derive(condition, columns, runs, time)
+        for condition in conditions
+        if condition.derived
+        and condition.made_from in columns
+        and (condition.made_from == condition.name or condition.name not in columns)
     }
 
 
@@ -57,10 +59,10 @@ def derive(
     values = np.asarray(columns[condition.made_from], dtype=float)
     if condition.history == SINCE_START:
         return values - _earliest(values, time)
-    made = np.full(len(values), np.nan)
+    derived = np.full(len(values), np.nan)
     for rows in _records(len(values), runs, time):
-        made[rows] = _history(condition.history, values[rows])
-    return made
+        derived[rows] = _history(condition.history, values[rows])
+    return derived
 
 
 def _earliest(values: NDArray[np.float64], time: NDArray[Any] | None) -> float:
@@ -83,14 +85,14 @@ def _records(rows: int, runs: NDArray[Any] | None, time: NDArray[Any] | None) ->
 def _history(word: str, values: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the history of the values of one run, which follow one another; what is missing is passed over."""
     known = np.isfinite(values)
-    made = np.full(len(values), np.nan)
+    filled = np.full(len(values), np.nan)
     if known.any():
-        found = _HISTORIES[word](values[known])
+        history = _HISTORIES[word](values[known])
         latest = np.cumsum(known) - 1
-        made[latest >= 0] = found[latest[latest >= 0]]
+        filled[latest >= 0] = history[latest[latest >= 0]]
         if word == "direction":
-            made[latest < 0] = found[0]
-    return made
+            filled[latest < 0] = history[0]
+    return filled
 
 
 def _running_maximum(values: NDArray[np.float64]) -> NDArray[np.float64]:

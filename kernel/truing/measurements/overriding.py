@@ -77,7 +77,7 @@ class RowsFile:
         def of(column: Any) -> Any:
             if isinstance(places, slice) or isinstance(column, np.ndarray):
                 return column[places]
-            return [column[place] for place in places.tolist()]
+            return [column[row] for row in places.tolist()]
 
         return replace(
             self,
@@ -142,17 +142,18 @@ def read_rows(path: TableSource, offer: Offer, setup: Setup) -> RowsFile:
         for condition in setup.model.known_conditions.values()
         if condition.derived and condition.name in known
     ]
-    sources = {item.made_from: Source(None, item.name) for item in past}  # anything that is a number has a direction
-    sources |= {item.made_from: Source(item.unit, item.name) for item in past if item.history != "direction"}
+    with_unit = [condition for condition in past if condition.history != "direction"]
+    sources = {condition.made_from: Source(None, condition.name) for condition in past}  # any number has a direction
+    sources |= {condition.made_from: Source(condition.unit, condition.name) for condition in with_unit}
     table, faults = read_table(path, {**sources, **axes, **known}, is_measured=False)
     faults.raise_any()
     numbers = {name: column for name, column in table.columns.items() if is_number(column)}
     places, series, columns = {}, {}, {}
     for name, column in table.columns.items():
-        item = setup.model.input_fields.get(name)
+        input_field = setup.model.input_fields.get(name)
         if name in axes:
             places[name] = numbers[name]
-        elif item is not None and item.kind == "series":
+        elif input_field is not None and input_field.kind == "series":
             series[name] = numbers[name]
         elif name in known:
             columns[name] = _filled(name, column, setup)
@@ -163,7 +164,7 @@ def read_rows(path: TableSource, offer: Offer, setup: Setup) -> RowsFile:
     made = histories(past, raw, np.array(runs) if runs else None, raw.get(TIME))
     columns |= {name: _filled(name, column, setup) for name, column in made.items()}
     used = {*columns, *series, *places, *([RUN] if series else [])}
-    for condition in (each for each in past if each.name in made):
+    for condition in [condition for condition in past if condition.name in made]:
         used |= {condition.made_from, TIME, *([RUN] if condition.history != SINCE_START else [])}
     others = tuple(name for name in table.units if name not in used)
     return RowsFile(str(path), columns, series, table.cells, table.lines, others, places, runs, table.count)
@@ -172,7 +173,7 @@ def read_rows(path: TableSource, offer: Offer, setup: Setup) -> RowsFile:
 def _axes(setup: Setup) -> dict[str, Known]:
     """Return the axes on which a row may say where it lies, with their units."""
     fields = setup.model.own_result_fields.items()
-    return {name: item.unit for name, item in fields if isinstance(item.spec, Axis) and not item.spec.is_table}
+    return {name: result.unit for name, result in fields if isinstance(result.spec, Axis) and not result.spec.is_table}
 
 
 def _filled(name: str, column: Any, setup: Setup) -> NDArray[np.float64] | list[Any]:

@@ -213,25 +213,25 @@ class _Numbers(_Column):
         if unit in PURE:
             return values
         with np.errstate(over="ignore"):
-            made = in_si(values, unit)
-        odd = np.isfinite(values) & (~np.isfinite(made) | (made < 0) | ((made == 0) & (values != 0)))
+            converted = in_si(values, unit)
+        odd = np.isfinite(values) & (~np.isfinite(converted) | (converted < 0) | ((converted == 0) & (values != 0)))
         for row in np.flatnonzero(odd).tolist():
-            if fault := si_fault(float(values[row]), float(made[row]), self.declared or ""):
+            if fault := si_fault(float(values[row]), float(converted[row]), self.declared or ""):
                 written = f"{cells[row].strip()} {unit}"
                 faults.add(f"{self.header.name}: {shown(written)} {fault}", lines[row])
-        return made
+        return converted
 
     def made(self, lines: Sequence[int], file: CsvFile) -> NDArray[np.float64] | None:
         """Return the column in SI, NaN where a cell is empty."""
         return None if self.fault else np.concatenate([np.empty(0), *self.parts])
 
 
-def _keep_bounds(item: InputField, values: NDArray[np.float64], lines: Sequence[int], faults: Faults) -> None:
+def _keep_bounds(input_field: InputField, values: NDArray[np.float64], lines: Sequence[int], faults: Faults) -> None:
     """Say which rows break a declared bound."""
     distinct = np.unique(values[np.isfinite(values)]).tolist()
-    tried = distinct if getattr(item.spec, "whole", False) else [*distinct[:1], *distinct[-1:]]
-    if any(broken_bound(item, value) for value in tried):
-        broken = {value: broken_bound(item, value) for value in distinct}
+    tried = distinct if getattr(input_field.spec, "whole", False) else [*distinct[:1], *distinct[-1:]]
+    if any(broken_bound(input_field, value) for value in tried):
+        broken = {value: broken_bound(input_field, value) for value in distinct}
         for line, value in zip(lines, values.tolist(), strict=True):
             if said := broken.get(value):
                 faults.add(said, line)
@@ -346,14 +346,14 @@ def word_header_fault(name: str, unit: str | None) -> str:
     return f"column '{name}' has the unit [{unit}], but it is no quantity; write '{name}'"
 
 
-def read_word(item: InputField, cell: str, *, decimal_comma: bool) -> Any:
+def read_word(input_field: InputField, cell: str, *, decimal_comma: bool) -> Any:
     """Return the value of an input that is a choice, a text, a switch or a whole number. Raises ValueError."""
     raw: Any = cell.strip()
-    if item.kind == "switch":
+    if input_field.kind == "switch":
         raw = SWITCHES.get(raw.lower(), raw)
-    elif item.kind == "integer":
+    elif input_field.kind == "integer":
         raw = read_cell(raw, decimal_comma=decimal_comma)
-    return read_input(item, raw, InputsRead(Path()))
+    return read_input(input_field, raw, InputsRead(Path()))
 
 
 # Tables to text: numbers that read back exactly

@@ -128,9 +128,9 @@ def _main_results(writing: Writing) -> Iterator[Chapter]:
 
 def _studies(writing: Writing) -> Iterator[Chapter]:
     for name, outcome in writing.calculation.outcomes.items():
-        found = _guarded(writing, f"study {name}", partial(_said, writing, outcome))
-        if found:
-            yield Chapter(f"Study: {name.replace('_', ' ')}", tuple(found))
+        blocks = _guarded(writing, f"study {name}", partial(_said, writing, outcome))
+        if blocks:
+            yield Chapter(f"Study: {name.replace('_', ' ')}", tuple(blocks))
 
 
 def _said(writing: Writing, outcome: Outcome) -> list[BlockView]:
@@ -152,23 +152,23 @@ def _results(writing: Writing, names: Sequence[str]) -> Iterator[BlockView]:
 
 def _entry(writing: Writing, name: str, *, with_formula: bool) -> ResultEntry:
     """Say a result: its formula, and its value where the formula does not end with it."""
-    item, answers = writing.setup.model.result_fields[name], writing.calculation.answers
+    result, answers = writing.setup.model.result_fields[name], writing.calculation.answers
     absent = writing.calculation.absent.get(name, "")
     is_scalar = _is_scalar(answers[name])
-    equation = equation_of(writing.setup, answers, item) if with_formula and not (absent and is_scalar) else None
-    symbol = (SymbolText(item.symbol), " ") if item.symbol else ()
+    equation = equation_of(writing.setup, answers, result) if with_formula and not (absent and is_scalar) else None
+    symbol = (SymbolText(result.symbol), " ") if result.symbol else ()
     value: Text = ""
     if absent:
         value = (*symbol, *(("has ",) if symbol else ()), Strong("no value"), ": ", Aside(absent))
     elif not is_scalar:
-        extent, words = _range(writing, item)
+        extent, words = _range(writing, result)
         value = (*symbol, *(("is ",) if symbol else ()), Strong(extent), " ", Aside(f"({words})"))
     elif equation is None or equation.departs:
-        printed = Value(*format_value(answers[name], writing.setup.print_unit(name), item.digits))
+        printed = Value(*format_value(answers[name], writing.setup.print_unit(name), result.digits))
         value = (*symbol, *(("= ",) if symbol else ()), Strong(printed))
         value += (" ", Aside(_departure(writing.setup))) if equation is not None else ()
-    method = with_source(getattr(item.spec, "method", ""), getattr(item.spec, "source", ""))
-    return ResultEntry(name, label_of(item.spec.note, name), equation, value, method)
+    method = with_source(getattr(result.spec, "method", ""), getattr(result.spec, "source", ""))
+    return ResultEntry(name, label_of(result.spec.note, name), equation, value, method)
 
 
 def _departure(setup: Setup) -> str:
@@ -178,12 +178,12 @@ def _departure(setup: Setup) -> str:
     return "in the calculation: the printed formula gives another number"
 
 
-def _range(writing: Writing, item: ResultField) -> tuple[Value, str]:
+def _range(writing: Writing, result: ResultField) -> tuple[Value, str]:
     """Say a result along an axis by its ends, and how many values it has."""
-    values = writing.calculation.answers[item.name]
-    along = item.along if isinstance(item.spec, Found) else ""
-    words = f"{np.size(values)} values" + (f" along {along}" if along and along != item.name else "")
-    low, high, unit = format_ends(values, writing.setup.print_unit(item.name))
+    values = writing.calculation.answers[result.name]
+    along = result.along if isinstance(result.spec, Found) else ""
+    words = f"{np.size(values)} values" + (f" along {along}" if along and along != result.name else "")
+    low, high, unit = format_ends(values, writing.setup.print_unit(result.name))
     return Value(f"{pretty(low)} … {pretty(high)}", unit) if low else Value("no finite value"), words
 
 
@@ -192,12 +192,12 @@ def _axis_tables(writing: Writing, names: Sequence[str]) -> Iterator[TableView]:
     fields, answers = writing.setup.model.result_fields, writing.calculation.answers
     by_axis: dict[str, list[str]] = {}
     for name in names:
-        item = fields[name]
-        if not _is_scalar(answers[name]) and np.ndim(answers[name]) == 1 and isinstance(item.spec, Found):
-            by_axis.setdefault(item.along, []).append(name)
+        result = fields[name]
+        if not _is_scalar(answers[name]) and np.ndim(answers[name]) == 1 and isinstance(result.spec, Found):
+            by_axis.setdefault(result.along, []).append(name)
     for axis, columns in by_axis.items():
-        place = fields.get(axis)
-        is_table = place is not None and isinstance(place.spec, Axis) and place.spec.is_table
+        axis_field = fields.get(axis)
+        is_table = axis_field is not None and isinstance(axis_field.spec, Axis) and axis_field.spec.is_table
         if axis in answers:
             columns = [axis, *columns]
         length = len(answers[columns[-1]])
@@ -212,7 +212,7 @@ def _columns_table(writing: Writing, title: str, names: Sequence[str], most: int
     length = len(answers[names[-1]])
     places = sorted({round(one) for one in np.linspace(0, length - 1, min(length, most))}) if length else []
     units = {name: setup.print_unit(name) for name in names}
-    rows = tuple(tuple(format_value(float(answers[n][place]), units[n])[0] for n in names) for place in places)
+    rows = tuple(tuple(format_value(float(answers[n][index]), units[n])[0] for n in names) for index in places)
     note = f"{len(places)} of {length} rows" if length > most else ""
     fields = setup.model.result_fields
     columns = (Column(fields[n].spec.note or n, format_value(0.0, unit)[1], "number") for n, unit in units.items())

@@ -156,7 +156,7 @@ def _chapter(ident: str, title: str, parts: ChapterParts) -> Chapter:
 
 
 def _wrong(diagnosis: DiagnosisResult, drawn: Figures) -> ChapterParts:
-    errors, found, noises = [], [], []
+    errors, findings, noises = [], [], []
     for wrong in diagnosis.wrong:
         name, noise = spoken(wrong.result), wrong.noise
         rmse, floor, share = amount_text(wrong.rmse), amount_text(wrong.noise_floor), percent(wrong.reducible_share)
@@ -165,7 +165,7 @@ def _wrong(diagnosis: DiagnosisResult, drawn: Figures) -> ChapterParts:
         yield f"{name}: {against}: {share} of the mean square error is reducible"
         for finding in wrong.findings:
             text, sure = prose(finding.text), certainty(finding.p_value)
-            found.append((name, finding.kind, text, sure))
+            findings.append((name, finding.kind, text, sure))
             yield f"  {finding.kind}: {text}" + (f" – {sure}" if finding.p_value is not None else "")
         correlation = pretty(format_number(noise.autocorrelation, 2))
         far = _outliers(noise, MOST_OUTLIERS) or "none"
@@ -179,9 +179,9 @@ def _wrong(diagnosis: DiagnosisResult, drawn: Figures) -> ChapterParts:
         "error that lies above the noise floor."
     )
     yield table_of("Error of the model as it is", heads, errors, (1, 2, 3, 4), note)
-    if found:
+    if findings:
         kinds = ("Result", "Kind", "What the residuals show", "How sure, the search paid for")
-        yield table_of("Structure in the residuals", kinds, found)
+        yield table_of("Structure in the residuals", kinds, findings)
     else:
         yield Paragraph("At the level of 5 % the residuals show no bias, trend, order, step, wave or spread.")
     about = ("Result", "Standard deviation", "Autocorrelation", "Tails", "Spread", "Suspected outliers")
@@ -283,11 +283,11 @@ def _rivals(diagnosis: DiagnosisResult) -> list[Alternative]:
         for alternative in diagnosis.ranking
         if alternative.causes and alternative.behind > 0 and alternative.causes not in said
     ]
-    return [item for item in rivals if item.separation >= WEAK and not (named and named <= set(item.causes))]
+    return [rival for rival in rivals if rival.separation >= WEAK and not (named and named <= set(rival.causes))]
 
 
-def _distance(item: Alternative) -> str:
-    return f", {item.behind:.1f} score units behind, λ {score_text(item.separation)}"
+def _distance(alternative: Alternative) -> str:
+    return f", {alternative.behind:.1f} score units behind, λ {score_text(alternative.separation)}"
 
 
 def _significance(diagnosis: DiagnosisResult) -> Iterator[str]:
@@ -321,8 +321,13 @@ def ranking_table(diagnosis: DiagnosisResult) -> TableView:
     """Say the explanations that were compared, and what this data makes of each."""
     items = figures.shown_ranking(diagnosis)
     rows = [
-        (explanation(item), pretty(f"{item.behind:.1f}"), score_text(item.separation), _judged(item, diagnosis))
-        for item in items
+        (
+            explanation(alternative),
+            pretty(f"{alternative.behind:.1f}"),
+            score_text(alternative.separation),
+            _judged(alternative, diagnosis),
+        )
+        for alternative in items
     ]
     note = (
         "Behind is the distance in score units (6 is a Bayes factor of about 20). λ is the loss of fit to expect if "
@@ -331,16 +336,16 @@ def ranking_table(diagnosis: DiagnosisResult) -> TableView:
     return table_of("Explanations, best first", ("Explanation", "Behind", "λ", "On this data"), rows, (1, 2), note)
 
 
-def _judged(item: Alternative, diagnosis: DiagnosisResult) -> str:
+def _judged(alternative: Alternative, diagnosis: DiagnosisResult) -> str:
     """Say what this data makes of an explanation beside the best one."""
     best = diagnosis.ranking[0]
-    if item == best:
+    if alternative == best:
         return "best"
-    if figures.is_open(item, diagnosis):
+    if figures.is_open(alternative, diagnosis):
         return "not excluded"
-    if best.causes and set(best.causes) < set(item.causes):
+    if best.causes and set(best.causes) < set(alternative.causes):
         return "adds nothing"
-    return "excluded" if item.behind >= figures.NEAR else "needs more for the same"
+    return "excluded" if alternative.behind >= figures.NEAR else "needs more for the same"
 
 
 def _residuals(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[BlockView]:
@@ -377,17 +382,17 @@ def _others(diagnosis: DiagnosisResult) -> list[VisibleSize]:
 
 def _seen(diagnosis: DiagnosisResult) -> Iterator[str]:
     for sight in ("not excited", "cannot be fitted", "hidden in the tolerances"):
-        found = [_blind(visible) for visible in _others(diagnosis) if visible.sight == sight]
-        if found:
-            yield f"{sight}: {_some(found)}"
+        blind = [_blind(visible) for visible in _others(diagnosis) if visible.sight == sight]
+        if blind:
+            yield f"{sight}: {_some(blind)}"
 
 
 def _visible(diagnosis: DiagnosisResult) -> Iterator[str]:
     visible: dict[str, str] = {}
-    for item in _others(diagnosis):
-        if item.sight == "visible" and item.smallest is not None:
-            said = f"{spoken(item.name)} {amount_text(readable(item.smallest))}"
-            visible.setdefault(item.name.partition(".")[0], said)
+    for visible_size in _others(diagnosis):
+        if visible_size.sight == "visible" and visible_size.smallest is not None:
+            said = f"{spoken(visible_size.name)} {amount_text(readable(visible_size.smallest))}"
+            visible.setdefault(visible_size.name.partition(".")[0], said)
     if visible:
         yield f"would have been seen from: {_some(list(visible.values()))}"
 
@@ -396,11 +401,13 @@ def _some(texts: Sequence[str]) -> str:
     return "; ".join(texts[:MOST_SEEN]) + ("; the sheet lists all" if len(texts) > MOST_SEEN else "")
 
 
-def _blind(item: VisibleSize) -> str:
+def _blind(visible_size: VisibleSize) -> str:
     """Say what could not be seen, and from what size it would be."""
-    visible = f"visible from {amount_text(readable(item.smallest))}" if item.smallest is not None else ""
-    remark = item.text or (visible if item.sight == "hidden in the tolerances" else "")
-    return f"{spoken(item.name)} ({remark})" if remark else spoken(item.name)
+    visible = (
+        f"visible from {amount_text(readable(visible_size.smallest))}" if visible_size.smallest is not None else ""
+    )
+    remark = visible_size.text or (visible if visible_size.sight == "hidden in the tolerances" else "")
+    return f"{spoken(visible_size.name)} ({remark})" if remark else spoken(visible_size.name)
 
 
 # Extended model
@@ -442,13 +449,13 @@ def _sizes(diagnosis: DiagnosisResult) -> Iterator[str]:
         yield "nothing was named: the model stands as it is"
     for cause in diagnosis.causes:
         yield cause_text(cause)
-    for item in diagnosis.alternatives:
-        sizes = [fitted_text(unknown) for unknowns in item.unknowns.values() for unknown in unknowns]
+    for alternative in diagnosis.alternatives:
+        sizes = [fitted_text(unknown) for unknowns in alternative.unknowns.values() for unknown in unknowns]
         if sizes:
-            yield f"or {explanation(item)}, {'; '.join(sizes)}"
-    moved = sorted(diagnosis.calibrated, key=lambda item: -abs(item.of_its_sd))[:MOST_MOVED]
+            yield f"or {explanation(alternative)}, {'; '.join(sizes)}"
+    moved = sorted(diagnosis.calibrated, key=lambda calibrated: -abs(calibrated.of_its_sd))[:MOST_MOVED]
     if moved:
-        shifts = ", ".join(f"{spoken(item.name)} by {score_text(item.of_its_sd)}" for item in moved)
+        shifts = ", ".join(f"{spoken(calibrated.name)} by {score_text(calibrated.of_its_sd)}" for calibrated in moved)
         yield f"moved most within their tolerances (in standard deviations): {shifts}"
 
 
@@ -587,10 +594,10 @@ def _ties(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
             yield table_of("Facts that decide", heads, facts, (3,))
 
 
-def _point(place: int, point: NextPoint, names: Sequence[str]) -> tuple[str, ...]:
+def _point(index: int, point: NextPoint, names: Sequence[str]) -> tuple[str, ...]:
     settings = ["measure" if name in point.measure else amount_text(point.settings.get(name), 4) for name in names]
     pair = " / ".join(together([name]) for name in point.separates)
-    return str(place), *settings, pair, score_text(point.separation)
+    return str(index), *settings, pair, score_text(point.separation)
 
 
 # Data

@@ -62,10 +62,12 @@ def listed(words: Sequence[str], joined: str = "and") -> str:
     return f"{', '.join(words[:-1])} {joined} {words[-1]}"
 
 
-def explanation(item: Alternative) -> str:
+def explanation(alternative: Alternative) -> str:
     """Say one explanation: its causes, or that nothing is wrong."""
-    over = f":{','.join(item.depends_on)}" if item.depends_on else ""
-    return together([f"{name}{over}" if name == UNKNOWN else name for name in item.causes]) or "nothing but noise"
+    over = f":{','.join(alternative.depends_on)}" if alternative.depends_on else ""
+    return (
+        together([f"{name}{over}" if name == UNKNOWN else name for name in alternative.causes]) or "nothing but noise"
+    )
 
 
 def amount_text(amount: Amount | None, digits: int = 3) -> str:
@@ -230,21 +232,21 @@ def _blind(diagnosis: DiagnosisResult) -> Iterator[str]:
 
 def wrong_results(diagnosis: DiagnosisResult) -> list[str]:
     """Return the results that are wrong: with findings or a gain, else those of the remainder, else all."""
-    found = [wrong.result for wrong in diagnosis.wrong if wrong.findings]
+    wrong_names = [wrong.result for wrong in diagnosis.wrong if wrong.findings]
     gained = [gain.result for gain in diagnosis.gain if is_gain(gain)]
-    names = [name for name in diagnosis.measured if name in {*found, *gained}]
+    names = [name for name in diagnosis.measured if name in {*wrong_names, *gained}]
     of_remainder = list(diagnosis.remainder.results) if diagnosis.remainder is not None else []
     return names or of_remainder or list(diagnosis.measured)
 
 
-def is_gain(item: Gain) -> bool:
+def is_gain(gain: Gain) -> bool:
     """Tell whether a gain is more than chance."""
-    return item.p_value <= LIKELY and item.rmse_after.value < item.rmse_before.value
+    return gain.p_value <= LIKELY and gain.rmse_after.value < gain.rmse_before.value
 
 
-def is_perhaps_gain(item: Gain) -> bool:
+def is_perhaps_gain(gain: Gain) -> bool:
     """Tell whether an error falls by much, but in too few independent blocks to be more than chance."""
-    return not is_gain(item) and item.reducible_removed >= MUCH and item.p_value < FEW_BLOCKS
+    return not is_gain(gain) and gain.reducible_removed >= MUCH and gain.p_value < FEW_BLOCKS
 
 
 def _cause_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
@@ -277,24 +279,24 @@ def _cause_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
 def _gain_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
     gains = [gain for gain in diagnosis.gain if is_gain(gain)]
     perhaps = [gain for gain in diagnosis.gain if is_perhaps_gain(gain)]
-    for item in gains:
+    for gain in gains:
         yield (
-            f"on rows that were not fitted {_falls(item)} (noise floor "
-            f"{amount_text(item.noise_floor)}): {percent(item.reducible_removed)} of what can be removed is gone."
+            f"on rows that were not fitted {_falls(gain)} (noise floor "
+            f"{amount_text(gain.noise_floor)}): {percent(gain.reducible_removed)} of what can be removed is gone."
         )
-    for item in perhaps:
+    for gain in perhaps:
         yield (
-            f"on rows that were not fitted {_falls(item)}; "
-            f"in so few independent blocks that may be chance ({p_text(item.p_value)})."
+            f"on rows that were not fitted {_falls(gain)}; "
+            f"in so few independent blocks that may be chance ({p_text(gain.p_value)})."
         )
     if diagnosis.gain and not gains and not perhaps:
         yield "on rows that were not fitted there is no gain that could not be chance."
     yield from _held_out_sentences(diagnosis)
 
 
-def _falls(item: Gain) -> str:
-    before, after = amount_text(item.rmse_before), amount_text(item.rmse_after)
-    return f"the error of {spoken(item.result)} falls from {before} to {after}"
+def _falls(gain: Gain) -> str:
+    before, after = amount_text(gain.rmse_before), amount_text(gain.rmse_after)
+    return f"the error of {spoken(gain.result)} falls from {before} to {after}"
 
 
 def _held_out_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:

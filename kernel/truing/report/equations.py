@@ -32,78 +32,78 @@ class EquationLine:
     width: float
 
 
-def equation_of(setup: Setup, answers: Mapping[str, Any], item: ResultField) -> Equation | None:
+def equation_of(setup: Setup, answers: Mapping[str, Any], result: ResultField) -> Equation | None:
     """Return the formula of a result with everything that is printed of it, or None where it has none.
 
     The numbers are those that the function itself was called with: after the effects on the inputs.
     """
-    if not isinstance(item.spec, Found) or not item.spec.formula:
+    if not isinstance(result.spec, Found) or not result.spec.formula:
         return None
-    formula = parse(item.spec.formula)
-    fields = {name: field for name, field in formula_scope(setup.model, item).items() if name in formula.names}
+    formula = parse(result.spec.formula)
+    fields = {name: field for name, field in formula_scope(setup.model, result).items() if name in formula.names}
     known = {**setup.model.read_inputs(acting_inputs(setup)), **answers}
     values = {name: known.get(field.name) for name, field in sorted(fields.items())}
-    plain = all(_is_single(value) for value in (*values.values(), answers.get(item.name)))
+    plain = all(_is_single(value) for value in (*values.values(), answers.get(result.name)))
     numbered = values if plain else {}
-    numeric = item.spec.numeric
-    departing = _departing(formula, fields, numbered, answers.get(item.name), item) if plain else None
-    shown = answers.get(item.name) if departing is None else departing
+    numeric = result.spec.numeric
+    departing = _departing(formula, fields, numbered, answers.get(result.name), result) if plain else None
+    shown = answers.get(result.name) if departing is None else departing
     return Equation(
         formula=formula,
-        name=item.name,
-        symbol=item.symbol,
+        name=result.name,
+        symbol=result.symbol,
         symbols={name: field.symbol for name, field in fields.items() if field.symbol},
         numbers={n: _number(setup, fields[n], v, numeric=numeric) for n, v in numbered.items()} if plain else None,
-        results=_results(setup, item, shown, numeric=numeric) if _is_single(shown) else (),
+        results=_results(setup, result, shown, numeric=numeric) if _is_single(shown) else (),
         departs=departing is not None,
     )
 
 
 def _departing(
     formula: Formula, fields: Mapping[str, InputField | ResultField], values: Mapping[str, Any], answer: Any,
-    item: ResultField,
+    result: ResultField,
 ) -> float | None:  # fmt: skip
     """Return what the formula itself gives, in SI, where that is not the calculation's answer (an effect is on).
 
     Rounding is no difference: neither a millionth of the value nor what a billionth of any operand makes of it. None
     also for an equation that is solved, and where the formula gives no number.
     """
-    numeric = isinstance(item.spec, Found) and item.spec.numeric
+    numeric = isinstance(result.spec, Found) and result.spec.numeric
     if formula.left is not None or answer is None or any(value is None for value in values.values()):
         return None
     numbers = {name: from_si(value, fields[name].unit) if numeric else value for name, value in values.items()}
-    stated = from_si(float(answer), item.unit) if numeric else float(answer)
+    stated = from_si(float(answer), result.unit) if numeric else float(answer)
     try:
-        found = float(evaluate(formula, numbers))
+        value = float(evaluate(formula, numbers))
         nearby = [float(evaluate(formula, {**numbers, name: numbers[name] * (1 + 1e-9)})) for name in numbers]
     except (DeclarationError, TypeError, ValueError):
         return None
-    rounding = sum(abs(near - found) for near in nearby)
-    if not abs(found - stated) > 1e-6 * max(abs(found), abs(stated)) + rounding:
+    rounding = sum(abs(near - value) for near in nearby)
+    if not abs(value - stated) > 1e-6 * max(abs(value), abs(stated)) + rounding:
         return None
-    return float(to_si(found, item.unit)) if numeric else found
+    return float(to_si(value, result.unit)) if numeric else value
 
 
 def _is_single(value: Any) -> bool:
     return getattr(value, "ndim", 0) == 0
 
 
-def _number(setup: Setup, item: InputField | ResultField, value: Any, *, numeric: bool) -> tuple[str, str]:
+def _number(setup: Setup, field: InputField | ResultField, value: Any, *, numeric: bool) -> tuple[str, str]:
     """Return what stands for a name: in the printed unit (temperature levels in kelvin) or bare in the declared one."""
     if value is None or value != value:
         return ABSENT, ""
-    digits = INPUT_DIGITS if isinstance(item, InputField) else item.digits
+    digits = INPUT_DIGITS if isinstance(field, InputField) else field.digits
     if numeric:
-        return format_value(value, item.unit, digits)[0], ""
-    return format_value(value, difference_unit(setup.print_unit(item.name)), digits)
+        return format_value(value, field.unit, digits)[0], ""
+    return format_value(value, difference_unit(setup.print_unit(field.name)), digits)
 
 
-def _results(setup: Setup, item: ResultField, value: Any, *, numeric: bool) -> tuple[Value, ...]:
+def _results(setup: Setup, result: ResultField, value: Any, *, numeric: bool) -> tuple[Value, ...]:
     """Return the result as the formula gives it and, where that is another unit, as it is printed."""
-    unit = setup.print_unit(item.name)
-    last = Value(*format_value(value, unit, item.digits))
-    if numeric and unit != item.unit:
-        return Value(*format_value(value, item.unit, item.digits)), last
+    unit = setup.print_unit(result.name)
+    last = Value(*format_value(value, unit, result.digits))
+    if numeric and unit != result.unit:
+        return Value(*format_value(value, result.unit, result.digits)), last
     return (last,)
 
 
@@ -132,13 +132,13 @@ def _solved(writer: Writer, equation: Equation, name: EquationLine) -> list[Equa
     formula = equation.formula
     width = _width(formula.right, equation.symbols) + 1.2
     width += _width(formula.left, equation.symbols) if formula.left is not None else 0.0
-    found = [EquationLine(symbolic(writer, formula, equation.symbols), width)]
+    written = [EquationLine(symbolic(writer, formula, equation.symbols), width)]
     if equation.results:
         markup = name.markup
         for value in equation.results:
             markup = writer.infix(markup, "==", _quantity(writer, value)[0])
-        found.append(EquationLine(markup, name.width + 8))
-    return found
+        written.append(EquationLine(markup, name.width + 8))
+    return written
 
 
 def _quantity(writer: Writer, value: Value) -> tuple[str, float]:
@@ -158,14 +158,14 @@ EMPTY = {"MathMLWriter": "<mrow></mrow>", "LatexWriter": "{}"}
 
 def _packed(steps: list[EquationLine], limit: float) -> list[EquationLine]:
     """Put as many steps on a line as fit: markup of a step that begins with a sign joins directly."""
-    found = [steps[0]]
+    packed = [steps[0]]
     for step in steps[1:]:
-        last = found[-1]
+        last = packed[-1]
         if last.width + step.width <= limit:
-            found[-1] = EquationLine(last.markup + step.markup, last.width + step.width)
+            packed[-1] = EquationLine(last.markup + step.markup, last.width + step.width)
         else:
-            found.append(step)
-    return found
+            packed.append(step)
+    return packed
 
 
 def _broken(
@@ -178,11 +178,11 @@ def _broken(
     (_, first), *others = _terms(formula.right)
     if width <= limit or not others:
         return [EquationLine(layout.formula(replace(formula, left=None)), width)]
-    found = [EquationLine(layout.at_least(simplified(first), Binding.SUM).markup, _width(first, texts))]
+    written = [EquationLine(layout.at_least(simplified(first), Binding.SUM).markup, _width(first, texts))]
     for sign, node in others:
         piece = layout.at_least(simplified(node), Binding.SUM if sign == "+" else Binding.PRODUCT, signed=False)
-        found.append(_after(writer, sign, EquationLine(piece.markup, _width(node, texts))))
-    return _packed(found, limit)
+        written.append(_after(writer, sign, EquationLine(piece.markup, _width(node, texts))))
+    return _packed(written, limit)
 
 
 def _layout(writer: Writer, equation: Equation, numbers: Mapping[str, tuple[str, str]] | None) -> Layout:
@@ -220,7 +220,7 @@ def _width(node: Node, texts: Mapping[str, str]) -> float:
         case Call(("cases" | "either"), arguments):
             values, conditions = arguments[::2], arguments[1::2]
             widest = max(_width(value, texts) for value in values)
-            return widest + max((_width(one, texts) for one in conditions), default=4.0) + 3
+            return widest + max((_width(condition, texts) for condition in conditions), default=4.0) + 3
         case Call(function, arguments):
             inner = sum(_width(argument, texts) for argument in arguments)
             return inner + (1.0 if function == "sqrt" else 0.5 * len(function) + 0.8)

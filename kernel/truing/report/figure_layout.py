@@ -119,8 +119,8 @@ def _unclipped(axes: Axes, renderer: Any) -> Bbox:
 
 def _room(axes: Axes, around: Floats) -> Floats:
     """Return what a panel needs around its place in the grid, which is larger than a panel of fixed aspect."""
-    place = axes.get_position(original=True).transformed(axes.figure.transFigure)
-    return np.maximum(_beyond(_grown(axes, around), place), 0.0)
+    box = axes.get_position(original=True).transformed(axes.figure.transFigure)
+    return np.maximum(_beyond(_grown(axes, around), box), 0.0)
 
 
 def _grown(axes: Axes, around: Floats) -> Bbox:
@@ -139,9 +139,9 @@ def _set_in_grid(figure: Any, rooms: Floats, padding: Floats) -> Floats:
     places = [axes.get_subplotspec() for axes in figure.axes]
     grid = places[0].get_gridspec()
     width, height = figure.bbox.size
-    columns = [(place.colspan.start, place.colspan.stop) for place in places]
+    columns = [(cell.colspan.start, cell.colspan.stop) for cell in places]
     across = _sides(columns, padding[0] + rooms[:, [0, 2]], grid.get_width_ratios(), width)
-    rows = [(place.rowspan.start, place.rowspan.stop) for place in places]
+    rows = [(cell.rowspan.start, cell.rowspan.stop) for cell in places]
     down = _sides(rows, padding[1] + rooms[:, [3, 1]], grid.get_height_ratios(), height)
     for axes, (left, right), (top, bottom) in zip(figure.axes, across, down, strict=True):
         box = Bbox([[left, height - bottom], [right, height - top]])

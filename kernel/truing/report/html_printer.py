@@ -77,16 +77,16 @@ def _markup(text: str) -> Any:
 
 @lru_cache(maxsize=1)
 def _environment() -> Environment:
-    made = Environment(
+    environment = Environment(
         loader=FileSystemLoader(template_folder()), undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True,
         autoescape=True, finalize=_printable,
     )  # fmt: skip
-    made.filters.update(
+    environment.filters.update(
         said=_said, formula=_equation, groups=_groups, breakable=_breakable, unbroken=_unbroken, own=_markup
     )
-    made.tests["wide"] = _is_wide
-    made.globals["marks"] = MARKS
-    return made
+    environment.tests["wide"] = _is_wide
+    environment.globals["marks"] = MARKS
+    return environment
 
 
 def _printable(value: Any) -> Any:

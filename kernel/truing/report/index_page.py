@@ -58,17 +58,19 @@ class IndexView:
     others: tuple[Other, ...]
 
 
-def index_html(listing: Listing, place: Path) -> str:
-    """Write the page that will stand at ``place``; its links lead to the sheets from there."""
+def index_html(listing: Listing, target: Path) -> str:
+    """Write the page that will stand at ``target``; its links lead to the sheets from there."""
     script = (template_folder() / "index.js").read_text(encoding="utf-8")
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
-    return page("index.html.j2", _view(listing, place), styles=("sheet.css", "index.css"), script=script, digest=digest)
+    return page(
+        "index.html.j2", _view(listing, target), styles=("sheet.css", "index.css"), script=script, digest=digest
+    )
 
 
-def _view(listing: Listing, place: Path) -> IndexView:
+def _view(listing: Listing, target: Path) -> IndexView:
     title = f"Runs and diagnoses in {Path(listing.folder).name or Path(listing.folder).absolute().name}"
     head = Head(title=title, model="", fields=(), signatures=(), footer=title)
-    rows = tuple(_row(entry, Path(listing.folder), place) for entry in listing.entries)
+    rows = tuple(_row(entry, Path(listing.folder), target) for entry in listing.entries)
     return IndexView(head, summary_of(listing), rows, listing.others)
 
 
@@ -85,10 +87,10 @@ def summary_of(listing: Listing) -> str:
     return ", ".join(parts)
 
 
-def _row(entry: FolderEntry, folder: Path, place: Path) -> IndexRow:
+def _row(entry: FolderEntry, folder: Path, target: Path) -> IndexRow:
     return IndexRow(
         entry=entry,
-        link=_link(folder.absolute() / entry.sheet, place) if entry.sheet else "",
+        link=_link(folder.absolute() / entry.sheet, target) if entry.sheet else "",
         state="found" if entry.kind == "diagnosis" else entry.state or "none",
         margin=_margin(entry),
         shown=tuple(_findings(entry)),
@@ -96,10 +98,10 @@ def _row(entry: FolderEntry, folder: Path, place: Path) -> IndexRow:
     )
 
 
-def _link(sheet: Path, place: Path) -> str:
+def _link(sheet: Path, target: Path) -> str:
     """Return the address of a sheet as seen from the page; from another drive the whole of it."""
     try:
-        return quote(os.path.relpath(sheet, place.absolute().parent).replace(os.sep, "/"))
+        return quote(os.path.relpath(sheet, target.absolute().parent).replace(os.sep, "/"))
     except ValueError:
         return sheet.as_uri()
 
@@ -132,17 +134,17 @@ def listing_document(listing: Listing) -> dict[str, Any]:
     return {"folder": listing.folder, "entries": entries, "others": [asdict(other) for other in listing.others]}
 
 
-def write_index(place: Path, listing: Listing) -> None:
+def write_index(target: Path, listing: Listing) -> None:
     """Write the page, whole or not at all; one of ours is replaced. Raises OutputError where another file is there."""
-    _demand_ours(place)
-    write_files({place: index_html(listing, place)})
+    _demand_ours(target)
+    write_files({target: index_html(listing, target)})
 
 
-def _demand_ours(place: Path) -> None:
+def _demand_ours(target: Path) -> None:
     try:
-        if place.is_dir():
-            raise OutputError(f"{place}: is a folder; name a file, such as {place / 'index.html'}")
-        if place.exists() and MARK not in place.read_text(encoding="utf-8", errors="replace")[:4000]:
-            raise OutputError(f"{place}: is a file that calc index has not written, so it is left alone; name another")
+        if target.is_dir():
+            raise OutputError(f"{target}: is a folder; name a file, such as {target / 'index.html'}")
+        if target.exists() and MARK not in target.read_text(encoding="utf-8", errors="replace")[:4000]:
+            raise OutputError(f"{target}: is a file that calc index has not written, so it is left alone; name another")
     except OSError as error:
-        raise OutputError(f"{place}: cannot be read: {error.strerror or error}") from error
+        raise OutputError(f"{target}: cannot be read: {error.strerror or error}") from error

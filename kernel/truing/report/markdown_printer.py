@@ -187,6 +187,6 @@ def escaped(text: object, *, begins: bool = True) -> str:
     ``begins``: it may stand at the beginning of a line, where a number or a dash would make a list.
     """
     words = printable(str(text))
-    safe = _MARK.sub(lambda found: ENTITIES.get(found[0], f"\\{found[0]}"), words)
-    safe = _AUTOLINK.sub(lambda found: f"{found[1]}&#{ord(found[2])};", safe)
+    safe = _MARK.sub(lambda match: ENTITIES.get(match[0], f"\\{match[0]}"), words)
+    safe = _AUTOLINK.sub(lambda match: f"{match[1]}&#{ord(match[2])};", safe)
     return _LINE_START.sub(r"\1\\\2", safe) if begins else safe

@@ -44,11 +44,11 @@ def find_browser() -> Path | None:
     """Return a Chromium, Chrome or Edge on this machine, or None; CHROME_PATH names one."""
     named = os.environ.get("CHROME_PATH", "")
     for name in [named] if named else NAMES:
-        found = shutil.which(name)
-        if found:
-            return Path(found)
+        program = shutil.which(name)
+        if program:
+            return Path(program)
     usual = () if named else _usual_places()
-    return next((place for place in usual if place.is_file()), None)
+    return next((path for path in usual if path.is_file()), None)
 
 
 def _usual_places() -> Iterator[Path]:

@@ -257,12 +257,12 @@ def cases_table(calculation: Calculation, cases: CasesTable, most: int) -> Table
     places = list(range(min(len(cases.cases), most)))
     if cases.governing not in places:
         places = [*places[:-1], cases.governing]
-    rows = [_case_row(setup, cases.cases[place], cases.varied, checks) for place in places]
+    rows = [_case_row(setup, cases.cases[index], cases.varied, checks) for index in places]
     left = len(cases.cases) - len(places)
     note = f"The governing case ({case_name(cases.cases[cases.governing])}) is the one calculated in full below."
     note += f" {left} further cases are not printed." if left else ""
     note += f" In the file: {cases.count.sentence()}."
-    states = tuple("marked" if place == cases.governing else "" for place in places)
+    states = tuple("marked" if index == cases.governing else "" for index in places)
     return TableView("All cases", columns, tuple(rows), note, states)
 
 
@@ -275,14 +275,14 @@ def _case_row(setup: Setup, case: CaseResult, varied: Sequence[str], checks: Seq
     values = [_case_value(setup, case.values, name) for name in varied]
     if case.reason is not None:
         return (case_name(case), *values, *("–" for _ in checks), "–", f"cannot be calculated: {case.reason}")
-    found = {check.name: check_value(check, check.value).text for check in case.checks}
+    texts = {check.name: check_value(check, check.value).text for check in case.checks}
     broken = [check.name.replace("_", " ") for check in case.checks if check.state == case.verdict]
     verdict_text = case.verdict if case.verdict == "passes" else f"{SHORT[case.verdict]}: {', '.join(broken)}"
     margin = least_margin(case.checks)
     return (
         case_name(case),
         *values,
-        *(found.get(name, "–") for name in checks),
+        *(texts.get(name, "–") for name in checks),
         with_unit(margin.text, margin.unit),
         verdict_text,
     )
@@ -358,28 +358,28 @@ def _is_idle(setup: Setup, name: str, value: Value) -> bool:
 
 
 def _input_row(setup: Setup, name: str, value: Value, *, calibrated: bool) -> tuple[Text, ...]:
-    item = setup.model.input_fields[name]
-    note = "; ".join(part for part in (item.spec.note, halving_in_words(item)) if part)
+    field = setup.model.input_fields[name]
+    note = "; ".join(part for part in (field.spec.note, halving_in_words(field)) if part)
     fitted = setup.calibrated.get(name)
     own = "" if fitted is None else format_value(fitted, setup.print_unit(name), STATED_DIGITS)[0]
     return (
-        SymbolText(item.symbol) if item.symbol else "", label_of(note, name), value.text, value.unit,
-        *((own,) if calibrated else ()), "stated" if name in setup.source.stated else "default", item.spec.source,
+        SymbolText(field.symbol) if field.symbol else "", label_of(note, name), value.text, value.unit,
+        *((own,) if calibrated else ()), "stated" if name in setup.source.stated else "default", field.spec.source,
     )  # fmt: skip
 
 
-def input_value(setup: Setup, item: InputField, value: Any) -> Value:
+def input_value(setup: Setup, field: InputField, value: Any) -> Value:
     """Write one input: a number in its printed unit, a choice, a switch, a file."""
-    if item.kind == "file":
-        if item.name in setup.source.tables:
-            return Value(PurePath(setup.source.tables[item.name]["file"]).name)
+    if field.kind == "file":
+        if field.name in setup.source.tables:
+            return Value(PurePath(setup.source.tables[field.name]["file"]).name)
         return Value(NOT_GIVEN if value is None else "default")
     if isinstance(value, bool):
         return Value("yes" if value else "no")
-    if isinstance(value, str) or (isinstance(item.spec, Given) and item.spec.unit is None):
+    if isinstance(value, str) or (isinstance(field.spec, Given) and field.spec.unit is None):
         return Value(str(value))
-    unit = setup.print_unit(item.name)
-    if item.kind == "series":
+    unit = setup.print_unit(field.name)
+    if field.kind == "series":
         return series_value(value, unit)
     if value != value:
         return Value(NOT_GIVEN)
@@ -449,12 +449,12 @@ def _condition_row(setup: Setup, name: str) -> tuple[Text, ...]:
     return (label_of(condition.note, name), *values)
 
 
-def _effect_row(item: SwitchedOn) -> tuple[Text, ...]:
-    effect = item.effect
+def _effect_row(active: SwitchedOn) -> tuple[Text, ...]:
+    effect = active.effect
     unknowns: list[Text] = []
-    for unknown in item.unknowns:
-        value = Value(*format_value(item.values[unknown.name], unknown.unit, RESULT_DIGITS))
-        sd = item.sds.get(unknown.name)
+    for unknown in active.unknowns:
+        value = Value(*format_value(active.values[unknown.name], unknown.unit, RESULT_DIGITS))
+        sd = active.sds.get(unknown.name)
         scatter = (" ± ", Value(*format_difference(sd, unknown.unit, 3)), " ", Aside("(sd)")) if sd else ()
         unknowns.append((unknown.name.replace("_", " ") + " = ", value, *scatter))
     why = with_source(effect.why or effect.looks_like, effect.source)
@@ -505,12 +505,12 @@ def check_rows(calculation: Calculation) -> Iterator[CheckRow]:
     relative = relative_margins(calculation.checks)
     for check in calculation.checks:
         require = named.get(check.name)
-        item = fields.get(check.name if require is None else require.result)
+        field = fields.get(check.name if require is None else require.result)
         calculated = require is not None and not check.chance and require.limit in fields
         yield CheckRow(
             name=check.name,
-            symbol=item.symbol if item is not None and item.name == check.compared else "",
-            note=item.spec.note if item is not None else check.note,
+            symbol=field.symbol if field is not None and field.name == check.compared else "",
+            note=field.spec.note if field is not None else check.note,
             compared=check.compared or check.name,
             relation=check.relation,
             value=check_value(check, check.value),

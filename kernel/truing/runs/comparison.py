@@ -54,11 +54,11 @@ def number_in(piece: Any) -> float | None:
     return float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else None
 
 
-def in_order(found: Sequence[Change]) -> list[Change]:
+def in_order(unordered: Sequence[Change]) -> list[Change]:
     """Return the changes as they are read: checks of another state, the worst first, then the rest as it was."""
     order = list(EXIT_CODES)
-    flips = sorted((one for one in found if one.flipped), key=lambda one: -order.index(_state(one.after)))
-    return [*flips, *(one for one in found if not one.flipped)]
+    flips = sorted((one for one in unordered if one.flipped), key=lambda one: -order.index(_state(one.after)))
+    return [*flips, *(one for one in unordered if not one.flipped)]
 
 
 def compared(before: Mapping[str, Any], after: Mapping[str, Any]) -> list[Change]:
@@ -75,20 +75,20 @@ def changes(before: Mapping[str, Any], after: Mapping[str, Any]) -> list[Change]
 
     Numbers that agree to ``ROUNDING`` are equal: another order of summation is no change.
     """
-    found = [*_versions(before, after)]
+    changed = [*_versions(before, after)]
     for kind in ("inputs", "tolerances", "conditions", "effects", "results"):
-        found += _of_mapping(kind, before.get(kind) or {}, after.get(kind) or {})
-    found += _of_mapping("checks", _by_name(before.get("checks")), _by_name(after.get("checks")))
-    return [*found, *_of_mapping("studies", before.get("studies") or {}, after.get("studies") or {})]
+        changed += _of_mapping(kind, before.get(kind) or {}, after.get(kind) or {})
+    changed += _of_mapping("checks", _by_name(before.get("checks")), _by_name(after.get("checks")))
+    return [*changed, *_of_mapping("studies", before.get("studies") or {}, after.get("studies") or {})]
 
 
 def changes_of_diagnoses(before: Mapping[str, Any], after: Mapping[str, Any]) -> list[Change]:
     """Return what differs between two diagnosis.json documents: settings, data, verdict, causes, errors, gain."""
-    found = [*_versions(before, after)]
+    changed = [*_versions(before, after)]
     one, other = _flat(before), _flat(after)
     for kind in one:
-        found += _of_mapping(kind, one[kind], other[kind])
-    return found
+        changed += _of_mapping(kind, one[kind], other[kind])
+    return changed
 
 
 def _flat(document: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
@@ -97,14 +97,16 @@ def _flat(document: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     for cause in document.get("causes") or []:
         causes[cause["effect"]] = {"value": "named", "unit": ""}
         causes |= {f"{cause['effect']}.{name}": value for name, value in cause["unknowns"].items()}
-    gain = {name: item for name, item in (document.get("gain") or {}).items() if isinstance(item, Mapping)}
+    gain = {name: numbers for name, numbers in (document.get("gain") or {}).items() if isinstance(numbers, Mapping)}
     remainder = document.get("remainder") or {}
     return {
         "data": {name: document.get(name) for name in ("input_hash", "measured", "rows", "runs", "held_out", "files")},
         "verdict": {
             "verdict": document.get("verdict"),
             "unique": document.get("unique"),
-            "not excluded": sorted(" + ".join(item["causes"]) for item in document.get("alternatives") or []),
+            "not excluded": sorted(
+                " + ".join(alternative["causes"]) for alternative in document.get("alternatives") or []
+            ),
             "remainder over": remainder.get("depends_on"),
         },
         "causes": causes,
@@ -115,7 +117,7 @@ def _flat(document: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
 
 
 def _parts(of_results: Mapping[str, Any], names: Sequence[str]) -> dict[str, Any]:
-    return {f"{result}.{name}": item.get(name) for result, item in of_results.items() for name in names}
+    return {f"{result}.{name}": numbers.get(name) for result, numbers in of_results.items() for name in names}
 
 
 def _versions(before: Mapping[str, Any], after: Mapping[str, Any]) -> Iterator[Change]:
@@ -275,7 +277,7 @@ def _value(value: Any) -> str:
         return ABSENT
     if isinstance(value, bool):
         return "yes" if value else "no"
-    if isinstance(value, list) and all(isinstance(item, str) for item in value):
+    if isinstance(value, list) and all(isinstance(member, str) for member in value):
         return _short(", ".join(value) or ABSENT)
     if isinstance(value, dict) and "spread" in value:
         return one_line(value["spread"])
@@ -286,8 +288,8 @@ def _value(value: Any) -> str:
         return _short(_with_state(said, value.get("state", "passes")))
     if isinstance(value, dict) and {"name", "version", "model"} <= value.keys():
         return _short(f"{value['model']} {value['version']}")
-    if isinstance(value, dict) and all(isinstance(item, dict) for item in value.values()):
-        return _short(", ".join(f"{name} = {_value(item)}" for name, item in value.items()), 2 * LONGEST)
+    if isinstance(value, dict) and all(isinstance(member, dict) for member in value.values()):
+        return _short(", ".join(f"{name} = {_value(member)}" for name, member in value.items()), 2 * LONGEST)
     return _short(str(value))
 
 

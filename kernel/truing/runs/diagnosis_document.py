@@ -131,14 +131,14 @@ def _amount(amount: Amount) -> dict[str, Any]:
     return _value(amount.value, amount.unit)
 
 
-def _wrong(item: Wrong, labels: Mapping[str, str]) -> dict[str, Any]:
-    noise = item.noise
+def _wrong(wrong: Wrong, labels: Mapping[str, str]) -> dict[str, Any]:
+    noise = wrong.noise
     return {
-        "rows": item.rows,
-        "rmse": _amount(item.rmse),
-        "noise_floor": _amount(item.noise_floor),
-        "stated_noise": None if item.stated is None else _amount(item.stated),
-        "reducible_share": clean(item.reducible_share),
+        "rows": wrong.rows,
+        "rmse": _amount(wrong.rmse),
+        "noise_floor": _amount(wrong.noise_floor),
+        "stated_noise": None if wrong.stated is None else _amount(wrong.stated),
+        "reducible_share": clean(wrong.reducible_share),
         "noise": {
             "sd": _amount(noise.sd),
             "autocorrelation": clean(noise.autocorrelation),
@@ -148,8 +148,13 @@ def _wrong(item: Wrong, labels: Mapping[str, str]) -> dict[str, Any]:
             "outliers": [{"file": labels.get(file, file), "line": int(line)} for file, line in noise.outliers],
         },
         "findings": [
-            {"kind": one.kind, "covariate": one.covariate, "p_value": clean(one.p_value), "text": one.text}
-            for one in item.findings
+            {
+                "kind": finding.kind,
+                "covariate": finding.covariate,
+                "p_value": clean(finding.p_value),
+                "text": finding.text,
+            }
+            for finding in wrong.findings
         ],
     }
 
@@ -178,17 +183,17 @@ def _fitted(fitted: tuple[float, float | None, float | None], unit: str) -> dict
     return {**_value(value, unit), "interval95": [_in(low, unit), _in(high, unit)]}
 
 
-def _alternative(item: Alternative) -> dict[str, Any]:
+def _alternative(alternative: Alternative) -> dict[str, Any]:
     return {
-        "causes": list(item.causes),
-        "behind": clean(item.behind),
-        "separation": clean(item.separation),
-        "depends_on": list(item.depends_on),
+        "causes": list(alternative.causes),
+        "behind": clean(alternative.behind),
+        "separation": clean(alternative.separation),
+        "depends_on": list(alternative.depends_on),
         "unknowns": {
             effect: {unknown.name: _unknown(unknown) for unknown in unknowns}
-            for effect, unknowns in item.unknowns.items()
+            for effect, unknowns in alternative.unknowns.items()
         },
-        "same_as": {effect: list(names) for effect, names in item.same_as.items()},
+        "same_as": {effect: list(names) for effect, names in alternative.same_as.items()},
     }
 
 
@@ -196,29 +201,35 @@ def _sight(diagnosis: DiagnosisResult) -> dict[str, Any]:
     """Say what this data could show, and what it could not."""
     seen = diagnosis.seen
     return {
-        "not_excited": [item.name for item in seen if item.sight == "not excited"],
-        "not_fitted": {item.name: item.text for item in seen if item.sight == "cannot be fitted"},
+        "not_excited": [seen_effect.name for seen_effect in seen if seen_effect.sight == "not excited"],
+        "not_fitted": {
+            seen_effect.name: seen_effect.text for seen_effect in seen if seen_effect.sight == "cannot be fitted"
+        },
         "not_measured": {effect: list(conditions) for effect, conditions in diagnosis.not_measured.items()},
-        "hidden_in_tolerances": [item.name for item in seen if item.sight == "hidden in the tolerances"],
+        "hidden_in_tolerances": [
+            seen_effect.name for seen_effect in seen if seen_effect.sight == "hidden in the tolerances"
+        ],
         "smallest_visible": {
-            item.name: {**_amount(item.smallest), "sight": item.sight} for item in seen if item.smallest is not None
+            seen_effect.name: {**_amount(seen_effect.smallest), "sight": seen_effect.sight}
+            for seen_effect in seen
+            if seen_effect.smallest is not None
         },
     }
 
 
-def _gain(item: Gain) -> dict[str, Any]:
+def _gain(gain: Gain) -> dict[str, Any]:
     said = {
-        "rmse_before": _amount(item.rmse_before),
-        "rmse_after": _amount(item.rmse_after),
-        "noise_floor": _amount(item.noise_floor),
-        "reducible_removed": clean(item.reducible_removed),
-        "log_score_gain": clean(item.log_score_gain),
-        "p_value": clean(item.p_value),
-        "coverage90": clean(item.coverage90),
+        "rmse_before": _amount(gain.rmse_before),
+        "rmse_after": _amount(gain.rmse_after),
+        "noise_floor": _amount(gain.noise_floor),
+        "reducible_removed": clean(gain.reducible_removed),
+        "log_score_gain": clean(gain.log_score_gain),
+        "p_value": clean(gain.p_value),
+        "coverage90": clean(gain.coverage90),
     }
-    if item.held_out is not None:
-        before, after = item.held_out
-        unit = item.rmse_before.unit
+    if gain.held_out is not None:
+        before, after = gain.held_out
+        unit = gain.rmse_before.unit
         said["held_out"] = {"rmse_before": _value(before, unit), "rmse_after": _value(after, unit)}
     return said
 

@@ -117,11 +117,11 @@ def _case_value(setup: Setup, name: str, value: Any) -> dict[str, Any]:
 
 def large_arrays(calculation: Calculation) -> dict[str, Any]:
     """Return the results that are too large for results.json, in the unit each is printed in."""
-    found = {}
+    arrays = {}
     for name, value in calculation.answers.items():
         if np.size(value) > LARGE:
-            found[name] = from_si(np.asarray(value, dtype=float), calculation.setup.print_unit(name))
-    return found
+            arrays[name] = from_si(np.asarray(value, dtype=float), calculation.setup.print_unit(name))
+    return arrays
 
 
 def clean(value: Any) -> Any:
@@ -151,14 +151,14 @@ def _value(value: Any, unit: str) -> dict[str, Any]:
     return {"value": clean(from_si(value, unit)), "unit": unit}
 
 
-def _input_value(setup: Setup, item: InputField, value: Any) -> dict[str, Any]:
-    if item.kind == "file":
-        return {"value": setup.source.files.get(item.name), "unit": ""}
-    if item.kind in {"switch", "text", "choice", "integer"} or getattr(item.spec, "unit", None) is None:
-        return {"value": clean(value), "unit": item.unit}
-    if item.kind == "series":
-        return _value(np.asarray(value, dtype=float), setup.print_unit(item.name))
-    return _value(value, setup.print_unit(item.name))
+def _input_value(setup: Setup, field: InputField, value: Any) -> dict[str, Any]:
+    if field.kind == "file":
+        return {"value": setup.source.files.get(field.name), "unit": ""}
+    if field.kind in {"switch", "text", "choice", "integer"} or getattr(field.spec, "unit", None) is None:
+        return {"value": clean(value), "unit": field.unit}
+    if field.kind == "series":
+        return _value(np.asarray(value, dtype=float), setup.print_unit(field.name))
+    return _value(value, setup.print_unit(field.name))
 
 
 def _tolerances(setup: Setup) -> dict[str, Any]:
@@ -166,19 +166,19 @@ def _tolerances(setup: Setup) -> dict[str, Any]:
     scattering = setup.distributions()
     for name in setup.model.tolerances:
         on = {}
-        for target, item in scattering.get(name, {}).items():
+        for target, distribution in scattering.get(name, {}).items():
             unit = setup.print_unit(target)
-            sd = item.sd / unit_factor(difference_unit(unit))
-            on[target] = {"mean": _number(from_si(item.mean, unit)), "sd": _number(sd), "unit": unit}
+            sd = distribution.sd / unit_factor(difference_unit(unit))
+            on[target] = {"mean": _number(from_si(distribution.mean, unit)), "sd": _number(sd), "unit": unit}
         said[name] = {"spread": setup.spread_of(name).text if on else "off", "on": on}
     return said
 
 
-def _effect_values(item: SwitchedOn) -> dict[str, Any]:
+def _effect_values(active: SwitchedOn) -> dict[str, Any]:
     said = {}
-    for unknown in item.unknowns:
-        value = _value(item.values[unknown.name], unknown.unit)
-        sd = item.sds.get(unknown.name)
+    for unknown in active.unknowns:
+        value = _value(active.values[unknown.name], unknown.unit)
+        sd = active.sds.get(unknown.name)
         if sd is not None:
             value["sd"] = _number(sd / unit_factor(difference_unit(unknown.unit)))
         said[unknown.name] = value

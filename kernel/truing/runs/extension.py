@@ -62,8 +62,8 @@ def _head(diagnosis: DiagnosisResult) -> Iterator[str]:
         for cause in diagnosis.causes:
             if cause.same_as:
                 yield f"The same curve as {cause.effect} on this data: {' and '.join(cause.same_as)}."
-    for item in diagnosis.alternatives[:4]:
-        yield f"Not excluded: {' and '.join(item.causes)}, {item.behind:.1f} score units behind."
+    for alternative in diagnosis.alternatives[:4]:
+        yield f"Not excluded: {' and '.join(alternative.causes)}, {alternative.behind:.1f} score units behind."
     if diagnosis.remainder is not None:
         where = ", ".join(diagnosis.remainder.depends_on)
         yield f"Not in this file: an unregistered remainder over {where}; new_effect.py holds its shape."
@@ -86,8 +86,8 @@ def _of_section(name: str, diagnosis: DiagnosisResult) -> Iterator[str]:
             yield from _of_cause(cause, diagnosis)
 
 
-def _moved(item: Calibrated) -> str:
-    return f"{item.name}: moved by {item.of_its_sd:+.2f} of its standard deviation."
+def _moved(calibrated: Calibrated) -> str:
+    return f"{calibrated.name}: moved by {calibrated.of_its_sd:+.2f} of its standard deviation."
 
 
 def _of_cause(cause: Cause, diagnosis: DiagnosisResult) -> Iterator[str]:

@@ -199,19 +199,19 @@ def study_files(outcomes: Mapping[str, Outcome], taken: Mapping[str, str | bytes
     Raises PluginError for a name that is no plain file name, that a run folder or another study uses, and for content
     that is neither text nor bytes.
     """
-    found: dict[str, str | bytes] = {}
+    files: dict[str, str | bytes] = {}
     for study, outcome in outcomes.items():
         for name, content in files_of(outcome).items():
             if not NAME.fullmatch(name) or name.endswith("."):
                 raise PluginError(f"study '{study}' names its file {name!r}; a plain file name is wanted")
-            if name.casefold() in {other.casefold() for other in (*taken, *KEPT, *found)}:
+            if name.casefold() in {other.casefold() for other in (*taken, *KEPT, *files)}:
                 raise PluginError(f"study '{study}' names its file '{name}', which the run folder has already")
             if not isinstance(content, (str, bytes)):
                 raise PluginError(
                     f"study '{study}' gives '{name}' as {type(content).__name__}; text or bytes is wanted"
                 )
-            found[name] = content
-    return found
+            files[name] = content
+    return files
 
 
 KEPT = (

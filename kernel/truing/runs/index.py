@@ -102,55 +102,55 @@ def list_folder(folder: Path) -> Listing:
         raise UnknownPluginError(f"{folder}: {what}")
     entries: list[FolderEntry] = []
     others: list[Other] = []
-    for found in _walk(folder, folder, 0):
-        if isinstance(found, FolderEntry):
-            entries.append(found)
+    for listed in _walk(folder, folder, 0):
+        if isinstance(listed, FolderEntry):
+            entries.append(listed)
         else:
-            others.append(found)
+            others.append(listed)
     entries.sort(key=lambda entry: entry.name)
     entries.sort(key=lambda entry: -(entry.stamp or 0.0))
     return Listing(str(folder), tuple(entries), tuple(sorted(others, key=lambda other: other.name)))
 
 
-def _walk(root: Path, place: Path, depth: int) -> Iterator[FolderEntry | Other]:
+def _walk(root: Path, path: Path, depth: int) -> Iterator[FolderEntry | Other]:
     """Yield what a folder is or holds; one with neither run nor diagnosis in it is said to be foreign."""
-    name = place.relative_to(root).as_posix()
-    kind = next((kind for kind, (document, _) in DOCUMENTS.items() if (place / document).exists()), None)
+    name = path.relative_to(root).as_posix()
+    kind = next((kind for kind, (document, _) in DOCUMENTS.items() if (path / document).exists()), None)
     if kind is not None:
         try:
-            yield _entry(place, name if name != "." else root.absolute().name, kind)
+            yield _entry(path, name if name != "." else root.absolute().name, kind)
         except (_DamagedError, RecursionError) as fault:
             yield Other(name, str(fault) or "its documents are nested too deeply")
         return
     try:
-        inside = sorted(os.scandir(place), key=lambda item: item.name)
+        inside = sorted(os.scandir(path), key=lambda child: child.name)
     except OSError as error:
         yield Other(name, f"cannot be read: {error.strerror or error}")
         return
-    if (place / HEADER).exists():
+    if (path / HEADER).exists():
         yield Other(name, "finished batches of an interrupted run; calc run --resume takes them up")
         return
-    yield from _below(root, place, depth, inside=inside)
+    yield from _below(root, path, depth, inside=inside)
 
 
-def _below(root: Path, place: Path, depth: int, *, inside: Sequence[os.DirEntry[str]]) -> Iterator[FolderEntry | Other]:
-    name = place.relative_to(root).as_posix()
-    folders = [item for item in inside if item.is_dir() and not item.name.startswith(".")]
+def _below(root: Path, path: Path, depth: int, *, inside: Sequence[os.DirEntry[str]]) -> Iterator[FolderEntry | Other]:
+    name = path.relative_to(root).as_posix()
+    folders = [child for child in inside if child.is_dir() and not child.name.startswith(".")]
     if depth >= DEEPEST and folders:
         yield Other(name, f"lies {DEEPEST} folders deep; what is below it was not looked at")
         return
-    for item in folders:
-        if item.is_symlink():
-            yield Other((place / item.name).relative_to(root).as_posix(), "is a link and was not followed")
+    for child in folders:
+        if child.is_symlink():
+            yield Other((path / child.name).relative_to(root).as_posix(), "is a link and was not followed")
         else:
-            yield from _walk(root, place / item.name, depth + 1)
+            yield from _walk(root, path / child.name, depth + 1)
     if depth and not folders:
         yield Other(name, "holds no run and no diagnosis" if inside else "is empty")
 
 
-def _entry(place: Path, name: str, kind: FolderKind) -> FolderEntry:
+def _entry(path: Path, name: str, kind: FolderKind) -> FolderEntry:
     document_name, schema = DOCUMENTS[kind]
-    document = _json(place / document_name)
+    document = _json(path / document_name)
     if document.get("schema") != schema:
         raise _DamagedError(f"its {document_name} is no {schema} document")
     try:
@@ -158,9 +158,9 @@ def _entry(place: Path, name: str, kind: FolderKind) -> FolderEntry:
     except (KeyError, TypeError, ValueError, AttributeError):
         verb = "run" if kind == "run" else "diagnose"
         raise _DamagedError(f"its {document_name} is not as calc {verb} writes it") from None
-    date, stamp = _date(place / "run.json")
-    sheet = f"{name}/sheet.html" if (place / "sheet.html").is_file() else ""
-    return replace(entry, date=date, stamp=stamp, head=_head(place / "inputs.toml"), sheet=sheet)
+    date, stamp = _date(path / "run.json")
+    sheet = f"{name}/sheet.html" if (path / "sheet.html").is_file() else ""
+    return replace(entry, date=date, stamp=stamp, head=_head(path / "inputs.toml"), sheet=sheet)
 
 
 def _json(path: Path) -> dict[str, Any]:
@@ -179,7 +179,7 @@ def _json(path: Path) -> dict[str, Any]:
 
 def _of_run(document: Mapping[str, Any], name: str) -> FolderEntry:
     cases = list(document.get("cases") or [])
-    checks = [_check(item) for each in (cases or [document]) for item in each["checks"]]
+    checks = [_check(check) for each in (cases or [document]) for check in each["checks"]]
     impossible = any(case.get("failed") is not None for case in cases)
     states = {check.name: check.state for check in checks if check.state not in {None, "passes"}}
     verdict = worst(check.state for check in checks if check.state is not None) if not impossible else "fails"
@@ -202,15 +202,15 @@ def _made_by(document: Mapping[str, Any], name: str, kind: FolderKind) -> dict[s
     return {"name": name, "kind": kind, "warnings": warnings, "head": {}} | {key: str(v) for key, v in named.items()}
 
 
-def _check(item: Mapping[str, Any]) -> ListedNumber:
+def _check(check: Mapping[str, Any]) -> ListedNumber:
     return ListedNumber(
-        name=str(item["name"]),
-        value=_number(item["value"]),
-        unit=str(item["unit"]),
-        limit=_number(item["limit"]),
-        margin=_number(item["margin"]),
-        relation=str(item.get("relation", "")),
-        state=_state(item.get("state", "passes" if item["passed"] else "fails")),  # an older run has no state
+        name=str(check["name"]),
+        value=_number(check["value"]),
+        unit=str(check["unit"]),
+        limit=_number(check["limit"]),
+        margin=_number(check["margin"]),
+        relation=str(check.get("relation", "")),
+        state=_state(check.get("state", "passes" if check["passed"] else "fails")),  # an older run has no state
     )
 
 
@@ -230,9 +230,9 @@ def _number(value: Any) -> float | None:
 
 
 def _first_results(document: Mapping[str, Any]) -> Iterator[ListedNumber]:
-    for name, item in document["results"].items():
-        if isinstance(item["value"], (int, float)) and not isinstance(item["value"], bool):
-            yield ListedNumber(name=str(name), value=float(item["value"]), unit=str(item["unit"]))
+    for name, result in document["results"].items():
+        if isinstance(result["value"], (int, float)) and not isinstance(result["value"], bool):
+            yield ListedNumber(name=str(name), value=float(result["value"]), unit=str(result["unit"]))
 
 
 def _of_diagnosis(document: Mapping[str, Any], name: str) -> FolderEntry:
@@ -246,9 +246,9 @@ def _of_diagnosis(document: Mapping[str, Any], name: str) -> FolderEntry:
     if document.get("remainder") and document["verdict"] == "named":
         words += "; a remainder left"
     sizes = [
-        ListedNumber(name=f"{cause['effect']} {unknown}", value=_number(item["value"]), unit=str(item["unit"]))
+        ListedNumber(name=f"{cause['effect']} {unknown}", value=_number(size["value"]), unit=str(size["unit"]))
         for cause in causes
-        for unknown, item in cause["unknowns"].items()
+        for unknown, size in cause["unknowns"].items()
     ]
     return FolderEntry(**_made_by(document, name, "diagnosis"), verdict=words, findings=tuple(sizes))
 

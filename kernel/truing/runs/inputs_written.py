@@ -115,19 +115,19 @@ def _plain(value: Any) -> Any:
     return int(plain) if isinstance(plain, float) and plain.is_integer() and abs(plain) < 1e15 else plain
 
 
-def _input(setup: Setup, item: InputField, value: Any, folder: Path | None) -> Any:
+def _input(setup: Setup, field: InputField, value: Any, folder: Path | None) -> Any:
     """Return one input as TOML has it, or None where it is not given."""
-    if item.kind == "file":
-        return _file(setup, item.name, folder)
-    if item.kind in {"switch", "text", "integer"}:
+    if field.kind == "file":
+        return _file(setup, field.name, folder)
+    if field.kind in {"switch", "text", "integer"}:
         return value
-    if item.kind == "choice":
+    if field.kind == "choice":
         return str(value)
-    if item.kind == "series":
-        if getattr(item.spec, "unit", None) is None:
+    if field.kind == "series":
+        if getattr(field.spec, "unit", None) is None:
             return [_plain(one) for one in value]
-        return [exact(float(one), item.unit) for one in value]
-    return None if value != value else exact(value, item.unit)
+        return [exact(float(one), field.unit) for one in value]
+    return None if value != value else exact(value, field.unit)
 
 
 def _file(setup: Setup, name: str, folder: Path | None) -> Any:
@@ -158,17 +158,17 @@ def _spread(setup: Setup, name: str) -> str:
     return spread.text
 
 
-def _effect(item: SwitchedOn) -> dict[str, Any]:
+def _effect(active: SwitchedOn) -> dict[str, Any]:
     said: dict[str, Any] = {}
-    for unknown in item.unknowns:
-        value = exact(item.values[unknown.name], unknown.unit)
-        sd = item.sds.get(unknown.name)
+    for unknown in active.unknowns:
+        value = exact(active.values[unknown.name], unknown.unit)
+        sd = active.sds.get(unknown.name)
         scale = difference_unit(unknown.unit)
         said[unknown.name] = value if sd is None else {"value": value, "sd": exact(sd, scale)}
-    if item.covariance:
-        factors = [unit_factor(unknown.unit) for unknown in item.unknowns]
+    if active.covariance:
+        factors = [unit_factor(unknown.unit) for unknown in active.unknowns]
         said["covariance"] = [
-            [one / factors[i] / factors[j] for j, one in enumerate(row)] for i, row in enumerate(item.covariance)
+            [one / factors[i] / factors[j] for j, one in enumerate(row)] for i, row in enumerate(active.covariance)
         ]
     return said
 

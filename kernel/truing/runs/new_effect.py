@@ -111,9 +111,9 @@ def code_name(name: str, taken: set[str] | frozenset[str] = TAKEN) -> str:
     plain = plain if plain and not plain[0].isdigit() else f"column_{plain}".rstrip("_")
     if keyword.iskeyword(plain) or plain in taken or plain.startswith("__"):
         plain = f"column_{plain.strip('_')}"
-    place, wanted = 2, plain
+    number, wanted = 2, plain
     while plain in taken:
-        plain, place = f"{wanted}_{place}", place + 1
+        plain, number = f"{wanted}_{number}", number + 1
     return plain
 
 

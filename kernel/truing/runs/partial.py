@@ -34,9 +34,9 @@ def partial_folder(folder: Path) -> Path:
     return target.with_name(f"{target.name}.partial")
 
 
-def is_partial(place: Path) -> bool:
+def is_partial(folder: Path) -> bool:
     """Tell whether a folder holds finished batches of ours."""
-    return (place / HEADER).is_file()
+    return (folder / HEADER).is_file()
 
 
 def code_of(setup: Setup) -> tuple[str, ...]:
@@ -76,7 +76,7 @@ def identity_of(setup: Setup, code: tuple[str, ...]) -> dict[str, Any]:
             **{name: version for _, name, version in origin.added},
             origin.plugin: origin.plugin_version,
         },
-        "code": {Path(place).name: code_hash(place) for place in code},
+        "code": {Path(source).name: code_hash(source) for source in code},
     }
 
 
@@ -88,12 +88,12 @@ def kept_batches(folder: Path, identity: Mapping[str, Any]) -> Iterator[BatchLog
     OutputError where the batches there are of other inputs, seed, versions or code, where another run uses them, or
     where nothing can be written.
     """
-    place = partial_folder(folder)
-    missing = [parent for parent in (place.parent, *place.parent.parents) if not parent.exists()]
+    batch_folder = partial_folder(folder)
+    missing = [parent for parent in (batch_folder.parent, *batch_folder.parent.parents) if not parent.exists()]
     try:
-        lock, log = _opened(place, identity)
+        lock, log = _opened(batch_folder, identity)
     except OSError as error:
-        raise OutputError(f"{place}: cannot keep finished batches: {error.strerror or error}") from error
+        raise OutputError(f"{batch_folder}: cannot keep finished batches: {error.strerror or error}") from error
     complete = False
     try:
         yield log
@@ -102,24 +102,26 @@ def kept_batches(folder: Path, identity: Mapping[str, Any]) -> Iterator[BatchLog
         log.close()
         lock.close()
         if complete or not len(log):
-            shutil.rmtree(place, ignore_errors=True)
+            shutil.rmtree(batch_folder, ignore_errors=True)
             for parent in missing:
                 with suppress(OSError):
                     parent.rmdir()
 
 
-def _opened(place: Path, identity: Mapping[str, Any]) -> tuple[IO[bytes], BatchLog]:
+def _opened(batch_folder: Path, identity: Mapping[str, Any]) -> tuple[IO[bytes], BatchLog]:
     """Take hold of the folder for this process alone; the system lets go of it however the process ends."""
-    place.mkdir(parents=True, exist_ok=True)
-    _demand_ours(place)
-    lock = open(place / LOCK, "a+b")  # noqa: SIM115
+    batch_folder.mkdir(parents=True, exist_ok=True)
+    _demand_ours(batch_folder)
+    lock = open(batch_folder / LOCK, "a+b")  # noqa: SIM115
     try:
         try:
             _lock(lock)
         except OSError:
-            raise OutputError(f"{place}: is in use by another run; wait for it, or name another --output") from None
-        _demand_same(place, identity)
-        return lock, BatchLog(place / BATCHES)
+            raise OutputError(
+                f"{batch_folder}: is in use by another run; wait for it, or name another --output"
+            ) from None
+        _demand_same(batch_folder, identity)
+        return lock, BatchLog(batch_folder / BATCHES)
     except BaseException:
         lock.close()
         raise
@@ -133,44 +135,44 @@ def _lock(file: IO[bytes]) -> None:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
-def _demand_ours(place: Path) -> None:
+def _demand_ours(batch_folder: Path) -> None:
     """Refuse a folder of that name that is somebody else's."""
-    strange = sorted(path.name for path in place.iterdir() if path.name not in OURS)
+    strange = sorted(path.name for path in batch_folder.iterdir() if path.name not in OURS)
     if strange:
-        raise OutputError(f"{place}: holds '{strange[0]}', so it is none of ours; name another --output")
+        raise OutputError(f"{batch_folder}: holds '{strange[0]}', so it is none of ours; name another --output")
 
 
-def _demand_same(place: Path, identity: Mapping[str, Any]) -> None:
+def _demand_same(batch_folder: Path, identity: Mapping[str, Any]) -> None:
     """Refuse batches of another run; write whose they are where there are none yet."""
-    header = place / HEADER
+    header = batch_folder / HEADER
     if not header.exists():
-        (place / BATCHES).unlink(missing_ok=True)
-        fresh = place / FRESH
+        (batch_folder / BATCHES).unlink(missing_ok=True)
+        fresh = batch_folder / FRESH
         fresh.write_text(json_text(dict(identity)), encoding="utf-8")
         os.replace(fresh, header)
         return
     try:
-        found = json.loads(header.read_text(encoding="utf-8"))
+        stated = json.loads(header.read_text(encoding="utf-8"))
     except ValueError:
-        found = None
-    if not isinstance(found, dict) or found.get("schema") != PARTIAL_SCHEMA:
+        stated = None
+    if not isinstance(stated, dict) or stated.get("schema") != PARTIAL_SCHEMA:
         raise OutputError(f"{header}: says not whose batches these are; remove the folder")
-    if found != identity:
+    if stated != identity:
         raise OutputError(
-            f"{place}: holds finished batches of a run with {_difference(found, identity)}; "
+            f"{batch_folder}: holds finished batches of a run with {_difference(stated, identity)}; "
             "run that one again, or remove the folder"
         )
 
 
-def _difference(found: Mapping[str, Any], wanted: Mapping[str, Any]) -> str:
+def _difference(stated: Mapping[str, Any], wanted: Mapping[str, Any]) -> str:
     """Say in what two runs differ, the most telling first."""
     for name, words in (("plugin", "plugin"), ("model", "calculation"), ("seed", "seed")):
-        if found.get(name) != wanted[name]:
-            return f"another {words} ({found.get(name)}, now {wanted[name]})"
-    if found.get("input_hash") != wanted["input_hash"]:
+        if stated.get(name) != wanted[name]:
+            return f"another {words} ({stated.get(name)}, now {wanted[name]})"
+    if stated.get("input_hash") != wanted["input_hash"]:
         return "other inputs"
     for kind in ("versions", "code"):
-        then, now = dict(found.get(kind) or {}), wanted[kind]
+        then, now = dict(stated.get(kind) or {}), wanted[kind]
         for name in sorted({*then, *now}):
             if then.get(name) != now.get(name):
                 if kind == "code":

@@ -17,10 +17,10 @@ SpreadsheetRow = dict[str, Any]
 def spreadsheets(document: Mapping[str, Any], model: Model[Any, Any]) -> dict[str, str]:
     """Return results.csv, every number of results.json with its unit, and cases.csv where there are cases."""
     rows = [*_single(document, model), *_spread_out(document, model)]
-    found = {"results.csv": table_text(HEADERS, [[row.get(name) for row in rows] for name in HEADERS], form=EXCEL)}
+    files = {"results.csv": table_text(HEADERS, [[row.get(name) for row in rows] for name in HEADERS], form=EXCEL)}
     if "cases" in document:
-        found["cases.csv"] = _cases(document["cases"])
-    return found
+        files["cases.csv"] = _cases(document["cases"])
+    return files
 
 
 def _single(document: Mapping[str, Any], model: Model[Any, Any]) -> Iterator[SpreadsheetRow]:
@@ -31,17 +31,17 @@ def _single(document: Mapping[str, Any], model: Model[Any, Any]) -> Iterator[Spr
         yield {"part": "check", **said, "verdict": SHORT[check["state"]], "note": check["compared"]}
     yield from _named("input", document["inputs"], _notes(model))
     for name, tolerance in document["tolerances"].items():
-        for target, item in tolerance["on"].items():
+        for target, distribution in tolerance["on"].items():
             for part in ("mean", "sd"):
-                said = {"name": target, "place": part, "value": item[part], "unit": item["unit"]}
+                said = {"name": target, "place": part, "value": distribution[part], "unit": distribution["unit"]}
                 yield {"part": "tolerance", **said, "note": f"{name}: {tolerance['spread']}"}
     yield from _named("condition", document["conditions"], {})
     for name, unknowns in document["effects"].items():
-        for unknown, item in unknowns.items():
-            said = {"part": "effect", "name": f"{name}.{unknown}", "unit": item["unit"]}
-            yield {**said, "value": item["value"]}
-            if "sd" in item:
-                yield {**said, "place": "sd", "value": item["sd"]}
+        for unknown, estimate in unknowns.items():
+            said = {"part": "effect", "name": f"{name}.{unknown}", "unit": estimate["unit"]}
+            yield {**said, "value": estimate["value"]}
+            if "sd" in estimate:
+                yield {**said, "place": "sd", "value": estimate["sd"]}
     yield {"part": "run", "name": "seed", "value": document["seed"]}
 
 
@@ -50,41 +50,41 @@ def _notes(model: Model[Any, Any]) -> dict[str, str]:
 
 
 def _named(part: str, items: Mapping[str, Any], notes: Mapping[str, str]) -> Iterator[SpreadsheetRow]:
-    for name, item in items.items():
-        if not isinstance(item["value"], (list, dict)):
-            note = f"in arrays.npz: {item['array']}" if "array" in item else notes.get(name, "")
-            yield {"part": part, "name": name, "value": item["value"], "unit": item["unit"], "note": note}
+    for name, quantity in items.items():
+        if not isinstance(quantity["value"], (list, dict)):
+            note = f"in arrays.npz: {quantity['array']}" if "array" in quantity else notes.get(name, "")
+            yield {"part": part, "name": name, "value": quantity["value"], "unit": quantity["unit"], "note": note}
 
 
 def _spread_out(document: Mapping[str, Any], model: Model[Any, Any]) -> Iterator[SpreadsheetRow]:
     """Give what has many numbers, one a row: results and inputs along an axis, and what the studies say."""
     for part in ("result", "input"):
-        for name, item in document[f"{part}s"].items():
-            if isinstance(item["value"], (list, dict)):
-                for place, value in _leaves(item["value"]):
-                    yield {"part": part, "name": name, "place": place, "value": value, "unit": item["unit"]}
+        for name, quantity in document[f"{part}s"].items():
+            if isinstance(quantity["value"], (list, dict)):
+                for path, value in _leaves(quantity["value"]):
+                    yield {"part": part, "name": name, "place": path, "value": value, "unit": quantity["unit"]}
     for name, outcome in document["studies"].items():
-        for place, value in _leaves(outcome):
-            yield {"part": "study", "name": name, "place": place, "value": value}
+        for path, value in _leaves(outcome):
+            yield {"part": "study", "name": name, "place": path, "value": value}
 
 
-def _leaves(value: Any, place: str = "") -> Iterator[tuple[str, Any]]:
+def _leaves(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
     """Give every number, word and truth in a document with the way to it; places in a list begin with 1."""
     if isinstance(value, Mapping):
         for key, one in value.items():
-            yield from _leaves(one, f"{place}.{key}" if place else str(key))
+            yield from _leaves(one, f"{path}.{key}" if path else str(key))
     elif isinstance(value, list):
         for number, one in enumerate(value, start=1):
-            yield from _leaves(one, f"{place}[{number}]")
+            yield from _leaves(one, f"{path}[{number}]")
     else:
-        yield place, value
+        yield path, value
 
 
 def _cases(cases: Sequence[Mapping[str, Any]]) -> str:
     """Return the cases, one a row: what they change and what they answer, units in the header."""
     columns: dict[str, list[Any]] = {"case": [], "row": []}
     for index, case in enumerate(cases):
-        found = {
+        cells = {
             "case": case["name"],
             "row": case["row"],
             **_with_units(case["values"]),
@@ -92,18 +92,20 @@ def _cases(cases: Sequence[Mapping[str, Any]]) -> str:
         }
         margins = [check["margin"] for check in case["checks"] if check["state"] != "undecided"]
         if margins:
-            found["margin [1]"] = min(margins, key=_order)
-        found["verdict"] = _verdict(case)
-        for header in {**columns, **found}:
-            columns.setdefault(header, [None] * index).append(found.get(header))
+            cells["margin [1]"] = min(margins, key=_order)
+        cells["verdict"] = _verdict(case)
+        for header in {**columns, **cells}:
+            columns.setdefault(header, [None] * index).append(cells.get(header))
     return table_text(list(columns), list(columns.values()), form=EXCEL)
 
 
 def _with_units(items: Mapping[str, Any]) -> dict[str, Any]:
     """Return values under headers with their units; words have none."""
-    words = {name for name, item in items.items() if isinstance(item["value"], (str, bool))}
-    headers = {name: name if name in words else f"{name} [{item['unit'] or '1'}]" for name, item in items.items()}
-    return {headers[name]: item["value"] for name, item in items.items()}
+    words = {name for name, quantity in items.items() if isinstance(quantity["value"], (str, bool))}
+    headers = {
+        name: name if name in words else f"{name} [{quantity['unit'] or '1'}]" for name, quantity in items.items()
+    }
+    return {headers[name]: quantity["value"] for name, quantity in items.items()}
 
 
 def _order(margin: float | None) -> float:

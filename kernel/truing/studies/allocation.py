@@ -85,7 +85,7 @@ class Allocation:
         setup = bench.setup
         wanted = _goals(setup, bench.answers, self.name)
         machines = Machines(setup, scatter_of(setup))
-        straight, found = straightened(machines, wanted, nominal_inputs(setup, wanted))
+        straight, derivatives = straightened(machines, wanted, nominal_inputs(setup, wanted))
         problem = open_problem(
             setup, wanted, straight, self.finest, loosen=self.loosen, span=(self.tightest, self.widest)
         )
@@ -105,7 +105,7 @@ class Allocation:
             sampled=self._verified(bench, wanted, designs),
             texts={key: _texts(setup, problem, plan) for key, plan in designs.items()},
             priced={key: _price_checks(setup, plan) for key, plan in designs.items()},
-            remarks=(*found.warnings, *_left_alone(setup, problem)),
+            remarks=(*derivatives.warnings, *_left_alone(setup, problem)),
             inputs=acting_inputs(setup),
         )
 
@@ -117,24 +117,24 @@ class Allocation:
             raise UsageError(f"study '{self.name}': there is no result '{of}'.{near_miss(of, known)}")
         tolerances = machines.setup.model.tolerances
         columns = tuple(dict.fromkeys(column for name in problem.parts for column in tolerances[name].on))
-        found = slopes(machines.setup, (of,), columns, machines.scatter).of[of]
-        return {name: sum(abs(float(found[column])) for column in tolerances[name].on) for name in problem.parts}
+        derivatives = slopes(machines.setup, (of,), columns, machines.scatter).of[of]
+        return {name: sum(abs(float(derivatives[column])) for column in tolerances[name].on) for name in problem.parts}
 
     def _verified(
         self, bench: Bench, wanted: Sequence[Demand], designs: Mapping[str, AllocationPlan]
     ) -> dict[str, Tally]:
         """Draw the same machines for every design; equal designs are drawn once."""
-        found: dict[str, Tally] = {}
+        tallies: dict[str, Tally] = {}
         for stage, (key, plan) in enumerate(designs.items()):
-            twin = next((other for other in found if designs[other].same_as(plan)), None)
+            twin = next((other for other in tallies if designs[other].same_as(plan)), None)
             if twin is not None:
-                found[key] = found[twin]
+                tallies[key] = tallies[twin]
                 continue
             setup = with_plan(bench.setup, plan)
             done = bench.part(self.name, stage / len(designs), (stage + 1) / len(designs))
             budget = SampleBudget(self.draws, self.batch, bench.executor, done)
-            found[key] = sample(Machines(setup, scatter_of(setup)), wanted, bench.answers, budget)
-        return found
+            tallies[key] = sample(Machines(setup, scatter_of(setup)), wanted, bench.answers, budget)
+        return tallies
 
 
 def with_plan(setup: Setup, plan: AllocationPlan) -> Setup:
@@ -148,10 +148,10 @@ def _least(problem: AllocationProblem, ruled: AllocationPlan, rule: AllocationPl
         return rule
     if not problem.variables:
         return least_cost(problem)
-    found = [bought(problem, least_cost(problem)), rule]
+    plans = [bought(problem, least_cost(problem)), rule]
     if ruled.grades != problem.start:
-        found.append(bought(problem, as_it_stands(problem)))
-    return min((bettered(problem, plan) for plan in found), key=lambda plan: (not plan.reached, plan.cost))
+        plans.append(bought(problem, as_it_stands(problem)))
+    return min((bettered(problem, plan) for plan in plans), key=lambda plan: (not plan.reached, plan.cost))
 
 
 def _texts(setup: Setup, problem: AllocationProblem, plan: AllocationPlan) -> dict[str, str]:
@@ -168,7 +168,7 @@ def _price_checks(setup: Setup, plan: AllocationPlan) -> tuple[Check, ...]:
 
 def _left_alone(setup: Setup, problem: AllocationProblem) -> list[str]:
     """Say which widths with a price were not chosen, since the grades beside them have none."""
-    names = [f"'{item.name}'" for item in priced_widths(setup) if item.name not in problem.variables]
+    names = [f"'{target.name}'" for target in priced_widths(setup) if target.name not in problem.variables]
     if not names:
         return []
     return [f"the widths of {' and '.join(names)} stay: not every grade has a price, so costs cannot be compared"]
@@ -312,13 +312,15 @@ class Allotted:
     def proposals(self) -> Sequence[Proposal]:
         """Propose the rule's tolerances and those of least cost, where they are others than those in force."""
         stated = self.texts["start"]
-        found = []
+        proposals = []
         for key, (what, plan) in self.spoken.items():
             texts = self.texts[key]
             changes = tuple((name, stated[name], text) for name, text in texts.items() if text != stated[name])
             if changes:
-                found.append(Proposal(self.name, what, changes, (*self._kept(key, plan.chances), *self.priced[key])))
-        return found
+                proposals.append(
+                    Proposal(self.name, what, changes, (*self._kept(key, plan.chances), *self.priced[key]))
+                )
+        return proposals
 
     def _kept(self, key: str, first_order: Mapping[str, float]) -> tuple[Check, ...]:
         """Return the check of every goal for one design: on the exact model where its machines were drawn."""
@@ -336,7 +338,9 @@ class Allotted:
         words = [f"study '{self.name}': {remark}" for remark in self.remarks]
         if not self.reached:
             missed = [demand for demand in self.problem.demands if self.final[demand.name] < (demand.goal or 0.0)]
-            far = ", ".join(f"'{item.name}' comes to {self.final[item.name]:.4f} of {item.goal:g}" for item in missed)
+            far = ", ".join(
+                f"'{demand.name}' comes to {self.final[demand.name]:.4f} of {demand.goal:g}" for demand in missed
+            )
             words.append(f"study '{self.name}': the goal is {self.rule.status}; {far}")
         for key, (what, plan) in self.spoken.items():
             if plan.residual is not None and plan.residual > BALANCED_TO:
@@ -481,7 +485,7 @@ def _grades(allotted: Allotted) -> Table:
             allotted.rule.grades[name],
             allotted.least.grades[name],
         ]
-        for name, part in sorted(allotted.problem.parts.items(), key=lambda item: allotted.coefficients[item[0]])
+        for name, part in sorted(allotted.problem.parts.items(), key=lambda pair: allotted.coefficients[pair[0]])
     ]
     return Table("Grades", ("tolerance", "coefficient", "start", "rule", "least cost"), rows)
 
@@ -555,12 +559,12 @@ def coefficients(
     """
     reference = max(problem.parts, key=lambda name: slopes[name])
     first, second = weights
-    found: dict[str, float] = {}
+    weighed: dict[str, float] = {}
     for name, part in problem.parts.items():
         ratio = slopes[reference] / slopes[name] if slopes[name] else float("inf")
         cost = part.first.cost / problem.parts[reference].first.cost
-        found[name] = (first * ratio + second * cost) / (first + second) if first else cost
-    return found
+        weighed[name] = (first * ratio + second * cost) / (first + second) if first else cost
+    return weighed
 
 
 def by_rule(problem: AllocationProblem, order: Mapping[str, float], finest: str) -> tuple[list[Step], AllocationPlan]:
@@ -713,8 +717,8 @@ class AllocationSearch:
 
     def slack(self, x: Matrix) -> tuple[Matrix, Matrix]:
         """Return by goal how far it is kept (goals,), in standard deviations of the start, and the gradients."""
-        found = [self._slack(demand, x) for demand in self.problem.goals]
-        return np.array([value for value, _ in found]), np.array([gradient for _, gradient in found])
+        slacks = [self._slack(demand, x) for demand in self.problem.goals]
+        return np.array([value for value, _ in slacks]), np.array([gradient for _, gradient in slacks])
 
     def _slack(self, demand: Demand, x: Matrix) -> tuple[float, Matrix]:
         problem, name = self.problem, demand.name
@@ -769,13 +773,13 @@ def bought(problem: AllocationProblem, plan: AllocationPlan) -> AllocationPlan:
     search = AllocationSearch(problem, plan.grades)
     starts = list(_starts(search))
     with one_thread():
-        found = _cheapest(search, starts)
-        if found is None:
+        optimum = _cheapest(search, starts)
+        if optimum is None:
             nearest = _nearest(search, starts)
-            found = _cheapest(search, [nearest])
-    if found is None:
+            optimum = _cheapest(search, [nearest])
+    if optimum is None:
         return _with(problem, plan, search.widths(nearest), residual=None)
-    return _with(problem, plan, search.widths(found), residual=_residual(search, found))
+    return _with(problem, plan, search.widths(optimum), residual=_residual(search, optimum))
 
 
 def bettered(problem: AllocationProblem, plan: AllocationPlan) -> AllocationPlan:
@@ -793,15 +797,15 @@ def _steps_from(problem: AllocationProblem, plan: AllocationPlan) -> Iterator[Al
     """Yield the designs with one grade a step finer or coarser that meet all goals; widths start where they are."""
     for name, part in problem.parts.items():
         offered = list(part.choices)
-        place = offered.index(plan.grades[name])
-        for grade in offered[max(place - 1, 0) : place] + offered[place + 1 : place + 2]:
+        index = offered.index(plan.grades[name])
+        for grade in offered[max(index - 1, 0) : index] + offered[index + 1 : index + 2]:
             other = replace(plan, grades={**plan.grades, name: grade})
             search = AllocationSearch(problem, other.grades)
             held = [np.log(plan.widths[key] / variable.start) for key, variable in problem.variables.items()]
             low, high = search.ends()
-            found = _cheapest(search, [np.clip(held, low, high), low])
-            if found is not None:
-                yield _with(problem, other, search.widths(found), residual=_residual(search, found))
+            optimum = _cheapest(search, [np.clip(held, low, high), low])
+            if optimum is not None:
+                yield _with(problem, other, search.widths(optimum), residual=_residual(search, optimum))
 
 
 def _with(
@@ -868,7 +872,7 @@ def _nearest(search: AllocationSearch, starts: Sequence[Matrix]) -> Matrix:
     low, high = search.ends()
     upward = np.append(np.zeros(len(low)), -1.0)
     rising = -np.ones(len(search.problem.goals))
-    found = list(starts)
+    points = list(starts)
     for start in starts:
         ends = (np.append(low, -np.inf), np.append(high, np.inf))
         y = _solved(
@@ -880,8 +884,8 @@ def _nearest(search: AllocationSearch, starts: Sequence[Matrix]) -> Matrix:
                 "jac": lambda y: np.column_stack([search.slack(y[:-1])[1], rising]),
             },
         )
-        found += [] if y is None else [y[:-1]]
-    return max(found, key=lambda x: float(search.slack(x)[0].min()))
+        points += [] if y is None else [y[:-1]]
+    return max(points, key=lambda x: float(search.slack(x)[0].min()))
 
 
 def _solved(objective: Any, start: Matrix, ends: tuple[Matrix, Matrix], constraint: Any) -> Matrix | None:
@@ -904,8 +908,8 @@ def _residual(search: AllocationSearch, x: Matrix) -> float:
     slack, rows = search.slack(x)
     forces = [row for row, room in zip(rows, slack, strict=True) if room <= AT_END]
     unit = np.eye(len(x))
-    forces += [unit[place] for place in np.flatnonzero(x <= low + AT_END)]
-    forces += [-unit[place] for place in np.flatnonzero(x >= high - AT_END)]
+    forces += [unit[index] for index in np.flatnonzero(x <= low + AT_END)]
+    forces += [-unit[index] for index in np.flatnonzero(x >= high - AT_END)]
     gradient = search.cost(x)[1]
     size = float(np.linalg.norm(gradient))
     if not size:

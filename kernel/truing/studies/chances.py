@@ -46,14 +46,14 @@ def straightened(
     """Linearise the responses of these demands; one batch of the model."""
     columns = machines.scatter.columns
     needed = results_needed(machines.setup, wanted)
-    found = slopes(machines.setup, needed, columns, machines.scatter)
-    return {demand.name: _straight(demand, found, machines, nominal) for demand in wanted}, found
+    derivatives = slopes(machines.setup, needed, columns, machines.scatter)
+    return {demand.name: _straight(demand, derivatives, machines, nominal) for demand in wanted}, derivatives
 
 
-def _straight(demand: Demand, found: Slopes, machines: Machines, nominal: Mapping[str, float]) -> Straight:
+def _straight(demand: Demand, derivatives: Slopes, machines: Machines, nominal: Mapping[str, float]) -> Straight:
     columns = machines.scatter.columns
-    slope = demand.slopes(found.of, columns)
-    value = demand.response(found.nominal, {}, nominal)
+    slope = demand.slopes(derivatives.of, columns)
+    value = demand.response(derivatives.nominal, {}, nominal)
     mean = value + sum((slope[column] * shift for column, shift in machines.scatter.shifts().items()), 0.0)
     return Straight(value, mean, slope, machines.scatter.variances(slope))
 

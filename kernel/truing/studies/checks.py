@@ -112,7 +112,9 @@ def requirements(setup: Setup) -> list[Require]:
     """Return the requirements of the model; one whose limit is an input that is not given asks for nothing."""
     fields = setup.model.input_fields
     every = [objective for objective in setup.model.objectives if isinstance(objective, Require)]
-    return [item for item in every if item.limit not in fields or not isnan(float(setup.nominal(item.limit)))]
+    return [
+        require for require in every if require.limit not in fields or not isnan(float(setup.nominal(require.limit)))
+    ]
 
 
 def _limit(require: Require, others: list[Require], setup: Setup, answers: dict[str, Any]) -> Limit:

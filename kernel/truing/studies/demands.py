@@ -66,9 +66,9 @@ def demands(setup: Setup, answers: Mapping[str, Any], *, with_goal: bool | None 
     ``with_goal=True`` returns only those with one. A limit on a result that does not exist (NaN) is left out.
     """
     own = setup.model.own_result_fields
-    found = [_demand(limit, setup) for limit in limits(setup, dict(answers)) if limit.result in own]
-    goals = [demand for demand in found if demand.goal is not None]
-    chosen = goals if goals or with_goal else found
+    limited = [_demand(limit, setup) for limit in limits(setup, dict(answers)) if limit.result in own]
+    goals = [demand for demand in limited if demand.goal is not None]
+    chosen = goals if goals or with_goal else limited
     return [demand for demand in chosen if all(exists(answers.get(name, 0.0)) for name in demand.wanted)]
 
 
@@ -136,7 +136,7 @@ def as_number(value: Any) -> Any:
     array = np.asarray(value, dtype=float)
     if array.ndim == 0:
         return float(array) if np.isfinite(array) else None
-    return [as_number(item) for item in array]
+    return [as_number(member) for member in array]
 
 
 def along(array: NDArray[Any]) -> bool:

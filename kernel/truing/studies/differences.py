@@ -158,9 +158,9 @@ def _best(estimates: NDArray[np.float64]) -> tuple[Any, Any]:
     apart = np.abs(np.diff(estimates, axis=0))
     score = np.maximum(apart[:-1], apart[1:])
     score = np.where(np.isfinite(score), score, np.inf)
-    place = np.argmin(score, axis=0)[None]
-    best = np.take_along_axis(estimates[1:-1], place, axis=0)[0]
-    doubt = np.take_along_axis(score, place, axis=0)[0]
+    index = np.argmin(score, axis=0)[None]
+    best = np.take_along_axis(estimates[1:-1], index, axis=0)[0]
+    doubt = np.take_along_axis(score, index, axis=0)[0]
     return np.where(np.isfinite(doubt), best, np.nan), doubt
 
 
@@ -170,9 +170,9 @@ def _one_sided(sides: Sequence[NDArray[np.float64]], slope: Any) -> tuple[Any, A
     for side in sides:
         for power in (2.0, 4.0):
             side = (power * side[1:] - side[:-1]) / (power - 1)
-        found, its_doubt = _best(side)
-        missing = ~np.isfinite(slope) & np.isfinite(found)
-        slope, doubt = np.where(missing, found, slope), np.where(missing, its_doubt, doubt)
+        estimate, its_doubt = _best(side)
+        missing = ~np.isfinite(slope) & np.isfinite(estimate)
+        slope, doubt = np.where(missing, estimate, slope), np.where(missing, its_doubt, doubt)
     return slope, doubt
 
 

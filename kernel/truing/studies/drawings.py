@@ -23,7 +23,7 @@ def bars(title: str, values: Mapping[str, float], label: str, *, most: int = MOS
     """Draw ranked bars, the longest on top."""
 
     def draw() -> Figure:
-        ranked = sorted(values.items(), key=lambda item: -abs(item[1]))[:most][::-1]
+        ranked = sorted(values.items(), key=lambda bar: -abs(bar[1]))[:most][::-1]
         figure = Figure(figsize=(WIDTH, 0.9 + 0.26 * len(ranked)), layout="constrained")
         panel = figure.subplots()
         names = [spoken(name) for name, _ in ranked]

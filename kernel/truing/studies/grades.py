@@ -277,7 +277,7 @@ def priced_widths(setup: Setup) -> Iterator[Tolerance]:
         chosen = isinstance(setup.spread_of(tolerance.name), (Band, Zone)) and price_of(setup, tolerance) is not None
         if (
             chosen
-            and all(item.sd > 0 for item in in_force.get(tolerance.name, {}).values())
+            and all(target.sd > 0 for target in in_force.get(tolerance.name, {}).values())
             and tolerance.name in in_force
         ):
             yield tolerance

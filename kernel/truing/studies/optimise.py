@@ -125,9 +125,9 @@ class Optimise:
 
     def _verified(self, bench: Bench, problem: Problem, optimum: Optimum, trail: Trail) -> Optimum:
         """Run the knee as an inputs file would state it, and draw machines of it."""
-        place = optimum.knee_place
-        assert place is not None  # run has asked
-        setup = problem.space.setup_of(_sorted(problem, trail)[0][place])
+        knee = optimum.knee_place
+        assert knee is not None  # run has asked
+        setup = problem.space.setup_of(_sorted(problem, trail)[0][knee])
         try:
             answers = {**dict(problem.brief.known), **setup.model.read_results(evaluate(setup)), **price_answers(setup)}
         except InfeasibleError as error:
@@ -166,13 +166,13 @@ def _optimum(study: Optimise, problem: Problem, trail: Trail) -> Optimum:
     designs, answers = _sorted(problem, trail)
     feasible = bool(answers.feasible.all())
     start = problem.space.start[None, :]
-    place, distance = knee_of(small(problem, answers)) if feasible else (None, 0.0)
+    knee, distance = knee_of(small(problem, answers)) if feasible else (None, 0.0)
     return Optimum(
         study=study,
         problem=problem,
         front=tuple(_designs(problem, designs, answers)) if feasible else (),
         start=_designs(problem, start, answers_of(problem, start, as_stated=True), as_stated=True)[0],
-        knee_place=place,
+        knee_place=knee,
         distance=distance,
         status=FOUND if feasible else _nothing(problem, trail),
         volume=volume_of(trail.fronts, exhausted=len(trail.fronts) < study.generations) if feasible else None,
@@ -186,10 +186,10 @@ def _optimum(study: Optimise, problem: Problem, trail: Trail) -> Optimum:
 def _nothing(problem: Problem, trail: Trail) -> str:
     """Say that no design keeps every limit, and which limit the nearest one misses most."""
     counted = f"no design among {trail.evaluations} keeps every limit"
-    place = int(np.argmin(violation(trail.answers)))
-    if trail.answers.failed[place]:
+    nearest = int(np.argmin(violation(trail.answers)))
+    if trail.answers.failed[nearest]:
         return f"{counted}: none has an answer"
-    margins = trail.answers.margins[place]
+    margins = trail.answers.margins[nearest]
     worst = int(np.argmin(margins))
     return f"{counted}; the nearest misses '{problem.bounds[worst].name}' by a margin of {margins[worst]:.3g}"
 
@@ -373,14 +373,14 @@ def _by_aim(optimum: Optimum, values: Sequence[float]) -> dict[str, Any]:
     return {aim.name: printed(aim.sign * value, aim.unit) for aim, value in zip(optimum.aims, values, strict=True)}
 
 
-def _variable_json(item: Any) -> dict[str, Any]:
-    if item.kind == "grade":
-        return {"kind": "grade", "finest": GRADES[round(item.low)], "coarsest": GRADES[round(item.high)]}
+def _variable_json(variable: Any) -> dict[str, Any]:
+    if variable.kind == "grade":
+        return {"kind": "grade", "finest": GRADES[round(variable.low)], "coarsest": GRADES[round(variable.high)]}
     return {
-        "kind": {"number": "input", "whole": "whole", "width": "width"}[item.kind],
-        "low": printed(item.low, item.unit),
-        "high": printed(item.high, item.unit),
-        "unit": item.unit,
+        "kind": {"number": "input", "whole": "whole", "width": "width"}[variable.kind],
+        "low": printed(variable.low, variable.unit),
+        "high": printed(variable.high, variable.unit),
+        "unit": variable.unit,
     }
 
 
@@ -454,24 +454,24 @@ def _comparison(optimum: Optimum) -> Table:
     rows: list[list[Cell]] = []
     for name in start.inputs:
         unit = _input_unit(optimum, name)
-        rows.append([name, "input", _text(unit), *(printed(item.inputs[name], unit) for item in designs)])
+        rows.append([name, "input", _text(unit), *(printed(design.inputs[name], unit) for design in designs)])
     for name, width in start.tolerances.items():
         unit, kind = ("", "grade") if isinstance(width, str) else (_width_unit(optimum, name), "full width")
-        rows.append([name, kind, _text(unit), *(_width(optimum, name, item.tolerances[name]) for item in designs)])
+        rows.append([name, kind, _text(unit), *(_width(optimum, name, design.tolerances[name]) for design in designs)])
     for aim in optimum.aims:
-        values = [printed(item.objectives[aim.name], aim.unit) for item in designs]
+        values = [printed(design.objectives[aim.name], aim.unit) for design in designs]
         rows.append([aim.name, aim.sense, _text(aim.unit), *values])
     rows += [_limit_row(bound, designs) for bound in optimum.bounds]
     rows += _verified_rows(optimum)
-    rows.append(["every limit is kept", "", "", *(item.feasible for item in designs)])
+    rows.append(["every limit is kept", "", "", *(design.feasible for design in designs)])
     columns = ("name", "", "unit", "start", "knee")[: 3 + len(designs)]
     return Table("Start and knee", columns, rows, note=_comparison_note(optimum))
 
 
 def _limit_row(bound: Any, designs: Sequence[DesignPoint]) -> list[Cell]:
     if bound.by_chance:
-        return [bound.name, "chance", "%", *(_percent(item.chances[bound.name]) for item in designs)]
-    return [bound.name, "margin", "", *(as_number(item.margins[bound.name]) for item in designs)]
+        return [bound.name, "chance", "%", *(_percent(design.chances[bound.name]) for design in designs)]
+    return [bound.name, "margin", "", *(as_number(design.margins[bound.name]) for design in designs)]
 
 
 def _verified_rows(optimum: Optimum) -> Iterator[list[Cell]]:
@@ -508,9 +508,9 @@ def _front(optimum: Optimum) -> Table:
     inputs = [name for name in first.inputs if name not in first.objectives]
     chances = [bound.name for bound in optimum.problem.by_chance]
     rows: list[list[Cell]] = []
-    for place in places:
-        design = optimum.front[place]
-        row: list[Cell] = [f"{place + 1} knee" if place == optimum.knee_place else str(place + 1)]
+    for index in places:
+        design = optimum.front[index]
+        row: list[Cell] = [f"{index + 1} knee" if index == optimum.knee_place else str(index + 1)]
         row += [printed(design.objectives[aim.name], aim.unit) for aim in optimum.aims]
         row += [_percent(design.chances[name]) for name in chances]
         row += [printed(design.inputs[name], _input_unit(optimum, name)) for name in inputs]
@@ -531,14 +531,14 @@ def fit_for_paper(table: Table) -> list[Table]:
     if count <= WIDEST:
         return [table]
     steps = range(1, count, WIDEST - 1)
-    found = []
+    parts = []
     for part, start in enumerate(steps, 1):
         places = [0, *range(start, min(start + WIDEST - 1, count))]
         title = f"{table.title}, part {part} of {len(steps)}"
-        columns = [table.columns[place] for place in places]
-        rows = [[row[place] for place in places] for row in table.rows]
-        found.append(Table(title, columns, rows, [table.units[place] for place in places], table.note))
-    return found
+        columns = [table.columns[index] for index in places]
+        rows = [[row[index] for index in places] for row in table.rows]
+        parts.append(Table(title, columns, rows, [table.units[index] for index in places], table.note))
+    return parts
 
 
 def _thinned(count: int, knee: int) -> list[int]:

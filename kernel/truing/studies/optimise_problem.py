@@ -86,14 +86,14 @@ class Problem:
         """Run a batch: the surrogate for what it knows, the model for the rest; NaN where a row failed."""
         own = [name for name in self.setup.model.own_result_fields if name in wanted]
         covered = [name for name in own if self.stand_in is not None and name in self.stand_in.of]
-        found: dict[str, Any] = {}
+        values: dict[str, Any] = {}
         if self.stand_in is not None and covered:
             predicted = self.stand_in.predict(columns)
-            found = {name: _of_rows(predicted[name], rows) for name in covered}
+            values = {name: _of_rows(predicted[name], rows) for name in covered}
         rest = [name for name in own if name not in covered]
         if rest or not own:
-            found.update(evaluate_rows(self.setup, columns, rows, wanted=rest).results)
-        return {name: found[name] for name in own}
+            values.update(evaluate_rows(self.setup, columns, rows, wanted=rest).results)
+        return {name: values[name] for name in own}
 
 
 def _of_rows(values: Any, rows: int) -> NDArray[np.float64]:
@@ -362,15 +362,16 @@ def bounds_of(setup: Setup) -> tuple[Bound, ...]:
     """Return the limits on results of the function and on the sum of the prices, those by chance last."""
     requires = requirements(setup)
     known = {*setup.model.own_result_fields, TOTAL_PRICE}
-    found: list[Bound] = []
-    for item in sorted(
-        (require for require in requires if require.result in known), key=lambda item: item.reliability is not None
+    bounds: list[Bound] = []
+    for require in sorted(
+        (require for require in requires if require.result in known),
+        key=lambda require: require.reliability is not None,
     ):
-        name, by_chance = check_name(item, requires), item.reliability is not None
-        taken = any(bound.name == name for bound in found)
+        name, by_chance = check_name(require, requires), require.reliability is not None
+        taken = any(bound.name == name for bound in bounds)
         name = f"{name} by chance" if taken and by_chance else name
-        found.append(Bound(name, item, by_chance, setup.print_unit(item.result)))
-    return tuple(found)
+        bounds.append(Bound(name, require, by_chance, setup.print_unit(require.result)))
+    return tuple(bounds)
 
 
 def left_out(setup: Setup) -> tuple[str, ...]:
@@ -491,7 +492,7 @@ class Space:
     def moved(self) -> frozenset[str]:
         """The inputs that differ between designs."""
         return frozenset(variable.name for variable in self.variables if variable.is_input) | {
-            item.name for item in self.followers
+            follower.name for follower in self.followers
         }
 
     @property
@@ -524,8 +525,8 @@ class Space:
         for follower in self.followers:
             held = {name: self.setup.nominal(name) for name in follower.formula.names}
             stated = self.setup.nominal(follower.name)
-            found = stated if as_stated else evaluate(follower.formula, {**held, **columns})
-            columns[follower.name] = np.broadcast_to(np.asarray(found, dtype=float), (len(designs),))
+            value = stated if as_stated else evaluate(follower.formula, {**held, **columns})
+            columns[follower.name] = np.broadcast_to(np.asarray(value, dtype=float), (len(designs),))
         return {
             name: np.rint(values).astype(np.int64) if fields[name].kind == "integer" else values
             for name, values in columns.items()
@@ -551,16 +552,16 @@ class Space:
 def open_space(setup: Setup, brief: Brief) -> Space:
     """Collect what may be chosen. Raises UsageError where there is nothing, or a name or range makes no sense."""
     stated = [objective for objective in setup.model.objectives if isinstance(objective, Vary)]
-    inputs = [item for item in stated if not item.by]
+    inputs = [vary for vary in stated if not vary.by]
     tolerances = [tolerance for tolerance in setup.model.tolerances.values() if price_of(setup, tolerance) is not None]
-    _demand_known(setup, brief, {*(item.input for item in inputs), *(item.name for item in tolerances)})
+    _demand_known(setup, brief, {*(vary.input for vary in inputs), *(tolerance.name for tolerance in tolerances)})
 
     def kept(name: str) -> bool:
         return not brief.vary or name in brief.vary
 
-    variables = [_of_input(setup, item, brief) for item in inputs if kept(item.input)]
-    found = (_of_tolerance(setup, item, brief) for item in tolerances if kept(item.name))
-    variables += [variable for variable in found if variable is not None]
+    variables = [_of_input(setup, vary, brief) for vary in inputs if kept(vary.input)]
+    widths = (_of_tolerance(setup, tolerance, brief) for tolerance in tolerances if kept(tolerance.name))
+    variables += [variable for variable in widths if variable is not None]
     if not variables:
         raise UsageError(
             f"study '{brief.study}': {setup.model.name} has nothing to choose; add Vary(input, low, high) to its "
@@ -579,10 +580,10 @@ def _demand_known(setup: Setup, brief: Brief, known: set[str]) -> None:
 
 
 def _of_input(setup: Setup, vary: Vary, brief: Brief) -> Variable:
-    item = setup.model.input_fields[vary.input]
+    input_field = setup.model.input_fields[vary.input]
     what = f"study '{brief.study}': Vary('{vary.input}')"
-    low, high = (_end(item, text, what) for text in (vary.low, vary.high))
-    whole = item.kind in {"whole", "integer"}
+    low, high = (_end(input_field, text, what) for text in (vary.low, vary.high))
+    whole = input_field.kind in {"whole", "integer"}
     if whole:
         low, high = float(ceil(low)), float(floor(high))
     if not low < high:
@@ -593,13 +594,13 @@ def _of_input(setup: Setup, vary: Vary, brief: Brief) -> Variable:
     return Variable(vary.input, "whole" if whole else "number", low, high, setup.print_unit(vary.input), start)
 
 
-def _end(item: InputField, text: str, what: str) -> float:
+def _end(input_field: InputField, text: str, what: str) -> float:
     """Read one end of a range in SI. Raises UsageError for a text that is none, or beyond the bounds of the input."""
     try:
-        value = read_quantity(text, item.unit)
+        value = read_quantity(text, input_field.unit)
     except UnitError as error:
         raise UsageError(f"{what}: {error}") from None
-    broken = "" if item.kind == "whole" else broken_bound(item, value)
+    broken = "" if input_field.kind == "whole" else broken_bound(input_field, value)
     if broken:
         raise UsageError(f"{what}: {broken}")
     return value
@@ -636,7 +637,7 @@ def _of_grade(setup: Setup, tolerance: Tolerance, spread: Grade, brief: Brief, w
 
 def _followers(setup: Setup, stated: list[Vary], brief: Brief) -> Iterator[Follower]:
     """Yield the inputs that follow, each behind those it follows itself. Raises UsageError for a circle."""
-    formulas = {item.input: parse(item.by) for item in stated if item.by}
+    formulas = {vary.input: parse(vary.by) for vary in stated if vary.by}
     done: set[str] = set()
     while len(done) < len(formulas):
         ready = [
@@ -684,33 +685,39 @@ def scattered(
 ) -> dict[str, dict[str, Scattered]]:
     """Return by tolerance and input how much it scatters in every design; ``columns`` are the nominal inputs there."""
     choices = space.choices(designs)
-    found: dict[str, dict[str, Scattered]] = {}
+    scatter: dict[str, dict[str, Scattered]] = {}
     for name, inner in space.scatter.items():
         tolerance = space.setup.model.tolerances[name]
         variable, values = choices.get(name, (None, None))
         spread = space.setup.spread_of(name)
         grades = values if variable is not None and variable.kind == "grade" else None
-        each = {
+        by_column = {
             column: _resolved(space, spread, column, (base, columns, grades, len(designs)))
             for column, base in inner.items()
         }
-        found[name] = _widened(tolerance, spread, each, values) if _is_width(variable) else each
-    return found
+        scatter[name] = _widened(tolerance, spread, by_column, values) if _is_width(variable) else by_column
+    return scatter
 
 
 def _is_width(variable: Variable | None) -> bool:
     return variable is not None and variable.kind == "width"
 
 
-def _widened(tolerance: Tolerance, spread: Spread, each: Mapping[str, Scattered], widths: Any) -> dict[str, Scattered]:
+def _widened(
+    tolerance: Tolerance, spread: Spread, by_column: Mapping[str, Scattered], widths: Any
+) -> dict[str, Scattered]:
     """Bring a band to its chosen width (that of its first input); a zone grows where it says."""
-    first = next(iter(each.values())).width
+    first = next(iter(by_column.values())).width
     with np.errstate(all="ignore"):
         factor = widths / first
     shift = shift_per_width(spread)
     return {
-        column: replace(item, mean=item.mean + shift * (factor - 1) * item.width, sd=item.sd * factor)
-        for column, item in each.items()
+        column: replace(
+            distribution,
+            mean=distribution.mean + shift * (factor - 1) * distribution.width,
+            sd=distribution.sd * factor,
+        )
+        for column, distribution in by_column.items()
     }
 
 
@@ -732,21 +739,23 @@ def _resolved(
     nominal = columns.get(column, np.full(rows, float(space.setup.nominal(column))))
     keys = np.column_stack([places, *(columns[name] for name in reads)])
     unique, where = np.unique(keys, axis=0, return_inverse=True)
-    found = [_of_design(space.setup, spread, column, dict(zip(reads, key[1:], strict=True)), key[0]) for key in unique]
-    shift, sd = (np.array(part)[where.reshape(-1)] for part in zip(*found, strict=True))
+    resolved = [
+        _of_design(space.setup, spread, column, dict(zip(reads, key[1:], strict=True)), key[0]) for key in unique
+    ]
+    shift, sd = (np.array(part)[where.reshape(-1)] for part in zip(*resolved, strict=True))
     return Scattered(nominal + shift, sd, base.shape)
 
 
 def _of_design(
-    setup: Setup, spread: Spread, column: str, values: Mapping[str, float], place: float
+    setup: Setup, spread: Spread, column: str, values: Mapping[str, float], grade_index: float
 ) -> tuple[float, float]:
     """Return how far the mean lies from the nominal, and the standard deviation; NaN for no such grade."""
 
     def value_of(name: str) -> Any:
         return values.get(name, setup.nominal(name))
 
-    if place >= 0 and isinstance(spread, Grade):
-        spread = replace(spread, grade=GRADES[round(place)])
+    if grade_index >= 0 and isinstance(spread, Grade):
+        spread = replace(spread, grade=GRADES[round(grade_index)])
     target = Target(column, float(value_of(column)), setup.unit_of(column), value_of)
     try:
         distribution = spread.resolve(target)
@@ -840,7 +849,7 @@ def by_draws(cloud: Cloud, designs: Designs, bounds: Sequence[Bound], answer: An
     flat = {name: np.ascontiguousarray(values).reshape(-1) for name, values in columns.items()}
     results = answer(flat, designs.rows * cloud.draws, _wanted(bounds))
     each = {name: np.asarray(values).reshape(*shape, *np.shape(values)[1:]) for name, values in results.items()}
-    found = np.empty((designs.rows, len(bounds)))
+    probabilities = np.empty((designs.rows, len(bounds)))
     for index, bound in enumerate(bounds):
         low, high = _ends(designs.world, bound)
         response = each[bound.result]
@@ -850,8 +859,8 @@ def by_draws(cloud: Cloud, designs: Designs, bounds: Sequence[Bound], answer: An
             response = response - beside(limit, response)
         with np.errstate(invalid="ignore"):
             inside = (response <= _per_design(high, response)) & (response >= _per_design(low, response))
-        found[:, index] = _worst(inside.mean(axis=1))
-    return found
+        probabilities[:, index] = _worst(inside.mean(axis=1))
+    return probabilities
 
 
 def _per_design(limit: Any, values: Any) -> Any:
@@ -914,7 +923,7 @@ def by_first_order(
     columns = scatter.columns
     steps, variances, shifts = _moments(scatter, designs)
     values = _beside_the_designs(designs, columns, steps, _wanted(bounds), answer)
-    found = np.empty((designs.rows, len(bounds)))
+    probabilities = np.empty((designs.rows, len(bounds)))
     for index, bound in enumerate(bounds):
         centre, slopes = _line(designs, bound, values, (columns, steps))
         low, high = _ends(designs.world, bound)
@@ -923,8 +932,8 @@ def by_first_order(
             mean = mean + slopes[column] * beside(shift, slopes[column])
         sd = np.sqrt(np.maximum(variance, 0.0))
         chance = _worst(np.asarray(normal_chance(mean, sd, beside(low, mean), beside(high, mean))))
-        found[:, index] = np.where(np.isfinite(chance), chance, 0.0)
-    return found
+        probabilities[:, index] = np.where(np.isfinite(chance), chance, 0.0)
+    return probabilities
 
 
 def _moments(scatter: Scatter, designs: Designs) -> tuple[dict[str, Any], Any, dict[str, Any]]:
@@ -967,9 +976,9 @@ def _beside_the_designs(
     for name in dict.fromkeys([*designs.world.columns, *columns]):
         values = np.repeat(designs.nominal(name)[:, None], width, axis=1)
         if name in steps:
-            place = 1 + 2 * list(columns).index(name)
-            values[:, place] += steps[name]
-            values[:, place + 1] -= steps[name]
+            column = 1 + 2 * list(columns).index(name)
+            values[:, column] += steps[name]
+            values[:, column + 1] -= steps[name]
         batch[name] = values.reshape(-1)
     results = answer(batch, designs.rows * width, wanted)
     inputs = {name: values.reshape(designs.rows, width) for name, values in batch.items()}

@@ -78,10 +78,10 @@ def search(problem: Problem, plan: SearchPlan, answer: DesignEvaluator, done: Ca
         if kept is not None:
             asked.set("X", _led(problem, (asked.get("X"), algorithm.pop.get("X")), kept[0], rng))
         designs = problem.space.designs(asked.get("X"))
-        found = answer(designs)
-        evaluations, failed = evaluations + len(designs), failed + int(found.failed.sum())
-        _tell(algorithm, shell, asked, problem, found)
-        kept = _best(problem, kept, (designs, found), ROOM * plan.population)
+        generation_answers = answer(designs)
+        evaluations, failed = evaluations + len(designs), failed + int(generation_answers.failed.sum())
+        _tell(algorithm, shell, asked, problem, generation_answers)
+        kept = _best(problem, kept, (designs, generation_answers), ROOM * plan.population)
         fronts.append(small(problem, kept[1]))
         done(generation + 1, plan.generations)
     assert kept is not None  # the first generation is never empty
@@ -176,9 +176,9 @@ def worth_it(front: NDArray[np.float64]) -> NDArray[np.bool_]:
 def spread_out(values: NDArray[np.float64], front: NDArray[np.intp], most: int) -> NDArray[np.intp]:
     """Thin a front to ``most`` rows by leaving out, one by one, the most crowded; ends have no neighbour and stay."""
     while len(front) > most:
-        found = values[front]
-        span = np.ptp(found, axis=0)
-        scaled = (found - found.min(axis=0)) / np.where(span > 0, span, 1.0)
+        objectives = values[front]
+        span = np.ptp(objectives, axis=0)
+        scaled = (objectives - objectives.min(axis=0)) / np.where(span > 0, span, 1.0)
         room = np.zeros(len(front))
         for column in scaled.T:
             order = np.argsort(column, kind="stable")
@@ -188,12 +188,12 @@ def spread_out(values: NDArray[np.float64], front: NDArray[np.intp], most: int) 
     return front
 
 
-def _tell(algorithm: Any, shell: Any, asked: Any, problem: Problem, found: Answers) -> None:
+def _tell(algorithm: Any, shell: Any, asked: Any, problem: Problem, answers: Answers) -> None:
     """Hand the answers back; a design without one is finite and worse than any other."""
     signs = np.array([aim.sign for aim in problem.aims])
-    objectives = np.where(found.failed[:, None], FAILED, found.objectives * signs)
-    missing = np.where(found.failed, FAILED, -1.0)
-    limits = np.where(found.failed[:, None], FAILED, -found.margins)
+    objectives = np.where(answers.failed[:, None], FAILED, answers.objectives * signs)
+    missing = np.where(answers.failed, FAILED, -1.0)
+    limits = np.where(answers.failed[:, None], FAILED, -answers.margins)
     pymoo_evaluator.Evaluator().eval(
         pymoo_static.StaticProblem(shell, F=objectives, G=np.column_stack([limits, missing])), asked
     )
@@ -295,8 +295,8 @@ def volume_of(fronts: Sequence[NDArray[np.float64]], *, exhausted: bool = False)
     In one objective it is the way from the reference to the best. An objective in which the last front has no extent
     takes that of all fronts. Source: E. Zitzler, L. Thiele, IEEE Trans. Evol. Comput. 3 (1999) 257.
     """
-    found = [front for front in fronts if len(front)]
-    last, whole = found[-1], np.vstack(found)
+    filled = [front for front in fronts if len(front)]
+    last, whole = filled[-1], np.vstack(filled)
     ideal, nadir = last.min(axis=0), last.max(axis=0)
     nadir = np.where(nadir > ideal, nadir, whole.max(axis=0))
     span = np.where(nadir > ideal, nadir - ideal, 1.0)
@@ -328,5 +328,5 @@ def knee_of(front: NDArray[np.float64]) -> tuple[int, float]:
     span = np.ptp(front, axis=0)
     scaled = (front - front.min(axis=0)) / np.where(span > 0, span, 1.0)
     distance = (1.0 - scaled.sum(axis=1)) / np.sqrt(front.shape[1])
-    place = int(np.argmax(distance))
-    return place, float(distance[place]) if (span > 0).all() else 0.0
+    knee = int(np.argmax(distance))
+    return knee, float(distance[knee]) if (span > 0).all() else 0.0

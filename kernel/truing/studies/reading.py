@@ -32,18 +32,18 @@ def _with_common_unit(words: list[str], unit: str, text: str) -> list[float]:
     try:
         common = split_quantity(words[-1]).unit
         quantities = [split_quantity(word) for word in words]
-        return [read_quantity(f"{item.value!r} {item.unit or common}".strip(), unit) for item in quantities]
+        return [read_quantity(f"{quantity.value!r} {quantity.unit or common}".strip(), unit) for quantity in quantities]
     except UnitError as error:
         raise UsageError(f"the range '{text}': {error}") from error
 
 
 def scattering_name(setup: Setup, name: str, study: str) -> str:
     """Return the name of an input or condition that a study varies; raises UsageError where it cannot vary."""
-    item = setup.model.input_fields.get(name)
-    if item is None and name not in setup.conditions:
+    field = setup.model.input_fields.get(name)
+    if field is None and name not in setup.conditions:
         known = [*setup.model.input_fields, *setup.conditions]
         raise UsageError(f"study '{study}': '{name}' is no input of {setup.model.name}.{near_miss(name, known)}")
-    if item is not None and not (item.varies or item.kind == "integer"):
+    if field is not None and not (field.varies or field.kind == "integer"):
         raise UsageError(f"study '{study}': '{name}' cannot be swept; only a number can")
     return name
 

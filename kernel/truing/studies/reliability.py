@@ -72,7 +72,7 @@ class Reliability:
             )
         machines = Machines(setup, scatter_of(setup))
         nominal = nominal_inputs(setup, wanted)
-        straight, found = straightened(machines, wanted, nominal)
+        straight, derivatives = straightened(machines, wanted, nominal)
         analytic = {demand.name: chance(demand, straight[demand.name]) for demand in wanted}
         tally = self._sampled(bench, machines, wanted, (answers, stage))
         return Odds(
@@ -84,7 +84,7 @@ class Reliability:
             first_sd={demand.name: straight[demand.name].sd for demand in wanted},
             form=self._form(machines, wanted, nominal),
             tally=tally,
-            remarks=(*_lacking(bench), *found.warnings, *_still(machines), *_few_draws(self, wanted)),
+            remarks=(*_lacking(bench), *derivatives.warnings, *_still(machines), *_few_draws(self, wanted)),
             inputs=acting_inputs(setup),
             nominal={demand.result: answers[demand.result] for demand in wanted},
         )
@@ -117,17 +117,19 @@ class Reliability:
     def _at(self, bench: Bench, over: str, value: float, stage: int) -> Odds | str:
         """Answer at one point, or say why there is no answer."""
         setup = bench.setup
-        item = setup.model.input_fields.get(over)
-        setup = setup.changed({over: int(value) if item is not None and item.kind == "integer" else value})
+        input_field = setup.model.input_fields.get(over)
+        setup = setup.changed(
+            {over: int(value) if input_field is not None and input_field.kind == "integer" else value}
+        )
         try:
-            found = answered(setup)
+            answers = answered(setup)
         except InfeasibleError as error:
             return str(error)
         wanted = [name for demand in demands(bench.setup, bench.answers) for name in demand.wanted]
-        lacking = [found.absent[name] for name in wanted if name in found.absent]
+        lacking = [answers.absent[name] for name in wanted if name in answers.absent]
         if lacking:
             return lacking[0]
-        return self._answer(bench, setup, setup.model.read_results(found.results), stage)
+        return self._answer(bench, setup, setup.model.read_results(answers.results), stage)
 
 
 def _lacking(bench: Bench) -> list[str]:
@@ -295,9 +297,9 @@ class Odds:
         blocks: list[Block] = [_chances(self)]
         if self.sampled:
             blocks.append(_spreads(self))
-        for name, found in self.form.items():
-            if found.probability is None:
-                blocks.append(Words(f"FORM of the {spoken(name)}: {found.status}."))
+        for name, form_result in self.form.items():
+            if form_result.probability is None:
+                blocks.append(Words(f"FORM of the {spoken(name)}: {form_result.status}."))
         if self.curve is not None and self.curve.probability:
             blocks.append(_drawn(self, self.curve))
         return blocks
@@ -384,10 +386,10 @@ def _chances(odds: Odds) -> Table:
     rows: list[list[Any]] = []
     for demand in odds.demands:
         name = demand.name
-        found = odds.form.get(name)
+        form_result = odds.form.get(name)
         interval = [100 * worst(end) for end in odds.interval[name]] if odds.sampled else [None, None]
         sampled = 100 * worst(odds.probability[name]) if odds.sampled else None
-        tangent = None if found is None or found.probability is None else 100 * found.probability
+        tangent = None if form_result is None or form_result.probability is None else 100 * form_result.probability
         goal = None if demand.goal is None else 100 * demand.goal
         rows.append([name, goal, sampled, *interval, 100 * worst(odds.analytic[name]), tangent])
     columns = ("limit kept", "goal", "Monte Carlo", "95 % from", "to", "first order", "FORM")

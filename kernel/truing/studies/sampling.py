@@ -182,10 +182,10 @@ def _moments(rows: Rows, name: str, centre: Any) -> Moments:
 
 
 def _counted(rows: Rows) -> dict[str, int]:
-    found: dict[str, int] = {}
+    counts: dict[str, int] = {}
     for reason in rows.reasons.values():
-        found[reason] = found.get(reason, 0) + 1
-    return found
+        counts[reason] = counts.get(reason, 0) + 1
+    return counts
 
 
 def merged(first: Tally, second: Tally) -> Tally:
@@ -302,30 +302,30 @@ class Scatter:
 
     def shifts(self) -> dict[str, float]:
         """Return by column how far the mean lies from the nominal, where it does."""
-        found: dict[str, float] = {}
+        shifts: dict[str, float] = {}
         for cause in self.causes:
             for column, nominal, distribution in zip(cause.columns, cause.nominals, cause.distributions, strict=True):
                 if distribution.mean != nominal:
-                    found[column] = found.get(column, 0.0) + distribution.mean - nominal
-        return found
+                    shifts[column] = shifts.get(column, 0.0) + distribution.mean - nominal
+        return shifts
 
     def variances(self, slopes: Mapping[str, Any]) -> dict[str, Any]:
         """Return the first-order variance by column from derivatives (numbers or arrays along an axis)."""
-        found: dict[str, Any] = {}
+        variances: dict[str, Any] = {}
         for cause in self.causes:
             gradient = np.array([np.asarray(slopes[column], dtype=float) for column in cause.columns])
             parts = gradient * np.tensordot(cause.covariance(), gradient, axes=1)
             for column, part in zip(cause.columns, parts, strict=True):
-                found[column] = found[column] + part if column in found else part
-        return found
+                variances[column] = variances[column] + part if column in variances else part
+        return variances
 
     def sd_of(self, column: str) -> float:
         """Return the standard deviation of one column, 0 where it does not scatter."""
         variance = 0.0
         for cause in self.causes:
             if column in cause.columns:
-                place = cause.columns.index(column)
-                variance += float(cause.covariance()[place, place])
+                index = cause.columns.index(column)
+                variance += float(cause.covariance()[index, index])
         return math.sqrt(variance)
 
 
@@ -378,21 +378,21 @@ def _stand_in(spread: Drawn, columns: tuple[str, ...]) -> NDArray[np.float64]:
     return root_of(np.atleast_2d(np.cov(joint)))
 
 
-def _of_effect(item: SwitchedOn) -> ScatterSource | None:
+def _of_effect(active: SwitchedOn) -> ScatterSource | None:
     """Return the uncertainty with which an effect was diagnosed, or None where it is known exactly or only read."""
-    if item.effect.place == "reading":
+    if active.effect.place == "reading":
         return None
-    names = [unknown.name for unknown in item.unknowns]
-    sds = [float(item.sds.get(name, 0.0)) for name in names]
-    covariance = np.array(item.covariance, dtype=float) if item.covariance else np.diag(np.square(sds))
+    names = [unknown.name for unknown in active.unknowns]
+    sds = [float(active.sds.get(name, 0.0)) for name in names]
+    covariance = np.array(active.covariance, dtype=float) if active.covariance else np.diag(np.square(sds))
     if not covariance.any():
         return None
-    values = tuple(float(item.values[name]) for name in names)
-    columns = tuple(effect_column(item.effect.name, name) for name in names)
+    values = tuple(float(active.values[name]) for name in names)
+    columns = tuple(effect_column(active.effect.name, name) for name in names)
     spread = np.sqrt(np.diag(covariance))
     distributions = tuple(Distribution(value, float(sd)) for value, sd in zip(values, spread, strict=True))
-    mixing = root_of(covariance) if item.covariance else None
-    return ScatterSource(f"effects.{item.effect.name}", columns, values, distributions, mixing)
+    mixing = root_of(covariance) if active.covariance else None
+    return ScatterSource(f"effects.{active.effect.name}", columns, values, distributions, mixing)
 
 
 def root_of(covariance: NDArray[np.float64]) -> NDArray[np.float64]:

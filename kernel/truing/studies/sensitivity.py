@@ -55,8 +55,8 @@ class Sensitivity:
         missing = [f"'{name}' has no derivatives: {bench.absent[name]}" for name in asked if name in bench.absent]
         scatter = scatter_of(setup)
         sources = _sources(setup, self.at_inputs, self.name)
-        found = slopes(setup, results, tuple(dict.fromkeys([*sources, *scatter.columns])), scatter)
-        numeric = {result: dict(found.of[result]) for result in results}
+        derivatives = slopes(setup, results, tuple(dict.fromkeys([*sources, *scatter.columns])), scatter)
+        numeric = {result: dict(derivatives.of[result]) for result in results}
         exact = exact_slopes(setup)
         best = {result: {**numeric[result], **_plain(exact.get(result, {}), numeric[result])} for result in results}
         share, sd = _shares(best, scatter)
@@ -70,7 +70,7 @@ class Sensitivity:
             sobol_total=total,
             agreement=_agreement(numeric, exact),
             units={name: setup.print_unit(name) for name in results} | {name: _unit(setup, name) for name in sources},
-            remarks=(*missing, *found.warnings, *remarks),
+            remarks=(*missing, *derivatives.warnings, *remarks),
             inputs=acting_inputs(setup),
             still=frozenset(source for source in sources if not scatter.sd_of(source)),
         )
@@ -136,14 +136,14 @@ def _shares(of: Mapping[str, Mapping[str, float]], scatter: Scatter) -> tuple[_I
 
 def _agreement(numeric: Mapping[str, Mapping[str, float]], exact: Mapping[str, Mapping[str, Any]]) -> dict[str, float]:
     """Return by result the largest difference of stated and numeric derivatives, over the largest derivative."""
-    found: dict[str, float] = {}
+    disagreement: dict[str, float] = {}
     for result, by_source in numeric.items():
         stated = _plain(exact.get(result, {}), by_source)
         if stated:
             largest = max(abs(value) for value in [*stated.values(), *by_source.values()])
             apart = max(abs(value - by_source[source]) for source, value in stated.items())
-            found[result] = apart / largest if largest else 0.0
-    return found
+            disagreement[result] = apart / largest if largest else 0.0
+    return disagreement
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -322,11 +322,11 @@ def sobol_indices(
     model = _Sampled(machines, results, lambda run: progress(run, samples * (dimensions + 2)))
     rng = np.random.default_rng(np.random.SeedSequence(machines.setup.seed, spawn_key=(0x50B01,)))
     dists = [_Standard()] * dimensions
-    found = stats.sobol_indices(func=model, n=samples, dists=dists, rng=rng)
+    indices = stats.sobol_indices(func=model, n=samples, dists=dists, rng=rng)
     if model.failed:
         return {}, {}, [f"no Sobol indices: {model.failed} machines failed, the first because {model.reason}"]
-    first = np.reshape(found.first_order, (len(results), len(dists)))
-    total = np.reshape(found.total_order, (len(results), len(dists)))
+    first = np.reshape(indices.first_order, (len(results), len(dists)))
+    total = np.reshape(indices.total_order, (len(results), len(dists)))
     return _by_name(results, sources, first), _by_name(results, sources, total), []
 
 
@@ -334,9 +334,9 @@ def _by_name(
     results: Sequence[str], sources: Sequence[str], values: NDArray[np.float64]
 ) -> dict[str, dict[str, float]]:
     """Return indices by result and source; an input with two tolerances has the sum of both."""
-    found: dict[str, dict[str, float]] = {}
+    by_result: dict[str, dict[str, float]] = {}
     for index, result in enumerate(results):
-        found[result] = {}
+        by_result[result] = {}
         for column, source in enumerate(sources):
-            found[result][source] = found[result].get(source, 0.0) + float(values[index, column])
-    return found
+            by_result[result][source] = by_result[result].get(source, 0.0) + float(values[index, column])
+    return by_result

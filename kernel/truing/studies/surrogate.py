@@ -303,12 +303,12 @@ MOST_PANELS = 4
 
 
 def _box(emulated: Emulated) -> dict[str, Any]:
-    found = {}
+    ranges = {}
     for feature in emulated.stand_in.box.features:
         unit = emulated.units[feature.name]
         ends = {"low": printed(feature.low, unit), "high": printed(feature.high, unit), "unit": unit}
-        found[feature.name] = {**ends, "logarithmic": feature.logarithmic, "sets": feature.sets}
-    return found
+        ranges[feature.name] = {**ends, "logarithmic": feature.logarithmic, "sets": feature.sets}
+    return ranges
 
 
 def _points(counted: Counted) -> dict[str, int]:
@@ -384,9 +384,11 @@ def _accuracy_table(emulated: Emulated) -> Table:
     rows: list[list[Any]] = []
     for name, judged in emulated.judged.items():
         unit = emulated.units[name]
-        found = _accuracy(judged, unit)
-        shares = [100 * found[key] if found[key] is not None else None for key in ("median_share", "largest_share")]
-        errors = [found["median_error"], shares[0], found["largest_error"], shares[1]]
+        accuracy = _accuracy(judged, unit)
+        shares = [
+            100 * accuracy[key] if accuracy[key] is not None else None for key in ("median_share", "largest_share")
+        ]
+        errors = [accuracy["median_error"], shares[0], accuracy["largest_error"], shares[1]]
         rows.append([name, unit_text(unit), judged.points, 100 * judged.coverage, *errors])
     whole = "value" if next(iter(emulated.judged.values())).is_share else "range of all values"
     columns = ("result", "unit", "points", "in the 95 % band", "median error", "share", "largest error", "share")
@@ -692,13 +694,13 @@ class Emulator:
 
 def _in_parts(predict: Any, places: NDArray[np.float64], answers: int = 1) -> NDArray[np.float64]:
     """Predict a part at a time, so that memory stays flat; rows that are not finite stay NaN."""
-    found = np.full((answers, len(places)), np.nan)
+    predictions = np.full((answers, len(places)), np.nan)
     usable = np.flatnonzero(np.isfinite(places).all(axis=1))
     with one_thread():
         for start in range(0, len(usable), ROWS):
             rows = usable[start : start + ROWS]
-            found[:, rows] = predict(places[rows])
-    return found
+            predictions[:, rows] = predict(places[rows])
+    return predictions
 
 
 def fitted(
@@ -718,9 +720,9 @@ def fitted(
     kernel = gaussian_kernels.ConstantKernel(10.0, AMPLITUDES) * shape + gaussian_kernels.WhiteKernel(1e-6, NOISES)
 
     def searched(likelihood: Any, start: Any, bounds: Any) -> tuple[Any, float]:
-        found: Any = minimize(likelihood, start, method="L-BFGS-B", jac=True, bounds=bounds)  # as scikit-learn does
+        optimum: Any = minimize(likelihood, start, method="L-BFGS-B", jac=True, bounds=bounds)  # as scikit-learn does
         done()
-        return found.x, found.fun
+        return optimum.x, optimum.fun
 
     process = gaussian_process.GaussianProcessRegressor(
         kernel, alpha=JITTER, normalize_y=True, n_restarts_optimizer=restarts, random_state=seed % 2**32,
@@ -796,8 +798,8 @@ class Box:
     def sampled(self, shares: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
         """Return the columns (n,) of a batch from places (n, d), 0 to 1. Raises UsageError for a bent formula."""
         columns: dict[str, Any] = {}
-        for place, feature in sorted(enumerate(self.features), key=lambda item: not item[1].is_plain):
-            columns[feature.sets] = self._solved(feature, feature.value(shares[:, place]), columns)
+        for index, feature in sorted(enumerate(self.features), key=lambda numbered: not numbered[1].is_plain):
+            columns[feature.sets] = self._solved(feature, feature.value(shares[:, index]), columns)
         return columns
 
     def places(self, columns: Mapping[str, Any]) -> NDArray[np.float64]:
@@ -809,7 +811,7 @@ class Box:
         self._demand_known(columns)
         values = {**self.held, **columns}
         places = [feature.place(evaluate(feature.formula, values)) for feature in self.features]
-        return np.column_stack([np.broadcast_to(place, (rows,)) for place in places])
+        return np.column_stack([np.broadcast_to(position, (rows,)) for position in places])
 
     def outside(self, columns: Mapping[str, Any]) -> NDArray[np.bool_]:
         """Say per calculation (n,) whether it lies outside the box, where nothing was learnt."""
@@ -821,7 +823,7 @@ class Box:
         """Name the features in which the run itself lies outside the box."""
         places = self.places({})[0]
         inside = (places >= -STRAIGHT_TO) & (places <= 1 + STRAIGHT_TO)
-        return tuple(item.name for item, is_inside in zip(self.features, inside, strict=True) if not is_inside)
+        return tuple(feature.name for feature, is_inside in zip(self.features, inside, strict=True) if not is_inside)
 
     def _demand_known(self, columns: Mapping[str, Any]) -> None:
         followed = {name for feature in self.features for name in feature.formula.names}
@@ -838,19 +840,19 @@ class Box:
         if feature.is_plain:
             return wanted
         values: dict[str, Any] = {**self.held, **columns}
-        found = np.full(np.shape(wanted), self.held[feature.sets])
+        solution = np.full(np.shape(wanted), self.held[feature.sets])
 
         def missing(tried: Any) -> Any:
             return wanted - evaluate(feature.formula, {**values, feature.sets: tried})
 
         for _ in range(STEPS):
-            short = missing(found)
-            slope = (short - missing(found + feature.step)) / feature.step
+            short = missing(solution)
+            slope = (short - missing(solution + feature.step)) / feature.step
             with np.errstate(all="ignore"):
-                found = found + short / slope
-        if not np.all(np.abs(missing(found)) <= STRAIGHT_TO * (feature.high - feature.low)):
+                solution = solution + short / slope
+        if not np.all(np.abs(missing(solution)) <= STRAIGHT_TO * (feature.high - feature.low)):
             raise UsageError(f"the formula '{feature.name}' is not straight in '{feature.sets}', which follows from it")
-        return found
+        return solution
 
 
 def open_box(setup: Setup, over: Mapping[str, str], logarithmic: Sequence[str], study: str) -> Box:
@@ -898,8 +900,8 @@ def _parsed(text: str, held: Mapping[str, float], setup: Setup, study: str) -> F
             raise UsageError(
                 f"study '{study}': '{name}' is no number among the inputs of {setup.model.name}.{near_miss(name, held)}"
             )
-        item = setup.model.input_fields.get(name)
-        if item is not None and item.kind == "whole":
+        input_field = setup.model.input_fields.get(name)
+        if input_field is not None and input_field.kind == "whole":
             raise UsageError(f"study '{study}': '{name}' takes whole numbers; a surrogate needs what lies between them")
     return formula
 

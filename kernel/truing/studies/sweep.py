@@ -66,8 +66,8 @@ class Sweep:
 def _points(setup: Setup, over: str, at: str, points: int) -> NDArray[np.float64]:
     """Return the points in SI; of an input that takes whole numbers, all between the ends or those listed."""
     axis = read_range(at, setup.unit_of(over), points)
-    item = setup.model.input_fields.get(over)
-    if item is None or item.kind not in {"integer", "whole"}:
+    field = setup.model.input_fields.get(over)
+    if field is None or field.kind not in {"integer", "whole"}:
         return axis
     if ".." in at:
         axis = np.arange(np.ceil(axis[0]), np.floor(axis[-1]) + 1)
@@ -77,8 +77,8 @@ def _points(setup: Setup, over: str, at: str, points: int) -> NDArray[np.float64
 
 
 def _values(setup: Setup, over: str, axis: NDArray[np.float64]) -> Any:
-    item = setup.model.input_fields.get(over)
-    return [int(value) for value in axis] if item is not None and item.kind == "integer" else axis
+    field = setup.model.input_fields.get(over)
+    return [int(value) for value in axis] if field is not None and field.kind == "integer" else axis
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -148,8 +148,8 @@ class Swept(Outcome):
         for name in self.moving():
             values = self.results[name]
             row: list[Any] = [name, unit_text(self.units[name])]
-            for place in (int(np.nanargmin(values)), int(np.nanargmax(values))):
-                row += [float(from_si(values[place], self.units[name])), float(from_si(self.axis[place], unit))]
+            for index in (int(np.nanargmin(values)), int(np.nanargmax(values))):
+                row += [float(from_si(values[index], self.units[name])), float(from_si(self.axis[index], unit))]
             rows.append(row)
         columns = ("result", "unit", "smallest", "at", "largest", "at")
         still = len(self._plain()) - len(rows)

@@ -53,9 +53,9 @@ def _check_histories(subject: Subject) -> None:
 
 def defaults_keep_their_bounds(subject: Subject) -> None:
     """No default lies outside the bounds that are declared beside it."""
-    for name, item in subject.scattering.items():
-        if isinstance(item.spec, Given):
-            broken = broken_bound(item, float(subject.setup.nominal(name)))
+    for name, field in subject.scattering.items():
+        if isinstance(field.spec, Given):
+            broken = broken_bound(field, float(subject.setup.nominal(name)))
             if broken:
                 fail(f"{subject.model.name}: the default breaks its own bound: {broken}")
 
@@ -91,10 +91,10 @@ def sheet_is_in_order(subject: Subject) -> None:
     """No two sections share a title, no result stands on the sheet twice."""
     titles = [section.title for section in subject.model.sheet]
     names = [name for section in subject.model.sheet for name in section.names]
-    for what, found in (("section", titles), ("result", names)):
-        for one in found:
-            if found.count(one) > 1:
-                fail(f"{subject.model.name}: the {what} '{one}' stands on the sheet {found.count(one)} times")
+    for what, written in (("section", titles), ("result", names)):
+        for one in written:
+            if written.count(one) > 1:
+                fail(f"{subject.model.name}: the {what} '{one}' stands on the sheet {written.count(one)} times")
 
 
 def example_can_be_read(subject: Subject) -> None:
@@ -136,16 +136,16 @@ def _stated_files(subject: Subject) -> dict[str, Any]:
 
 def _stated(subject: Subject, setup: Any) -> Iterator[tuple[str, Any]]:
     for name, value in subject.model.read_inputs(setup.inputs).items():
-        item = subject.model.input_fields[name]
-        if item.kind == "file":
+        field = subject.model.input_fields[name]
+        if field.kind == "file":
             continue
-        if item.kind in {"switch", "choice", "text", "integer"}:
+        if field.kind in {"switch", "choice", "text", "integer"}:
             yield name, value
-        elif item.kind == "series":
-            yield name, [f"{float(from_si(float(one), item.unit))!r} {item.unit}".strip() for one in value]
+        elif field.kind == "series":
+            yield name, [f"{float(from_si(float(one), field.unit))!r} {field.unit}".strip() for one in value]
         else:
-            number = float(from_si(float(value), item.unit))
-            yield name, None if math.isnan(number) else f"{number!r} {item.unit}".strip()
+            number = float(from_si(float(value), field.unit))
+            yield name, None if math.isnan(number) else f"{number!r} {field.unit}".strip()
 
 
 def _through_json(stated: dict[str, Any]) -> dict[str, Any]:
@@ -191,19 +191,19 @@ def formulas_of(subject: Subject) -> Iterator[tuple[ResultField, Formula, bool, 
 def formulas_have_the_unit(subject: Subject) -> None:
     """Every formula gives the dimension of its result, by calculation with units."""
     values = _values(subject, {})
-    for item, formula, numeric, scope in formulas_of(subject):
+    for result, formula, numeric, scope in formulas_of(subject):
         if numeric:
             continue
         try:
             quantities = {name: pint_quantity(values[scope[name].name], scope[name].unit) for name in formula.names}
-            found = evaluate_quantities(formula, quantities)
+            quantity = evaluate_quantities(formula, quantities)
         except (UnitError, DeclarationError) as error:
-            fail(f"{subject.model.name}: formula of '{item.name}': {error}")
-        declared = pint_quantity(1.0, item.unit)
-        if formula.left is None and found.dimensionality != declared.dimensionality:
+            fail(f"{subject.model.name}: formula of '{result.name}': {error}")
+        declared = pint_quantity(1.0, result.unit)
+        if formula.left is None and quantity.dimensionality != declared.dimensionality:
             fail(
-                f"{subject.model.name}: the formula of '{item.name}' gives {found.dimensionality}, "
-                f"but the result is declared in '{item.unit}' ({declared.dimensionality})"
+                f"{subject.model.name}: the formula of '{result.name}' gives {quantity.dimensionality}, "
+                f"but the result is declared in '{result.unit}' ({declared.dimensionality})"
             )
 
 
@@ -211,14 +211,14 @@ def formulas_equal_the_function(subject: Subject) -> None:
     """Every printed formula gives what the function gives, to 1e-9, at the defaults and two points beside them."""
     for point in ({}, *subject.points(2)):
         values = _values(subject, point)
-        for item, formula, numeric, scope in formulas_of(subject):
-            result = values[item.name]
+        for field, formula, numeric, scope in formulas_of(subject):
+            result = values[field.name]
             if np.isnan(result).any():  # it does not exist at this point, for a reason that the function states
                 continue
-            expected = from_si(result, item.unit) if numeric and formula.left is None else result
+            expected = from_si(result, field.unit) if numeric and formula.left is None else result
             fault = _difference(formula, _in_formula(formula, values, numeric, scope), expected)
             if fault:
-                fail(f"{subject.model.name}: the formula of '{item.name}' ({formula.text}) {fault}")
+                fail(f"{subject.model.name}: the formula of '{field.name}' ({formula.text}) {fault}")
 
 
 def _values(subject: Subject, point: Mapping[str, float]) -> dict[str, Any]:

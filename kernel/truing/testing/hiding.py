@@ -151,13 +151,13 @@ class _Plan:
             file = Path(folder) / MEASURED
             file.write_text(_csv(columns), encoding="utf-8")
             rows = read_rows(file, offer_of(self.true), self.true)
-        found = read_by_gauge(self.true, rows, list(self.noises))
-        if found.failed.any():
-            row, reason = next(iter(found.reasons.items()))
+        reading = read_by_gauge(self.true, rows, list(self.noises))
+        if reading.failed.any():
+            row, reason = next(iter(reading.reasons.items()))
             at = ", ".join(f"{name} = {values[row]}" for name, values in columns.items())
-            many = f"{int(found.failed.sum())} of {len(found)} rows"
+            many = f"{int(reading.failed.sum())} of {len(reading)} rows"
             _raise(self.setup.model, [f"the model has no answer in {many}; at {at}: {reason}; narrow the range (over)"])
-        return found.results
+        return reading.results
 
 
 def _csv(columns: Mapping[str, Any]) -> str:
@@ -309,13 +309,13 @@ def predicted(diagnosis: DiagnosisResult, setup: Setup, records: Records) -> dic
     machine = diagnosis.extended or replace(setup, calibrated={**setup.calibrated, **calibrated})
     shown = read_by_gauge(one_machine(machine), records.rows, diagnosis.measured).results
     known: dict[str, Any] = {name: covariate.values for name, covariate in records.covariates.items()}
-    found = {}
+    readings = {}
     for result in diagnosis.measured:
         values = shown[result]
         for term in diagnosis.remainder.terms.get(result, ()) if diagnosis.remainder else ():
             values = values + term.coefficient * np.asarray(eval(term.expression, {"np": np}, known))
-        found[result] = values
-    return found
+        readings[result] = values
+    return readings
 
 
 # What is hidden: an effect with its unknowns, made by its own function or by one of the author's own
@@ -346,7 +346,7 @@ def truth_of(
             faults.append(f"size is {size!r}, but no effect is hidden; leave it out")
         return {}
     stated = _stated(effect, size, measured, faults)
-    found: dict[str, float] = {}
+    sizes: dict[str, float] = {}
     for name, said in stated.items():
         unknown = next((unknown for unknown in effect.unknowns if unknown.name == name), None)
         if unknown is None:
@@ -354,20 +354,20 @@ def truth_of(
             faults.append(f"effect '{effect.name}' has no unknown '{name}'.{near_miss(name, known)}")
             continue
         try:
-            found[name] = _value(effect, unknown, said)
+            sizes[name] = _value(effect, unknown, said)
         except TruingError as error:
             faults.append(f"size of '{name}': {error}")
-    touched = [part for part in effect.groups() if any(one.name in stated for one in part)]
-    missing = [one.name for part in touched for one in part if one.name not in stated]
+    touched = [part for part in effect.groups() if any(unknown.name in stated for unknown in part)]
+    missing = [unknown.name for part in touched for unknown in part if unknown.name not in stated]
     if missing:
         faults.append(f"effect '{effect.name}': say {' and '.join(missing)} as well, size={{...}}")
     if (
-        found
-        and not any(unknown.is_amplitude and found.get(unknown.name) for unknown in effect.unknowns)
+        sizes
+        and not any(unknown.is_amplitude and sizes.get(unknown.name) for unknown in effect.unknowns)
         and not missing
     ):
         faults.append(f"effect '{effect.name}' of size 0 hides nothing; hide(None, ...) does that")
-    return found
+    return sizes
 
 
 def _stated(
@@ -378,12 +378,12 @@ def _stated(
         return size
     parts = effect.groups()
     if effect.parts:  # one gauge each: that of what is measured
-        parts = tuple(part for part in parts if any(one.name in measured for one in part)) or parts
+        parts = tuple(part for part in parts if any(unknown.name in measured for unknown in part)) or parts
     if size is None:
         return _half(effect, parts, faults)
     if len(parts) == 1 and len(parts[0]) == 1:
         return {parts[0][0].name: size}
-    names = [one.name for part in parts for one in part]
+    names = [unknown.name for part in parts for unknown in part]
     faults.append(
         f"effect '{effect.name}' has the unknowns {', '.join(names)}: say which is {size}, "
         f'size={{"{names[0]}": "{size}", ...}}'
@@ -393,17 +393,17 @@ def _stated(
 
 def _half(effect: Effect[Any, Any], parts: Sequence[Sequence[Unknown]], faults: list[str]) -> dict[str, str]:
     """Take half of what the bounds of an amplitude allow, and the middle of those of a shape."""
-    if len(parts) != 1 or any(abs(one.high) >= ENDLESS for one in parts[0]):
+    if len(parts) != 1 or any(abs(unknown.high) >= ENDLESS for unknown in parts[0]):
         faults.append(f"say how large '{effect.name}' is: size={{...}}; its bounds are no measure of it")
         return {}
-    found = {}
-    for one in parts[0]:
-        if one.is_amplitude:
-            value = max((one.low, one.high), key=abs) / 2
+    sizes = {}
+    for unknown in parts[0]:
+        if unknown.is_amplitude:
+            value = max((unknown.low, unknown.high), key=abs) / 2
         else:
-            value = math.sqrt(one.low * one.high) if one.low > 0 else (one.low + one.high) / 2
-        found[one.name] = f"{round(value) if one.whole else value!r} {one.unit}".strip()
-    return found
+            value = math.sqrt(unknown.low * unknown.high) if unknown.low > 0 else (unknown.low + unknown.high) / 2
+        sizes[unknown.name] = f"{round(value) if unknown.whole else value!r} {unknown.unit}".strip()
+    return sizes
 
 
 def _value(effect: Effect[Any, Any], unknown: Unknown, said: str | float) -> float:
@@ -426,20 +426,20 @@ def check_by(by: Strange | None, effect: Effect[Any, Any] | None, model: Model[A
     if by is None:
         return
     parameters = list(inspect.signature(by).parameters.values())
-    if any(item.kind is inspect.Parameter.VAR_KEYWORD for item in parameters):
+    if any(parameter.kind is inspect.Parameter.VAR_KEYWORD for parameter in parameters):
         return
-    named = {item.name for item in parameters[2:]}
+    named = {parameter.name for parameter in parameters[2:]}
     if effect is None:
         unknown = sorted(named - set(model.known_conditions))
         if unknown:
             faults.append(f"by takes {', '.join(unknown)}, which is no condition of the model")
         return
     wanted = {unknown.name for unknown in effect.unknowns} | {need.name for need in effect.needs}
-    needed = {item.name for item in parameters[2:] if item.default is inspect.Parameter.empty}
+    needed = {parameter.name for parameter in parameters[2:] if parameter.default is inspect.Parameter.empty}
     if len(parameters) < 2 or not needed <= wanted <= named:
         faults.append(
-            f"by takes {', '.join(item.name for item in parameters) or 'nothing'}; it is called with inputs, results "
-            f"and the keywords {', '.join(sorted(wanted))}"
+            f"by takes {', '.join(parameter.name for parameter in parameters) or 'nothing'}; "
+            f"it is called with inputs, results and the keywords {', '.join(sorted(wanted))}"
         )
 
 
@@ -498,7 +498,7 @@ def noise_of(setup: Setup, said: Any, measure: str | Sequence[str] | None, fault
     else:
         names = named or _fitting(gauged, said, faults)
         texts = dict.fromkeys(names, said)
-    found = {}
+    noises = {}
     for name, text in texts.items():
         if name not in gauged:
             is_result = name in setup.model.result_fields
@@ -506,16 +506,16 @@ def noise_of(setup: Setup, said: Any, measure: str | Sequence[str] | None, fault
             faults.append(f"'{name}' {why}")
             continue
         try:
-            found[name] = _read(text, gauged[name])
+            noises[name] = _read(text, gauged[name])
         except TruingError as error:
             faults.append(f"noise of '{name}': {error}")
             continue
-        if not (found[name].sd > 0 or found[name].share > 0):
+        if not (noises[name].sd > 0 or noises[name].share > 0):
             faults.append(f"noise of '{name}': {text} is no scatter; every gauge has some, by which it is judged")
     missing = [name for name in named if name not in texts]
     if missing:
         faults.append(f"noise says nothing of {', '.join(missing)}, which is to be measured")
-    return found
+    return noises
 
 
 def gauged_results(setup: Setup) -> dict[str, str]:
@@ -619,15 +619,15 @@ class RecordDesign:
         points = self.runs if self.is_record else count
         shares = qmc.Halton(max(len(spread), 1), seed=rng).random(points)
         shares = np.repeat(shares, self.rows, axis=0) if self.is_record else shares
-        found: dict[str, Any] = {RUN: np.repeat(np.arange(1, self.runs + 1), self.rows)} if self.runs > 1 else {}
+        columns: dict[str, Any] = {RUN: np.repeat(np.arange(1, self.runs + 1), self.rows)} if self.runs > 1 else {}
         clock = (np.arange(count) + rng.random(count)) / count
         for column in self.columns:
             if column.places:
                 own = np.tile(np.linspace(0.0, 1.0, self.rows), self.runs)
             else:
                 own = clock if column.rises else shares[:, spread.index(column)]
-            found[f"{column.name} [{column.unit or '1'}]" if not column.words else column.name] = column.at(own)
-        return found
+            columns[f"{column.name} [{column.unit or '1'}]" if not column.words else column.name] = column.at(own)
+        return columns
 
 
 def columns_of(
@@ -693,10 +693,10 @@ def _axes(setup: Setup, measured: Sequence[str]) -> Iterator[str]:
     """Give the axes that the measured results run along."""
     fields = setup.model.own_result_fields
     for name in measured:
-        item = fields[name]
-        if item.along:
-            own = f"{item.along}_{item.scope}"
-            yield own if own in fields else item.along
+        result = fields[name]
+        if result.along:
+            own = f"{result.along}_{result.scope}"
+            yield own if own in fields else result.along
 
 
 def _whole_axis(setup: Setup, axis: str) -> str:
@@ -709,23 +709,23 @@ def _whole_axis(setup: Setup, axis: str) -> str:
 def _column(setup: Setup, name: str, said: Any, measured: Sequence[str]) -> DesignColumn:
     """Read one range, or the values that a column takes. Raises UsageError with a sentence."""
     model = setup.model
-    item = model.input_fields.get(name)
-    if item is not None and item.kind in WORDS:
-        return _words(item, said)
+    input_field = model.input_fields.get(name)
+    if input_field is not None and input_field.kind in WORDS:
+        return _words(input_field, said)
     unit = _unit_of(setup, name, measured)
     if unit is None:
         known = [*model.input_fields, *model.known_conditions, *_sources(setup)]
         raise UsageError(f"{model.name} has no input or condition of that name.{near_miss(name, known)}")
-    if item is not None and item.kind not in {"float", "whole"}:
+    if input_field is not None and input_field.kind not in {"float", "whole"}:
         raise UsageError("a file or a series cannot change from row to row")
     low, high, levels, shown = _ends(said, unit)
-    if item is not None:
-        _demand_bounds(item, [low, high, *levels], shown)
+    if input_field is not None:
+        _demand_bounds(input_field, [low, high, *levels], shown)
     return DesignColumn(
         name, shown, low, high, levels,
         rises=name == "time" or _is_counted(setup, name),
         places=name in set(_axes(setup, measured)),
-        whole=item is not None and item.kind == "whole",
+        whole=input_field is not None and input_field.kind == "whole",
     )  # fmt: skip
 
 
@@ -743,21 +743,21 @@ def _ends(said: Any, unit: str) -> tuple[float, float, tuple[float, ...], str]:
     return low, high, (), shown
 
 
-def _words(item: Any, said: Any) -> DesignColumn:
+def _words(input_field: Any, said: Any) -> DesignColumn:
     """Read the values of a choice, a switch or a whole number. Raises UsageError with a sentence."""
     words = [word.strip() for word in said.split(",")] if isinstance(said, str) else [str(word) for word in said]
     for word in words:
         try:
-            read_word(item, word, decimal_comma=False)
+            read_word(input_field, word, decimal_comma=False)
         except ValueError as error:
             raise UsageError(str(error)) from error
-    return DesignColumn(item.name, "", words=tuple(words))
+    return DesignColumn(input_field.name, "", words=tuple(words))
 
 
-def _demand_bounds(item: Any, ends: Sequence[float], unit: str) -> None:
+def _demand_bounds(input_field: Any, ends: Sequence[float], unit: str) -> None:
     """Raise UsageError where a range leaves the bounds of an input."""
     for end in ends:
-        broken = broken_bound(item, float(to_si(end, unit)))
+        broken = broken_bound(input_field, float(to_si(end, unit)))
         if broken:
             raise UsageError(broken)
 
@@ -777,17 +777,17 @@ def _unit_of(setup: Setup, name: str, measured: Sequence[str]) -> str | None:
 def _sources(setup: Setup) -> dict[str, str]:
     """Return the columns from which conditions are made that are neither input nor condition, with their units."""
     model = setup.model
-    made = [
+    conditions = [
         condition
         for condition in model.known_conditions.values()
         if condition.made_from and condition.history != "direction"
     ]
-    found = {item.made_from: item.unit for item in made}
+    units = {condition.made_from: condition.unit for condition in conditions}
     axes = {name: field.unit for name, field in model.own_result_fields.items() if isinstance(field.spec, Axis)}
-    found |= {
+    units |= {
         condition.made_from: "" for condition in model.known_conditions.values() if condition.history == "direction"
-    } | found
-    return {name: unit for name, unit in found.items() if name not in axes}
+    } | units
+    return {name: unit for name, unit in units.items() if name not in axes}
 
 
 def _is_counted(setup: Setup, name: str) -> bool:

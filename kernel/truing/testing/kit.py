@@ -93,7 +93,7 @@ def failures(model: Model[Any, Any]) -> dict[str, str]:
     Known exceptions are left out; one whose check is kept is a failure.
     """
     subject = Subject(model)
-    found: dict[str, str] = {}
+    sentences: dict[str, str] = {}
     for check in CHECKS:
         if check.obstacle(subject):
             continue
@@ -102,8 +102,8 @@ def failures(model: Model[Any, Any]) -> dict[str, str]:
             if not (said and check.name in model.exceptions):
                 _demand_exception(check, subject, said)
         except Exception as error:  # whatever a model under test raises is its failure
-            found[check.name] = str(error)
-    return found
+            sentences[check.name] = str(error)
+    return sentences
 
 
 def _said(check: ConformanceCheck, subject: Subject) -> AssertionError | None:

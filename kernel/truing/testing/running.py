@@ -104,8 +104,8 @@ def _compare_slope(subject: Subject, setup: Setup, pair: tuple[str, str], stated
         fail(f"{subject.model.name}: derivatives() names '{result}' by '{name}', which is no result by an input")
     usual = float(subject.setup.nominal(name))  # an input that is 0 by default is no scale of itself where it is drawn
     reach = 0.1 * abs(usual) or unit_factor(subject.model.input_fields[name].unit)
-    found = [_difference(setup, pair, reach * share) for share in (1.0, 0.1, 1e-2, 1e-3)]
-    known = [slope for slope in found if slope is not None]
+    slopes = [_difference(setup, pair, reach * share) for share in (1.0, 0.1, 1e-2, 1e-3)]
+    known = [slope for slope in slopes if slope is not None]
     if len(known) < 2:
         return
     nearest = min(known, key=lambda slope: abs(slope - stated))
@@ -131,8 +131,8 @@ def _difference(setup: Setup, pair: tuple[str, str], step: float) -> float | Non
 
 def bounds_are_answered(subject: Subject) -> None:
     """What lies outside a bound is refused by name; what lies on an inclusive bound is calculated or told why not."""
-    for name, item in subject.scattering.items():
-        spec = item.spec
+    for name, field in subject.scattering.items():
+        spec = field.spec
         assert isinstance(spec, Given)
         bounds: Mapping[str, float | None] = {
             "above": spec.above, "at least": spec.at_least, "below": spec.below, "at most": spec.at_most,
@@ -185,33 +185,33 @@ HALVED_ROUNDING = 1e-9
 
 def steps_may_be_halved(subject: Subject) -> None:
     """Halving a numerical step, or doubling a count, changes no result by more than the sheet says of it."""
-    for item in numerical(subject):
+    for field in numerical(subject):
         for point in ({}, *subject.points(POINTS)):
             setup = subject.at(point)
             try:
-                finer = halved(setup, item)
+                finer = halved(setup, field)
             except InfeasibleError as error:
-                fail(f"{subject.model.name}: '{item.name}' is finer by a half, and the model refuses it: {error}")
-            for sentence in moved(setup, finer, item):
+                fail(f"{subject.model.name}: '{field.name}' is finer by a half, and the model refuses it: {error}")
+            for sentence in moved(setup, finer, field):
                 fail(f"{subject.model.name}: {sentence}; refuse what is too coarse (feasible), or say what it changes")
 
 
 def numerical(subject: Subject) -> list[InputField]:
     """Return the inputs that are declared as numerical steps, tolerances or grids."""
     fields = subject.model.input_fields.values()
-    return [item for item in fields if isinstance(item.spec, Given) and item.spec.halving is not None]
+    return [field for field in fields if isinstance(field.spec, Given) and field.spec.halving is not None]
 
 
-def halved(setup: Setup, item: InputField) -> Any:
+def halved(setup: Setup, field: InputField) -> Any:
     """Return the results with a numerical input made finer; raises InfeasibleError where the model refuses it."""
-    value = setup.model.read_inputs(setup.inputs)[item.name]
-    finer = value * 2 if item.is_count else value / 2
-    return evaluate(replace(setup, inputs=with_values(setup.inputs, {item.path: finer})))
+    value = setup.model.read_inputs(setup.inputs)[field.name]
+    finer = value * 2 if field.is_count else value / 2
+    return evaluate(replace(setup, inputs=with_values(setup.inputs, {field.path: finer})))
 
 
-def moved(setup: Setup, finer: Any, item: InputField) -> Iterator[str]:
+def moved(setup: Setup, finer: Any, field: InputField) -> Iterator[str]:
     """Say of every result that a finer step moves further than declared by how much it does."""
-    spec, model = item.spec, setup.model
+    spec, model = field.spec, setup.model
     assert isinstance(spec, Given)
     assert spec.halving is not None
     before, after = model.read_results(evaluate(setup)), model.read_results(finer)
@@ -222,7 +222,7 @@ def moved(setup: Setup, finer: Any, item: InputField) -> Iterator[str]:
         limit = read_quantity(most, model.own_result_fields[name].unit) if most else spec.halving * size
         if there.shape != here.shape or np.any(np.abs(here - there) > limit + HALVED_ROUNDING * size):
             numbers = "" if there.ndim or here.ndim else f" from {there:.6g} to {here:.6g} (SI)"
-            yield f"a finer '{item.name}' moves '{name}'{numbers}: more than {most or f'{100 * spec.halving:g} %'}"
+            yield f"a finer '{field.name}' moves '{name}'{numbers}: more than {most or f'{100 * spec.halving:g} %'}"
 
 
 # Whether a batch is what single calls give: every input, condition and unknown varied alone, and all of them
@@ -364,36 +364,36 @@ def _inputs_alone(subject: Subject) -> Iterator[Batch]:
 
 def input_values(subject: Subject, name: str) -> list[Any]:
     """Return values of an input, SI, its own first; one alone where no other can be thought of (a file, a series)."""
-    item = subject.model.input_fields[name]
+    field = subject.model.input_fields[name]
     own = subject.model.read_inputs(subject.setup.inputs)[name]
-    if item.kind == "switch":
+    if field.kind == "switch":
         return [own, not own]
-    if item.kind == "choice" and isinstance(own, str):
-        return [own, *(word for word in item.choices if word != own)][:ALONE]
-    if item.kind == "integer":
-        return [own, *(value for value in (own + 1, own - 1) if _is_within(item, value))]
-    if not item.varies:
+    if field.kind == "choice" and isinstance(own, str):
+        return [own, *(word for word in field.choices if word != own)][:ALONE]
+    if field.kind == "integer":
+        return [own, *(value for value in (own + 1, own - 1) if _is_within(field, value))]
+    if not field.varies:
         return [own]
     others = [point[name] for point in subject.points(ROWS)][: ALONE - 1]
-    return [own, *(others if own == own else optional_values(item))]
+    return [own, *(others if own == own else optional_values(field))]
 
 
-def _is_within(item: InputField, value: float) -> bool:
-    spec = item.spec
+def _is_within(field: InputField, value: float) -> bool:
+    spec = field.spec
     assert isinstance(spec, Given)
     return (spec.at_least is None or value >= spec.at_least) and (spec.at_most is None or value <= spec.at_most)
 
 
-def optional_values(item: InputField) -> list[float]:
+def optional_values(field: InputField) -> list[float]:
     """Return values of an input that is not given, SI: between its bounds where it has both, else of its unit."""
-    spec = item.spec
+    spec = field.spec
     assert isinstance(spec, Given)
     low = spec.above if spec.above is not None else spec.at_least
     high = spec.below if spec.below is not None else spec.at_most
     if low is None or high is None:
         tried = [value for value in OPTIONAL if (low is None or value > low) and (high is None or value < high)]
-        return [float(to_si(value, item.unit)) for value in tried]
-    return [float(to_si(low + share * (high - low), item.unit)) for share in (1e-3, 0.5)]
+        return [float(to_si(value, field.unit)) for value in tried]
+    return [float(to_si(low + share * (high - low), field.unit)) for share in (1e-3, 0.5)]
 
 
 def _effects_alone(subject: Subject) -> Iterator[Batch]:

@@ -34,14 +34,14 @@ def spreads_resolve(subject: Subject) -> None:
         for name in tolerance.on:
             try:
                 target = subject.setup.target(name)
-                found = tolerance.spread.resolve(target) if target.nominal == target.nominal else None
+                distribution = tolerance.spread.resolve(target) if target.nominal == target.nominal else None
             except TruingError as error:
                 fail(f"{subject.model.name}: tolerance '{tolerance.name}' on '{name}': {error}")
-            if found is not None and not found.sd > 0:
+            if distribution is not None and not distribution.sd > 0:
                 fail(f"{subject.model.name}: tolerance '{tolerance.name}' on '{name}' does not scatter; write off()")
-            if found is not None:
+            if distribution is not None:
                 for price in prices_in(tolerance.price):
-                    _priced(subject, tolerance.name, price, found.width)
+                    _priced(subject, tolerance.name, price, distribution.width)
 
 
 def _priced(subject: Subject, tolerance: str, price: Any, width: float) -> None:
@@ -135,10 +135,10 @@ def _users(subject: Subject) -> Iterator[tuple[str, str]]:
 
 def order_is_free(subject: Subject) -> None:
     """Effects at one place commute: their order changes no result by more than 1 % of what they do."""
-    found = order_matters(subject)
-    if found:
+    pairs = order_matters(subject)
+    if pairs:
         fail(
-            f"{subject.model.name}: effects {'; '.join(found)}; they act in the order of declaration: say why that is "
+            f"{subject.model.name}: effects {'; '.join(pairs)}; they act in the order of declaration: say why that is "
             'right, exceptions={"order of effects": "..."} of the model'
         )
 
@@ -147,7 +147,7 @@ def order_matters(subject: Subject) -> list[str]:
     """Name the pairs of effects at one place whose order changes a result by more than 1 % of what they do."""
     setup = off_reference(subject.setup)
     base = _answers(setup)
-    found: list[str] = []
+    pairs: list[str] = []
     backwards = replace(setup, model=replace(setup.model, errors=list(setup.model.errors)[::-1]))
     on = {effect.name: switched(setup, effect) for effect in subject.model.effects.values()}
     for first, second in combinations(subject.model.effects.values(), 2):
@@ -157,8 +157,8 @@ def order_matters(subject: Subject) -> list[str]:
         both = (*one.effects, *other.effects)
         share = _difference_by_order([replace(order, effects=both) for order in (setup, backwards)], base)
         if share > COMMUTES:
-            found.append(f"'{first.name}' and '{second.name}' do not commute: their order changes {share:.0%} of it")
-    return found
+            pairs.append(f"'{first.name}' and '{second.name}' do not commute: their order changes {share:.0%} of it")
+    return pairs
 
 
 def _difference_by_order(orders: Sequence[Setup], base: SampledInputs) -> float:
@@ -176,16 +176,16 @@ def _difference_by_order(orders: Sequence[Setup], base: SampledInputs) -> float:
     return share
 
 
-def shape(item: Unknown, share: float) -> float:
+def shape(unknown: Unknown, share: float) -> float:
     """Return a shape within its bounds, on a logarithmic scale where it is positive, SI."""
-    if item.low > 0:
-        return float(to_si(item.low * (item.high / item.low) ** share, item.unit))
-    return float(to_si(item.low + share * (item.high - item.low), item.unit))
+    if unknown.low > 0:
+        return float(to_si(unknown.low * (unknown.high / unknown.low) ** share, unknown.unit))
+    return float(to_si(unknown.low + share * (unknown.high - unknown.low), unknown.unit))
 
 
-def amplitude(item: Unknown, share: float) -> float:
+def amplitude(unknown: Unknown, share: float) -> float:
     """Return an amplitude, such a share of the largest that its bounds allow, SI."""
-    return float(to_si(share * max((item.low, item.high), key=abs), item.unit))
+    return float(to_si(share * max((unknown.low, unknown.high), key=abs), unknown.unit))
 
 
 def switched(setup: Setup, effect: Effect[Any, Any]) -> Setup | None:
@@ -214,7 +214,10 @@ def off_reference(setup: Setup, steps: float = 10) -> Setup:
     An effect of the difference of two conditions would not be seen if both moved alike.
     """
     conditions = enumerate(setup.model.conditions.values())
-    moved = {item.name: item.zero + steps * (1 + 0.1 * place) * unit_factor(item.unit) for place, item in conditions}
+    moved = {
+        condition.name: condition.zero + steps * (1 + 0.1 * index) * unit_factor(condition.unit)
+        for index, condition in conditions
+    }
     return replace(setup, conditions={**setup.conditions, **moved})
 
 

@@ -110,14 +110,14 @@ class Subject:
 
     def _new_points(self, count: int) -> list[dict[str, float]]:
         rng = np.random.default_rng(20)
-        found: list[dict[str, float]] = []
+        points: list[dict[str, float]] = []
         for share in NARROWER:
             for _ in range(ATTEMPTS + count):
-                if len(found) == count:
-                    return found
-                point = {name: self.near(item, share, rng) for name, item in self.scattering.items()}
+                if len(points) == count:
+                    return points
+                point = {name: self.near(field, share, rng) for name, field in self.scattering.items()}
                 if self._answers(point):
-                    found.append(point)
+                    points.append(point)
         fail(f"{self.model.name}: no point within a millionth of the defaults can be calculated; state what must hold")
 
     def _answers(self, point: Mapping[str, float]) -> bool:
@@ -127,31 +127,31 @@ class Subject:
             return False
         return True
 
-    def near(self, item: InputField, share: float, rng: np.random.Generator) -> float:
+    def near(self, field: InputField, share: float, rng: np.random.Generator) -> float:
         """Draw a value of an input within its bounds, SI, up to so large a share of its own away from that."""
-        value, spec = float(self.setup.nominal(item.name)), item.spec
+        value, spec = float(self.setup.nominal(field.name)), field.spec
         assert isinstance(spec, Given)
         if value != value or (spec.whole and share < 0.1):
             return value
         if spec.whole:
             moved = value + float(rng.integers(-1, 2))
         else:
-            moved = value + share * self._span(item, value) * float(rng.uniform(-1, 1))
+            moved = value + share * self._span(field, value) * float(rng.uniform(-1, 1))
         closed = (spec.at_least, spec.at_most)
-        low, high = (to_si(bound, item.unit) if bound is not None else None for bound in closed)
+        low, high = (to_si(bound, field.unit) if bound is not None else None for bound in closed)
         moved = max(moved, low) if low is not None else moved
         moved = min(moved, high) if high is not None else moved
-        above, below = (to_si(bound, item.unit) if bound is not None else None for bound in (spec.above, spec.below))
+        above, below = (to_si(bound, field.unit) if bound is not None else None for bound in (spec.above, spec.below))
         outside = (above is not None and moved <= above) or (below is not None and moved >= below)
         return value if outside else moved
 
-    def _span(self, item: InputField, value: float) -> float:
+    def _span(self, field: InputField, value: float) -> float:
         """Return how far a tenth of the input reaches, times ten."""
-        if difference_unit(item.unit) != item.unit:
-            return 100 * unit_factor(item.unit)
+        if difference_unit(field.unit) != field.unit:
+            return 100 * unit_factor(field.unit)
         if value:
             return abs(value)
-        return self._widest.get(item.name, 0.0) * 30 or unit_factor(item.unit)
+        return self._widest.get(field.name, 0.0) * 30 or unit_factor(field.unit)
 
     @cached_property
     def _widest(self) -> dict[str, float]:

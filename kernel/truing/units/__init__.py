@@ -207,11 +207,11 @@ def _shortest(value: float) -> str:
 
 @lru_cache(maxsize=1)
 def _kinds() -> dict[tuple[Dimension, Fraction], str]:
-    found: dict[tuple[Dimension, Fraction], str] = {}
+    kinds: dict[tuple[Dimension, Fraction], str] = {}
     for text, words in names.KINDS:
         known = meaning(text)
-        found.setdefault((known.dimension, known.angle), words)
-    return found
+        kinds.setdefault((known.dimension, known.angle), words)
+    return kinds
 
 
 def _formal(known: Meaning) -> str:

@@ -92,7 +92,7 @@ def normalised(text: str) -> str:
     if not _ALLOWED.match(plain):
         strange = next(character for character in plain if not _ALLOWED.match(character))
         raise UnitError(f"{shown(text)} holds {shown(strange)}, which stands in no number or unit")
-    return re.sub(r"\bdeg(?:rees?)?\.?\s*([CF])\b|°\s+([CF])\b", lambda found: "deg" + (found[1] or found[2]), plain)
+    return re.sub(r"\bdeg(?:rees?)?\.?\s*([CF])\b|°\s+([CF])\b", lambda match: "deg" + (match[1] or match[2]), plain)
 
 
 def split(text: str) -> Quantity:
@@ -197,13 +197,13 @@ def parse(unit: str) -> Product:
 
 def _leading_power(unit: str, plain: str) -> tuple[int, str]:
     """Take the power of ten off a unit text; "1/" is the beginning of a quotient."""
-    found = None if _ONE_OVER.match(plain) else _POWER.match(plain)
-    if found is None:
+    match = None if _ONE_OVER.match(plain) else _POWER.match(plain)
+    if match is None:
         return 0, plain
-    rest = plain[found.end() :].lstrip()
-    if found[0][-1:] in "*·" and (not rest or rest[:1] == "/"):
+    rest = plain[match.end() :].lstrip()
+    if match[0][-1:] in "*·" and (not rest or rest[:1] == "/"):
         raise _no_unit(unit)
-    return _power_of_ten(unit, found), "1" + rest if rest[:1] == "/" else rest
+    return _power_of_ten(unit, match), "1" + rest if rest[:1] == "/" else rest
 
 
 def _no_unit(unit: str) -> UnitError:
@@ -300,15 +300,15 @@ def _exponent_of(unit: str, text: str | None) -> Fraction:
         raise _no_unit(unit) from None
 
 
-def _power_of_ten(unit: str, found: re.Match[str]) -> int:
-    if found["ten"]:
-        return int(found["ten"])
-    if found["small"]:
-        return int(found["small"].translate(_SUPERSCRIPTS))
-    digits, _, exponent = found["digits"].lower().partition("e")
+def _power_of_ten(unit: str, match: re.Match[str]) -> int:
+    if match["ten"]:
+        return int(match["ten"])
+    if match["small"]:
+        return int(match["small"].translate(_SUPERSCRIPTS))
+    digits, _, exponent = match["digits"].lower().partition("e")
     ten = re.fullmatch(r"(1)(0*)(?:\.0*)?|0\.(0*)1", digits)
     if not ten:
-        number = shown(found["digits"])
+        number = shown(match["digits"])
         raise UnitError(f"the unit {shown(unit)} may carry a power of ten, but not the number {number}")
     return (len(ten[2]) if ten[1] else -len(ten[3]) - 1) + int(exponent or 0)
 

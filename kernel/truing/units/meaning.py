@@ -149,8 +149,8 @@ def _full_name(name: str) -> bool:
         return False
     units = registry()
     try:
-        found = [parts for parts in units.parse_unit_name(name) if "".join(parts) == name]
-        known = [unit for _, unit, _ in found if unit not in names.NOT_FROM_PINT]
+        readings = [parts for parts in units.parse_unit_name(name) if "".join(parts) == name]
+        known = [unit for _, unit, _ in readings if unit not in names.NOT_FROM_PINT]
         return any(units._units[unit].is_multiplicative and _is_quantity(unit) for unit in known)
     except Exception:  # whatever pint says of a strange name, it is no unit of ours
         return False
