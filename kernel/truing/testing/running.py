@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import cache
 from itertools import pairwise
 from typing import Any
 
@@ -16,7 +15,7 @@ from truing.declare.sources import Condition, Unknown
 from truing.declare.specs import Given
 from truing.errors import InfeasibleError, PluginError, TruingError
 from truing.evaluate import Rows, evaluate, evaluate_rows
-from truing.executors import WorkerPool, in_order, open_executor
+from truing.executors import in_order, open_executor
 from truing.inputs_file import setup_from_settings
 from truing.packed import Packed, pack, unpack
 from truing.setup import Setup, effect_column
@@ -68,17 +67,12 @@ def serial_equals_parallel(subject: Subject) -> None:
     assert subject.home is not None
     setup = replace(subject.setup, origin=subject.home)
     jobs = [(pack(setup), batch) for batch in range(2)]
-    far = list(in_order(_other_process(), _drawn_rows, jobs))
+    with open_executor("processes:1") as executor:
+        far = list(in_order(executor, _drawn_rows, jobs))
     for here, there in zip(map(_drawn_rows, jobs), far, strict=True):
         for name, values in here.results.items():
             if not np.array_equal(values, there.results[name], equal_nan=True):
                 fail(f"{subject.model.name}: '{name}' is different in another process; avoid globals and set order")
-
-
-@cache
-def _other_process() -> WorkerPool:
-    """One worker process for all models: it takes seconds to start, and ends with this one."""
-    return open_executor("processes:1")
 
 
 def _drawn_rows(job: tuple[Packed, int]) -> Rows:
