@@ -291,8 +291,8 @@ def wear_at(teeth: Teeth, exposure: Array) -> Array:
 # Forces and histories of many meshes, which each are calculated once; those of a few are remembered
 
 CHUNK = 256  # meshes at a time: their contacts stay in the cache of a core
-FEW = 600  # so many meshes are remembered one by one: those of some points of a fit
-FEW_REMEMBERED = 2000
+FEW = 8  # so many meshes are remembered one by one
+FEW_REMEMBERED = 64
 GROUPS_REMEMBERED = 8  # a fit asks for the same rows again and again
 FINENESS = 32  # a history reaches to the next power of two ^ (1 / 32), so that batches ask for the same one
 FURTHER = 16  # of the powers of 2 ^ (1 / 32)
