@@ -5,12 +5,10 @@ from __future__ import annotations
 import csv
 import io
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
-from matplotlib.figure import Figure
 from measured import Diagnosed, calc_here, read_document
 from refusals import listing, sentences
 from shown_in_docs import EXAMPLES
@@ -19,36 +17,14 @@ import truing
 from shared import Calc
 
 PRESS = EXAMPLES / "press_off_by_40_um"
-SAVE = Figure.savefig
-
-
-def _save_unrendered(figure: Figure, file: Any, **options: Any) -> None:
-    if options.get("format") == "svg":
-        file.write('<svg viewBox="0 0 460.8 259.2"></svg>')
-    else:
-        SAVE(figure, file, **options)
-
-
-@pytest.fixture(scope="module", autouse=True)
-def unrendered() -> Iterator[None]:
-    """Build the figures of a sheet, but leave them blank: rendering takes most of the time of a run.
-
-    How figures look is seen by ``tests/browser``, ``tests/published`` and the tests of the report; a file of this
-    folder that wants them rendered has a fixture of this name that does nothing.
-    """
-    with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(Figure, "savefig", _save_unrendered)
-        yield
 
 
 @pytest.fixture(scope="session")
 def play(tmp_path_factory: pytest.TempPathFactory) -> Diagnosed:
-    """The press with play, diagnosed from the command line as its README says; its figures are rendered."""
+    """The press with play, diagnosed from the command line as its README says."""
     desk = tmp_path_factory.mktemp("play") / "desk"
     shutil.copytree(PRESS, desk)
-    with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(Figure, "savefig", SAVE)
-        answer = calc_here(desk, "diagnose", "press_linkage", "--inputs", "inputs.toml", "--data", "measured.csv")
+    answer = calc_here(desk, "diagnose", "press_linkage", "--inputs", "inputs.toml", "--data", "measured.csv")
     assert (answer.code, answer.err) == (0, "")
     return Diagnosed(answer, read_document(desk / "runs" / "measured"), desk / "runs" / "measured")
 
