@@ -11,7 +11,7 @@ import pytest
 from truing import Condition, Effect, Float, Model, Tolerance, Unknown, found, given, hookimpl, inputs, normal, results
 from truing.diagnosis.causes import effects_of
 from truing.diagnosis.engine import diagnose
-from truing.diagnosis.exact import EXACTLY, fit_from
+from truing.diagnosis.exact import EXACTLY, alone, fitting
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.learning import first_noise
 from truing.diagnosis.machine import calibration_of
@@ -177,7 +177,7 @@ def test_an_amplitude_that_the_record_does_not_excite_is_zero_beside_the_others(
     (there,) = extended.at([cause], [([np.array([0.3, 0.04])], np.zeros(len(machine.inputs)))])
     np.testing.assert_allclose(there["angle"], 1.04 * machine.base["angle"], rtol=1e-12)
     sample = sample_of(machine, first_noise(machine), np.ones(40, dtype=bool))
-    found = fit_from(sample, extended, [cause], [np.array([0.0, 0.01])])
+    found = alone(extended, fitting(sample, extended, [cause], [np.array([0.0, 0.01])]))
     assert found is not None
     (left, right), reach = found.of(cause), 0.02 * EXACTLY**0.5  # of the rigidity, within what a fit takes as exact
     assert left == 0.0

@@ -33,7 +33,7 @@ from scipy.stats import binom, f, t
 from truing import Condition, Effect, Model, Tolerance, Unknown, normal
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.engine import diagnose
-from truing.diagnosis.exact import EXACTLY, fit_from
+from truing.diagnosis.exact import EXACTLY, alone, fitting
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.intervals import Certainty, certainty_of, interval, may_be_zero, numbers_of, shape_interval
 from truing.diagnosis.machine import predict
@@ -190,7 +190,10 @@ def test_a_size_stays_inside_its_bounds(tmp_path: Path) -> None:
     error = np.random.default_rng(24).normal(0, 40, 60) + 700 * np.sign(bench.load) + 5 * bench.travel
     made = drive_competition(tmp_path, error, tolerances={})
     start = np.array([4000 * UM]), np.array([1e-3])  # outside as well
-    best = fit_from(made.sample, made.extended, [cause_of(made, name) for name in ("clearance", "lead_error")], start)
+    best = alone(
+        made.extended,
+        fitting(made.sample, made.extended, [cause_of(made, name) for name in ("clearance", "lead_error")], start),
+    )
     assert best is not None
     assert_allclose(size_of(best, "gap"), 500 * UM, rtol=1e-9)
     rest = error - 500 * np.sign(bench.load)
@@ -204,7 +207,7 @@ def test_a_number_that_is_held_keeps_its_start(tmp_path: Path) -> None:
     made = drive_competition(tmp_path, error, tolerances={})
     cause = cause_of(made, "warm_up")
     start = np.array([UM, 5 * 3600.0])
-    best = fit_from(made.sample, made.extended, [cause], [start], held=[cause.numbers[1]])
+    best = alone(made.extended, fitting(made.sample, made.extended, [cause], [start], held=[cause.numbers[1]]))
     assert best is not None
     column = 1 - np.exp(-bench.time / 5)
     assert size_of(best, "time_constant") == pytest.approx(5 * 3600, rel=1e-12)
@@ -215,7 +218,7 @@ def in_noise(made: Competition, found: Fit, **more: object) -> tuple[Fit, Certai
     """A fit and its certainty as if the noise had been another one."""
     noise = {name: replace(own, **more) for name, own in made.sample.noise.items()}  # type: ignore[arg-type]
     sample = sample_of(made.sample.machine, noise, made.sample.mask, made.sample.directions)
-    again = fit_from(sample, made.extended, found.causes, found.values, found)
+    again = alone(made.extended, fitting(sample, made.extended, found.causes, found.values, found))
     assert again is not None
     return again, certainty_of(again, made.extended)
 

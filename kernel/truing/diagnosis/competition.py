@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import chain
+from itertools import chain, compress
 from math import lgamma, log, log1p
 from typing import NamedTuple
 
@@ -153,13 +153,12 @@ class Competition:
         made: list[Fit | None] = []
         for begin in range(0, len(starts), self.at_once):
             several = starts[begin : begin + self.at_once]
-            begun = [start for start in several if self._may_begin(start)]
+            begins = [self._may_begin(start) for start in several]
+            begun = compress(several, begins)
             asking = [fitting(self.sample, self.extended, *start, until=ROUGHLY) for start in begun]
-            fits = dict(zip(map(id, begun), together(self.extended, asking), strict=True))
-            made += [
-                self.keep(fits[id(start)]) if id(start) in fits else self.known.get(key_of(start.causes))
-                for start in several
-            ]
+            fits = iter(together(self.extended, asking))
+            for start, is_fitted in zip(several, begins, strict=True):
+                made.append(self.keep(next(fits)) if is_fitted else self.known.get(key_of(start.causes)))
         return made
 
     def _may_begin(self, start: Start) -> bool:

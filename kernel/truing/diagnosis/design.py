@@ -18,7 +18,7 @@ from truing.diagnosis.causes import Candidate
 from truing.diagnosis.choice import Chosen
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.conditional import look
-from truing.diagnosis.exact import fit_from, slopes_at, unit_of
+from truing.diagnosis.exact import alone, fitting, slopes_at, unit_of
 from truing.diagnosis.extended import Extended, elsewhere, parts_of
 from truing.diagnosis.fitted import STEP, WIDE, Fit, moved_by
 from truing.diagnosis.intervals import numbers_of
@@ -166,10 +166,9 @@ def _exchanged(competition: Competition, best: Fit, index: int, other: Candidate
     held = held.in_sample(competition.sample)
     seen = look(competition.curves, held, [other]).get(other.tag) if np.isfinite(held.left).all() else None
     for _, start in seen.starts if seen is not None else ():
-        several = (*causes[:index], other, *causes[index:])
-        fit = fit_from(
-            competition.sample, competition.extended, several, (*values[:index], start, *values[index:]), held
-        )
+        several, begun = (*causes[:index], other, *causes[index:]), (*values[:index], start, *values[index:])
+        extended = competition.extended
+        fit = alone(extended, fitting(competition.sample, extended, several, begun, held))
         if fit is not None:
             yield fit
 

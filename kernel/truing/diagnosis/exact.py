@@ -53,19 +53,10 @@ GOOD = 0.25
 """Share of what a step promised from which on its corrected derivatives are good enough for the next one."""
 
 
-def fit_from(
-    sample: Sample,
-    extended: Extended,
-    causes: Sequence[Candidate],
-    values: Sequence[Matrix],
-    near: Fit | None = None,
-    *,
-    until: float = EXACTLY,
-    held: Sequence[Parameter] = (),
-) -> Fit | None:
-    """Fit an explanation from a start, as ``fitting`` says."""
-    (fit,) = together(extended, [fitting(sample, extended, causes, values, near, until=until, held=held)])
-    return fit
+def alone(extended: Extended, asking: Asking[T]) -> T:
+    """Return what one finds that asks by itself."""
+    (made,) = together(extended, [asking])
+    return made
 
 
 def together(extended: Extended, several: Sequence[Asking[T]]) -> list[T]:
@@ -110,12 +101,6 @@ def fitting(
 def refitting(fit: Fit, sample: Sample, extended: Extended, *, until: float = ROUGHLY) -> Asking[Fit | None]:
     """Fit an explanation again from where it is: in other noise, or to other rows."""
     return fitting(sample, extended, fit.causes, fit.values, fit, until=until)
-
-
-def refit(fit: Fit, sample: Sample, extended: Extended, *, until: float = ROUGHLY) -> Fit | None:
-    """Fit an explanation again, as ``refitting`` says."""
-    (again,) = together(extended, [refitting(fit, sample, extended, until=until)])
-    return again
 
 
 class Fitting:
@@ -431,7 +416,7 @@ def _solved(normal: Matrix, right: Matrix) -> Matrix:
 
 def nothing(sample: Sample, extended: Extended) -> Fit:
     """Return the model as it is, calibrated as far as tolerances and its own misfit make likely."""
-    fit = fit_from(sample, extended, (), ())
+    fit = alone(extended, fitting(sample, extended, (), ()))
     if fit is None:
         raise ArithmeticError("the model fails with its inputs at their means")
     return fit
@@ -453,8 +438,7 @@ def slopes_at(fit: Fit, extended: Extended) -> tuple[Matrix, Matrix]:
         yield from state.derivatives()
         return -state.slope, (yield from state.slopes_of_inputs())
 
-    (slopes,) = together(extended, [asking()])
-    return slopes
+    return alone(extended, asking())
 
 
 def slopes_left(fit: Fit, extended: Extended) -> tuple[Matrix, Matrix]:

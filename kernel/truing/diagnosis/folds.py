@@ -9,7 +9,7 @@ from math import log, sqrt
 import numpy as np
 
 from truing.arrays import Indices, Mask, Matrix
-from truing.diagnosis.exact import refit
+from truing.diagnosis.exact import alone, refitting
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.sample import Sample, has_order
@@ -83,7 +83,7 @@ def refitted(fits: Sequence[Fit], extended: Extended, test: Mask) -> list[Fit | 
     rest = {key: sample.of_rows(~test) for key, sample in samples.items()}
     if not all(len(channel) for sample in rest.values() for channel in sample.channels):
         return [None] * len(fits)
-    return [refit(fit, rest[id(fit.sample)], extended) for fit in fits]
+    return [alone(extended, refitting(fit, rest[id(fit.sample)], extended)) for fit in fits]
 
 
 def errors_left_out(fit: Fit, extended: Extended, folds: Folds) -> Matrix:

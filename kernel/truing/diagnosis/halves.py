@@ -13,7 +13,7 @@ import numpy as np
 
 from truing.arrays import Indices
 from truing.diagnosis.choice import CLOSE, Chosen
-from truing.diagnosis.exact import refit
+from truing.diagnosis.exact import alone, refitting
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.folds import refitted
 from truing.diagnosis.gain import contenders
@@ -98,7 +98,7 @@ def thinned_of(chosen: Chosen) -> tuple[Thinned, ...]:
 def _score(chosen: Chosen, fit: Fit, sample: Sample) -> float:
     """Return the score of an explanation on half of the rows, where it pays half of its price."""
     competition = chosen.competition
-    again = refit(fit, sample, competition.extended)
+    again = alone(competition.extended, refitting(fit, sample, competition.extended))
     whole = competition.known[fit.key]
     return np.inf if again is None else again.cost + (competition.score(whole) - whole.cost) / 2
 

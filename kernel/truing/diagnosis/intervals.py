@@ -16,7 +16,7 @@ from scipy.special import stdtrit
 
 from truing.arrays import Matrix
 from truing.diagnosis.causes import Candidate, Parameter
-from truing.diagnosis.exact import CLOSELY, fit_from, slopes_at, unit_of
+from truing.diagnosis.exact import CLOSELY, alone, fitting, slopes_at, unit_of
 from truing.diagnosis.extended import Extended, parts_of
 from truing.diagnosis.fitted import Fit, inward
 from truing.diagnosis.machine import in_blocks
@@ -197,7 +197,8 @@ def _kept_at(near: Fit, extended: Extended, index: int, value: float) -> Fit | N
     flat = np.concatenate(near.values)
     flat[index] = value
     held = [numbers_of(near)[index]]
-    return fit_from(near.sample, extended, near.causes, parts_of(near.causes, flat), near, until=CLOSELY, held=held)
+    values = parts_of(near.causes, flat)
+    return alone(extended, fitting(near.sample, extended, near.causes, values, near, until=CLOSELY, held=held))
 
 
 def place_interval(fit: Fit, extended: Extended, index: int) -> tuple[float, float]:
