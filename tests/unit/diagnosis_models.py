@@ -27,7 +27,7 @@ from truing.diagnosis.learning import first_noise
 from truing.diagnosis.machine import Calibration, calibration_of
 from truing.diagnosis.reading import read_records
 from truing.diagnosis.records import Records
-from truing.diagnosis.result import DiagnosisResult
+from truing.diagnosis.result import DiagnosisResult, FittedUnknown
 from truing.diagnosis.sample import NoiseModel, sample_of
 from truing.diagnosis.search import search
 from truing.kernel import Offer, Origin
@@ -283,6 +283,21 @@ def names_in(found: DiagnosisResult) -> set[str]:
 def name_sets(found: DiagnosisResult) -> list[set[str]]:
     """The verdict: for each cause its name and those of the same curve."""
     return [{cause.effect, *cause.same_as} for cause in found.causes]
+
+
+def ends(unknown: FittedUnknown) -> tuple[float, float]:
+    """The ends of an interval that has both."""
+    assert unknown.low is not None
+    assert unknown.high is not None
+    return unknown.low, unknown.high
+
+
+def assert_sized(unknown: FittedUnknown, size: float, *, within: float) -> None:
+    """A size (SI) lies within three standard errors of what was fitted; these are known to a share of it."""
+    low, high = ends(unknown)
+    half = (high - low) / 2
+    assert abs(unknown.value - size) < 1.5 * half
+    assert half < within * abs(size)
 
 
 def decided(setup: Setup, records: Records) -> Chosen:

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pin_wear
 import pytest
 from jsonschema import Draft202012Validator
 from pin_wear import PIN_WEAR
@@ -28,7 +27,6 @@ from truing import (
     column,
     found,
     given,
-    hookimpl,
     inputs,
     part,
     plus_minus,
@@ -43,8 +41,7 @@ from truing.diagnosis.reading import read_records
 from truing.errors import InputError, UsageError
 from truing.evaluate import evaluate, evaluate_rows
 from truing.inputs_file import json_schema, setup_from_text
-from truing.kernel import Kernel, Offer, Origin
-from truing.packed import pack, unpack
+from truing.kernel import Offer, Origin
 from truing.runs.documents import results_document
 from truing.runs.inputs_written import complete_inputs, input_hash
 from truing.runs.provenance import provenance_of
@@ -579,25 +576,6 @@ def test_the_inputs_of_a_run_name_only_what_is_on() -> None:
     assert input_hash(again) == input_hash(setup)
 
 
-def test_without_them_nothing_is_written_of_them() -> None:
-    setup = read_text("")
-    assert dict(setup.conditions) == {}
-    assert "[conditions]" not in complete_inputs(setup)
-    assert dict(default_setup(SHAFT).conditions) == {}
-
-
-def test_workers_get_what_is_on() -> None:
-    setup = read_text('[effects.step]\nwarmth = "3 K"\nwarmth_after = "1 h"\n[conditions]\ntime = "2 h"\n')
-    again = unpack(pack(replace(setup, origin=Origin(__name__, "", "", "", f"module:{__name__}"))))
-    assert evaluate(again, reading=True).warmth == pytest.approx(346.15)
-
-
-@hookimpl
-def truing_models() -> list[Model[Shaft, Runout]]:
-    """Offer the shaft to workers."""
-    return [SHAFT]
-
-
 def test_the_schema_knows_them() -> None:
     judge = Draft202012Validator(json_schema(OFFER))
     effects = {"sensor_offset": {"warmth": "1 K"}, "step": {"warmth": "1 K", "warmth_after": "1 h"}}
@@ -652,11 +630,3 @@ def test_an_effect_without_parts_needs_every_unknown() -> None:
 
 def _any(bar: Bar, base: Pull, **unknowns: Float) -> Pull:
     return base
-
-
-def test_the_stranger_of_the_style_page_has_them() -> None:
-    effects = Kernel([pin_wear], strict=True).offer("pin_wear").model.known_effects
-    assert list(effects) == [
-        "running_in", "warm_probe", "sensor_offset", "sensor_gain", "sensor_drift", "thermal_drift", "periodic_order",
-        "step",
-    ]  # fmt: skip

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from concurrent.futures import Future
 from dataclasses import replace
 from typing import Any
 
@@ -13,9 +11,7 @@ from pin_wear import PIN_WEAR, Pin
 from truing import Float, Model, Reliability, Require, Sensitivities, Sensitivity, found, results
 from truing.calculation import calculate
 from truing.cases import CaseResult, CasesTable, case_setup, run_cases
-from truing.errors import InputError
-from truing.executors import SerialExecutor, WorkerPool, open_executor
-from truing.kernel import Origin
+from truing.executors import open_executor
 from truing.measurements import CasesFile, RowCount, StatedCase
 from truing.report.sheet import least_margin
 from truing.setup import Setup, SwitchedOn, default_setup
@@ -105,15 +101,6 @@ def test_a_case_that_is_impossible_keeps_its_reason(model: Model[Any, Any]) -> N
     assert table.varied == ("load", "speed")
 
 
-@pytest.mark.parametrize("model", [PLAIN, CHANCE], ids=["one call", "one by one"])
-def test_no_case_that_can_be_calculated(model: Model[Any, Any]) -> None:
-    with pytest.raises(InputError) as caught:
-        run(model, {"load": 5e5}, {"load": 6e5})
-    assert [str(fault) for fault in caught.value.faults] == [
-        f"cases.csv:{line}: the contact flows: load exceeds hardness times area" for line in (2, 3)
-    ]
-
-
 def test_a_limit_on_what_a_study_gives_is_asked_in_every_case() -> None:
     """Depth over load is k v t / (A H): at twice the speed it is twice as steep."""
     table = run(GIVEN, {"speed": 0.5}, {"speed": 1.0})
@@ -139,43 +126,6 @@ def test_an_effect_that_is_on_acts_in_every_case() -> None:
     plain, with_effect = run(PLAIN, *cases), run(PLAIN, *cases, setup=worn)
     added = [b.answers["depth"] - a.answers["depth"] for a, b in zip(plain.cases, with_effect.cases, strict=True)]
     assert added == pytest.approx([7e-6, 7e-6])
-
-
-class Counting(WorkerPool):
-    """Two workers who are in fact this process, and who count what they are asked."""
-
-    slots = workers = 2
-    where = "counting"
-
-    def __init__(self) -> None:
-        self.asked: list[str] = []
-
-    def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        self.asked.append(getattr(args[0], "__name__", "?"))
-        return SerialExecutor().submit(function, *args, **kwargs)
-
-
-@pytest.mark.parametrize(
-    ("count", "studies", "asked"),
-    [
-        (3, True, ["run_batch"] * 4),  # few cases: their batches are shared out, those of the governing one twice
-        (4, True, ["_packed_case"] * 4 + ["run_batch"]),
-        (1024, False, []),  # one array call stays here
-        (1025, False, ["_packed_block"] * 2),
-    ],
-)
-def test_cases_are_shared_out_where_they_are_many(count: int, studies: bool, asked: list[str]) -> None:
-    origin = Origin("pin_wear", "", "", "", "module:pin_wear")
-    setup = default_setup(PIN_WEAR, origin)
-    setup = replace(setup, studies=(Reliability(draws=2000, gives=PIN_WEAR.studies[-1].gives),) if studies else ())
-    rows = [
-        StatedCase(place, place + 1, str(place), {"load": 100.0 + place}, "cases.csv") for place in range(1, count + 1)
-    ]
-    there = Counting()
-    _, shared = run_cases(setup, cases_file(rows), executor=there)
-    assert there.asked == asked
-    _, alone = run_cases(setup, cases_file(rows), executor=SerialExecutor())
-    assert shared == alone
 
 
 def test_every_row_carries_what_studies_give_and_a_limit_that_none_decides() -> None:

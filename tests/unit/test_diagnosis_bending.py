@@ -8,25 +8,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
+from diagnosis_models import Array, Asked, assert_sized, plain_competition
 
 from truing import Effect, Float, Model, Unknown, found, given, inputs, results
-from truing.diagnosis.causes import Candidate, effects_of
-from truing.diagnosis.conditional import look
-from truing.diagnosis.curves import ResponseCurves
-from truing.diagnosis.engine import diagnose
-from truing.diagnosis.exact import nothing
-from truing.diagnosis.extended import Extended
-from truing.diagnosis.fitted import Fit
-from truing.diagnosis.learning import first_noise
-from truing.diagnosis.machine import calibration_of
-from truing.diagnosis.reading import read_records
-from truing.diagnosis.result import DiagnosisResult
-from truing.diagnosis.sample import sample_of
-from truing.kernel import Offer, Origin
-from truing.setup import Setup, default_setup
+from truing.diagnosis.causes import Candidate
+from truing.diagnosis.competition import Competition
 
-Array = NDArray[np.float64]
 FIRST_FELT = 5.0
 MOST_CLOGGED = 1e7  # um
 NOISE = 0.5  # um
@@ -83,29 +70,19 @@ EFFECTS = [
     Effect("hastened", on_inputs=hastened, unknowns=[Unknown("growth", 0, 0.5, "1/km")]),
     Effect("slowed", on_inputs=slowed, unknowns=[Unknown("share", 0, 1)]),
 ]
-MODEL = Model(name="bearing", title="Bearing", function=bearing, errors=EFFECTS)
 
 
-def setup_and_file(
-    folder: Path, film: float, growth: float, clog: float = 0.0, effects: Sequence[Effect] = EFFECTS
-) -> tuple[Offer, Setup, Path]:
+def asked(effects: Sequence[Effect] = EFFECTS) -> Asked:
+    model = Model(name="bearing", title="Bearing", function=bearing, errors=list(effects))
+    return Asked(model, units={"path": "km", "speed": "m/s", "lost": "um"})
+
+
+def record(film: float = 0.0, growth: float = 0.0, clog: float = 0.0) -> dict[str, Array]:
     """Rows of a bearing with this film, growth and clogging, with the noise of its gauge."""
     rng = np.random.default_rng(8)
     path, speed = np.sort(rng.uniform(0, 20, 80)), rng.uniform(0.3, 2.0, 80)
     lost = worn(path, speed, film, growth, clog) + rng.normal(0, NOISE, 80)
-    lines = [",".join(repr(float(cell)) for cell in row) for row in zip(path, speed, lost, strict=True)]
-    file = folder / "record.csv"
-    file.write_text("\n".join(["path [km],speed [m/s],lost [um]", *lines]) + "\n", encoding="utf-8")
-    model = replace(MODEL, errors=list(effects))
-    offer = Offer("bearing", model, Origin("bearing", "1.0", "bearings", "bearing.py", "entry:bearing"))
-    return offer, default_setup(model, offer.origin), file
-
-
-def asked(
-    folder: Path, film: float = 0.0, growth: float = 0.0, clog: float = 0.0, effects: Sequence[Effect] = EFFECTS
-) -> DiagnosisResult:
-    offer, setup, file = setup_and_file(folder, film, growth, clog, effects)
-    return diagnose(setup, read_records([file], offer, setup))
+    return {"path": path, "speed": speed, "lost": np.asarray(lost)}
 
 
 @pytest.mark.parametrize(
@@ -115,55 +92,47 @@ def test_a_cause_that_is_not_in_proportion_to_its_size_is_named_alone(
     tmp_path: Path, film: float, growth: float, name: str
 ) -> None:
     """A film has no slope at no film; exp(1) is far from its slope: what that leaves is no second cause."""
-    answer = asked(tmp_path, film, growth)
+    answer = asked().diagnosed(tmp_path, record(film, growth))
     assert answer.verdict in {"named", "one_of"}
     (cause,) = answer.causes
     assert (cause.effect, answer.remainder) == (name, None)
     (unknown,) = cause.unknowns
-    size = film or growth / 1e3
-    assert unknown.low is not None
-    assert unknown.high is not None
-    half = (unknown.high - unknown.low) / 2
-    assert abs(unknown.value - size) < 1.5 * half  # three standard errors
-    assert half < 0.2 * size
+    assert_sized(unknown, film or growth / 1e3, within=0.2)
 
 
 def test_a_cause_far_below_the_smallest_size_looked_at_is_fitted(tmp_path: Path) -> None:
     """Its bound is ten million times what is there: it bends at every size looked at, and is a line where it is."""
     clogged = Effect("clogged", on_inputs=clogging, unknowns=[Unknown("rate", 0, 1e6, "um/km")])
-    answer = asked(tmp_path, clog=0.2, effects=[*EFFECTS, clogged])
+    answer = asked([*EFFECTS, clogged]).diagnosed(tmp_path, record(clog=0.2))
     (cause,) = answer.causes
     assert cause.effect == "clogged"
     (unknown,) = cause.unknowns
-    assert unknown.low is not None
-    assert unknown.high is not None
-    half = (unknown.high - unknown.low) / 2
-    assert abs(unknown.value - 0.2e-9) < 1.5 * half  # three standard errors
-    assert half < 0.2 * 0.2e-9
+    assert_sized(unknown, 0.2e-9, within=0.2)
 
 
 def test_a_film_that_is_not_there_is_not_found(tmp_path: Path) -> None:
-    answer = asked(tmp_path)
+    answer = asked().diagnosed(tmp_path, record())
     assert (answer.causes, answer.remainder) == ((), None)
 
 
-def curves_of(folder: Path, film: float = 0.0) -> tuple[dict[str, Candidate], ResponseCurves, Fit, Array, Array]:
-    """The effects by name, their curves, the model as it is, and path and speed of every row, SI."""
-    offer, setup, file = setup_and_file(folder, film, 0.0)
-    records = read_records([file], offer, setup)
-    machine = calibration_of(setup, records)
-    extended = Extended(machine)
-    sample = sample_of(machine, first_noise(machine), np.ones(len(records), dtype=bool))
-    causes = {cause.name: cause for cause in effects_of(machine) if not cause.is_kernel}
+def laid_out(folder: Path, film: float = 0.0) -> tuple[dict[str, Candidate], Competition, Array, Array]:
+    """The effects by name, what competes, and path and speed of every row, SI."""
+    records = asked().records(folder, record(film))
+    made = plain_competition(asked(), records, 1e-6)
     path, speed = (np.asarray(records.rows.columns[name], dtype=float) for name in ("path", "speed"))
-    return causes, ResponseCurves(extended), nothing(sample, extended), path, speed
+    return (
+        {cause.name: cause for cause in made.causes if cause.is_registered and not cause.is_kernel},
+        made,
+        path,
+        speed,
+    )
 
 
 def test_curves_of_what_bends_are_those_of_the_model_at_sizes_up_to_the_bound(tmp_path: Path) -> None:
     """Of what goes in proportion there is one, per unit of its amplitude: a share takes the path away, 1 um per km."""
-    causes, curves, null, path, speed = curves_of(tmp_path)
+    causes, made, path, speed = laid_out(tmp_path)
     plain = worn(path / 1e3, speed, 0.0, 0.0)
-    film, growth, share = (curves.of(causes[name], null) for name in ("filmed", "hastened", "slowed"))
+    film, growth, share = (made.curves.of(causes[name], made.null) for name in ("filmed", "hastened", "slowed"))
     assert (film.is_straight, growth.is_straight, share.is_straight) == (False, False, True)
     films = [worn(path / 1e3, speed, size, 0.0) for size in film.points[:, 0]]
     growths = [worn(path / 1e3, speed, 0.0, size * 1e3) for size in growth.points[:, 0]]
@@ -176,9 +145,10 @@ def test_curves_of_what_bends_are_those_of_the_model_at_sizes_up_to_the_bound(tm
 
 def test_a_fit_of_a_film_begins_with_a_size_at_which_it_is_felt(tmp_path: Path) -> None:
     """Of the sizes asked for, each stretched as a line: the best by plain least squares is the first start."""
-    causes, curves, null, *_ = curves_of(tmp_path, film=8.0)
-    starts = look(curves, null, list(causes.values()))["filmed"].starts
-    bundle = curves.of(causes["filmed"], null)
+    causes, made, *_ = laid_out(tmp_path, film=8.0)
+    null = made.null
+    starts = made.look(null, list(causes.values()))["filmed"].starts
+    bundle = made.curves.of(causes["filmed"], null)
     left = null.left * null.sample.channels[0].scale
     drawn = bundle.curves[:, 0]
     inner, square = drawn @ left, np.maximum(np.sum(drawn**2, axis=1), 1e-300)

@@ -1,25 +1,22 @@
 """A second cause that shows what it is only beside the first: play in a joint, and friction that shifts its jump."""
 
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from diagnosis_models import Array, Asked, ends
 
-from truing import Condition, Effect, Float, Model, Tolerance, Unknown, found, given, hookimpl, inputs, normal, results
+from truing import Condition, Effect, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
 from truing.diagnosis.causes import effects_of
 from truing.diagnosis.engine import diagnose
 from truing.diagnosis.exact import EXACTLY, alone, fitting
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.learning import first_noise
 from truing.diagnosis.machine import calibration_of
-from truing.diagnosis.reading import read_records
-from truing.diagnosis.result import DiagnosisResult
 from truing.diagnosis.sample import sample_of
-from truing.inputs_file import read_setup
-from truing.kernel import Kernel
+from truing.setup import SwitchedOn
 
 
 @inputs
@@ -64,7 +61,6 @@ def waves(joint: Joint, base: Twist, *, slow: Float, fast: Float) -> Twist:
     return replace(base, angle=base.angle + slow * np.cos(2 * turns) + fast * np.cos(7 * turns))
 
 
-RIGIDITY = Tolerance("rigidity", normal(sd="2 %"))
 EFFECTS = [
         Effect("lost_motion", on_inputs=lost_motion,
                unknowns=[Unknown("play", 0, 200, "mrad"), Unknown("width", 0.3, 10, "N*m")]),
@@ -74,9 +70,13 @@ EFFECTS = [
         Effect("waves", on_results=waves, unknowns=[Unknown("slow", -9, 9, "mrad"), Unknown("fast", -9, 9, "mrad")],
                parts=[["slow"], ["fast"]]),
 ]  # fmt: skip
-SHAFT: Model[Any, Any] = Model(name="shaft", title="A shaft", function=shaft, errors=[RIGIDITY, *EFFECTS])
-LOOSE = Tolerance("rigidity", normal(sd="40 %"))
-LOOSE_SHAFT: Model[Any, Any] = Model(name="loose", title="A shaft", function=shaft, errors=[LOOSE, *EFFECTS])
+
+
+def shaft_of(*effects: Effect[Any, Any], sd: str = "2 %") -> Asked:
+    """A shaft with these effects whose rigidity has this standard deviation."""
+    errors = [Tolerance("rigidity", normal(sd=sd)), *effects]
+    model: Model[Any, Any] = Model(name="shaft", title="A shaft", function=shaft, errors=errors)
+    return Asked(model, units={"torque": "N*m", "direction": "", "angle": "mrad"})
 
 
 def two_sided(joint: Joint, base: Twist, *, left: Float, right: Float) -> Twist:
@@ -85,15 +85,9 @@ def two_sided(joint: Joint, base: Twist, *, left: Float, right: Float) -> Twist:
 
 
 SIDES = Effect("two_sided", on_results=two_sided, unknowns=[Unknown("left", -1, 1, ""), Unknown("right", -1, 1, "")])
-TWO_SIDED: Model[Any, Any] = Model(name="two_sided", title="A shaft", function=shaft, errors=[RIGIDITY, SIDES])
 
 
-@hookimpl
-def truing_models() -> list[Model[Any, Any]]:
-    return [SHAFT, LOOSE_SHAFT, TWO_SIDED]
-
-
-def loops(noise: float, *, play: float, held: float, rigidity: float = 405.0, wave: float = 0.0) -> str:
+def loops(noise: float, *, play: float, held: float, rigidity: float = 405.0, wave: float = 0.0) -> dict[str, Array]:
     """Four loops of torque between -20 and 20 N m, read with noise (mrad); written out without the model's code."""
     phase = np.linspace(0, 8 * np.pi, 320)
     torque, direction = 20 * np.sin(phase), np.sign(np.cos(phase))
@@ -101,46 +95,32 @@ def loops(noise: float, *, play: float, held: float, rigidity: float = 405.0, wa
     angle = 1e3 * load / rigidity + play / 2 * np.tanh(load / 1.5)
     angle += wave * (np.cos(torque / 5) + 0.5 * np.cos(0.7 * torque))
     read = angle + noise * np.random.default_rng(5).standard_normal(320)
-    rows = "".join(
-        f"{a!r},{b!r},{c!r}\n" for a, b, c in zip(*map(np.ndarray.tolist, (torque, direction, read)), strict=True)
-    )
-    return "torque [N*m],direction [-],angle [mrad]\n" + rows
-
-
-def diagnosed(folder: Path, text: str, *, model: str = "shaft", effects: str = "") -> DiagnosisResult:
-    offer = next(
-        each for each in Kernel([sys.modules[__name__]], strict=True).offers.values() if each.model.name == model
-    )
-    (folder / "measured.csv").write_text(text, encoding="utf-8")
-    (folder / "inputs.toml").write_text("[inputs]\n" + effects, encoding="utf-8")
-    setup = read_setup(folder / "inputs.toml", offer)
-    return diagnose(setup, read_records([folder / "measured.csv"], offer, setup))
+    return {"torque": torque, "direction": direction, "angle": read}
 
 
 def test_friction_that_shifts_the_jump_of_a_joint_is_found_beside_its_play(tmp_path: Path) -> None:
     held = 5.0
-    found = diagnosed(tmp_path, loops(1.0, play=90.0, held=held))
+    found = shaft_of(*EFFECTS).diagnosed(tmp_path, loops(1.0, play=90.0, held=held))
     assert {cause.effect for cause in found.causes} == {"lost_motion", "friction"}
     assert found.remainder is None
     truth = {"play": 0.090, "width": 1.5, "torque": held}
     for cause in found.causes:
         for unknown in cause.unknowns:
-            assert unknown.low is not None
-            assert unknown.high is not None
-            assert unknown.low <= truth[unknown.name] <= unknown.high
+            low, high = ends(unknown)
+            assert low <= truth[unknown.name] <= high
     (gain,) = found.gain
     assert gain.rmse_after.value == pytest.approx(1e-3, rel=0.15)
 
 
 def test_play_alone_is_named_alone(tmp_path: Path) -> None:
-    found = diagnosed(tmp_path, loops(1.0, play=90.0, held=0.0))
+    found = shaft_of(*EFFECTS).diagnosed(tmp_path, loops(1.0, play=90.0, held=0.0))
     assert [cause.effect for cause in found.causes] == ["lost_motion"]
     assert found.unique
 
 
 def test_both_are_found_where_an_input_has_moved_far(tmp_path: Path) -> None:
     """A shaft half as stiff again: what it adds is not linear in the stiffness so far from the nominal one."""
-    found = diagnosed(tmp_path, loops(1.0, play=90.0, held=3.0, rigidity=620.0), model="loose")
+    found = shaft_of(*EFFECTS, sd="40 %").diagnosed(tmp_path, loops(1.0, play=90.0, held=3.0, rigidity=620.0))
     assert {cause.effect for cause in found.causes} == {"lost_motion", "friction"}
     assert found.remainder is None
     (stiff,) = found.calibrated
@@ -149,8 +129,9 @@ def test_both_are_found_where_an_input_has_moved_far(tmp_path: Path) -> None:
 
 
 def test_parts_of_an_effect_that_is_on_are_looked_for_and_join_it(tmp_path: Path) -> None:
-    on = '[effects.waves]\nslow = "6 mrad"\n'
-    found = diagnosed(tmp_path, loops(0.5, play=0.0, held=0.0, wave=6.0), effects=on)
+    asked = shaft_of(*EFFECTS)
+    setup = asked.setup.with_effects([SwitchedOn(asked.model.effects["waves"], {"slow": 6e-3})])
+    found = diagnose(setup, asked.records(tmp_path, loops(0.5, play=0.0, held=0.0, wave=6.0)))
     (cause,) = found.causes
     assert cause.effect == "waves"
     (fast,) = cause.unknowns
@@ -163,14 +144,8 @@ def test_parts_of_an_effect_that_is_on_are_looked_for_and_join_it(tmp_path: Path
 
 def test_an_amplitude_that_the_record_does_not_excite_is_zero_beside_the_others(tmp_path: Path) -> None:
     """Torque of one sign says nothing of the other side, and the cause is switched on all the same."""
-    offer = next(
-        each for each in Kernel([sys.modules[__name__]], strict=True).offers.values() if each.model is TWO_SIDED
-    )
-    rows = "".join(f"{torque!r},{2.6 * torque!r}\n" for torque in np.linspace(1, 20, 40).tolist())
-    (tmp_path / "measured.csv").write_text("torque [N*m],angle [mrad]\n" + rows, encoding="utf-8")
-    (tmp_path / "inputs.toml").write_text("[inputs]\n", encoding="utf-8")
-    setup = read_setup(tmp_path / "inputs.toml", offer)
-    machine = calibration_of(setup, read_records([tmp_path / "measured.csv"], offer, setup))
+    asked, torque = shaft_of(SIDES), np.linspace(1, 20, 40)
+    machine = calibration_of(asked.setup, asked.records(tmp_path, {"torque": torque, "angle": 2.6 * torque}))
     cause = next(each for each in effects_of(machine) if each.name == "two_sided")
     assert [number.name for number in cause.numbers] == ["left", "right"]
     extended = Extended(machine)

@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from diagnosis_models import (
-    EFFECTS,
     SKEWED,
     UM,
     Array,
@@ -26,7 +25,7 @@ from diagnosis_models import (
 from numpy.testing import assert_allclose
 
 from truing import Effect, Float, Unknown
-from truing.diagnosis.causes import Candidate, at_rest, effects_of, idle_of, inputs_of
+from truing.diagnosis.causes import Candidate, effects_of, inputs_of
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.machine import Calibration, calibration_of
 from truing.diagnosis.points import PLACES, first_places, placed
@@ -156,40 +155,12 @@ def test_whole_numbers_are_tried_one_by_one_and_steps_at_places_of_the_record(tm
 # Which
 
 
-def test_an_effect_whose_condition_nobody_measured_is_left_out(tmp_path: Path) -> None:
-    one = asked(["thermal_growth", "lead_error"])
-    columns = wide(40).columns(np.zeros(40))
-    del columns["temperature"]
-    there = calibration_of(one.setup, one.records(tmp_path, columns))
-    names = {cause.name for cause in effects_of(there)}
-    assert "lead_error" in names
-    assert not {"thermal_growth", "thermal_drift"} & names
-    assert EFFECTS["thermal_growth"].needs[0].name in there.records.absent
-    assert not {"thermal_growth", "thermal_drift"} & set(idle_of(there))
-
-
-def test_an_effect_that_follows_what_never_moved_is_idle(tmp_path: Path) -> None:
-    still = replace(wide(60), temperature=np.full(60, 31.0))
-    there = machine(asked(["thermal_growth", "lead_error"]), tmp_path, still)
-    assert not {"thermal_growth", "thermal_drift"} & {cause.name for cause in effects_of(there)}
-    assert set(idle_of(there)) == {"thermal_growth", "thermal_drift"}
-
-
 def test_causes_are_the_models_first_then_the_kernels_and_their_tags_differ(tmp_path: Path) -> None:
     found = effects_of(machine(asked(["wear", "lead_error"]), tmp_path, wide(60)))
     assert [cause.name for cause in found][:2] == ["wear", "lead_error"]
     assert [cause.is_kernel for cause in found] == [False, False, *[True] * (len(found) - 2)]
     assert len({cause.tag for cause in found}) == len(found)
     assert [cause.order for cause in found] == sorted(cause.order for cause in found)
-
-
-def test_an_effect_at_rest_is_the_model_itself(tmp_path: Path) -> None:
-    there = machine(asked(["stiffness_loss", "warm_up", "lead_error"]), tmp_path, wide(60))
-    for cause in effects_of(there):
-        rest = at_rest(cause, there)
-        values = np.array([rest[number.name] for number in cause.numbers])
-        (made,) = Extended(there).at([cause], [([values], np.zeros(0))])
-        assert_allclose(made["deflection"], there.base["deflection"], rtol=1e-12, atol=1e-18)
 
 
 # Names of one curve
@@ -200,13 +171,6 @@ def named(one: Asked, folder: Path, bench: Bench, error: Array) -> list[set[str]
     noise = np.random.default_rng(3).normal(0, 1, len(bench))
     found = one.diagnosed(folder, bench.columns(gauge(bench.load, bench.travel) + error + noise))
     return [{f"first: {cause.effect}", *cause.same_as} for cause in found.causes]
-
-
-def test_one_curve_under_several_names_goes_by_the_weakest_claim(tmp_path: Path) -> None:
-    bench = wide(120)
-    steady = replace(bench, temperature=20 + 2.5 * bench.time)
-    names = named(asked(["thermal_growth"]), tmp_path, steady, 4 * bench.time)
-    assert names == [{"first: sensor_drift", "thermal_growth", "thermal_drift"}]  # the kernel's, the first declared
 
 
 def test_of_two_of_the_model_the_first_declared_and_the_one_with_fewer_unknowns_goes_first(tmp_path: Path) -> None:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import re
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
@@ -22,7 +20,6 @@ from diagnosis_samples import (
     ambiguous,
     named,
     none_found,
-    shape_of,
     unknown,
 )
 
@@ -40,46 +37,21 @@ from truing.diagnosis.result import (
     VisibleSize,
 )
 from truing.errors import OutputError
-from truing.evaluate import evaluate, evaluate_rows
+from truing.evaluate import evaluate
 from truing.inputs_file import setup_from_text
-from truing.kernel import Kernel, Origin
+from truing.kernel import Origin
 from truing.kernel.loading import load_file
 from truing.runs.diagnosis_document import diagnosis_document, file_labels
 from truing.runs.extension import extended_setup, extended_text
 from truing.runs.folder import demand_place, is_ours, json_text, write_diagnosis, write_folder
 from truing.runs.new_effect import code_name, new_effect_source, safe_expression
 from truing.runs.provenance import provenance_of
-from truing.setup import Setup, SwitchedOn, default_setup
-
-FIELDS = {
-    "schema", "measured", "rows", "runs", "wrong", "verdict", "causes", "unique", "alternatives", "remainder",
-    "not_excited", "not_measured", "smallest_visible", "calibrated", "gain", "next",
-}  # fmt: skip
+from truing.setup import Setup, default_setup
 
 
 def written(made: DiagnosisResult) -> Any:
     """The document as a reader of the file gets it."""
     return json.loads(json_text(diagnosis_document(made)))
-
-
-@pytest.mark.parametrize("sample", SAMPLES.values(), ids=list(SAMPLES))
-def test_every_field_of_the_contract_is_there(sample: Callable[[], DiagnosisResult]) -> None:
-    document = written(sample())
-    assert set(document) >= FIELDS
-    assert document["schema"] == "truing.diagnosis/1"
-    assert document["verdict"] == sample().verdict
-    for item in document["wrong"].values():
-        assert set(item) >= {"rmse", "noise_floor", "reducible_share", "noise", "findings"}
-        assert set(item["noise"]) >= {"autocorrelation", "tails", "spread"}
-        assert all(set(one) == {"kind", "covariate", "p_value", "text"} for one in item["findings"])
-    for cause in document["causes"]:
-        assert set(cause) >= {"effect", "unknowns", "same_as"}
-        assert all(set(one) >= {"value", "unit", "interval95"} for one in cause["unknowns"].values())
-    for result in document["measured"]:
-        assert set(document["gain"][result]) >= {
-            "rmse_before", "rmse_after", "noise_floor", "reducible_removed", "log_score_gain", "p_value", "coverage90",
-        }  # fmt: skip
-    assert all(set(point) >= {"settings", "separates", "why"} for point in document["next"])
 
 
 def test_numbers_are_in_the_unit_that_stands_beside_them() -> None:
@@ -133,12 +105,6 @@ def test_no_number_that_is_none_is_written() -> None:
     document = json.loads(text)
     assert document["gain"]["slide_position"]["held_out"]["rmse_after"] == {"value": pytest.approx(1.0), "unit": "um"}
     assert document["gain"]["slide_position"]["log_score_gain"] is None
-
-
-def test_equal_diagnoses_are_equal_files_wherever_the_data_lies() -> None:
-    first, again = (replace(ambiguous(), wrong=()) for _ in range(2))
-    moved = replace(again, records=replace(again.records, files=tuple(f"/else/{name}" for name in again.records.files)))
-    assert json_text(diagnosis_document(first)) == json_text(diagnosis_document(moved))
 
 
 def test_unknowns_of_each_file_stand_by_its_name() -> None:
@@ -227,30 +193,6 @@ def loaded(source: str, folder: Path, name: str = "new_effect") -> ModuleType:
     path = folder / f"{name}_{abs(hash((source, str(folder))))}.py"
     path.write_text(source, encoding="utf-8")
     return load_file(path)
-
-
-def test_the_stub_of_a_remainder_adds_the_fitted_shape(tmp_path: Path) -> None:
-    """Installed as a guest and on with factor 1 it gives back the curve it was fitted from; with 0 nothing."""
-    made = unknown()
-    module = loaded(new_effect_source(made), tmp_path)
-    host = ModuleType("host")
-    host.truing_models = truing_models  # type: ignore[attr-defined]
-    offer = Kernel([host, module], strict=True).offer("host.slide")
-    assert [item.what for item in offer.added] == ["remainder"]
-    angle = made.records.covariates["crank_angle"].values
-    shown = {}
-    for factor in (0.0, 1.0):
-        on = SwitchedOn(offer.model.effects["remainder"], {"factor": factor})
-        setup = replace(default_setup(offer.model), effects=(on,))
-        shown[factor] = evaluate_rows(setup, {"crank_angle": angle}, len(angle)).results["slide_position"]
-    assert shown[1.0] - shown[0.0] == pytest.approx(shape_of(made.records), abs=1e-15)
-
-
-def truing_models() -> list[Model[Any, Any]]:
-    return [SLIDE]
-
-
-truing_models = __import__("truing").hookimpl(truing_models)
 
 
 def test_a_condition_of_the_model_is_shared_and_an_unknown_column_becomes_one(tmp_path: Path) -> None:
@@ -427,16 +369,3 @@ def test_a_diagnosis_is_replaced_by_a_diagnosis_and_by_nothing_else(tmp_path: Pa
 
 
 # The manual
-
-
-def test_every_field_is_explained() -> None:
-    page = Path(__file__).parents[2] / "docs" / "reference" / "verbs" / "diagnose.md"
-    rows = re.findall(r"^\| (`[^|]+`) \|(.*)\|$", page.read_text(encoding="utf-8"), re.MULTILINE)
-    named = {name for cell, _ in rows for name in re.findall(r"`(\w+)`", cell)}
-    spoken = {name for row in rows for cell in row for name in re.findall(r"`(\w+)`", cell)}
-    document = written(ambiguous())
-    assert set(document) <= named
-    for item in (document["wrong"]["slide_position"], document["alternatives"][0], document["next"][0]):
-        assert set(item) - {"rows"} <= spoken
-    assert set(written(unknown())["remainder"]) <= spoken
-    assert set(document["gain"]["slide_position"]) <= spoken

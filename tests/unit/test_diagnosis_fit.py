@@ -36,11 +36,9 @@ from truing.diagnosis.engine import diagnose
 from truing.diagnosis.exact import EXACTLY, alone, fitting
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.intervals import Certainty, certainty_of, interval, may_be_zero, numbers_of, shape_interval
-from truing.diagnosis.machine import predict
 from truing.diagnosis.naming import input_values
 from truing.diagnosis.noise import Autocorrelation, Tails
 from truing.diagnosis.sample import sample_of
-from truing.gauge import one_machine
 
 TWIST = dict.fromkeys(("first", "second", "reading"), "-")
 
@@ -201,19 +199,6 @@ def test_a_size_stays_inside_its_bounds(tmp_path: Path) -> None:
     assert_allclose(size_of(best, "lead"), beside * UM / 1e-3, rtol=1e-5)
 
 
-def test_a_number_that_is_held_keeps_its_start(tmp_path: Path) -> None:
-    bench = wide(60, seed=21)
-    error = 3 * (1 - np.exp(-bench.time / 2)) + np.random.default_rng(30).normal(0, 0.1, 60)
-    made = drive_competition(tmp_path, error, tolerances={})
-    cause = cause_of(made, "warm_up")
-    start = np.array([UM, 5 * 3600.0])
-    best = alone(made.extended, fitting(made.sample, made.extended, [cause], [start], held=[cause.numbers[1]]))
-    assert best is not None
-    column = 1 - np.exp(-bench.time / 5)
-    assert size_of(best, "time_constant") == pytest.approx(5 * 3600, rel=1e-12)
-    assert_allclose(size_of(best, "rise"), column @ error / (column @ column) * UM, rtol=1e-5)
-
-
 def in_noise(made: Competition, found: Fit, **more: object) -> tuple[Fit, Certainty]:
     """A fit and its certainty as if the noise had been another one."""
     noise = {name: replace(own, **more) for name, own in made.sample.noise.items()}  # type: ignore[arg-type]
@@ -294,19 +279,3 @@ def test_intervals_cover_what_is_true_in_heavy_tails(tmp_path: Path) -> None:
         low, high = interval(best, certainty_of(best, made.extended), 0)
         covered += low <= 2 <= high
     assert covered >= binom.ppf(0.01, records_made, 0.90)
-
-
-def test_the_extended_model_says_what_was_fitted(tmp_path: Path) -> None:
-    bench = wide(120, seed=28)
-    contact = np.sign(bench.load) * np.abs(bench.load) ** (2 / 3)
-    error = 0.08 * contact + 0.5 * bench.time * np.sign(bench.load) + 0.2 * (bench.temperature - 20)
-    columns = bench.columns(gauge(bench.load, bench.travel) + error + np.random.default_rng(28).normal(0, 1, 120))
-    asked = Asked(drive_model())
-    records = asked.records(tmp_path, columns)
-    found = diagnose(asked.setup, records)
-    assert {cause.effect for cause in found.causes} == {"wear", "thermal_drift"}
-    assert found.extended is not None
-    again = predict(one_machine(found.extended), records)["deflection"]
-    assert_allclose(again, found.curves[0].after, rtol=0, atol=1e-3 * UM)
-    left = found.curves[0].measured - found.curves[0].after
-    assert np.sqrt(np.mean(left**2)) < 1.2 * UM

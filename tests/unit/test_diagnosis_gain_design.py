@@ -152,18 +152,6 @@ def test_rows_held_out_are_in_no_block_and_no_file_is_left_out_whole(tmp_path: P
     assert all(len(set(split[rows][~held[rows]])) >= 2 for rows in (slice(0, 60), slice(60, 120)))
 
 
-def test_rows_without_an_order_are_left_out_at_random(tmp_path: Path) -> None:
-    bench = wide(53, seed=33)
-    columns = bench.columns(gauge(bench.load, bench.travel))
-    asked = Asked(drive_model(("clearance",), {}))
-    records = asked.records(tmp_path, {name: values for name, values in columns.items() if name != "time"})
-    folds = folds_of(plain_competition(asked, records, UM).sample)
-    assert_array_equal(np.sort(folds.block_of), np.arange(53))
-    assert [int(folds.test(fold).sum()) for fold in range(folds.count)] == [11, 11, 11, 10, 10]
-    assert np.abs(np.diff(folds.block_of)).min() > 0
-    assert abs(np.corrcoef(folds.block_of, np.arange(53))[0, 1]) < 0.4  # 3 / sqrt(53)
-
-
 def left_out(error: Array, columns: Sequence[Array], folds: Folds) -> Array:
     """What least squares on the other rows leaves of the rows of each fold."""
     design, found = np.column_stack(columns), np.full(len(error), np.nan)

@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from diagnosis_models import (
-    KN,
     STROKE,
     UM,
     Array,
@@ -222,7 +221,3 @@ def test_a_setting_added_by_one_rank_is_a_full_refit(gauges: int) -> None:
 @pytest.mark.parametrize(("explanations", "limit"), [(12, 17.5), (78, 22.0), (200, 24.5)])
 def test_how_visible_an_effect_must_be_after_a_search(explanations: int, limit: float) -> None:
     assert_allclose(needed(explanations), limit, rtol=0, atol=0.5)
-
-
-def test_the_units_of_this_file() -> None:
-    assert_allclose([KN, UM, gauge(np.array([8.0]), np.array([150.0]))[0]], [1000, 1e-6, 16])

@@ -21,18 +21,18 @@ from diagnosis_models import (
     Drive,
     drive,
     drive_model,
+    ends,
     gauge,
     name_sets,
     wide,
 )
 from numpy.testing import assert_allclose
 
-from truing import Effect, Float, Model, Tolerance, Unknown, normal, trials
+from truing import Effect, Float, Model, Tolerance, Unknown, normal
 from truing.diagnosis import long_records, machine, search
-from truing.diagnosis.choice import choose
-from truing.diagnosis.engine import diagnose, laid_out
+from truing.diagnosis.engine import diagnose
 from truing.diagnosis.learning import first_noise
-from truing.diagnosis.machine import predict, times
+from truing.diagnosis.machine import times
 
 
 def test_many_rows_times_a_vector_are_summed_in_double_precision() -> None:
@@ -41,15 +41,6 @@ def test_many_rows_times_a_vector_are_summed_in_double_precision() -> None:
     vector = np.array([1.0, 1e-6, -1.0])
     made: Any = times(matrix, vector)  # type: ignore[arg-type]
     assert_allclose(made, matrix.astype(float) @ vector, rtol=1e-12)
-
-
-def test_rows_in_batches_are_predicted_as_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    asked, bench = Asked(drive_model()), wide(50)
-    records = asked.records(tmp_path, bench.columns(gauge(bench.load, bench.travel)), ["a"] * 30 + ["b"] * 20)
-    at_once = predict(asked.setup, records)["deflection"]
-    monkeypatch.setattr(trials, "AT_ONCE", 7)
-    assert_allclose(predict(asked.setup, records)["deflection"], at_once, rtol=1e-12, atol=1e-15)
-    assert_allclose(at_once, 1e-6 * gauge(bench.load, bench.travel), rtol=1e-12, atol=1e-15)
 
 
 def test_the_first_idea_of_the_noise_is_what_least_squares_leave(
@@ -96,30 +87,6 @@ def test_a_record_along_an_axis_of_the_model_is_searched_whole(tmp_path: Path, m
     assert long_records.searched(along, seed=1) is along
 
 
-def test_a_decision_on_some_rows_is_kept_and_its_rivals_are_fitted_to_all(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Growth and a drift of the gauge draw one curve: both, and what is ranked, are those of all rows."""
-    monkeypatch.setattr(long_records, "LONG", 100)
-    bench, asked = wide(400), Asked(drive_model(("lead_error", "thermal_growth"), {}))
-    error = 0.3 * (bench.temperature - 20) + np.random.default_rng(9).normal(size=400)
-    records = asked.records(tmp_path, bench.columns(gauge(bench.load, bench.travel) + error))
-    whole = machine.calibration_of(asked.setup, records)
-    few = laid_out(machine.calibration_of(asked.setup, long_records.searched(records, seed=1)))
-    search.search(few)
-    chosen = choose(few, seed=1)
-    assert few.sample.rows == 100
-    found = long_records.on_all_rows(chosen, whole)
-    assert found.best.key == chosen.best.key
-    assert found.competition.sample.rows == found.best.sample.rows == found.null.sample.rows == 400
-    assert all(rival.fit.sample.rows == 400 and rival.behind >= 0 for rival in found.rivals)
-    assert {rival.fit.key for rival in found.rivals} <= {rival.fit.key for rival in chosen.rivals}
-    wanted = {each.key for each in few.ranked()[: long_records.RANKED]}
-    assert wanted <= set(found.competition.known)
-    assert found.law is chosen.law
-    assert long_records.on_all_rows(found, whole) is found
-
-
 def test_what_a_search_of_some_rows_came_to_is_fitted_to_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(long_records, "LONG", 80)
     bench, asked = wide(300), Asked(drive_model(("lead_error",), {}))
@@ -129,10 +96,9 @@ def test_what_a_search_of_some_rows_came_to_is_fitted_to_all(tmp_path: Path, mon
     exact = bench.travel @ error / (bench.travel @ bench.travel)  # by all rows
     (size,) = found.causes[0].unknowns
     assert_allclose(size.value, exact * 1e-3, rtol=1e-5)
-    assert size.low is not None
-    assert size.high is not None
+    low, high = ends(size)
     wide_apart = 2 * 1.97e-3 / np.sqrt(bench.travel @ bench.travel)  # of a slope through zero in noise of 1 um
-    assert_allclose(size.high - size.low, wide_apart, rtol=0.1)
+    assert_allclose(high - low, wide_apart, rtol=0.1)
 
 
 class Slow:

@@ -10,18 +10,14 @@ from diagnosis_models import Array
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.linalg import block_diag, solve_triangular, toeplitz
 from scipy.optimize import brentq
-from scipy.signal import lfilter
-from scipy.stats import halfnorm, linregress, multivariate_normal, norm, rankdata
+from scipy.stats import halfnorm, linregress, rankdata
 
-from shared import ROUNDING
 from truing.diagnosis.noise import (
     LARGEST_EXPONENT,
     SETTINGS,
     TAILS,
     Autocorrelation,
     SpreadTrend,
-    Tails,
-    carried_over,
     clipped,
     colour,
     robust_sd,
@@ -59,14 +55,6 @@ def test_colour_undoes_whiten_over_several_runs(setting: Autocorrelation, column
     assert_allclose(whiten(colour(values, starts, setting), starts, setting), values, rtol=0, atol=1e-12)
 
 
-def test_whiten_leaves_what_it_is_given_alone() -> None:
-    values = np.ones(5)
-    for setting in (Autocorrelation(), Autocorrelation(0.6), Autocorrelation(0.9, 0.5)):
-        whiten(values, starts_of((5,)), setting)[:] = 7
-        colour(values, starts_of((5,)), setting)[:] = 7
-    assert_array_equal(values, 1)
-
-
 @pytest.mark.parametrize("rho", [0.0, 0.3, 0.87, 0.95])
 def test_whitening_an_autoregression_is_the_inverse_root_of_its_covariance(rho: float) -> None:
     dense = block_diag(*(covariance(rho, 0, n) for n in RUNS))
@@ -74,15 +62,6 @@ def test_whitening_an_autoregression_is_the_inverse_root_of_its_covariance(rho: 
     values = np.random.default_rng(2).normal(size=(sum(RUNS), 2))
     ours = whiten(values, starts_of(RUNS), Autocorrelation(rho))
     assert_allclose(ours, solve_triangular(root, values, lower=True), rtol=0, atol=1e-11)
-
-
-@pytest.mark.parametrize("rho", [0.0, 0.45, 0.95])
-def test_the_likelihood_of_an_autoregression_over_runs_is_the_dense_one(rho: float) -> None:
-    values = np.random.default_rng(3).normal(size=sum(RUNS))
-    dense = block_diag(*(covariance(rho, 0, n) for n in RUNS)) * 1.7**2
-    white = whiten(values, starts_of(RUNS), Autocorrelation(rho))
-    ours = norm.logpdf(white, scale=1.7).sum() + len(RUNS) * np.log(1 - rho**2) / 2
-    assert_allclose(ours, multivariate_normal(cov=dense).logpdf(values), rtol=1e-12)
 
 
 @pytest.mark.parametrize(("rho", "theta"), [(0.8, 0.4), (0.9, 0.7), (0.96, 0.8)])
@@ -116,14 +95,6 @@ def test_a_slow_wander_plus_white_noise_is_one_of_these_filters() -> None:
     left = (white @ white.T)[25:, 25:] * Autocorrelation(rho, theta).variance_ratio
     assert_allclose(left, np.eye(15), rtol=0, atol=2e-3)
     assert any(abs(item.rho - rho) < 0.05 and abs(item.theta - theta) < 0.1 for item in SETTINGS if item.theta)
-
-
-@pytest.mark.parametrize("columns", [(), (0,), (1,), (3,)])
-def test_what_carries_over_is_a_recursive_filter_of_each_run(columns: tuple[int, ...]) -> None:
-    driven = np.random.default_rng(3).normal(size=(sum(RUNS), *columns))
-    runs = np.split(driven, np.cumsum(RUNS)[:-1])
-    forwards = np.concatenate([lfilter([1.0], [1.0, -0.7], run, axis=0) for run in runs])
-    assert_allclose(carried_over(driven, starts_of(RUNS), 0.7), forwards, rtol=0, atol=ROUNDING)
 
 
 def innovations(freedom: float, seed: int, n: int = 2000) -> Array:
@@ -222,13 +193,3 @@ def test_weights_undo_the_spread_they_were_learnt_from() -> None:
     assert_allclose(weights[6], 1)
     assert_array_equal(weights_of(SpreadTrend(), driver, learnt, 7), np.ones(7))
     assert_array_equal(weights_of(SpreadTrend("load", 0.7, 1e-6), None, learnt, 7), np.ones(7))
-
-
-def test_weights_scale_a_driver_with_gaps_as_its_spread_was_learnt() -> None:
-    driver = np.array([0.0, 1.0, np.nan, 3.0, np.nan, 4.0])
-    weights = weights_of(SpreadTrend("load", 0.7, 1e-6), driver, np.arange(6), 6)
-    assert_allclose(weights, np.exp(-0.7 * standardised(driver)))
-
-
-def test_normal_tails_are_called_normal() -> None:
-    assert Tails(inf, 1).words == "normal"

@@ -7,7 +7,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from diagnosis_models import UM, Array, Asked, Bench, drive_model, fit_of, gauge, name_sets, plain_competition, wide
+from diagnosis_models import (
+    UM,
+    Array,
+    Asked,
+    Bench,
+    drive_model,
+    ends,
+    fit_of,
+    gauge,
+    name_sets,
+    plain_competition,
+    wide,
+)
 from numpy.testing import assert_allclose
 from scipy.optimize import least_squares
 from scipy.stats import t
@@ -38,12 +50,9 @@ def test_a_large_effect_between_two_points_of_its_curves_is_named_alone(
     found = PROPER.diagnosed(tmp_path, read(rise * (1 - np.exp(-BENCH.time / time_constant))))
     assert name_sets(found) == [{"warm_up"}]
     size, hours = found.causes[0].unknowns
-    assert size.low is not None
-    assert size.high is not None
-    assert size.low <= rise * UM <= size.high
-    assert hours.low is not None
-    assert hours.high is not None
-    assert hours.low <= time_constant * 3600 <= hours.high
+    for unknown, true in ((size, rise * UM), (hours, time_constant * 3600)):
+        low, high = ends(unknown)
+        assert low <= true <= high
     assert found.wrong[0].noise.autocorrelation == 0
     assert_allclose(found.wrong[0].noise_floor.value / UM, 1, atol=4 / np.sqrt(2 * 150))
 
@@ -82,9 +91,8 @@ def test_a_second_cause_whose_interval_contains_zero_is_not_named(tmp_path: Path
     assert name_sets(found) == [{"lead_error"}, *second]
     for cause, value in zip(found.causes, (0.05e-3, growth * UM), strict=False):
         (unknown,) = cause.unknowns
-        assert unknown.low is not None
-        assert unknown.high is not None
-        assert unknown.low < value < unknown.high
+        low, high = ends(unknown)
+        assert low < value < high
 
 
 # The machine as it is

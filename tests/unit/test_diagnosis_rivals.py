@@ -12,13 +12,10 @@ from diagnosis_models import UM, Array, Asked, drive_model, fit_of, gauge, plain
 from numpy.testing import assert_allclose
 
 from truing.diagnosis import choice
-from truing.diagnosis.chance import Law
 from truing.diagnosis.choice import (
     CLOSE,
     SURE,
-    SURELY,
     TWIN,
-    _certain,
     _is_vaguer,
     _rivals,
     _says_the_same,
@@ -112,25 +109,6 @@ def test_where_what_is_left_is_noise_a_difference_d_is_unsure_by_two_roots_of_d(
     assert SURE * 2 * np.sqrt(CLOSE) == pytest.approx(CLOSE)
 
 
-def test_a_rival_stays_open_where_the_rows_contradict_one_another(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    made = searched(tmp_path, 0.012 * wide(ROWS, seed=21).travel)
-    best = fit_of(made, "lead_error")
-    behind = sorted(made.score(found) - made.score(best) for found in made.ranked(lambda each: len(each.causes) == 1))
-    assert behind[0] == 0
-    assert CLOSE < behind[1] < 60
-    assert _rivals(made, best, 1) == []
-    monkeypatch.setattr(choice, "unsure", lambda one, other: 1.01 * behind[1] / SURE)
-    (open_one,) = _rivals(made, best, 1)
-    assert open_one.behind == pytest.approx(behind[1])
-
-
-def test_nothing_has_no_rivals(tmp_path: Path) -> None:
-    made = searched(tmp_path, np.zeros(ROWS))
-    assert _rivals(made, made.null, 1) == []
-
-
 def test_what_acts_beside_the_winner_is_no_rival(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Two causes draw two curves: each alone leaves the other, so that neither stands for it, however near they are."""
     bench = wide(ROWS, seed=21)
@@ -143,18 +121,6 @@ def test_what_acts_beside_the_winner_is_no_rival(tmp_path: Path, monkeypatch: py
 
 
 # What may as well be zero
-
-
-@pytest.mark.parametrize(("worth", "stays"), [(SURELY - 5, False), (SURELY + 5, True)])
-def test_an_effect_without_which_much_is_lost_stays_although_its_interval_holds_zero(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, worth: float, stays: bool
-) -> None:
-    made = competing(tmp_path, 0.05 * wide(ROWS, seed=21).travel + 1)
-    best = fit_of(made, "lead_error", "sensor_offset")
-    scores = {best.key: 0.0, best.key - {best.causes[1].tag}: worth, best.key - {best.causes[0].tag}: 1e3}
-    monkeypatch.setattr(made, "score", lambda found: scores.get(found.key, 2e3))
-    monkeypatch.setattr(choice, "may_be_zero", lambda found, certainty, cause: cause.name == "sensor_offset")
-    assert (len(_certain(made, best).causes) == 2) is stays
 
 
 # Vaguer words
@@ -206,60 +172,3 @@ def test_shapes_over_the_same_covariates_say_the_same(tmp_path: Path) -> None:
 
 
 # What may be there as well
-
-
-@pytest.mark.parametrize(
-    ("above", "carried", "is_told"),
-    [(0.05, 1.1, True), (0.2, 1.1, False), (0.05, 0.9, False)],
-    ids=["told", "chance", "predicts nothing"],
-)
-def test_one_more_cause_may_be_there_where_chance_seldom_gives_as_much(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, above: float, carried: float, is_told: bool
-) -> None:
-    """``above`` is the share of simulated searches that gain more from noise."""
-    bench = wide(ROWS, seed=21)
-    made = searched(tmp_path, 0.012 * bench.travel)
-    best, more = fit_of(made, "lead_error"), fit_of(made, "lead_error", "wear")
-    gain = made.score(best) - made.score(more)
-    simulated = gain + np.where(np.arange(100) < 100 * above, 1.0, -1.0)
-    monkeypatch.setattr(choice, "law_of", lambda *_, seed: Law(simulated, above))
-    monkeypatch.setattr(choice, "carries_over", lambda *_: carried)
-    told = [found.key for found in near(made, best) if best.key < found.key]
-    assert told == ([more.key] if is_told else [])
-
-
-def test_what_explains_as_much_in_the_place_of_the_winner_is_not_told_beside_it(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(choice, "law_of", lambda *_, seed: Law(np.full(100, -1e9), 0.01))
-    monkeypatch.setattr(choice, "carries_over", lambda *_: 9.0)
-    bench = wide(ROWS, seed=21)
-    made = searched(tmp_path, 0.012 * bench.travel + 1.6 * np.sign(bench.load))
-    best, _, both = (fit_of(made, *names) for names in (["lead_error"], ["clearance"], ["lead_error", "clearance"]))
-    assert both.key in {found.key for found in near(made, best)}
-    monkeypatch.setattr(choice, "CLOSE", 1e6)
-    monkeypatch.setattr(choice, "_is_near", lambda made, best, found: found.key == frozenset(["clearance"]))
-    assert {found.key for found in near(made, best)} == {frozenset(["clearance"])}
-
-
-def test_of_shapes_that_say_the_same_the_one_stands_that_leaves_a_name_most(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A parabola over the travel takes a lead, a wave over it does not; both draw what was hidden beside it."""
-    bench = wide(ROWS, seed=21)
-    made = searched(tmp_path, 0.02 * bench.travel + 3 * np.sin(bench.travel / 40))
-    lead = fit_of(made, "lead_error")
-    both = {}
-    for cause in made.causes:
-        if cause.tag in {"unknown:trend.3:travel:deflection", "unknown:wave:travel:deflection"}:
-            joined = made.joined(lead, cause, made.look(lead, [cause])[cause.tag].starts)
-            assert joined is not None
-            assert cause.shape is not None
-            both[cause.shape.kind] = joined
-    assert choice._worth_of_names(made, both["wave"]) > choice._worth_of_names(made, both["trend"])
-    near = {found.key: 0.0 for found in both.values()}
-    score = made.score
-    monkeypatch.setattr(made, "score", lambda found: near.get(found.key, score(found)))
-    assert choice._taking_least(made, both["trend"]).key == both["wave"].key
-    near[both["wave"].key] = CLOSE + 1
-    assert choice._taking_least(made, both["trend"]).key == both["trend"].key

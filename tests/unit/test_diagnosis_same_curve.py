@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from diagnosis_models import Asked
+from diagnosis_models import Asked, assert_sized, ends
 
 from truing import Effect, Float, Model, Unknown, found, given, inputs, results
 from truing.diagnosis import exact
@@ -101,18 +101,14 @@ def named(answer: DiagnosisResult) -> set[str]:
     return {cause.effect, *cause.same_as}
 
 
-@pytest.mark.parametrize(("truth", "size"), [("tilted", 1.0), ("ahead", 1.0)])
-def test_small_ones_are_one_cause_and_small_forces_would_part_them(tmp_path: Path, truth: str, size: float) -> None:
-    """Under 4 N and more a tilt of 1 N adds 1 MPa at any force, as a lead of 1 N does and an offset of the gauge."""
-    answer = asked(tmp_path, truth, size, low=4.0)
-    assert {"tilted", "ahead"} <= named(answer)
-
-
-def test_a_record_too_long_to_keep_what_inputs_draw_has_the_same_names(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("truth", ["tilted", "ahead"])
+@pytest.mark.parametrize("most_kept", [exact.MOST_KEPT, -1], ids=["", "too long to keep what inputs draw"])
+def test_small_ones_are_one_cause_and_small_forces_would_part_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, truth: str, most_kept: int
 ) -> None:
-    monkeypatch.setattr(exact, "MOST_KEPT", -1)
-    answer = asked(tmp_path, "tilted", 1.0, low=4.0)
+    """Under 4 N and more a tilt of 1 N adds 1 MPa at any force, as a lead of 1 N does and an offset of the gauge."""
+    monkeypatch.setattr(exact, "MOST_KEPT", most_kept)
+    answer = asked(tmp_path, truth, 1.0, low=4.0)
     assert {"tilted", "ahead"} <= named(answer)
 
 
@@ -129,22 +125,16 @@ def test_large_ones_part(tmp_path: Path, truth: str, size: float, low: float) ->
     (cause,) = answer.causes
     (unknown,) = cause.unknowns
     size *= 1e6 if cause.effect == "sensor_offset" else 1.0  # a gauge that is off by it draws the same curve
-    assert unknown.low is not None
-    assert unknown.high is not None
-    half = 0.5 * (unknown.high - unknown.low)
-    assert abs(unknown.value - size) < 1.5 * half  # three standard errors
-    assert half < 0.05 * abs(size)
+    assert_sized(unknown, size, within=0.05)
 
 
 def test_a_sharp_peak_that_few_rows_tell_is_no_set_of_outliers(tmp_path: Path) -> None:
     answer = asked(tmp_path, "resonant", 0.05, low=4.0)
     (cause,) = answer.causes
     assert (cause.effect, answer.remainder) == ("resonant", None)
-    held = {item.name: (item.low, item.high) for item in cause.unknowns}
+    held = {item.name: ends(item) for item in cause.unknowns}
     for name, true in (("excitation", 0.05), ("own", 40.0), ("damping", 0.05)):
         low, high = held[name]
-        assert low is not None
-        assert high is not None
         reach = 0.5 * (high - low)
         assert low - 0.5 * reach <= true <= high + 0.5 * reach, name  # three standard errors
 

@@ -15,14 +15,10 @@ from scipy.linalg import block_diag, solve_triangular, toeplitz
 from scipy.optimize import approx_fprime, minimize_scalar
 from scipy.stats import multivariate_normal, norm, t
 
-from truing.diagnosis.competition import Competition
-from truing.diagnosis.curves import ResponseCurves
-from truing.diagnosis.exact import nothing
-from truing.diagnosis.extended import Extended
 from truing.diagnosis.learning import FEWEST_OF_MEMORY, learnt, memory_cost, memory_of
 from truing.diagnosis.machine import Calibration, calibration_of, directions_of
 from truing.diagnosis.noise import SETTINGS, Autocorrelation, Tails, robust_sd
-from truing.diagnosis.sample import NoiseModel, Sample, has_order, resolution_of, sample_of, starts_of
+from truing.diagnosis.sample import NoiseModel, Sample, resolution_of, sample_of
 from truing.diagnosis.sweeps import Conditional
 
 TOLERANCES = {"contact": "3 %", "shaft": "3 %"}
@@ -56,10 +52,6 @@ def inverse_root(rho: float, lengths: Sequence[int]) -> Array:
 
 
 # Rows
-
-
-def test_a_run_starts_anew_where_its_first_row_is_missing() -> None:
-    assert starts_of(np.array([0, 0, 0, 1, 1, 2]), np.array([1, 2, 4, 5])).tolist() == [True, False, True, True]
 
 
 def test_a_gap_starts_the_noise_anew(tmp_path: Path) -> None:
@@ -202,18 +194,6 @@ def test_collinear_inputs_are_few_directions_with_the_same_prior() -> None:
     assert directions_of(1e-6 * gram, 200).shape == (4, 0)  # a thousandth of the noise moves nothing
 
 
-def test_directions_that_come_into_sight_are_taken_where_they_are(tmp_path: Path) -> None:
-    """Of coarse noise no input is seen, of fine noise both are."""
-    there = machine(tmp_path, noise())
-    coarse, fine = sample(there, scale=1e5 * UM), sample(there)
-    assert (coarse.directions.shape, fine.directions.shape) == ((2, 0), (2, 2))
-    blind = nothing(coarse, Extended(there))
-    seen = blind.in_sample(fine)
-    assert_allclose(seen.inputs, [0, 0])
-    assert seen.left.shape == (150,)
-    assert_allclose(nothing(fine, Extended(there)).in_sample(coarse).moved, [0, 0])
-
-
 # Noise
 
 
@@ -237,24 +217,6 @@ def test_a_memory_is_found_where_there_is_one_and_enough_rows() -> None:
     few = FEWEST_OF_MEMORY - 1
     assert memory_of(np.linspace(0, 1, few), starts[:few]) == Autocorrelation()
     assert memory_of(np.linspace(0, 1, few + 1), starts[: few + 1]) != Autocorrelation()
-
-
-def own_score(there: Calibration) -> float:
-    """How unlikely the model as it is is, where what it leaves has the memory that suits it best."""
-    extended = Extended(there)
-    made = Competition(extended, (), sample(there), ResponseCurves(extended))
-    made.keep(nothing(made.sample, extended))
-    return made.own_score(made.null)
-
-
-def test_noise_of_its_own_memory_is_only_for_rows_with_an_order(tmp_path: Path) -> None:
-    left = wander(np.random.default_rng(10), 150, 0.87)
-    there = machine(tmp_path, left, tolerances={})
-    assert has_order(there)
-    timeless = {name: item for name, item in there.records.covariates.items() if item.role != "time"}
-    unordered = replace(there, records=replace(there.records, covariates=timeless))
-    assert not has_order(unordered)
-    assert own_score(there) < own_score(unordered) - 100  # the logarithm of 1 - 0.87^2 is worth 211, its number 10
 
 
 def learn(there: Calibration, used: float = 0.0) -> NoiseModel:
@@ -283,9 +245,3 @@ def test_a_spread_that_is_learnt_is_undone_by_weights(tmp_path: Path) -> None:
     assert found.spread.driver == "size of load"
     assert_allclose(found.weights, size ** (-found.spread.slope / 0.7), rtol=1e-6)
     assert_allclose(found.spread.slope, 0.7, atol=4 / np.sqrt(2 * 150))
-
-
-def test_a_memory_is_learnt_with_the_rows_in_order(tmp_path: Path) -> None:
-    error = wander(np.random.default_rng(12), 150, 0.75)
-    found = learn(machine(tmp_path, error))
-    assert found.memory.rho > 0.4

@@ -24,10 +24,9 @@ from diagnosis_models import (
 )
 from numpy.testing import assert_allclose
 
-from truing.diagnosis.causes import Parameter, are_exclusive
-from truing.diagnosis.chance import DRAWS, FIRST_DRAWS, HOPELESS, LARGEST_RHO, _drawn, _largest, carried, law_of
+from truing.diagnosis.causes import Parameter
+from truing.diagnosis.chance import DRAWS, FIRST_DRAWS, HOPELESS, LARGEST_RHO, _drawn, carried, law_of
 from truing.diagnosis.competition import Competition
-from truing.diagnosis.conditional import ConditionalGain, conditional_on
 from truing.diagnosis.fitted import differ, far_inputs, is_at_bound
 from truing.diagnosis.noise import Autocorrelation
 from truing.diagnosis.sample import sample_of
@@ -97,20 +96,6 @@ def test_the_search_ends_at_the_best_of_all_subsets(tmp_path: Path, sizes: dict[
     assert_allclose(gained, scores[frozenset()] - scores[best], atol=0.01 * len(best) + 1e-3 * gained)
 
 
-def test_what_is_no_longer_needed_goes(tmp_path: Path) -> None:
-    made = competing(tmp_path, 0.02 * BENCH.travel)
-    several = fit_of(made, "sensor_offset", "sensor_drift", "lead_error")
-    assert [cause.name for cause in made.backward(several).causes] == ["lead_error"]
-
-
-def test_the_end_of_a_fit_is_what_the_model_shows_not_what_a_rough_fit_promised(tmp_path: Path) -> None:
-    """Where inputs bend, slopes of them may promise a cost that the model does not reach: here 50 less."""
-    made = competing(tmp_path, 0.02 * BENCH.travel, tolerated=True)
-    true = made.exact(fit_of(made, "lead_error"))
-    made.known[true.key] = promised = replace(true, cost=true.cost - 50)
-    assert_allclose(made.exact(promised).cost, true.cost, atol=1e-4)
-
-
 def test_a_step_is_looked_for_anew_beside_a_large_offset(tmp_path: Path) -> None:
     """Alone the step stands at the first row, where it draws the offset; beside the offset its place is another."""
     late = (np.arange(ROWS) >= 100).astype(float)
@@ -170,17 +155,6 @@ def test_an_input_far_outside_of_its_tolerance_is_a_sign_unless_it_is_the_cause(
     assert far_inputs(competing(tmp_path, 0.2 * error, ["input:contact"], tolerated=True).null) == []
 
 
-def test_two_shapes_of_one_kind_over_the_same_are_one_explanation_too_many(tmp_path: Path) -> None:
-    made = competing(tmp_path, 0.0 * BENCH.time, [*NAMES, "unknown"])
-    by_tag = {cause.tag: cause for cause in made.causes}
-    trend, higher = by_tag["unknown:trend.3:travel:deflection"], by_tag["unknown:trend.5:travel:deflection"]
-    other, wave = by_tag["unknown:trend.3:time:deflection"], by_tag["unknown:wave:time:deflection"]
-    assert are_exclusive([trend, higher])
-    assert not are_exclusive([trend, other])
-    assert not are_exclusive([wave, trend])
-    assert are_exclusive([by_tag["lead_error"], by_tag["lead_error"]])
-
-
 # What chance gains
 
 
@@ -208,34 +182,6 @@ def test_noise_is_drawn_by_the_recursion_from_what_is_left(tmp_path: Path, rho: 
     by_hand[0] *= np.sqrt(1 - rho**2)
     assert_allclose(drawn[:ROWS], by_hand / np.sqrt(np.mean(pool**2)), rtol=1e-9, atol=1e-12)
     assert_allclose(drawn[ROWS:], generator.standard_normal((2, 7)))
-
-
-def test_the_largest_gain_of_a_draw_is_that_of_all_curves_tried_one_by_one(tmp_path: Path) -> None:
-    """Greedily: the curve that lowers most once paid for, then the best beside it."""
-    names = ["lead_error", "sensor_gain", "warm_up"]
-    made = competing(tmp_path, 0.0 * BENCH.time, names)
-    seen = made.look(made.null)
-    assert set(seen) >= {"lead_error", "warm_up"}
-    drawn = np.random.default_rng(12).normal(size=(ROWS, 9))
-    for steps in (1, 2):
-        by_hand = [_greedy(made, seen, drawn[:, draw], steps) for draw in range(9)]
-        assert_allclose(_largest(made, seen, drawn, 140.0, steps), by_hand, rtol=1e-9)
-
-
-def _greedy(made: Competition, seen: dict[str, ConditionalGain] | object, values: Array, steps: int) -> float:
-    """The gain of one draw after so many steps, each projected off before the next."""
-    assert isinstance(seen, dict)
-    total, left = 0.0, values
-    for _ in range(steps):
-        tried = []
-        for cause in made.causes:
-            for basis in seen[cause.tag].span.basis if cause.tag in seen else ():
-                rest = left - basis.T @ (basis @ left)
-                gain = 140.0 * log((left @ left) / (rest @ rest)) - made.price_of(cause)
-                tried.append((gain, rest))
-        gain, left = max(tried, key=lambda each: each[0])
-        total += gain
-    return total
 
 
 def test_a_law_counts_the_draws_that_gain_as_much(tmp_path: Path) -> None:
@@ -269,20 +215,3 @@ def test_chance_is_uniform_where_there_is_nothing(tmp_path: Path) -> None:
         values.append(law_of(made, made.null, best, seed=seed).p_value)
     below = [sum(value <= level for value in values) for level in (0.1, 0.3, 0.6)]
     assert_allclose(below, [10, 30, 60], atol=15)  # three standard deviations of a binomial law at 0.5
-
-
-def test_curves_beside_an_explanation_leave_what_it_draws(tmp_path: Path) -> None:
-    """Beside the lead the lead draws nothing, and a gain what is orthogonal to it."""
-    made = competing(tmp_path, 0.02 * BENCH.travel)
-    lead = fit_of(made, "lead_error")
-    beside = conditional_on(lead, made.extended)
-    travel, gain = BENCH.travel, gauge(BENCH.load, BENCH.travel)
-    left = 0.02 * travel + NOISE
-    left = left - travel * (travel @ left) / (travel @ travel)
-    weight = 1 / np.sqrt(np.mean(left**2))
-    assert_allclose(beside.left, left * weight, atol=1e-4)
-    drawn = beside.beyond(beside.drawn(np.array([[travel], [gain]]) * UM))[:, 0]
-    derivatives = 1e-5 * np.abs(travel * weight).max()  # differences tell a curve to so much of its size
-    assert_allclose(drawn[0], 0 * travel, atol=derivatives)
-    expected = (gain - travel * (travel @ gain) / (travel @ travel)) * weight
-    assert_allclose(drawn[1], expected, atol=derivatives)

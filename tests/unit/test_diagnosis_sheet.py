@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-import json
 import math
 import re
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
 from html import unescape
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from diagnosis_samples import SAMPLES, ambiguous, named, none_found, unknown
+from diagnosis_samples import SAMPLES, ambiguous, named
 from test_report_sheet import HOSTILE, Page
 
-from shared import Calc
-from truing.api import model
 from truing.cli.diagnose import lines_of as report
 from truing.diagnosis.records import Covariate, SuspectedUnit
 from truing.diagnosis.result import (
@@ -121,22 +117,6 @@ def test_html_and_markdown_say_the_same(name: str, sheet: Document) -> None:
     assert len(said) > 80
     assert [text for text in said if text not in html and text.replace("-", "−") not in html] == []
     assert [text for text in said if text not in markdown and text.replace("-", "−") not in markdown] == []
-
-
-def test_the_page_cannot_act(name: str) -> None:
-    page = Page(page_of(name))
-    names = {tag for tag, _ in page.tags}
-    assert not names & {"script", "iframe", "object", "embed", "link", "form", "input", "base", "audio", "video", "img"}
-    for tag, attributes in page.tags:
-        assert not [name for name in attributes if name.startswith("on")], tag
-        for link in ("src", "href", "xlink:href", "action", "srcset"):
-            assert (attributes.get(link) or "#").startswith("#"), (tag, attributes)
-    policies = [a["content"] for tag, a in page.tags if tag == "meta" and a.get("http-equiv")]
-    assert policies == ["default-src 'none'; style-src 'unsafe-inline'; img-src data:"]
-
-
-def test_the_same_diagnosis_gives_the_same_sheet() -> None:
-    assert html_of(sheet_of(ambiguous())) == page_of("ambiguous")
 
 
 def test_the_chapters_follow_the_questions(sheet: Document) -> None:
@@ -358,100 +338,6 @@ def test_a_narrow_terminal_breaks_behind_the_titles(monkeypatch: pytest.MonkeyPa
     start = lines.index(next(line for line in lines if line.startswith("1 What is wrong")))
     end = lines.index(next(line for line in lines if line.startswith("sheet: ")))
     assert [line for line in lines[start : end - 1] if line[1:2] != " " and line[:1].strip()] == []
-
-
-@pytest.fixture
-def engine(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
-    """An engine that found what a sample holds; what it is asked is written down."""
-    asked: list[Any] = []
-
-    def diagnose(
-        setup: Any, records: Any, *, progress: Callable[[str, int, int], None] | None = None
-    ) -> DiagnosisResult:
-        asked.append(setup)
-        if progress is not None:
-            progress("explanations", 1, 1)
-        return replace(ambiguous(), setup=setup, extended=replace(setup, calibrated={}))
-
-    def read_records(paths: Any, offer: Any, setup: Any) -> Any:
-        asked.append(tuple(paths))
-        return ambiguous().records
-
-    monkeypatch.setattr(model, "diagnose", diagnose)
-    monkeypatch.setattr(model, "read_records", read_records)
-    return asked
-
-
-@pytest.fixture
-def plugin(tmp_path: Path) -> str:
-    """The slide as a file that can be named on the command line."""
-    text = "from diagnosis_samples import SLIDE\nfrom truing import hookimpl\n\n\n@hookimpl\ndef truing_models():\n"
-    (tmp_path / "sliding.py").write_text(f"{text}    return [SLIDE]\n", encoding="utf-8")
-    (tmp_path / "press record.csv").write_text("x\n1\n", encoding="utf-8")
-    return "./sliding.py"
-
-
-def test_the_verb_prints_the_report_and_writes_the_folder(
-    calc: Calc, plugin: str, engine: list[Any], tmp_path: Path
-) -> None:
-    answer = calc("diagnose", plugin, "--data", "press record.csv", "b.csv", "-d", "c.csv")
-    assert answer.code == 0
-    assert engine[0] == (Path("press record.csv"), Path("c.csv"), Path("b.csv"))
-    assert answer.out.startswith("DIAGNOSIS  press_record.csv")
-    assert answer.out.endswith("extended model: runs/press record/extended.toml\n")
-    said = [line.split(":")[0] for line in answer.err.splitlines()]
-    assert said == ["no --inputs", "warning", "data/press_record.csv", "note", "note"]
-    assert "warning: suspected unit slip: load lies" in answer.err
-    names = {path.name for path in (tmp_path / "runs" / "press record").iterdir()}
-    assert names >= {"diagnosis.json", "extended.toml", "sheet.html", "sheet.md", "inputs.toml", "run.json"}
-
-
-def test_the_verb_prints_one_document_with_json(calc: Calc, plugin: str, engine: list[Any], tmp_path: Path) -> None:
-    (tmp_path / "in.toml").write_text('[inputs]\nradius = "81 mm"\n', encoding="utf-8")
-    answer = calc(
-        "diagnose",
-        plugin,
-        "-i",
-        "in.toml",
-        "--data",
-        "press record.csv",
-        "--json",
-        "-o",
-        "there",
-        "--set",
-        "rod=300 mm",
-    )
-    assert answer.code == 0
-    assert json.loads(answer.out) == json.loads((tmp_path / "there" / "diagnosis.json").read_text(encoding="utf-8"))
-    assert engine[1].inputs.radius == pytest.approx(0.081)
-    assert engine[1].inputs.rod == pytest.approx(0.3)
-
-
-@pytest.mark.parametrize(
-    ("arguments", "sentence"),
-    [
-        ((), "calc: nothing to diagnose: name the measured rows with --data FILE.csv"),
-        (("--data", "x.csv", "--output", "sliding.py"), "sliding.py: is a file; a diagnosis is a folder"),
-        (("--data", "x.csv", "--inputs", "no.toml"), "no.toml"),
-        (("--data", "x.csv", "--output", "."), "is an existing folder but no diagnosis of ours"),
-    ],
-)
-def test_bad_words_are_answered_in_a_sentence(
-    calc: Calc, plugin: str, arguments: tuple[str, ...], sentence: str
-) -> None:
-    answer = calc("diagnose", plugin, *arguments)
-    assert answer.code == 2
-    assert answer.out == ""
-    assert sentence in answer.err
-    assert "fault of the program" not in answer.err
-
-
-@pytest.mark.parametrize("sample", [none_found, unknown])
-def test_every_verdict_ends_with_exit_code_0(
-    calc: Calc, plugin: str, engine: list[Any], sample: Callable[[], DiagnosisResult], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(model, "diagnose", lambda *_, **__: sample())
-    assert calc("diagnose", plugin, "--data", "press record.csv", "-q").code == 0
 
 
 # Several causes

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -20,9 +19,9 @@ from truing.diagnosis.competition import UNREGISTERED, Competition
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.folds import ends_of, folds_of
 from truing.diagnosis.steps import (
-    FURTHER_LEVEL,
     LEAST_IN_PLACE,
     MANY_CURVES,
+    WANDER,
     _beats,
     _best,
     _candidates,
@@ -59,10 +58,6 @@ def shape(made: Competition, *tags: str, at: Fit | None = None) -> Fit:
         assert joined is not None
         found = joined
     return found
-
-
-def names_of(several: list[Fit]) -> list[list[str]]:
-    return [[cause.name for cause in found.causes] for found in several]
 
 
 # What stands in the place of a polynomial
@@ -138,92 +133,50 @@ def test_beside_a_cause_with_a_name_there_is_one_shape_at_most(tmp_path: Path) -
 # What a step must be better by
 
 
-@dataclass
-class Stated:
-    """A competition of which the scores are stated."""
-
-    scores: Mapping[frozenset[str], float]
-    sample: Any = None
-    extended: Any = None
-    tries: Mapping[str, float] = field(default_factory=dict)
-
-    def score(self, found: Fit) -> float:
-        return self.scores[found.key]
-
-    own_score = score
-
-    def without(self, found: Fit, place: int) -> None:
-        return None
-
-
 def of_causes(made: Competition, *names: str) -> Fit:
     """An explanation by name, its numbers left open: for where scores are stated."""
     causes = tuple(cause_of(made, name) for name in names)
     return replace(made.null, causes=causes, values=tuple(np.ones(cause.size) for cause in causes))
 
 
+BESIDE, IN_PLACE = (["lead_error"], ["lead_error", "wear"]), (["lead_error"], ["clearance", "wear"])
+EXCHANGED, FIRST = (["clearance"], ["lead_error"]), ([], ["wear"])
+
+
 @pytest.mark.parametrize(
-    ("before", "after", "least"),
+    ("step", "gain", "p_value", "carried", "is_believed"),
     [
-        (["lead_error"], ["lead_error", "wear"], steps.WANDER),
-        (["lead_error"], ["clearance", "wear"], LEAST_IN_PLACE),
-        (["lead_error"], ["wear"], steps.WANDER),
-        ([], ["wear"], 0.0),
+        (BESIDE, WANDER - 0.1, 0.003, 99.0, False),
+        (BESIDE, WANDER + 0.1, 0.003, 99.0, True),
+        (IN_PLACE, LEAST_IN_PLACE - 0.1, 0.003, 99.0, False),
+        (IN_PLACE, LEAST_IN_PLACE + 0.1, 0.003, 99.0, True),
+        (EXCHANGED, WANDER - 0.1, 0.003, 99.0, False),
+        (EXCHANGED, WANDER + 0.1, 0.003, 99.0, True),
+        (FIRST, -0.1, 0.003, 99.0, False),
+        (FIRST, 0.1, 0.003, 99.0, True),
+        (BESIDE, 30.0, 0.003, 1.1, True),
+        (BESIDE, 30.0, 0.02, 9.0, False),
+        (BESIDE, 30.0, 0.003, 0.9, False),
+        (EXCHANGED, 30.0, 0.003, 0.1, True),
+        (EXCHANGED, 30.0, 0.003, -0.1, False),
+        (IN_PLACE, 30.0, 0.003, 0.9, False),
+        (IN_PLACE, 30.0, 0.003, 1.1, True),
     ],
-    ids=["one more", "more in its place", "another in its place", "the first"],
 )
-def test_what_comes_beside_a_cause_or_takes_its_place_must_be_better_than_noise_with_a_memory(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, before: list[str], after: list[str], least: float
-) -> None:
-    made = competing(tmp_path, 0.0 * LINE)
-    at, more = of_causes(made, *before), of_causes(made, *after)
-    monkeypatch.setattr(steps, "law_of", lambda *_, seed: Law(np.zeros(299), 1 / 300))
-    monkeypatch.setattr(steps, "carries_over", lambda *_: 99.0)
-    folds: Any = None
-    for gain, is_believed in ((least - 0.1, False), (least + 0.1, True)):
-        stated: Any = Stated({at.key: gain, more.key: 0.0})
-        assert _step(stated, at, more, folds, seed=1).is_believed is is_believed
-    assert LEAST_IN_PLACE > steps.WANDER  # or the case above says nothing
-
-
-@pytest.mark.parametrize(
-    ("p_value", "carried", "is_believed"), [(0.003, 1.1, True), (0.02, 9, False), (0.003, 0.9, False)]
-)
-def test_a_further_cause_must_pass_chance_and_carry_over(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, p_value: float, carried: float, is_believed: bool
-) -> None:
-    made = competing(tmp_path, 0.0 * LINE)
-    at, more = of_causes(made, "lead_error"), of_causes(made, "lead_error", "wear")
-    monkeypatch.setattr(steps, "law_of", lambda *_, seed: Law(np.zeros(299), p_value))
-    monkeypatch.setattr(steps, "carries_over", lambda *_: carried)
-    stated: Any = Stated({at.key: 30.0, more.key: 0.0})
-    folds: Any = None
-    assert FURTHER_LEVEL < 0.02
-    assert _step(stated, at, more, folds, seed=1).is_believed is is_believed
-
-
-@pytest.mark.parametrize(
-    ("before", "after", "carried", "is_believed"),
-    [
-        (["clearance"], ["lead_error"], 0.1, True),
-        (["clearance"], ["lead_error"], -0.1, False),
-        (["lead_error"], ["clearance", "wear"], 0.9, False),
-        (["lead_error"], ["clearance", "wear"], 1.1, True),
-    ],
-    ids=["exchanged", "exchanged, and worse", "more numbers", "more numbers that predict"],
-)
-def test_only_what_adds_numbers_must_predict_better(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, before: list[str], after: list[str], carried: float,
-    is_believed: bool,
+def test_a_step_must_be_better_than_chance_than_noise_with_a_memory_and_on_rows_left_out(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, step: tuple[list[str], list[str]], gain: float, p_value: float,
+    carried: float, is_believed: bool,
 ) -> None:  # fmt: skip
     """What is exchanged for no more numbers is judged by its score, and may not predict worse."""
     made = competing(tmp_path, 0.0 * LINE)
-    at, more = of_causes(made, *before), of_causes(made, *after)
-    monkeypatch.setattr(steps, "law_of", lambda *_, seed: Law(np.zeros(299), 1 / 300))
+    at, more = (of_causes(made, *names) for names in step)
+    monkeypatch.setattr(steps, "law_of", lambda *_, seed: Law(np.zeros(299), p_value))
     monkeypatch.setattr(steps, "carries_over", lambda *_: carried)
-    stated: Any = Stated({at.key: 30.0, more.key: 0.0})
+    monkeypatch.setattr(made, "score", lambda found: gain if found.key == at.key else 0.0)
+    monkeypatch.setattr(made, "own_score", made.score)
     folds: Any = None
-    assert _step(stated, at, more, folds, seed=1).is_believed is is_believed
+    assert _step(made, at, more, folds, seed=1).is_believed is is_believed
+    assert LEAST_IN_PLACE > WANDER  # or the cases in place of others say nothing
 
 
 # Waves that beat

@@ -1,22 +1,19 @@
 """Several fits that ask the model at one time: each is told what it would be told alone, in fewer calls."""
 
-import sys
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from diagnosis_models import Asked
 
-from truing import Effect, Float, Model, Unknown, found, given, hookimpl, inputs, results
+from truing import Effect, Float, Model, Unknown, found, given, inputs, results
 from truing.diagnosis import extended as under_test
 from truing.diagnosis.causes import Candidate, effects_of
 from truing.diagnosis.exact import Asking, together
 from truing.diagnosis.extended import Extended, Request
 from truing.diagnosis.machine import calibration_of
-from truing.diagnosis.reading import read_records
-from truing.inputs_file import read_setup
-from truing.kernel import Kernel
 
 LOADS = np.linspace(-20, 20, 40)
 
@@ -67,20 +64,11 @@ BEAM = Model(
 )  # fmt: skip
 
 
-@hookimpl
-def truing_models() -> list[Model[Beam, Sag]]:
-    return [BEAM]
-
-
 @pytest.fixture
 def asked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Extended, dict[str, Candidate], list[int]]:
     """The beam as a diagnosis asks it, its causes by name, and by call the number of points."""
-    offer = next(each for each in Kernel([sys.modules[__name__]], strict=True).offers.values() if each.model is BEAM)
-    rows = "".join(f"{load!r},{load / 4!r}\n" for load in LOADS.tolist())
-    (tmp_path / "measured.csv").write_text("load [N],sag [mm]\n" + rows, encoding="utf-8")
-    (tmp_path / "inputs.toml").write_text("[inputs]\n", encoding="utf-8")
-    setup = read_setup(tmp_path / "inputs.toml", offer)
-    machine = calibration_of(setup, read_records([tmp_path / "measured.csv"], offer, setup))
+    one = Asked(BEAM, units={"load": "N", "sag": "mm"})
+    machine = calibration_of(one.setup, one.records(tmp_path, {"load": LOADS, "sag": LOADS / 4}))
     calls: list[int] = []
     ask = under_test.predict_each
 
@@ -97,74 +85,45 @@ def request(extended: Extended, causes: Sequence[Candidate], *points: Sequence[f
     return causes, [([np.array([value]) for value in values], still) for values in points]
 
 
-def test_readings_of_the_gauge_share_the_call_of_one_effect(
+Points = tuple[str, list[float]]
+
+
+@pytest.mark.parametrize(
+    ("points", "compliances", "offsets", "calls"),
+    [
+        (  # readings of the gauge share the call of an effect
+            [("softening", [0.5]), ("softening", [0.2]), ("softening sensor_offset", [0.2, 1e-3]),
+             ("sensor_gain softening", [0.1, 0.2])],
+            [1 / 2e3, 1 / 3.2e3, 1 / 3.2e3, 1.1 / 3.2e3], [0.0, 0.0, 1e-3, 0.0], [4],
+        ),
+        (  # an effect at rest does not undo what another one adds; the one that sets is declared later
+            [("support", [2e-4]), ("replaced_support support", [1e-4, 2e-4]), ("replaced_support", [1e-4])],
+            [1 / 4e3 + 2e-4, 1 / 4e3 + 1e-4, 1 / 4e3 + 1e-4], [0.0] * 3, [1, 1, 1],
+        ),
+        (  # causes that come in another order are not mistaken for one another
+            [("softening support", [0.5, 0.25]), ("support softening", [0.5, 0.25]),
+             ("support softening", [0.25, 0.5])],
+            [1 / 2e3 + 0.25, 1 / 3e3 + 0.5, 1 / 2e3 + 0.25], [0.0] * 3, [2],
+        ),
+        (  # a point at which the model has no answer leaves the others theirs: these are asked for once more
+            [("softening", [0.2]), ("softening sensor_offset", [1.0, 0.0]), ("softening sensor_offset", [0.2, 1e-3])],
+            [1 / 3.2e3, np.nan, 1 / 3.2e3], [0.0, 0.0, 1e-3], [3, 2],
+        ),
+    ],
+    ids=["readings", "at rest", "order", "no answer"],
+)  # fmt: skip
+def test_points_that_are_asked_at_one_time_are_answered_as_alone(
     asked: tuple[Extended, dict[str, Candidate], list[int]],
-) -> None:
-    extended, causes, calls = asked
-    soft, offset, gain = (causes[name] for name in ("softening", "sensor_offset", "sensor_gain"))
-    alone, moved, scaled = extended.at_each(
-        [
-            request(extended, [soft], [0.5], [0.2]),
-            request(extended, [soft, offset], [0.2, 1e-3]),
-            request(extended, [gain, soft], [0.1, 0.2]),
-        ]
+    points: list[Points], compliances: list[float], offsets: list[float], calls: list[int],
+) -> None:  # fmt: skip
+    extended, causes, counted = asked
+    answers = extended.at_each(
+        [request(extended, [causes[name] for name in names.split()], at) for names, at in points]
     )
-    assert calls == [4]
-    np.testing.assert_allclose(alone[0]["sag"], LOADS / 2e3, rtol=1e-12)
-    np.testing.assert_allclose(alone[1]["sag"], LOADS / 3.2e3, rtol=1e-12)
-    np.testing.assert_allclose(moved[0]["sag"], LOADS / 3.2e3 + 1e-3, rtol=1e-12)
-    np.testing.assert_allclose(scaled[0]["sag"], 1.1 * LOADS / 3.2e3, rtol=1e-12)
-    assert extended.calls == 2, "points that differ in what acts after the model are one"
-
-
-def test_an_effect_at_rest_does_not_undo_what_another_one_adds(
-    asked: tuple[Extended, dict[str, Candidate], list[int]],
-) -> None:
-    extended, causes, calls = asked
-    adds, sets = causes["support"], causes["replaced_support"]
-    added, both, laid = extended.at_each(
-        [
-            request(extended, [adds], [2e-4]),
-            request(extended, [sets, adds], [1e-4, 2e-4]),
-            request(extended, [sets], [1e-4]),
-        ]
-    )
-    np.testing.assert_allclose(added[0]["sag"], LOADS * (1 / 4e3 + 2e-4), rtol=1e-12)
-    np.testing.assert_allclose(both[0]["sag"], LOADS * (1 / 4e3 + 1e-4), rtol=1e-12)  # it is declared later
-    np.testing.assert_allclose(laid[0]["sag"], LOADS * (1 / 4e3 + 1e-4), rtol=1e-12)
-    assert calls == [1, 1, 1]
-
-
-def test_causes_that_come_in_another_order_are_not_mistaken_for_one_another(
-    asked: tuple[Extended, dict[str, Candidate], list[int]],
-) -> None:
-    extended, causes, calls = asked
-    soft, adds = causes["softening"], causes["support"]
-    (one,), (other,), (same,) = extended.at_each(
-        [
-            request(extended, [soft, adds], [0.5, 0.25]),
-            request(extended, [adds, soft], [0.5, 0.25]),
-            request(extended, [adds, soft], [0.25, 0.5]),
-        ]
-    )
-    np.testing.assert_allclose(one["sag"], LOADS * (1 / 2e3 + 0.25), rtol=1e-12)
-    np.testing.assert_allclose(other["sag"], LOADS * (1 / 3e3 + 0.5), rtol=1e-12)
-    np.testing.assert_array_equal(same["sag"], one["sag"])
-    assert calls == [2]
-
-
-def test_a_point_at_which_the_model_has_no_answer_leaves_the_others_theirs(
-    asked: tuple[Extended, dict[str, Candidate], list[int]],
-) -> None:
-    extended, causes, calls = asked
-    soft, offset = causes["softening"], causes["sensor_offset"]
-    fine, broken = extended.at_each(
-        [request(extended, [soft], [0.2]), request(extended, [soft, offset], [1.0, 0.0], [0.2, 1e-3])]
-    )
-    np.testing.assert_allclose(fine[0]["sag"], LOADS / 3.2e3, rtol=1e-12)
-    assert np.isnan(broken[0]["sag"]).any()
-    np.testing.assert_allclose(broken[1]["sag"], LOADS / 3.2e3 + 1e-3, rtol=1e-12)
-    assert calls == [3, 2], "what has gaps is asked for once more by itself"
+    assert counted == calls
+    for (shown,), compliance, offset in zip(answers, compliances, offsets, strict=True):
+        expected = compliance * LOADS + offset
+        assert np.isnan(shown["sag"]).any() if np.isnan(compliance) else np.allclose(shown["sag"], expected, rtol=1e-12)
 
 
 def test_searches_that_end_at_different_times_each_return_their_own(

@@ -8,11 +8,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from diagnosis_models import UM, Array, Asked, Bench, drive_model, gauge, name_sets, wide
+from diagnosis_models import Array, Asked, Bench, drive_model, gauge, wide
 from numpy.testing import assert_allclose
 
 from truing.diagnosis.causes import Candidate
-from truing.diagnosis.extended import Extended
 from truing.diagnosis.machine import Calibration, calibration_of
 from truing.diagnosis.unregistered import highest_order, shapes_of
 
@@ -74,17 +73,6 @@ def test_every_shape_over_what_moved_and_nothing_over_what_stood_still(tmp_path:
     assert not of_kind(shapes_of(machine(tmp_path, bench).records, {}, has_steps=True), "step")
 
 
-def test_of_covariates_that_move_as_one_the_first_has_the_shapes(tmp_path: Path) -> None:
-    bench = wide(80)
-    together = shapes_of(
-        machine(tmp_path, replace(bench, temperature=20 + 2.5 * bench.time)).records, {}, has_steps=True
-    )
-    trends = [each.shape.depends_on[0] for each in of_kind(together, "trend") if each.shape]
-    assert len({"temperature", "time"} & set(trends)) == 1
-    apart = of_kind(shapes_of(machine(tmp_path, bench).records, {}, has_steps=True), "trend")
-    assert {"temperature", "time"} <= {each.shape.depends_on[0] for each in apart if each.shape}
-
-
 def test_printed_terms_are_what_is_calculated(tmp_path: Path) -> None:
     there = machine(tmp_path, wide(80))
     covariates = there.records.covariates
@@ -133,29 +121,3 @@ def test_a_shape_draws_what_its_kind_says(
     assert terms.shape == by_hand.shape
     missed = by_hand - terms @ np.linalg.lstsq(terms, by_hand)[0]
     assert np.abs(missed).max() < 1e-9 * np.abs(by_hand).max()
-
-
-def test_a_shape_on_adds_its_amplitudes_times_its_terms(tmp_path: Path) -> None:
-    bench = wide(80)
-    there = machine(tmp_path, bench)
-    (step,) = of_kind(shapes_of(there.records, {}, has_steps=False), "step", "time")
-    (made,) = Extended(there).at([step], [([np.array([7 * UM, 18_000.0])], np.zeros(0))])
-    added = made["deflection"] - there.base["deflection"]
-    assert_allclose(added / UM, np.where(bench.time >= 5, 7.0, 0.0), atol=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("effect", "error"),
-    [("lead_error", lambda bench: 0.03 * bench.travel), ("clearance", lambda bench: 5 * np.sign(bench.load))],
-)
-def test_a_shape_that_draws_what_a_cause_does_is_no_other_explanation(
-    tmp_path: Path, effect: str, error: object
-) -> None:
-    bench = wide(120)
-    curve = error(bench)  # type: ignore[operator]
-    noise = np.random.default_rng(4).normal(0, 1, 120)
-    found = Asked(drive_model([effect])).diagnosed(
-        tmp_path, bench.columns(gauge(bench.load, bench.travel) + curve + noise)
-    )
-    assert name_sets(found) == [{effect}]
-    assert not [rival for rival in found.alternatives if "unknown" in rival.causes]

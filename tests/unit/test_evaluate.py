@@ -1,7 +1,5 @@
 """Running a model: alone, in batches, split, with effects at their three places, and when something goes wrong."""
 
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal
@@ -499,13 +497,3 @@ def test_alone_and_in_a_batch_numbers_behave_alike() -> None:
 
 
 # What importing costs
-
-
-def loaded_modules(statement: str, folder: Path | None = None) -> set[str]:
-    code = f"import sys; {statement}; print(' '.join(sys.modules))"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=folder)
-    return set(done.stdout.split())
-
-
-def test_importing_truing_costs_nothing() -> None:
-    assert not {"numpy", "pint", "scipy", "pydantic", "matplotlib", "pluggy"} & loaded_modules("import truing")

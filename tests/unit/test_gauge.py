@@ -12,7 +12,7 @@ from pin_wear import PIN_WEAR
 
 from truing import Condition, Effect, Float, Model, Unknown, axis, column, found, given, inputs, results
 from truing.errors import UsageError
-from truing.gauge import Shown, one_machine, read_by_gauge, shown_by_gauge
+from truing.gauge import Shown, read_by_gauge, shown_by_gauge
 from truing.inputs_file import setup_from_text
 from truing.kernel import Offer, Origin
 from truing.measurements import RowsFile, read_rows
@@ -104,30 +104,6 @@ def test_rows_replace_inputs_and_come_back_in_printed_units(gauge: Gauge) -> Non
     assert set(shown.values) == {"pressure", "distance", "depth"}
 
 
-def test_a_reading_acts_in_proportion_to_its_condition(gauge: Gauge) -> None:
-    text = '[effects.warm_probe]\nslope = "1.5 um/K"\n'
-    rows = "probe_temperature [degC]\n20\n30\n-10\n"
-    warm, plain = gauge(PIN_WEAR, rows, text), gauge(PIN_WEAR, rows)
-    np.testing.assert_allclose(warm.values["depth"] - plain.values["depth"], [0, 15, -45], atol=1e-9)
-    np.testing.assert_array_equal(warm.values["pressure"], plain.values["pressure"])
-
-
-def test_the_machine_is_calibrated(gauge: Gauge) -> None:
-    text = '[inputs]\nload = "100 N"\n[calibrated]\nload = "112 N"\n'
-    shown = gauge(PIN_WEAR, "time [h]\n1\n2\n", text)
-    np.testing.assert_allclose(shown.values["pressure"], [4.0, 4.0])
-    offer = Offer("pin_wear", PIN_WEAR, Origin("pin_wear", "", "", "", "module:pin_wear"))
-    setup = setup_from_text(text, offer, file="given.toml", folder=Path())
-    assert setup.inputs.load == pytest.approx(100)
-    assert one_machine(setup).inputs.load == pytest.approx(112)
-
-
-def test_an_impossible_row_is_missing_and_keeps_its_reason(gauge: Gauge) -> None:
-    shown = gauge(PIN_WEAR, "load [kN]\n0.1\n100\n0.2\n")
-    assert shown.reasons == {1: "the contact flows: load exceeds hardness times area"}
-    assert np.isnan(shown.values["depth"]).tolist() == [False, True, False]
-
-
 def test_results_along_an_axis_are_read_at_the_place_of_the_row(gauge: Gauge) -> None:
     rows = "depth [mm],flux [W/m^2]\n0,10\n50,10\n50,30\n100,10\n101,10\n"
     shown = gauge(WALL, rows, '[inputs]\npressing = ["1 N", "1 N", "1 N"]\n')
@@ -176,40 +152,6 @@ def rows_for(model: Model, path: Path, text: str) -> tuple[Setup, RowsFile]:
     path.write_text(text)
     setup = setup_from_text("[inputs]\n", offer, file="given.toml", folder=path.parent)
     return setup, read_rows(path, offer, setup)
-
-
-def test_wanted_results_in_si(tmp_path: Path) -> None:
-    setup, rows = rows_for(PIN_WEAR, tmp_path / "rows.csv", "load [N]\n28\n56\n")
-    found = read_by_gauge(setup, rows, ["pressure"])
-    assert list(found.results) == ["pressure"]
-    np.testing.assert_allclose(found.results["pressure"], [1e6, 2e6])
-
-
-def test_conditions_that_nobody_needs_are_not_looked_at(tmp_path: Path) -> None:
-    setup, rows = rows_for(PIN_WEAR, tmp_path / "rows.csv", "load [N]\n28\n56\n")
-    more = replace(rows, columns={**rows.columns, "of_another_effect": np.array([1.0, 2.0])})
-    np.testing.assert_allclose(read_by_gauge(setup, more, ["pressure"]).results["pressure"], [1e6, 2e6])
-
-
-def test_all_rows_are_one_call(tmp_path: Path) -> None:
-    calls = []
-
-    def counted(given_: Wall) -> Course:
-        calls.append(np.shape(given_.flux))
-        return wall(given_)
-
-    model = replace(WALL, function=counted)
-    setup, rows = rows_for(model, tmp_path / "rows.csv", "flux [W/m^2]\n10\n20\n30\n")
-    np.testing.assert_allclose(read_by_gauge(setup, rows, ["inside"]).results["inside"] - 293.15, [1, 2, 3])
-    assert calls == [(3,)]
-
-
-def test_axes_are_calculated_where_they_are_needed(tmp_path: Path) -> None:
-    text = "run,depth [mm],pressing [N]\na,0,1\na,50,2\na,100,3\n"
-    setup, rows = rows_for(WALL, tmp_path / "rows.csv", text)
-    found = read_by_gauge(setup, rows, ["work"])
-    assert list(found.results) == ["work"]
-    np.testing.assert_allclose(found.results["work"], [1, 2, 3])
 
 
 def warm(given_: Wall, base: Course, *, slope: Float, room: Float) -> Course:

@@ -17,7 +17,6 @@ from harmonic_fractal.surface import (
     Surface,
     cut,
     quantisation,
-    root_mean_square,
     spikes_of,
     without_form,
     without_line,
@@ -194,10 +193,6 @@ def test_quantisation_is_the_least_step() -> None:
     assert quantisation(np.full((3, 3), 2.0)) == 0.0
 
 
-def test_root_mean_square_is_about_the_mean() -> None:
-    assert root_mean_square(np.array([[1.0, 3.0, np.nan]])) == pytest.approx(1.0)
-
-
 # A flank from a file
 
 
@@ -306,19 +301,6 @@ def test_the_choice_of_direction(
     assert found.reason == ("along x: too smooth; along y: too rough" if chosen is None else "")
 
 
-def test_pooled_lines_that_are_refused_leave_the_direction_of_sliding(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    said = {"x": settled("x", 1.5), "y": settled("y", 1.6), "both": settled("both", 1.55, "no range")}
-    monkeypatch.setattr(flank, "estimate_of", lambda lines, direction, settings: said[direction])
-    assert read_flank(write(tmp_path, rough()), sliding="y").chosen == "y"
-    asked = read_flank(write(tmp_path, rough()), direction="both")
-    assert (asked.chosen, asked.reason, asked.warnings) == (None, "no range", ())
-    said["x"] = settled("x", 1.3)
-    for direction in ("x", "y", "both"):
-        assert "anisotropic" in " ".join(read_flank(write(tmp_path, rough()), direction=direction).warnings)
-
-
 def test_a_flank_travels_between_processes_and_cannot_be_changed(alike: Flank) -> None:
     content = pickle.dumps(alike)
     again = pickle.loads(content)
@@ -328,11 +310,6 @@ def test_a_flank_travels_between_processes_and_cannot_be_changed(alike: Flank) -
     for surface in (alike.raw, alike.surface, again.surface):
         with pytest.raises(ValueError, match="read-only"):
             surface.heights[0, 0] = 1.0
-
-
-def test_reading_twice_gives_the_same(tmp_path: Path) -> None:
-    file = write(tmp_path, rough())
-    assert np.array_equal(read_flank(file).resampled, read_flank(file).resampled)
 
 
 def test_shares_and_heights_of_the_rectangle(tmp_path: Path) -> None:

@@ -108,13 +108,6 @@ def test_every_result_stands_in_one_section() -> None:
     assert set(HARMONIC_FRACTAL.result_fields) == set(named)
 
 
-def test_sections_are_in_the_order_of_the_calculation() -> None:
-    order = ["flanks", "D and G", "Stiffness of one pair", "Clearance", "Mesh", "Torsion"]
-    found = [section.title for section in HARMONIC_FRACTAL.sheet]
-    places = [next(place for place, title in enumerate(found) if word in title) for word in order]
-    assert places == sorted(places)
-
-
 # Flanks
 
 
@@ -331,15 +324,6 @@ def test_table_over_the_load(stated: Calculation) -> None:
         assert known[load] == pytest.approx(expected, rel=3e-3)
 
 
-def test_below_resolution_is_a_warning_on_sheet_and_terminal(stated: Calculation) -> None:
-    assert "Extrapolated below resolution" in words(stiffness(stated.record), "warning")
-    assert any("extrapolated below resolution" in text for text in stated.warnings)
-    coarse = run(sampling="0.05 um")
-    assert float(coarse.answers["resolved_share"]) > 0.3
-    assert words(stiffness(coarse.record), "warning") == ""
-    assert not any("resolution" in text for text in coarse.warnings)
-
-
 def test_all_plastic_is_a_warning_on_sheet_and_terminal() -> None:
     found = run(pair_load="1e-5 N")
     assert "All contacts of the pair are plastic" in words(stiffness(found.record), "warning")
@@ -385,17 +369,6 @@ def test_torsion_figure_goes_through_the_results() -> None:
 def test_a_drive_that_turns_the_other_way_has_the_same_table(stated: Calculation) -> None:
     other = table(torsion(run(torque="-25 N*m").record), "torques of the catalogue")
     assert other.rows == table(torsion(stated.record), "torques of the catalogue").rows
-
-
-def test_a_sweep_shows_what_changes() -> None:
-    setup = default_setup(HARMONIC_FRACTAL)
-    (study,) = (study for study in setup.studies if study.name == "sweep")
-    found = calculate(replace(setup, studies=(replace(study, points=6),))).outcomes["sweep"].blocks()  # type: ignore[type-var]
-    extremes = table(found, "Extremes along the torque")
-    rows = {row[0]: row[2:] for row in extremes.rows}
-    assert rows["catalogue_torsion"] == pytest.approx((0.0, 0.0, 2019.6, 50.0), rel=1e-4)
-    assert not {"dimension", "stiffness", "clearance", "cup_moment"} & set(rows)
-    assert "other results do not change" in extremes.note
 
 
 def test_an_input_file_that_is_not_given_is_said_so() -> None:

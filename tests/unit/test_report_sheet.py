@@ -28,7 +28,6 @@ from truing.report.markdown_printer import markdown_of
 from truing.report.sheet import logo_of, make_sheet
 from truing.runs.provenance import Provenance, provenance_of
 from truing.setup import InputsSource, Setup, SheetOptions, default_setup
-from truing.templating import template_folder
 
 DATA = Path(__file__).parents[1] / "data"
 HOSTILE = "<script>alert(1)</script> {{7*7}} $x$ | # `code` [link](https://evil.example) **bold** & \"' # next"
@@ -377,11 +376,6 @@ def test_the_title_in_the_margin_cannot_leave_its_string(text: str) -> None:
 def test_the_same_run_gives_the_same_sheet(calculation: Calculation, provenance: Provenance) -> None:
     first, again = (html_of(make_sheet(calculation, provenance=provenance)) for _ in range(2))
     assert first == again
-
-
-def test_the_templates_are_found() -> None:
-    names = {path.name for path in template_folder().iterdir()}
-    assert {"sheet.html.j2", "blocks.html.j2", "sheet.css"} <= names
 
 
 @pytest.mark.parametrize(

@@ -223,11 +223,6 @@ def test_least_cost_is_what_trying_everything_finds(model, shift, loosen, goal_u
     assert found.least_cost.chances["height"] >= 0.95
 
 
-def test_prices_are_in_their_currency():
-    assert allotted(PRICED).problem.unit == "EUR"
-    assert allotted(STACK).problem.unit == "1/mm"
-
-
 @pytest.mark.parametrize(
     ("low", "high", "mean", "goal"),
     [(-1.0, 1.0, 0.0, 0.95), (-1.0, 1.0, 0.4, 0.9), (float("-inf"), 2.0, 1.5, 0.999), (0.0, float("inf"), 3.0, 0.6)],

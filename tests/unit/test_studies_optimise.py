@@ -3,7 +3,7 @@
 import itertools
 import json
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -30,17 +30,16 @@ from truing import (
 from truing.calculation import Calculation, calculate
 from truing.errors import DeclarationError, InputError, UsageError
 from truing.evaluate import evaluate, evaluate_rows
-from truing.executors import BatchLog, KeptExecutor, SerialExecutor, WorkerPool
+from truing.executors import WorkerPool
 from truing.fits import GRADES, tolerance
 from truing.inputs_file import read_setup
 from truing.kernel import Offer, Origin
 from truing.prices import price_answers, total_price
 from truing.setup import Setup, default_setup
-from truing.studies.bench import Bench
 from truing.studies.chances import chance, straightened
 from truing.studies.checks import limits, margin_of, plain_checks
 from truing.studies.demands import demands, nominal_inputs, worst
-from truing.studies.optimise_problem import ROWS, Brief, Problem, answers_of, make_problem, open_space
+from truing.studies.optimise_problem import Brief, Problem, answers_of, make_problem, open_space
 from truing.studies.optimise_search import REFERENCE, knee_of, non_dominated, spread_out, volume_of
 from truing.studies.sampling import Machines, Scatter, _gather, scatter_of
 
@@ -358,41 +357,6 @@ def test_processes_give_the_same_bytes(chance_: Any, two_processes: WorkerPool) 
     assert written(apart) == written(calculate(setup).outcomes["optimise"])  # type: ignore[arg-type]
 
 
-def test_an_interrupted_search_takes_up_what_was_kept(tmp_path: Path) -> None:
-    setup = replace(setup_of(PAIR), studies=(replace(SMALL, tightest=0.25),))
-    wanted = written(calculate(setup).outcomes["optimise"])  # type: ignore[arg-type]
-    for resumed in (0, 13):  # twelve generations and the verification
-        log = BatchLog(tmp_path / "batches")
-        executor = KeptExecutor(SerialExecutor(), log)
-        assert written(calculate(setup, executor=executor).outcomes["optimise"]) == wanted  # type: ignore[arg-type]
-        assert executor.resumed == resumed
-        log.close()
-
-
-def test_it_prints_nothing(capfd: pytest.CaptureFixture[str]) -> None:
-    optimum(setup_of(PAIR), SMALL)
-    assert capfd.readouterr() == ("", "")
-
-
-def test_a_population_is_one_array(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Draws times designs in one call of the model, at most 2^16 rows at once."""
-    sizes: list[int] = []
-
-    def counted(setup: Setup, columns: Any, rows: int, **more: Any) -> Any:
-        sizes.append(rows)
-        return evaluate_rows(setup, columns, rows, **more)
-
-    monkeypatch.setattr("truing.studies.optimise_problem.evaluate_rows", counted)
-    optimum(setup_of(PAIR), replace(SMALL, population=40, generations=1, draws=4000))
-    drawn = [rows for rows in sizes if rows >= 4000]
-    assert sum(drawn) == 40 * 4000  # one of them twice in the first population, and the start
-    assert max(drawn) <= ROWS
-    assert len(drawn) == 4
-    sizes.clear()
-    optimum(setup_of(PAIR), replace(SMALL, population=40, generations=1, chance="first_order"))
-    assert sizes == [39, 39 * 5, 1, 5]  # the designs, two inputs up and down; the start
-
-
 # What the outcome says
 
 
@@ -561,55 +525,6 @@ def test_the_hypervolume_of_known_fronts() -> None:
 # Surrogate on request
 
 
-@dataclass(frozen=True)
-class Known:
-    """Answers for the stress, a thousand times too small so that it is seen."""
-
-    of: tuple[str, ...] = ("stress",)
-    asked: list[int] = field(default_factory=list)
-
-    def predict(self, columns: Any) -> dict[str, Any]:
-        force, size, other, count = (np.asarray(columns[name]) for name in ("force", "size", "other", "count"))
-        self.asked.append(int(force.size))
-        return {"stress": 1e-3 * force / (size * other) * (1 + 0.1 * count)}
-
-    def as_json(self) -> dict[str, Any]:
-        return {}
-
-    def blocks(self) -> list[Any]:
-        return []
-
-    def checks(self) -> list[Any]:
-        return []
-
-    def warnings(self) -> list[str]:
-        return []
-
-
-@dataclass(frozen=True, kw_only=True)
-class Learnt:
-    """A study whose outcome can predict."""
-
-    outcome: Known = field(default_factory=Known)
-    name: str = "surrogate"
-    gives: None = None
-
-    def run(self, bench: Bench) -> Known:
-        return self.outcome
-
-
-def test_the_surrogate_answers_what_it_knows_and_the_knee_is_run_on_the_model() -> None:
-    learnt = Learnt()
-    done = calculate(replace(setup_of(PARTS), studies=(learnt, replace(SMALL, surrogate=True))))
-    best = done.outcomes["optimise"]
-    assert isinstance(best, Optimum)
-    assert best.knee is not None
-    assert sum(learnt.outcome.asked) >= best.evaluations
-    assert best.exact["stress"] == pytest.approx(1e3 * best.knee.objectives["stress"], rel=1e-9)
-    assert json.loads(written(best))["surrogate"] is True
-    assert "The surrogate answered" in best.blocks()[0].text  # type: ignore[union-attr]
-
-
 def test_a_learnt_surrogate_finds_the_front_and_says_where_it_learnt_nothing() -> None:
     learnt = Surrogate(of=("first", "second"), over={"a": "0.1..1", "b": "0..1"}, design=60, held_out=20, compare=0)
     study = Optimise(vary=("a", "b"), population=40, generations=30, surrogate=True)
@@ -624,6 +539,8 @@ def test_a_learnt_surrogate_finds_the_front_and_says_where_it_learnt_nothing() -
     assert words in best.warnings()
     assert best.knee is not None
     assert best.exact["first"] == pytest.approx(best.knee.inputs["a"], rel=1e-12)
+    assert json.loads(written(best))["surrogate"] is True
+    assert "The surrogate answered" in best.blocks()[0].text  # type: ignore[union-attr]
 
 
 def test_a_surrogate_that_is_not_there_is_asked_for() -> None:

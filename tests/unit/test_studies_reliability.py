@@ -18,7 +18,6 @@ from study_models import (
     STACK,
     STRENGTH,
     UNIFORMS,
-    WARMTH,
     WEAR,
     Sum,
     Two,
@@ -30,7 +29,6 @@ from truing.calculation import calculate
 from truing.declare.spreads import Off
 from truing.errors import UsageError
 from truing.setup import SwitchedOn
-from truing.studies.chances import FormResult
 from truing.studies.demands import normal_chance, wilson
 from truing.studies.sampling import Moments, joined, scatter_of
 
@@ -101,13 +99,6 @@ def test_the_interval_is_wilsons(hits, draws, low, high):
 def test_the_standard_error_is_that_of_a_share(of_chain):
     share = of_chain.probability["gap"]
     assert of_chain.as_json()["gap"]["standard_error"] == pytest.approx(sqrt(share * (1 - share) / 40_000), rel=1e-12)
-
-
-@pytest.mark.parametrize(("low", "high"), [(8.0, 9.0), (-9.0, -8.0)])
-def test_both_tails_keep_their_digits(low, high):
-    """Phi(-8) - Phi(-9): 6.2209605742718e-16 - 1.1285884059538e-19 (tables of the normal distribution)."""
-    expected = 6.2209605742718e-16 - 1.1285884059538e-19
-    assert normal_chance(0.0, 1.0, low, high) == pytest.approx(expected, rel=1e-10, abs=0.0)
 
 
 # ---- Monte Carlo --------------------------------------------------------------------------------------------------
@@ -369,12 +360,6 @@ def test_moments_of_batches_join_to_those_of_the_whole():
     assert (whole.smallest, whole.largest) == (values.min(), values.max())
 
 
-def test_the_batch_is_no_part_of_the_reduction_error():
-    odds = odds_of(setup_of(CHAIN), Reliability(draws=1))
-    assert odds.draws == 1
-    json.dumps(odds.as_json(), allow_nan=False)
-
-
 # ---- what is said -------------------------------------------------------------------------------------------------
 
 
@@ -438,20 +423,6 @@ def test_without_sampling_the_chance_is_first_order():
     assert [block.title for block in odds.blocks()] == ["Probability"]
 
 
-def test_results_json_holds_what_is_promised():
-    entry = odds_of(setup_of(CHAIN)).as_json()["gap"]
-    assert {"probability", "interval95", "standard_error", "draws", "method"} <= set(entry)
-    low, high = entry["interval95"]
-    assert low < entry["probability"] < high
-    assert entry["unit"] == "mm"
-    assert entry["sd"] == pytest.approx(0.13, rel=0.02)
-    assert entry["mean"] == pytest.approx(10, abs=0.01)
-
-
-def test_a_form_without_number_writes_none():
-    assert FormResult({}, None, "no convergence: because").as_json() == {"status": "no convergence: because"}
-
-
 def test_nothing_required_is_said():
     with pytest.raises(UsageError, match="requires nothing"):
         odds_of(setup_of(replace(CHAIN, objectives=[])))
@@ -476,10 +447,6 @@ def test_options_are_checked(options, sentence):
 def test_a_curve_needs_input_and_range(options):
     with pytest.raises(UsageError, match="over and at go together"):
         odds_of(setup_of(CHAIN), Reliability(**options))
-
-
-def test_the_condition_of_the_models_is_what_the_tests_think():
-    assert WARMTH.zero == pytest.approx(293.15)
 
 
 @pytest.mark.parametrize(("draws", "warned"), [(19, True), (20, False), (1000, False)])

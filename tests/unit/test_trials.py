@@ -116,14 +116,6 @@ def test_an_effect_on_the_reading_asks_for_no_record_again(tmp_path: Path) -> No
     assert calls == [1]
 
 
-def test_unknowns_of_effects_are_set_row_by_row(tmp_path: Path) -> None:
-    setup, rows = rows_for(WALL, tmp_path / "rows.csv", "flux [W/m^2]\n10\n20\n30\n")
-    on = setup.with_effects([SwitchedOn(WALL.known_effects["dirt"], {"offset": 0.0})])
-    changes = [{effect_column("dirt", "offset"): np.array(offset)} for offset in ([0.0, 1.0, 2.0], [3.0, 3.0, 3.0])]
-    answers = [each["inside"] - 293.15 for each in read_trials(on, rows, changes, ["inside"])]
-    np.testing.assert_allclose(answers, [[1, 3, 5], [4, 5, 6]])
-
-
 def test_a_trial_in_which_the_model_fails_leaves_the_others(tmp_path: Path) -> None:
     def failing(given_: Wall) -> Course:
         return replace(wall(given_), inside=given_.outside + given_.flux / (given_.flux - 20.0))
