@@ -172,11 +172,6 @@ def nothing_found(tmp_path_factory: pytest.TempPathFactory) -> DiagnosisResult:
     return PROPER.diagnosed(tmp_path_factory.mktemp("nothing"), nothing_wrong("wandering", 2))
 
 
-def test_units_of_a_model_change_nothing(tmp_path: Path, nothing_found: DiagnosisResult) -> None:
-    columns, units = scaled(nothing_wrong("wandering", 2))
-    assert_same(nothing_found, Asked(drive_model(in_si=True), units=units).diagnosed(tmp_path, columns))
-
-
 def test_the_order_of_the_rows_inside_a_run_changes_nothing(tmp_path: Path) -> None:
     columns, runs = warm_and_worn(), 3
     rows = len(columns["time"])

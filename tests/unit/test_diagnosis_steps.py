@@ -26,7 +26,6 @@ from truing.diagnosis.steps import (
     _best,
     _candidates,
     _step,
-    shapes_in,
 )
 
 ROWS = 150
@@ -94,17 +93,6 @@ def test_what_the_gauge_has_of_its_own_stands_in_the_place_of_no_polynomial(tmp_
     assert [found.key for found in _candidates(made, made.null, 1)] == [trend.key]
 
 
-def test_a_shape_is_what_is_left_beside_an_effect_that_draws_nearly_all(tmp_path: Path) -> None:
-    """Beside the lead no two causes without it follow, however good: the bend comes beside it."""
-    made = competing(tmp_path, 0.3 * BENCH.travel + 6 * (LINE**2 - 1 / 3))
-    lead = fit_of(made, "lead_error")
-    without = shape(made, "trend.3:travel", at=fit_of(made, "clearance"))
-    assert made.score(without) < made.score(lead) - 50
-    (more,) = _candidates(made, lead, 2)
-    assert more.key > lead.key
-    assert shapes_in(more) == 1
-
-
 def test_one_new_shape_at_most_comes_in_a_step(tmp_path: Path) -> None:
     """Two shapes fit a bend and a wave, and are not believed at once; one beside another one is."""
     made = competing(tmp_path, 9 * LINE**2 + 8 * np.sin(WAVE))
@@ -118,16 +106,6 @@ def test_one_new_shape_at_most_comes_in_a_step(tmp_path: Path) -> None:
     further = _best(made, first, 2)
     assert further is not None
     assert further.key == both.key
-
-
-def test_beside_a_cause_with_a_name_there_is_one_shape_at_most(tmp_path: Path) -> None:
-    """A second shape fits the bend, and would take from what the clearance draws."""
-    made = competing(tmp_path, 9 * LINE**2 + 8 * np.sin(WAVE))
-    beside = shape(made, "wave:time", at=fit_of(made, "clearance"))
-    second = shape(made, "trend.3:travel", at=beside)
-    assert made.score(second) < made.score(beside)
-    best = _best(made, beside, 3)
-    assert best is None or best.key != second.key
 
 
 # What a step must be better by
@@ -214,13 +192,6 @@ def test_a_further_wave_must_carry_over_to_the_ends_of_the_record(
         made.tries.update({cause.tag: MANY_CURVES + 1.0 for cause in both.causes})
 
 
-def test_a_wave_that_is_there_carries_over_to_the_ends(tmp_path: Path) -> None:
-    made, one, both = waves(tmp_path, 8 * np.sin((BENCH.temperature - 15) / 3))
-    assert not _beats(made, one, both)
-    false, one, both = waves(tmp_path, 0.0 * LINE)
-    assert _beats(false, one, both)
-
-
 def test_the_ends_are_the_first_and_the_last_quarter_of_every_run(tmp_path: Path) -> None:
     one = Asked(drive_model(tolerances={}))
     columns = BENCH.columns(gauge(BENCH.load, BENCH.travel))
@@ -260,14 +231,6 @@ def test_two_parabolas_pay_for_no_constant_that_only_their_sum_shows(tmp_path: P
     both = made.fitted(pair[0].causes + pair[1].causes, pair[0].values + pair[1].values, None)
     assert both is not None
     assert made.score(both) < min(made.score(each) for each in pair) - 50
-
-
-def test_folds_and_ends_leave_rows_out_that_judge_only(tmp_path: Path) -> None:
-    made = competing(tmp_path, 0.0 * LINE)
-    few = made.sample.of_rows(np.arange(ROWS) < 100)
-    for folds in (folds_of(few), ends_of(few)):
-        assert (folds.block_of[100:] == -1).all()
-        assert (folds.block_of[:100] >= 0).any()
 
 
 def test_the_order_of_a_file_without_an_order_leaves_the_folds_as_they_are(tmp_path: Path) -> None:

@@ -163,24 +163,6 @@ def test_a_name_that_is_no_result_is_the_plugins_fault() -> None:
 # Batches
 
 
-def test_a_batch_equals_the_loop() -> None:
-    """Products and quotients are rounded alike on every processor, so these numbers are equal to the last digit."""
-    rng = np.random.default_rng(3)
-    columns = {"force": rng.uniform(1, 5, 7), "arm": rng.uniform(1, 2, 7), "other_arm": rng.uniform(1, 2, 7)}
-    batch = evaluate_rows(setup_with(), columns, 7)
-    for row in range(7):
-        alone = evaluate(setup_with(**{name: float(values[row]) for name, values in columns.items()}))
-        assert batch.results["hold"][row] == alone.hold
-        assert batch.results["torque"][row] == alone.torque
-    assert (len(batch), batch.failed.any(), batch.reasons) == (7, False, {})
-
-
-def test_a_batch_is_one_call() -> None:
-    CALLS.clear()
-    evaluate_rows(setup_with(), {"force": np.ones(50)}, 50)
-    assert CALLS == [50]
-
-
 def test_failed_rows_keep_their_first_reason() -> None:
     arms = np.array([1.0, 0.0, np.nan, 1.0, -1.0])
     forces = np.array([1.0, 1.0, 1.0, 2000.0, 2000.0])

@@ -75,6 +75,16 @@ FEWEST = [
     ("max(a, b)", r"\mathrm{max} \left( a,\thinspace b \right)"),
     ("friction * a", r"\mathrm{friction} \cdot a"),
     ("contact_area", r"\mathrm{contact\ area}"),
+    ("sqrt(a) + cbrt(b)", r"\sqrt{a} + \sqrt[3]{b}"),
+    ("abs(a - b)", r"\left\vert a - b \right\vert"),
+    ("log10(a) * log(b) * exp(c)", r"\log_{10} a \thinspace \ln \left( b \right) \thinspace \exp \left( c \right)"),
+    ("atan(a) * sinh(b) * sum(c)", r"\arctan a \thinspace \sinh b \thinspace \sum c"),
+    ("max(a, -pi)", r"\mathrm{max} \left( a,\thinspace -\pi \right)"),
+    (
+        "cases(a, x > 1 and b <= 2, b, a != 0 or x == c, c)",
+        r"\begin{cases} a & \mathrm{if}\ x \gt 1\ \mathrm{and}\ b \le 2 \cr b & \mathrm{if}\ a \ne 0\ \mathrm{or}\ "
+        r"x = c \cr c & \mathrm{otherwise} \end{cases}",
+    ),
 ]
 
 

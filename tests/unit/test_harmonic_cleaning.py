@@ -167,16 +167,6 @@ def test_spikes_in_a_wide_map_of_many_blocks() -> None:
     assert np.array_equal(spikes_of(heights)[2], spikes_of(heights[2:])[0])
 
 
-def test_spikes_of_a_rough_line_are_found_and_little_else() -> None:
-    """Half a per cent of the points, displaced by twenty steps of the line from point to point."""
-    clean = np.cumsum(noise((40, 500)), axis=1)
-    rng = np.random.default_rng(2)
-    place = rng.random(clean.shape) < 0.005
-    found = spikes_of(np.where(place, clean + 20.0 * rng.choice([-1.0, 1.0], clean.shape), clean))
-    assert found[place].mean() > 0.95
-    assert found[~place].mean() < 0.005
-
-
 def test_steps_of_the_instrument_are_no_spikes() -> None:
     line = np.zeros((1, 100))
     line[0, 40] = 2.0
@@ -436,18 +426,3 @@ def test_options_that_are_refused(options: dict[str, Any], words: str, tmp_path:
         read_flank(write(tmp_path, rough()), **options)
     assert words in str(error.value)
     assert "\n" not in str(error.value)
-
-
-def test_a_constant_surface_has_no_range(tmp_path: Path) -> None:
-    found = read_flank(write(tmp_path, np.full((80, 80), 3.0)))
-    assert found.chosen is None
-    assert found.reason
-
-
-def test_sign_and_tilt_change_nothing(tmp_path: Path) -> None:
-    heights = rough()
-    x, y = np.arange(180.0)[None, :], np.arange(150.0)[:, None]
-    plain, turned = (read_flank(write(tmp_path, each)) for each in (heights, 5.0 + 0.3 * x - 0.2 * y - heights))
-    for before, after in zip(plain.estimates, turned.estimates, strict=True):
-        assert after.dimension == pytest.approx(before.dimension, abs=1e-6)
-        assert after.roughness == pytest.approx(before.roughness, rel=1e-5)

@@ -1,7 +1,5 @@
 """Contact of one rough pair: closed forms beside quadrature, laws of scale, limits, and the clearance."""
 
-from dataclasses import replace
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -12,7 +10,6 @@ from scipy.integrate import quad
 
 from harmonic_fractal import clearance, micro
 from harmonic_fractal.contact import Contact, Rough, contact_of, interface_of, pressed
-from harmonic_fractal.model import HARMONIC_FRACTAL
 
 SURFACES = [(2.1, 1e-22), (2.3, 1e-11), (2.4, 1e-11), (2.5 - 1e-7, 1e-9), (2.5, 1e-9), (2.5 + 1e-7, 1e-9),
             (2.6, 1e-9), (2.9, 1e-9)]  # fmt: skip
@@ -109,38 +106,12 @@ def test_below_the_plastic_limit_there_is_no_stiffness_and_no_crash() -> None:
 # Laws of scale and sense
 
 
-def test_moduli_hardness_and_load_scale_together() -> None:
-    steel = HARMONIC_FRACTAL.inputs().flexspline
-    stiffer = replace(steel, youngs_modulus=3.0 * steel.youngs_modulus)
-    once, thrice = pressed(25.0, contact()), pressed(
-        75.0, contact(flexspline=stiffer, circular=stiffer, hardness=9e9)
-    )  # fmt: skip
-    assert thrice.largest_area == pytest.approx(once.largest_area, rel=1e-12)
-    assert thrice.stiffness == pytest.approx(3.0 * once.stiffness, rel=1e-12)
-
-
-@pytest.mark.parametrize(("dimension", "roughness"), SURFACES)
-def test_more_load_is_stiffer_and_more_roughness_softer(dimension: float, roughness: float) -> None:
-    over_load = pressed(LOADS, contact(dimension, roughness)).stiffness
-    assert (np.diff(over_load) >= 0.0).all()
-    assert over_load[-1] > 0.0  # type: ignore[index]
-    rougher = [pressed(1e3, contact(dimension, roughness * factor)).stiffness for factor in (0.1, 1.0, 10.0)]
-    assert all(after < before for before, after in pairwise(rougher))
-
-
 @pytest.mark.parametrize(("dimension", "roughness"), SURFACES)
 def test_load_exponent_is_the_slope_of_the_stiffness(dimension: float, roughness: float) -> None:
     ours, step = contact(dimension, roughness), 1e-5
     low, here, high = (pressed(25.0 * np.exp(way), ours) for way in (-step, 0.0, step))
     slope = np.log(high.stiffness / low.stiffness) / (2.0 * step)
     assert here.load_exponent == pytest.approx(slope, rel=1e-7)
-
-
-@pytest.mark.parametrize("dimension", [2.2, 2.3, 2.4])
-def test_load_exponent_far_above_the_critical_area(dimension: float) -> None:
-    law = micro.ContactLaw(dimension, 1.0)
-    assert micro.load_exponent(200.0, law) == pytest.approx((dimension - 1) / (4 - dimension), abs=1e-6)
-    assert micro.load_exponent(200.0, micro.ContactLaw(5.0 - dimension, 1.0)) == pytest.approx(1.0, abs=1e-6)
 
 
 # Clearance

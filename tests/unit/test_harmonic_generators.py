@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from scipy.special import gamma
 
-from harmonic_fractal.estimate import Estimation, estimate_of
 from harmonic_fractal.generators import (
     Array,
     Instrument,
@@ -19,7 +18,6 @@ from harmonic_fractal.generators import (
     weierstrass_surface,
 )
 from harmonic_fractal.structure import structure_function
-from harmonic_fractal.surface import Lines, without_line
 
 SPACING = 0.4e-6
 LENGTH = 200e-6
@@ -99,30 +97,6 @@ def test_a_patch_is_the_sum_over_its_waves_one_by_one() -> None:
     assert np.abs(patch - heights).max() < 1e-12 * np.abs(heights).max()
 
 
-def test_patches_of_random_phases_have_the_exact_structure_function_both_ways() -> None:
-    made = waves(1.4, directions=12)
-    x, y, steps = SPACING * np.arange(60), SPACING * np.arange(40), (1, 5, 20)
-    seen = np.empty((150, 2, 3))
-    for row in range(150):
-        patch = weierstrass_surface(made, x, y, np.random.default_rng([3, row]))
-        seen[row] = [[squares(one, step).mean() for step in steps] for one in (patch, patch.T)]
-    for place, angle in enumerate((0.0, np.pi / 2)):
-        exact = surface_sum(made, SPACING * np.array(steps), angle)
-        deviation = (seen[:, place].mean(axis=0) - exact) / (seen[:, place].std(axis=0, ddof=1) / np.sqrt(150))
-        assert np.abs(deviation).max() < 3.0
-
-
-@pytest.mark.parametrize("seed", [0, 1, 2])
-@pytest.mark.parametrize("dimension", [1.3, 1.4, 1.5, 1.6])
-def test_a_patch_of_the_size_of_a_flank_gives_its_dimension_along_x_and_y(dimension: float, seed: int) -> None:
-    x, y = SPACING * np.arange(501), SPACING * np.arange(251)
-    patch = weierstrass_surface(waves(dimension), x, y, np.random.default_rng(seed))
-    settings = Estimation(fit="all", resamples=0)
-    for lines in (patch, patch.T):  # as they are: levelling would raise the dimension by up to 0.04
-        found = estimate_of(Lines(lines, SPACING), "x", settings)
-        assert found.dimension == pytest.approx(dimension, abs=0.08)
-
-
 def brownian_covariance(dimension: float, step: float, one: Array, two: Array) -> Array:
     """Of heights of fractional Brownian motion that is 0 at its start (Mandelbrot, van Ness 1968)."""
     exponent = 4.0 - 2.0 * dimension
@@ -175,16 +149,6 @@ def test_levelled_lines_have_the_structure_function_of_their_covariance(dimensio
     exact = [np.mean(spread[k:] + spread[: 90 - k] - 2.0 * levelled.diagonal(k)) for k in range(90)]
     every = places ** (4.0 - 2.0 * dimension)
     np.testing.assert_allclose(levelled_structure(every), exact, rtol=0.0, atol=1e-11 * every[-1])
-
-
-def test_levelled_waves_have_the_structure_function_that_is_expected() -> None:
-    made, steps = waves(1.4), np.array([1, 5, 20, 50, 150])
-    lines = without_line(weierstrass_profile(made, SPACING * np.arange(501), 400, np.random.default_rng(6)))
-    every = profile_sum(made, SPACING * np.arange(501))
-    for step, expected in zip(steps, levelled_structure(every)[steps], strict=True):
-        each = squares(lines, step)
-        assert abs(each.mean() - expected) < 3.0 * each.std(ddof=1) / 20.0
-    assert levelled_structure(every)[50] < 0.9 * every[50]
 
 
 def test_the_lateral_filter_halves_its_wave_and_spares_long_ones() -> None:

@@ -177,18 +177,6 @@ def test_the_sheet_draws_and_says_what_was_made(values: dict[str, Any]) -> None:
     assert bool(refused) == (record.results.accepted == 0.0)
 
 
-def test_spikes_are_seen_and_taken_out() -> None:
-    """Half a per cent of points, twenty times the root of S at one spacing: 0.18 too much, and back again."""
-    inputs = made(kind="brownian", fractal_dimension=2.5, spikes="0.5 %", spike_height=20 * np.sqrt(2.5e-17))
-    record = Record(
-        inputs=inputs, results=made_flank(inputs), answers={}, studies={}, function=made_flank, acting=inputs
-    )
-    (table,) = (block for block in SECTIONS[-1].blocks(record) if isinstance(block, Table))  # type: ignore[misc]
-    found = {str(row[0]): row[1] for row in table.rows}
-    assert found["along the lines, x"] - 2.5 > 0.12
-    assert found["the same, spikes taken out"] == pytest.approx(2.5, abs=0.08)
-
-
 def test_a_made_flank_is_written_by_one_run_and_found_again_by_the_next(calc: Calc, tmp_path: Path) -> None:
     """Seed 0 and the length of the lines are those of the shipped example; the kind is another, the lines are fewer."""
     assert calc("init", "harmonic_fractal.made_flank", "-o", "made.toml").code == 0

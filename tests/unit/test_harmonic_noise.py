@@ -72,21 +72,6 @@ def test_a_straight_fit_is_that_of_a_polynomial_of_first_degree() -> None:
     assert float(found.r_squared) == pytest.approx(np.corrcoef(x, y)[0, 1] ** 2, rel=1e-9)
 
 
-@pytest.mark.parametrize("dimension", [1.3, 1.5])
-def test_noise_is_told_from_the_surface(dimension: float) -> None:
-    """Noise as large as the rise over one point: D_s and sigma come back; without it D_s is 0.1 too high."""
-    rng = np.random.default_rng(4)
-    heights = brownian_profiles(dimension, 1e-16, (100, 1000), rng) + 1e-8 * rng.standard_normal((100, 1000))
-    aware, plain = (
-        estimate_of(Lines(heights, 0.4e-6), "x", Estimation(resamples=0, noise_aware=aware, fit="all"))
-        for aware in (True, False)
-    )
-    assert aware.dimension == pytest.approx(dimension, abs=0.03)
-    assert aware.noise == pytest.approx(1e-8, rel=0.03)
-    assert plain.dimension > dimension + 0.08
-    assert plain.noise == 0.0
-
-
 def test_a_noisy_fractal_is_accepted_with_its_noise_taken_off() -> None:
     """The local slopes are those of S less the noise; the short lags, which tell the noise, stay in the fit."""
     rng = np.random.default_rng(4)

@@ -1,14 +1,11 @@
 """Surfaces from files: every layout of text, what a file says of itself, profilometer formats, and what is refused."""
 
-import builtins
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from harmonic_fractal.flank import read_flank
 from harmonic_fractal.surface import Lines, Surface, pooled
 from harmonic_fractal.surface_files import FileLayout, Reading, read_surface
 
@@ -311,21 +308,6 @@ def test_text_exports_of_instruments() -> None:
 
 
 # The optional library
-
-
-def test_without_the_library_texts_work_and_other_files_say_what_to_do(monkeypatch: pytest.MonkeyPatch) -> None:
-    real = builtins.__import__
-
-    def without(name: str, *arguments: Any, **options: Any) -> Any:
-        if name.split(".")[0] == "SurfaceTopography":
-            raise ImportError(name)
-        return real(name, *arguments, **options)
-
-    monkeypatch.setattr(builtins, "__import__", without)
-    for file in ("metropro-1.dat", "al3d-1.al3d"):
-        with pytest.raises(ValueError, match=r"truing\[surfaces\].*as text"):
-            read_flank(SURFACES / file)
-    assert read_flank(SURFACES / "hfm-1.hfm").surface.heights.size == 9600
 
 
 @pytest.mark.parametrize(

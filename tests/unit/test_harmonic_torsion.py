@@ -7,13 +7,9 @@ import numpy as np
 import pytest
 from harmonic_drives import drive_of, mesh
 
-from harmonic_fractal import mesh as torsion_module
 from harmonic_fractal.calculation import around_of, harmonic_fractal
 from harmonic_fractal.mesh import mesh_torsion, normal_stiffness
-from harmonic_fractal.model import HARMONIC_FRACTAL
 from harmonic_fractal.quantities import Drive
-from truing.evaluate import evaluate_rows
-from truing.setup import default_setup
 
 # inputs and torque: all pairs elastic from the start, some of them not, nearly none of them; springs; a film; pairs
 # that come to bear on the way
@@ -57,41 +53,6 @@ def test_torsion_is_the_integral_of_the_compliance(changed: dict[str, Any], torq
     assert found == pytest.approx(by_trapezoids(drive, torque), rel=1e-8)
     bare = replace(drive, tooth_stiffness=np.nan, line_contact=False, film_stiffness=0.0)
     assert rough == pytest.approx(by_trapezoids(bare, torque), rel=1e-8)
-
-
-def test_rows_are_single_drives_however_they_are_cut(monkeypatch: pytest.MonkeyPatch) -> None:
-    rng = np.random.default_rng(3)
-    torque, dimension = rng.uniform(-40.0, 40.0, 60), rng.uniform(2.38, 2.55, 60)
-    factor = rng.uniform(0.5, 2.0, 60)
-    ours = mesh(drive_of(fractal_dimension=dimension, engaged_factor=factor))
-    whole, rough = mesh_torsion(torque, 1e-3, ours)
-    monkeypatch.setattr(torsion_module, "CHUNK", 500)
-    in_pieces, _ = mesh_torsion(torque, 1e-3, ours)
-    np.testing.assert_allclose(whole, in_pieces, rtol=1e-13)
-    for row in range(0, 60, 7):
-        single = mesh(drive_of(fractal_dimension=dimension[row], engaged_factor=factor[row]))
-        for all_rows, one in zip((whole, rough), mesh_torsion(torque[row], 1e-3, single), strict=True):
-            assert all_rows[row] == pytest.approx(one, rel=1e-12)  # type: ignore[index]
-
-
-def test_the_pair_is_always_answered_and_the_torsion_where_it_is_finite() -> None:
-    """Of 500 designs many are plastic at the reference; those lack the torsion, and none of them lacks its pair."""
-    rng = np.random.default_rng(30)
-    columns = {
-        "fractal_dimension": rng.uniform(2.2, 2.8, 500), "fractal_roughness": 10 ** rng.uniform(-12, -8.5, 500),
-        "torque": 10 ** rng.uniform(-4, 1, 500),
-    }  # fmt: skip
-    setup = default_setup(HARMONIC_FRACTAL, hardness="3 GPa", pair_load="5 N")
-    found = evaluate_rows(setup, columns, 500)
-    torsion, least = found.results["torsion"], found.results["plastic_torque"]
-    assert all("exceeds the flank" in reason for reason in found.reasons.values())
-    alive = ~found.failed
-    assert alive.sum() > 400
-    for name in ("stiffness", "clearance", "normal_stiffness"):
-        assert np.isfinite(found.results[name][alive]).all()
-    endless = (least >= 1e-3) & (columns["torque"] > 1e-3)
-    assert endless.sum() > 50
-    np.testing.assert_array_equal(np.isnan(torsion[alive]), endless[alive])
 
 
 def test_torsion_is_odd_and_counts_from_its_reference() -> None:

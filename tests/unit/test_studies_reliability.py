@@ -12,7 +12,6 @@ from study_models import (
     CHAIN,
     JOINT,
     LOGNORMAL,
-    PARABOLA,
     ROOT,
     SADDLE,
     STACK,
@@ -264,10 +263,6 @@ def test_form_of_a_quadratic_limit():
     assert odds.form["total"].probability == pytest.approx(norm.cdf(2.5), rel=1e-9)
 
 
-def test_form_of_a_parabola():
-    assert odds_of(setup_of(PARABOLA)).form["total"].sides["low"].beta == pytest.approx(3, rel=1e-9)
-
-
 def cubic(two: Two) -> Sum:
     """A limit that bends ever more."""
     return Sum(total=3.0 - 0.6 * two.x - 0.6 * two.y - 0.1 * two.y**3)
@@ -311,17 +306,6 @@ def test_two_processes_give_the_same_bytes(model, two_processes):
     study = Reliability(draws=10_001, batch=1024)
     serial = json.dumps(odds_of(setup_of(model), study).as_json())
     assert serial == json.dumps(odds_of(setup_of(model), study, two_processes).as_json())
-
-
-def test_overridden_spreads_effects_and_inputs_reach_the_workers(two_processes):
-    on = SwitchedOn(CHAIN.effects["grow"], {"strain": 1e-4}, {"strain": 4e-4}, ((1.6e-7,),))
-    setup = replace(
-        setup_of(CHAIN, first="31 mm", gap_limit="0.4 mm"),
-        effects=(on,), conditions={"warmth": 293.15 + 25}, spreads={**setup_of(CHAIN).spreads, "third": Off()}, seed=0,
-    )  # fmt: skip
-    study = Reliability(draws=3000, batch=1000)
-    serial = json.dumps(odds_of(setup, study).as_json())
-    assert serial == json.dumps(odds_of(setup, study, two_processes).as_json())
 
 
 def test_zero_is_a_seed():
