@@ -107,7 +107,7 @@ Points = tuple[str, list[float]]
         ),
         (  # a point at which the model has no answer leaves the others theirs: these are asked for once more
             [("softening", [0.2]), ("softening sensor_offset", [1.0, 0.0]), ("softening sensor_offset", [0.2, 1e-3])],
-            [1 / 3.2e3, np.nan, 1 / 3.2e3], [0.0, 0.0, 1e-3], [3, 2],
+            [1 / 3.2e3, np.nan, 1 / 3.2e3], [0.0, 0.0, 1e-3], [3, 1],
         ),
     ],
     ids=["readings", "at rest", "order", "no answer"],
