@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections import Counter, deque
+from collections import deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import accumulate, islice
+from itertools import accumulate
 from math import inf
 from typing import Any
 
@@ -44,16 +44,6 @@ class _Asked:
     causes: list[Candidate]
     points: list[Point]
     keys: list[Key]
-
-    @property
-    def acts_on_inputs(self) -> bool:
-        """Whether the model runs again at every point."""
-        return any(cause.acts_on_inputs for cause in self.causes)
-
-    @property
-    def effects(self) -> tuple[str, ...]:
-        """The effects of the plugin that are on."""
-        return tuple(cause.tag for cause in self.causes if cause.effect is not None and not cause.is_kernel)
 
 
 @dataclass
@@ -122,7 +112,7 @@ class Extended:
         return shown
 
     def at_each(self, requests: Sequence[Request]) -> list[Predictions]:
-        """Return the same for several requests; what has to be calculated is one call of the model where it can be."""
+        """Return the same for several requests; those of the same causes are one call of the model."""
         every = [_asked(*request) for request in requests]
         new, waiting = [], set(self._shown)
         for asked in every:
@@ -131,8 +121,10 @@ class Extended:
             if rest:
                 new.append(_Asked(asked.causes, list(rest.values()), list(rest)))
         for group in _grouped(new):
-            for asked, answers in zip(group, self._answered(group), strict=True):
-                self._shown.update(zip(asked.keys, answers, strict=True))
+            for asked in group:
+                self._count(asked.causes, asked.points)
+            answers = self._called(group[0].causes, [point for asked in group for point in asked.points])
+            self._shown.update(zip((key for asked in group for key in asked.keys), answers, strict=True))
         shown = [[self._shown[key] for key in asked.keys] for asked in every]
         for old in list(self._shown)[: -self._most_shown]:  # a fit goes on from the last
             del self._shown[old]
@@ -140,33 +132,6 @@ class Extended:
             [self._with_shapes(base, causes, values) for base, (values, _) in zip(own, points, strict=True)]
             for own, (causes, points) in zip(shown, requests, strict=True)
         ]
-
-    def _answered(self, group: Sequence[_Asked]) -> Iterator[list[Mapping[str, Matrix]]]:
-        """Give the answers of every request of a group: of one call, with the causes of the others on at rest.
-
-        A request whose answers have gaps is asked once more for itself: another one's cause may not bear these rows.
-        """
-        for asked in group:
-            self._count(asked.causes, asked.points)
-        if len(group) == 1:
-            yield self._called(group[0].causes, group[0].points)
-            return
-        causes = list({cause.tag: cause for asked in group for cause in asked.causes}.values())
-        points = [(self._resting(causes, asked.causes, values), m) for asked in group for values, m in asked.points]
-        answers = iter(self._called(causes, points))
-        for asked in group:
-            own = list(islice(answers, len(asked.points)))
-            is_whole = all(np.isfinite(values).all() for shown in own for values in shown.values())
-            yield own if is_whole else self._called(asked.causes, asked.points)
-
-    def _resting(self, causes: Sequence[Candidate], own: Sequence[Candidate], values: Sequence[Matrix]) -> list[Matrix]:
-        """Return numbers of causes of which some have their own; the others are where they do nothing."""
-        known = {cause.tag: value for cause, value in zip(own, values, strict=True)}
-        return [known[cause.tag] if cause.tag in known else self._rest_of(cause) for cause in causes]
-
-    def _rest_of(self, cause: Candidate) -> Matrix:
-        rest = at_rest(cause, self.machine)
-        return np.array([rest.get(number.name, 0.0) for number in cause.numbers])
 
     @property
     def _most_shown(self) -> int:
@@ -289,31 +254,16 @@ def _asked(causes: Sequence[Candidate], points: Sequence[Point]) -> _Asked:
 
 
 def _grouped(several: Sequence[_Asked]) -> list[list[_Asked]]:
-    """Part requests into those that may be one call.
+    """Put requests of the same causes together, which may be one call.
 
-    They have the same effects of the plugin on, since one at rest may still set what another one acts on; readings and
-    inputs of the kernel add nothing at rest. Where nothing acts on the inputs the model is called for one point alone,
-    so that all of these must have the same.
+    Where nothing acts on the inputs the model is called for one point alone, so that all of these must have the same.
     """
-    groups: list[list[_Asked]] = []
+    groups: dict[tuple[tuple[str, ...], bytes], list[_Asked]] = {}
     for asked in several:
-        for group in groups:
-            if _go_together([*group, asked]):
-                group.append(asked)
-                break
-        else:
-            groups.append([asked])
-    return groups
-
-
-def _go_together(group: Sequence[_Asked]) -> bool:
-    if len({(asked.acts_on_inputs, asked.effects) for asked in group}) > 1:
-        return False
-    if not group[0].acts_on_inputs and len({moved.tobytes() for asked in group for _, moved in asked.points}) > 1:
-        return False
-    causes = {cause.tag: cause for asked in group for cause in asked.causes}.values()
-    unknowns = Counter((cause.name, name) for cause in causes for name in {number.name for number in cause.numbers})
-    return max(unknowns.values(), default=1) == 1
+        is_called = any(cause.acts_on_inputs for cause in asked.causes)
+        tags, _ = asked.keys[0]
+        groups.setdefault((tags, b"" if is_called else asked.points[0][1].tobytes()), []).append(asked)
+    return list(groups.values())
 
 
 def _unknowns(machine: Calibration, causes: Sequence[Candidate], values: Sequence[Matrix]) -> dict[str, Any]:
