@@ -32,7 +32,7 @@ from hidden_effects.designs import Noise, wide  # noqa: E402
 from hidden_effects.press_machine import POSITION, SCATTER, TILT, Array, shown  # noqa: E402
 from hidden_effects.press_machine import Rows as Setting  # noqa: E402
 from truing import trials  # noqa: E402
-from truing.diagnosis import search  # noqa: E402
+from truing.diagnosis import competition  # noqa: E402
 from truing.diagnosis.engine import diagnose, laid_out  # noqa: E402
 from truing.diagnosis.machine import calibration_of, predict  # noqa: E402
 from truing.diagnosis.reading import read_records  # noqa: E402
@@ -152,7 +152,7 @@ def model_calls(results: tuple[str, ...], *, with_pairs: bool) -> int:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(trials, "read_by_gauge", counting)
         if not with_pairs:
-            patch.setattr(search, "_pairs", lambda made: None)
+            patch.setattr(competition, "_pairs", lambda made: None)
         diagnose(press_setup(), in_memory(300, results))
     return calls
 

@@ -29,12 +29,10 @@ from numpy.testing import assert_allclose
 from truing import Effect, Float, Unknown
 from truing.diagnosis.causes import Candidate, Parameter
 from truing.diagnosis.competition import Competition
-from truing.diagnosis.conditional import ConditionalGain, compared, conditional_on, independent
-from truing.diagnosis.curves import Bundle
+from truing.diagnosis.conditional import Conditional, ConditionalGain, compared, conditional_on, independent
+from truing.diagnosis.curves import FINEST, NEXT_TO, WAVES_PER_POINT, Bundle, first_places, placed
 from truing.diagnosis.machine import Calibration, calibration_of
-from truing.diagnosis.points import FINEST, NEXT_TO, WAVES_PER_POINT, first_places, placed
 from truing.diagnosis.sample import Sample
-from truing.diagnosis.sweeps import Conditional
 from truing.diagnosis.unregistered import highest_order, shapes_of
 
 

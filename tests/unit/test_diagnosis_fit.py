@@ -38,6 +38,7 @@ from truing import Condition, Effect, Float, Model, Tolerance, Unknown, normal
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.engine import diagnose
 from truing.diagnosis.exact import EXACTLY, alone, fitting
+from truing.diagnosis.findings import input_values
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.intervals import (
     Certainty,
@@ -51,7 +52,6 @@ from truing.diagnosis.intervals import (
     value_of,
     whole_left,
 )
-from truing.diagnosis.naming import input_values
 from truing.diagnosis.noise import Autocorrelation, Tails
 from truing.diagnosis.sample import sample_of
 

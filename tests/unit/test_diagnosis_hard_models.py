@@ -15,11 +15,10 @@ import pytest
 from diagnosis_models import Array, Asked, names_in
 
 from truing import Effect, Float, Model, Tolerance, Unknown, feasible, found, given, inputs, normal, results
-from truing.diagnosis import long_records, probing
+from truing.diagnosis import engine, extended
 from truing.diagnosis.engine import diagnose
-from truing.diagnosis.extended import CallBudget, Extended
+from truing.diagnosis.extended import CallBudget, Extended, budget_of, step_of
 from truing.diagnosis.machine import calibration_of
-from truing.diagnosis.probing import budget_of, step_of
 from truing.diagnosis.result import DiagnosisResult
 from truing.runs.diagnosis_document import diagnosis_document
 from truing.setup import DiagnoseOptions
@@ -160,7 +159,7 @@ def test_how_long_a_call_takes_says_how_many_there_are(
 ) -> None:
     """Five minutes by the nearest power of ten, and forty calls for every effect at least."""
     shop = Shop(seconds)
-    monkeypatch.setattr(probing, "perf_counter", shop.clock)
+    monkeypatch.setattr(extended, "perf_counter", shop.clock)
     given_ = budget_of(0, effects, lambda: shop.function(1)(Beam()))
     assert (given_.calls, given_.takes) == (calls, takes)
     assert budget_of(77, effects, lambda: pytest.fail("it is not timed")).calls == 77
@@ -183,7 +182,7 @@ def test_a_budget_counts_what_it_leaves_out(tmp_path: Path) -> None:
 def test_a_model_of_a_second_a_call_is_diagnosed_in_minutes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Two causes that mask one another would take three quarters of an hour; what was left out is said."""
     shop = Shop(1.0)
-    monkeypatch.setattr(probing, "perf_counter", shop.clock)
+    monkeypatch.setattr(extended, "perf_counter", shop.clock)
     records = asked(shop).records(tmp_path, record(leaning_with_play))
     shop.time = 0.0
     answer = diagnose(asked(shop).setup, records)
@@ -204,7 +203,7 @@ def test_a_stated_budget_gives_one_answer_however_slow_the_machine_is(
     answers = []
     for seconds in (0.0, 30.0):
         shop = Shop(seconds)
-        monkeypatch.setattr(probing, "perf_counter", shop.clock)
+        monkeypatch.setattr(extended, "perf_counter", shop.clock)
         answers.append(diagnosis_document(asked(shop, calls=250).diagnosed(tmp_path, record(leaning))))
     assert answers[0] == answers[1]
     assert "the search ended after 250 calls of the model and left out: " in " ".join(answers[0]["warnings"])
@@ -427,7 +426,7 @@ def test_a_long_record_runs_to_the_end_and_counts_every_row(
     """A million rows at full size; a modest record is long where 400 rows are searched."""
     rows = 1_000_000 if full_torture else 3_000
     if not full_torture:
-        monkeypatch.setattr(long_records, "LONG", 400)
+        monkeypatch.setattr(engine, "LONG", 400)
     answer = asked(Shop(), EFFECTS[:3], rows).diagnosed(tmp_path, record(leaning, rows))
     assert [cause.effect for cause in answer.causes] == ["leans"]
     assert sum(count.in_file for count in answer.records.counts) == rows == len(answer.records)
@@ -441,7 +440,7 @@ def test_of_a_long_record_the_rows_searched_say_what_would_be_visible(
     """As much as all rows say, up to what a quarter of them is not like the whole."""
     answers = []
     for rows_searched in (1_200, 300):
-        monkeypatch.setattr(long_records, "LONG", rows_searched)
+        monkeypatch.setattr(engine, "LONG", rows_searched)
         answers.append(asked(Shop(), EFFECTS[:3], 1_200).diagnosed(tmp_path, record(leaning, 1_200)))
     whole, few = answers
     sizes = [{seen.name: seen.smallest.value for seen in answer.seen if seen.smallest} for answer in answers]

@@ -15,6 +15,7 @@ from scipy.linalg import block_diag, solve_triangular, toeplitz
 from scipy.optimize import approx_fprime, brentq, minimize_scalar
 from scipy.stats import halfnorm, linregress, multivariate_normal, norm, rankdata, t
 
+from truing.diagnosis.conditional import Conditional
 from truing.diagnosis.learning import FEWEST_OF_MEMORY, learnt, memory_cost, memory_of
 from truing.diagnosis.machine import Calibration, calibration_of, directions_of
 from truing.diagnosis.noise import (
@@ -34,7 +35,6 @@ from truing.diagnosis.noise import (
     whiten,
 )
 from truing.diagnosis.sample import NoiseModel, Sample, resolution_of, sample_of
-from truing.diagnosis.sweeps import Conditional
 
 RUNS = (7, 1, 12, 2)
 

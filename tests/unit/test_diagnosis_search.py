@@ -26,33 +26,37 @@ from diagnosis_models import (
 )
 from numpy.testing import assert_allclose
 
-from truing.diagnosis import choice, steps
+from truing.diagnosis import choice
 from truing.diagnosis.causes import Candidate, Parameter
-from truing.diagnosis.chance import DRAWS, FIRST_DRAWS, HOPELESS, LARGEST_RHO, Law, _drawn, carried, law_of
 from truing.diagnosis.choice import (
     CLOSE,
+    DRAWS,
+    FIRST_DRAWS,
+    HOPELESS,
+    LARGEST_RHO,
+    LEAST_IN_PLACE,
+    MANY_CURVES,
     SURE,
     TWIN,
+    WANDER,
+    Law,
+    _beats,
+    _best,
+    _candidates,
+    _drawn,
     _is_vaguer,
     _rivals,
     _says_the_same,
+    _step,
+    carried,
+    law_of,
     unsure,
 )
-from truing.diagnosis.competition import MARGIN, UNREGISTERED, Competition
+from truing.diagnosis.competition import MARGIN, UNREGISTERED, Competition, Start, beside, search
 from truing.diagnosis.fitted import Fit, differ, far_inputs, is_at_bound
 from truing.diagnosis.folds import ends_of, folds_of
 from truing.diagnosis.noise import Autocorrelation
 from truing.diagnosis.sample import sample_of
-from truing.diagnosis.search import search
-from truing.diagnosis.steps import (
-    LEAST_IN_PLACE,
-    MANY_CURVES,
-    WANDER,
-    _beats,
-    _best,
-    _candidates,
-    _step,
-)
 
 ROWS = 150
 BENCH = wide(ROWS, seed=51)
@@ -79,7 +83,7 @@ def shape(made: Competition, *tags: str, at: Fit | None = None) -> Fit:
     found = at or made.null
     for tag in tags:
         cause = shape_of(made, tag)
-        joined = made.joined(found, cause, made.look(found, [cause])[cause.tag].starts)
+        *_, joined = made.fit_each(beside(found, cause, made.look(found, [cause])[cause.tag].starts))
         assert joined is not None
         found = joined
     return found
@@ -174,8 +178,8 @@ def test_a_step_must_be_better_than_chance_than_noise_with_a_memory_and_on_rows_
     """What is exchanged for no more numbers is judged by its score, and may not predict worse."""
     made = competing(tmp_path, 0.0 * LINE)
     at, more = (of_causes(made, *names) for names in step)
-    monkeypatch.setattr(steps, "law_of", lambda *_, seed: Law(np.zeros(299), p_value))
-    monkeypatch.setattr(steps, "carries_over", lambda *_: carried)
+    monkeypatch.setattr(choice, "law_of", lambda *_, seed: Law(np.zeros(299), p_value))
+    monkeypatch.setattr(choice, "carries_over", lambda *_: carried)
     monkeypatch.setattr(made, "score", lambda found: gain if found.key == at.key else 0.0)
     monkeypatch.setattr(made, "own_score", made.score)
     folds: Any = None
@@ -207,7 +211,7 @@ def test_a_further_wave_must_carry_over_to_the_ends_of_the_record(
             asked.append(given[3])
             return known
 
-        monkeypatch.setattr(steps, "carries_over", measured)
+        monkeypatch.setattr(choice, "carries_over", measured)
         assert _beats(made, one, both) is is_beat
         (ends,) = asked
         assert ends.count == 2
@@ -254,7 +258,7 @@ def test_two_parabolas_pay_for_no_constant_that_only_their_sum_shows(tmp_path: P
     warm = (BENCH.temperature - BENCH.temperature.mean()) / np.ptp(BENCH.temperature)
     made = competing(tmp_path, 9 * LINE**2 + 36 * warm**2)
     pair = [shape(made, f"trend.3:{name}") for name in ("travel", "temperature")]
-    both = made.fitted(pair[0].causes + pair[1].causes, pair[0].values + pair[1].values, None)
+    both = made.fit_each([Start(pair[0].causes + pair[1].causes, pair[0].values + pair[1].values, None)])[0]
     assert both is not None
     assert made.score(both) < min(made.score(each) for each in pair) - 50
 
@@ -383,7 +387,7 @@ def test_what_acts_beside_the_winner_is_no_rival(tmp_path: Path, monkeypatch: py
 def shaped(made: Competition, tag: str) -> Fit:
     """One shape that nobody registered, fitted."""
     (cause,) = (each for each in made.causes if each.tag == f"unknown:{tag}:deflection")
-    found = made.joined(made.null, cause, made.look(made.null, [cause])[cause.tag].starts)
+    *_, found = made.fit_each(beside(made.null, cause, made.look(made.null, [cause])[cause.tag].starts))
     assert found is not None
     return found
 
@@ -597,8 +601,8 @@ def test_a_law_counts_the_draws_that_gain_as_much(tmp_path: Path) -> None:
     assert law.p_value == 1 / (DRAWS + 1)
     weak = named_competing(tmp_path, 0.0 * WARMING.time)
     seen = weak.look(weak.null)
-    best = max((weak.joined(weak.null, cause_of(weak, name), seen[name].starts) for name in ("wear", "clearance")
-                if seen[name].starts), key=lambda found: found.cost if found else 0.0)  # fmt: skip
+    starts = [beside(weak.null, cause_of(weak, name), seen[name].starts) for name in ("wear", "clearance")]
+    best = max((weak.fit_each(each)[-1] for each in starts if each), key=lambda found: found.cost if found else 0.0)
     assert best is not None
     law = law_of(weak, weak.null, best, seed=1)
     gain = weak.score(weak.null) - weak.score(best)
@@ -614,7 +618,7 @@ def test_chance_is_uniform_where_there_is_nothing(tmp_path: Path) -> None:
         noise = np.random.default_rng([13, seed]).normal(0, 1, ROWS)
         made = named_competing(tmp_path, noise - WARMING_NOISE, ["lead_error", "sensor_drift", "sensor_gain"])
         for tag, each in made.look(made.null).items():
-            made.joined(made.null, cause_of(made, tag.partition(".")[0]), each.starts)
+            made.fit_each(beside(made.null, cause_of(made, tag.partition(".")[0]), each.starts))
         best = made.best(1)
         assert best is not None
         values.append(law_of(made, made.null, best, seed=seed).p_value)

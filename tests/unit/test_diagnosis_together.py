@@ -47,7 +47,7 @@ def support(before: Beam, *, more: Float) -> Beam:
 
 
 def replaced_support(before: Beam, *, amount: Float) -> Beam:
-    """It sets what the other support adds to: at rest it does nothing, but beside the other one it undoes that."""
+    """It sets what the other support adds to: beside that one it undoes what it adds."""
     return replace(before, yielding=amount)
 
 
@@ -91,12 +91,12 @@ Points = tuple[str, list[float]]
 @pytest.mark.parametrize(
     ("points", "compliances", "offsets", "calls"),
     [
-        (  # readings of the gauge share the call of an effect
+        (  # points of the same causes are one call, and what is known is not asked again
             [("softening", [0.5]), ("softening", [0.2]), ("softening sensor_offset", [0.2, 1e-3]),
-             ("sensor_gain softening", [0.1, 0.2])],
-            [1 / 2e3, 1 / 3.2e3, 1 / 3.2e3, 1.1 / 3.2e3], [0.0, 0.0, 1e-3, 0.0], [4],
+             ("softening", [0.2]), ("softening", [0.75])],
+            [1 / 2e3, 1 / 3.2e3, 1 / 3.2e3, 1 / 3.2e3, 1 / 1e3], [0.0, 0.0, 1e-3, 0.0, 0.0], [3, 1],
         ),
-        (  # an effect at rest does not undo what another one adds; the one that sets is declared later
+        (  # effects act where they are asked for alone: one sets what another one adds to, and is declared later
             [("support", [2e-4]), ("replaced_support support", [1e-4, 2e-4]), ("replaced_support", [1e-4])],
             [1 / 4e3 + 2e-4, 1 / 4e3 + 1e-4, 1 / 4e3 + 1e-4], [0.0] * 3, [1, 1, 1],
         ),
@@ -105,12 +105,12 @@ Points = tuple[str, list[float]]
              ("support softening", [0.25, 0.5])],
             [1 / 2e3 + 0.25, 1 / 3e3 + 0.5, 1 / 2e3 + 0.25], [0.0] * 3, [2],
         ),
-        (  # a point at which the model has no answer leaves the others theirs: these are asked for once more
-            [("softening", [0.2]), ("softening sensor_offset", [1.0, 0.0]), ("softening sensor_offset", [0.2, 1e-3])],
-            [1 / 3.2e3, np.nan, 1 / 3.2e3], [0.0, 0.0, 1e-3], [3, 1],
+        (  # a point at which the model has no answer leaves the others theirs
+            [("softening", [0.2]), ("softening", [1.0]), ("softening", [0.5])],
+            [1 / 3.2e3, np.nan, 1 / 2e3], [0.0] * 3, [3],
         ),
     ],
-    ids=["readings", "at rest", "order", "no answer"],
+    ids=["one call", "alone", "order", "no answer"],
 )  # fmt: skip
 def test_points_that_are_asked_at_one_time_are_answered_as_alone(
     asked: tuple[Extended, dict[str, Candidate], list[int]],
