@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping
 from dataclasses import replace
@@ -42,9 +41,7 @@ from truing.errors import InputError, UsageError
 from truing.evaluate import evaluate, evaluate_rows
 from truing.inputs_file import json_schema, setup_from_text
 from truing.kernel import Offer, Origin
-from truing.runs.documents import results_document
 from truing.runs.inputs_written import complete_inputs, input_hash
-from truing.runs.provenance import provenance_of
 from truing.setup import Setup, SwitchedOn, default_setup, effect_column
 
 
@@ -308,11 +305,6 @@ def test_a_wave_of_order_one_to_three(order: int, degrees: float, added: float) 
     """1 N of sine and 2 N of cosine, at a quarter of the wave and at its half."""
     wave = {"periodic_order": {"force_sine": 1.0, "force_cosine": 2.0, "force_order": order}}
     assert shown(BAR, wave, angle=math.radians(degrees))["force"] == pytest.approx(10 + added)
-
-
-def test_a_wave_may_have_one_half() -> None:
-    wave = {"periodic_order": {"height_left_sine": 5e-6, "height_left_order": 1.0}}
-    assert shown(SHAFT, wave, turn="90 deg")["height_left"] == pytest.approx(5e-6, abs=1e-12)
 
 
 @pytest.mark.parametrize(("hours", "force"), [(1.9, 10.0), (2.0, 13.0), (7.0, 13.0)])
@@ -594,16 +586,6 @@ def test_no_machine_fails_by_a_gauge() -> None:
     assert moved.answers["height_left"] == plain.answers["height_left"] == pytest.approx(2e-6)
     assert moved.warnings == plain.warnings
     assert evaluate(moved.setup, reading=True).left.height == pytest.approx(12e-6)
-
-
-def test_results_json_names_only_what_is_on() -> None:
-    setup = read_text('[effects.sensor_drift]\nwarmth = "2 K/h"\n')
-    document = json.loads(json.dumps(results_document(calculate(setup), provenance_of(setup))))
-    assert document["effects"] == {"sensor_drift": {"warmth": {"value": pytest.approx(2), "unit": "K/h"}}}
-    assert document["conditions"] == {"time": {"value": 0.0, "unit": "h"}}
-    assert document["warnings"] == ["effect 'sensor_drift' is on, but 'time' stays at its reference: it does nothing"]
-    plain = read_text("")
-    assert results_document(calculate(plain), provenance_of(plain))["conditions"] == {}
 
 
 def test_an_effect_of_a_plugin_that_has_parts_may_be_on_by_one_of_them() -> None:

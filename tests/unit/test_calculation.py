@@ -11,12 +11,10 @@ from truing import (
     Float,
     Maximise,
     Model,
-    Odds,
     Optimise,
     Optimum,
     Reliability,
     Require,
-    Sensitivities,
     Tolerance,
     Vary,
     found,
@@ -56,12 +54,6 @@ def test_sections_see_the_inputs_as_effects_leave_them() -> None:
     assert record.inputs == plain.inputs
     assert record.acting.first == pytest.approx(plain.inputs.first * (1 + 1e-4), rel=1e-12)
     assert calculate(plain).record.acting == plain.inputs
-
-
-def test_sections_find_the_outcome_of_a_study() -> None:
-    record = calculate(replace(setup_of(CHAIN), studies=(Reliability(draws=100),))).record
-    assert isinstance(record.outcome(Odds), Odds)
-    assert record.outcome(Sensitivities) is None
 
 
 # The workbench of a study of one's own: another design, its machines, and many calculations at once.
@@ -104,11 +96,6 @@ def test_drawn_machines_are_the_first_of_the_reliability() -> None:
     assert gaps.shape == (500,)
     assert np.mean(gaps) == pytest.approx(odds.mean["gap"], rel=1e-12)
     assert (np.min(gaps), np.max(gaps)) == (odds.moments["gap"].smallest, odds.moments["gap"].largest)
-
-
-def test_the_inputs_are_those_of_the_setup_without_effects() -> None:
-    bench = bench_of()
-    assert bench.inputs == bench.setup.inputs
 
 
 # Limits that need no probability: which place decides, and what happens on the limit itself.

@@ -1,7 +1,7 @@
 """Declarations: what they say, what they refuse, and with which sentence."""
 
 import math
-from dataclasses import FrozenInstanceError, replace
+from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
@@ -33,7 +33,6 @@ from truing import (
     part,
     plus_minus,
     results,
-    rows,
     uniform,
     zone,
 )
@@ -125,13 +124,6 @@ def test_defaults_become_si() -> None:
     assert bar.grain == (0.001, 0.0025)
 
 
-def test_inputs_are_frozen_and_by_keyword() -> None:
-    with pytest.raises(FrozenInstanceError):
-        Bar().force = 1.0  # type: ignore[misc]
-    with pytest.raises(TypeError):
-        Bar(1.0)  # type: ignore[misc]
-
-
 KINDS = [
     ("force", "float", True),
     ("holes", "whole", True),
@@ -147,12 +139,6 @@ KINDS = [
 def test_annotation_says_what_varies(name: str, kind: str, varies: bool) -> None:
     item = input_fields(Bar)[name]
     assert (item.kind, item.varies) == (kind, varies)
-
-
-def test_optional_and_choices_are_known() -> None:
-    fields = input_fields(Bar)
-    assert [name for name, item in fields.items() if item.is_optional] == ["factor"]
-    assert fields["reading"].choices == ("gross", "net")
 
 
 def test_parts_are_nested_in_python_and_flat_in_files() -> None:
@@ -686,17 +672,6 @@ def two_arguments(bar: Bar, other: Bar) -> Stress:
 def test_the_function_takes_one_class_and_returns_one(function: Any) -> None:
     with pytest.raises(DeclarationError, match="takes one annotated class of inputs and returns one of results"):
         Model(name="bar", title="", function=function)
-
-
-def test_a_table_is_an_axis_too() -> None:
-    @results
-    class Groups:
-        group: Float = rows("one row per group")
-        size: Float = found("mm", along="group")
-
-    fields = result_fields(Groups)
-    assert fields["group"].spec.is_table  # type: ignore[union-attr]
-    assert fields["size"].along == "group"
 
 
 def test_a_mean_that_is_chance_is_no_shift() -> None:

@@ -181,17 +181,6 @@ def test_noise_far_below_what_is_stated(tmp_path: Path, stated: str, sounds: boo
     assert is_told(found, f"is far below the standard deviation stated for it, {stated} um") is sounds
 
 
-def test_half_of_the_rows_is_not_enough_for_all_causes_and_that_is_no_contradiction(tmp_path: Path) -> None:
-    """A cause in every second row only: without it the others say more, by nothing else."""
-    one = asked(["lead_error", "thermal_growth"])
-    made = plain_competition(
-        one, one.records(tmp_path, shown(LEAD * BENCH.travel + 0.3 * (SWAP > 0) * WARM + NOISE)), UM
-    )
-    fit_of(made, "lead_error")
-    assert thinned_of(chosen_as(made, fit_of(made, "lead_error", "thermal_growth"))) == ()
-    assert thinned_of(chosen_as(made, fit_of(made, "lead_error"))) == ()
-
-
 def test_few_rows_are_not_thinned(tmp_path: Path) -> None:
     """Ten rows for the one number in either half."""
     one = asked(["lead_error", "thermal_growth"])
@@ -386,11 +375,6 @@ def test_rows_without_an_order_are_parted_at_random(tmp_path: Path) -> None:
     best = replace(chosen.best, sample=replace(chosen.best.sample, machine=unordered))
     assert contradictions_of(chosen)
     assert contradictions_of(replace(chosen, best=best)) == ()
-
-
-def test_shapes_and_the_model_as_it_is_have_no_halves(tmp_path: Path) -> None:
-    chosen = lead_taken(tmp_path, changing(30.0))
-    assert contradictions_of(replace(chosen, best=chosen.null)) == ()
 
 
 def test_consistent_halves_leave_a_cause_its_name(tmp_path: Path) -> None:

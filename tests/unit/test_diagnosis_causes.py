@@ -26,7 +26,6 @@ from numpy.testing import assert_allclose
 
 from truing import Effect, Float, Unknown
 from truing.diagnosis.causes import Candidate, effects_of, inputs_of
-from truing.diagnosis.curves import PLACES, first_places, placed
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.machine import Calibration, calibration_of
 from truing.diagnosis.reading import read_records
@@ -138,18 +137,6 @@ def test_an_input_that_moves_nothing_is_no_cause(tmp_path: Path) -> None:
         asked(tolerances={"contact": "3 %", "zero": "5 um"}), tmp_path, replace(wide(30), load=np.zeros(30))
     )
     assert [cause.name for cause in inputs_of(there)] == ["input:zero"]
-
-
-def test_whole_numbers_are_tried_one_by_one_and_steps_at_places_of_the_record(tmp_path: Path) -> None:
-    there = machine(asked(), tmp_path, wide(100))
-    order = cause_of(there, "periodic_order_of_rotation").numbers[-1]
-    assert placed([order], first_places(order)[:, None]).ravel().tolist() == [1, 2, 3]
-    after = cause_of(there, "step").numbers[-1]
-    assert_allclose([after.low, after.high], np.array([0.2, 9.8]) * 3600)  # a fiftieth of ten hours from either end
-    places = placed([after], first_places(after)[:, None]).ravel()
-    assert_allclose(places, np.linspace(0.2, 9.8, PLACES) * 3600)
-    assert not order.is_free
-    assert not after.is_free
 
 
 # Which

@@ -73,13 +73,6 @@ def looked(bundle: Bundle, beside: Conditional) -> ConditionalGain | None:
 # What a cause draws
 
 
-def test_an_input_is_its_slope_per_standard_deviation(tmp_path: Path) -> None:
-    bench = wide(60)
-    made = made_of(tmp_path, bench=bench, tolerances=TOLERANCES)
-    found = alone(made, "input:contact")
-    assert_allclose(found.curves[0, 0] / UM, 0.09 * np.sign(bench.load) * np.cbrt(bench.load) ** 2, rtol=1e-6)
-
-
 def test_a_curve_beside_an_effect_on_the_inputs_is_drawn_anew(tmp_path: Path) -> None:
     """A gain scales what the gauge shows: with a loss of stiffness that is the deflection under a larger load."""
     bench = wide(60)
@@ -101,17 +94,6 @@ def test_a_curve_beside_an_effect_on_the_inputs_is_drawn_anew(tmp_path: Path) ->
 
 def cosines(curves: Sequence[Array]) -> Array:
     return np.array([a @ b / np.sqrt((a @ a) * (b @ b)) for a, b in pairwise(curves)])
-
-
-def test_the_sweep_of_a_time_constant_leaves_no_gap_and_is_the_models(tmp_path: Path) -> None:
-    bench = wide(200)
-    found = alone(made_of(tmp_path, ["warm_up"], bench=bench), "warm_up")
-    constants = found.points[:, 1] / 3600
-    assert found.is_straight
-    assert_allclose(constants, np.geomspace(0.1, 20, 9))  # neighbours are alike already
-    exact = [1 - np.exp(-bench.time / constant) for constant in constants]
-    assert_allclose(found.curves[:, 0], exact, rtol=1e-9, atol=1e-12)
-    assert cosines(exact).min() > NEXT_TO
 
 
 def test_a_sweep_is_refined_where_neighbours_differ_too_much(tmp_path: Path) -> None:

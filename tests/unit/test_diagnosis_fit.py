@@ -189,14 +189,6 @@ def test_an_earlier_calibration_is_no_nominal_of_the_extended_model(tmp_path: Pa
     assert_allclose(done.extended.calibrated["contact"] / UM, 3.15, atol=0.06)
 
 
-def test_a_fit_of_an_effect_that_is_not_linear_is_exact(tmp_path: Path) -> None:
-    bench = wide(80, seed=21)
-    error = gauge(1.3 * bench.load, bench.travel) - gauge(bench.load, bench.travel)
-    _, best = drive_fit(tmp_path, error, ["stiffness_loss"], tolerances={})
-    assert_allclose(size_of(best, "loss"), 0.3, rtol=1e-6)
-    assert np.abs(best.left).max() < 1e-5
-
-
 def test_a_size_stays_inside_its_bounds(tmp_path: Path) -> None:
     """700 um lie above the 500 um that were declared; the sizes beside it are those of least squares with it held."""
     bench = wide(60, seed=21)

@@ -25,7 +25,6 @@ from diagnosis_models import (
     size_of,
     twist_model,
     warming,
-    white_noise,
     wide,
 )
 from numpy.testing import assert_allclose
@@ -35,10 +34,8 @@ from scipy.stats import multivariate_normal, norm
 
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.conditional import conditional_on
-from truing.diagnosis.design import _Duel
 from truing.diagnosis.fitted import Fit
-from truing.diagnosis.noise import Autocorrelation, colour, whiten
-from truing.diagnosis.sample import sample_of
+from truing.diagnosis.noise import Autocorrelation, whiten
 from truing.diagnosis.visibility import inseparable, needed, separation
 
 
@@ -162,60 +159,6 @@ def test_a_gain_and_a_loss_of_stiffness_are_three_degrees_apart(tmp_path: Path) 
     ]
     assert len(said) == 1
     assert "(angle 3.3 degrees)" in said[0]
-
-
-def test_three_hundred_rows_that_carry_over_say_of_an_offset_what_seventy_five_do(tmp_path: Path) -> None:
-    setting = Autocorrelation(0.6)
-    made = colour(np.eye(4000), one_run(4000), setting)  # columns: the answer to one innovation each
-    variance_of_mean = float(np.sum(made.sum(axis=0) ** 2)) / 4000**2
-    assert_allclose(setting.variance_ratio / variance_of_mean / 4000, 0.25, rtol=1e-3)
-    bench = wide(300, seed=7)
-    asked = Asked(drive_model(("clearance",), {}))
-    left = np.random.default_rng(7).normal(0, 2, 300)
-    records = asked.records(tmp_path, bench.columns(gauge(bench.load, bench.travel) + left))
-    plain = plain_competition(asked, records, UM).sample
-    noise = {name: replace(own, memory=setting) for name, own in white_noise(plain.machine, UM).items()}
-    sample = sample_of(plain.machine, noise, plain.mask)
-    offset = sample.curve({"deflection": np.full(300, UM)})
-    assert_allclose(offset @ offset * setting.variance_ratio, 1 + 299 / 4, rtol=1e-9)  # in noise of 1 um
-    assert sample.rows == 300  # the memory is taken out: no row counts less than another
-    assert_allclose(sample.cost(left, np.zeros(0)), 300 * np.log(np.mean(left**2)), rtol=1e-9)
-    assert_allclose(np.sum((sample.roots(left) * left) ** 2), 300, rtol=1e-9)
-
-
-@pytest.mark.parametrize(("rho", "seen"), [(0.3, 0.837), (0.6, 0.632), (0.9, 0.316)])
-def test_first_differences_of_noise_that_carries_over_show_too_little(rho: float, seen: float) -> None:
-    made = colour(np.eye(50), one_run(50), Autocorrelation(rho)) * np.sqrt(1 - rho**2)
-    covariance = made @ made.T
-    assert_allclose(np.diag(covariance), 1, rtol=1e-12)
-    of_differences = covariance[20, 20] - covariance[20, 21]  # half the variance of their difference
-    assert_allclose(np.sqrt(of_differences), seen, rtol=0, atol=5e-4)
-
-
-@pytest.mark.parametrize("gauges", [1, 2])
-def test_a_setting_added_by_one_rank_is_a_full_refit(gauges: int) -> None:
-    rng = np.random.default_rng(2)
-    names = ["position", "tilt"][:gauges]
-    data = rng.normal(size=(12, 3))
-    truth = rng.normal(size=12)
-    inverse: Array = np.asarray(np.linalg.inv(data.T @ data + np.eye(3)), dtype=np.float64)
-    rows = {name: rng.normal(size=(5, 3)) for name in names}
-    signal = {name: rng.normal(size=5) for name in names}
-    start = inverse @ data.T @ truth
-    first = float(np.sum((truth - data @ start) ** 2) + start @ start)
-    duel = _Duel(("a", "b"), first, start, inverse, np.array([*signal.values()]), np.array([*rows.values()]))
-    design, target = np.concatenate([data, np.eye(3)]), np.concatenate([truth, np.zeros(3)])
-    for place in (3, 0, 4):
-        gain = duel.gains()[place]
-        before = duel.separation
-        duel.measure(place)
-        design = np.concatenate([design, *(rows[name][place][None] for name in names)])
-        target = np.concatenate([target, *(signal[name][place][None] for name in names)])
-        refit = np.linalg.lstsq(design, target)[0]
-        assert_allclose(duel.separation, np.sum((target - design @ refit) ** 2), rtol=1e-9)
-        assert_allclose(duel.coefficients, refit, rtol=1e-9)
-        if gauges == 1:
-            assert_allclose(duel.separation, before + gain, rtol=1e-9)
 
 
 @pytest.mark.parametrize(("explanations", "limit"), [(12, 17.5), (78, 22.0), (200, 24.5)])

@@ -12,10 +12,9 @@ import pytest
 from diagnosis_models import UM, Array, Asked, drive_model, gauge, wander, white_noise, wide
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.linalg import block_diag, solve_triangular, toeplitz
-from scipy.optimize import approx_fprime, brentq, minimize_scalar
+from scipy.optimize import approx_fprime, minimize_scalar
 from scipy.stats import halfnorm, linregress, multivariate_normal, norm, rankdata, t
 
-from truing.diagnosis.conditional import Conditional
 from truing.diagnosis.learning import FEWEST_OF_MEMORY, learnt, memory_cost, memory_of
 from truing.diagnosis.machine import Calibration, calibration_of, directions_of
 from truing.diagnosis.noise import (
@@ -92,17 +91,6 @@ def test_whitening_a_wander_beside_white_noise_leaves_nothing_alike_after_a_tran
     settled = slice(int(np.ceil(log(1e-3) / log(theta))) if theta < 0.75 else 31, n)
     assert_allclose(left[settled, settled], np.eye(n)[settled, settled], rtol=0, atol=2e-3)
     assert 0.5 < np.diag(left).min() <= np.diag(left).max() < 1.5
-
-
-def test_a_slow_wander_plus_white_noise_is_one_of_these_filters() -> None:
-    """Half the variance wanders with 0.92 from row to row, half is white: theta follows from the first two lags."""
-    rho, wandering = 0.92, 0.5
-    theta = brentq(lambda theta: Autocorrelation(rho, theta).neighbours - wandering * rho, 0.01, 0.91)
-    summed = wandering * toeplitz(rho ** np.arange(40.0)) + (1 - wandering) * np.eye(40)
-    white = whiten(np.linalg.cholesky(summed), starts_of((40,)), Autocorrelation(rho, theta))
-    left = (white @ white.T)[25:, 25:] * Autocorrelation(rho, theta).variance_ratio
-    assert_allclose(left, np.eye(15), rtol=0, atol=2e-3)
-    assert any(abs(item.rho - rho) < 0.05 and abs(item.theta - theta) < 0.1 for item in SETTINGS if item.theta)
 
 
 def innovations(freedom: float, seed: int, n: int = 2000) -> Array:
@@ -207,7 +195,6 @@ def test_weights_undo_the_spread_they_were_learnt_from() -> None:
 
 TOLERANCES = {"contact": "3 %", "shaft": "3 %"}
 BENCH = wide(150, seed=31)
-AR = Autocorrelation(0.6)
 
 
 def machine(
@@ -227,12 +214,6 @@ def sample(there: Calibration, *, scale: float = UM, **known: object) -> Sample:
     """All rows, in noise of a known standard deviation and what else is known of it."""
     own = {name: replace(each, **known) for name, each in white_noise(there, scale).items()}  # type: ignore[arg-type]
     return sample_of(there, own, ~there.records.held_out)
-
-
-def inverse_root(rho: float, lengths: Sequence[int]) -> Array:
-    """What makes an autoregression of unit innovations independent, from its covariance run by run."""
-    dense = block_diag(*(toeplitz(rho ** np.arange(float(n))) / (1 - rho**2) for n in lengths))
-    return np.asarray(solve_triangular(np.linalg.cholesky(dense), np.eye(sum(lengths)), lower=True))
 
 
 # Rows
@@ -303,22 +284,6 @@ def test_the_cost_is_the_likelihood_profiled_over_the_noise_and_the_prior_of_the
     assert_allclose(ours[0] - made.cost(lefts[0], 0 * u), u @ u, rtol=1e-9)
     weighted = made.roots(lefts[1]) * lefts[1]
     assert_allclose(weighted @ weighted, 150, rtol=1e-12)
-
-
-def test_with_the_memory_taken_out_rows_are_independent(tmp_path: Path) -> None:
-    there = machine(tmp_path, noise(), ["a"] * 60 + ["b"] * 90)
-    made = sample(there, memory=AR)
-    root = inverse_root(0.6, [60, 90])
-    plain = sample(there)
-    assert_allclose(made.left(there.base), root @ noise(), atol=1e-6)
-    drawn = root @ plain.drawn
-    assert_allclose(made.drawn @ made.drawn.T, drawn @ drawn.T, rtol=1e-9, atol=1e-9)
-    added = {"deflection": BENCH.travel * UM}
-    assert_allclose(made.curve(added), root @ BENCH.travel, rtol=1e-9, atol=1e-9)
-    beside = Conditional(made, np.ones(150), np.zeros(150), np.zeros((150, 0)), there.base)
-    assert_allclose(beside.drawn(np.array([[BENCH.travel], [BENCH.load]]) * UM)[1, 0], root @ BENCH.load, rtol=1e-9)
-    assert made.rows == 150
-    assert max(setting.rho for setting in SETTINGS) < 0.95  # or differences alone would be left
 
 
 @pytest.mark.parametrize(

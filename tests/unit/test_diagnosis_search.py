@@ -46,13 +46,12 @@ from truing.diagnosis.choice import (
     _drawn,
     _is_vaguer,
     _rivals,
-    _says_the_same,
     _step,
     carried,
     law_of,
     unsure,
 )
-from truing.diagnosis.competition import MARGIN, UNREGISTERED, Competition, Start, beside, search
+from truing.diagnosis.competition import MARGIN, UNREGISTERED, Competition, beside, search
 from truing.diagnosis.fitted import Fit, differ, far_inputs, is_at_bound
 from truing.diagnosis.folds import ends_of, folds_of
 from truing.diagnosis.noise import Autocorrelation
@@ -254,15 +253,6 @@ def test_a_shape_pays_for_each_amplitude_the_logarithm_of_what_it_draws(tmp_path
     assert made.price_of_size(made.null) == 0
 
 
-def test_two_parabolas_pay_for_no_constant_that_only_their_sum_shows(tmp_path: Path) -> None:
-    warm = (BENCH.temperature - BENCH.temperature.mean()) / np.ptp(BENCH.temperature)
-    made = competing(tmp_path, 9 * LINE**2 + 36 * warm**2)
-    pair = [shape(made, f"trend.3:{name}") for name in ("travel", "temperature")]
-    both = made.fit_each([Start(pair[0].causes + pair[1].causes, pair[0].values + pair[1].values, None)])[0]
-    assert both is not None
-    assert made.score(both) < min(made.score(each) for each in pair) - 50
-
-
 def test_the_order_of_a_file_without_an_order_leaves_the_folds_as_they_are(tmp_path: Path) -> None:
     """The rows that are left out together are the same in a shuffled file."""
     order = np.random.default_rng(9).permutation(ROWS)
@@ -367,17 +357,6 @@ def test_where_what_is_left_is_noise_a_difference_d_is_unsure_by_two_roots_of_d(
     assert SURE * 2 * np.sqrt(CLOSE) == pytest.approx(CLOSE)
 
 
-def test_what_acts_beside_the_winner_is_no_rival(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Two causes draw two curves: each alone leaves the other, so that neither stands for it, however near they are."""
-    bench = wide(FEW_ROWS, seed=21)
-    monkeypatch.setattr(choice, "unsure", lambda one, other: 1e6)
-    made = searched(tmp_path, 0.01 * bench.travel + 1.6 * np.sign(bench.load))
-    one = fit_of(made, "lead_error")
-    assert "clearance" in causes_in(near(made, one))
-    fit_of(made, "lead_error", "clearance")
-    assert "clearance" not in causes_in([found for found in near(made, one) if len(found.causes) == 1])
-
-
 # What may as well be zero
 
 
@@ -410,23 +389,6 @@ def test_a_shape_is_vaguer_that_draws_98_percent_of_what_the_winner_has(
     for wanted, is_vaguer in ((share - 1e-3, True), (share + 1e-3, False)):
         monkeypatch.setattr(choice, "TWIN", wanted)
         assert _is_vaguer(made, jump, load) is is_vaguer
-
-
-def test_shapes_over_the_same_covariates_say_the_same(tmp_path: Path) -> None:
-    bench = wide(FEW_ROWS, seed=21)
-    made = gauge_competing(tmp_path, 9 * ((bench.travel - 150) / 150) ** 4 + 5 * np.sign(bench.load))
-    low, high, other = (shaped(made, tag) for tag in ("trend.3:travel", "trend.5:travel", "trend.3:load"))
-    assert _says_the_same(low, high)
-    assert _is_vaguer(made, high, low)
-    assert not _says_the_same(low, other)
-    assert not _is_vaguer(made, low, other)
-    lead, jump = fit_of(made, "lead_error"), fit_of(made, "clearance")
-    assert not _says_the_same(lead, lead)  # nothing registered is vague
-    assert not _says_the_same(lead, jump)
-    assert not _says_the_same(low, lead)
-    beside = replace(low, causes=(*low.causes, *jump.causes), values=(*low.values, *jump.values))
-    assert not _says_the_same(low, beside)
-    assert _says_the_same(beside, replace(beside, causes=(*high.causes, *jump.causes)))
 
 
 # What may be there as well

@@ -289,20 +289,6 @@ def test_the_least_squares_are_those_of_scipy(seed: int) -> None:
     assert ours <= reference(values) * (1 + 1e-4) + 1e-12
 
 
-def test_many_curves_are_fitted_as_each_alone() -> None:
-    """Batch and single, with noise and without."""
-    rng = np.random.default_rng(2)
-    curves = np.stack([law(1e-16, slope, 1e-8) for slope in (0.4, 1.0, 1.6)])
-    curves = curves * np.exp(0.05 * rng.standard_normal(curves.shape))
-    for fit in (straight_fit, noise_fit):
-        together = fit(LAGS, curves)
-        for row, curve in enumerate(curves):
-            alone = fit(LAGS, curve)
-            assert together.slope[row] == pytest.approx(float(alone.slope), rel=1e-6)
-            assert together.intercept[row] == pytest.approx(float(alone.intercept), rel=1e-6)
-            assert together.noise[row] == pytest.approx(float(alone.noise), rel=1e-4, abs=1e-12)
-
-
 def test_a_straight_fit_is_that_of_a_polynomial_of_first_degree() -> None:
     """numpy.polyfit, and R^2 by the correlation of both logarithms."""
     values = law(1e-16, 0.9, 5e-9)
@@ -418,13 +404,6 @@ def test_straight_lines_are_not_rough() -> None:
     assert np.isnan(found.dimension)
 
 
-def test_it_stands_beside_the_estimate() -> None:
-    """For comparison, whatever the structure function says."""
-    heights = brownian_profiles(1.6, 1e-16, (50, 1000), np.random.default_rng(2))
-    found = estimate_of(Lines(heights, 1e-6), "x", Estimation(resamples=0))
-    assert found.window_dimension == pytest.approx(found.dimension, abs=0.06)
-
-
 # The scatter of D and G: resampled lines and pieces against many surfaces made independently.
 
 
@@ -455,14 +434,6 @@ def test_blocks_hold_neighbours_and_every_line_alike(units: int, block: int) -> 
     np.testing.assert_allclose(weights.mean(axis=0), weights.mean(), rtol=0.25)
     joined = np.mean(weights[:, :-1] * weights[:, 1:]) - weights.mean() ** 2
     assert joined / weights.var() == pytest.approx((block - 1) / block, abs=0.1)
-
-
-def test_errors_of_dimension_and_roughness_go_together() -> None:
-    """That is why they are kept as pairs: their correlation is above 0.99 where a lag is far above G."""
-    heights = brownian_profiles(1.5, STEP, (100, 500), np.random.default_rng(1))
-    found = resampled_of(heights)
-    assert np.corrcoef(found.resampled.T)[0, 1] > 0.99
-    np.testing.assert_allclose(found.resampled.mean(axis=0), pair(found), atol=0.2 * found.resampled.std(axis=0).max())
 
 
 @pytest.mark.parametrize("method", ["pooled", "per_line"])

@@ -155,12 +155,6 @@ def test_many_directions_weigh_by_the_mean_power_of_the_cosine(dimension: float)
     assert float(ratio) == pytest.approx(mean, rel=1e-9)
 
 
-def test_an_areal_roughness_is_four_times_that_of_the_profile() -> None:
-    """At D_s = 1.5 and gamma = 1.5 by (pi/2)/ln 1.5, the square root of which is not taken: 2 (D_s - 1) = 1."""
-    areal = converted(1e-9, 1.5, DENSITY, source="profile", target="areal")
-    assert float(areal) == pytest.approx(1e-9 * np.pi / 2 / np.log(1.5), rel=1e-12)
-
-
 def test_a_convention_is_undone_by_the_way_back() -> None:
     """There and back, for dimensions and densities as arrays."""
     dimension, density = np.array([1.1, 1.5, 1.9]), np.array([1.2, 1.5, 3.0])

@@ -153,13 +153,6 @@ def test_a_price_follows_the_choice(form: str, price: float) -> None:
     assert prices_at(settled, np.array([0.25e-3, 0.25e-3])) == pytest.approx([price, price], rel=1e-14)
 
 
-def test_every_case_has_the_price_of_its_choice() -> None:
-    cases = [StatedCase(n, n + 1, form, {"cost_form": form}) for n, form in enumerate(PRICES)]
-    with open_executor("serial") as executor:
-        _, table = run_cases(default_setup(CHOSEN), cases_file(cases), executor=executor)
-    assert [case.answers["tolerance_price"] for case in table.cases] == pytest.approx(list(PRICES.values()), rel=1e-14)
-
-
 def test_describe_tells_both_prices() -> None:
     (said,) = description(Subject(CHOSEN).offer)["tolerances"]
     assert said["price"]["chooser"] == "cost_form"

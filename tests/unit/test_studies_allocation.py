@@ -471,16 +471,6 @@ def test_zones_that_grow_move_the_mean_too(require: Require, low: float, high: f
     assert answer.cost == pytest.approx(by_trying(low, high, goal), rel=1e-7)
 
 
-def test_monte_carlo_verifies_what_was_bought() -> None:
-    answer = bought(GROWING, draws=200_000)
-    for design in ("start", "least"):
-        chance = answer.problem.chances({}, answer.least.widths if design == "least" else None)["end"]
-        error = (chance * (1 - chance) / 200_000) ** 0.5
-        assert answer.monte_carlo[design]["end"] == pytest.approx(chance, abs=4 * error)
-    assert answer.final["end"] == pytest.approx(0.95, abs=1e-9)
-    assert answer.tolerances["a"].startswith("zone 0.0 mm .. ") or answer.tolerances["a"].startswith("zone 0 mm .. ")
-
-
 def test_two_goals_at_once() -> None:
     """Both sides demanded: what meets both is dearer than what meets either, and both are met."""
     above = Require("end", at_most="0.25 mm", reliability=0.95)

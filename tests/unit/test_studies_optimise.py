@@ -438,16 +438,6 @@ def test_results_json_has_printed_units_and_no_nan() -> None:
     assert {"length within", "length within by chance", "course at least", "course within"} <= set(first.margins)
 
 
-def test_the_front_is_sorted_feasible_and_nobody_is_beaten() -> None:
-    best = optimum(grown(), SMALL)
-    signs = np.array([aim.sign for aim in best.aims])
-    points = values(best, *(aim.name for aim in best.aims)) * signs
-    assert list(points[:, 0]) == sorted(points[:, 0])
-    assert all(design.feasible and min(design.margins.values()) >= 0 for design in best.front)
-    for one, other in itertools.permutations(points, 2):
-        assert not ((one <= other).all() and (one < other).any())
-
-
 def test_the_sheet_shows_the_front_and_both_figures() -> None:
     for best in (optimum(grown(), SMALL), optimum(setup_of(PAIR), SMALL), optimum(setup_of(GEAR), SMALL)):
         for block in best.blocks():

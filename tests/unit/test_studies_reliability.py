@@ -308,12 +308,6 @@ def test_two_processes_give_the_same_bytes(model, two_processes):
     assert serial == json.dumps(odds_of(setup_of(model), study, two_processes).as_json())
 
 
-def test_zero_is_a_seed():
-    zero, again, one = (odds_of(replace(setup_of(CHAIN), seed=seed)).mean for seed in (0, 0, 1))
-    assert zero == again
-    assert zero != one
-
-
 def test_a_further_tolerance_reshuffles_no_other():
     alone = scatter_of(setup_of(CHAIN)).draw(1, 3, 100)
     more = replace(CHAIN, errors=[Tolerance("room", normal(sd="1 K"), on=["warmth"]), *CHAIN.errors])
