@@ -70,7 +70,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ("GRADES[column - 1] if column", "GRADES[column - 2] if column"),
     ),
     *changes(
-        "kernel/truing/numbers.py", "unit/test_numbers.py",
+        "kernel/truing/numbers.py", "unit/test_units.py",
         ('"-" if found["sign"] == "-" else ""', '"" if found["sign"] == "-" else ""'),
     ),
     *changes(
@@ -79,7 +79,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ('"inv": lambda x: np.tan(x) - x', '"inv": lambda x: np.tan(x) + x'),
     ),
     *changes(
-        "kernel/truing/declare/spreads.py", "unit/test_declare.py unit/test_studies_reliability.py unit/test_widths.py",
+        "kernel/truing/declare/spreads.py", "unit/test_declare.py unit/test_studies_reliability.py",
         ('"band": amount / 2 / half_to_sd', '"band": amount / half_to_sd'),
         ("log_variance / 2 + np.sqrt", "log_variance + np.sqrt"),
         ("target.nominal + (low + high) / 2", "target.nominal + (high - low) / 2"),
@@ -101,7 +101,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ("value / item.value if item.value", "item.value / value if item.value"),
     ),
     *changes(
-        "kernel/truing/measurements/derived.py", "unit/test_derived.py",
+        "kernel/truing/measurements/derived.py", "unit/test_gauge.py",
         ("np.cumsum(np.abs(np.diff(values)))", "np.cumsum(np.diff(values))"),
         ("turned_at[turns + 1] = turns", "turned_at[turns + 1] = turns + 1"),
     ),
@@ -149,7 +149,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ("(value * (1 - value) / draws) ** 0.5", "(value * (1 - value) / draws)"),
     ),
     *changes(
-        "kernel/truing/studies/sweep.py", "unit/test_studies_sweep.py",
+        "kernel/truing/studies/sweep.py", "unit/test_studies_sensitivity.py",
         ("np.floor(axis[-1]) + 1", "np.floor(axis[-1])"),
     ),
     *changes(
@@ -200,7 +200,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ("1 - floor**2 / rmse**2", "1 - floor / rmse"),
     ),
     *changes(
-        "kernel/truing/diagnosis/visibility.py", "unit/test_diagnosis_known_answers.py",
+        "kernel/truing/diagnosis/visibility.py", "unit/test_diagnosis_gain_design.py",
         ("1 - LEVEL / (2 * max(explanations, 1))", "1 - LEVEL / (2 * 1)"),
     ),
     *changes(

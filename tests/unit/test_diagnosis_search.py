@@ -45,7 +45,6 @@ from truing.diagnosis.choice import (
     _candidates,
     _drawn,
     _is_vaguer,
-    _rivals,
     _step,
     carried,
     law_of,
@@ -290,14 +289,6 @@ def searched(folder: Path, error: Array) -> Competition:
     made = gauge_competing(folder, error)
     made.forward(made.null, len(made.causes), lambda cause: cause.effect is not None)
     return made
-
-
-def causes_in(several: list[Fit]) -> set[str]:
-    return {cause.tag for found in several for cause in found.causes}
-
-
-def near(made: Competition, best: Fit) -> list[Fit]:
-    return [rival.fit for rival in _rivals(made, best, 1)]
 
 
 @pytest.mark.parametrize(("name", "curve"), [("lead_error", "travel"), ("clearance", "sign")])
