@@ -215,6 +215,19 @@ def in_noise(made: Competition, found: Fit, **more: object) -> tuple[Fit, Certai
     return again, certainty_of(again, made.extended)
 
 
+def test_a_number_that_is_held_keeps_its_start(tmp_path: Path) -> None:
+    bench = wide(60, seed=21)
+    error = 3 * (1 - np.exp(-bench.time / 2)) + np.random.default_rng(30).normal(0, 0.1, 60)
+    made = drive_competition(tmp_path, error, tolerances={})
+    cause = cause_of(made, "warm_up")
+    start = np.array([UM, 5 * 3600.0])
+    best = alone(made.extended, fitting(made.sample, made.extended, [cause], [start], held=[cause.numbers[1]]))
+    assert best is not None
+    column = 1 - np.exp(-bench.time / 5)
+    assert size_of(best, "time_constant") == pytest.approx(5 * 3600, rel=1e-12)
+    assert_allclose(size_of(best, "rise"), column @ error / (column @ column) * UM, rtol=1e-5)
+
+
 def test_the_interval_in_heavy_tails_is_that_of_the_likelihood(tmp_path: Path) -> None:
     """Fisher's information of a place in Student's t of scale s with f degrees of freedom: (f + 1) / (f + 3) / s^2."""
     bench = wide(3000, seed=21)

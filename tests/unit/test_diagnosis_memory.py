@@ -32,7 +32,8 @@ from truing import Effect, Float, Model, Tolerance, Unknown, found, given, input
 from truing.diagnosis import competition, engine, machine
 from truing.diagnosis import extended as under_test
 from truing.diagnosis.causes import Candidate, effects_of
-from truing.diagnosis.engine import diagnose
+from truing.diagnosis.choice import choose
+from truing.diagnosis.engine import diagnose, laid_out
 from truing.diagnosis.exact import Asking, together
 from truing.diagnosis.extended import Extended, Request
 from truing.diagnosis.learning import first_noise
@@ -89,6 +90,30 @@ def test_a_record_along_an_axis_of_the_model_is_searched_whole(tmp_path: Path, m
     assert len(engine.searched(records, seed=1)) == 40
     along = replace(records, rows=replace(records.rows, series=("travel",)))
     assert engine.searched(along, seed=1) is along
+
+
+def test_a_decision_on_some_rows_is_kept_and_its_rivals_are_fitted_to_all(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Growth and a drift of the gauge draw one curve: both, and what is ranked, are those of all rows."""
+    monkeypatch.setattr(engine, "LONG", 100)
+    bench, asked = wide(400), Asked(drive_model(("lead_error", "thermal_growth"), {}))
+    error = 0.3 * (bench.temperature - 20) + np.random.default_rng(9).normal(size=400)
+    records = asked.records(tmp_path, bench.columns(gauge(bench.load, bench.travel) + error))
+    whole = machine.calibration_of(asked.setup, records)
+    few = laid_out(machine.calibration_of(asked.setup, engine.searched(records, seed=1)))
+    competition.search(few)
+    chosen = choose(few, seed=1)
+    assert few.sample.rows == 100
+    found = engine.on_all_rows(chosen, whole)
+    assert found.best.key == chosen.best.key
+    assert found.competition.sample.rows == found.best.sample.rows == found.null.sample.rows == 400
+    assert all(rival.fit.sample.rows == 400 and rival.behind >= 0 for rival in found.rivals)
+    assert {rival.fit.key for rival in found.rivals} <= {rival.fit.key for rival in chosen.rivals}
+    wanted = {each.key for each in few.ranked()[: engine.RANKED]}
+    assert wanted <= set(found.competition.known)
+    assert found.law is chosen.law
+    assert engine.on_all_rows(found, whole) is found
 
 
 def test_what_a_search_of_some_rows_came_to_is_fitted_to_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

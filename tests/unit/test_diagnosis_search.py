@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations, pairwise
 from math import comb, inf, log
@@ -27,7 +27,7 @@ from diagnosis_models import (
 from numpy.testing import assert_allclose
 
 from truing.diagnosis import choice
-from truing.diagnosis.causes import Candidate, Parameter
+from truing.diagnosis.causes import Candidate, Parameter, are_exclusive
 from truing.diagnosis.choice import (
     CLOSE,
     DRAWS,
@@ -37,20 +37,25 @@ from truing.diagnosis.choice import (
     LEAST_IN_PLACE,
     MANY_CURVES,
     SURE,
+    SURELY,
     TWIN,
     WANDER,
     Law,
     _beats,
     _best,
     _candidates,
+    _certain,
     _drawn,
     _is_vaguer,
+    _largest,
+    _rivals,
     _step,
     carried,
     law_of,
     unsure,
 )
 from truing.diagnosis.competition import MARGIN, UNREGISTERED, Competition, beside, search
+from truing.diagnosis.conditional import ConditionalGain
 from truing.diagnosis.fitted import Fit, differ, far_inputs, is_at_bound
 from truing.diagnosis.folds import ends_of, folds_of
 from truing.diagnosis.noise import Autocorrelation
@@ -119,6 +124,17 @@ def test_what_the_gauge_has_of_its_own_stands_in_the_place_of_no_polynomial(tmp_
     gauge_fit, trend = fit_of(made, "sensor_offset"), shape(made, "trend.3:travel")
     assert made.score(trend) < made.score(gauge_fit)
     assert [found.key for found in _candidates(made, made.null, 1)] == [trend.key]
+
+
+def test_a_shape_is_what_is_left_beside_an_effect_that_draws_nearly_all(tmp_path: Path) -> None:
+    """Beside the lead no two causes without it follow, however good: the bend comes beside it."""
+    made = competing(tmp_path, 0.3 * BENCH.travel + 6 * (LINE**2 - 1 / 3))
+    lead = fit_of(made, "lead_error")
+    without = shape(made, "trend.3:travel", at=fit_of(made, "clearance"))
+    assert made.score(without) < made.score(lead) - 50
+    (more,) = _candidates(made, lead, 2)
+    assert more.key > lead.key
+    assert len(more.causes) == 2
 
 
 def test_one_new_shape_at_most_comes_in_a_step(tmp_path: Path) -> None:
@@ -420,6 +436,75 @@ def named_competing(
 # The search
 
 
+@pytest.mark.parametrize(("worth", "stays"), [(SURELY - 5, False), (SURELY + 5, True)])
+def test_an_effect_without_which_much_is_lost_stays_although_its_interval_holds_zero(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, worth: float, stays: bool
+) -> None:
+    made = gauge_competing(tmp_path, 0.05 * wide(FEW_ROWS, seed=21).travel + 1)
+    best = fit_of(made, "lead_error", "sensor_offset")
+    scores = {best.key: 0.0, best.key - {best.causes[1].tag}: worth, best.key - {best.causes[0].tag}: 1e3}
+    monkeypatch.setattr(made, "score", lambda found: scores.get(found.key, 2e3))
+    monkeypatch.setattr(choice, "may_be_zero", lambda found, certainty, cause: cause.name == "sensor_offset")
+    assert (len(_certain(made, best).causes) == 2) is stays
+
+
+@pytest.mark.parametrize(
+    ("above", "carried", "is_told"),
+    [(0.05, 1.1, True), (0.2, 1.1, False), (0.05, 0.9, False)],
+    ids=["told", "chance", "predicts nothing"],
+)
+def test_one_more_cause_may_be_there_where_chance_seldom_gives_as_much(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, above: float, carried: float, is_told: bool
+) -> None:
+    """``above`` is the share of simulated searches that gain more from noise."""
+    bench = wide(FEW_ROWS, seed=21)
+    made = searched(tmp_path, 0.012 * bench.travel)
+    best, more = fit_of(made, "lead_error"), fit_of(made, "lead_error", "wear")
+    gain = made.score(best) - made.score(more)
+    simulated = gain + np.where(np.arange(100) < 100 * above, 1.0, -1.0)
+    monkeypatch.setattr(choice, "law_of", lambda *_, seed: Law(simulated, above))
+    monkeypatch.setattr(choice, "carries_over", lambda *_: carried)
+    told = [rival.fit.key for rival in _rivals(made, best, 1) if best.key < rival.fit.key]
+    assert told == ([more.key] if is_told else [])
+
+
+def test_of_shapes_that_say_the_same_the_one_stands_that_leaves_a_name_most(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A parabola over the travel takes a lead, a wave over it does not; both draw what was hidden beside it."""
+    bench = wide(FEW_ROWS, seed=21)
+    made = searched(tmp_path, 0.02 * bench.travel + 3 * np.sin(bench.travel / 40))
+    lead = fit_of(made, "lead_error")
+    both = {}
+    for cause in made.causes:
+        if cause.tag in {"unknown:trend.3:travel:deflection", "unknown:wave:travel:deflection"}:
+            *_, joined = made.fit_each(beside(lead, cause, made.look(lead, [cause])[cause.tag].starts))
+            assert joined is not None
+            assert cause.shape is not None
+            both[cause.shape.kind] = joined
+    assert choice._worth_of_names(made, both["wave"]) > choice._worth_of_names(made, both["trend"])
+    near = {found.key: 0.0 for found in both.values()}
+    score = made.score
+    monkeypatch.setattr(made, "score", lambda found: near.get(found.key, score(found)))
+    assert choice._taking_least(made, both["trend"]).key == both["wave"].key
+    near[both["wave"].key] = CLOSE + 1
+    assert choice._taking_least(made, both["trend"]).key == both["trend"].key
+
+
+def test_a_rival_stays_open_where_the_rows_contradict_one_another(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made = searched(tmp_path, 0.012 * wide(FEW_ROWS, seed=21).travel)
+    best = fit_of(made, "lead_error")
+    behind = sorted(made.score(found) - made.score(best) for found in made.ranked(lambda each: len(each.causes) == 1))
+    assert behind[0] == 0
+    assert CLOSE < behind[1] < 60
+    assert _rivals(made, best, 1) == []
+    monkeypatch.setattr(choice, "unsure", lambda one, other: 1.01 * behind[1] / SURE)
+    (open_one,) = _rivals(made, best, 1)
+    assert open_one.behind == pytest.approx(behind[1])
+
+
 @pytest.mark.parametrize(
     "sizes",
     [
@@ -517,6 +602,17 @@ def test_an_input_far_outside_of_its_tolerance_is_a_sign_unless_it_is_the_cause(
     assert far_inputs(named_competing(tmp_path, 0.2 * error, ["input:contact"], tolerated=True).null) == []
 
 
+def test_two_shapes_of_one_kind_over_the_same_are_one_explanation_too_many(tmp_path: Path) -> None:
+    made = named_competing(tmp_path, 0.0 * WARMING.time, [*NAMES, "unknown"])
+    by_tag = {cause.tag: cause for cause in made.causes}
+    trend, higher = by_tag["unknown:trend.3:travel:deflection"], by_tag["unknown:trend.5:travel:deflection"]
+    other, wave = by_tag["unknown:trend.3:time:deflection"], by_tag["unknown:wave:time:deflection"]
+    assert are_exclusive([trend, higher])
+    assert not are_exclusive([trend, other])
+    assert not are_exclusive([wave, trend])
+    assert are_exclusive([by_tag["lead_error"], by_tag["lead_error"]])
+
+
 # What chance gains
 
 
@@ -544,6 +640,33 @@ def test_noise_is_drawn_by_the_recursion_from_what_is_left(tmp_path: Path, rho: 
     by_hand[0] *= np.sqrt(1 - rho**2)
     assert_allclose(drawn[:ROWS], by_hand / np.sqrt(np.mean(pool**2)), rtol=1e-9, atol=1e-12)
     assert_allclose(drawn[ROWS:], generator.standard_normal((2, 7)))
+
+
+def test_the_largest_gain_of_a_draw_is_that_of_all_curves_tried_one_by_one(tmp_path: Path) -> None:
+    """Greedily: the curve that lowers most once paid for, then the best beside it."""
+    names = ["lead_error", "sensor_gain", "warm_up"]
+    made = named_competing(tmp_path, 0.0 * WARMING.time, names)
+    seen = made.look(made.null)
+    assert set(seen) >= {"lead_error", "warm_up"}
+    drawn = np.random.default_rng(12).normal(size=(ROWS, 9))
+    for steps in (1, 2):
+        by_hand = [_greedy(made, seen, drawn[:, draw], steps) for draw in range(9)]
+        assert_allclose(_largest(made, seen, drawn, 140.0, steps), by_hand, rtol=1e-9)
+
+
+def _greedy(made: Competition, seen: Mapping[str, ConditionalGain], values: Array, steps: int) -> float:
+    """The gain of one draw after so many steps, each projected off before the next."""
+    total, left = 0.0, values
+    for _ in range(steps):
+        tried = []
+        for cause in made.causes:
+            for basis in seen[cause.tag].span.basis if cause.tag in seen else ():
+                rest = left - basis.T @ (basis @ left)
+                gain = 140.0 * log((left @ left) / (rest @ rest)) - made.price_of(cause)
+                tried.append((gain, rest))
+        gain, left = max(tried, key=lambda each: each[0])
+        total += gain
+    return total
 
 
 def test_a_law_counts_the_draws_that_gain_as_much(tmp_path: Path) -> None:
