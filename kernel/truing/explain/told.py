@@ -33,7 +33,7 @@ from truing.explain.influence import (
 )
 from truing.formulas import symbol_text
 from truing.formulas.layout import substituted, symbolic
-from truing.formulas.write_text import TextWriter
+from truing.formulas.write_text import TEXT
 from truing.inputs_file import setup_from_settings
 from truing.inputs_file.values import bounds_in_words
 from truing.kernel import Offer
@@ -435,16 +435,15 @@ def formula_of(setup: Setup, answers: Mapping[str, Any], field: ResultField) -> 
     equation = equation_of(setup, answers, field)
     if equation is None:
         return None
-    writer, formula = TextWriter(), equation.formula
-    symbols = dict(equation.symbols)
+    formula = equation.formula
     numbers = ""
     if equation.numbers is not None and formula.names and formula.left is None:
-        numbers = substituted(writer, formula, equation.numbers)
+        numbers = substituted(TEXT, formula, equation.numbers)
     shown = [with_unit(pretty(value.text), value.unit) for value in equation.results if value.text != ABSENT]
     return {
         "text": formula.text,
-        "left": "" if formula.left is not None else writer.symbol(field.symbol) if field.symbol else field.name,
-        "symbols": symbolic(writer, formula, symbols),
+        "left": "" if formula.left is not None else symbol_text(field.symbol) if field.symbol else field.name,
+        "symbols": symbolic(TEXT, formula, equation.symbols),
         "numbers": numbers,
         "results": shown,
         "departs": equation.departs,

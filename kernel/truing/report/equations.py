@@ -11,7 +11,7 @@ from truing.declare.fields import Found, InputField, ResultField
 from truing.errors import DeclarationError
 from truing.evaluate import acting_inputs
 from truing.formulas import Formula, evaluate, parse, symbol_text
-from truing.formulas.layout import Binding, Layout, Writer, number_leaf, symbol_leaf, symbolic
+from truing.formulas.layout import Binding, Layout, Writer, symbolic
 from truing.formulas.tree import Binary, Call, Constant, Name, Node, NumberNode, children, simplified
 from truing.numbers import ABSENT, RESULT_DIGITS, format_number, format_value
 from truing.report.document import Equation, Value
@@ -114,17 +114,16 @@ def lines(writer: Writer, equation: Equation, *, limit: float = LINE) -> list[Eq
     if formula.left is not None:
         return _solved(writer, equation, name)
     said = _broken(writer, formula, equation, None, limit - name.width)
-    steps = [_after(writer, "", said[0]), *said[1:]]
-    steps[0] = EquationLine(writer.infix(name.markup, "==", said[0].markup), name.width + said[0].width + 1.2)
+    first = EquationLine(writer.infix(name.markup, "==", said[0].markup), name.width + said[0].width + 1.2)
     rest = [_after(writer, "==", EquationLine(*_quantity(writer, value))) for value in equation.results]
     if equation.numbers is not None and formula.names:
         numbers = _broken(writer, formula, equation, equation.numbers, limit)
         rest = [_after(writer, "==", numbers[0]), *numbers[1:], *rest]
-    return _packed([*steps, *rest], limit)
+    return _packed([first, *said[1:], *rest], limit)
 
 
 def _left_hand(writer: Writer, equation: Equation) -> str:
-    return writer.symbol(equation.symbol) if equation.symbol else writer.word(equation.name)
+    return writer.symbol(equation.symbol, None) if equation.symbol else writer.word(equation.name)
 
 
 def _solved(writer: Writer, equation: Equation, name: EquationLine) -> list[EquationLine]:
@@ -147,13 +146,7 @@ def _quantity(writer: Writer, value: Value) -> tuple[str, float]:
 
 def _after(writer: Writer, sign: str, line: EquationLine) -> EquationLine:
     """Begin a line with a sign, as the continuation of the line above."""
-    if not sign:
-        return line
-    return EquationLine(writer.infix(EMPTY[type(writer).__name__], sign, line.markup), line.width + 1.2)
-
-
-EMPTY = {"MathMLWriter": "<mrow></mrow>", "LatexWriter": "{}"}
-"""What stands before a sign at the beginning of a line, so that it is set as a sign between two sides."""
+    return EquationLine(writer.infix(writer.opening, sign, line.markup), line.width + 1.2)
 
 
 def _packed(steps: list[EquationLine], limit: float) -> list[EquationLine]:
@@ -173,7 +166,7 @@ def _broken(
 ) -> list[EquationLine]:
     """Set one side, in one line or, if it is a sum too wide for that, in lines that begin with plus or minus."""
     texts = equation.symbols if numbers is None else {name: " ".join(pair) for name, pair in numbers.items()}
-    layout = _layout(writer, equation, numbers)
+    layout = Layout(writer, equation.symbols, numbers)
     width = _width(formula.right, texts)
     (_, first), *others = _terms(formula.right)
     if width <= limit or not others:
@@ -183,16 +176,6 @@ def _broken(
         piece = layout.at_least(simplified(node), Binding.SUM if sign == "+" else Binding.PRODUCT, signed=False)
         written.append(_after(writer, sign, EquationLine(piece.markup, _width(node, texts))))
     return _packed(written, limit)
-
-
-def _layout(writer: Writer, equation: Equation, numbers: Mapping[str, tuple[str, str]] | None) -> Layout:
-    if numbers is None:
-        return Layout(writer, symbol_leaf(writer, equation.symbols), equation.symbols)
-
-    def is_given(name: str) -> bool | None:
-        return numbers[name][0] != ABSENT if name in numbers else None
-
-    return Layout(writer, number_leaf(writer, numbers), dots=True, is_given=is_given)
 
 
 def _terms(node: Node) -> list[tuple[str, Node]]:

@@ -13,7 +13,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup, escape
 
 from truing.formulas.symbols import printable
-from truing.formulas.write_mathml import MathMLWriter
+from truing.formulas.write_mathml import MATHML, symbol_mathml
 from truing.numbers import pretty, with_unit
 from truing.report import equations
 from truing.report.document import (
@@ -117,7 +117,7 @@ def _piece(piece: Piece) -> str:
             number = _one_line(with_unit(pretty(text), unit))
             return escape(number.replace(" ", "\u00a0") if len(number) < UNBROKEN else number)
         case SymbolText(text):
-            return f"<math>{MathMLWriter().symbol(text)}</math>"
+            return f"<math>{symbol_mathml(text)}</math>"
         case Code(name):
             return f"<code>{_breakable(name)}</code>"
         case Strong(text):
@@ -148,7 +148,7 @@ def _is_wide(entry: ResultEntry) -> bool:
 
 
 def _lines(equation: Equation) -> list[equations.EquationLine]:
-    return equations.lines(MathMLWriter(), equation)
+    return equations.lines(MATHML, equation)
 
 
 def _equation(equation: Equation) -> Any:

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Final
 
 from truing.formulas.symbols import printable
-from truing.formulas.write_latex import LatexWriter
+from truing.formulas.write_latex import LATEX, symbol_latex
 from truing.numbers import pretty
 from truing.report import equations
 from truing.report.document import (
@@ -142,7 +142,7 @@ def _piece(piece: Piece, *, begins: bool = True) -> str:
         case Value() | Code() | SourceText():
             return escaped(plain_text(piece))
         case SymbolText(text):
-            return f"${LatexWriter().symbol(text)}$"
+            return f"${symbol_latex(text)}$"
         case Strong(text):
             return _piece(text)
         case Aside(text):
@@ -162,7 +162,7 @@ def _words(text: str, *, begins: bool) -> str:
 
 
 def _equation(equation: Equation) -> str:
-    lines = [line.markup for line in equations.lines(LatexWriter(), equation, limit=LINE)]
+    lines = [line.markup for line in equations.lines(LATEX, equation, limit=LINE)]
     if len(lines) == 1:
         return f"$$\n{lines[0]}\n$$"
     body = " \\cr\n& ".join(lines)
