@@ -141,16 +141,6 @@ def _mean(value: Any) -> float:
     return float(value.mean()) if value.size else math.nan
 
 
-def by_share(sources: Sequence[Influence]) -> list[Influence]:
-    """Return what scatters, the largest share of the scatter first."""
-    return sorted((one for one in sources if one.share), key=lambda one: -abs(one.share))
-
-
-def by_slope(sources: Sequence[Influence]) -> list[Influence]:
-    """Return what moves the result, the steepest first."""
-    return sorted((one for one in sources if one.moves and one.step), key=lambda one: -abs(one.step or 0.0))
-
-
 # What an effect changes: the model is run with it, at a size it may have, beside the model without
 
 
@@ -240,18 +230,6 @@ def _moved(bare: Setup, acting: Setup) -> Iterator[tuple[str, tuple[float, float
     for name, field in model.input_fields.items():
         if field.varies and before[name] == before[name] and before[name] != after[name]:
             yield name, (float(before[name]), float(after[name]))
-
-
-def all_touched(setup: Setup) -> dict[str, Touched]:
-    """Try every effect of the model itself, one by one."""
-    return {name: touched(setup, effect) for name, effect in setup.model.effects.items()}
-
-
-def effects_on(by_effect: Mapping[str, Touched], names: Sequence[str]) -> dict[str, float]:
-    """Return the effects that change any of these results, the largest relative change first."""
-    sizes = {effect: max((abs(one.results[name]) for name in names if name in one.results), default=0.0)
-             for effect, one in by_effect.items()}  # fmt: skip
-    return dict(sorted(((effect, size) for effect, size in sizes.items() if size), key=lambda pair: -pair[1]))
 
 
 # Which result is made from what, as the declared formulas say, and which results follow from a name
