@@ -49,20 +49,15 @@ UNBROKEN = 30
 def html_of(document: Document) -> str:
     """Write a document as a page."""
     has_contents = document.detail != "short" and len(document.chapters) > LONG
-    return page("sheet.html.j2", document, has_contents=has_contents)
+    return page("sheet.html.j2", document.head.footer, sheet=document, has_contents=has_contents)
 
 
-def page(template: str, sheet: Any, *, styles: Sequence[str] = ("sheet.css",), **more: Any) -> str:
-    """Write a page from its template; ``sheet`` has a ``head``, whose footer stands in the margin of every page."""
+def page(template: str, footer: str, *, styles: Sequence[str] = ("sheet.css",), **said: Any) -> str:
+    """Write a page from its template; the footer stands in the margin of every page but the first."""
     style = "".join((template_folder() / name).read_text(encoding="utf-8") for name in styles)
-    style = _markup(style + page_style(sheet.head.footer))
-    return with_room(_environment().get_template(template).render(sheet=sheet, style=style, **more)) + "\n"
-
-
-def page_style(footer: str) -> str:
-    """Write what only this sheet's pages say: its title in the margin, from the second page on."""
-    title = f'@page {{ @top-left {{ content: "{css_text(footer)}"; }} }}'
-    return f"\n{title}\n@page :first {{ @top-left {{ content: none; }} }}\n"
+    style += f'\n@page {{ @top-left {{ content: "{css_text(footer)}"; }} }}'
+    style += "\n@page :first { @top-left { content: none; } }\n"
+    return with_room(_environment().get_template(template).render(style=_markup(style), **said)) + "\n"
 
 
 def css_text(text: str) -> str:
