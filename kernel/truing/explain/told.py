@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, Literal, TypeAlias
 
@@ -80,9 +80,9 @@ def known_names(model: Model[Any, Any], section: str = "") -> Mapping[str, Topic
 
     With a ``section`` only its names.
     """
-    studies = [study.name for study in model.studies]
-    of = (
-        model.result_fields, model.input_fields, model.known_effects, model.tolerances, model.known_conditions, studies,
+    of: tuple[Iterable[str], ...] = (
+        model.result_fields, model.input_fields, model.known_effects, model.tolerances, model.known_conditions,
+        [study.name for study in model.studies],
     )  # fmt: skip
     topics: dict[str, Topic] = {}
     for (word, topic), names in zip(SECTIONS.items(), of, strict=True):
@@ -220,7 +220,7 @@ def of_effect(setup: Setup, name: str) -> dict[str, Any]:
     effect = model.known_effects[name]
     built_in = name not in model.effects
     tried = Touched({}, {}, {}) if built_in else touched(setup, effect)
-    units = {each.name: each.unit for each in (*effect.needs, *effect.unknowns)}
+    units = {need.name: need.unit for need in effect.needs} | {each.name: each.unit for each in effect.unknowns}
     notes = {key: field.spec.note for key, field in model.own_result_fields.items()}
     return {
         **_effect_row(setup, effect),

@@ -32,20 +32,11 @@ LONGEST: Final = 2000
 DEEPEST: Final = 50
 
 OPERATORS: Final[dict[type[ast.operator], str]] = {
-    ast.Add: "+",
-    ast.Sub: "-",
-    ast.Mult: "*",
-    ast.Div: "/",
-    ast.Pow: "**",
-}
+    ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**",
+}  # fmt: skip
 COMPARISONS: Final[dict[type[ast.cmpop], str]] = {
-    ast.Lt: "<",
-    ast.LtE: "<=",
-    ast.Gt: ">",
-    ast.GtE: ">=",
-    ast.Eq: "==",
-    ast.NotEq: "!=",
-}
+    ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!=",
+}  # fmt: skip
 WORDS: Final[dict[type[ast.AST], str]] = {
     ast.Attribute: "a dot between names",
     ast.Subscript: "an index in brackets",
@@ -112,17 +103,14 @@ def _expression(text: str) -> ast.expr:
             warnings.simplefilter("ignore")
             body = ast.parse(stripped, mode="eval").body
     except SyntaxError as error:
-        raise _RefusalError(f"it cannot be read: {error.msg}{_place(error)}") from None
+        place = f" (near character {error.offset})" if error.offset else ""
+        raise _RefusalError(f"it cannot be read: {error.msg}{place}") from None
     except (ValueError, RecursionError, MemoryError, OverflowError):
         raise _RefusalError("it cannot be read: nested too deeply, or a number too long") from None
     _keep_number_texts(body, stripped)
     if _levels(body) > DEEPEST:
         raise _RefusalError(f"it is nested deeper than {DEEPEST} levels; split it into named results")
     return body
-
-
-def _place(error: SyntaxError) -> str:
-    return f" (near character {error.offset})" if error.offset else ""
 
 
 def _keep_number_texts(body: ast.expr, text: str) -> None:
@@ -182,9 +170,8 @@ def _call(node: ast.Call) -> Call:
     if node.keywords:
         raise _RefusalError(f"{function} is called with a keyword; arguments go by their place")
     _count_arguments(function, len(node.args))
-    if function == "cases":
-        return Call(function, tuple(_case_part(index, node.args) for index in range(len(node.args))))
-    return Call(function, tuple(_value(argument) for argument in node.args))
+    readers = [_value, _condition if function == "cases" else _value]
+    return Call(function, tuple(readers[index % 2](argument) for index, argument in enumerate(node.args)))
 
 
 def _count_arguments(function: str, count: int) -> None:
@@ -196,11 +183,6 @@ def _count_arguments(function: str, count: int) -> None:
     if not fewest <= count <= most:
         wanted = str(fewest) if fewest == most else f"at least {fewest}" if most == ANY_NUMBER else f"{fewest}..{most}"
         raise _RefusalError(f"{function} takes {wanted} argument{'' if wanted == '1' else 's'}, here it has {count}")
-
-
-def _case_part(index: int, arguments: list[ast.expr]) -> Node:
-    is_condition = index % 2 == 1
-    return _condition(arguments[index]) if is_condition else _value(arguments[index])
 
 
 def _condition(node: ast.expr) -> Node:

@@ -122,11 +122,6 @@ def walk(node: Node) -> Iterator[Node]:
         yield from walk(child)
 
 
-def depth(node: Node) -> int:
-    """Return how many levels a tree has; only for trees already known to be shallow."""
-    return 1 + max((depth(child) for child in children(node)), default=0)
-
-
 BINDING: Final = {"or": 1, "and": 2, "compare": 3, "+": 4, "-": 4, "*": 5, "/": 5, "negative": 6, "**": 7}
 _ATOM: Final = 8
 
@@ -145,7 +140,10 @@ def _source(node: Node) -> tuple[str, int]:
         case Negative(operand):
             return f"-{_bound(operand, BINDING['negative'])}", BINDING["negative"]
         case Binary(operator, left, right):
-            return _binary_source(operator, left, right)
+            level = BINDING[operator]
+            if operator == "**":
+                return f"{_bound(left, _ATOM)}**{_bound(right, BINDING['negative'])}", level
+            return f"{_bound(left, level)} {operator} {_bound(right, level + 1)}", level
         case Call(function, arguments):
             return f"{function}({', '.join(source(argument) for argument in arguments)})", _ATOM
         case Comparison(operators, operands):
@@ -156,13 +154,6 @@ def _source(node: Node) -> tuple[str, int]:
         case Logic(operator, operands):
             level = BINDING[operator]
             return f" {operator} ".join(_bound(operand, level + 1) for operand in operands), level
-
-
-def _binary_source(operator: str, left: Node, right: Node) -> tuple[str, int]:
-    level = BINDING[operator]
-    if operator == "**":
-        return f"{_bound(left, _ATOM)}**{_bound(right, BINDING['negative'])}", level
-    return f"{_bound(left, level)} {operator} {_bound(right, level + 1)}", level
 
 
 def _bound(node: Node, at_least: int) -> str:

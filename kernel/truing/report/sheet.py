@@ -404,7 +404,7 @@ def effect_blocks(setup: Setup) -> Iterator[BlockView]:
     if setup.conditions:
         title = "Conditions, and the references at which their effects vanish"
         columns = (Column("Condition", kind="name"), Column("Value", kind="number"), Column("Reference", kind="number"))
-        rows = []
+        rows: list[tuple[Text, ...]] = []
         for name, value in setup.conditions.items():
             condition, unit = setup.model.known_conditions[name], setup.print_unit(name)
             values = (Value(*format_value(number, unit, STATED_DIGITS)) for number in (value, condition.zero))
@@ -453,7 +453,7 @@ def check_table(calculation: Calculation) -> TableView:
         *((Column("As proposed", kind="number"),) if has_proposal else ()), Column("must be", kind="relation"),
         Column("Limit", kind="number"), Column("Margin", kind="number"), Column("Verdict", kind="verdict-cell"),
     )  # fmt: skip
-    rows = []
+    rows: list[tuple[Text, ...]] = []
     for row in check_rows(calculation):
         check = row.check
         remark = "; ".join(filter(None, (row.remark, check.method)))
