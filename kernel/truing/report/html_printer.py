@@ -18,18 +18,13 @@ from truing.numbers import pretty, with_unit
 from truing.report import equations
 from truing.report.document import (
     MARKS,
-    Aside,
     BlockView,
-    Break,
-    Code,
     Document,
     Equation,
     Judgement,
+    Marked,
     Piece,
     ResultEntry,
-    SourceText,
-    Strong,
-    SymbolText,
     Text,
     Value,
 )
@@ -111,17 +106,17 @@ def _piece(piece: Piece) -> str:
         case Value(text, unit):
             number = _one_line(with_unit(pretty(text), unit))
             return escape(number.replace(" ", "\u00a0") if len(number) < UNBROKEN else number)
-        case SymbolText(text):
-            return f"<math>{symbol_mathml(text)}</math>"
-        case Code(name):
-            return f"<code>{_breakable(name)}</code>"
-        case Strong(text):
+        case Marked("symbol", text):
+            return f"<math>{symbol_mathml(str(text))}</math>"
+        case Marked("code" | "bracketed code", name):
+            return f"<code>{_breakable(str(name))}</code>"
+        case Marked("strong", text):
             return f"<strong>{_piece(text)}</strong>"
-        case Aside(text):
+        case Marked("aside", text):
             return f'<span class="aside">{_piece(text)}</span>'
-        case SourceText(text):
+        case Marked("source", text):
             return f'<span class="aside">[{_piece(text)}]</span>'
-        case Break():
+        case Marked():
             return "<br>"
         case Judgement(state):
             return f'<span aria-hidden="true">{MARKS[state]}</span> {SHORT[state]}'

@@ -29,21 +29,17 @@ from truing.numbers import (
 from truing.published import ComparedRow, parted
 from truing.report.chapters import LONGEST_TABLE, Figures, Writing, numbered, result_chapters
 from truing.report.document import (
-    Aside,
     Banner,
     BlockView,
-    Break,
     Chapter,
-    Code,
     Column,
     Document,
     Head,
     Items,
     Judgement,
+    Marked,
     Paragraph,
     Piece,
-    Strong,
-    SymbolText,
     TableView,
     Text,
     Value,
@@ -151,7 +147,7 @@ def banner_of(calculation: Calculation, cases: CasesTable | None) -> Banner:
     if state != "proposed" or proposal is None:
         return Banner(state, HEADLINES[state], (text,))
     changes = joined(
-        (Value(f"{name.replace('_', ' ')} {stated} → "), Strong(proposed))
+        (Value(f"{name.replace('_', ' ')} {stated} → "), Marked("strong", proposed))
         for name, stated, proposed in proposal.changes
     )
     return Banner(state, HEADLINES[state], (text, ("Changed: ", *changes, ".")))
@@ -324,7 +320,9 @@ def input_blocks(setup: Setup, detail: str) -> Iterator[BlockView]:
     title = "What the calculation starts from; 'stated' stands in the inputs file, 'default' is the model's own value"
     yield TableView(title, columns, rows, kind="inputs")
     if idle:
-        called = joined(SymbolText(fields[name].symbol) if fields[name].symbol else Code(name) for name in idle)
+        called = joined(
+            Marked("symbol", fields[name].symbol) if fields[name].symbol else Marked("code", name) for name in idle
+        )
         words = "Not given, or left at their default of 0 (inputs.toml names them): "
         yield Paragraph((words, *called, "."), "aside")
 
@@ -335,7 +333,7 @@ def _input_row(setup: Setup, name: str, value: Value, *, calibrated: bool) -> tu
     fitted = setup.calibrated.get(name)
     own = "" if fitted is None else format_value(fitted, setup.print_unit(name), STATED_DIGITS)[0]
     return (
-        SymbolText(field.symbol) if field.symbol else "", label_of(note, name), value.text, value.unit,
+        Marked("symbol", field.symbol) if field.symbol else "", label_of(note, name), value.text, value.unit,
         *((own,) if calibrated else ()), "stated" if name in setup.source.stated else "default", field.spec.source,
     )  # fmt: skip
 
@@ -383,7 +381,7 @@ def tolerance_table(setup: Setup) -> TableView:
         ]
         scatter: list[Piece] = [*joined(dict.fromkeys(sds))]
         for shift in dict.fromkeys(_shifts(setup, distributions)):
-            scatter += [Break(), "mean ", shift]
+            scatter += [Marked("break", ", "), "mean ", shift]
         targets = ", ".join(on.replace("_", " ") for on in distributions)
         why = with_source(tolerance.why, tolerance.source)
         rows.append((name.replace("_", " "), targets, setup.spread_of(name).text, tuple(scatter), why))
@@ -426,10 +424,10 @@ def _effect_row(active: SwitchedOn) -> tuple[Text, ...]:
     for unknown in active.unknowns:
         value = Value(*format_value(active.values[unknown.name], unknown.unit, RESULT_DIGITS))
         sd = active.sds.get(unknown.name)
-        scatter = (" ± ", Value(*format_difference(sd, unknown.unit, 3)), " ", Aside("(sd)")) if sd else ()
+        scatter = (" ± ", Value(*format_difference(sd, unknown.unit, 3)), " ", Marked("aside", "(sd)")) if sd else ()
         unknowns.append((unknown.name.replace("_", " ") + " = ", value, *scatter))
     why = with_source(effect.why or effect.looks_like, effect.source)
-    return (effect.name.replace("_", " "), PLACES[effect.place], joined(unknowns, Break()), why)
+    return (effect.name.replace("_", " "), PLACES[effect.place], joined(unknowns, Marked("break", ", ")), why)
 
 
 def _changed_inputs(setup: Setup) -> Iterator[Text]:
@@ -442,7 +440,13 @@ def _changed_inputs(setup: Setup) -> Iterator[Text]:
         if field.varies and before != after and not (before != before and after != after):
             unit = setup.print_unit(name)
             old, new = (Value(*format_value(value, unit, digits)) for value, digits in ((before, 10), (after, 7)))
-            yield SymbolText(field.symbol) if field.symbol else name.replace("_", " "), " = ", new, " instead of ", old
+            yield (
+                Marked("symbol", field.symbol) if field.symbol else name.replace("_", " "),
+                " = ",
+                new,
+                " instead of ",
+                old,
+            )
 
 
 def check_table(calculation: Calculation) -> TableView:
@@ -458,9 +462,8 @@ def check_table(calculation: Calculation) -> TableView:
         check = row.check
         remark = "; ".join(filter(None, (row.remark, check.method)))
         label = label_of(row.note, check.name, row.symbol)[:-1]
-        about = (
-            *label, Code(check.compared or check.name, bracketed=True), *((Break(), Aside(remark)) if remark else ()),
-        )  # fmt: skip
+        about = (*label, Marked("bracketed code", check.compared or check.name))
+        about += (Marked("break", ", "), Marked("aside", remark)) if remark else ()
         proposed = (row.proposed or "",) if has_proposal else ()
         rows.append((about, row.value, *proposed, check.relation, row.limit, row.margin, Judgement(check.state)))
     title = f"Limits, and what is left of them. A margin is {margins_words(calculation.checks)}; above zero is safe"
@@ -573,8 +576,12 @@ def _compared(title: str, compared: Sequence[ComparedRow], *, with_settings: boo
     before: Mapping[str, str] | None = None
     for row in compared:
         printed = row.published
-        calibrated = (" ", Aside("(calibrated)")) if printed.obtained == "calibrated" else ()
-        name = (printed.name, *calibrated, *((Break(": "), Aside(printed.why)) if printed.why else ()))
+        calibrated = (" ", Marked("aside", "(calibrated)")) if printed.obtained == "calibrated" else ()
+        name = (
+            printed.name,
+            *calibrated,
+            *((Marked("break", ": "), Marked("aside", printed.why)) if printed.why else ()),
+        )
         ratio = f"{row.ratio:.4f}" if row.ratio is not None else ABSENT
         verdict = ("matches" if row.matches else "differs") + ("" if row.as_stated else ", not as stated")
         settings = ", ".join(f"{name.replace('_', ' ')} = {text}" for name, text in printed.settings.items())
@@ -601,8 +608,8 @@ def provenance_items(origin: Provenance) -> Items:
         ("Calculation", f"{origin.plugin} {origin.plugin_version}"),
         ("Kernel", f"truing {origin.kernel}, Python {origin.python}"),
         ("Packages", packages),
-        ("Inputs", Code(origin.input_hash)),
-        *(("File", (f"{name} ", Code(digest))) for name, digest in origin.files.items()),
+        ("Inputs", Marked("code", origin.input_hash)),
+        *(("File", (f"{name} ", Marked("code", digest))) for name, digest in origin.files.items()),
         *(("Added", f"{what} by {plugin} {version}") for what, plugin, version in origin.added),
         *(("Known exception", f"{promise}: {reason}") for promise, reason in origin.exceptions.items()),
         ("Seed", str(origin.seed)),
