@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import math
 import time
 from collections.abc import Iterator, Mapping, Sequence
@@ -17,7 +18,7 @@ from truing.declare.sources import Condition, Effect, Unknown
 from truing.errors import InfeasibleError, TruingError
 from truing.evaluate import acting_inputs, evaluate
 from truing.formulas import parse
-from truing.formulas.tree import Name, walk
+from truing.formulas.tree import walk
 from truing.setup import Setup, SwitchedOn
 from truing.studies.bench import Progress, silent
 from truing.studies.differences import exact_slopes, nominal_of, slopes
@@ -244,7 +245,7 @@ def made_from(model: Model[Any, Any]) -> Mapping[str, tuple[str, ...]]:
         formula = parse(field.spec.formula)
         scope = formula_scope(model, field)
         sides = [side for side in (formula.left, formula.right) if side is not None]
-        written = [node.name for side in sides for node in walk(side) if isinstance(node, Name)]
+        written = [node.id for side in sides for node in walk(side) if isinstance(node, ast.Name)]
         names = dict.fromkeys(scope[word].name for word in written if word in scope)
         links[name] = tuple(other for other in names if other != name)
     return links

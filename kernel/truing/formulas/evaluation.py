@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import operator
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -15,20 +16,7 @@ from pint.util import UnitsContainer
 from scipy.special import ndtr
 
 from truing.errors import DeclarationError, UnitError
-from truing.formulas.tree import (
-    CONSTANTS,
-    Binary,
-    Call,
-    Comparison,
-    Constant,
-    Formula,
-    Logic,
-    Name,
-    Negative,
-    Node,
-    NumberNode,
-    source,
-)
+from truing.formulas.tree import CONSTANTS, SIGNS, Formula, Node, source
 from truing.units import human_dimension
 from truing.units import registry as shared_registry
 
@@ -69,30 +57,29 @@ def _as_number(formula: Formula, name: str, values: Mapping[str, Any]) -> Any:
 def value_of(node: Node, values: Mapping[str, Any]) -> Any:
     """Compute one node from arrays; ``evaluate`` is the door for callers."""
     match node:
-        case NumberNode(_, value):
-            return np.float64(value)
-        case Constant(name):
-            return np.float64(CONSTANTS[name])
-        case Name(name):
-            return values[name]
-        case Negative(operand):
+        case ast.Constant(float() as number):
+            return np.float64(number)
+        case ast.Name(name):
+            return np.float64(CONSTANTS[name]) if name in CONSTANTS else values[name]
+        case ast.UnaryOp(_, operand):
             return -value_of(operand, values)
-        case Binary(sign, left, right):
-            return OPERATORS[sign](value_of(left, values), value_of(right, values))
-        case Call("cases", arguments):
+        case ast.BinOp(left, sign, right):
+            return OPERATORS[SIGNS[type(sign)]](value_of(left, values), value_of(right, values))
+        case ast.Call(ast.Name("cases"), arguments):
             result = value_of(arguments[-1], values)
             for case, condition in reversed(list(zip(arguments[:-1:2], arguments[1::2], strict=True))):
                 result = np.where(value_of(condition, values), value_of(case, values), result)
             return result
-        case Call(function, arguments):
+        case ast.Call(ast.Name(function), arguments):
             return FUNCTIONS[function](*(value_of(argument, values) for argument in arguments))
-        case Comparison(operators, operands):
-            sides = [value_of(operand, values) for operand in operands]
-            links = [OPERATORS[sign](sides[i], sides[i + 1]) for i, sign in enumerate(operators)]
+        case ast.Compare(first, signs, others):
+            sides = [value_of(operand, values) for operand in (first, *others)]
+            links = [OPERATORS[SIGNS[type(sign)]](sides[i], sides[i + 1]) for i, sign in enumerate(signs)]
             return np.logical_and.reduce(np.broadcast_arrays(*links))
-        case Logic(word, operands):
+        case ast.BoolOp(joint, operands):
             parts = np.broadcast_arrays(*(value_of(operand, values) for operand in operands))
-            return (np.logical_and if word == "and" else np.logical_or).reduce(parts)
+            return (np.logical_and if isinstance(joint, ast.And) else np.logical_or).reduce(parts)
+    raise AssertionError("parsing lets nothing else through")
 
 
 OPERATORS: Mapping[str, Callable[..., Any]] = {
@@ -201,34 +188,35 @@ class _Proof:
 
     def of(self, node: Node) -> UnitsContainer | None:
         match node:
-            case NumberNode(_, 0.0):
+            case ast.Constant(0.0):
                 return None
-            case Name(name):
+            case ast.Name(name) if name not in CONSTANTS:
                 return self.dimensions[name]
-            case Negative(operand):
+            case ast.UnaryOp(_, operand):
                 return self.of(operand)
-            case Binary(("+" | "-") as operator, left, right):
-                verb = "added" if operator == "+" else "subtracted"
-                return self.alike((left, right), f"'{source(node)}': what is {verb}")
-            case Binary("**", base, exponent):
+            case ast.BinOp(left, (ast.Add() | ast.Sub()) as sign, right):
+                verb = "added" if isinstance(sign, ast.Add) else "subtracted"
+                return self.alike((left, right), f"'{self.quoted(node)}': what is {verb}")
+            case ast.BinOp(base, ast.Pow(), exponent):
                 return self.power(node, base, exponent)
-            case Binary(operator, left, right):
+            case ast.BinOp(left, sign, right):
                 above, below = self.of(left), self.of(right)
                 if above is None:
                     return None
-                product: UnitsContainer = above * _power(below or PURE_NUMBER, Fraction(1 if operator == "*" else -1))
+                power = Fraction(1 if isinstance(sign, ast.Mult) else -1)
+                product: UnitsContainer = above * _power(below or PURE_NUMBER, power)
                 return product
-            case Call(function, arguments):
+            case ast.Call(ast.Name(function), arguments):
                 return self.call(node, function, arguments)
-            case Comparison(_, operands):
-                self.alike(operands, f"'{source(node)}': what is compared")
-            case Logic(_, operands):
+            case ast.Compare(first, _, others):
+                self.alike((first, *others), f"'{self.quoted(node)}': what is compared")
+            case ast.BoolOp(_, operands):
                 for operand in operands:
                     self.of(operand)
         return PURE_NUMBER
 
-    def call(self, node: Node, function: str, arguments: tuple[Node, ...]) -> UnitsContainer | None:
-        where = f"'{source(node)}'"
+    def call(self, node: Node, function: str, arguments: Sequence[Node]) -> UnitsContainer | None:
+        where = f"'{self.quoted(node)}'"
         if function == "cases":
             for condition in arguments[1::2]:
                 self.of(condition)
@@ -250,19 +238,22 @@ class _Proof:
             self.of(arguments[0])
         return PURE_NUMBER
 
+    def quoted(self, node: Node) -> str:
+        return source(self.formula, node)
+
     def pure(self, node: Node, sentence: str) -> None:
         if dimension := self.of(node):
-            self.fail(f"{sentence}, not {_spoken(dimension)} ('{source(node)}')")
+            self.fail(f"{sentence}, not {_spoken(dimension)} ('{self.quoted(node)}')")
 
     def power(self, node: Node, base: Node, exponent: Node) -> UnitsContainer | None:
-        self.pure(exponent, f"'{source(node)}': an exponent must be a pure number")
+        self.pure(exponent, f"'{self.quoted(node)}': an exponent must be a pure number")
         dimension = self.of(base)
         if not dimension:
             return dimension
         with np.errstate(all="ignore"):
             value = np.unique(np.asarray(value_of(exponent, self.magnitudes)))
         if value.size != 1 or not np.isfinite(value[0]):
-            self.fail(f"'{source(node)}': {_spoken(dimension)} is raised to a power that is not one finite number")
+            self.fail(f"'{self.quoted(node)}': {_spoken(dimension)} is raised to a power that is not one finite number")
         return _power(dimension, _exact(float(value[0])))
 
     def alike(self, nodes: Sequence[Node], sentence: str) -> UnitsContainer | None:
@@ -276,8 +267,8 @@ class _Proof:
                 first = (node, dimension)
             elif dimension != first[1]:
                 self.fail(
-                    f"{sentence} must have one dimension, but '{source(first[0])}' is {_spoken(first[1])} "
-                    f"and '{source(node)}' is {_spoken(dimension)}"
+                    f"{sentence} must have one dimension, but '{self.quoted(first[0])}' is {_spoken(first[1])} "
+                    f"and '{self.quoted(node)}' is {_spoken(dimension)}"
                 )
         return None if first is None else first[1]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum, IntEnum
@@ -10,19 +11,7 @@ from itertools import pairwise
 from typing import Final
 
 from truing.formulas.symbols import read_number, read_symbol
-from truing.formulas.tree import (
-    Binary,
-    Call,
-    Comparison,
-    Constant,
-    Formula,
-    Logic,
-    Name,
-    Negative,
-    Node,
-    NumberNode,
-    simplified,
-)
+from truing.formulas.tree import CONSTANTS, SIGNS, Formula, Node, simplified
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -119,29 +108,28 @@ class Layout:
     def piece(self, node: Node, *, bare: bool = True) -> Markup:
         """Set one node; ``bare`` lets a function stand without parentheses (``sin x``)."""
         match node:
-            case NumberNode(text, _):
+            case ast.Constant(_, str() as text):
                 return number_piece(text, self.writer.quantity(text, ""))
-            case Constant():
-                return Markup(self.writer.pi, Binding.ATOM)
-            case Name(name):
-                return self.leaf(name)
-            case Negative(operand):
+            case ast.Name(name):
+                return Markup(self.writer.pi, Binding.ATOM) if name in CONSTANTS else self.leaf(name)
+            case ast.UnaryOp(_, operand):
                 inner = self.at_least(operand, Binding.PRODUCT, signed=False)
                 return Markup(self.writer.minus(inner.markup), Binding.PRODUCT, negative=True)
-            case Binary(("+" | "-") as sign, left, right):
-                return self.sum(sign, left, right)
-            case Binary("*", _, _):
+            case ast.BinOp(left, (ast.Add() | ast.Sub()) as sign, right):
+                return self.sum(SIGNS[type(sign)], left, right)
+            case ast.BinOp(_, ast.Mult(), _):
                 return self.product(node)
-            case Binary("/", above, below):
+            case ast.BinOp(above, ast.Div(), below):
                 return Markup(self.writer.fraction(self.piece(above).markup, self.piece(below).markup), Binding.TIGHT)
-            case Binary(_, base, exponent):
+            case ast.BinOp(base, _, exponent):
                 return self.power(base, exponent, bare=bare)
-            case Call(function, arguments):
+            case ast.Call(ast.Name(function), arguments):
                 return self.call(function, arguments, bare=bare)
-            case Comparison(signs, operands):
-                return self.comparison(signs, operands)
-            case Logic(word, operands):
-                return self.logic(word, operands)
+            case ast.Compare(first, signs, others):
+                return self.comparison(first, [SIGNS[type(sign)] for sign in signs], others)
+            case ast.BoolOp(joint, operands):
+                return self.logic(SIGNS[type(joint)], operands)
+        raise AssertionError("parsing lets nothing else through")
 
     def leaf(self, name: str) -> Markup:
         """Set what stands for a quantity: its number, its symbol, else its name as a word."""
@@ -183,15 +171,16 @@ class Layout:
     def power(self, base: Node, exponent: Node, *, bare: bool) -> Markup:
         """Set a power: on the name of sin and its like, beside a subscript, or on a base in parentheses."""
         raised = self.piece(exponent).markup
-        if isinstance(base, Call) and base.function in SQUARED_ON_NAME and is_small_count(exponent):
-            return self.applied(self.function(base.function, raised), base.arguments[0], may_be_bare=bare)
-        symbol = self.symbols.get(base.name) if isinstance(base, Name) and self.numbers is None else None
+        match base:
+            case ast.Call(ast.Name(function), arguments) if function in SQUARED_ON_NAME and is_small_count(exponent):
+                return self.applied(self.function(function, raised), arguments[0], may_be_bare=bare)
+        symbol = self.symbols.get(base.id) if isinstance(base, ast.Name) and self.numbers is None else None
         if symbol and read_symbol(symbol).is_plain:
             return Markup(self.writer.symbol(symbol, raised), Binding.TIGHT)
         below = self.at_least(base, Binding.ATOM, signed=False)
         return Markup(self.writer.power(below.markup, raised), Binding.TIGHT, begins=below.begins)
 
-    def call(self, function: str, arguments: tuple[Node, ...], *, bare: bool) -> Markup:
+    def call(self, function: str, arguments: Sequence[Node], *, bare: bool) -> Markup:
         """Set a function, a root, absolute bars, or alternatives."""
         if function == "cases":
             return self.cases(arguments)
@@ -221,20 +210,20 @@ class Layout:
             return Markup(self.writer.applied_bare(head, piece.markup), Binding.TIGHT)
         return Markup(self.writer.applied(head, self.writer.parenthesised(piece.markup)), Binding.TIGHT)
 
-    def comparison(self, signs: tuple[str, ...], operands: tuple[Node, ...]) -> Markup:
+    def comparison(self, first: Node, signs: Sequence[str], others: Sequence[Node]) -> Markup:
         """Set a condition: a comparison or a chain of them."""
-        markup = self.at_least(operands[0], Binding.SUM).markup
-        for sign, operand in zip(signs, operands[1:], strict=True):
+        markup = self.at_least(first, Binding.SUM).markup
+        for sign, operand in zip(signs, others, strict=True):
             markup = self.writer.infix(markup, sign, self.at_least(operand, Binding.SUM).markup)
         return Markup(markup, Binding.COMPARISON)
 
-    def logic(self, word: str, operands: tuple[Node, ...]) -> Markup:
+    def logic(self, word: str, operands: Sequence[Node]) -> Markup:
         """Set conditions joined by and/or."""
         level = Binding.AND if word == "and" else Binding.OR
         markups = [self.at_least(operand, level).markup for operand in operands]
         return Markup(reduce(lambda left, right: self.writer.infix(left, word, right), markups), level)
 
-    def cases(self, arguments: tuple[Node, ...]) -> Markup:
+    def cases(self, arguments: Sequence[Node]) -> Markup:
         """Set alternatives behind a brace."""
         rows = [
             (self.piece(value).markup, self.writer.condition(self.piece(condition).markup))
@@ -245,8 +234,8 @@ class Layout:
 
     def either(self, first: Node, second: Node) -> Markup:
         """Set "the first if it is given, otherwise the second"; with numbers at hand only the one that counts."""
-        if self.numbers is not None and isinstance(first, Name) and first.name in self.numbers:
-            return self.piece(first if read_number(self.numbers[first.name][0]) is not None else second)
+        if self.numbers is not None and isinstance(first, ast.Name) and first.id in self.numbers:
+            return self.piece(first if read_number(self.numbers[first.id][0]) is not None else second)
         rows = [
             (self.piece(first).markup, self.writer.prose("if given")),
             (self.piece(second).markup, self.writer.prose("otherwise")),
@@ -257,7 +246,7 @@ class Layout:
 def factors(node: Node) -> list[Node]:
     """Return what a product multiplies, in order."""
     match node:
-        case Binary("*", left, right):
+        case ast.BinOp(left, ast.Mult(), right):
             return factors(left) + factors(right)
     return [node]
 
@@ -265,16 +254,16 @@ def factors(node: Node) -> list[Node]:
 def begins_with_function(node: Node) -> bool:
     """Tell whether a factor begins with the name of a function, so that ``sin x cos y`` cannot be misread."""
     match node:
-        case Call(function, _):
+        case ast.Call(ast.Name(function), _):
             return function in MAY_BE_BARE
-        case Binary("**", Call(function, _), exponent):
+        case ast.BinOp(ast.Call(ast.Name(function), _), ast.Pow(), exponent):
             return function in SQUARED_ON_NAME and is_small_count(exponent)
     return False
 
 
 def is_small_count(exponent: Node) -> bool:
     """Tell whether an exponent may stand on a function's name: a whole number (-1 would be an inverse)."""
-    return isinstance(exponent, NumberNode) and exponent.text.isdigit()
+    return isinstance(exponent, ast.Constant) and (exponent.kind or "").isdigit()
 
 
 def number_piece(text: str, markup: str, *, unit: str = "") -> Markup:
