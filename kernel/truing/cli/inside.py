@@ -11,8 +11,8 @@ from typing import Any
 import typer
 
 from truing.cli.candidates import OfferedWord
+from truing.declare.fields import Loaded
 from truing.declare.model import Model
-from truing.declare.specs import Loaded
 from truing.inputs_file.entries import sections
 from truing.kernel import Kernel, Offer
 

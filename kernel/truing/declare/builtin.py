@@ -28,9 +28,8 @@ import numpy as np
 
 from truing.declare.batch import column
 from truing.declare.declared import Declared
-from truing.declare.fields import InputField, ResultField, read, with_values
+from truing.declare.fields import Axis, Float, InputField, ResultField, read, with_values
 from truing.declare.sources import SINCE_START, Condition, Effect, Tolerance, Unknown
-from truing.declare.specs import Axis, Float
 from truing.units import difference_unit, same_dimension, to_si
 from truing.units.names import LEVELS, PURE
 

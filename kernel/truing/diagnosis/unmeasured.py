@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 
 from truing.arrays import Matrix
+from truing.declare.fields import Axis
 from truing.declare.goals import Maximise, Minimise, Require
-from truing.declare.specs import Axis
 from truing.diagnosis.choice import Chosen
 from truing.diagnosis.design import NextPoints, is_physical, name_of, rival_fits
 from truing.diagnosis.extended import switched_on

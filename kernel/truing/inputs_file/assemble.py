@@ -8,10 +8,9 @@ import sys
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any
 
-from truing.declare.fields import InputField, make
+from truing.declare.fields import Given, InputField, make
 from truing.declare.model import Model, Study
 from truing.declare.sources import Effect, Unknown
-from truing.declare.specs import Given
 from truing.declare.spreads import ByChoice, Drawn, Off, Spread, Target
 from truing.errors import Fault, TruingError
 from truing.inputs_file.document import InputsDocument

@@ -9,11 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from truing.declare.fields import InputField
+from truing.declare.fields import Given, InputField, Loaded
 from truing.declare.model import Model
 from truing.declare.near_miss import near_miss
 from truing.declare.sources import Condition, Effect, Tolerance, Unknown
-from truing.declare.specs import Given, Loaded
 from truing.declare.spreads import read_spread
 from truing.errors import UnitError
 from truing.inputs_file.assemble import default_of, renamed, spread_text

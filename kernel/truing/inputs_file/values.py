@@ -12,9 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from truing.declare.fields import InputField
+from truing.declare.fields import Given, InputField, Loaded
 from truing.declare.near_miss import near_miss
-from truing.declare.specs import Given, Loaded
 from truing.errors import TruingError, UnitError
 from truing.units import from_si, human_dimension, read_quantity, to_si
 from truing.units.grammar import shown
