@@ -10,9 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from truing.declare.fields import Axis, InputField, with_values
+from truing.declare.fields import Axis, Given, InputField, with_values
 from truing.declare.sources import Condition, Unknown
-from truing.declare.specs import Given
 from truing.errors import InfeasibleError, PluginError, TruingError
 from truing.evaluate import Rows, evaluate, evaluate_rows
 from truing.executors import in_order, open_executor
