@@ -177,9 +177,6 @@ def require_catalogue(drive: Drive) -> Polyline:
     return printed or Polyline(np.nan, np.nan, (np.nan, np.nan, np.nan))
 
 
-# From rough flanks to the stiffness of one pair, of the mesh and of the drive
-
-
 @dataclass(frozen=True)
 class Around:
     """What is in series with the mesh."""

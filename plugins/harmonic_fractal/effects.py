@@ -286,8 +286,6 @@ def modulus_temperature(drive: Drive, *, softening: Float, temperature: Float) -
     return replace(drive, modulus_factor=drive.modulus_factor * left)
 
 
-# What the rough flanks leave out of the torsion and the stiffness of a drive, or of a measured surface
-#
 # They act in the order declared: first what changes flanks, pairs and springs, then what is added to the torsion, then
 # the surface, then the readings. A new effect is a function beside the others and one more entry in EFFECTS.
 

@@ -324,8 +324,6 @@ def span_of(shortest: float, longest: float) -> str:
     return f"{shortest * 1e6:.4g} um to {longest * 1e6:.4g} um"
 
 
-# From the lines of a surface to fractal dimension and roughness: settings, and what was found
-
 FEWEST_POINTS = 64  # of a line
 FEWEST_LAGS = 8
 FEWEST_PAIRS = 100

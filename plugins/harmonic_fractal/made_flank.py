@@ -240,8 +240,6 @@ def _demands(made: Made, truth: Truth) -> Iterator[tuple[bool, str]]:
     yield bool(waves * sum(shape) <= MOST_WAVES), told
 
 
-# A flank is made, looked at, and its dimension and roughness are found again
-
 ROWS = 20  # lags of the table
 
 

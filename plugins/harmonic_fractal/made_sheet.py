@@ -107,8 +107,6 @@ def _local_slopes(panel: Any, truth: Truth, exact: DrawnCurve, found: Estimate) 
     panel.legend(loc="best")
 
 
-# The sheet of a made flank
-
 MadeRun = Record[Made, MadeFlank]
 
 FOUND_AGAIN = (
@@ -231,8 +229,6 @@ SECTIONS = [
     ),
 ]  # fmt: skip
 
-
-# A made flank as truing knows it: function, study and sheet
 
 LITERATURE = [
     "Majumdar, A., Tien, C. L., Fractal characterization and simulation of rough surfaces, Wear 136 (1990), p. 313.",

@@ -72,8 +72,6 @@ def engagement_of(drive: Drive) -> Engagement:
     return Engagement(start=drive.engaged_factor, gain=drive.engaged_gain, scale=drive.engaged_torque)
 
 
-# All engaged pairs of teeth together: who carries how much, and how stiff the mesh is
-
 CHUNK = 2**14  # numbers at a time: they stay in the cache, and memory stays flat
 
 

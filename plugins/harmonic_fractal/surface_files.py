@@ -437,8 +437,6 @@ def _filter(topography: Any) -> float:
     return width if width > 0.0 else NAN
 
 
-# Surfaces from files: texts by our own reader, profilometer formats through an optional library
-
 FORMATS_IN_TEXT = {".sdf"}  # those of the library that may be written in letters and digits
 ASK_UNIT = (
     'the unit of the heights is not stated: write height_unit = "um", or the length of one count where the file counts '

@@ -22,8 +22,6 @@ from press_linkage.kinematics import Half, crank_at, cycle_demands, nominal, sma
 from press_linkage.quantities import Cycle, ErrorInfluence, Press, PressChances, Synthesis
 from truing import Allocation, Allotted, Bench, Odds, Outcome, Sensitivities, Swept, Table, feasible
 
-# What each study gives back as results of the press linkage
-
 EVERY = (*KINDS, "platform_arm")
 KEY_TILT = (
     "slider_joint_angle", "ground_pivot_angle", "lower_knee_length", "upper_knee_length", "knee_drive_length",

@@ -209,8 +209,6 @@ def slider_inertia(press: Press, *, mass_compliance: Float, speed: Float) -> Pre
     return pressed(press, position, mass_compliance * by_angle * (TURN * speed) ** 2)
 
 
-# What the mechanism of the paper leaves out, each acting on the deviations of the press
-#
 # They act in the order declared: heat, then errors of the crank angle, then load, so that the load meets the position
 # in which the press really is. A new effect is a function beside the others and one more entry in EFFECTS.
 

@@ -212,8 +212,6 @@ def viscosity(temperature: Float) -> Float:
     return found
 
 
-# What the paper leaves out of the pair, and what is measured of it that is 0 in the calculation
-#
 # They act in the order declared: first what changes the load of a tooth or the place of the parts, then what is added
 # to a result. A new effect is a function beside the others and one more entry in EFFECTS.
 

@@ -17,8 +17,6 @@ TOLERANCES = [
 ]
 
 
-# The pair of roller and ring as truing knows it: function, error sources, goals, studies and sheet
-
 LITERATURE = [
     "The paper: Gao Yang, Yang Jiajun, Liang Han, Deng Bo, Zhu Jisheng (高揚, 楊家軍, 梁漢, 鄧波, 朱繼生), "
     "Optimization of Planetary Roller Screw Gear Modification Coefficient, Journal of Hubei University of Technology "

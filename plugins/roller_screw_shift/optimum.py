@@ -282,8 +282,6 @@ def stress_factor(field: Field, weights: Three, shift: float) -> float | None:
     return float(10.0**high)
 
 
-# A study of our own: the shift that the paper's weighed objectives prefer among those that keep every limit
-
 FOUND = "found"
 BEFORE = 2  # steps before the variants: the field, and Box's search with the grid beside it
 SCREWS = 8192  # drawn to tell what scatter leaves of the margins

@@ -7,8 +7,6 @@ from typing import Literal
 
 from truing import Float, found, given, inputs, results
 
-# What the roller screw calculation is told: every quantity with unit, symbol, bounds and source
-#
 # The roller (external end gear) and the ring (internal gear) are named; no index is used, because those of the paper
 # contradict one another. A shift of the ring is positive outward.
 

@@ -127,8 +127,6 @@ def weights(record: "PairRun") -> "Sequence[Block]":
     return [*blocks, variants_table(chosen, field)]
 
 
-# The sheet, in the order an engineer reads it
-
 SECTIONS = [
     Section(
         "Roller and ring",

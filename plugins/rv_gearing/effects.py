@@ -258,8 +258,6 @@ def mesh_stiffening(stage: Gearing, strength: Strength, *, share: Float) -> Stre
     return with_error(strength, share * load.direction * deflection)
 
 
-# What the rating of the first stage leaves out, and what is measured of the stage that it does not calculate
-#
 # They act in the order declared: first what changes the load of a tooth, then what is added to a result. A new effect
 # is a function beside the others and one more entry in EFFECTS.
 

@@ -195,9 +195,6 @@ def _here(record: "GearingRun", over: str) -> float:
     return float(value) if np.ndim(value) == 0 else float("nan")
 
 
-# The sheet, in the order in which an engineer rates a stage
-
-
 def both(*names: str) -> tuple[str, ...]:
     """The results of sun and planet by name."""
     return tuple(chain.from_iterable((f"{name}_sun", f"{name}_planet") for name in names))

@@ -175,8 +175,6 @@ def duty_share(reducer: Reducer, *, idle: Float) -> Reducer:
     return replace(reducer, loaded_share=reducer.loaded_share * (1.0 - idle))
 
 
-# What the paper leaves out of the wear and the backlash of a reducer, or of their measurement
-#
 # They act in the order declared: first what changes the clearance, then what changes the wear and what is felt of it,
 # then what is in the reading alone. A new effect is a function beside the others and one more entry in EFFECTS.
 

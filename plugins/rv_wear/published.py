@@ -5,8 +5,6 @@ from typing import Literal
 
 from truing import Finding, Published
 
-# What the paper prints, for comparison with what this calculation gives under the same settings
-
 WearObtained = Literal["predicted", "calibrated"]
 WearRow = tuple[str, str, str, str]  # name, result, as printed, unit
 

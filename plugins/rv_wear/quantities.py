@@ -4,8 +4,6 @@ from typing import Literal
 
 from truing import Float, found, given, inputs, results
 
-# What the reducer calculation is told: every quantity with unit, symbol, bounds and source
-
 PAPER = "section 1.5 of the paper"
 INDICES = "follows from the indices of Table 2; Table 1 is lost"
 CATALOGUE = "known of reducers of this size; Table 1 is lost"

@@ -175,8 +175,6 @@ def _beside_the_paper(fronts: Fronts) -> str:
     return " ".join(said)
 
 
-# The sheet, in the order an engineer reads it
-
 SECTIONS = [
     Section(
         "Disc and pins",
