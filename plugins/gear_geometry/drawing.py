@@ -8,10 +8,10 @@ BLUE, ORANGE, GREEN, INK, GREY, PALE = "#1f5a8a", "#c8641e", "#2f6b4f", "#22262b
 WIDTH = 6.4
 
 
-def panels(rows: int, height: float, **options: Any) -> tuple[Figure, Any]:
-    """Return a figure as wide as the sheet with panels below one another, or with one panel by itself."""
+def panels(rows: int, height: float, columns: int = 1, **options: Any) -> tuple[Figure, Any]:
+    """Return a figure as wide as the sheet with its panels, or with the one panel that there is."""
     figure = Figure(figsize=(WIDTH, height), layout="constrained")
-    return figure, figure.subplots(rows, 1, **options)
+    return figure, figure.subplots(rows, columns, **options)
 
 
 def quiet(panel: Any, x_label: str = "", y_label: str = "", *, axis: str = "both", alpha: float = 0.4) -> None:

@@ -3,7 +3,6 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gear_geometry.roots import Fillet, gap_offset, notch
 from roller_screw_shift import geometry as geo
@@ -15,12 +14,12 @@ from roller_screw_shift.strength import (
     acting,
     is_cut,
     load_of,
-    ring_rack,
+    rack_of,
     ring_tooth,
     roller_fillet,
     roller_tooth,
 )
-from truing import Float, feasible
+from truing import feasible
 
 # What a pair needs before it can be calculated: the sentence names the inputs and what to do
 
@@ -34,12 +33,12 @@ def require_pair(pair: Pair, geometry: Geometry) -> None:
         f"the formulas hold for ring_teeth at least {FEWEST} above roller_teeth: enlarge ring_teeth",
     )
     feasible(
-        _real(geometry.working_angle),
+        np.asarray(geometry.working_angle) > 0.0,
         "the base circles are farther apart than the centres: centre_distance must exceed "
         "module * (ring_teeth - roller_teeth) * cos(pressure_angle) / 2",
     )
     feasible(
-        _real(geometry.mounted_angle),
+        np.asarray(geometry.mounted_angle) > 0.0,
         "the base circles are farther apart than the centres as mounted: centre_distance + centre_distance_deviation "
         "must exceed module * (ring_teeth - roller_teeth) * cos(pressure_angle) / 2",
     )
@@ -61,7 +60,8 @@ def require_pair(pair: Pair, geometry: Geometry) -> None:
 
 def require_roots(pair: Pair, roller: Tooth, ring: Tooth, fillet: Fillet) -> None:
     """Refuse teeth without a critical section; ``fillet`` is that of the rack of the roller."""
-    for gear, offset, cut in (("roller", fillet.offset, False), ("ring", gap_offset(ring_rack(pair)), is_cut(pair))):
+    of_ring = gap_offset(rack_of(pair, pair.ring_fillet))
+    for gear, offset, cut in (("roller", fillet.offset, False), ("ring", of_ring, is_cut(pair))):
         feasible(
             cut | (np.asarray(offset) >= 0.0),
             f"the rack of the {gear} is pointed before it is round: reduce {gear}_fillet, addendum or clearance",
@@ -91,12 +91,6 @@ def require_roots(pair: Pair, roller: Tooth, ring: Tooth, fillet: Fillet) -> Non
             tooth.arm.height > 0.0,
             f"the load at the tip of the {gear} has no arm about its root: enlarge addendum or clearance",
         )
-
-
-def _real(angle: Float) -> NDArray[np.bool_]:
-    """Whether an angle exists and is one of a pair that turns."""
-    real: NDArray[np.bool_] = np.asarray(angle) > 0.0
-    return real
 
 
 # From the profile shift to geometry, objectives and constraints; one call answers for thousands of shifts

@@ -75,28 +75,19 @@ class Tooth:
     stress: Float
 
 
-def roller_rack(pair: Pair) -> Rack:
-    """Return the rack that makes the roller."""
-    return _rack(pair, pair.roller_fillet)
-
-
-def ring_rack(pair: Pair) -> Rack:
-    """Return the rack that stands for the tooth of the ring."""
-    return _rack(pair, pair.ring_fillet)
-
-
-def _rack(pair: Pair, fillet: Float) -> Rack:
+def rack_of(pair: Pair, fillet: Float) -> Rack:
+    """Return the rack that makes the roller, or stands for the tooth of the ring, by its fillet."""
     return Rack(dedendum=pair.addendum + pair.clearance, fillet=fillet, pressure_angle=pair.pressure_angle)
 
 
 def roller_fillet(pair: Pair) -> Fillet:
     """Return how the rounding of the rack lies to the roller."""
-    return fillet_of(roller_rack(pair), pair.roller_teeth, pair.roller_shift)
+    return fillet_of(rack_of(pair, pair.roller_fillet), pair.roller_teeth, pair.roller_shift)
 
 
 def roller_tooth(pair: Pair) -> Tooth:
     """Return the tooth of the roller: made by a rack, section at the tangent of 30 degrees. Source: ISO 6336-3."""
-    rack, teeth, shift = roller_rack(pair), pair.roller_teeth, pair.roller_shift
+    rack, teeth, shift = rack_of(pair, pair.roller_fillet), pair.roller_teeth, pair.roller_shift
     root = external_root(rack, teeth, shift)
     return _tooth(pair, root, external_arm(rack, teeth, shift, root, teeth + 2.0 * (pair.addendum + shift)))
 
@@ -106,7 +97,7 @@ def ring_tooth(pair: Pair, geometry: Geometry) -> Tooth:
 
     Sources: GB/T 3480-1997 (as DIN 3990-3), section at the tangent of 30 degrees; ISO 6336-3, at that of 60 degrees.
     """
-    rack = ring_rack(pair)
+    rack = rack_of(pair, pair.ring_fillet)
     root = ring_root(rack)
     arm = ring_arm(rack, root, pair.addendum)
     cut = is_cut(pair)

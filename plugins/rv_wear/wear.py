@@ -573,30 +573,11 @@ TOO_FEW = (
 )
 
 
-@dataclass(frozen=True)
-class Worn:
-    """Forces and pressures of the unworn mesh; of the flank that is loaded longer, the deepest wear (m) and its place.
+def worn(reducer: Reducer) -> dict[str, Float]:
+    """Forces of the new mesh and wear of the disc by their results, each a number or an array (n,), in any mixture.
 
-    ``felt`` is the mean of both flanks as the backlash feels it (m).
+    The deepest wear is that of the flank that is loaded longer; what the backlash feels is the mean of both.
     """
-
-    disc_torque: Float
-    start_force: Float
-    max_force: Float
-    approach: Float
-    largest_force: Float
-    loaded_pins: Float
-    max_pressure: Float
-    equidistant_low: Float
-    mesh_period: Float
-    coefficient: Float
-    depth: Float
-    angle: Float
-    felt: Float
-
-
-def worn(reducer: Reducer) -> Worn:
-    """Forces of the new mesh and wear of the disc, every Float a number or an array (n,), in any mixture."""
     meshes = meshes_of(reducer)
     new = all_unworn(meshes.mesh, meshes.count)
     oil = oil_part(reducer)
@@ -610,21 +591,21 @@ def worn(reducer: Reducer) -> Worn:
     other = depth if np.ndim(duty) == 0 and duty == 1.0 else depth_at(meshes, new, exposure * duty)[0]
     beside = reducer.extra_wear * np.where(np.asarray(duty) > 0.0, 1.0, 0.5)
     share = reducer.lost_motion_share * (1.0 + reducer.pin_wear_ratio)
-    return Worn(
-        disc_torque=reducer.torque_share * reducer.output_torque,
-        start_force=mesh_of(reducer).start_force,
-        max_force=meshes.to_rows(new.scale),
-        approach=approach,
-        largest_force=meshes.to_rows(new.largest_force),
-        loaded_pins=pins,
-        max_pressure=meshes.to_rows(new.pressure),
-        equidistant_low=meshes.to_rows(new.lowest_equidistant),
-        mesh_period=1.0 / (reducer.output_speed * reducer.pin_count),
-        coefficient=oil * meshes.to_rows(new.contact_part),
-        depth=reducer.depth_factor * depth + reducer.extra_wear,
-        angle=angle,
-        felt=share * (reducer.depth_factor * (depth + other) / 2.0 + beside),
-    )
+    return {
+        "equidistant_low": meshes.to_rows(new.lowest_equidistant),
+        "disc_torque": reducer.torque_share * reducer.output_torque,
+        "start_force": mesh_of(reducer).start_force,
+        "max_force": meshes.to_rows(new.scale),
+        "approach": approach,
+        "largest_force": meshes.to_rows(new.largest_force),
+        "loaded_pins": pins,
+        "max_pressure": meshes.to_rows(new.pressure),
+        "mesh_period": 1.0 / (reducer.output_speed * reducer.pin_count),
+        "coefficient": oil * meshes.to_rows(new.contact_part),
+        "max_wear": reducer.depth_factor * depth + reducer.extra_wear,
+        "wear_angle": angle,
+        "backlash_wear": share * (reducer.depth_factor * (depth + other) / 2.0 + beside),
+    }
 
 
 def meshes_of(reducer: Reducer) -> Meshes:
