@@ -318,7 +318,7 @@ def interface(record: "DriveRun") -> "Sequence[Block]":
 def _both(record: "DriveRun") -> Table:
     drive = record.acting
     first, second = flanks_of(drive)
-    mating = (None, None, "smooth")
+    mating: tuple[float | None, float | None, str] = (None, None, "smooth")
     if second is not None:
         mating = (float(second.dimension), float(second.roughness), _origin(drive.mating_surface))
     rows = [

@@ -371,24 +371,16 @@ def _notched(record: "GearingRun", stage: "Gearing", name: str) -> Notched:
     higher = (number(record, f"tip_diameter_{name}") - number(record, f"reference_diameter_{name}")) / module
     tip = teeth + higher
     root = external_root(rack, teeth, shift)
-    outer = _single(rack, teeth, tip, number(record, "virtual_contact_ratio"))
+    outer = number(record, f"outer_diameter_{name}") / module
+    has_single = 1.0 < number(record, "virtual_contact_ratio") < 2.0  # else two pairs always carry
     return Notched(
         name=name,
         outline=tooth(rack, teeth, shift, 0.5 * tip),
         root=root,
         tip=(tip, external_arm(rack, teeth, shift, root, tip)),
-        single=None if outer is None else (outer, external_arm(rack, teeth, shift, root, outer)),
+        single=(outer, external_arm(rack, teeth, shift, root, outer)) if has_single else None,
         module=MM * module,
     )
-
-
-def _single(rack: Rack, teeth: float, tip: float, contact_ratio: float) -> float | None:
-    """Diameter at the outer point of single contact, in modules; None where two pairs always carry."""
-    if not 1.0 < contact_ratio < 2.0:
-        return None
-    base, pitch = teeth * np.cos(rack.pressure_angle), np.pi * np.cos(rack.pressure_angle)
-    along = 0.5 * np.sqrt(tip**2 - base**2) - pitch * (contact_ratio - 1.0)
-    return float(np.hypot(2.0 * along, base))
 
 
 def root_figure(teeth: tuple[Notched, Notched]) -> "Figure":
