@@ -329,7 +329,7 @@ MUTANTS: tuple[Mutant, ...] = (
     ),
     *changes(
         "plugins/rv_wear/calculation.py", "published/test_rv_wear_backlash.py",
-        ("wear=2.0 * felt_wear / arm", "wear=felt_wear / arm"),
+        (", 2.0 * felt_wear / arm", ", felt_wear / arm"),
         ("involute - reducer.base_tangent_error", "involute + reducer.base_tangent_error"),
     ),
     *changes(

@@ -36,8 +36,7 @@ def viscosity_at(temperature: Float, at_forty: Float) -> Float:
     The temperature in K. For mineral oils of viscosity index about 95, 0 to 150 degC; others have another slope.
     Reference: ASTM D341.
     """
-    found: Float = 10.0 ** (np.log10(at_forty + ADDED) * (temperature / FORTY) ** -SLOPE) - ADDED
-    return found
+    return 10.0 ** (np.log10(at_forty + ADDED) * (temperature / FORTY) ** -SLOPE) - ADDED
 
 
 def wave(angle: Float, cosine: Float, sine: Float) -> Float:

@@ -87,8 +87,7 @@ def held_share(
     sense = np.sign(direction)
     way = np.abs(drive.torque - reversal_torque) / (torque_scale * rated_torque(drive))
     is_first = (drive.torque >= peak_torque) & (sense > 0.0)
-    share: Float = sense * np.where(is_first, -np.expm1(-2.0 * way), 1.0 - 2.0 * np.exp(-way))
-    return share
+    return sense * np.where(is_first, -np.expm1(-2.0 * way), 1.0 - 2.0 * np.exp(-way))
 
 
 def hysteresis(
@@ -134,8 +133,7 @@ def viscous_hysteresis(
 
 def crossed(drive: Drive, torque_scale: Float) -> Float:
     """Return the share of a play that is crossed, in the sense of the torque; the scale is in parts of T_2."""
-    share: Float = np.tanh(drive.torque / (torque_scale * rated_torque(drive)))
-    return share
+    return np.tanh(drive.torque / (torque_scale * rated_torque(drive)))
 
 
 def lost_motion(drive: Drive, results: Stiffness, *, play: Float, torque_scale: Float) -> Stiffness:

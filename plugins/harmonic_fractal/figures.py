@@ -510,7 +510,7 @@ def torsions(drive: "Drive", printed: Polyline, torque: Array) -> tuple[Array, A
     mesh = mesh_of(drive, contact_of(drive, interface_of(drive)))
     whole, rough = mesh_torsion(torque, drive.reference_torque, mesh)
     beyond = np.maximum(torque - drive.reference_torque, 0.0)
-    model = whole + around_of(drive).compliance * beyond
+    model = whole + around_of(drive)["series_compliance"] * beyond
     return np.asarray(rough), np.asarray(model), np.asarray(printed.torsion(torque))
 
 
@@ -538,7 +538,7 @@ def torsion(record: "DriveRun") -> "Sequence[Block]":
             ("torque", "roughness alone", "this model", f"catalogue, {name}", "share of roughness"), rows,
             ("N*m", "urad", "urad", "urad", "%"),
         ),
-        Words(_conclusion(100.0 * float(np.max(rough / known)), float(around_of(drive).compliance))),
+        Words(_conclusion(100.0 * float(np.max(rough / known)), float(around_of(drive)["series_compliance"]))),
     ]  # fmt: skip
 
 

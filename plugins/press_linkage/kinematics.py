@@ -161,8 +161,8 @@ def built(press: Press, crank: tuple[Float, Float], off: PressSide, *, mirror: f
     ground = np.cos(press.ground_pivot_angle), np.sin(press.ground_pivot_angle)
 
     def length(kind: str) -> Float:
-        made: Float = getattr(press, kind) + getattr(off, f"{kind}_deviation")
-        return made
+        value: Float = getattr(press, kind) + getattr(off, f"{kind}_deviation")
+        return value
 
     return Parts(
         pivot=Polar(length("crank_pivot_radius"), *cosine_and_sine(mirror * off.crank_pivot_angle_deviation)),

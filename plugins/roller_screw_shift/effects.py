@@ -198,8 +198,8 @@ def mean_friction(pair: Pair, meshing: Meshing, pitch_speed: Float, temperature:
     line_load = 1e-3 * load_of(pair).tangential_force / (np.cos(pair.pressure_angle) * pair.face_width)  # N/mm
     together = 2.0 * pitch_speed * sine
     oil = (DENSITY * viscosity(temperature)) ** -0.05
-    mean: Float = 0.048 * (line_load / (together * radius_mm)) ** 0.2 * oil * ROUGHNESS**0.25
-    return mean
+    value: Float = 0.048 * (line_load / (together * radius_mm)) ** 0.2 * oil * ROUGHNESS**0.25
+    return value
 
 
 def viscosity(temperature: Float) -> Float:

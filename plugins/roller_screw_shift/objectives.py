@@ -139,8 +139,7 @@ def normalised(value: Float, reach: Range) -> Float:
     if not (low < high and np.isfinite(high - low)):
         raise TruingError(f"an objective from {low:g} to {high:g} cannot be brought to 0 to 1: its range has no width")
     turn = 2.0 * np.pi * np.clip((value - low) / (high - low), 0.0, 1.0)
-    curve: Float = (turn - np.sin(turn)) / (2.0 * np.pi)
-    return curve
+    return (turn - np.sin(turn)) / (2.0 * np.pi)
 
 
 def weight(reach: Range) -> float:

@@ -675,22 +675,19 @@ BOX = "Box's complex method on the weighed sum"
 DRAWN = "8192 screws drawn from the tolerances in force"
 
 
-def weight(symbol: str, of: str, unit: str) -> float:
+def weight(symbol: str, of: str, unit: str) -> Any:
     """Declare a weight."""
-    declared: float = found(unit, symbol=symbol, note=f"weight of the {of}", method=RULE, source="the paper")
-    return declared
+    return found(unit, symbol=symbol, note=f"weight of the {of}", method=RULE, source="the paper")
 
 
-def reach(symbol: str, what: str, unit: str = "") -> float:
+def reach(symbol: str, what: str, unit: str = "") -> Any:
     """Declare an end of the range of an objective."""
-    declared: float = found(unit, symbol=symbol, note=what, method=KEPT)
-    return declared
+    return found(unit, symbol=symbol, note=what, method=KEPT)
 
 
-def optimal(symbol: str, what: str, unit: str = "") -> float:
+def optimal(symbol: str, what: str, unit: str = "") -> Any:
     """Declare a number at the optimum."""
-    declared: float = found(unit, symbol=symbol, note=f"{what} at the optimum", method=BOX)
-    return declared
+    return found(unit, symbol=symbol, note=f"{what} at the optimum", method=BOX)
 
 
 @results

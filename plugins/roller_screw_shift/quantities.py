@@ -3,7 +3,7 @@
 Index E is the roller (an external gear), index I the ring (an internal one). A margin above 0 is safe.
 """
 
-from typing import Literal
+from typing import Any, Literal
 
 from truing import Float, found, given, inputs, results
 
@@ -19,10 +19,9 @@ LOST_LIMIT = "the limit in equation 8 is lost; 1.2 is the common alternative"
 LARGEST = 10000.0  # mm: a size above it was meant in another unit
 
 
-def size(value: float, symbol: str, note: str, source: str = SET) -> float:
+def size(value: float, symbol: str, note: str, source: str = SET) -> Any:
     """Declare a length, above zero."""
-    declared: float = given(value, "mm", symbol=symbol, note=note, source=source, above=0, below=LARGEST)
-    return declared
+    return given(value, "mm", symbol=symbol, note=note, source=source, above=0, below=LARGEST)
 
 
 @inputs

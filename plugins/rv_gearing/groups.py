@@ -374,10 +374,9 @@ SCATTER = 0.004  # of the efficiency of a bearing: four standard deviations of i
 CONDITIONS = "meets all five conditions of section 2 of the paper"
 
 
-def listing(symbol: str, note: str, unit: str = "", source: str = "") -> float:
+def listing(symbol: str, note: str, unit: str = "", source: str = "") -> Any:
     """Declare a column of the list."""
-    declared: float = found(unit, symbol=symbol, along="group_number", note=note, source=source)
-    return declared
+    return found(unit, symbol=symbol, along="group_number", note=note, source=source)
 
 
 @results

@@ -48,13 +48,12 @@ class History:
                                     method="equation 21 with the wear at each time")  # fmt: skip
 
 
-def index(number: int, what: str) -> float:
+def index(number: int, what: str) -> Any:
     """Declare the sensitivity index of one factor."""
-    declared: float = found(
+    return found(
         "", symbol=f"s_{number}", note=f"{number}: {what}", source="equation 24",
         method="derivative of equation 21, divided by that of factor 6",
     )  # fmt: skip
-    return declared
 
 
 @results

@@ -217,8 +217,8 @@ def widened(teeth: Teeth, part: Teeth) -> tuple[Teeth, Array]:
 
 def _least_outside(teeth: Teeth, pins: slice) -> Array:
     outside = np.concatenate([teeth.slack[: pins.start], teeth.slack[pins.stop :]])
-    least: Array = outside.min(axis=0, initial=np.inf)
-    return least
+    value: Array = outside.min(axis=0, initial=np.inf)
+    return value
 
 
 def _put(values: Array, part: Teeth, whole: Teeth) -> Array:
