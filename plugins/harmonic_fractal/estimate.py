@@ -436,6 +436,7 @@ def estimate_of(lines: Lines, direction: Direction, settings: Estimation) -> Est
     found = _fit(curve, settings)
     reason = _refusal(lines.heights.shape[1], local, curve.lags, found)
     noise_dimension, noise_share = _with_noise(curve)
+    roughness = float(np.exp(found.logarithm)) if abs(found.logarithm) < 700.0 else float("nan")  # no such number
     whole = np.unique(np.concatenate([coarse.lags, curve.lags]), return_index=True)[1]
     return Estimate(
         direction=direction,
@@ -444,9 +445,7 @@ def estimate_of(lines: Lines, direction: Direction, settings: Estimation) -> Est
         local_lags=local.lags,
         local_dimensions=local.dimensions,
         dimension=found.dimension,
-        roughness=float(np.exp(found.logarithm))
-        if abs(found.logarithm) < 700.0
-        else float("nan"),  # beyond all numbers
+        roughness=roughness,
         r_squared=found.r_squared,
         line_scatter=found.scatter,
         noise=found.noise,

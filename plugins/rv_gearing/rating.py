@@ -9,34 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_geometry.pairs import involute
+from rv_gearing import load_factors, stress_factors
 from rv_gearing.geometry import LEAST_LINE_LOAD, GearSize, MeshSize, ToothLoad, Which, gear_size, load_of, mesh_size
 from rv_gearing.groups import mesh_efficiency
-from rv_gearing.load_factors import (
-    Dynamics,
-    FaceLoad,
-    GearQuality,
-    MeshQuality,
-    MeshStiffness,
-    PlanetSharing,
-    Sharing,
-    dynamics_of,
-    face_load_of,
-    planets_of,
-    quality_of,
-    sharing_of,
-    stiffness_of,
-)
 from rv_gearing.material import Cycles, GearLife, Steel, cycles_of, life_of, steel_of
 from rv_gearing.quantities import Gearing
-from rv_gearing.stress_factors import (
-    BendingFactors,
-    ContactFactors,
-    GearRoot,
-    bending_factors,
-    contact_factors,
-    contact_ratio_factor,
-    root_of,
-)
 from truing import Array, Bench, Block, Float, Outcome, Sweep, Swept, Table, TruingError, found, part, results
 
 # What the gearing calculation answers: the duty, every factor, the stresses, and what they may be
@@ -143,8 +120,8 @@ class GearStress:
         formula="min(permitted_contact_stress * least_contact_safety / contact_stress, 1000)",
     )  # fmt: skip
     size: GearSize = part(GearSize, suffix="")
-    quality: GearQuality = part(GearQuality, suffix="")
-    root: GearRoot = part(GearRoot, suffix="")
+    quality: load_factors.GearQuality = part(load_factors.GearQuality, suffix="")
+    root: stress_factors.GearRoot = part(stress_factors.GearRoot, suffix="")
     life: GearLife = part(GearLife, suffix="")
 
 
@@ -178,15 +155,15 @@ class Strength:
     )  # fmt: skip
     duty: Duty = part(Duty, suffix="")
     mesh: MeshSize = part(MeshSize, suffix="")
-    quality: MeshQuality = part(MeshQuality, suffix="")
+    quality: load_factors.MeshQuality = part(load_factors.MeshQuality, suffix="")
     steel: Steel = part(Steel, suffix="")
-    stiffness: MeshStiffness = part(MeshStiffness, suffix="")
-    dynamics: Dynamics = part(Dynamics, suffix="")
-    planets: PlanetSharing = part(PlanetSharing, suffix="")
-    face: FaceLoad = part(FaceLoad, suffix="")
-    sharing: Sharing = part(Sharing, suffix="")
-    contact: ContactFactors = part(ContactFactors, suffix="")
-    bending: BendingFactors = part(BendingFactors, suffix="")
+    stiffness: load_factors.MeshStiffness = part(load_factors.MeshStiffness, suffix="")
+    dynamics: load_factors.Dynamics = part(load_factors.Dynamics, suffix="")
+    planets: load_factors.PlanetSharing = part(load_factors.PlanetSharing, suffix="")
+    face: load_factors.FaceLoad = part(load_factors.FaceLoad, suffix="")
+    sharing: load_factors.Sharing = part(load_factors.Sharing, suffix="")
+    contact: stress_factors.ContactFactors = part(stress_factors.ContactFactors, suffix="")
+    bending: stress_factors.BendingFactors = part(stress_factors.BendingFactors, suffix="")
     cycles: Cycles = part(Cycles, suffix="")
     sun: GearStress = part(GearStress, index="1")
     planet: GearStress = part(GearStress, index="2")
@@ -197,15 +174,15 @@ class Strength:
 
 def gear_of(
     stage: Gearing, which: Which, shares: tuple[Float, Float], nominal: Float, *, load: ToothLoad, mesh: MeshSize,
-    sizes: tuple[GearSize, GearSize], made: tuple[GearQuality, GearQuality], steel: Steel, cycles: Cycles,
-    contact: ContactFactors, bending: BendingFactors,
+    sizes: tuple[GearSize, GearSize], made: Sequence[load_factors.GearQuality], steel: Steel, cycles: Cycles,
+    contact: stress_factors.ContactFactors, bending: stress_factors.BendingFactors,
 ) -> GearStress:  # fmt: skip
     """Return root, life, stresses and safeties of one gear.
 
     ``shares`` are the load factors behind K_A for contact and bending, ``nominal`` is the contact stress without any.
     """
     gear, place = (stage.sun, 0) if which == "sun" else (stage.planet, 1)
-    root = root_of(stage, sizes[place], mesh, steel, which)
+    root = stress_factors.root_of(stage, sizes[place], mesh, steel, which)
     life = life_of(gear, steel, getattr(cycles, f"load_cycles_{which}"))
     width = stage.carrying_share * stage.face_width
     bent = load.tangential_force / (width * stage.module) * bending.helix_factor_bending
@@ -245,18 +222,18 @@ def rv_gearing(stage: Gearing) -> Strength:
     sun_size = gear_size(stage, load, mesh, "sun")
     sizes = sun_size, gear_size(stage, load, mesh, "planet")
     duty = duty_of(stage, load, sun_size, mesh)
-    made, quality = quality_of(stage, sizes, mesh, duty.pitch_line_velocity)
-    stiffness = stiffness_of(stage, load, sizes, mesh.contact_ratio)
-    dynamics = dynamics_of(stage, load, sizes, mesh.total_contact_ratio, (quality, stiffness))
-    planets = planets_of(stage, load.line_load, stiffness.mesh_stiffness)
+    made, quality = load_factors.quality_of(stage, sizes, mesh, duty.pitch_line_velocity)
+    stiffness = load_factors.stiffness_of(stage, load, sizes, mesh.contact_ratio)
+    dynamics = load_factors.dynamics_of(stage, load, sizes, mesh.total_contact_ratio, (quality, stiffness))
+    planets = load_factors.planets_of(stage, load.line_load, stiffness.mesh_stiffness)
     mean = np.maximum(load.line_load * dynamics.dynamic_factor * planets.planet_factor, LEAST_LINE_LOAD)
     seen = (sun_size, mesh, duty.pitch_line_velocity)
-    face = face_load_of(stage, made, mean, stiffness.mesh_stiffness_face, seen)
-    z_epsilon = contact_ratio_factor(stage, mesh)
+    face = load_factors.face_load_of(stage, made, mean, stiffness.mesh_stiffness_face, seen)
+    z_epsilon = stress_factors.contact_ratio_factor(stage, mesh)
     held = stiffness.mesh_stiffness, z_epsilon
-    sharing = sharing_of(stage, mesh, mean * face.face_factor, quality.pitch_left, held)
-    contact = contact_factors(stage, sizes, mesh, duty.pitch_line_velocity, z_epsilon)
-    bending = bending_factors(stage, mesh, stiffness.tooth_stiffness, load.line_load)
+    sharing = load_factors.sharing_of(stage, mesh, mean * face.face_factor, quality.pitch_left, held)
+    contact = stress_factors.contact_factors(stage, sizes, mesh, duty.pitch_line_velocity, z_epsilon)
+    bending = stress_factors.bending_factors(stage, mesh, stiffness.tooth_stiffness, load.line_load)
     for_contact = face.face_factor * sharing.transverse_factor * planets.planet_factor
     for_bending = face.face_factor_bending * sharing.transverse_factor_bending * planets.planet_factor_bending
     shares = dynamics.dynamic_factor * for_contact, dynamics.dynamic_factor * for_bending

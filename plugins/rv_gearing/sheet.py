@@ -7,19 +7,7 @@ from itertools import chain
 
 import numpy as np
 
-from rv_gearing.figures import (
-    AXES,
-    GearingRun,
-    groups_figure,
-    mesh_figure,
-    meshing_of,
-    notched_of,
-    number,
-    root_figure,
-    safeties_figure,
-    stresses_figure,
-    window_words,
-)
+from rv_gearing import figures
 from rv_gearing.groups import (
     MEETING,
     MODULE,
@@ -49,7 +37,7 @@ DIGITS: dict[GroupColumn, int] = {"ratio": 4, "deviation": 3, "torque": 2, "cent
                              "circle_high": 2}  # fmt: skip
 
 
-def search(record: "GearingRun") -> "Sequence[Block]":
+def search(record: figures.GearingRun) -> "Sequence[Block]":
     """All groups as a table, where they lie in the window, and the catalogue beside them."""
     found = record.outcome(FoundGroups)
     if found is None:
@@ -68,8 +56,8 @@ def search(record: "GearingRun") -> "Sequence[Block]":
     return [
         table,
         _preferred(found),
-        Words(window_words(found)),
-        Drawing("Groups in their window", partial(groups_figure, found), caption),
+        Words(figures.window_words(found)),
+        Drawing("Groups in their window", partial(figures.groups_figure, found), caption),
         *_catalogue(found),
     ]
 
@@ -118,31 +106,31 @@ def _cell(value: float, places: int | None) -> float | None:
     return round(float(value), places) if places is not None else float(value)
 
 
-def geometry(record: "GearingRun") -> "Sequence[Block]":
+def geometry(record: figures.GearingRun) -> "Sequence[Block]":
     """The gears and their mesh to scale."""
     caption = (
         "Left the stage, the circle of the crank shafts dashed; right the mesh in its transverse section, both teeth "
         "as their rack generates them. A to E: path of contact, in single contact between B and D; C: pitch point. "
         "Dotted: base circles; chain lines: pitch circles."
     )
-    meshing = meshing_of(record, record.acting)
-    return [Drawing("Sun and planets, and one mesh", partial(mesh_figure, meshing), caption)]
+    meshing = figures.meshing_of(record, record.acting)
+    return [Drawing("Sun and planets, and one mesh", partial(figures.mesh_figure, meshing), caption)]
 
 
-def bending(record: "GearingRun") -> "Sequence[Block]":
+def bending(record: figures.GearingRun) -> "Sequence[Block]":
     """The critical sections of both teeth."""
     caption = (
         "Normal section. Tangents at 30° touch the fillets at the ends of the chord. The force at the tip meets the "
         "axis of the tooth at the height of its arm; grey: the force at the outer point of single contact, for "
         "method B."
     )
-    teeth = notched_of(record, record.acting)
-    return [Drawing("Critical sections of the teeth", partial(root_figure, teeth), caption)]
+    teeth = figures.notched_of(record, record.acting)
+    return [Drawing("Critical sections of the teeth", partial(figures.root_figure, teeth), caption)]
 
 
-def method_b(record: "GearingRun") -> "Sequence[Block]":
+def method_b(record: figures.GearingRun) -> "Sequence[Block]":
     """Say that the two conventions do not mix."""
-    tip, outer = number(record, "root_safety"), number(record, "root_safety_outer")
+    tip, outer = figures.number(record, "root_safety"), figures.number(record, "root_safety_outer")
     return [
         Words(
             f"Least safety with the load at the tip {tip:.3f}, with that at the outer point of single contact "
@@ -153,7 +141,7 @@ def method_b(record: "GearingRun") -> "Sequence[Block]":
     ]
 
 
-def comparison(record: "GearingRun") -> "Sequence[Block]":
+def comparison(record: figures.GearingRun) -> "Sequence[Block]":
     """Stresses and safeties of all groups."""
     found = record.outcome(FoundGroups)
     if found is None or not len(found.groups) or not any(np.isfinite(found.strength[name]).any() for name in STRENGTH):
@@ -163,22 +151,22 @@ def comparison(record: "GearingRun") -> "Sequence[Block]":
     )
     caption = "What is permitted differs a little from group to group, by cycles, speed and notch."
     return [
-        Drawing("Stresses of all groups", partial(stresses_figure, found), caption),
+        Drawing("Stresses of all groups", partial(figures.stresses_figure, found), caption),
         _table(found, "Strength of all groups", ("sun", "planet", *STRENGTH), note),
     ]
 
 
-def courses(record: "GearingRun") -> "Sequence[Block]":
+def courses(record: figures.GearingRun) -> "Sequence[Block]":
     """The safeties along what was swept, one figure for each sweep."""
     blocks: list[Block] = []
     for swept in record.studies.values():
         if not isinstance(swept, Swept):
             continue
-        over = AXES.get(swept.over, (swept.over.replace("_", " "), 1.0))[0].split(",")[0]
+        over = figures.AXES.get(swept.over, (swept.over.replace("_", " "), 1.0))[0].split(",")[0]
         here = _here(record, swept.over)
         caption = "Dotted: what is asked of each. Breakage goes with the load, pitting with its square root."
         title = f"Safeties over the {over}"
-        blocks.append(Drawing(title, partial(safeties_figure, swept, here), caption if not blocks else ""))
+        blocks.append(Drawing(title, partial(figures.safeties_figure, swept, here), caption if not blocks else ""))
     reserve = record.outcome(Reserve)
     if reserve is not None and np.isfinite(reserve.torque).any():
         torque = float(np.min(reserve.torque))
@@ -187,10 +175,10 @@ def courses(record: "GearingRun") -> "Sequence[Block]":
     return blocks
 
 
-def _here(record: "GearingRun", over: str) -> float:
+def _here(record: figures.GearingRun, over: str) -> float:
     """Where the run itself lies along an input."""
     if over == "load_torque":
-        return number(record, "output_torque")
+        return figures.number(record, "output_torque")
     value = getattr(record.acting, over, np.nan)
     return float(value) if np.ndim(value) == 0 else float("nan")
 
