@@ -148,11 +148,8 @@ def backlash(geometry: Geometry) -> Float:
     Exact for involutes. It is 0 at the nominal centre distance and close to -2 Delta a tan(alpha_w) beside it: the
     roller lies inside the ring, so that centres farther apart press it into the ring's teeth.
     """
-    return (
-        2.0
-        * geometry.mounted_distance
-        * (pairs.involute(geometry.working_angle) - pairs.involute(geometry.mounted_angle))
-    )
+    opened = pairs.involute(geometry.working_angle) - pairs.involute(geometry.mounted_angle)
+    return 2.0 * geometry.mounted_distance * opened
 
 
 def _teeth(geometry: Geometry) -> tuple[Float, Float]:
