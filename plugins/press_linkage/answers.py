@@ -109,7 +109,7 @@ def _variances(found: Sensitivities) -> dict[str, float]:
     parts = [sources_of(kinds) for kinds in (LINKS, ALONG, errors.POLAR_ANGLES)]
     other = [name for name in shares if not any(name in part for part in parts)]
     return {
-        name: whole * sum(shares.get(errors.source, 0.0) for errors.source in part)
+        name: whole * sum(shares.get(error, 0.0) for error in part)
         for name, part in zip(VARIANCES, [*parts, other], strict=True)
     }
 

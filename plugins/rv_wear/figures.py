@@ -99,7 +99,7 @@ def mesh_figure(reducer: Reducer) -> "Figure":
     mesh, position = mesh_of(reducer), position_of(reducer)
     figure, panel = panels(1, 6.3)
     panel.set_aspect("equal")
-    _disc(panel, position)
+    panel.fill(position.outline.real, position.outline.imag, facecolor=PALE, edgecolor=BLUE, linewidth=1.1, zorder=2)
     _pins(panel, position, MM * float(mesh.pin_radius))
     _forces(panel, position, MM * float(mesh.pin_radius))
     _angle_and_arm(panel, position)
@@ -109,11 +109,6 @@ def mesh_figure(reducer: Reducer) -> "Figure":
     panel.set_ylim(-reach, reach)
     quiet(panel, "mm, along the crank line", "mm", alpha=0.3)
     return figure
-
-
-def _disc(panel: Any, position: FigurePosition) -> None:
-    panel.fill(position.outline.real, position.outline.imag, facecolor=PALE, edgecolor=BLUE, linewidth=1.1,
-               zorder=2)  # fmt: skip
 
 
 def _pins(panel: Any, position: FigurePosition, radius: float) -> None:
@@ -467,9 +462,11 @@ def fronts_figure(fronts: "Fronts", optimum: "Optimum | None", start: tuple[floa
             panel.plot(cost[front.knee], wear[front.knee], marker, markersize=10, fillstyle="none", color=colour)
         _modifications(panel, front)
     if optimum is not None and optimum.front:
-        found = _found(optimum)
-        goal = float(fronts.inputs.required_reliability)
-        panel.plot(*found, ".", color=GREY, markersize=3.0, label=f"found by the search for {_percent(goal)}", zorder=1)
+        prices, depths = (
+            [design.objectives[name] for design in optimum.front] for name in ("tolerance_price", "max_wear")
+        )
+        words = f"found by the search for {_percent(float(fronts.inputs.required_reliability))}"
+        panel.plot(prices, np.divide(depths, MICRO), ".", color=GREY, markersize=3.0, label=words, zorder=1)
     panel.plot(start[0], start[1] / MICRO, "X", color=INK, markersize=8, linestyle="", label="as stated")
     printed = float(COST), float(WEAR)
     panel.plot(*printed, "D", markersize=9, fillstyle="none", color=INK, label="the paper, before", linestyle="")
@@ -484,13 +481,6 @@ def _places(front: "CostFront") -> tuple[NDArray[np.float64], NDArray[np.float64
     return (
         np.array([design.cost for design in front.designs]),
         np.array([design.wear / MICRO for design in front.designs]),
-    )
-
-
-def _found(optimum: "Optimum") -> tuple[list[float], list[float]]:
-    return (
-        [design.objectives["tolerance_price"] for design in optimum.front],
-        [design.objectives["max_wear"] / MICRO for design in optimum.front],
     )
 
 

@@ -347,7 +347,6 @@ def unworn(mesh: Mesh) -> Unworn:
     force = loads.force.reshape(-1, teeth.count)
     at_pitch_point = geometry.relative_radius(teeth.mesh, geometry.longest_arm_angle(teeth.mesh))
     scale = loads.scale.max(axis=0)
-    fastest = growth(teeth, loads)(loads.force).max(axis=(0, 1))
     return Unworn(
         scale=scale,
         approach=loads.approach.max(axis=0),
@@ -356,7 +355,7 @@ def unworn(mesh: Mesh) -> Unworn:
         pressure=np.asarray(geometry.mean_pressure(teeth.mesh, loads.force, teeth.relative_radius)).max(axis=(0, 1)),
         contact_part=np.asarray(contact_part(teeth.mesh.equivalent_modulus, scale / teeth.mesh.width, at_pitch_point)),
         lowest_equidistant=np.asarray(geometry.lowest_equidistant(teeth.mesh)),
-        first_step=np.where(fastest > 0.0, teeth.mesh.threshold / np.maximum(fastest, 1.0 / NEVER), NEVER),
+        first_step=_lasts(teeth, growth(teeth, loads)(loads.force)),
     )
 
 
@@ -412,7 +411,7 @@ def groups(order: NDArray[np.intp]) -> list[NDArray[np.intp]]:
 def all_unworn(mesh: Mesh, count: int) -> Unworn:
     """The new meshes, all of them."""
     if count == 0:
-        return unworn_of_nothing()
+        return Unworn(*np.empty((len(Unworn.__dataclass_fields__), 0)))
     if count > FEW:
         return _joined([unworn_of_group(key_of(mesh, places)) for places in groups(np.arange(count))])
     keys = [key_of(mesh, np.array([place])) for place in range(count)]
@@ -429,11 +428,6 @@ def all_unworn(mesh: Mesh, count: int) -> Unworn:
 def _joined(parts: Sequence[Unworn]) -> Unworn:
     names = Unworn.__dataclass_fields__
     return Unworn(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
-
-
-def unworn_of_nothing() -> Unworn:
-    """The answer where no mesh can be calculated."""
-    return Unworn(*(np.empty(0) for _ in Unworn.__dataclass_fields__))
 
 
 def all_histories(mesh: Mesh, reach: Array, first_step: Array) -> Iterator[tuple[NDArray[np.intp], Histories]]:
