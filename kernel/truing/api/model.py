@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from truing.api.findings import NamedCause, Ranking, Residuals, causes_of
 from truing.api.notebook import bullets, fold, folds, heading, html_table, joined, paragraphs, picture, table_html
 from truing.api.records import MeasuredRecord
-from truing.api.run import Differences, Order, Run, comparison_of, performed
+from truing.api.run import Differences, Run, comparison_of, performed
 from truing.api.study import StudyResult
 from truing.api.tables import LABEL, beside, frame_text
 from truing.api.values import settings_of, text_of
@@ -122,9 +122,9 @@ class LoadedModel:
         ``resume`` finished batches are kept beside it, and those of an interrupted run are taken up; ``pdf`` and
         ``excel`` are as in ``Run.save``. Raises TruingError with one sentence.
         """
-        folder = None if output is None else Path(output)
-        order = Order(folder, cases, workers, cluster, resume, pdf, excel)
-        return performed(self.setup(inputs, set=set, **values), self.offer, order, progress)
+        setup = self.setup(inputs, set=set, **values)
+        how: dict[str, Any] = {"workers": workers, "cluster": cluster, "resume": resume, "pdf": pdf, "excel": excel}
+        return performed(setup, self.offer, progress, output=output, cases=cases, **how)
 
     def study(
         self,
@@ -140,7 +140,7 @@ class LoadedModel:
         if not hasattr(study, "run"):
             raise UsageError(f"{study!r:.60} is no study; hand in one, such as truing.Sensitivity()")
         setup = replace(self.setup(inputs, set=set, **values), studies=(study,))
-        run = performed(setup, self.offer, Order(workers=workers), progress)
+        run = performed(setup, self.offer, progress, workers=workers)
         return replace(run.studies[study.name], warnings=run.warnings)
 
     def sweep(self, over: str, low: Any, high: Any, points: int = 181, **more: Any) -> StudyResult:
@@ -200,7 +200,9 @@ class LoadedModel:
         written without ``output``, a folder that is complete or absent; ``pdf`` prints the sheet there. Raises
         TruingError with one sentence, or every fault of a file.
         """
-        _demand_record(record)
+        if not isinstance(record, MeasuredRecord):
+            made = "truing.read(files, model) or truing.record(dataframe, model)"
+            raise UsageError(f"a {type(record).__name__} is no record; make one with {made}")
         if pdf and output is None:
             raise UsageError("pdf needs output, the folder that is written")
         options = {"hold_out": hold_out, "per_file": list(per_file), "budget": budget}
@@ -239,12 +241,6 @@ class LoadedModel:
 
     def _settings(self, set: Mapping[str, Any] | None, values: Mapping[str, Any]) -> list[str]:
         return settings_of(self.offer.model, {**(set or {}), **values})
-
-
-def _demand_record(record: Any) -> None:
-    if not isinstance(record, MeasuredRecord):
-        made = "truing.read(files, model) or truing.record(dataframe, model)"
-        raise UsageError(f"a {type(record).__name__} is no record; make one with {made}")
 
 
 def _demand_known(rows: RowsFile, setup: Setup) -> None:
