@@ -211,8 +211,12 @@ class LoadedModel:
         if output is not None:
             demand_place(Path(output), "diagnosis")
         with progress_bar(progress) as report, told_by_line(setup):
+
+            def as_one(stage: str, step: int, steps: int) -> None:
+                report("diagnosis" if steps else stage, step, steps)
+
             started, records = time.time(), read_records(record.files, self.offer, setup)
-            diagnosis = Diagnosis(self.offer, diagnose(setup, records, progress=_as_one(report)), started)
+            diagnosis = Diagnosis(self.offer, diagnose(setup, records, progress=as_one), started)
             report("sheet and PDF" if pdf else "sheet", 0, 0)
             return diagnosis if output is None else replace(diagnosis, note=diagnosis.written(Path(output), pdf=pdf))
 
@@ -246,20 +250,13 @@ class LoadedModel:
 def _demand_known(rows: RowsFile, setup: Setup) -> None:
     """Raise InputError for a column that changes nothing and is called nearly like one that would."""
     known = [*setup.model.input_fields, *setup.conditions]
-    others = [name for name in rows.others if name not in setup.model.result_fields]
-    hints = {name: near_miss(name[:80], [one for one in known if one not in rows.columns]) for name in others}
-    faults = [
-        Fault(f"column {shown(name)} changes nothing.{hint} Rename it or leave it out", LABEL, 1)
-        for name, hint in hints.items()
-        if hint
-    ]
+    faults = []
+    for name in rows.others:
+        hint = near_miss(name[:80], [one for one in known if one not in rows.columns])
+        if hint and name not in setup.model.result_fields:
+            faults.append(Fault(f"column {shown(name)} changes nothing.{hint} Rename it or leave it out", LABEL, 1))
     if faults:
         raise InputError(faults)
-
-
-def _as_one(progress: Progress) -> Progress:
-    """Return what shows the stages of a diagnosis as one task, and what comes after it as another."""
-    return lambda stage, step, steps: progress("diagnosis" if steps else stage, step, steps)
 
 
 @dataclass(frozen=True)
@@ -366,7 +363,7 @@ class Diagnosis:
         lines = {**questions(self.result), **({"Record": list(self.notes)} if self.notes else {})}
         rest = "".join(fold(title, bullets(texts)) for title, texts in lines.items())
         head = heading(f"Diagnosis of {self.result.setup.model.title}, {data_words(self.result)}")
-        shown = picture(self.residuals.drawing(), "Residuals before and after")
+        shown = picture(self.residuals.drawn, "Residuals before and after")
         return joined(head + paragraphs([*said, *warned]), table, shown, fold("More", rest))
 
 
