@@ -17,7 +17,7 @@ from truing.fits import GRADES
 from truing.prices import price_answers
 from truing.setup import Setup
 from truing.studies.bench import Bench, Outcome
-from truing.studies.demands import Demand, as_number, demands, wilson, worst
+from truing.studies.demands import Demand, as_number, demands, worst
 from truing.studies.drawings import BLUE, GREY, ORANGE, WIDTH, labelled
 from truing.studies.optimise_problem import (
     Aim,
@@ -305,14 +305,15 @@ class Optimum(Outcome):
     @property
     def verified(self) -> dict[str, float]:
         """The share of drawn machines of the knee that meets each goal."""
-        tally = self.tally
-        return {} if tally is None else {name: worst(hits) / tally.draws for name, hits in tally.hits.items()}
+        return {} if self.tally is None else {name: worst(share) for name, share in self.tally.shares.items()}
 
     @property
     def interval(self) -> dict[str, tuple[float, float]]:
         """Wilson's 95 % interval of each of these shares."""
         tally = self.tally
-        return {} if tally is None else {name: wilson(worst(hits), tally.draws) for name, hits in tally.hits.items()}
+        return (
+            {} if tally is None else {name: (worst(low), worst(high)) for name, (low, high) in tally.intervals.items()}
+        )
 
     def as_json(self) -> dict[str, Any]:
         """Return front, knee, start, hypervolume and status in printed units."""

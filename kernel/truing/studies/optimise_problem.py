@@ -41,8 +41,7 @@ from truing.setup import Setup
 from truing.studies.checks import check_name, requirements, sockets_of
 from truing.studies.demands import beside, normal_chance
 from truing.studies.differences import nominal_of
-from truing.studies.grades import with_grades, with_widths
-from truing.studies.sampling import Scatter, ScatterSource, generator, scatter_of
+from truing.studies.sampling import Scatter, ScatterSource, generator, scatter_of, with_tolerances
 from truing.units import read_quantity, to_si
 
 ROWS = 2**16  # of one call of the model, so that memory stays flat
@@ -543,10 +542,11 @@ class Space:
     def setup_of(self, design: NDArray[np.float64]) -> Setup:
         """Return the setup of one design, as an inputs file would state it."""
         columns = {name: values[0].item() for name, values in self.columns(design[None, :]).items()}
-        chosen = [(variable, float(values[0])) for variable, values in self.choices(design[None, :]).values()]
-        grades = {variable.name: GRADES[round(value)] for variable, value in chosen if variable.kind == "grade"}
-        widths = {variable.name: value for variable, value in chosen if variable.kind == "width"}
-        return with_widths(with_grades(self.setup.changed(columns), grades), widths)
+        chosen = {
+            name: GRADES[round(values[0])] if variable.kind == "grade" else float(values[0])
+            for name, (variable, values) in self.choices(design[None, :]).items()
+        }
+        return with_tolerances(self.setup.changed(columns), chosen)
 
 
 def open_space(setup: Setup, brief: Brief) -> Space:

@@ -16,11 +16,11 @@ from truing.evaluate import acting_inputs, answered
 from truing.setup import Setup
 from truing.studies.bench import Bench
 from truing.studies.chances import FormResult, chance, form, straightened
-from truing.studies.checks import Check, chance_check, requirements
-from truing.studies.demands import Z95, Demand, as_number, demands, nominal_inputs, wilson, worst
+from truing.studies.checks import Check, requirements
+from truing.studies.demands import Z95, Demand, as_number, demands, nominal_inputs, worst
 from truing.studies.drawings import labelled, lines
 from truing.studies.reading import printed, printed_step, read_range, scattering_name, spoken
-from truing.studies.sampling import Machines, Moments, SampleBudget, Tally, sample, scatter_of
+from truing.studies.sampling import Machines, Moments, SampleBudget, Tally, goal_checks, sample, scatter_of
 from truing.units import difference_unit, from_si, unit_text
 
 METHODS = ("first_order", "monte_carlo", "form")
@@ -237,19 +237,14 @@ class Odds:
     @property
     def probability(self) -> dict[str, Any]:
         """The share of machines that meets each limit, or first order where none was drawn."""
-        tally = self.tally
-        if tally is None:
-            return dict(self.analytic)
-        shares = {demand.name: tally.hits[demand.name] / tally.draws for demand in self.demands}
-        return {name: share if getattr(share, "ndim", 0) else float(share) for name, share in shares.items()}
+        return dict(self.analytic) if self.tally is None else self.tally.shares
 
     @property
     def interval(self) -> dict[str, tuple[Any, Any]]:
         """Wilson's 95 % interval of each probability; of no width where none was drawn."""
-        tally = self.tally
-        if tally is None:
+        if self.tally is None:
             return {name: (value, value) for name, value in self.analytic.items()}
-        return {demand.name: wilson(tally.hits[demand.name], tally.draws) for demand in self.demands}
+        return self.tally.intervals
 
     @property
     def at_least(self) -> dict[str, Any]:
@@ -306,20 +301,13 @@ class Odds:
 
     def checks(self) -> Sequence[Check]:
         """Compare each probability with its goal; along an axis the worst one."""
-        chances = self.probability
-        method = f"Monte Carlo, {self.draws} machines" if self.sampled else "first order"
-        return [
-            chance_check(demand.name, worst(chances[demand.name]), demand.goal, method=method)
-            for demand in self.demands
-            if demand.goal is not None
-        ]
+        return goal_checks(self.demands, self.probability, self.tally)
 
     def warnings(self) -> Sequence[str]:
         """Say what failed, and where the sampling is too small to decide."""
         words = list(self.remarks)
-        if self.tally and self.failed:
-            reason = next(iter(self.tally.reasons), "no reason was given")
-            words.append(f"{self.failed} of {self.draws} machines have no answer and count as missed ({reason})")
+        if self.tally is not None and self.tally.failed:
+            words.append(self.tally.lost)
         chances, errors = self.probability, self.standard_error
         for demand in self.demands:
             if demand.goal is None or not self.sampled:

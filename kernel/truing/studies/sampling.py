@@ -10,20 +10,21 @@ import hashlib
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from truing.declare.spreads import FIXED_DRAWS, Distribution, Drawn
+from truing.declare.spreads import FIXED_DRAWS, Distribution, Drawn, Grade, Spread, with_width
 from truing.errors import UsageError
 from truing.evaluate import Rows, evaluate_rows
 from truing.executors import SerialExecutor, in_order, keepable
 from truing.packed import Packed, pack, unpack
 from truing.setup import Setup, SwitchedOn, effect_column
-from truing.studies.demands import Demand, nominal_inputs, results_needed
+from truing.studies.checks import Check, chance_check
+from truing.studies.demands import Demand, nominal_inputs, results_needed, wilson, worst
 
 KEPT_REASONS = 8
 
@@ -84,6 +85,33 @@ class Tally:
     moments: Mapping[str, Moments]
     failed: int
     reasons: Mapping[str, int]
+
+    @property
+    def shares(self) -> dict[str, Any]:
+        """The share of machines that meets each demand, along an axis at every place."""
+        shares = {name: hits / self.draws for name, hits in self.hits.items()}
+        return {name: share if np.ndim(share) else float(share) for name, share in shares.items()}
+
+    @property
+    def intervals(self) -> dict[str, tuple[Any, Any]]:
+        """Wilson's 95 % interval of each share."""
+        return {name: wilson(hits, self.draws) for name, hits in self.hits.items()}
+
+    @property
+    def lost(self) -> str:
+        """How many machines have no answer, in words, with the first reason."""
+        reason = next(iter(self.reasons), "no reason was given")
+        return f"{self.failed} of {self.draws} machines have no answer and count as missed ({reason})"
+
+
+def goal_checks(wanted: Sequence[Demand], chances: Mapping[str, Any], tally: Tally | None) -> list[Check]:
+    """Compare each probability, of drawn machines or to first order, with its goal; along an axis the worst one."""
+    method = "first order" if tally is None else f"Monte Carlo, {tally.draws} machines"
+    return [
+        chance_check(demand.name, worst(chances[demand.name]), demand.goal, method=method)
+        for demand in wanted
+        if demand.goal is not None
+    ]
 
 
 def sample(
@@ -393,6 +421,19 @@ def _of_effect(active: SwitchedOn) -> ScatterSource | None:
     distributions = tuple(Distribution(value, float(sd)) for value, sd in zip(values, spread, strict=True))
     mixing = root_of(covariance) if active.covariance else None
     return ScatterSource(f"effects.{active.effect.name}", columns, values, distributions, mixing)
+
+
+def with_tolerances(setup: Setup, chosen: Mapping[str, str | float]) -> Setup:
+    """Return the setup with these tolerances at these grades or full widths (SI), each that of its first input."""
+    changed: dict[str, Spread] = {}
+    for name, choice in chosen.items():
+        spread = setup.spread_of(name)
+        if isinstance(choice, str):
+            assert isinstance(spread, Grade)  # others have no grade to choose
+            changed[name] = replace(spread, grade=choice)
+        else:
+            changed[name] = with_width(spread, setup.target(next(iter(setup.distributions()[name]))), choice)
+    return replace(setup, spreads={**setup.spreads, **changed})
 
 
 def root_of(covariance: NDArray[np.float64]) -> NDArray[np.float64]:
