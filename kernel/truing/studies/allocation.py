@@ -26,11 +26,11 @@ from truing.setup import Setup
 from truing.studies.bench import Bench
 from truing.studies.chances import Straight, straightened
 from truing.studies.checks import Check, Proposal, plain_checks
-from truing.studies.demands import Demand, as_number, demands, nominal_inputs, normal_chance
+from truing.studies.demands import Demand, as_number, demands, normal_chance
 from truing.studies.differences import slopes
 from truing.studies.drawings import lines
 from truing.studies.reading import printed, printed_step, spoken
-from truing.studies.sampling import Machines, SampleBudget, Tally, goal_checks, sample, scatter_of, with_tolerances
+from truing.studies.sampling import Scatter, Tally, goal_checks, sample, scatter_of, with_tolerances
 from truing.units import unit_text
 
 BALANCED_TO = 1e-4
@@ -78,10 +78,10 @@ class Allocation:
         """Allocate by the rule and by least cost, and verify both. Raises UsageError without a grade or a goal."""
         setup = bench.setup
         wanted = _goals(setup, bench.answers, self.name)
-        machines = Machines(setup, scatter_of(setup))
-        straight, derivatives = straightened(machines, wanted, nominal_inputs(setup, wanted))
+        scatter = scatter_of(setup)
+        straight, derivatives = straightened(scatter, wanted)
         problem = open_problem(setup, wanted, straight, self)
-        order = coefficients(problem, self._slopes(machines, wanted, problem), self.weights) if problem.parts else {}
+        order = coefficients(problem, self._slopes(scatter, wanted, problem), self.weights) if problem.parts else {}
         steps, ruled = by_rule(problem, order, self.finest) if problem.parts else ([], as_it_stands(problem))
         rule = bought(problem, ruled)
         least = _least(problem, ruled, rule)
@@ -102,15 +102,15 @@ class Allocation:
             inputs=acting_inputs(setup),
         )
 
-    def _slopes(self, machines: Machines, wanted: Sequence[Demand], problem: AllocationProblem) -> dict[str, float]:
+    def _slopes(self, scatter: Scatter, wanted: Sequence[Demand], problem: AllocationProblem) -> dict[str, float]:
         """Return by part the sum of the absolute derivatives of the ordering result."""
         of = self.of or wanted[0].result
-        known = machines.setup.model.own_result_fields
+        known = scatter.setup.model.own_result_fields
         if of not in known:
             raise UsageError(f"study '{self.name}': there is no result '{of}'.{near_miss(of, known)}")
-        tolerances = machines.setup.model.tolerances
+        tolerances = scatter.setup.model.tolerances
         columns = tuple(dict.fromkeys(column for name in problem.parts for column in tolerances[name].on))
-        derivatives = slopes(machines.setup, (of,), columns, machines.scatter).of[of]
+        derivatives = slopes(scatter.setup, (of,), columns, scatter).of[of]
         return {name: sum(abs(float(derivatives[column])) for column in tolerances[name].on) for name in problem.parts}
 
     def _verified(
@@ -125,8 +125,10 @@ class Allocation:
                 continue
             setup = with_tolerances(bench.setup, plan.chosen)
             done = bench.part(self.name, stage / len(plans), (stage + 1) / len(plans))
-            budget = SampleBudget(self.draws, self.batch, bench.executor, done)
-            tallies[key] = sample(Machines(setup, scatter_of(setup)), wanted, bench.answers, budget)
+            tallies[key] = sample(
+                scatter_of(setup), wanted, bench.answers,
+                draws=self.draws, batch=self.batch, executor=bench.executor, done=done,
+            )  # fmt: skip
         return tallies
 
 
@@ -532,7 +534,7 @@ class AllocationProblem:
 
     def variance(self, name: str, chosen: Choice) -> float:
         """Return the first-order variance of a demand's response with these tolerances."""
-        added = sum(own.added(name, chosen.get(key, own.start)) for key, own in self.tolerances.items())
+        added: float = sum(own.added(name, chosen.get(key, own.start)) for key, own in self.tolerances.items())
         return max(0.0, self.fixed[name] + added)
 
     def mean(self, name: str, chosen: Choice) -> float:
@@ -550,7 +552,8 @@ class AllocationProblem:
 
     def cost(self, chosen: Choice) -> float:
         """Return the sum of what these tolerances cost."""
-        return sum(own.cost(chosen.get(key, own.start)) for key, own in self.tolerances.items())
+        cost: float = sum(own.cost(chosen.get(key, own.start)) for key, own in self.tolerances.items())
+        return cost
 
     def reached(self, chosen: Choice) -> bool:
         """Say whether every goal is met to first order."""
