@@ -24,7 +24,7 @@ from truing.calculation import calculate
 from truing.executors import SerialExecutor, open_executor
 from truing.kernel import Kernel
 from truing.setup import Setup, default_setup
-from truing.studies.sampling import Machines, scatter_of
+from truing.studies.sampling import scatter_of
 
 BATCH = 2**14
 ROUNDS = 5
@@ -125,12 +125,11 @@ def test_two_processes_are_faster_than_one_where_there_is_work() -> None:
 
 def profile_parts(draws: int) -> None:
     """Print where the time goes."""
-    setup = all_sources()
-    machines = Machines(setup, scatter_of(setup))
+    scatter = scatter_of(all_sources())
 
     def draw_all() -> None:
         for batch in range(draws // BATCH):
-            machines.scatter.draw(1, batch, BATCH)
+            scatter.draw(1, batch, BATCH)
 
     drawing = min(seconds(draw_all) for _ in range(ROUNDS))
     print(f"drawing with seeds and spreads {drawing:.3f} s")
