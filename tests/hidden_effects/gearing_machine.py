@@ -191,6 +191,4 @@ def shown(rows: Rows, stage: Stage, hidden: Hidden) -> dict[str, Array]:
     read["backlash"] = play_between(stage, apart(rows, hidden)) + play + 2 * depth
     read["efficiency"] = efficiency(stage) - held_back(rows, hidden) / torque
     read["flank_temperature"] = rows.oil_temperature + flash(rows, stage, hidden)
-    for name in read:
-        read[name] = read[name] * (1 + of(hidden, "sensor_gain", name)) + of(hidden, "sensor_offset", name)
     return read

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from truing import Kernel, Model
 from truing.diagnosis.result import UNKNOWN, DiagnosisResult, explanations_of
+from truing.measurements import table_text
 from truing.testing import Hidden, recorded
 
 Array: TypeAlias = NDArray[np.float64]
@@ -188,9 +189,7 @@ def record_of(case: Case, rows: int = ROWS) -> str:
     shown = READINGS[case.noise](measured.columns[measured.result], measured.noise, generator)
     columns = {**measured.columns, measured.result: shown}
     kept = _kept(case.noise, rows, generator)
-    lines = [",".join(columns)]
-    lines += [",".join(repr(float(values[place])) for values in columns.values()) for place in kept]
-    return "\n".join(lines) + "\n"
+    return table_text(list(columns), [values[kept] for values in columns.values()])
 
 
 def hidden_of(case: Case, rows: int = ROWS) -> Hidden:
