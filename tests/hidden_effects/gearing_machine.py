@@ -12,16 +12,7 @@ import numpy as np
 from scipy.special import erf
 
 from hidden_effects.gearing_stage import ANGLE, BASE, MODULE, PINS, PLANET, SUN, Array, Stage, pair_of, play_between
-from hidden_effects.gearing_stress import (
-    POISSON,
-    YOUNG,
-    Loaded,
-    Wrong,
-    mesh_stiffness,
-    stresses,
-    swinging,
-    touched,
-)
+from hidden_effects.gearing_stress import POISSON, YOUNG, Loaded, Wrong, mesh_stiffness, stresses, swinging, touched
 from hidden_effects.rows import Hidden, MeasuredRows, of
 
 RATIO, MESHES = 111.0, 0.920941

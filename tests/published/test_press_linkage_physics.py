@@ -10,17 +10,7 @@ from math import factorial
 
 import numpy as np
 import pytest
-from press_linkage_cases import (
-    AROUND,
-    MECHANISMS,
-    PAPER,
-    SIZES,
-    mirrored,
-    off_by,
-    scattered,
-    sensitivities,
-    solve,
-)
+from press_linkage_cases import AROUND, MECHANISMS, PAPER, SIZES, mirrored, off_by, scattered, sensitivities, solve
 
 from press_linkage import errors, kinematics
 from press_linkage.errors import DRIVEN, KINDS, POLAR_ANGLES, source

@@ -4,15 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from traced_gears import (
-    ALPHA,
-    Couple,
-    Flanks,
-    deepest_overlap,
-    free_turn,
-    path_of_contact,
-    sliding_of_surfaces,
-)
+from traced_gears import ALPHA, Couple, Flanks, deepest_overlap, free_turn, path_of_contact, sliding_of_surfaces
 
 from gear_geometry.pairs import working_angle
 from roller_screw_shift.geometry import (

@@ -5,12 +5,7 @@ from math import pi, sin
 import numpy as np
 import pytest
 
-from roller_screw_shift.objectives import (
-    normalised,
-    rule_weights,
-    total,
-    weight,
-)
+from roller_screw_shift.objectives import normalised, rule_weights, total, weight
 from truing import TruingError
 
 # X/(2 pi) - sin(X)/(2 pi) at quarters of a turn: sin is 1 at a quarter, 0 at a half.

@@ -10,14 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rv_gearing.groups import (
-    ToothNumbers,
-    candidates,
-    chosen_teeth,
-    mesh_efficiency,
-    output_torque,
-    search,
-)
+from rv_gearing.groups import ToothNumbers, candidates, chosen_teeth, mesh_efficiency, output_torque, search
 from rv_gearing.model import RV_GEARING
 from rv_gearing.quantities import Gearing
 from truing.declare.batch import watching
