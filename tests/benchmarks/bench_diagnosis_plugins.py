@@ -11,7 +11,7 @@ ratio of the catalogue of harmonic drives instead: which causes carry the torsio
 
 from collections import Counter
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -26,7 +26,7 @@ from hidden_effects.harmonic_surface import SurfaceWish
 from hidden_effects.noises import KINDS
 from hidden_effects.plugin_asking import model_of
 from hidden_effects.rig_cases import RigCase
-from hidden_effects.rows import Array
+from hidden_effects.rows import Array, Hidden
 from truing.testing import recorded
 from truing.testing.hiding import Answered
 
@@ -69,10 +69,14 @@ def feed_marks(at: Array) -> Array:
     return np.asarray(0.06 * np.sign(np.sin(2 * np.pi * at / 9 + 1)))
 
 
-def sized(unknowns: Mapping[str, float], rng: np.random.Generator, without: Collection[str] = ()) -> dict[str, float]:
-    """The unknowns at a share of their size, half to the whole; shapes as they are."""
+def sized(hidden: Hidden, rng: np.random.Generator, without: Collection[str] = ()) -> Hidden:
+    """What is hidden at a share of its size, half to the whole; shapes as they are."""
     share = rng.uniform(0.5, 1.0)
-    return {key: value if key in SHAPES and key not in without else share * value for key, value in unknowns.items()}
+    kept = SHAPES - set(without)
+    return {
+        effect: {key: value if key in kept else share * value for key, value in unknowns.items()}
+        for effect, unknowns in hidden.items()
+    }
 
 
 def stage(place: int, seed: int) -> gearing_cases.Wish:
@@ -82,19 +86,19 @@ def stage(place: int, seed: int) -> gearing_cases.Wish:
     if place % 3 == 0:
         results, design = OF_STAGES[place // 3 % len(OF_STAGES)]
         return gearing_cases.Wish(seed=seed, results=results, design=design, kind=kind)
-    name, clear, results, design = STAGES[(place - place // 3 - 1) % len(STAGES)]
-    return gearing_cases.Wish(seed=seed, hidden={name: sized(clear, rng)}, results=results, design=design, kind=kind)
+    clear = STAGES[(place - place // 3 - 1) % len(STAGES)]
+    return replace(clear, seed=seed, hidden=sized(clear.hidden, rng), kind=kind)
 
 
 def reducer(_: int, seed: int) -> rv_cases.Wish:
     """A reducer: of three seeds one hides nothing, the others any effect."""
     rng = np.random.default_rng([seed, 9])
     name = "" if seed % 3 == 0 else list(REDUCERS)[int(rng.integers(len(REDUCERS)))]
-    unknowns = sized(REDUCERS.get(name, {}), rng, without=("exponent",))
+    hidden = sized({name: REDUCERS[name]} if name else {}, rng, without=("exponent",))
     design: rv_cases.Design = "fleet" if name in FLEETS or rng.random() < 0.5 else "endurance"
     results = (rv_cases.BACKLASH, rv_cases.WEAR) if rng.random() < 0.5 else (rv_cases.BACKLASH,)
     kind = KINDS[int(rng.integers(len(KINDS)))]
-    return rv_cases.Wish(seed=seed, hidden={name: unknowns} if name else {}, design=design, kind=kind, results=results)
+    return rv_cases.Wish(seed=seed, hidden=hidden, design=design, kind=kind, results=results)
 
 
 def screw(_: int, seed: int) -> screw_cases.Wish:
@@ -105,32 +109,28 @@ def screw(_: int, seed: int) -> screw_cases.Wish:
         results = tuple(rng.choice(OF_SCREWS, 2, replace=False).tolist())
         design: screw_cases.Design = "endurance" if rng.random() < 0.5 else "bench"
         return screw_cases.Wish(seed=seed, design=design, kind=kind, results=results)
-    name, clear, results = SCREWS[int(rng.integers(len(SCREWS)))]
-    unknowns = sized(clear, rng)
+    clear = SCREWS[int(rng.integers(len(SCREWS)))]
+    hidden, results = sized(clear.hidden, rng), clear.results
     if len(results) > 1 and rng.random() < 0.3:
         results = results[:1]
-    design = "endurance" if name == "flank_wear" else "bench" if rng.random() < 0.7 else "loaded"
-    return screw_cases.Wish(seed=seed, hidden={name: unknowns}, design=design, kind=kind, results=results)
+    design = clear.design if clear.design == "endurance" else "bench" if rng.random() < 0.7 else "loaded"
+    return replace(clear, seed=seed, hidden=hidden, design=design, kind=kind, results=results)
 
 
 def drive(_: int, seed: int) -> harmonic_cases.Wish | SurfaceWish:
     """A harmonic drive or a flank: of four seeds one hides nothing, one what nobody registered, two the next effect."""
     rng = np.random.default_rng([seed, 37])
     kind = KINDS[int(rng.integers(len(KINDS)))]
-    points: dict[str, Any] = {"design": "points", "results": (MESH,)}
     if seed % 4 in {0, 2}:
         which, is_strange = int(rng.integers(3)), seed % 4 == 2
         if which == 2:
             return SurfaceWish(seed=seed, strange=feed_marks if is_strange else None)
         strange = (fifth_order, stiff_when_hot_and_fast)[which] if is_strange else None
-        return harmonic_cases.Wish(seed=seed, kind=kind, strange=strange, **(points if which else {}))
-    name, unknowns, result = DRIVES[seed // 2 % len(DRIVES)]
-    hidden = {name: sized(unknowns, rng)}
-    if not result:
-        return SurfaceWish(seed=seed, hidden=hidden)
-    tooth = 2e7 if name == "engaged_pairs" else np.inf
-    more = points if result == MESH else {}
-    return harmonic_cases.Wish(seed=seed, kind=kind, hidden=hidden, tooth=tooth, **more)
+        points: dict[str, Any] = {"design": "points", "results": (MESH,)} if which else {}
+        return harmonic_cases.Wish(seed=seed, kind=kind, strange=strange, **points)
+    clear = DRIVES[seed // 2 % len(DRIVES)]
+    known: dict[str, Any] = {} if isinstance(clear, SurfaceWish) else {"kind": kind}
+    return replace(clear, seed=seed, hidden=sized(clear.hidden, rng), **known)
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ class RigWish:
     That is added to the first result, in its unit.
     """
 
-    seed: int
+    seed: int = 3
     hidden: Hidden = field(default_factory=dict)
     design: str
     kind: Kind = "gaussian"
