@@ -309,7 +309,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ("+ at_ring_tip**2", "- at_ring_tip**2"),
     ),
     *changes(
-        "plugins/rv_gearing/geometry.py", "published/test_rv_gearing_factors.py published/test_rv_gearing_published.py",
+        "plugins/rv_gearing/geometry.py", "published/test_rv_gearing_factors.py",
         ("2.0 * stage.module * (stage.dedendum - gear.shift)", "2.0 * stage.module * (stage.dedendum + gear.shift)"),
         ("contact / np.cos(base_helix) ** 2", "contact / np.cos(base_helix)"),
     ),
