@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from example_rows import ExampleRows, as_they_stand, every_other, explanations, the_others
-from measured import Document
+from measured import Document, read_document
 from numpy.typing import NDArray
 from scipy.optimize import fmin, fminbound, least_squares
 from scipy.stats import t as student
@@ -46,8 +47,8 @@ def beam() -> Any:
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> Document:
-    return LEW.diagnosed(tmp_path_factory.mktemp("whole")).document
+def whole(shown_runs: Callable[[str], Path]) -> Document:
+    return read_document(shown_runs("beam_deflection") / "lew")
 
 
 @pytest.fixture(scope="module")
