@@ -9,11 +9,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from measured import Diagnosed, diagnose_heated, read_document
 from refusals import listing, sentences
 from shown_in_docs import EXAMPLES, ROOT, check_page, desk_in
 
 import truing
-from shared import Calc, made_once
+from shared import Answer, Calc, made_once
 
 PRESS = EXAMPLES / "press_off_by_40_um"
 
@@ -43,6 +44,15 @@ def play(page_done: Callable[[Path], Path]) -> Path:
     """The press with play, diagnosed from the command line as the tutorial says."""
     page = ROOT / "docs" / "tutorial" / "my_press_is_off_by_40_um.md"
     return page_done(page) / "work" / PRESS.name / "runs" / "measured"
+
+
+@pytest.fixture(scope="session")
+def heated(tmp_path_factory: pytest.TempPathFactory) -> Diagnosed:
+    """A press whose links are hotter than the model knows, diagnosed; beside ``runs`` lie inputs and records."""
+    desk = made_once(tmp_path_factory, "heated", diagnose_heated)
+    answer = Answer(*json.loads((desk / "answer.json").read_text(encoding="utf-8")))
+    assert (answer.code, answer.err) == (0, "")
+    return Diagnosed(answer, read_document(desk / "runs" / "measured"), desk / "runs" / "measured")
 
 
 @pytest.fixture(scope="session")

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from measured import calc_here, read_document
+from measured import documented
 from numpy.typing import NDArray
 from scipy.integrate import quad
 from scipy.optimize import least_squares
@@ -147,10 +147,8 @@ def test_up_to_600_k_the_second_cause_has_three_names_and_a_hotter_row_is_asked_
 
 def test_with_what_was_found_on_nothing_is_left_to_name(shown_runs: Callable[[str], Path], tmp_path: Path) -> None:
     shutil.copytree(EXAMPLE, tmp_path / "desk", ignore=shutil.ignore_patterns("__pycache__", "runs"))
-    inputs = ("--inputs", shown_runs("copper_expansion") / "hahn1" / "extended.toml")
-    answer = calc_here(tmp_path / "desk", "diagnose", "./copper_expansion.py", *inputs, "--data", "hahn1.csv")
-    assert answer.code == 0, answer.err
-    again = read_document(tmp_path / "desk" / "runs" / "hahn1")
+    extended = shown_runs("copper_expansion") / "hahn1" / "extended.toml"
+    again = documented(tmp_path / "desk", "copper_expansion.py", "hahn1.csv", inputs=extended)
     assert (again["explanations"], again["remainder"]) == ([], None)
     visible = {name: item["value"] for name, item in again["smallest_visible"].items()}
     assert 0.3 < visible["thermocouple_offset"] < 0.8

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from measured import Document, calc_here, read_document
+from measured import Document, documented, read_document
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 from scipy.stats import f as f_distribution
@@ -48,9 +48,7 @@ def diagnosed(
         shutil.copytree(EXAMPLES / name, desk, ignore=shutil.ignore_patterns("__pycache__", "runs"), dirs_exist_ok=True)
         lines = (desk / f"{FILES[name]}.csv").read_text(encoding="utf-8").splitlines()
         (desk / "rows.csv").write_text("\n".join([*lines[:2], *arrange(lines[2:])]) + "\n", encoding="utf-8")
-        answer = calc_here(desk, "diagnose", f"./{name}.py", "--inputs", "inputs.toml", "--data", "rows.csv")
-        assert answer.code == 0, answer.err
-        return read_document(desk / "runs" / "rows")
+        return documented(desk, f"{name}.py", "rows.csv")
 
     return run
 

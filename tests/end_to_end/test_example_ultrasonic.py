@@ -49,7 +49,7 @@ ORDERS = ("file", "sorted")
 
 @pytest.fixture(scope="module")
 def orders(tmp_path_factory: pytest.TempPathFactory, shown_runs: Callable[[str], Path]) -> dict[str, Document]:
-    other = CHWIRUT.diagnosed(tmp_path_factory.mktemp("sorted"), sorted_by_distance).document
+    other = CHWIRUT.diagnosed(tmp_path_factory.mktemp("sorted"), sorted_by_distance)
     return {"file": read_document(shown_runs("ultrasonic_calibration") / "chwirut2"), "sorted": other}
 
 
@@ -210,7 +210,7 @@ def test_the_scatter_depends_on_the_distance(order: str, orders: dict[str, Docum
 
 def test_half_of_the_rows_leave_spreading_among_the_explanations(tmp_path: Path) -> None:
     """And they are not surer than all: the law that draws the same curve is left too."""
-    half = CHWIRUT.diagnosed(tmp_path, the_others).document
+    half = CHWIRUT.diagnosed(tmp_path, the_others)
     assert half["verdict"] in {"named", "one_of", "undecided"}  # 27 rows may say too little, never something else
     assert (frozenset({"beam_spreading"}) in explanations(half)) == (half["verdict"] != "undecided")
     both = {frozenset({"beam_spreading"}), frozenset({"pulse_hardening"})}
