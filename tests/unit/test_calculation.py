@@ -28,7 +28,7 @@ from truing.evaluate import evaluate
 from truing.executors import open_executor
 from truing.setup import SwitchedOn
 from truing.studies.checks import EXIT_CODES, chance_check, margin_of
-from truing.studies.optimise_problem import bounds_of
+from truing.studies.optimise import bounds_of
 from truing.studies.verdicts import sentence_of
 
 GROWING = SwitchedOn(CHAIN.effects["grow"], {"strain": 1e-5})

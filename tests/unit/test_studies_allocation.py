@@ -42,9 +42,8 @@ from truing.errors import UsageError
 from truing.fits import GRADES, tolerance
 from truing.report.sheet import check_rows
 from truing.setup import Setup, default_setup
-from truing.studies.allocation import largest_variance
+from truing.studies.allocation import ToleranceVariable, largest_variance, prices_at
 from truing.studies.demands import Demand, normal_chance
-from truing.studies.grades import ToleranceVariable, prices_at
 from truing.studies.sampling import Tally
 
 

@@ -21,8 +21,8 @@ from typing import Any
 import numpy as np
 
 from truing.arrays import Matrix
+from truing.declare.fields import Axis
 from truing.declare.goals import Maximise, Minimise, Require
-from truing.declare.specs import Axis
 from truing.diagnosis.causes import Candidate
 from truing.diagnosis.choice import Chosen
 from truing.diagnosis.competition import Competition
