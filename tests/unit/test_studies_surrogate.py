@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,8 @@ from truing import Emulated, Model, Surrogate, Table
 from truing.calculation import calculate
 from truing.errors import UsageError
 from truing.executors import SerialExecutor, WorkerPool
-from truing.inputs_file.study_options import options_of, read_option
+from truing.inputs_file.study_options import study_section
+from truing.inputs_file.values import Entry, InputsRead
 from truing.setup import Setup, SwitchedOn
 from truing.studies.surrogate import Speed, designed, open_box
 
@@ -279,12 +281,16 @@ def test_the_answer_stands_for_what_it_was_made_for(found: Emulated) -> None:
 
 
 def test_options_can_stand_in_a_file() -> None:
-    hints = options_of(STUDY)
-    assert read_option(STUDY, "over", hints["over"], {"x1": "0..1"}) == {"x1": "0..1"}
-    assert read_option(STUDY, "of", hints["of"], "total") == "total"
-    assert read_option(STUDY, "logarithmic", hints["logarithmic"], ["x1"]) == ("x1",)
+    def read(name: str, raw: object) -> object:
+        entry = study_section(STUDY).entries[name]
+        assert isinstance(entry, Entry)
+        return entry.read(raw, InputsRead(Path()))
+
+    assert read("over", {"x1": "0..1"}) == {"x1": "0..1"}
+    assert read("of", "total") == "total"
+    assert read("logarithmic", ["x1"]) == ("x1",)
     with pytest.raises(ValueError, match="over = 3"):
-        read_option(STUDY, "over", hints["over"], 3)
+        read("over", 3)
 
 
 @pytest.mark.parametrize(
