@@ -13,7 +13,7 @@ from truing.calculation import Calculation
 from truing.declare.blocks import Block, Drawing, Table, Words
 from truing.declare.fields import Axis, Found, ResultField
 from truing.declare.model import Section
-from truing.errors import PluginError, UnitError
+from truing.errors import PluginError
 from truing.kernel.blame import spoken_place
 from truing.numbers import format_ends, format_value, pretty
 from truing.report.document import (
@@ -28,15 +28,20 @@ from truing.report.document import (
     Text,
     Value,
     label_of,
+    unit_as_said,
     with_source,
 )
 from truing.report.equations import equation_of, value_text
 from truing.report.figures import draw
 from truing.setup import Setup
-from truing.units import unit_text
 
 RANK = {"short": 0, "normal": 1, "full": 2}
 LONGEST_TABLE = {"short": 20, "normal": 60, "full": 1000}
+DEPARTURES = {
+    True: "in the calculation, with the effects on the results that are on",
+    False: "in the calculation: the printed formula gives another number",
+}
+"""Why a calculation has another number than the printed formula, with and without an effect on the results."""
 AXIS_ROWS = {"short": 0, "normal": 12, "full": 25}
 
 
@@ -157,16 +162,11 @@ def _entry(writing: Writing, name: str, *, with_formula: bool) -> ResultEntry:
     elif equation is None or equation.departs:
         printed = Value(*format_value(answers[name], writing.setup.print_unit(name), result.digits))
         value = (*symbol, *(("= ",) if symbol else ()), Marked("strong", printed))
-        value += (" ", Marked("aside", _departure(writing.setup))) if equation is not None else ()
+        if equation is not None:
+            on_results = any(active.effect.place == "results" for active in writing.setup.effects)
+            value += (" ", Marked("aside", DEPARTURES[on_results]))
     method = with_source(getattr(result.spec, "method", ""), getattr(result.spec, "source", ""))
     return ResultEntry(name, label_of(result.spec.note, name), equation, value, method)
-
-
-def _departure(setup: Setup) -> str:
-    """Say why the calculation has another number than the printed formula."""
-    if any(active.effect.place == "results" for active in setup.effects):
-        return "in the calculation, with the effects on the results that are on"
-    return "in the calculation: the printed formula gives another number"
 
 
 def _range(writing: Writing, result: ResultField) -> tuple[Value, str]:
@@ -233,7 +233,7 @@ def table_view(table: Table, most: int) -> TableView:
     shown = table.rows[:most]
     width = len(table.columns)
     rows = tuple(tuple([*map(value_text, row), *[""] * width][:width]) for row in shown)
-    units = [_known_unit(unit) for unit in (*table.units, *[""] * width)]
+    units = [unit_as_said(unit) for unit in (*table.units, *[""] * width)]
     cells = ([row[index] for row in shown if index < len(row)] for index in range(width))
     columns = tuple(
         Column(title, unit, "number" if shown and all(map(_is_numeric, column)) else "")
@@ -246,14 +246,6 @@ def table_view(table: Table, most: int) -> TableView:
 
 def _is_numeric(cell: Any) -> bool:
     return cell is None or (isinstance(cell, (int, float)) and not isinstance(cell, bool)) or hasattr(cell, "dtype")
-
-
-def _known_unit(unit: str) -> str:
-    """Write a unit for print; a heading that is no unit stays as it is."""
-    try:
-        return unit_text(unit) if unit else ""
-    except UnitError:
-        return unit
 
 
 def numbered(chapters: Iterable[Chapter]) -> tuple[Chapter, ...]:

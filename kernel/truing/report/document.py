@@ -11,10 +11,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
+from truing.errors import UnitError
 from truing.formulas import Formula, symbol_text
 from truing.numbers import pretty, with_unit
 from truing.runs.provenance import Provenance
 from truing.studies.checks import SHORT, State
+from truing.units import unit_text
 
 MARKS = {
     "passes": "✓", "proposed": "!", "undecided": "?", "fails": "✗", "none": "○", "calm": "✓", "found": "●", "open": "?",
@@ -92,6 +94,14 @@ def _plain(piece: Piece) -> str:
             return _plain(inner)
         case Judgement(state):
             return f"{MARKS[state]} {SHORT[state]}"
+
+
+def unit_as_said(unit: str) -> str:
+    """Write a unit for print; a heading that is no unit stays as it is."""
+    try:
+        return unit_text(unit) if unit else ""
+    except UnitError:
+        return unit
 
 
 def with_source(words: str, source: str) -> Text:
