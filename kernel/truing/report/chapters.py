@@ -15,7 +15,7 @@ from truing.declare.fields import Axis, Found, ResultField
 from truing.declare.model import Section
 from truing.errors import PluginError
 from truing.kernel.blame import spoken_place
-from truing.numbers import format_ends, format_value, pretty
+from truing.numbers import RESULT_DIGITS, format_ends, format_number, format_value, pretty
 from truing.report.document import (
     BlockView,
     Chapter,
@@ -31,7 +31,7 @@ from truing.report.document import (
     unit_as_said,
     with_source,
 )
-from truing.report.equations import equation_of, value_text
+from truing.report.equations import equation_of
 from truing.report.figures import draw
 from truing.setup import Setup
 
@@ -232,7 +232,7 @@ def table_view(table: Table, most: int) -> TableView:
     """Write the cells of a plugin's table; what is left out is said."""
     shown = table.rows[:most]
     width = len(table.columns)
-    rows = tuple(tuple([*map(value_text, row), *[""] * width][:width]) for row in shown)
+    rows = tuple(tuple([*map(_cell_text, row), *[""] * width][:width]) for row in shown)
     units = [unit_as_said(unit) for unit in (*table.units, *[""] * width)]
     cells = ([row[index] for row in shown if index < len(row)] for index in range(width))
     columns = tuple(
@@ -242,6 +242,13 @@ def table_view(table: Table, most: int) -> TableView:
     left = len(table.rows) - len(shown)
     note = " ".join(filter(None, [table.note, f"{left} further rows are not printed." if left else ""]))
     return TableView(table.title, columns, rows, note)
+
+
+def _cell_text(cell: Any) -> str:
+    """Write a number, a text, yes or no, or nothing."""
+    if isinstance(cell, bool) or type(cell).__name__ == "bool":
+        return "yes" if cell else "no"
+    return format_number(cell, RESULT_DIGITS) if _is_numeric(cell) else str(cell)
 
 
 def _is_numeric(cell: Any) -> bool:

@@ -558,16 +558,14 @@ def _data(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
     for label, count in zip(file_labels(records.files), records.counts, strict=True):
         if count.unused:
             yield Paragraph(f"{label}: {count.sentence()}.")
-    yield table_of("Covariates", ("Name", "From", "To", "Role", "Remark"), list(_covariates(diagnosis)), (1, 2))
+    covariates = []
+    for covariate in records.covariates.values():
+        finite = covariate.values[np.isfinite(covariate.values)]
+        ends = (float(finite.min()), float(finite.max())) if finite.size else ()
+        low, high = (amount_text(Amount(end, covariate.unit), 4) for end in ends) if ends else (ABSENT, ABSENT)
+        missing = len(covariate.values) - finite.size
+        remarks = ["never changes"] * covariate.is_constant + [f"{missing} missing"] * (missing > 0)
+        covariates.append((spoken(covariate.name), low, high, covariate.role, ", ".join(remarks) or ABSENT))
+    yield table_of("Covariates", ("Name", "From", "To", "Role", "Remark"), covariates, (1, 2))
     for sentence in records.notes:
         yield Paragraph(sentence.rstrip(".") + ".")
-
-
-def _covariates(diagnosis: DiagnosisResult) -> Iterator[tuple[str, ...]]:
-    for covariate in diagnosis.records.covariates.values():
-        finite = covariate.values[np.isfinite(covariate.values)]
-        ends = (float(finite.min()), float(finite.max())) if finite.size else (None, None)
-        low, high = (ABSENT if end is None else amount_text(Amount(end, covariate.unit), 4) for end in ends)
-        missing = len(covariate.values) - finite.size
-        remarks = [*(["never changes"] if covariate.is_constant else []), *([f"{missing} missing"] if missing else [])]
-        yield spoken(covariate.name), low, high, covariate.role, ", ".join(remarks) or ABSENT

@@ -68,16 +68,11 @@ def sandbox_arguments() -> list[str]:
     return ["--no-sandbox"] if is_root else []
 
 
-def print_pdf(html: Path, pdf: Path, browser: Path | None = None, *, paper: str = "A4") -> None:
-    """Print a sheet to PDF on "A4" or "letter" paper.
+def pdf_bytes(html: str, browser: Path | None = None, *, paper: str = "A4") -> bytes:
+    """Print the text of a sheet on "A4" or "letter" paper and return the PDF.
 
     Raises OutputError with one sentence: no browser (and how to print without), or what went wrong.
     """
-    pdf.write_bytes(pdf_bytes(html.read_text(encoding="utf-8"), browser, paper=paper))
-
-
-def pdf_bytes(html: str, browser: Path | None = None, *, paper: str = "A4") -> bytes:
-    """Print the text of a sheet and return the PDF; raises OutputError as ``print_pdf`` does."""
     browser = browser or find_browser()
     if browser is None:
         raise OutputError(f"no Chromium, Chrome or Edge was found for the PDF (CHROME_PATH names one); {HOW_TO_PRINT}")
