@@ -23,32 +23,19 @@ LETTERS: Final = {
 }
 """Greek letters; those that look Latin have no command of their own."""
 SUPERSCRIPTS: Final = dict(zip("⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺", "0123456789-+", strict=True))
+_NAMED: Final = {
+    "{": "lbrace", "}": "rbrace", "[": "lbrack", "]": "rbrack", "|": "vert", "<": "lt", ">": "gt", "µ": "mu",
+}  # fmt: skip
+_GROUPED: Final = {
+    "\\": r"\backslash", "^": r"\wedge", "~": r"\sim", "*": r"\ast", "`": "'", "'": "'", "′": "'", '"': "''", "″": "''",
+    "·": r"\cdot", "⋅": r"\cdot", "×": r"\times", "±": r"\pm", "°": r"^{\circ}",
+}  # fmt: skip
 ESCAPES: Final = {
-    "\\": r"{\backslash}",
-    "{": r"\lbrace{}",
-    "}": r"\rbrace{}",
-    "[": r"\lbrack{}",
-    "]": r"\rbrack{}",
-    "|": r"\vert{}",
-    "<": r"\lt{}",
-    ">": r"\gt{}",
-    "^": r"{\wedge}",
-    "~": r"{\sim}",
-    "*": r"{\ast}",
-    "`": "{'}",
-    "'": "{'}",
-    "′": "{'}",
-    '"': "{''}",
-    "″": "{''}",
+    **{character: rf"\{name}{{}}" for character, name in _NAMED.items()},
+    **{character: f"{{{marks}}}" for character, marks in _GROUPED.items()},
     " ": r"\ ",
-    "·": r"{\cdot}",
-    "⋅": r"{\cdot}",
-    "×": r"{\times}",
-    "±": r"{\pm}",
-    "°": r"{^{\circ}}",
     "−": "-",
     "–": r"\text{–}",
-    "µ": r"\mu{}",
     **{character: f"\\{character}" for character in "$#%&_"},
     **{letter: f"{command}{{}}" for letter, command in LETTERS.items()},
 }
