@@ -36,7 +36,6 @@ from truing.report.document import (
     Document,
     Head,
     Items,
-    Judgement,
     Marked,
     Paragraph,
     Piece,
@@ -465,7 +464,7 @@ def check_table(calculation: Calculation) -> TableView:
         about = (*label, Marked("bracketed code", check.compared or check.name))
         about += (Marked("break", ", "), Marked("aside", remark)) if remark else ()
         proposed = (row.proposed or "",) if has_proposal else ()
-        rows.append((about, row.value, *proposed, check.relation, row.limit, row.margin, Judgement(check.state)))
+        rows.append((about, row.value, *proposed, check.relation, row.limit, row.margin, Marked("state", check.state)))
     title = f"Limits, and what is left of them. A margin is {margins_words(calculation.checks)}; above zero is safe"
     states = tuple(check.state for check in calculation.checks)
     return TableView(title, columns, tuple(rows), states=states, kind="checks")
