@@ -240,16 +240,11 @@ def made_from(model: Model[Any, Any]) -> Mapping[str, tuple[str, ...]]:
 
 def following(links: Mapping[str, tuple[str, ...]], name: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Return the results whose formulas name this one, and those that follow further down."""
-    direct = tuple(result for result, sources in links.items() if name in sources)
-    further: dict[str, None] = {}
-    front = list(direct)
-    while front:
-        last = front.pop(0)
-        for result, sources in links.items():
-            if last in sources and result not in direct and result not in further and result != name:
-                further[result] = None
-                front.append(result)
-    return direct, tuple(further)
+    direct = [result for result, sources in links.items() if name in sources]
+    found = list(direct)
+    for last in found:  # which grows
+        found += [result for result, sources in links.items() if last in sources and result not in {name, *found}]
+    return tuple(direct), tuple(found[len(direct) :])
 
 
 def chain(links: Mapping[str, tuple[str, ...]], name: str) -> Iterator[tuple[int, str, bool]]:

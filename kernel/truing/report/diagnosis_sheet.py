@@ -132,18 +132,18 @@ HEADS = ("Cause", "Unknown", "Value", "95 % interval", "Unit")
 
 def diagnosis_chapters(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[Chapter]:
     """Write the chapters in the order in which they are asked for."""
-    yield _chapter("wrong", "What is wrong", _wrong(diagnosis, drawn))
-    yield _chapter("cause", "Cause", _cause(diagnosis, drawn))
-    yield _chapter("model", "Extended model", _model(diagnosis))
-    yield _chapter("gain", "Gain", _gain(diagnosis, drawn))
-    yield _chapter("next", "Next measurement", _next(diagnosis))
-    yield _chapter("data", "Data", _data(diagnosis))
-
-
-def _chapter(ident: str, title: str, parts: ChapterParts) -> Chapter:
-    said = list(parts)
-    lines = tuple(part for part in said if isinstance(part, str))
-    return Chapter(title, tuple(part for part in said if not isinstance(part, str)), ident, lines=lines)
+    chapters: dict[str, tuple[str, ChapterParts]] = {
+        "wrong": ("What is wrong", _wrong(diagnosis, drawn)),
+        "cause": ("Cause", _cause(diagnosis, drawn)),
+        "model": ("Extended model", _model(diagnosis)),
+        "gain": ("Gain", _gain(diagnosis, drawn)),
+        "next": ("Next measurement", _next(diagnosis)),
+        "data": ("Data", _data(diagnosis)),
+    }
+    for ident, (title, parts) in chapters.items():
+        said = list(parts)
+        lines = tuple(part for part in said if isinstance(part, str))
+        yield Chapter(title, tuple(part for part in said if not isinstance(part, str)), ident, lines=lines)
 
 
 # What is wrong

@@ -27,15 +27,12 @@ from truing.kernel.blame import spoken_place
 from truing.report.figure_layout import arranged
 
 STYLE = {
-    "svg.fonttype": "path",
     "svg.hashsalt": "truing",
     "font.family": "DejaVu Sans",
     "font.size": 9.0,
     "axes.titlesize": 10.0,
-    "axes.labelsize": 9.0,
     "axes.linewidth": 0.7,
     "axes.edgecolor": "#333333",
-    "axes.grid": False,
     "axes.spines.top": False,
     "axes.spines.right": False,
     "grid.color": "#d5d8dc",
@@ -48,10 +45,9 @@ STYLE = {
     "legend.frameon": False,
     "legend.fontsize": 8.0,
     "figure.figsize": (6.4, 3.6),
-    "figure.facecolor": "white",
     "savefig.facecolor": "white",
 }
-"""The look of every figure; a plugin may say otherwise for its own."""
+"""The look of every figure where it is not matplotlib's own; a plugin may say otherwise for its own."""
 
 POINTS_PER_INCH = 72
 EDGE = 4.3

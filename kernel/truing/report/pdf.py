@@ -27,15 +27,9 @@ MAC = (
     "/Applications/Microsoft Edge.app/Contents/MacOS/Microsoft Edge",
 )
 QUIET = (
-    "--headless",
-    "--disable-gpu",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--disable-extensions",
-    "--no-first-run",
-    "--no-default-browser-check",
-)
+    "--headless", "--disable-gpu", "--disable-background-networking", "--disable-component-update", "--disable-sync",
+    "--disable-extensions", "--no-first-run", "--no-default-browser-check", "--no-pdf-header-footer",
+)  # fmt: skip
 HOW_TO_PRINT = "open sheet.html in any browser and print it to PDF (Ctrl+P), with background graphics on"
 PATIENCE = 120.0
 
@@ -85,7 +79,7 @@ def pdf_bytes(html: str, browser: Path | None = None, *, paper: str = "A4") -> b
 
 def _run(browser: Path, arguments: list[str], made: Path) -> None:
     """Run the browser once, unseen, with an empty profile and no word to the network."""
-    command = [str(browser), *QUIET, *sandbox_arguments(), "--no-pdf-header-footer", *arguments]
+    command = [str(browser), *QUIET, *sandbox_arguments(), *arguments]
     try:
         done = subprocess.run(command, capture_output=True, timeout=PATIENCE, check=False)
     except subprocess.TimeoutExpired:
