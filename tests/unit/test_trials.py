@@ -10,10 +10,9 @@ import numpy as np
 import pytest
 from test_gauge import PIN_WEAR, WALL, Course, Wall, rows_for, wall
 
-from truing import trials
-from truing.gauge import read_by_gauge
+from truing import gauge
+from truing.gauge import read_by_gauge, read_trials
 from truing.setup import SwitchedOn, effect_column
-from truing.trials import read_trials
 
 LOADS = "load [N],time [h]\n28,1\n56,2\n84,3\n"
 
@@ -63,7 +62,7 @@ def test_trials_are_one_call_and_not_too_many_rows(tmp_path: Path, monkeypatch: 
     changes = [{"outside": 273.15 + place} for place in range(5)]
     answers = list(read_trials(setup, rows, changes, ["inside"]))
     assert calls == [15]
-    monkeypatch.setattr(trials, "AT_ONCE", 7)
+    monkeypatch.setattr(gauge, "AT_ONCE", 7)
     in_parts = list(read_trials(setup, rows, changes, ["inside"]))
     assert calls[1:] == [6, 6, 3]
     for place, (at_once, part) in enumerate(zip(answers, in_parts, strict=True)):
