@@ -132,7 +132,7 @@ class CsvFile:
         return RowCount(self.faults.file, self.rows + sum(len(left_out.lines) for left_out in left), left)
 
     def chunks(self) -> Iterator[tuple[list[tuple[str, ...]], tuple[int, ...]]]:
-        """Give columns of text and the line of each row, some thousands at a time; lines that are no rows are faults."""
+        """Give columns of text with the line of each row, thousands at a time; lines that are no rows are faults."""
         behind = 0
         while part := list(islice(self._lines, ROWS_AT_ONCE)):
             behind += len(part)

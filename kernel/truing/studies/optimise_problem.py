@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr, ndtri
 
-from truing.declare.checks import TOTAL_PRICE
 from truing.declare.fields import InputField, in_si
 from truing.declare.goals import Maximise, Minimise, Require, Vary
+from truing.declare.model import TOTAL_PRICE
 from truing.declare.near_miss import near_miss
 from truing.declare.sources import Tolerance
 from truing.declare.spreads import (

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from truing.declare.checks import formula_scope
 from truing.declare.goals import prices_in
+from truing.declare.model import formula_scope
 from truing.declare.sources import Effect, Unknown
 from truing.errors import InfeasibleError, TruingError
 from truing.evaluate import evaluate
