@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import inspect
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +28,7 @@ def names_of(incomplete: str) -> Iterator[OfferedWord]:
 
 def names_inside(context: typer.Context) -> Iterator[OfferedWord]:
     """Offer what the calculation that is typed already answers, takes, and could have wrong."""
-    yield from _declared(_typed_model(context))
+    return _declared(_typed_model(context))
 
 
 def changes(context: typer.Context, incomplete: str) -> Iterator[OfferedWord]:
@@ -45,7 +45,8 @@ def changes(context: typer.Context, incomplete: str) -> Iterator[OfferedWord]:
     else:
         inside = functools.reduce(_inside, above, known)
     if equals:
-        yield from ((f"{name}={word}", _words(inside[last])) for word in _choices(inside[last]))
+        words = ("true", "false") if inside[last].get("type") == "boolean" else inside[last].get("enum", ())
+        yield from ((f"{name}={word}", _words(inside[last])) for word in words)
         return
     for key, schema in inside.items():
         yield f"{'.'.join([*above, key])}{'.' if 'properties' in schema else '='}", _words(schema)
@@ -65,11 +66,6 @@ def _inside(names: Mapping[str, Any], name: str) -> Mapping[str, Any]:
 
 def _words(schema: Mapping[str, Any]) -> str:
     return str(schema.get("description") or (f"now {schema['default']}" if "default" in schema else ""))
-
-
-def _choices(schema: Mapping[str, Any]) -> Sequence[Any]:
-    words: Sequence[Any] = schema.get("enum", ())
-    return ("true", "false") if schema.get("type") == "boolean" else words
 
 
 def _options_of_reader(model: Model[Any, Any], name: str) -> dict[str, Any]:
