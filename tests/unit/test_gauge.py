@@ -28,17 +28,15 @@ from truing import (
     inputs,
     loaded,
     results,
-    trials,
 )
 from truing.errors import DeclarationError, InputError, UsageError
-from truing.gauge import Shown, one_machine, read_by_gauge, shown_by_gauge
+from truing.gauge import Shown, one_machine, read_by_gauge, read_trials, shown_by_gauge
 from truing.inputs_file import setup_from_text
 from truing.kernel import Offer, Origin
 from truing.measurements import RowsFile, read_rows
 from truing.measurements.derived import derive
 from truing.setup import Setup, SwitchedOn, effect_column
 from truing.studies.sampling import scatter_of
-from truing.trials import read_trials
 
 
 @inputs
@@ -249,7 +247,7 @@ def test_trials_are_one_call_and_not_too_many_rows(tmp_path: Path, monkeypatch: 
     changes = [{"outside": 273.15 + place} for place in range(5)]
     answers = list(read_trials(setup, rows, changes, ["inside"]))
     assert calls == [15]
-    monkeypatch.setattr(trials, "AT_ONCE", 7)
+    monkeypatch.setattr("truing.gauge.AT_ONCE", 7)
     in_parts = list(read_trials(setup, rows, changes, ["inside"]))
     assert calls[1:] == [6, 6, 3]
     for place, (at_once, part) in enumerate(zip(answers, in_parts, strict=True)):

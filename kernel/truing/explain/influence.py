@@ -12,9 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from truing.declare.checks import formula_scope
 from truing.declare.fields import Found
-from truing.declare.model import Model
+from truing.declare.model import Model, formula_scope
 from truing.declare.sources import Condition, Effect, Unknown
 from truing.errors import InfeasibleError, TruingError
 from truing.evaluate import acting_inputs, evaluate
