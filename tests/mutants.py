@@ -153,7 +153,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ("np.floor(axis[-1]) + 1", "np.floor(axis[-1])"),
     ),
     *changes(
-        "kernel/truing/studies/grades.py", "unit/test_studies_allocation_widths.py",
+        "kernel/truing/studies/allocation.py", "unit/test_studies_allocation_widths.py",
         ("self.variances[demand] * (width / self.start) ** 2", "self.variances[demand] * (width / self.start)"),
         ("paid.imag / (COMPLEX_STEP * widths)", "paid.imag / COMPLEX_STEP"),
     ),
@@ -163,12 +163,12 @@ MUTANTS: tuple[Mutant, ...] = (
         ("return float((reach * 10.0**log_sd) ** 2)", "return float(reach * 10.0**log_sd)"),
     ),
     *changes(
-        "kernel/truing/studies/optimise_problem.py", "unit/test_studies_optimise.py",
+        "kernel/truing/studies/optimise.py", "unit/test_studies_optimise.py",
         ("mean = mean + slopes[column] * beside(shift", "mean = mean - slopes[column] * beside(shift"),
         ("beside(own[column].sd, slopes[column])) ** 2", "beside(own[column].sd, slopes[column]))"),
     ),
     *changes(
-        "kernel/truing/studies/optimise_search.py", "unit/test_studies_optimise.py",
+        "kernel/truing/studies/optimise.py", "unit/test_studies_optimise.py",
         ("(1.0 - scaled.sum(axis=1))", "(scaled.sum(axis=1) - 1.0)"),
         ("(REFERENCE - order[:, 0])", "(order[:, 0])"),
     ),
@@ -309,7 +309,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ("+ at_ring_tip**2", "- at_ring_tip**2"),
     ),
     *changes(
-        "plugins/rv_gearing/geometry.py", "published/test_rv_gearing_factors.py published/test_rv_gearing_published.py",
+        "plugins/rv_gearing/geometry.py", "published/test_rv_gearing_factors.py",
         ("2.0 * stage.module * (stage.dedendum - gear.shift)", "2.0 * stage.module * (stage.dedendum + gear.shift)"),
         ("contact / np.cos(base_helix) ** 2", "contact / np.cos(base_helix)"),
     ),

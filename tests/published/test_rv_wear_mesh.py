@@ -329,22 +329,6 @@ def test_rigorous_sharing_is_near_the_linear_one() -> None:
     assert np.all(np.abs(rigorous.force[0, middle] / linear.force[0, middle] - 1) < 0.05)
 
 
-def test_friction_of_the_mesh_is_a_few_percent_of_the_power() -> None:
-    profile = discs.flank(PAPER)
-    speeds = geometry.sliding_speed(MESH, profile.angle)
-    lost = 2 * 0.05 * float((profile.force[0] * speeds).sum()) / 8 / 3136
-    assert lost == pytest.approx(0.057, abs=5.01e-4)
-
-
-def test_larger_modification_at_the_same_clearance_means_less_force_and_more_pins() -> None:
-    modification = np.linspace(-53e-6, 11e-6, 30)
-    reducer = replace(PAPER, equidistant_modification=modification, shift_modification=modification - 4e-6)
-    assert np.all(np.diff(worn(reducer)["max_force"]) < 0)
-    loaded = (discs.flank(reducer).force > 0).mean(axis=1)
-    assert np.all(np.diff(loaded) >= 0)
-    assert loaded[-1] > loaded[0] + 0.2
-
-
 def test_each_of_many_meshes_is_solved_as_if_alone() -> None:
     rng = np.random.default_rng(3)
     values = {"torque": rng.uniform(50, 3000, 9), "width": rng.uniform(0.015, 0.025, 9)}
