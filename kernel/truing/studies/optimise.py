@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field, fields, replace
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
+from graphlib import CycleError, TopologicalSorter
 from math import ceil, floor, isnan
 from typing import Any, Literal, Protocol, runtime_checkable
 
@@ -368,12 +369,14 @@ class Optimum(Outcome):
             return [Words(f"{self.status[:1].upper()}{self.status[1:]}.", "finding"), _comparison(self)]
         blocks: list[Block] = [Words(_summary(self)), _comparison(self), *_undecided(self)]
         if len(self.front) > 1:
-            blocks += [*fit_for_paper(_front(self)), Drawing("Front, start and knee", _drawn_front(self))]
+            blocks += [*fit_for_paper(_front(self)), Drawing("Front, start and knee", partial(_drawn_front, self))]
         words = (
             "Of every generation's front, in the box of the last one (each objective 0 to 1), against the reference "
             f"point {REFERENCE:g} in each objective."
         )
-        blocks.append(Drawing("Hypervolume over the generations", _drawn_history(self), words))
+        assert self.volume is not None  # there is a front
+        history = partial(_drawn_history, self.volume.history)
+        blocks.append(Drawing("Hypervolume over the generations", history, words))
         return blocks
 
     def warnings(self) -> Sequence[str]:
@@ -405,15 +408,27 @@ def _variable_json(variable: Any) -> dict[str, Any]:
     }
 
 
-def _design_json(optimum: Optimum, design: DesignPoint) -> dict[str, Any]:
+def _kinds(optimum: Optimum) -> dict[str, dict[str, tuple[str, str]]]:
+    """Return by group and name what each value of a design is, and its unit."""
+    tolerances = [variable for variable in optimum.variables if not variable.is_input]
     return {
-        "inputs": {name: printed(value, _input_unit(optimum, name)) for name, value in design.inputs.items()},
-        "tolerances": {name: _width(optimum, name, value) for name, value in design.tolerances.items()},
-        "objectives": {aim.name: printed(design.objectives[aim.name], aim.unit) for aim in optimum.aims},
-        "margins": {name: as_number(value) for name, value in design.margins.items()},
-        "chances": {name: as_number(value) for name, value in design.chances.items()},
-        "feasible": design.feasible,
+        "inputs": {name: ("input", optimum.problem.setup.print_unit(name)) for name in optimum.start.inputs},
+        "tolerances": {one.name: ("grade" if one.kind == "grade" else "full width", one.unit) for one in tolerances},
+        "objectives": {aim.name: (aim.sense, aim.unit) for aim in optimum.aims},
     }
+
+
+def _design_json(optimum: Optimum, design: DesignPoint) -> dict[str, Any]:
+    values = {
+        group: {
+            name: value if isinstance(value, str) else printed(value, kinds[name][1])
+            for name, value in getattr(design, group).items()
+        }
+        for group, kinds in _kinds(optimum).items()
+    }
+    margins = {name: as_number(value) for name, value in design.margins.items()}
+    chances = {name: as_number(value) for name, value in design.chances.items()}
+    return {**values, "margins": margins, "chances": chances, "feasible": design.feasible}
 
 
 def _knee_json(optimum: Optimum, knee: DesignPoint) -> dict[str, Any]:
@@ -430,18 +445,6 @@ def _knee_json(optimum: Optimum, knee: DesignPoint) -> dict[str, Any]:
         "exact": exact,
         "verified": verified,
     }
-
-
-def _input_unit(optimum: Optimum, name: str) -> str:
-    return optimum.problem.setup.print_unit(name)
-
-
-def _width_unit(optimum: Optimum, name: str) -> str:
-    return next(variable.unit for variable in optimum.variables if not variable.is_input and variable.name == name)
-
-
-def _width(optimum: Optimum, name: str, value: float | str) -> Any:
-    return value if isinstance(value, str) else printed(value, _width_unit(optimum, name))
 
 
 def _summary(optimum: Optimum) -> str:
@@ -472,35 +475,21 @@ def _comparison(optimum: Optimum) -> Table:
     """Set the stated design and the knee side by side: variables, objectives, limits."""
     start, knee = optimum.start, optimum.knee
     designs = [start] if knee is None else [start, knee]
-    rows: list[list[Cell]] = []
-    for name in start.inputs:
-        unit = _input_unit(optimum, name)
-        rows.append([name, "input", unit_text(unit), *(printed(design.inputs[name], unit) for design in designs)])
-    for name, width in start.tolerances.items():
-        unit, kind = ("", "grade") if isinstance(width, str) else (_width_unit(optimum, name), "full width")
-        rows.append(
-            [name, kind, unit_text(unit), *(_width(optimum, name, design.tolerances[name]) for design in designs)]
-        )
-    for aim in optimum.aims:
-        values = [printed(design.objectives[aim.name], aim.unit) for design in designs]
-        rows.append([aim.name, aim.sense, unit_text(aim.unit), *values])
-    rows += [_limit_row(bound, designs) for bound in optimum.bounds]
-    rows += _verified_rows(optimum)
+    told = [_design_json(optimum, design) for design in designs]
+    rows: list[list[Cell]] = [
+        [name, kind, unit_text(unit), *(values[group][name] for values in told)]
+        for group, kinds in _kinds(optimum).items()
+        for name, (kind, unit) in kinds.items()
+    ]
+    for bound in optimum.bounds:
+        chances = [as_number(100 * design.chances[bound.name]) for design in designs if bound.by_chance]
+        margins = [as_number(design.margins[bound.name]) for design in designs]
+        rows.append([bound.name, "chance", "%", *chances] if bound.by_chance else [bound.name, "margin", "", *margins])
+    for name, share in optimum.verified.items():
+        rows.append([name, f"chance, {optimum.study.verify} machines", "%", None, 100 * share])
     rows.append(["every limit is kept", "", "", *(design.feasible for design in designs)])
     columns = ("name", "", "unit", "start", "knee")[: 3 + len(designs)]
     return Table("Start and knee", columns, rows, note=_comparison_note(optimum))
-
-
-def _limit_row(bound: Any, designs: Sequence[DesignPoint]) -> list[Cell]:
-    if bound.by_chance:
-        return [bound.name, "chance", "%", *(as_number(100 * design.chances[bound.name]) for design in designs)]
-    return [bound.name, "margin", "", *(as_number(design.margins[bound.name]) for design in designs)]
-
-
-def _verified_rows(optimum: Optimum) -> Iterator[list[Cell]]:
-    if optimum.tally is not None:
-        for name, share in optimum.verified.items():
-            yield [name, f"chance, {optimum.tally.draws} machines", "%", None, 100 * share]
 
 
 def _comparison_note(optimum: Optimum) -> str:
@@ -519,22 +508,19 @@ def _comparison_note(optimum: Optimum) -> str:
 def _front(optimum: Optimum) -> Table:
     """List the front, thinned evenly; its ends and the knee stay."""
     places = _thinned(len(optimum.front), optimum.knee_place or 0)
-    first = optimum.front[0]
-    inputs = [name for name in first.inputs if name not in first.objectives]
+    kinds = _kinds(optimum)
+    inputs = {name: kind for name, kind in kinds["inputs"].items() if name not in kinds["objectives"]}
     chances = [bound.name for bound in optimum.problem.by_chance]
     rows: list[list[Cell]] = []
     for index in places:
         design = optimum.front[index]
+        told = _design_json(optimum, design)
         row: list[Cell] = [f"{index + 1} knee" if index == optimum.knee_place else str(index + 1)]
-        row += [printed(design.objectives[aim.name], aim.unit) for aim in optimum.aims]
-        row += [as_number(100 * design.chances[name]) for name in chances]
-        row += [printed(design.inputs[name], _input_unit(optimum, name)) for name in inputs]
-        row += [_width(optimum, name, value) for name, value in design.tolerances.items()]
-        rows.append(row)
-    columns = ["design", *(aim.name for aim in optimum.aims), *chances, *inputs, *first.tolerances]
-    units = ["", *(aim.unit for aim in optimum.aims), *("%" for _ in chances)]
-    units += [_input_unit(optimum, name) for name in inputs]
-    units += ["" if isinstance(width, str) else _width_unit(optimum, name) for name, width in first.tolerances.items()]
+        row += [*told["objectives"].values(), *(as_number(100 * design.chances[name]) for name in chances)]
+        rows.append([*row, *(told["inputs"][name] for name in inputs), *told["tolerances"].values()])
+    columns = ["design", *kinds["objectives"], *chances, *inputs, *kinds["tolerances"]]
+    units = ["", *(unit for _, unit in kinds["objectives"].values()), *("%" for _ in chances)]
+    units += [unit for _, unit in (*inputs.values(), *kinds["tolerances"].values())]
     left = len(optimum.front) - len(places)
     note = f"{len(places)} of {len(optimum.front)} designs; results.json holds all of them." if left else ""
     return Table("Front", columns, rows, units, note)
@@ -563,21 +549,17 @@ def _thinned(count: int, knee: int) -> list[int]:
     return sorted({*(round(step * (count - 1) / (steps - 1)) for step in range(steps)), knee})
 
 
-def _drawn_front(optimum: Optimum) -> Callable[[], Figure]:
+def _drawn_front(optimum: Optimum) -> Figure:
     """Draw the first objective against each of the others."""
-
-    def draw() -> Figure:
-        first, others = optimum.aims[0], optimum.aims[1:]
-        figure = Figure(figsize=(WIDTH, 0.4 + 3.2 * len(others)), layout="constrained")
-        panels = figure.subplots(len(others), 1, squeeze=False)[:, 0]
-        for panel, other in zip(panels, others, strict=True):
-            _panel(panel, optimum, (first, other))
-            panel.set_xlabel(labelled(first.name, unit_text(first.unit)))
-            panel.set_ylabel(labelled(other.name, unit_text(other.unit)))
-        panels[0].legend(frameon=False)
-        return figure
-
-    return draw
+    first, others = optimum.aims[0], optimum.aims[1:]
+    figure = Figure(figsize=(WIDTH, 0.4 + 3.2 * len(others)), layout="constrained")
+    panels = figure.subplots(len(others), 1, squeeze=False)[:, 0]
+    for panel, other in zip(panels, others, strict=True):
+        _panel(panel, optimum, (first, other))
+        panel.set_xlabel(labelled(first.name, unit_text(first.unit)))
+        panel.set_ylabel(labelled(other.name, unit_text(other.unit)))
+    panels[0].legend(frameon=False)
+    return figure
 
 
 def _panel(panel: Any, optimum: Optimum, aims: tuple[Any, Any]) -> None:
@@ -598,19 +580,14 @@ def _panel(panel: Any, optimum: Optimum, aims: tuple[Any, Any]) -> None:
     panel.grid(alpha=0.3)
 
 
-def _drawn_history(optimum: Optimum) -> Callable[[], Figure]:
-    def draw() -> Figure:
-        assert optimum.volume is not None  # there is a front
-        history = optimum.volume.history
-        figure = Figure(figsize=(WIDTH, 2.4), layout="constrained")
-        panel: Any = figure.subplots()
-        panel.plot(range(1, len(history) + 1), history, color=BLUE)
-        panel.set_xlabel("generation")
-        panel.set_ylabel("hypervolume")
-        panel.grid(alpha=0.3)
-        return figure
-
-    return draw
+def _drawn_history(history: Sequence[float]) -> Figure:
+    figure = Figure(figsize=(WIDTH, 2.4), layout="constrained")
+    panel: Any = figure.subplots()
+    panel.plot(range(1, len(history) + 1), history, color=BLUE)
+    panel.set_xlabel("generation")
+    panel.set_ylabel("hypervolume")
+    panel.grid(alpha=0.3)
+    return figure
 
 
 def _doubts(optimum: Optimum) -> Iterator[str]:
@@ -1311,7 +1288,6 @@ class Follower:
 
     name: str
     formula: Formula
-    unit: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -1478,19 +1454,14 @@ def _of_grade(setup: Setup, tolerance: Tolerance, spread: Grade, study: Optimise
 def _followers(setup: Setup, stated: list[Vary], study: Optimise) -> Iterator[Follower]:
     """Yield the inputs that follow, each behind those it follows itself. Raises UsageError for a circle."""
     formulas = {vary.input: parse(vary.by) for vary in stated if vary.by}
-    done: set[str] = set()
-    while len(done) < len(formulas):
-        ready = [
-            name
-            for name, formula in formulas.items()
-            if name not in done and not (set(formula.names) & set(formulas)) - done
-        ]
-        if not ready:
-            circle = " and ".join(f"'{name}'" for name in formulas if name not in done)
-            raise UsageError(f"study '{study.name}': {circle} follow each other by their formulas in a circle")
-        for name in ready:
-            done.add(name)
-            yield Follower(name, formulas[name], setup.print_unit(name))
+    follows = {name: formula.names & formulas.keys() for name, formula in formulas.items()}
+    try:
+        order = list(TopologicalSorter(follows).static_order())
+    except CycleError as error:
+        circle = " and ".join(f"'{name}'" for name in formulas if name in error.args[1])
+        raise UsageError(f"study '{study.name}': {circle} follow each other by their formulas in a circle") from None
+    for name in order:
+        yield Follower(name, formulas[name])
 
 
 # How much every input scatters in every design: means and standard deviations of many designs at once
