@@ -17,7 +17,7 @@ from truing.fits import GRADES, tolerance
 from truing.report.sheet import check_rows
 from truing.setup import default_setup
 from truing.studies.allocation import largest_variance
-from truing.studies.demands import Demand, normal_chance
+from truing.studies.checks import Demand, normal_chance
 from truing.studies.sampling import Tally
 
 

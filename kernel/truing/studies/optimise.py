@@ -52,18 +52,24 @@ from truing.packed import Packed, pack, unpack
 from truing.prices import price_answers, price_of, prices_at
 from truing.setup import Setup
 from truing.studies.bench import Bench, Outcome
-from truing.studies.checks import Limit, beside, check_name, goal_of, limit_of, requirements, sockets_of
-from truing.studies.demands import (
+from truing.studies.checks import (
     Demand,
+    Limit,
     as_number,
+    beside,
+    check_name,
     demand_of,
     demands,
+    goal_of,
+    limit_of,
     normal_chance,
+    requirements,
     results_needed,
+    sockets_of,
     worst,
 )
-from truing.studies.differences import nominal_of
 from truing.studies.drawings import BLUE, GREY, ORANGE, WIDTH, labelled
+from truing.studies.first_order import nominal_of
 from truing.studies.reading import printed, spoken
 from truing.studies.sampling import (
     Scatter,
