@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from rv_wear_by_hand import PLACE, PRICE_OF, RUNOUT, SIZE, by_power
 
 from rv_wear.calculation import rv_wear
 from rv_wear.discs import DiscValidity, Modifications
@@ -177,20 +178,6 @@ def test_both_ground_modifications_are_drawn_for_themselves() -> None:
 
 # ---- cost ---------------------------------------------------------------------------------------------------------
 
-SIZE = (16.140, 0.324, 0.217, 0.013, 2.845)
-PLACE = (4.862, 0.483, 0.877, 1.020)
-RUNOUT = (23.729, 0.682)
-
-
-def by_power(kind: str, width: float) -> float:
-    if kind == "size":
-        a1, a2, a3, a4, a5 = SIZE
-        return a1 * width**-a2 + a3 * exp(-a4 * width) + a5
-    if kind == "place":
-        b1, b2, b3, b4 = PLACE
-        return b1 * width**-b2 + b3 * exp(-b4 * width)
-    return RUNOUT[0] * width ** -RUNOUT[1]
-
 
 def by_exponential(kind: str, width: float) -> float:
     if kind == "size":
@@ -213,10 +200,6 @@ def by_process(kind: str, width: float) -> float:
 
 
 FORMS = {"power": by_power, "exponential": by_exponential, "process": by_process}
-PRICED = {
-    "pin_circle_error": ("size", 6), "pin_radius_error": ("size", 7), "modification_error": ("size", 12),
-    "pin_position_error": ("place", 10), "disc_pitch_error": ("place", 11), "disc_runout": ("runout", 9),
-}  # fmt: skip
 
 
 def costs(**values: str) -> Mapping[str, Any]:
@@ -225,7 +208,7 @@ def costs(**values: str) -> Mapping[str, Any]:
 
 @pytest.mark.parametrize("form", FORMS)
 def test_the_cost_is_the_sum_of_six_functions_in_each_form(form: str) -> None:
-    expected = sum(FORMS[form](kind, ZONES[number][1]) for kind, number in PRICED.values())
+    expected = sum(FORMS[form](kind, ZONES[number][1]) for kind, number in PRICE_OF.values())
     found = costs(cost_form=form)
     assert found["manufacturing_cost"] == pytest.approx(expected, rel=1e-9)
     assert found["tolerance_price"] == found["manufacturing_cost"]
@@ -233,12 +216,12 @@ def test_the_cost_is_the_sum_of_six_functions_in_each_form(form: str) -> None:
 
 def test_the_bill_shows_every_form_of_every_zone() -> None:
     bill = run(default_setup(RV_WEAR), study("costs")).outcomes["costs"].as_json()
-    for name, (kind, number) in PRICED.items():
+    for name, (kind, number) in PRICE_OF.items():
         line = bill["tolerances"][name]
         assert line["width"]["value"] == pytest.approx(1000 * ZONES[number][1], rel=1e-9)
         for form, function in FORMS.items():
             assert line["prices"][form] == pytest.approx(function(kind, ZONES[number][1]), rel=1e-9)
-    assert set(bill["tolerances"]) == set(PRICED)
+    assert set(bill["tolerances"]) == set(PRICE_OF)
 
 
 def test_a_zone_that_grows_up_keeps_its_lower_end_at_nothing() -> None:
