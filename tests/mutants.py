@@ -153,7 +153,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ("np.floor(axis[-1]) + 1", "np.floor(axis[-1])"),
     ),
     *changes(
-        "kernel/truing/studies/grades.py", "unit/test_studies_allocation_widths.py",
+        "kernel/truing/studies/allocation.py", "unit/test_studies_allocation_widths.py",
         ("self.variances[demand] * (width / self.start) ** 2", "self.variances[demand] * (width / self.start)"),
         ("paid.imag / (COMPLEX_STEP * widths)", "paid.imag / COMPLEX_STEP"),
     ),
@@ -163,12 +163,12 @@ MUTANTS: tuple[Mutant, ...] = (
         ("return float((reach * 10.0**log_sd) ** 2)", "return float(reach * 10.0**log_sd)"),
     ),
     *changes(
-        "kernel/truing/studies/optimise_problem.py", "unit/test_studies_optimise.py",
+        "kernel/truing/studies/optimise.py", "unit/test_studies_optimise.py",
         ("mean = mean + slopes[column] * beside(shift", "mean = mean - slopes[column] * beside(shift"),
         ("beside(own[column].sd, slopes[column])) ** 2", "beside(own[column].sd, slopes[column]))"),
     ),
     *changes(
-        "kernel/truing/studies/optimise_search.py", "unit/test_studies_optimise.py",
+        "kernel/truing/studies/optimise.py", "unit/test_studies_optimise.py",
         ("(1.0 - scaled.sum(axis=1))", "(scaled.sum(axis=1) - 1.0)"),
         ("(REFERENCE - order[:, 0])", "(order[:, 0])"),
     ),
@@ -294,7 +294,7 @@ MUTANTS: tuple[Mutant, ...] = (
     ),
     *changes(
         "plugins/roller_screw_shift/geometry.py", "published/test_roller_screw_geometry.py",
-        ("2.0 * geometry.mounted_distance * (involute", "geometry.mounted_distance * (involute"),
+        ("2.0 * geometry.mounted_distance * opened", "geometry.mounted_distance * opened"),
         ("2.0 * geometry.roller.tip_radius * half", "geometry.roller.tip_radius * half"),
     ),
     *changes(
@@ -329,7 +329,7 @@ MUTANTS: tuple[Mutant, ...] = (
     ),
     *changes(
         "plugins/rv_wear/calculation.py", "published/test_rv_wear_backlash.py",
-        ("wear=2.0 * felt_wear / arm", "wear=felt_wear / arm"),
+        (", 2.0 * felt_wear / arm", ", felt_wear / arm"),
         ("involute - reducer.base_tangent_error", "involute + reducer.base_tangent_error"),
     ),
     *changes(

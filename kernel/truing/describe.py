@@ -137,11 +137,11 @@ def _published(published: Published) -> dict[str, Any]:
 
 def _objective(objective: Any) -> dict[str, Any]:
     kinds: Mapping[type[Any], str] = {Vary: "vary", Minimise: "minimise", Maximise: "maximise", Require: "require"}
-    own = {
-        field.name: getattr(objective, field.name) for field in dataclasses.fields(objective) if field.name != "kind"
-    }
+    names = [field.name for field in dataclasses.fields(objective)]
+    if isinstance(objective, Require):
+        names = ["result", "limit", "reliability", "is_flag"]
     limit = {"limit_kind": objective.kind} if isinstance(objective, Require) else {}
-    return {"kind": kinds[type(objective)], **own, **limit}
+    return {"kind": kinds[type(objective)], **_named(objective, names), **limit}
 
 
 def sections(said: Mapping[str, Any]) -> dict[str, list[Sequence[str]]]:

@@ -1,6 +1,5 @@
 """From rough flanks to the stiffness of one pair, of the mesh and of the drive, and what must hold before."""
 
-from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -177,18 +176,6 @@ def require_catalogue(drive: Drive) -> Polyline:
     return printed or Polyline(np.nan, np.nan, (np.nan, np.nan, np.nan))
 
 
-# From rough flanks to the stiffness of one pair, of the mesh and of the drive
-
-
-@dataclass(frozen=True)
-class Around:
-    """What is in series with the mesh."""
-
-    shear_modulus: Float
-    moment: Float
-    compliance: Float
-
-
 def harmonic_fractal(drive: Drive) -> Stiffness:
     """One drive or a batch of them; every Float is a number or an array (n,), SI."""
     rough = interface_of(drive)
@@ -209,21 +196,23 @@ def harmonic_fractal(drive: Drive) -> Stiffness:
     )
 
 
-def around_of(drive: Drive) -> Around:
-    """Return cup and compliance in series with the mesh; elasticity acts on both."""
+def around_of(drive: Drive) -> dict[str, Float]:
+    """Return cup and compliance in series with the mesh by the names of their results; elasticity acts on both."""
     shear = drive.modulus_factor * drive.flexspline.youngs_modulus / (2.0 * (1.0 + drive.flexspline.poisson_ratio))
     moment = 2.0 * np.pi * drive.cup_radius**3 * drive.cup_wall
     compliance = drive.drive_compliance / drive.modulus_factor + drive.cup_length / (shear * moment)
-    return Around(shear, moment, compliance)
+    length = np.asarray(drive.cup_length)
+    cup = np.where(length > 0.0, shear * moment / np.where(length > 0.0, length, 1.0), 0.0)
+    return {"shear_modulus": shear, "cup_moment": moment, "cup_stiffness": cup, "series_compliance": compliance}
 
 
 def _seen(drive: Drive, rough: Rough) -> Float:
     """Return the structure function over the lags, as an instrument that averages over a spot sees it."""
     lags, dimension = np.asarray(drive.lags), column(rough.dimension) - 1.0
     seen = structure_function(lags, dimension, column(rough.roughness))
-    return (
-        seen * kept_share(lags, column(drive.spot_width), 4.0 - 2.0 * dimension) if np.any(drive.spot_width) else seen
-    )
+    if not np.any(drive.spot_width):
+        return seen
+    return seen * kept_share(lags, column(drive.spot_width), 4.0 - 2.0 * dimension)
 
 
 def _interface(drive: Drive, rough: Rough) -> dict[str, Any]:
@@ -291,6 +280,7 @@ def _clearance(drive: Drive, contact: Contact, mesh: DriveMesh, pair: Pressed) -
 def _mesh(drive: Drive, contact: Contact, mesh: DriveMesh) -> dict[str, Any]:
     """Return mesh and drive by the names of their results; torsions have the sense of the torque."""
     around, printed, sense = around_of(drive), require_catalogue(drive), np.sign(drive.torque)
+    compliance = around["series_compliance"]
     whole, rough = (sense * size for size in mesh_torsion(drive.torque, drive.reference_torque, mesh))
     more = mesh.engagement.factor(drive.torque)
     normal = normal_stiffness(drive.torque, mesh)
@@ -306,19 +296,11 @@ def _mesh(drive: Drive, contact: Contact, mesh: DriveMesh) -> dict[str, Any]:
         "normal_stiffness": normal,
         "mesh_stiffness": stiffness,
         "mesh_torsion": whole,
-        "shear_modulus": around.shear_modulus,
-        "cup_moment": around.moment,
-        "cup_stiffness": _stiffness_of_cup(drive, around),
-        "series_compliance": around.compliance,
-        "torsional_stiffness": stiffness / (1.0 + around.compliance * stiffness),
-        "torsion": whole + sense * around.compliance * beyond,
+        **around,
+        "torsional_stiffness": stiffness / (1.0 + compliance * stiffness),
+        "torsion": whole + sense * compliance * beyond,
         "rough_torsion": rough,
         "catalogue_torsion": in_catalogue,
         "catalogue_stiffness": printed.stiffness(drive.torque),
         "rough_share": np.where(in_catalogue == 0.0, 0.0, rough / np.where(in_catalogue == 0.0, 1.0, in_catalogue)),
     }
-
-
-def _stiffness_of_cup(drive: Drive, around: Around) -> Float:
-    length = np.asarray(drive.cup_length)
-    return np.where(length > 0.0, around.shear_modulus * around.moment / np.where(length > 0.0, length, 1.0), 0.0)

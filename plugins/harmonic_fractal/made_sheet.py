@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from matplotlib import colormaps
 from matplotlib.figure import Figure
 
+from gear_geometry.drawing import BLUE, GREY, INK, ORANGE, PALE, panels, quiet
 from harmonic_fractal.estimate import Estimate, straight_fit
-from harmonic_fractal.figures import BLUE, GREY, INK, MICRO, NANO, ORANGE, PALE, WIDTH, quiet
+from harmonic_fractal.figures import MICRO, NANO, from_above, set_off
 from harmonic_fractal.made_flank import (
     FlankFile,
     Made,
@@ -38,44 +38,23 @@ SHOWN = 5  # lines that are drawn
 def map_figure(surface: Surface) -> "Figure":
     """The patch from above, less its mean plane; holes are orange."""
     rows, points = surface.heights.shape
-    extent = (0.0, (points - 1) * surface.spacing_x * MICRO, 0.0, (rows - 1) * surface.spacing_y * MICRO)
-    height = float(np.clip(0.8 * WIDTH * extent[3] / extent[1], 1.2, 7.0))
-    figure = Figure(figsize=(WIDTH, height + 0.6), layout="constrained")
-    panel = figure.subplots()
+    size = MICRO * np.array([(points - 1) * surface.spacing_x, (rows - 1) * surface.spacing_y])
     level = NANO * without_form(surface.heights, "plane")
-    low, high = np.nanpercentile(level, (0.1, 99.9))
-    colours = colormaps["viridis"].with_extremes(bad=ORANGE)
-    image = panel.imshow(level, origin="lower", extent=extent, cmap=colours, vmin=low, vmax=high,
-                         interpolation="nearest")  # fmt: skip
-    panel.set_xlabel("x, along the lines, µm")
-    panel.set_ylabel("y, µm")
-    figure.colorbar(image, ax=panel, label="height, nm", shrink=0.9, extend="both")
-    return figure
+    return from_above(level, size, ("x, along the lines, µm", "y, µm"), np.nanpercentile(level, (0.1, 99.9)), 7.0)
 
 
 def lines_figure(surface: Surface) -> "Figure":
     """Some lines, evenly over the patch, one above the other."""
     rows, points = surface.heights.shape
     chosen = np.unique(np.linspace(0, rows - 1, min(rows, SHOWN)).round().astype(int))
+    names = [f"y = {MICRO * surface.spacing_y * row:.4g} µm" for row in chosen] if rows > 1 else []
     level = NANO * without_form(surface.heights, "plane")[chosen]
-    gap = 1.2 * float(np.nanmax(np.nanmax(level, axis=1) - np.nanmin(level, axis=1))) or 1.0
-    figure = Figure(figsize=(WIDTH, 1.2 + 0.6 * len(chosen)), layout="constrained")
-    panel = figure.subplots()
-    x = MICRO * surface.spacing_x * np.arange(points)
-    for place, (row, line) in enumerate(zip(chosen, level, strict=True)):
-        panel.plot(x, line - np.nanmean(line) + place * gap, color=BLUE, linewidth=0.8)
-        if rows > 1:
-            name = f"y = {MICRO * surface.spacing_y * row:.4g} µm"
-            panel.annotate(name, (1.0, place * gap), xycoords=("axes fraction", "data"), fontsize=7.5, va="center")
-    panel.set_xlim(x[0], x[-1])
-    quiet(panel, "x, µm", "height, nm" if len(chosen) == 1 else "height, nm, each line set off")
-    return figure
+    return set_off(MICRO * surface.spacing_x * np.arange(points, dtype=float), level, "x", names)
 
 
 def structure_figure(made: Made, truth: Truth, answer: "MadeFlank", found: Estimate) -> "Figure":
     """S of this flank beside the exact one and what was fitted; the same over the power law; local slopes."""
-    figure = Figure(figsize=(WIDTH, 7.6), layout="constrained")
-    upper, middle, lower = figure.subplots(3, 1, sharex=True, height_ratios=(3, 2, 2))
+    figure, (upper, middle, lower) = panels(3, 7.6, sharex=True, height_ratios=(3, 2, 2))
     shown = np.asarray(answer.lag, dtype=np.float64)
     lags = np.geomspace(shown[0], shown[-1], 400)
     exact = exact_structure_function(made, lags)
@@ -127,8 +106,6 @@ def _local_slopes(panel: Any, truth: Truth, exact: DrawnCurve, found: Estimate) 
     quiet(panel, "lag, µm", "local dimension of profiles")
     panel.legend(loc="best")
 
-
-# The sheet of a made flank
 
 MadeRun = Record[Made, MadeFlank]
 
@@ -252,8 +229,6 @@ SECTIONS = [
     ),
 ]  # fmt: skip
 
-
-# A made flank as truing knows it: function, study and sheet
 
 LITERATURE = [
     "Majumdar, A., Tien, C. L., Fractal characterization and simulation of rough surfaces, Wear 136 (1990), p. 313.",

@@ -209,8 +209,6 @@ def slider_inertia(press: Press, *, mass_compliance: Float, speed: Float) -> Pre
     return pressed(press, position, mass_compliance * by_angle * (TURN * speed) ** 2)
 
 
-# What the mechanism of the paper leaves out, each acting on the deviations of the press
-#
 # They act in the order declared: heat, then errors of the crank angle, then load, so that the load meets the position
 # in which the press really is. A new effect is a function beside the others and one more entry in EFFECTS.
 
@@ -224,7 +222,7 @@ def die_inclination(press: Press, slider: Slider, *, inclination: Float, height:
     )
 
 
-HEAT: list[Effect[Press, Slider]] = [
+EFFECTS: list[Effect[Press, Slider]] = [
     Effect("link_heating", on_inputs=link_heating, needs=[LINK_TEMPERATURE],
            unknowns=[Unknown("expansion", -20, 20, "um/(m*K)",
                              note="of the links, less that of the frame and the gauge's support")],
@@ -247,8 +245,6 @@ HEAT: list[Effect[Press, Slider]] = [
            looks_like="the slider sinks and tilts with the temperature of the links, lower on the warmer side",
            why="one side is oiled less, stands in the sun or beside a furnace: its links are warmer than was measured",
            source=EXPANSION),
-]  # fmt: skip
-CRANK: list[Effect[Press, Slider]] = [
     Effect("crank_phase", on_inputs=crank_phase,
            unknowns=[Unknown("phase", -20, 20, "mrad", note="both cranks ahead of the angle that is shown")],
            looks_like="the slider is too low before the bottom dead centre and too high after it, by its speed per "
@@ -271,8 +267,6 @@ CRANK: list[Effect[Press, Slider]] = [
            why="gears and couplings between encoder and crank have play, or the servo drive lags behind its command; "
                "what acts before and after the dead centre may be different flanks",
            source="reversal error of a drive: half the play to either side"),
-]  # fmt: skip
-LOAD: list[Effect[Press, Slider]] = [
     Effect("elastic_deflection", on_inputs=elastic_deflection, needs=[FORMING_FORCE],
            unknowns=[Unknown("compliance", 0, 5, "1/GN", note="1/(EA) of rods and knee links, equal sections")],
            looks_like="the slider gives way in proportion to the forming force, upward under a positive one; no "
@@ -303,8 +297,6 @@ LOAD: list[Effect[Press, Slider]] = [
                       "no tilt",
            why="a heavy slider loads its links by its own acceleration",
            source="d'Alembert: elastic deflection under the inertia of the slider, +m z'' omega^2 upward"),
-]  # fmt: skip
-DIE: list[Effect[Press, Slider]] = [
     Effect("die_inclination", on_results=die_inclination,
            unknowns=[Unknown("inclination", -1000, 1000, "urad", note="added to the tilt"),
                      Unknown("height", -1000, 1000, "um", note="added to the position")],
@@ -313,4 +305,3 @@ DIE: list[Effect[Press, Slider]] = [
            why="the die or the bolster is not level, or stands on a shim",
            source="geometry"),
 ]  # fmt: skip
-EFFECTS: list[Effect[Press, Slider]] = [*HEAT, *CRANK, *LOAD, *DIE]

@@ -282,16 +282,9 @@ def stress_factor(field: Field, weights: Three, shift: float) -> float | None:
     return float(10.0**high)
 
 
-# A study of our own: the shift that the paper's weighed objectives prefer among those that keep every limit
-
 FOUND = "found"
 BEFORE = 2  # steps before the variants: the field, and Box's search with the grid beside it
 SCREWS = 8192  # drawn to tell what scatter leaves of the margins
-COMPARED = (
-    "roller_shift", "ring_shift", "tip_radius_roller", "tip_radius_ring", "contact_ratio", "tip_land",
-    "sliding_roller", "sliding_ring", "sliding_difference", "nominal_stress_roller", "nominal_stress_ring",
-    "stress_difference", "shift_sum",
-)  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -388,7 +381,7 @@ def _steps(ratios: Sequence[float]) -> int:
 def _compared(bench: Bench, field: Field, best: float) -> Mapping[str, Any]:
     """Geometry, sliding and stresses before, as stated and at the optimum, SI (3,) by name."""
     at = np.array([before(field), float(bench.inputs.roller_shift), best])
-    found = bench.rows({"roller_shift": at}, len(at), *COMPARED[1:])
+    found = bench.rows({"roller_shift": at}, len(at), *(name for _, name, *_ in ROWS[1:]))
     return {"roller_shift": at, **found}
 
 
@@ -442,7 +435,36 @@ class ChosenShift(Outcome):
 
     def as_json(self) -> Mapping[str, Any]:
         """Return intervals, ranges, weights, both optima and the variants."""
-        return chosen_json(self)
+        entry: dict[str, Any] = {"status": self.status, "equal_sliding": number(self.equal)}
+        field = self.field
+        if field is None:
+            return entry
+        names = ("shift_sum", "stress_difference", "sliding_difference")
+        ranges = zip(names, OBJECTIVES, field.ranges, strict=True)
+        entry["intervals"] = [
+            {"low": part.low, "high": part.high, "low_limits": list(part.low_limits),
+             "high_limits": list(part.high_limits)}
+            for part in field.intervals
+        ]  # fmt: skip
+        entry["ranges"] = {name: {"low": low, "high": high, "unit": unit} for name, (_, _, unit), (low, high) in ranges}
+        entry["weights"] = {"reading": self.inputs.weights, "values": list(self.weights)}
+        entry["grid"] = {"shift": self.grid, "points": len(field.course.shifts)}
+        if self.box is not None:
+            box = self.box
+            entry["box"] = {
+                "shift": float(box.point[0]), "cost": box.cost, "spread": box.spread, "evaluations": box.evaluations,
+                "drawn": box.drawn, "reflections": box.reflections, "settled": box.settled,
+            }  # fmt: skip
+        entry["other_sliding_reading"] = {"reading": OTHER[self.inputs.sliding_reading], "shift": number(self.other)}
+        entry["limits"] = list(self.limits)
+        entry["kept"] = {"stated": number(self.kept[0]), "optimum": number(self.kept[1])}
+        entry["stress_factor"] = self.factor
+        entry["variants"] = [
+            {"least_contact_ratio": each.least_contact_ratio, "weights": each.reading, "values": list(each.weights),
+             "shift": each.shift, "contact_ratio": each.contact_ratio, "limits": list(each.limits)}
+            for each in self.variants
+        ]  # fmt: skip
+        return entry
 
     def warnings(self) -> Sequence[str]:
         """Say what was not found."""
@@ -515,38 +537,6 @@ def spoken(limits: Sequence[str]) -> str:
 def number(value: float) -> float | None:
     """Return a number as results.json may hold it."""
     return float(value) if isfinite(value) else None
-
-
-def chosen_json(chosen: "ChosenShift") -> Mapping[str, Any]:
-    """Return what results.json holds."""
-    entry: dict[str, Any] = {"status": chosen.status, "equal_sliding": number(chosen.equal)}
-    field = chosen.field
-    if field is None:
-        return entry
-    ranges = zip(("shift_sum", "stress_difference", "sliding_difference"), OBJECTIVES, field.ranges, strict=True)
-    entry["intervals"] = [
-        {"low": part.low, "high": part.high, "low_limits": list(part.low_limits), "high_limits": list(part.high_limits)}
-        for part in field.intervals
-    ]
-    entry["ranges"] = {name: {"low": low, "high": high, "unit": unit} for name, (_, _, unit), (low, high) in ranges}
-    entry["weights"] = {"reading": chosen.inputs.weights, "values": list(chosen.weights)}
-    entry["grid"] = {"shift": chosen.grid, "points": len(field.course.shifts)}
-    if chosen.box is not None:
-        box = chosen.box
-        entry["box"] = {
-            "shift": float(box.point[0]), "cost": box.cost, "spread": box.spread, "evaluations": box.evaluations,
-            "drawn": box.drawn, "reflections": box.reflections, "settled": box.settled,
-        }  # fmt: skip
-    entry["other_sliding_reading"] = {"reading": OTHER[chosen.inputs.sliding_reading], "shift": number(chosen.other)}
-    entry["limits"] = list(chosen.limits)
-    entry["kept"] = {"stated": number(chosen.kept[0]), "optimum": number(chosen.kept[1])}
-    entry["stress_factor"] = chosen.factor
-    entry["variants"] = [
-        {"least_contact_ratio": each.least_contact_ratio, "weights": each.reading, "values": list(each.weights),
-         "shift": each.shift, "contact_ratio": each.contact_ratio, "limits": list(each.limits)}
-        for each in chosen.variants
-    ]  # fmt: skip
-    return entry
 
 
 def intervals_words(field: "Field") -> Words:
@@ -685,22 +675,19 @@ BOX = "Box's complex method on the weighed sum"
 DRAWN = "8192 screws drawn from the tolerances in force"
 
 
-def weight(symbol: str, of: str, unit: str) -> float:
+def weight(symbol: str, of: str, unit: str) -> Any:
     """Declare a weight."""
-    declared: float = found(unit, symbol=symbol, note=f"weight of the {of}", method=RULE, source="the paper")
-    return declared
+    return found(unit, symbol=symbol, note=f"weight of the {of}", method=RULE, source="the paper")
 
 
-def reach(symbol: str, what: str, unit: str = "") -> float:
+def reach(symbol: str, what: str, unit: str = "") -> Any:
     """Declare an end of the range of an objective."""
-    declared: float = found(unit, symbol=symbol, note=what, method=KEPT)
-    return declared
+    return found(unit, symbol=symbol, note=what, method=KEPT)
 
 
-def optimal(symbol: str, what: str, unit: str = "") -> float:
+def optimal(symbol: str, what: str, unit: str = "") -> Any:
     """Declare a number at the optimum."""
-    declared: float = found(unit, symbol=symbol, note=f"{what} at the optimum", method=BOX)
-    return declared
+    return found(unit, symbol=symbol, note=f"{what} at the optimum", method=BOX)
 
 
 @results
@@ -760,7 +747,9 @@ def choice(chosen: ChosenShift) -> ShiftChoice:
         most_stress_difference=MEGA * stress_high,
         least_sliding=sliding_low,
         most_sliding=sliding_high,
-        **_weights(chosen.weights),
+        weight_sum=chosen.weights[0],
+        weight_stress=chosen.weights[1] / MEGA**2,
+        weight_sliding=chosen.weights[2],
         **_optimum(chosen, difference),
         limit_distance=max(min(chosen.shift - part.low, part.high - chosen.shift), 0.0),
         kept_as_stated=chosen.kept[0],
@@ -770,10 +759,6 @@ def choice(chosen: ChosenShift) -> ShiftChoice:
         evaluations=nan if chosen.box is None else float(chosen.box.evaluations),
         **equal,
     )
-
-
-def _weights(weights: Three) -> dict[str, float]:
-    return {"weight_sum": weights[0], "weight_stress": weights[1] / MEGA**2, "weight_sliding": weights[2]}
 
 
 def _optimum(chosen: ChosenShift, difference: float) -> dict[str, float]:

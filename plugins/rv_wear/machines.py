@@ -48,13 +48,12 @@ class History:
                                     method="equation 21 with the wear at each time")  # fmt: skip
 
 
-def index(number: int, what: str) -> float:
+def index(number: int, what: str) -> Any:
     """Declare the sensitivity index of one factor."""
-    declared: float = found(
+    return found(
         "", symbol=f"s_{number}", note=f"{number}: {what}", source="equation 24",
         method="derivative of equation 21, divided by that of factor 6",
     )  # fmt: skip
-    return declared
 
 
 @results
@@ -142,15 +141,13 @@ def slopes_at_same_wear(reducer: Reducer) -> dict[str, float]:
         name = FACTORS[number]
         value = getattr(reducer, name)
         up, down = (replace(reducer, **{name: value + step}) for step in (STEP, -STEP))
-        slopes[name] = (total(up, 0.0) - total(down, 0.0)) / (2 * STEP)
-    slopes[FACTORS[15]] = (total(reducer, STEP) - total(reducer, -STEP)) / (2 * STEP)
+        slopes[name] = _slope(backlash_of(up, 0.0), backlash_of(down, 0.0))
+    slopes[FACTORS[15]] = _slope(backlash_of(reducer, STEP), backlash_of(reducer, -STEP))
     return slopes
 
 
-def total(reducer: Reducer, felt_wear: float) -> float:
-    """The backlash of equation 21 for a stated wear, rad."""
-    shares = backlash_of(reducer, felt_wear)
-    return float(shares.involute + shares.gearing + shares.wear + shares.bearing)
+def _slope(up: Mapping[str, Float], down: Mapping[str, Float]) -> float:
+    return (float(up["backlash"]) - float(down["backlash"])) / (2 * STEP)
 
 
 def chances(odds: Odds) -> Chances:

@@ -25,7 +25,7 @@ from hidden_effects.designs import Noise, wide
 from hidden_effects.press_machine import POSITION, SCATTER, TILT, Array, shown
 from hidden_effects.press_machine import Rows as Setting
 from truing import trials
-from truing.diagnosis import search
+from truing.diagnosis import competition
 from truing.diagnosis.engine import diagnose, laid_out
 from truing.diagnosis.machine import calibration_of, predict
 from truing.diagnosis.records import Covariate, Records, Role
@@ -120,7 +120,7 @@ def model_calls(results: tuple[str, ...], *, with_pairs: bool) -> int:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(trials, "read_by_gauge", counting)
         if not with_pairs:
-            patch.setattr(search, "_pairs", lambda made: None)
+            patch.setattr(competition, "_pairs", lambda made: None)
         diagnose(press_setup(), in_memory(300, results))
     return calls
 

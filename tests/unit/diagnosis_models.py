@@ -15,9 +15,8 @@ from numpy.typing import NDArray
 
 from truing import Condition, Effect, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
 from truing.diagnosis.causes import Candidate, si_bounds
-from truing.diagnosis.chance import Law
-from truing.diagnosis.choice import Chosen, Rival, choose
-from truing.diagnosis.competition import Competition
+from truing.diagnosis.choice import Chosen, Law, Rival, choose
+from truing.diagnosis.competition import Competition, beside, search
 from truing.diagnosis.curves import ResponseCurves
 from truing.diagnosis.engine import diagnose, laid_out
 from truing.diagnosis.exact import EXACTLY, nothing
@@ -29,7 +28,6 @@ from truing.diagnosis.reading import read_records
 from truing.diagnosis.records import Records
 from truing.diagnosis.result import DiagnosisResult
 from truing.diagnosis.sample import NoiseModel, sample_of
-from truing.diagnosis.search import search
 from truing.kernel import Offer, Origin
 from truing.setup import DiagnoseOptions, Setup, default_setup
 
@@ -319,7 +317,7 @@ def fit_of(made: Competition, *names: str) -> Fit:
     for name in names:
         assert found is not None
         cause = cause_of(made, name)
-        found = made.joined(found, cause, made.look(found, [cause])[cause.tag].starts)
+        *_, found = made.fit_each(beside(found, cause, made.look(found, [cause])[cause.tag].starts))
     assert found is not None
     made.again([found], EXACTLY)
     return made.known[found.key]

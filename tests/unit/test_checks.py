@@ -9,7 +9,7 @@ from study_models import CHAIN, UNIFORMS, WEAR, setup_of
 from truing import Float, Maximise, Model, Optimise, Optimum, Reliability, Require, Vary, found, given, inputs, results
 from truing.calculation import calculate
 from truing.studies.checks import EXIT_CODES, chance_check, margin_of
-from truing.studies.optimise_problem import bounds_of
+from truing.studies.optimise import bounds_of
 from truing.studies.verdicts import sentence_of
 
 

@@ -29,7 +29,7 @@ from numpy.testing import assert_allclose
 
 from truing.diagnosis.choice import Chosen
 from truing.diagnosis.engine import _answer
-from truing.diagnosis.halves import every_second, thinned_of
+from truing.diagnosis.gain import every_second, thinned_of
 from truing.diagnosis.noise import SETTINGS, Autocorrelation
 from truing.diagnosis.result import Amount, Contradiction, DiagnosisResult, Thinned, Trade
 from truing.diagnosis.visibility import TRADED, trades_of

@@ -27,9 +27,9 @@ from numpy.testing import assert_allclose
 
 from truing import Effect, Float, Unknown
 from truing.diagnosis.causes import Candidate, at_rest, effects_of, idle_of, inputs_of
+from truing.diagnosis.curves import PLACES, first_places, placed
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.machine import Calibration, calibration_of
-from truing.diagnosis.points import PLACES, first_places, placed
 from truing.diagnosis.reading import read_records
 from truing.diagnosis.records import Records
 from truing.setup import DiagnoseOptions

@@ -31,7 +31,7 @@ from scipy.stats import norm
 
 from truing.diagnosis.engine import laid_out
 from truing.diagnosis.exact import EXACTLY
-from truing.diagnosis.halves import _thinned, thinned_of
+from truing.diagnosis.gain import _thinned, thinned_of
 from truing.diagnosis.learning import learnt
 from truing.diagnosis.machine import calibration_of
 from truing.diagnosis.noise import beyond, difference, expected, scale_of, shares, worth

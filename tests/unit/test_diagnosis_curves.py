@@ -30,11 +30,19 @@ from numpy.testing import assert_allclose
 from truing import Effect, Float, Unknown
 from truing.diagnosis.causes import Parameter
 from truing.diagnosis.competition import Competition
-from truing.diagnosis.conditional import KEPT, ConditionalGain, compared, conditional_on, independent
-from truing.diagnosis.curves import Bundle
-from truing.diagnosis.points import FINEST, LEVELS, NEXT_TO, SPREAD, WAVES_PER_POINT, first_places, placed, spread
+from truing.diagnosis.conditional import KEPT, Conditional, ConditionalGain, compared, conditional_on, independent
+from truing.diagnosis.curves import (
+    FINEST,
+    LEVELS,
+    NEXT_TO,
+    SPREAD,
+    WAVES_PER_POINT,
+    Bundle,
+    first_places,
+    placed,
+    spread,
+)
 from truing.diagnosis.sample import Sample
-from truing.diagnosis.sweeps import Conditional
 
 
 def rubbing(screw: Drive, base: Deflection, *, drag: Float) -> Deflection:

@@ -34,10 +34,10 @@ from truing import Condition, Effect, Model, Tolerance, Unknown, normal
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.engine import diagnose
 from truing.diagnosis.exact import EXACTLY, alone, fitting
+from truing.diagnosis.findings import input_values
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.intervals import Certainty, certainty_of, interval, may_be_zero, numbers_of, shape_interval
 from truing.diagnosis.machine import predict
-from truing.diagnosis.naming import input_values
 from truing.diagnosis.noise import Autocorrelation, Tails
 from truing.diagnosis.sample import sample_of
 from truing.gauge import one_machine

@@ -11,7 +11,7 @@ from diagnosis_models import UM, Array, Asked, chosen_as, drive_model, fit_of, g
 from numpy.testing import assert_allclose
 
 from truing.diagnosis.choice import Chosen
-from truing.diagnosis.halves import CONTRADICTING, FEWEST_PER_NUMBER, contradictions_of
+from truing.diagnosis.gain import CONTRADICTING, FEWEST_PER_NUMBER, contradictions_of
 
 ROWS = 160
 BENCH = wide(ROWS, seed=41)

@@ -25,11 +25,10 @@ from hard_models import (
 )
 
 from truing import Effect, Float, Unknown, feasible
-from truing.diagnosis import probing
+from truing.diagnosis import extended
 from truing.diagnosis.engine import diagnose
-from truing.diagnosis.extended import CallBudget, Extended
+from truing.diagnosis.extended import CallBudget, Extended, budget_of, step_of
 from truing.diagnosis.machine import calibration_of
-from truing.diagnosis.probing import budget_of, step_of
 from truing.runs.diagnosis_document import diagnosis_document
 
 pytestmark = pytest.mark.filterwarnings("error::RuntimeWarning")
@@ -54,7 +53,7 @@ def test_how_long_a_call_takes_says_how_many_there_are(
 ) -> None:
     """Five minutes by the nearest power of ten, and forty calls for every effect at least."""
     shop = Shop(seconds)
-    monkeypatch.setattr(probing, "perf_counter", shop.clock)
+    monkeypatch.setattr(extended, "perf_counter", shop.clock)
     given_ = budget_of(0, effects, lambda: shop.function(1)(Beam()))
     assert (given_.calls, given_.takes) == (calls, takes)
     assert budget_of(77, effects, lambda: pytest.fail("it is not timed")).calls == 77
@@ -77,7 +76,7 @@ def test_a_budget_counts_what_it_leaves_out(tmp_path: Path) -> None:
 def test_a_model_of_a_second_a_call_is_diagnosed_in_minutes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Two causes that mask one another would take three quarters of an hour; what was left out is said."""
     shop = Shop(1.0)
-    monkeypatch.setattr(probing, "perf_counter", shop.clock)
+    monkeypatch.setattr(extended, "perf_counter", shop.clock)
     records = asked(shop).records(tmp_path, record(leaning_with_play))
     shop.time = 0.0
     answer = diagnose(asked(shop).setup, records)
@@ -94,7 +93,7 @@ def test_a_model_of_a_second_a_call_is_diagnosed_in_minutes(tmp_path: Path, monk
 
 def test_with_calls_enough_the_same_model_is_named_plainly(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     shop = Shop(1.0)
-    monkeypatch.setattr(probing, "perf_counter", shop.clock)
+    monkeypatch.setattr(extended, "perf_counter", shop.clock)
     few = asked(shop).diagnosed(tmp_path, record(leaning))
     assert (few.verdict, [cause.effect for cause in few.causes]) == ("undecided", ["leans"])
     many = asked(shop, calls=20_000).diagnosed(tmp_path, record(leaning))
@@ -108,7 +107,7 @@ def test_a_stated_budget_gives_one_answer_however_slow_the_machine_is(
     answers = []
     for seconds in (0.0, 30.0):
         shop = Shop(seconds)
-        monkeypatch.setattr(probing, "perf_counter", shop.clock)
+        monkeypatch.setattr(extended, "perf_counter", shop.clock)
         answers.append(diagnosis_document(asked(shop, calls=250).diagnosed(tmp_path, record(leaning))))
     assert answers[0] == answers[1]
     assert "the search ended after 250 calls of the model and left out: " in " ".join(answers[0]["warnings"])

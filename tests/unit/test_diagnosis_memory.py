@@ -28,7 +28,7 @@ from diagnosis_models import (
 from numpy.testing import assert_allclose
 
 from truing import Effect, Float, Model, Tolerance, Unknown, normal, trials
-from truing.diagnosis import long_records, machine, search
+from truing.diagnosis import competition, engine, machine
 from truing.diagnosis.choice import choose
 from truing.diagnosis.engine import diagnose, laid_out
 from truing.diagnosis.learning import first_noise
@@ -72,56 +72,56 @@ def test_the_first_idea_of_the_noise_is_what_least_squares_leave(
 
 
 def test_a_search_looks_at_one_row_of_every_stretch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(long_records, "LONG", 40)
+    monkeypatch.setattr(engine, "LONG", 40)
     bench, asked = wide(130), Asked(drive_model(("lead_error",)))
     records = asked.records(tmp_path, bench.columns(0.0 * bench.time), ["a"] * 30 + ["b"] * 100)
-    few = long_records.searched(records, seed=1)
+    few = engine.searched(records, seed=1)
     taken = np.searchsorted(bench.time * 3600, few.covariates["time"].values - 1e-6)
     assert (np.floor((taken + 1) * 40 / 130 - 1e-9).astype(int) == np.arange(40)).all()  # stretches of 3.25 rows
     assert_allclose(few.covariates["travel"].values, bench.travel[taken] * 1e-3)
     assert [few.rows.runs[place] for place in (0, -1)] == [records.rows.runs[0], records.rows.runs[-1]]
     assert (few.lines == records.lines[taken]).all()
     assert len(np.unique(np.diff(taken))) > 3  # no regular step, which would fold a wave into another one
-    assert long_records.searched(few, seed=1) is few
+    assert engine.searched(few, seed=1) is few
 
 
 def test_a_record_along_an_axis_of_the_model_is_searched_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its rows are one path: of some of them the model would draw another one."""
     bench, asked = wide(130), Asked(drive_model(("lead_error",)))
     records = asked.records(tmp_path, bench.columns(0.0 * bench.time))
-    assert long_records.searched(records, seed=1) is records
-    monkeypatch.setattr(long_records, "LONG", 40)
-    assert len(long_records.searched(records, seed=1)) == 40
+    assert engine.searched(records, seed=1) is records
+    monkeypatch.setattr(engine, "LONG", 40)
+    assert len(engine.searched(records, seed=1)) == 40
     along = replace(records, rows=replace(records.rows, series=("travel",)))
-    assert long_records.searched(along, seed=1) is along
+    assert engine.searched(along, seed=1) is along
 
 
 def test_a_decision_on_some_rows_is_kept_and_its_rivals_are_fitted_to_all(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Growth and a drift of the gauge draw one curve: both, and what is ranked, are those of all rows."""
-    monkeypatch.setattr(long_records, "LONG", 100)
+    monkeypatch.setattr(engine, "LONG", 100)
     bench, asked = wide(400), Asked(drive_model(("lead_error", "thermal_growth"), {}))
     error = 0.3 * (bench.temperature - 20) + np.random.default_rng(9).normal(size=400)
     records = asked.records(tmp_path, bench.columns(gauge(bench.load, bench.travel) + error))
     whole = machine.calibration_of(asked.setup, records)
-    few = laid_out(machine.calibration_of(asked.setup, long_records.searched(records, seed=1)))
-    search.search(few)
+    few = laid_out(machine.calibration_of(asked.setup, engine.searched(records, seed=1)))
+    competition.search(few)
     chosen = choose(few, seed=1)
     assert few.sample.rows == 100
-    found = long_records.on_all_rows(chosen, whole)
+    found = engine.on_all_rows(chosen, whole)
     assert found.best.key == chosen.best.key
     assert found.competition.sample.rows == found.best.sample.rows == found.null.sample.rows == 400
     assert all(rival.fit.sample.rows == 400 and rival.behind >= 0 for rival in found.rivals)
     assert {rival.fit.key for rival in found.rivals} <= {rival.fit.key for rival in chosen.rivals}
-    wanted = {each.key for each in few.ranked()[: long_records.RANKED]}
+    wanted = {each.key for each in few.ranked()[: engine.RANKED]}
     assert wanted <= set(found.competition.known)
     assert found.law is chosen.law
-    assert long_records.on_all_rows(found, whole) is found
+    assert engine.on_all_rows(found, whole) is found
 
 
 def test_what_a_search_of_some_rows_came_to_is_fitted_to_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(long_records, "LONG", 80)
+    monkeypatch.setattr(engine, "LONG", 80)
     bench, asked = wide(300), Asked(drive_model(("lead_error",), {}))
     error = 0.03 * bench.travel + np.random.default_rng(9).normal(size=300)
     found = asked.diagnosed(tmp_path, bench.columns(gauge(bench.load, bench.travel) + error))
@@ -186,7 +186,7 @@ def test_effects_on_results_cost_no_call_of_a_slow_model_however_many_pairs_ther
     none, six = (calls_of(tmp_path, extra, {}) for extra in (0, 6))
     assert none == 1
     assert six <= 1 + 2 * 6
-    monkeypatch.setattr(search, "_pairs", lambda made: None)
+    monkeypatch.setattr(competition, "_pairs", lambda made: None)
     assert calls_of(tmp_path, 6, {}) == six
 
 

@@ -24,7 +24,7 @@ from hard_models import (
 )
 
 from truing import Effect, Float, Model, Tolerance, Unknown, given, inputs, normal
-from truing.diagnosis import long_records
+from truing.diagnosis import engine
 
 pytestmark = pytest.mark.filterwarnings("error::RuntimeWarning")
 
@@ -110,7 +110,7 @@ def test_a_long_record_runs_to_the_end_and_counts_every_row(
     """A million rows at full size; a modest record is long where 400 rows are searched."""
     rows = 1_000_000 if full_torture else 3_000
     if not full_torture:
-        monkeypatch.setattr(long_records, "LONG", 400)
+        monkeypatch.setattr(engine, "LONG", 400)
     answer = asked(Shop(), EFFECTS[:3], rows).diagnosed(tmp_path, record(leaning, rows))
     assert [cause.effect for cause in answer.causes] == ["leans"]
     assert sum(count.in_file for count in answer.records.counts) == rows == len(answer.records)
@@ -124,7 +124,7 @@ def test_of_a_long_record_the_rows_searched_say_what_would_be_visible(
     """As much as all rows say, up to what a quarter of them is not like the whole."""
     answers = []
     for rows_searched in (1_200, 300):
-        monkeypatch.setattr(long_records, "LONG", rows_searched)
+        monkeypatch.setattr(engine, "LONG", rows_searched)
         answers.append(asked(Shop(), EFFECTS[:3], 1_200).diagnosed(tmp_path, record(leaning, 1_200)))
     whole, few = answers
     sizes = [{seen.name: seen.smallest.value for seen in answer.seen if seen.smallest} for answer in answers]

@@ -12,19 +12,19 @@ from diagnosis_models import UM, Array, Asked, drive_model, fit_of, gauge, plain
 from numpy.testing import assert_allclose
 
 from truing.diagnosis import choice
-from truing.diagnosis.chance import Law
 from truing.diagnosis.choice import (
     CLOSE,
     SURE,
     SURELY,
     TWIN,
+    Law,
     _certain,
     _is_vaguer,
     _rivals,
     _says_the_same,
     unsure,
 )
-from truing.diagnosis.competition import MARGIN, Competition
+from truing.diagnosis.competition import MARGIN, Competition, beside
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.noise import Autocorrelation
 from truing.diagnosis.sample import sample_of
@@ -163,7 +163,7 @@ def test_an_effect_without_which_much_is_lost_stays_although_its_interval_holds_
 def shaped(made: Competition, tag: str) -> Fit:
     """One shape that nobody registered, fitted."""
     (cause,) = (each for each in made.causes if each.tag == f"unknown:{tag}:deflection")
-    found = made.joined(made.null, cause, made.look(made.null, [cause])[cause.tag].starts)
+    *_, found = made.fit_each(beside(made.null, cause, made.look(made.null, [cause])[cause.tag].starts))
     assert found is not None
     return found
 
@@ -252,7 +252,7 @@ def test_of_shapes_that_say_the_same_the_one_stands_that_leaves_a_name_most(
     both = {}
     for cause in made.causes:
         if cause.tag in {"unknown:trend.3:travel:deflection", "unknown:wave:travel:deflection"}:
-            joined = made.joined(lead, cause, made.look(lead, [cause])[cause.tag].starts)
+            *_, joined = made.fit_each(beside(lead, cause, made.look(lead, [cause])[cause.tag].starts))
             assert joined is not None
             assert cause.shape is not None
             both[cause.shape.kind] = joined

@@ -16,6 +16,7 @@ from scipy.optimize import approx_fprime, minimize_scalar
 from scipy.stats import multivariate_normal, norm, t
 
 from truing.diagnosis.competition import Competition
+from truing.diagnosis.conditional import Conditional
 from truing.diagnosis.curves import ResponseCurves
 from truing.diagnosis.exact import nothing
 from truing.diagnosis.extended import Extended
@@ -23,7 +24,6 @@ from truing.diagnosis.learning import FEWEST_OF_MEMORY, learnt, memory_cost, mem
 from truing.diagnosis.machine import Calibration, calibration_of, directions_of
 from truing.diagnosis.noise import SETTINGS, Autocorrelation, Tails, robust_sd
 from truing.diagnosis.sample import NoiseModel, Sample, has_order, resolution_of, sample_of, starts_of
-from truing.diagnosis.sweeps import Conditional
 
 TOLERANCES = {"contact": "3 %", "shaft": "3 %"}
 BENCH = wide(150, seed=31)

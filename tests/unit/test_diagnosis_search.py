@@ -25,13 +25,12 @@ from diagnosis_models import (
 from numpy.testing import assert_allclose
 
 from truing.diagnosis.causes import Parameter, are_exclusive
-from truing.diagnosis.chance import DRAWS, FIRST_DRAWS, HOPELESS, LARGEST_RHO, _drawn, _largest, carried, law_of
-from truing.diagnosis.competition import Competition
+from truing.diagnosis.choice import DRAWS, FIRST_DRAWS, HOPELESS, LARGEST_RHO, _drawn, _largest, carried, law_of
+from truing.diagnosis.competition import Competition, beside, search
 from truing.diagnosis.conditional import ConditionalGain, conditional_on
 from truing.diagnosis.fitted import differ, far_inputs, is_at_bound
 from truing.diagnosis.noise import Autocorrelation
 from truing.diagnosis.sample import sample_of
-from truing.diagnosis.search import search
 
 ROWS = 150
 NAMES = ("lead_error", "clearance", "wear", "thermal_growth", "sensor_offset", "sensor_gain", "sensor_drift")
@@ -246,8 +245,8 @@ def test_a_law_counts_the_draws_that_gain_as_much(tmp_path: Path) -> None:
     assert law.p_value == 1 / (DRAWS + 1)
     weak = competing(tmp_path, 0.0 * BENCH.time)
     seen = weak.look(weak.null)
-    best = max((weak.joined(weak.null, cause_of(weak, name), seen[name].starts) for name in ("wear", "clearance")
-                if seen[name].starts), key=lambda found: found.cost if found else 0.0)  # fmt: skip
+    starts = [beside(weak.null, cause_of(weak, name), seen[name].starts) for name in ("wear", "clearance")]
+    best = max((weak.fit_each(each)[-1] for each in starts if each), key=lambda found: found.cost if found else 0.0)
     assert best is not None
     law = law_of(weak, weak.null, best, seed=1)
     gain = weak.score(weak.null) - weak.score(best)
@@ -263,7 +262,7 @@ def test_chance_is_uniform_where_there_is_nothing(tmp_path: Path) -> None:
         noise = np.random.default_rng([13, seed]).normal(0, 1, ROWS)
         made = competing(tmp_path, noise - NOISE, ["lead_error", "sensor_drift", "sensor_gain"])
         for tag, each in made.look(made.null).items():
-            made.joined(made.null, cause_of(made, tag.partition(".")[0]), each.starts)
+            made.fit_each(beside(made.null, cause_of(made, tag.partition(".")[0]), each.starts))
         best = made.best(1)
         assert best is not None
         values.append(law_of(made, made.null, best, seed=seed).p_value)

@@ -13,22 +13,22 @@ import pytest
 from diagnosis_models import UM, Array, Asked, cause_of, drive_model, fit_of, gauge, plain_competition, wide
 from numpy.testing import assert_allclose
 
-from truing.diagnosis import steps
+from truing.diagnosis import choice
 from truing.diagnosis.causes import Candidate
-from truing.diagnosis.chance import Law
-from truing.diagnosis.competition import UNREGISTERED, Competition
-from truing.diagnosis.fitted import Fit
-from truing.diagnosis.folds import ends_of, folds_of
-from truing.diagnosis.steps import (
+from truing.diagnosis.choice import (
     FURTHER_LEVEL,
     LEAST_IN_PLACE,
     MANY_CURVES,
+    Law,
     _beats,
     _best,
     _candidates,
     _step,
     shapes_in,
 )
+from truing.diagnosis.competition import UNREGISTERED, Competition, Start, beside
+from truing.diagnosis.fitted import Fit
+from truing.diagnosis.folds import ends_of, folds_of
 
 ROWS = 150
 BENCH = wide(ROWS, seed=51)
@@ -55,7 +55,7 @@ def shape(made: Competition, *tags: str, at: Fit | None = None) -> Fit:
     found = at or made.null
     for tag in tags:
         cause = shape_of(made, tag)
-        joined = made.joined(found, cause, made.look(found, [cause])[cause.tag].starts)
+        *_, joined = made.fit_each(beside(found, cause, made.look(found, [cause])[cause.tag].starts))
         assert joined is not None
         found = joined
     return found
@@ -165,9 +165,9 @@ def of_causes(made: Competition, *names: str) -> Fit:
 @pytest.mark.parametrize(
     ("before", "after", "least"),
     [
-        (["lead_error"], ["lead_error", "wear"], steps.WANDER),
+        (["lead_error"], ["lead_error", "wear"], choice.WANDER),
         (["lead_error"], ["clearance", "wear"], LEAST_IN_PLACE),
-        (["lead_error"], ["wear"], steps.WANDER),
+        (["lead_error"], ["wear"], choice.WANDER),
         ([], ["wear"], 0.0),
     ],
     ids=["one more", "more in its place", "another in its place", "the first"],
@@ -177,13 +177,13 @@ def test_what_comes_beside_a_cause_or_takes_its_place_must_be_better_than_noise_
 ) -> None:
     made = competing(tmp_path, 0.0 * LINE)
     at, more = of_causes(made, *before), of_causes(made, *after)
-    monkeypatch.setattr(steps, "law_of", lambda *_, seed: Law(np.zeros(299), 1 / 300))
-    monkeypatch.setattr(steps, "carries_over", lambda *_: 99.0)
+    monkeypatch.setattr(choice, "law_of", lambda *_, seed: Law(np.zeros(299), 1 / 300))
+    monkeypatch.setattr(choice, "carries_over", lambda *_: 99.0)
     folds: Any = None
     for gain, is_believed in ((least - 0.1, False), (least + 0.1, True)):
         stated: Any = Stated({at.key: gain, more.key: 0.0})
         assert _step(stated, at, more, folds, seed=1).is_believed is is_believed
-    assert LEAST_IN_PLACE > steps.WANDER  # or the case above says nothing
+    assert LEAST_IN_PLACE > choice.WANDER  # or the case above says nothing
 
 
 @pytest.mark.parametrize(
@@ -194,8 +194,8 @@ def test_a_further_cause_must_pass_chance_and_carry_over(
 ) -> None:
     made = competing(tmp_path, 0.0 * LINE)
     at, more = of_causes(made, "lead_error"), of_causes(made, "lead_error", "wear")
-    monkeypatch.setattr(steps, "law_of", lambda *_, seed: Law(np.zeros(299), p_value))
-    monkeypatch.setattr(steps, "carries_over", lambda *_: carried)
+    monkeypatch.setattr(choice, "law_of", lambda *_, seed: Law(np.zeros(299), p_value))
+    monkeypatch.setattr(choice, "carries_over", lambda *_: carried)
     stated: Any = Stated({at.key: 30.0, more.key: 0.0})
     folds: Any = None
     assert FURTHER_LEVEL < 0.02
@@ -219,8 +219,8 @@ def test_only_what_adds_numbers_must_predict_better(
     """What is exchanged for no more numbers is judged by its score, and may not predict worse."""
     made = competing(tmp_path, 0.0 * LINE)
     at, more = of_causes(made, *before), of_causes(made, *after)
-    monkeypatch.setattr(steps, "law_of", lambda *_, seed: Law(np.zeros(299), 1 / 300))
-    monkeypatch.setattr(steps, "carries_over", lambda *_: carried)
+    monkeypatch.setattr(choice, "law_of", lambda *_, seed: Law(np.zeros(299), 1 / 300))
+    monkeypatch.setattr(choice, "carries_over", lambda *_: carried)
     stated: Any = Stated({at.key: 30.0, more.key: 0.0})
     folds: Any = None
     assert _step(stated, at, more, folds, seed=1).is_believed is is_believed
@@ -250,7 +250,7 @@ def test_a_further_wave_must_carry_over_to_the_ends_of_the_record(
             asked.append(given[3])
             return carried
 
-        monkeypatch.setattr(steps, "carries_over", measured)
+        monkeypatch.setattr(choice, "carries_over", measured)
         assert _beats(made, one, both) is is_beat
         (ends,) = asked
         assert ends.count == 2
@@ -304,7 +304,7 @@ def test_two_parabolas_pay_for_no_constant_that_only_their_sum_shows(tmp_path: P
     warm = (BENCH.temperature - BENCH.temperature.mean()) / np.ptp(BENCH.temperature)
     made = competing(tmp_path, 9 * LINE**2 + 36 * warm**2)
     pair = [shape(made, f"trend.3:{name}") for name in ("travel", "temperature")]
-    both = made.fitted(pair[0].causes + pair[1].causes, pair[0].values + pair[1].values, None)
+    both = made.fit_each([Start(pair[0].causes + pair[1].causes, pair[0].values + pair[1].values, None)])[0]
     assert both is not None
     assert made.score(both) < min(made.score(each) for each in pair) - 50
 

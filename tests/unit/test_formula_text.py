@@ -12,7 +12,7 @@ from test_formula_printing import NAMES, SEEN, SHOWN, SYMBOLS, exact, expression
 
 from truing.formulas import parse
 from truing.formulas.layout import substituted, symbolic
-from truing.formulas.write_text import HOLD, TextWriter, folded
+from truing.formulas.write_text import HOLD, TEXT, folded
 
 SPELLED = {"ln": "log", "arcsin": "asin", "arccos": "acos", "arctan": "atan", "sgn": "sign", "∑": "sum", "√": "sqrt"}
 SPELLED |= {"∛": "cbrt"}
@@ -78,7 +78,7 @@ def python_of(text: str, names: dict[str, str]) -> str:
 @given(expressions())
 @settings(max_examples=15, deadline=None)
 def test_a_line_of_symbols_reads_back_exactly(text: str) -> None:
-    line = symbolic(TextWriter(), parse(text), SYMBOLS)
+    line = symbolic(TEXT, parse(text), SYMBOLS)
     assert exact(python_of(line, {**SEEN, "outer_radius": "outer_radius"})) == exact(text), line
 
 
@@ -89,7 +89,7 @@ def test_a_line_of_numbers_reads_back_exactly(text: str, shown: list[tuple[str, 
     numbers = dict(zip(NAMES, shown, strict=False))
     values: dict[str, Any] = {name: number(shown) for name, (shown, _) in numbers.items()}
     values["either"] = lambda first, second: first
-    line = substituted(TextWriter(), parse(text), numbers)
+    line = substituted(TEXT, parse(text), numbers)
     bare = re.sub(f"{HOLD}(?:{'|'.join(map(re.escape, UNITS))})(?![a-z])|°", "", line)
     assert exact(python_of(bare, {}), **values) == exact(text, **values), line
 
@@ -106,12 +106,12 @@ def test_a_line_of_numbers_reads_back_exactly(text: str, shown: list[tuple[str, 
     ],
 )
 def test_a_line_looks_as_it_should(text: str, line: str) -> None:
-    assert symbolic(TextWriter(), parse(text), SYMBOLS) == line
+    assert symbolic(TEXT, parse(text), SYMBOLS) == line
 
 
 def test_a_long_line_is_broken_before_signs_and_never_between_number_and_unit() -> None:
     numbers = dict.fromkeys(NAMES, ("123.45", "N/mm"))
-    line = substituted(TextWriter(), parse(" + ".join(f"2 * {name}" for name in NAMES)), numbers)
+    line = substituted(TEXT, parse(" + ".join(f"2 * {name}" for name in NAMES)), numbers)
     lines = list(folded(line, 30))
     assert " ".join(lines) == line
     assert max(map(len, lines)) <= 30

@@ -38,7 +38,7 @@ from truing.declare.spreads import read_spread
 from truing.errors import UsageError
 from truing.fits import GRADES, tolerance
 from truing.setup import Setup
-from truing.studies.grades import ToleranceVariable, prices_at
+from truing.studies.allocation import ToleranceVariable, prices_at
 
 
 @inputs
@@ -186,7 +186,7 @@ def test_zones_that_grow_move_the_mean_too(require: Require, low: float, high: f
 def test_monte_carlo_verifies_what_was_bought() -> None:
     answer = allotted(GROWING, draws=200_000)
     for design in ("start", "least"):
-        chance = answer.problem.chances({}, answer.least.widths if design == "least" else None)["end"]
+        chance = answer.problem.chances(answer.least.widths if design == "least" else {})["end"]
         error = (chance * (1 - chance) / 200_000) ** 0.5
         assert answer.monte_carlo[design]["end"] == pytest.approx(chance, abs=4 * error)
     assert answer.final["end"] == pytest.approx(0.95, abs=1e-9)

@@ -39,10 +39,20 @@ from truing.setup import Setup, default_setup
 from truing.studies.bench import Bench
 from truing.studies.chances import chance, straightened
 from truing.studies.checks import limits, margin_of, plain_checks
-from truing.studies.demands import demands, nominal_inputs, worst
-from truing.studies.optimise_problem import ROWS, Brief, Problem, answers_of, make_problem, open_space
-from truing.studies.optimise_search import REFERENCE, knee_of, non_dominated, spread_out, volume_of
-from truing.studies.sampling import Machines, Scatter, _gather, scatter_of
+from truing.studies.demands import demands, worst
+from truing.studies.optimise import (
+    REFERENCE,
+    ROWS,
+    Problem,
+    answers_of,
+    knee_of,
+    make_problem,
+    non_dominated,
+    open_space,
+    spread_out,
+    volume_of,
+)
+from truing.studies.sampling import Scatter, _gather, scatter_of
 
 SMALL = Optimise(population=20, generations=12, draws=600, verify=2000)
 
@@ -199,8 +209,8 @@ def test_a_search_ends_when_every_design_was_tried() -> None:
 # One design at a time: what the arrays of the search must say too
 
 
-def problem_of(setup: Setup, **brief: Any) -> tuple[Problem, np.ndarray]:
-    problem = make_problem(setup, Brief("optimise", **brief))
+def problem_of(setup: Setup, **options: Any) -> tuple[Problem, np.ndarray]:
+    problem = make_problem(setup, Optimise(**options))
     places = np.random.default_rng(5).random((7, len(problem.space.variables)))
     return problem, problem.space.designs(places)
 
@@ -227,20 +237,18 @@ def share(setup: Setup, problem: Problem) -> list[float]:
     answers, scatter = answers_at(setup), scatter_of(setup)
     wanted = demands(setup, answers, with_goal=True)
     columns = columns_of(scatter, problem)
-    rows = evaluate_rows(setup, columns, problem.brief.draws)
-    nominal = nominal_inputs(setup, wanted)
+    rows = evaluate_rows(setup, columns, problem.study.draws)
     shares = []
     for demand in wanted:
-        response = demand.response(rows.results, columns, nominal)
+        response = demand.response(rows.results, columns)
         shares.append(worst(((response <= demand.high) & (response >= demand.low)).mean(axis=0)))
     return shares
 
 
 def straight(setup: Setup) -> list[float]:
     """First order, by the functions of the other studies."""
-    answers, machines = answers_at(setup), Machines(setup, scatter_of(setup))
-    wanted = demands(setup, answers, with_goal=True)
-    lines, _ = straightened(machines, wanted, nominal_inputs(setup, wanted))
+    wanted = demands(setup, answers_at(setup), with_goal=True)
+    lines, _ = straightened(scatter_of(setup), wanted)
     return [worst(chance(demand, lines[demand.name])) for demand in wanted]
 
 
@@ -308,7 +316,7 @@ def test_a_design_as_an_inputs_file_states_it() -> None:
 
 
 def test_widths_run_from_tightest_to_widest_and_grades_from_finest() -> None:
-    space = open_space(setup_of(PARTS), Brief("optimise", tightest=0.5, widest=3.0, finest="IT6"))
+    space = open_space(setup_of(PARTS), Optimise(tightest=0.5, widest=3.0, finest="IT6"))
     ends = {variable.key: (variable.low, variable.high) for variable in space.variables}
     assert ends["tolerances.clearance"] == pytest.approx((6e-6, 36e-6), rel=1e-14)
     # 50 mm: IT8 is 39 um, IT10 100 um, IT11 160 um (ISO 286-1, table 1); 3 times 39 um is 117 um
@@ -321,14 +329,14 @@ def test_widths_run_from_tightest_to_widest_and_grades_from_finest() -> None:
 def test_what_is_off_is_no_variable_and_costs_nothing() -> None:
     setup = setup_of(PARTS)
     setup = replace(setup, spreads={**setup.spreads, "clearance": off()})
-    space = open_space(setup, Brief("optimise"))
+    space = open_space(setup, Optimise())
     assert "tolerances.clearance" not in [variable.key for variable in space.variables]
 
 
 def test_vary_chooses_among_inputs_and_tolerances() -> None:
-    space = open_space(setup_of(PARTS), Brief("optimise", vary=("span", "both")))
+    space = open_space(setup_of(PARTS), Optimise(vary=("span", "both")))
     assert [variable.key for variable in space.variables] == ["span", "tolerances.both"]
-    whole = open_space(setup_of(PARTS), Brief("optimise", vary=("size",)))  # an input and a tolerance of one name
+    whole = open_space(setup_of(PARTS), Optimise(vary=("size",)))  # an input and a tolerance of one name
     assert [variable.key for variable in whole.variables] == ["size", "tolerances.size"]
 
 
@@ -382,7 +390,7 @@ def test_a_population_is_one_array(monkeypatch: pytest.MonkeyPatch) -> None:
         sizes.append(rows)
         return evaluate_rows(setup, columns, rows, **more)
 
-    monkeypatch.setattr("truing.studies.optimise_problem.evaluate_rows", counted)
+    monkeypatch.setattr("truing.studies.optimise.evaluate_rows", counted)
     optimum(setup_of(PAIR), replace(SMALL, population=40, generations=1, draws=4000))
     drawn = [rows for rows in sizes if rows >= 4000]
     assert sum(drawn) == 40 * 4000  # one of them twice in the first population, and the start

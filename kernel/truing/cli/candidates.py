@@ -100,13 +100,9 @@ def runs(incomplete: str) -> Iterator[OfferedWord]:
     folders = sorted(entry for entry in searched.iterdir() if entry.is_dir() and not entry.name.startswith("."))
     for folder in folders:
         name = f"{incomplete[: len(incomplete) - len(incomplete.rpartition('/')[2])]}{folder.name}"
-        kind = _kind(folder)
+        kinds = {"results.json": "a run", "diagnosis.json": "a diagnosis"}
+        kind = next((kind for file, kind in kinds.items() if (folder / file).is_file()), "")
         yield (name, kind) if kind else (f"{name}/", "a folder")
-
-
-def _kind(folder: Path) -> str:
-    kinds = {"results.json": "a run", "diagnosis.json": "a diagnosis"}
-    return next((kind for file, kind in kinds.items() if (folder / file).is_file()), "")
 
 
 def _is_file(incomplete: str) -> bool:

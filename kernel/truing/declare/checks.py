@@ -9,11 +9,10 @@ from inspect import signature
 from typing import Any, Literal, get_args
 
 from truing.declare.declared import Declared
-from truing.declare.fields import InputField, ResultField, hints_of
+from truing.declare.fields import Axis, Found, InputField, ResultField, hints_of
 from truing.declare.goals import Maximise, Minimise, PriceByChoice, Require, Vary, prices_in
 from truing.declare.near_miss import near_miss
 from truing.declare.sources import Condition, Effect, Tolerance
-from truing.declare.specs import Axis, Found
 from truing.declare.spreads import Band, ByChoice, Drawn, Grade, Spread
 from truing.errors import DeclarationError
 from truing.formulas import parse

@@ -46,6 +46,8 @@ class Declared(Protocol):
     @property
     def own_result_fields(self) -> dict[str, ResultField]: ...  # noqa: D102
     @property
+    def measurable(self) -> list[str]: ...  # noqa: D102
+    @property
     def study_result_fields(self) -> dict[str, dict[str, ResultField]]: ...  # noqa: D102
     @property
     def result_fields(self) -> dict[str, ResultField]: ...  # noqa: D102

@@ -15,6 +15,7 @@ from truing.declare.builtin import builtin_effects
 from truing.declare.checks import TOTAL_PRICE, Promise, check_model
 from truing.declare.fields import (
     Axis,
+    Found,
     InputField,
     ResultField,
     hints_of,
@@ -28,7 +29,6 @@ from truing.declare.goals import Objective, prices_in
 from truing.declare.near_miss import near_miss
 from truing.declare.published import Finding, Published
 from truing.declare.sources import Condition, Effect, ErrorSource, Tolerance
-from truing.declare.specs import Found
 from truing.errors import DeclarationError, UsageError
 
 I = TypeVar("I")  # noqa: E741  # inputs, as in Model[I, R]

@@ -15,10 +15,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from truing.arrays import Indices, Matrix
-from truing.diagnosis.data_file import DataRows, declared_units
-from truing.diagnosis.joining import rows_of
+from truing.diagnosis.data_rows import DataRows, declared_units, is_angle, keeps_bounds, rows_of
 from truing.diagnosis.records import SuspectedUnit
-from truing.diagnosis.tidying import is_angle, keeps_bounds
 from truing.gauge import one_machine, read_by_gauge
 from truing.setup import Setup
 from truing.trials import read_trials

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import math
 import time
 from collections.abc import Iterator, Mapping, Sequence
@@ -17,7 +18,7 @@ from truing.declare.sources import Condition, Effect, Unknown
 from truing.errors import InfeasibleError, TruingError
 from truing.evaluate import acting_inputs, evaluate
 from truing.formulas import parse
-from truing.formulas.tree import Name, walk
+from truing.formulas.tree import walk
 from truing.setup import Setup, SwitchedOn
 from truing.studies.bench import Progress, silent
 from truing.studies.differences import exact_slopes, nominal_of, slopes
@@ -141,16 +142,6 @@ def _mean(value: Any) -> float:
     return float(value.mean()) if value.size else math.nan
 
 
-def by_share(sources: Sequence[Influence]) -> list[Influence]:
-    """Return what scatters, the largest share of the scatter first."""
-    return sorted((one for one in sources if one.share), key=lambda one: -abs(one.share))
-
-
-def by_slope(sources: Sequence[Influence]) -> list[Influence]:
-    """Return what moves the result, the steepest first."""
-    return sorted((one for one in sources if one.moves and one.step), key=lambda one: -abs(one.step or 0.0))
-
-
 # What an effect changes: the model is run with it, at a size it may have, beside the model without
 
 
@@ -242,18 +233,6 @@ def _moved(bare: Setup, acting: Setup) -> Iterator[tuple[str, tuple[float, float
             yield name, (float(before[name]), float(after[name]))
 
 
-def all_touched(setup: Setup) -> dict[str, Touched]:
-    """Try every effect of the model itself, one by one."""
-    return {name: touched(setup, effect) for name, effect in setup.model.effects.items()}
-
-
-def effects_on(by_effect: Mapping[str, Touched], names: Sequence[str]) -> dict[str, float]:
-    """Return the effects that change any of these results, the largest relative change first."""
-    sizes = {effect: max((abs(one.results[name]) for name in names if name in one.results), default=0.0)
-             for effect, one in by_effect.items()}  # fmt: skip
-    return dict(sorted(((effect, size) for effect, size in sizes.items() if size), key=lambda pair: -pair[1]))
-
-
 # Which result is made from what, as the declared formulas say, and which results follow from a name
 
 
@@ -266,7 +245,7 @@ def made_from(model: Model[Any, Any]) -> Mapping[str, tuple[str, ...]]:
         formula = parse(field.spec.formula)
         scope = formula_scope(model, field)
         sides = [side for side in (formula.left, formula.right) if side is not None]
-        written = [node.name for side in sides for node in walk(side) if isinstance(node, Name)]
+        written = [node.id for side in sides for node in walk(side) if isinstance(node, ast.Name)]
         names = dict.fromkeys(scope[word].name for word in written if word in scope)
         links[name] = tuple(other for other in names if other != name)
     return links

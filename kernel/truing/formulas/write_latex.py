@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 from typing import Final
 
+from truing.formulas.layout import Writer
 from truing.formulas.symbols import GREEK, LetterRun, Style, printable, read_number, read_symbol, word_text
 
 SIGNS: Final = {
@@ -119,87 +120,70 @@ def _grouped(pieces: Sequence[LetterRun]) -> str:
     return " ".join(_piece(piece) for piece in pieces).replace(" , ", ",")
 
 
-class LatexWriter:
-    """The marks of LaTeX; see ``layout.Writer``.
+def symbol_latex(text: str, exponent: str | None = None) -> str:
+    """Write a declared symbol as LaTeX: base, subscript, primes and exponent."""
+    symbol = read_symbol(text)
+    subscript = f"_{{{_grouped(symbol.subscript)}}}" if symbol.subscript else ""
+    raised = exponent or r"\prime " * symbol.primes
+    superscript = f"^{{{raised.strip()}}}" if raised else ""
+    return " ".join(map(_piece, symbol.base)) + subscript + superscript
 
-    No command made of one punctuation mark stands in it (except in escapes): Markdown takes their backslash away.
-    """
 
-    def symbol(self, text: str, exponent: str | None = None) -> str:
-        """Write base, subscript, primes and exponent."""
-        symbol = read_symbol(text)
-        subscript = f"_{{{_grouped(symbol.subscript)}}}" if symbol.subscript else ""
-        raised = exponent or r"\prime " * symbol.primes
-        superscript = f"^{{{raised.strip()}}}" if raised else ""
-        return " ".join(map(_piece, symbol.base)) + subscript + superscript
+def _word(name: str) -> str:
+    return upright(word_text(name))
 
-    def word(self, name: str) -> str:
-        """Write a name as an upright word."""
-        return upright(word_text(name))
 
-    def quantity(self, number: str, unit: str) -> str:
-        """Write a number, a thin space and an upright unit."""
-        unit = printable(unit)
-        if not unit:
-            return number_latex(number)
-        gap = r" \times " if unit[0].isdigit() else "" if unit in WITHOUT_SPACE else r"\thinspace "
-        return f"{number_latex(number)}{gap}{upright_unit(unit)}"
+def _quantity(number: str, unit: str) -> str:
+    """Write a number, a thin space and an upright unit."""
+    unit = printable(unit)
+    if not unit:
+        return number_latex(number)
+    gap = r" \times " if unit[0].isdigit() else "" if unit in WITHOUT_SPACE else r"\thinspace "
+    return f"{number_latex(number)}{gap}{upright_unit(unit)}"
 
-    def constant(self, name: str) -> str:
-        """Write pi."""
-        return r"\pi"
 
-    def minus(self, operand: str) -> str:
-        """Write minus the operand."""
-        return f"-{operand}"
+def _infix(left: str, sign: str, right: str) -> str:
+    return f"{left}{SIGNS[sign]}{right}"
 
-    def infix(self, left: str, sign: str, right: str) -> str:
-        """Join two sides by a sign."""
-        return f"{left}{SIGNS[sign]}{right}"
 
-    def parenthesised(self, inner: str) -> str:
-        """Put parentheses that grow."""
-        return rf"\left( {inner} \right)"
+def _function(name: str, exponent: str | None) -> str:
+    if name in ("∑", "Φ"):
+        return r"\sum" if name == "∑" else r"\Phi"
+    if name == "log10":
+        return r"\log_{10}"
+    head = FUNCTIONS.get(name, rf"\mathrm{{{name}}}")
+    return head if exponent is None else f"{head}^{{{exponent}}}"
 
-    def bars(self, inner: str) -> str:
-        """Put bars that grow."""
-        return rf"\left\vert {inner} \right\vert"
 
-    def fraction(self, above: str, below: str) -> str:
-        """Write a fraction."""
-        return rf"\frac{{{above}}}{{{below}}}"
+def _applied_bare(function: str, argument: str) -> str:
+    gap = r"\thinspace " if function.startswith(r"\mathrm") else " "
+    return f"{function}{gap}{argument}"
 
-    def power(self, base: str, exponent: str) -> str:
-        """Write a power."""
-        return f"{base}^{{{exponent}}}"
 
-    def root(self, inner: str, index: str) -> str:
-        """Write a root."""
-        return rf"\sqrt[{index}]{{{inner}}}" if index else rf"\sqrt{{{inner}}}"
+def _table(rows: Sequence[tuple[str, str]]) -> str:
+    body = r" \cr ".join(f"{value} & {condition}" for value, condition in rows)
+    return rf"\begin{{cases}} {body} \end{{cases}}"
 
-    def function(self, name: str, exponent: str | None = None) -> str:
-        """Write the upright name of a function."""
-        if name in ("∑", "Φ"):
-            return r"\sum" if name == "∑" else r"\Phi"
-        if name == "log10":
-            return r"\log_{10}"
-        head = FUNCTIONS.get(name, rf"\mathrm{{{name}}}")
-        return head if exponent is None else f"{head}^{{{exponent}}}"
 
-    def applied(self, function: str, argument: str, *, bare: bool) -> str:
-        """Join a function and its argument."""
-        gap = r"\thinspace " if bare and function.startswith(r"\mathrm") else " "
-        return f"{function}{gap}{argument}"
-
-    def table(self, rows: Sequence[tuple[str, str]]) -> str:
-        """Write alternatives behind a brace."""
-        body = r" \cr ".join(f"{value} & {condition}" for value, condition in rows)
-        return rf"\begin{{cases}} {body} \end{{cases}}"
-
-    def condition(self, inner: str) -> str:
-        """Write "if" before a condition."""
-        return rf"\mathrm{{if}}\ {inner}"
-
-    def prose(self, text: str) -> str:
-        """Write plain words."""
-        return upright(text)
+LATEX: Final = Writer(
+    opening="{}",
+    symbol=symbol_latex,
+    word=_word,
+    quantity=_quantity,
+    pi=r"\pi",
+    minus="-{}".format,
+    infix=_infix,
+    parenthesised=r"\left( {} \right)".format,
+    bars=r"\left\vert {} \right\vert".format,
+    fraction=r"\frac{{{}}}{{{}}}".format,
+    power="{}^{{{}}}".format,
+    sqrt=r"\sqrt{{{}}}".format,
+    cbrt=r"\sqrt[3]{{{}}}".format,
+    function=_function,
+    applied="{} {}".format,
+    applied_bare=_applied_bare,
+    table=_table,
+    condition=r"\mathrm{{if}}\ {}".format,
+    prose=upright,
+)
+"""No command made of one punctuation mark stands in it (except in escapes): Markdown takes their backslash away."""

@@ -17,15 +17,13 @@ from truing.errors import PluginError, UnitError
 from truing.kernel.blame import spoken_place
 from truing.numbers import format_ends, format_value, pretty
 from truing.report.document import (
-    Aside,
     BlockView,
     Chapter,
     Column,
     FigureView,
+    Marked,
     Paragraph,
     ResultEntry,
-    Strong,
-    SymbolText,
     TableView,
     Text,
     Value,
@@ -35,7 +33,6 @@ from truing.report.document import (
 from truing.report.equations import equation_of, value_text
 from truing.report.figures import draw
 from truing.setup import Setup
-from truing.studies.bench import Outcome
 from truing.units import unit_text
 
 RANK = {"short": 0, "normal": 1, "full": 2}
@@ -106,11 +103,9 @@ def _of_section(writing: Writing, section: Section) -> Chapter:
     record = writing.calculation.record
     blocks: list[BlockView] = [*([Paragraph(section.text)] if section.text else []), *_results(writing, names)]
     if section.figure is not None:
-        figure = section.figure
-        blocks.append(writing.figures.view(section.title, lambda: figure(record), section.caption))
+        blocks.append(writing.figures.view(section.title, partial(section.figure, record), section.caption))
     if section.blocks is not None:
-        made = section.blocks
-        blocks += _guarded(writing, section.title, lambda: views(writing, made(record)))
+        blocks += _guarded(writing, section.title, partial(section.blocks, record))
     return Chapter(section.title, tuple(blocks))
 
 
@@ -128,13 +123,9 @@ def _main_results(writing: Writing) -> Iterator[Chapter]:
 
 def _studies(writing: Writing) -> Iterator[Chapter]:
     for name, outcome in writing.calculation.outcomes.items():
-        blocks = _guarded(writing, f"study {name}", partial(_said, writing, outcome))
+        blocks = _guarded(writing, f"study {name}", outcome.blocks)
         if blocks:
             yield Chapter(f"Study: {name.replace('_', ' ')}", tuple(blocks))
-
-
-def _said(writing: Writing, outcome: Outcome) -> list[BlockView]:
-    return views(writing, outcome.blocks())
 
 
 def _is_scalar(value: Any) -> bool:
@@ -156,17 +147,17 @@ def _entry(writing: Writing, name: str, *, with_formula: bool) -> ResultEntry:
     absent = writing.calculation.absent.get(name, "")
     is_scalar = _is_scalar(answers[name])
     equation = equation_of(writing.setup, answers, result) if with_formula and not (absent and is_scalar) else None
-    symbol = (SymbolText(result.symbol), " ") if result.symbol else ()
+    symbol = (Marked("symbol", result.symbol), " ") if result.symbol else ()
     value: Text = ""
     if absent:
-        value = (*symbol, *(("has ",) if symbol else ()), Strong("no value"), ": ", Aside(absent))
+        value = (*symbol, *(("has ",) if symbol else ()), Marked("strong", "no value"), ": ", Marked("aside", absent))
     elif not is_scalar:
         extent, words = _range(writing, result)
-        value = (*symbol, *(("is ",) if symbol else ()), Strong(extent), " ", Aside(f"({words})"))
+        value = (*symbol, *(("is ",) if symbol else ()), Marked("strong", extent), " ", Marked("aside", f"({words})"))
     elif equation is None or equation.departs:
         printed = Value(*format_value(answers[name], writing.setup.print_unit(name), result.digits))
-        value = (*symbol, *(("= ",) if symbol else ()), Strong(printed))
-        value += (" ", Aside(_departure(writing.setup))) if equation is not None else ()
+        value = (*symbol, *(("= ",) if symbol else ()), Marked("strong", printed))
+        value += (" ", Marked("aside", _departure(writing.setup))) if equation is not None else ()
     method = with_source(getattr(result.spec, "method", ""), getattr(result.spec, "source", ""))
     return ResultEntry(name, label_of(result.spec.note, name), equation, value, method)
 
@@ -219,18 +210,13 @@ def _columns_table(writing: Writing, title: str, names: Sequence[str], most: int
     return TableView(title, tuple(columns), rows, note)
 
 
-def _guarded(writing: Writing, title: str, make: Callable[[], list[BlockView]]) -> list[BlockView]:
-    """Make the blocks of a guest; where its code fails that is said in their place, and the sheet goes on."""
+def _guarded(writing: Writing, title: str, make: Callable[[], Iterable[Block]]) -> list[BlockView]:
+    """Write the blocks of a guest; where its code fails that is said in their place, and the sheet goes on."""
     try:
-        return make()
+        return [_view(writing, block) for block in make()]
     except Exception as error:
         writing.figures.failures.append(f"{spoken_place(error)}'{title}' failed: {type(error).__name__}: {error}")
         return [Paragraph(f"What '{title}' says could not be written.", "warning")]
-
-
-def views(writing: Writing, blocks: Sequence[Block]) -> list[BlockView]:
-    """Turn the blocks of a study or a section into what is printed."""
-    return [_view(writing, block) for block in blocks]
 
 
 def _view(writing: Writing, block: Block) -> BlockView:
@@ -248,17 +234,14 @@ def table_view(table: Table, most: int) -> TableView:
     width = len(table.columns)
     rows = tuple(tuple([*map(value_text, row), *[""] * width][:width]) for row in shown)
     units = [_known_unit(unit) for unit in (*table.units, *[""] * width)]
+    cells = ([row[index] for row in shown if index < len(row)] for index in range(width))
     columns = tuple(
-        Column(title, unit, "number" if shown and all(map(_is_numeric, cells)) else "")
-        for title, unit, cells in zip(table.columns, units, _columns(shown, width), strict=False)
+        Column(title, unit, "number" if shown and all(map(_is_numeric, column)) else "")
+        for title, unit, column in zip(table.columns, units, cells, strict=False)
     )
     left = len(table.rows) - len(shown)
     note = " ".join(filter(None, [table.note, f"{left} further rows are not printed." if left else ""]))
     return TableView(table.title, columns, rows, note)
-
-
-def _columns(rows: Sequence[Sequence[Any]], width: int) -> list[list[Any]]:
-    return [[row[index] for row in rows if index < len(row)] for index in range(width)]
 
 
 def _is_numeric(cell: Any) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -100,16 +100,10 @@ def list_folder(folder: Path) -> Listing:
     if not folder.is_dir():
         what = "is a file; name the folder that holds the runs" if folder.exists() else "no such folder"
         raise UnknownPluginError(f"{folder}: {what}")
-    entries: list[FolderEntry] = []
-    others: list[Other] = []
-    for listed in _walk(folder, folder, 0):
-        if isinstance(listed, FolderEntry):
-            entries.append(listed)
-        else:
-            others.append(listed)
-    entries.sort(key=lambda entry: entry.name)
-    entries.sort(key=lambda entry: -(entry.stamp or 0.0))
-    return Listing(str(folder), tuple(entries), tuple(sorted(others, key=lambda other: other.name)))
+    listed = sorted(_walk(folder, folder, 0), key=lambda entry: entry.name)
+    entries = [entry for entry in listed if isinstance(entry, FolderEntry)]
+    others = [entry for entry in listed if isinstance(entry, Other)]
+    return Listing(str(folder), tuple(sorted(entries, key=lambda entry: -(entry.stamp or 0.0))), tuple(others))
 
 
 def _walk(root: Path, path: Path, depth: int) -> Iterator[FolderEntry | Other]:
@@ -130,11 +124,6 @@ def _walk(root: Path, path: Path, depth: int) -> Iterator[FolderEntry | Other]:
     if (path / HEADER).exists():
         yield Other(name, "finished batches of an interrupted run; calc run --resume takes them up")
         return
-    yield from _below(root, path, depth, inside=inside)
-
-
-def _below(root: Path, path: Path, depth: int, *, inside: Sequence[os.DirEntry[str]]) -> Iterator[FolderEntry | Other]:
-    name = path.relative_to(root).as_posix()
     folders = [child for child in inside if child.is_dir() and not child.name.startswith(".")]
     if depth >= DEEPEST and folders:
         yield Other(name, f"lies {DEEPEST} folders deep; what is below it was not looked at")
@@ -189,9 +178,14 @@ def _of_run(document: Mapping[str, Any], name: str) -> FolderEntry:
     words += f": {concerned or 'a case'}" if state not in {None, "passes"} else ""
     failed = [check for check in checks if check.state != "passes"]
     ranked = sorted(checks, key=lambda one: float("-inf") if one.margin is None else one.margin)
+    first_results = (
+        ListedNumber(name=str(name), value=float(result["value"]), unit=str(result["unit"]))
+        for name, result in document["results"].items()
+        if isinstance(result["value"], (int, float)) and not isinstance(result["value"], bool)
+    )
     return FolderEntry(
         **_made_by(document, name, "run"), verdict=words, state=state, checks=len(checks), failed=len(failed),
-        cases=len(cases), findings=tuple(ranked) or tuple(_first_results(document)),
+        cases=len(cases), findings=tuple(ranked or first_results),
     )  # fmt: skip
 
 
@@ -227,12 +221,6 @@ def _number(value: Any) -> float | None:
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise TypeError
     return float(value)
-
-
-def _first_results(document: Mapping[str, Any]) -> Iterator[ListedNumber]:
-    for name, result in document["results"].items():
-        if isinstance(result["value"], (int, float)) and not isinstance(result["value"], bool):
-            yield ListedNumber(name=str(name), value=float(result["value"]), unit=str(result["unit"]))
 
 
 def _of_diagnosis(document: Mapping[str, Any], name: str) -> FolderEntry:

@@ -10,7 +10,6 @@ from __future__ import annotations
 import ast
 import keyword
 import re
-import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite
@@ -20,6 +19,7 @@ from truing.declare.sources import Condition
 from truing.diagnosis.result import DiagnosisResult, Remainder, ShapeTerm
 from truing.formulas.symbols import printable
 from truing.runs.diagnosis_document import file_labels
+from truing.runs.inputs_written import comment_lines
 from truing.templating import rendered
 
 NAME = "remainder"
@@ -86,7 +86,7 @@ def _sources(diagnosis: DiagnosisResult) -> Iterator[_Source]:
     taken = set(TAKEN)
     texts = [term.expression for terms in _terms(diagnosis).values() for term in terms]
     rest = sorted({*diagnosis.records.covariates, *model.input_fields, *model.conditions})
-    named = [name for name in rest if any(_names(name, text) for text in texts)]
+    named = [name for name in rest if any(_named(name).search(text) for text in texts)]
     for name in dict.fromkeys([*diagnosis.remainder.depends_on, *named]):
         code = code_name(name, taken)
         taken.add(code)
@@ -100,14 +100,15 @@ def _sources(diagnosis: DiagnosisResult) -> Iterator[_Source]:
             yield _Source(name, code, condition=model.conditions.get(name) or Condition(code, unit))
 
 
-def _names(name: str, text: str) -> bool:
-    """Tell whether an expression names a covariate."""
-    return re.search(rf"(?<![\w.]){re.escape(name)}(?!\w)", text) is not None
+def _named(name: str) -> re.Pattern[str]:
+    """Return the pattern of a covariate in an expression."""
+    return re.compile(rf"(?<![\w.]){re.escape(name)}(?!\w)")
 
 
 def code_name(name: str, taken: set[str] | frozenset[str] = TAKEN) -> str:
     """Return a name that can stand in code: the name itself if it can, otherwise the like of it, not taken yet."""
-    plain = re.sub(r"\W+", "_", name, flags=re.ASCII).strip("_").lower() if not _is_plain(name) else name
+    is_plain = name.isidentifier() and name.isascii() and not keyword.iskeyword(name)
+    plain = name if is_plain else re.sub(r"\W+", "_", name, flags=re.ASCII).strip("_").lower()
     plain = plain if plain and not plain[0].isdigit() else f"column_{plain}".rstrip("_")
     if keyword.iskeyword(plain) or plain in taken or plain.startswith("__"):
         plain = f"column_{plain.strip('_')}"
@@ -117,10 +118,6 @@ def code_name(name: str, taken: set[str] | frozenset[str] = TAKEN) -> str:
     return plain
 
 
-def _is_plain(name: str) -> bool:
-    return name.isidentifier() and name.isascii() and not keyword.iskeyword(name)
-
-
 def safe_expression(text: str, names: Mapping[str, str]) -> str | None:
     """Return an expression over covariates as code, or None where it is anything but arithmetic on them.
 
@@ -128,7 +125,7 @@ def safe_expression(text: str, names: Mapping[str, str]) -> str | None:
     """
     for name in sorted(names, key=len, reverse=True):
         if name != names[name]:
-            text = re.sub(rf"(?<![\w.]){re.escape(name)}(?!\w)", names[name], text)
+            text = _named(name).sub(names[name], text)
     try:
         tree = ast.parse(text.strip(), mode="eval")
     except (SyntaxError, ValueError, MemoryError, RecursionError):
@@ -163,17 +160,13 @@ def _quoted(text: str) -> str:
     return f'"{inner}"'
 
 
-def _comment(text: str) -> list[str]:
-    return [f"# {line}" for line in textwrap.wrap(printable(text), 116)]
-
-
 def _about(diagnosis: DiagnosisResult, remainder: Remainder) -> list[str]:
     """Say where the shape comes from, as comments."""
     files = ", ".join(file_labels(diagnosis.records.files))
     over, seen_in = ", ".join(remainder.depends_on), ", ".join(remainder.results)
     return [
-        *_comment(f"From {files}, {len(diagnosis.records)} rows, model {diagnosis.setup.model.name}."),
-        *_comment(f"Shape: {remainder.shape}; over {over}; seen in {seen_in}."),
+        *comment_lines(f"From {files}, {len(diagnosis.records)} rows, model {diagnosis.setup.model.name}."),
+        *comment_lines(f"Shape: {remainder.shape}; over {over}; seen in {seen_in}."),
     ]
 
 
@@ -198,7 +191,9 @@ def _conditions(sources: Sequence[_Source]) -> list[str]:
         if source.condition is None:
             continue
         if source.condition.name != source.name:
-            lines += _comment(f"The column {source.name!r} of the data must be called {source.code} to be read here.")
+            lines += comment_lines(
+                f"The column {source.name!r} of the data must be called {source.code} to be read here."
+            )
         lines.append(f"{source.code.upper()} = {_condition(source.condition)}")
     return lines
 
@@ -222,7 +217,7 @@ def _shape(
         expression = safe_expression(term.expression, names)
         coefficient = float(term.coefficient)
         if expression is None or not isfinite(coefficient):
-            left_out += _comment(f"A term is left out, it is no arithmetic on covariates: {term.expression!r}")
+            left_out += comment_lines(f"A term is left out, it is no arithmetic on covariates: {term.expression!r}")
         else:
             written.append(f"({coefficient!r}) * ({expression})")
     return {
@@ -237,9 +232,8 @@ def _shape(
 def _argument(diagnosis: DiagnosisResult, result: str, source: _Source) -> str:
     """Write one value handed to a shape; beside a result along an axis a value per row is a column."""
     value = source.path or source.code
-    if _is_curve(diagnosis, result) and not value.startswith("results."):
-        return f"column({value})"
-    return value
+    is_column = _is_curve(diagnosis, result) and not value.startswith("results.")
+    return f"column({value})" if is_column else value
 
 
 def _replaced(path: Sequence[str]) -> str:

@@ -12,12 +12,12 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from truing.declare.fields import InputField, with_values
+from truing.declare.fields import Given, InputField, with_values
 from truing.declare.model import Model
-from truing.declare.specs import Given
 from truing.errors import InfeasibleError, TruingError, UsageError
 from truing.evaluate import evaluate
 from truing.inputs_file import read_setup
+from truing.inputs_file.values import broken_bound
 from truing.kernel import Kernel, Offer, Origin
 from truing.kernel.loading import PREFIX
 from truing.setup import Setup, default_setup
@@ -137,13 +137,9 @@ class Subject:
             moved = value + float(rng.integers(-1, 2))
         else:
             moved = value + share * self._span(field, value) * float(rng.uniform(-1, 1))
-        closed = (spec.at_least, spec.at_most)
-        low, high = (to_si(bound, field.unit) if bound is not None else None for bound in closed)
-        moved = max(moved, low) if low is not None else moved
-        moved = min(moved, high) if high is not None else moved
-        above, below = (to_si(bound, field.unit) if bound is not None else None for bound in (spec.above, spec.below))
-        outside = (above is not None and moved <= above) or (below is not None and moved >= below)
-        return value if outside else moved
+        moved = max(moved, to_si(spec.at_least, field.unit)) if spec.at_least is not None else moved
+        moved = min(moved, to_si(spec.at_most, field.unit)) if spec.at_most is not None else moved
+        return value if broken_bound(field, moved) else moved
 
     def _span(self, field: InputField, value: float) -> float:
         """Return how far a tenth of the input reaches, times ten."""
