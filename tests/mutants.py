@@ -299,7 +299,7 @@ MUTANTS: tuple[Mutant, ...] = (
     ),
     *changes(
         "plugins/roller_screw_shift/objectives.py",
-        "published/test_roller_screw_constraints.py published/test_roller_screw_weighing.py",
+        "published/test_roller_screw_model.py",
         ("0.5 * pair.roller_teeth * sine**2", "pair.roller_teeth * sine**2"),
         ("(0.5 * (high - low)) ** -2", "(0.5 * (high - low)) ** -1"),
         ("(turn - np.sin(turn))", "(turn + np.sin(turn))"),
