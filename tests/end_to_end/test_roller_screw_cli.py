@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from measured import calc_here
 
-from shared import Calc
+import truing
 
 
 @pytest.fixture(scope="module")
@@ -75,12 +75,10 @@ def test_no_design_of_the_front_beats_another(example: tuple[Path, dict[str, Any
         assert not any(other != one and all(a <= b for a, b in zip(other, one, strict=True)) for other in goals)
 
 
-def test_cases_over_shifts_name_the_one_that_is_too_large(calc: Calc, tmp_path: Path) -> None:
+def test_cases_over_shifts_name_the_one_that_is_too_large(tmp_path: Path) -> None:
     (tmp_path / "shifts.csv").write_text("roller_shift\n0\n0.21\n0.4\n-0.5\n")
-    few = ("--set", "studies.run=[]", "--set", "sheet.detail=short", "--json", "-o", "run")
-    answer = calc("run", "roller_screw_shift", "--cases", "shifts.csv", *few)
-    assert answer.code == 1
-    found = json.loads(answer.out)
+    found = truing.load("roller_screw_shift").run(cases=tmp_path / "shifts.csv", set={"studies.run": []}).document
+    assert found["verdict"] == "fails"
     ratios = [case["checks"] for case in found["cases"][:3]]
     passed = [next(c["passed"] for c in checks if c["name"] == "margin_contact_ratio") for checks in ratios]
     assert passed == [True, True, False]

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from measured import calc_here
 
-from shared import Calc
+import truing
 
 GROUP_5 = {"root_stress_sun": 230.83, "root_stress_planet": 214.75, "contact_stress_sun": 977.37,
            "contact_stress_planet": 924.18}  # fmt: skip
@@ -78,13 +78,11 @@ def test_the_list_of_groups_is_a_result(example: tuple[Path, dict[str, Any]]) ->
     assert "| 25 | 36 | 99 | 40 | 111 |" in sheet
 
 
-def test_the_strength_of_all_groups_as_cases(calc: Calc, tmp_path: Path) -> None:
+def test_the_strength_of_all_groups_as_cases(tmp_path: Path) -> None:
     """Larger gears carry more; a number beyond the list fails alone, and the others go on."""
     (tmp_path / "groups.csv").write_text("group\n" + "".join(f"{number}\n" for number in range(1, 27)))
-    short = ("--set", "sheet.detail=short", "--set", "studies.run=[]", "--json")
-    answer = calc("run", "rv_gearing", "-o", "run", "--cases", "groups.csv", *short)
-    assert answer.code == 1
-    found = json.loads(answer.out)
+    found = truing.load("rv_gearing").run(cases=tmp_path / "groups.csv", set={"studies.run": []}).document
+    assert found["verdict"] == "fails"
     safeties = [case["results"]["contact_safety"]["value"] for case in found["cases"][:25]]
     assert safeties == sorted(safeties)
     assert safeties[0] == pytest.approx(1.1 * 1093.4 / 1087.34, rel=1e-4)
