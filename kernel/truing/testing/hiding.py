@@ -6,6 +6,7 @@ import inspect
 import json
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -34,6 +35,7 @@ from truing.kernel import Offer
 from truing.measurements import TableText, read_rows, table_text
 from truing.measurements.table import WORDS, read_word
 from truing.runs.diagnosis_document import diagnosis_document
+from truing.runs.extension import extended_setup
 from truing.runs.inputs_written import complete_inputs
 from truing.setup import Setup, SwitchedOn
 from truing.studies.reading import read_range
@@ -84,7 +86,12 @@ def _hidden(
 ) -> Hidden:  # fmt: skip
     """Check everything that was asked for, then draw the record."""
     faults: list[str] = []
-    setup = _setup(model, settings, faults)
+    setup = Subject(model).setup
+    if settings:
+        try:
+            setup = setup_from_settings(Subject(model).offer, settings)
+        except TruingError as error:
+            faults.append(str(error))
     effect = effect_of(model, name, faults)
     noises = noise_of(setup, noise, measure, faults)
     truth = truth_of(effect, size, list(noises), faults)
@@ -162,16 +169,6 @@ def _correlated(rng: np.random.Generator, design: RecordDesign, correlation: flo
 def _raise(model: Model[Any, Any], faults: Sequence[str]) -> None:
     if faults:
         raise InputError([Fault(f"{model.name}: {sentence}") for sentence in faults])
-
-
-def _setup(model: Model[Any, Any], settings: Mapping[str, str], faults: list[str]) -> Setup:
-    subject = Subject(model)
-    if settings:
-        try:
-            return setup_from_settings(subject.offer, settings)
-        except TruingError as error:
-            faults.append(str(error))
-    return subject.setup
 
 
 # A record with what was hidden in it, and what a diagnosis answers to it
@@ -270,8 +267,7 @@ def records_of(setup: Setup, text: str, name: str, *, with_unit_errors: bool = T
 
 def predicted(diagnosis: DiagnosisResult, setup: Setup, records: Records) -> dict[str, NDArray[np.float64]]:
     """Predict rows that were not fitted, by every cause and shape that was found on the calibrated machine; SI."""
-    calibrated = {calibrated.name: calibrated.value for calibrated in diagnosis.calibrated}
-    machine = diagnosis.extended or replace(setup, calibrated={**setup.calibrated, **calibrated})
+    machine = extended_setup(diagnosis) or setup
     shown = read_by_gauge(one_machine(machine), records.rows, diagnosis.measured).results
     known: dict[str, Any] = {name: covariate.values for name, covariate in records.covariates.items()}
     readings = {}
@@ -295,11 +291,10 @@ ENDLESS = 1e6
 
 def effect_of(model: Model[Any, Any], name: str | None, faults: list[str]) -> Effect[Any, Any] | None:
     """Return the effect of this name, of the model or of the kernel."""
-    if name is None or name in model.known_effects:
-        return model.known_effects[name] if name is not None else None
-    known = list(model.known_effects)
-    faults.append(f"no effect '{name}'.{near_miss(name, known) or ' It has ' + ', '.join(known)}")
-    return None
+    known = model.known_effects
+    if name is not None and name not in known:
+        faults.append(f"no effect '{name}'.{near_miss(name, known) or ' It has ' + ', '.join(known)}")
+    return known.get(name or "")
 
 
 def truth_of(
@@ -486,7 +481,11 @@ def noise_of(setup: Setup, said: Any, measure: str | Sequence[str] | None, fault
 
 def _fitting(gauged: Mapping[str, str], said: Any, faults: list[str]) -> list[str]:
     """Return the one result that a noise can be of; of several the only one that is in the very unit of the noise."""
-    fits = [name for name, unit in gauged.items() if _is_share(said) or _fits(said, unit)]
+    fits = []
+    for name, unit in gauged.items():
+        with suppress(TruingError):
+            _read(said, unit)
+            fits.append(name)
     if isinstance(said, str) and len(fits) > 1 and not _is_share(said):
         same = [name for name in fits if gauged[name] == split_quantity(said).unit]
         fits = same if len(same) == 1 else fits
@@ -502,14 +501,6 @@ def _fitting(gauged: Mapping[str, str], said: Any, faults: list[str]) -> list[st
 
 def _is_share(said: Any) -> bool:
     return isinstance(said, str) and said.strip().endswith("%")
-
-
-def _fits(said: Any, unit: str) -> bool:
-    try:
-        _read(said, unit)
-    except TruingError:
-        return False
-    return True
 
 
 def _read(said: Any, unit: str) -> RecordNoise:
@@ -598,7 +589,9 @@ def columns_of(
     """
     asked: dict[str, Any] = dict(over) if over is not None else dict(_by_default(setup, effect))
     for axis in _axes(setup, measured):
-        asked.setdefault(axis, _whole_axis(setup, axis))
+        unit = setup.model.own_result_fields[axis].unit  # its range is that at the defaults
+        places = from_si(np.asarray(setup.model.read_results(evaluate(setup))[axis], dtype=float), unit)
+        asked.setdefault(axis, f"{float(np.min(places))!r}..{float(np.max(places))!r} {unit}".strip())
     columns, faults = [], []
     for name, said in asked.items():
         try:
@@ -655,13 +648,6 @@ def _axes(setup: Setup, measured: Sequence[str]) -> Iterator[str]:
         if result.along:
             own = f"{result.along}_{result.scope}"
             yield own if own in fields else result.along
-
-
-def _whole_axis(setup: Setup, axis: str) -> str:
-    """Return the range of an axis at the defaults."""
-    unit = setup.model.own_result_fields[axis].unit
-    places = from_si(np.asarray(setup.model.read_results(evaluate(setup))[axis], dtype=float), unit)
-    return f"{float(np.min(places))!r}..{float(np.max(places))!r} {unit}".strip()
 
 
 def _column(setup: Setup, name: str, said: Any, measured: Sequence[str]) -> DesignColumn:
