@@ -522,26 +522,25 @@ RUN = "run"
 
 @dataclass(frozen=True)
 class DesignColumn:
-    """A column that varies: the unit in its header, its ends (or the ``levels`` it takes) in that unit.
+    """A column that varies: its header, its ends in the unit that stands there, or the ``levels`` or words it takes.
 
     One that ``rises`` goes from end to end with the rows, as a clock does; one that ``places`` the rows on an axis does
-    so in every run. ``words`` are the values of a choice.
+    so in every run.
     """
 
     name: str
-    unit: str
+    header: str
     low: float = 0.0
     high: float = 0.0
-    levels: tuple[float, ...] = ()
-    words: tuple[str, ...] = ()
+    levels: tuple[Any, ...] = ()
     rises: bool = False
     places: bool = False
     whole: bool = False
 
     def at(self, shares: NDArray[np.float64]) -> Any:
         """Return the values (n,) at these shares of the range, 0 to 1."""
-        if self.words or self.levels:
-            chosen: Any = np.array(self.words or self.levels, dtype=object if self.words else float)
+        if self.levels:
+            chosen = np.array(self.levels, dtype=float if isinstance(self.levels[0], float) else object)
             return chosen[np.minimum((shares * len(chosen)).astype(int), len(chosen) - 1)]
         values = self.low + (self.high - self.low) * shares
         decimals = 0 if self.whole else -math.floor(math.log10((self.high - self.low) / STEPS))
@@ -575,7 +574,7 @@ class RecordDesign:
                 own = np.tile(np.linspace(0.0, 1.0, self.rows), self.runs)
             else:
                 own = clock if column.rises else shares[:, spread.index(column)]
-            columns[f"{column.name} [{column.unit or '1'}]" if not column.words else column.name] = column.at(own)
+            columns[column.header] = column.at(own)
         return columns
 
 
@@ -663,13 +662,13 @@ def _column(setup: Setup, name: str, said: Any, measured: Sequence[str]) -> Desi
     if input_field is not None and input_field.kind not in {"float", "whole"}:
         raise UsageError("a file or a series cannot change from row to row")
     low, high, levels, shown = _ends(said, known[name] if name in known else model.own_result_fields[name].unit)
-    for end in (low, high, *levels) if input_field is not None else ():
-        broken = broken_bound(input_field, float(to_si(end, shown)))
+    for end in (low, high, *levels):
+        broken = broken_bound(input_field, float(to_si(end, shown))) if input_field is not None else ""
         if broken:
             raise UsageError(broken)
     condition = model.known_conditions.get(name)
     return DesignColumn(
-        name, shown, low, high, levels,
+        name, f"{name} [{shown or '1'}]", low, high, levels,
         rises=name == "time" or (condition is not None and condition.history == SINCE_START),
         places=name in axes,
         whole=input_field is not None and input_field.kind == "whole",
@@ -698,7 +697,7 @@ def _words(input_field: Any, said: Any) -> DesignColumn:
             read_word(input_field, word, decimal_comma=False)
         except ValueError as error:
             raise UsageError(str(error)) from error
-    return DesignColumn(input_field.name, "", words=tuple(words))
+    return DesignColumn(input_field.name, input_field.name, levels=tuple(words))
 
 
 def _units(setup: Setup) -> dict[str, str]:
