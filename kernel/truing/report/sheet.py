@@ -76,7 +76,13 @@ def make_sheet(
     results = list(result_chapters(Writing(calculation, detail, figures)))
     warnings = tuple(_warnings(calculation, cases, figures.failures))
     front = _front(calculation, cases, detail)
-    back = () if detail == "short" else _back(setup, verified)
+    findings = setup.model.findings
+    back = []
+    if verified and detail != "short":
+        back.append(Chapter("Paper against this calculation", tuple(published_blocks(setup, verified)), "published"))
+    if findings and detail != "short":
+        items = Items("findings", tuple(each.text for each in findings), tuple(each.title for each in findings))
+        back.append(Chapter("Findings", (items,), "findings"))
     cites = [
         *setup.model.cites,
         *(text for each in calculation.outcomes.values() for text in getattr(each, "cites", ())),
@@ -197,15 +203,6 @@ def _front(calculation: Calculation, cases: CasesTable | None, detail: str) -> I
         yield Chapter("Tolerances in force", (tolerance_table(setup),), "tolerances")
     if setup.conditions or setup.effects:
         yield Chapter("Conditions and effects", tuple(effect_blocks(setup)), "effects")
-
-
-def _back(setup: Setup, verified: Sequence[ComparedRow]) -> Iterator[Chapter]:
-    findings = setup.model.findings
-    if verified:
-        yield Chapter("Paper against this calculation", tuple(published_blocks(setup, verified)), "published")
-    if findings:
-        texts, labels = tuple(each.text for each in findings), tuple(each.title for each in findings)
-        yield Chapter("Findings", (Items("findings", texts, labels),), "findings")
 
 
 def end_chapters(warnings: Sequence[str], provenance: Provenance, references: Sequence[str] = ()) -> Iterator[Chapter]:
