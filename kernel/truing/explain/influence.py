@@ -12,9 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from truing.declare.checks import formula_scope
 from truing.declare.fields import Found
-from truing.declare.model import Model
+from truing.declare.model import Model, formula_scope
 from truing.declare.sources import Condition, Effect, Unknown
 from truing.errors import InfeasibleError, TruingError
 from truing.evaluate import acting_inputs, evaluate
@@ -22,7 +21,7 @@ from truing.formulas import parse
 from truing.formulas.tree import walk
 from truing.setup import Setup, SwitchedOn
 from truing.studies.bench import Progress, silent
-from truing.studies.differences import exact_slopes, nominal_of, slopes
+from truing.studies.first_order import exact_slopes, nominal_of, slopes
 from truing.studies.sampling import Scatter, scatter_of
 from truing.units import difference_unit, to_si, unit_factor
 from truing.units.names import LEVELS

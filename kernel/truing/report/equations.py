@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from truing.declare.checks import formula_scope
 from truing.declare.fields import Found, InputField, ResultField
+from truing.declare.model import formula_scope
 from truing.errors import DeclarationError
 from truing.evaluate import acting_inputs
 from truing.formulas import Formula, evaluate, parse, symbol_text
