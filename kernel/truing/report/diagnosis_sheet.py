@@ -524,13 +524,10 @@ def _ties(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
     for tie in diagnosis.ties:
         names = listed([together([name]) for name in tie.explanations])
         yield Paragraph(f"No measurement proposed here tells {names} apart; a fact from elsewhere does.")
-        facts = [
-            (
-                together([fact.explanation]), spoken(fact.quantity.removeprefix("input:")), fact.note or ABSENT,
-                amount_text(readable(fact.value)),
-            )
-            for fact in tie.facts
-        ]  # fmt: skip
+        facts = []
+        for fact in tie.facts:
+            what, size = spoken(fact.quantity.removeprefix("input:")), amount_text(readable(fact.value))
+            facts.append((together([fact.explanation]), what, fact.note or ABSENT, size))
         if facts:
             heads = ("If it is", "then this quantity", "that is", "has this value")
             yield table_of("Facts that decide", heads, facts, (3,))

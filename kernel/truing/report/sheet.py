@@ -63,12 +63,9 @@ SHEET = "Calculation sheet"
 
 
 def make_sheet(
-    calculation: Calculation,
-    *,
-    provenance: Provenance,
-    verified: Sequence[ComparedRow] = (),
+    calculation: Calculation, *, provenance: Provenance, verified: Sequence[ComparedRow] = (),
     cases: CasesTable | None = None,
-) -> Document:
+) -> Document:  # fmt: skip
     """Say everything that stands on the sheet of a calculation, at the level of detail of its setup."""
     setup = calculation.setup
     detail = setup.sheet.detail if setup.sheet.detail in LONGEST_TABLE else "normal"
@@ -251,13 +248,8 @@ def _case_row(setup: Setup, case: CaseResult, varied: Sequence[str], checks: Seq
     broken = [check.name.replace("_", " ") for check in case.checks if check.state == case.verdict]
     verdict_text = case.verdict if case.verdict == "passes" else f"{SHORT[case.verdict]}: {', '.join(broken)}"
     margin = least_margin(case.checks)
-    return (
-        case_name(case),
-        *values,
-        *(texts.get(name, "–") for name in checks),
-        with_unit(margin.text, margin.unit),
-        verdict_text,
-    )
+    shown = [texts.get(name, "–") for name in checks]
+    return (case_name(case), *values, *shown, with_unit(margin.text, margin.unit), verdict_text)
 
 
 # What the sheet says of what was asked, of limits, of published numbers, and of where the numbers come from
