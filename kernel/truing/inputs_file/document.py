@@ -161,7 +161,6 @@ def _after_long_text(text: str, position: int, mark: str) -> int:
 
 
 def _parts(key: str) -> KeyPath:
-    """Return the names of a dotted key."""
     if re.fullmatch(r"[A-Za-z0-9_-]+", key):
         return (key,)
     path: list[str] = []

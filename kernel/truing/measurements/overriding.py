@@ -126,7 +126,6 @@ def _no_input(header: Header, setup: Setup, offer: Offer) -> str:
 
 
 def _known(setup: Setup) -> dict[str, Known]:
-    """Return what a row may override."""
     return {**{name: setup.unit_of(name) for name in setup.conditions}, **setup.model.input_fields}
 
 
@@ -171,7 +170,6 @@ def read_rows(path: TableSource, offer: Offer, setup: Setup) -> RowsFile:
 
 
 def _axes(setup: Setup) -> dict[str, Known]:
-    """Return the axes on which a row may say where it lies, with their units."""
     fields = setup.model.own_result_fields.items()
     return {name: result.unit for name, result in fields if isinstance(result.spec, Axis) and not result.spec.is_table}
 

@@ -161,7 +161,6 @@ def _column(
 
 
 def _unit_of(name: str, known: Mapping[str, Known]) -> str | None:
-    """Return the unit of numbers that are known by their name."""
     what = known.get(name)
     if isinstance(what, InputField):
         return what.unit if what.kind in NUMBERS else None
@@ -227,7 +226,6 @@ class _Numbers(_Column):
 
 
 def _keep_bounds(input_field: InputField, values: NDArray[np.float64], lines: Sequence[int], faults: Faults) -> None:
-    """Say which rows break a declared bound."""
     distinct = np.unique(values[np.isfinite(values)]).tolist()
     tried = distinct if getattr(input_field.spec, "whole", False) else [*distinct[:1], *distinct[-1:]]
     if any(broken_bound(input_field, value) for value in tried):
