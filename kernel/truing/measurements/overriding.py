@@ -66,11 +66,6 @@ class RowsFile:
     def __len__(self) -> int:
         return len(self.lines)
 
-    def placed(self, name: str) -> NDArray[np.float64] | None:
-        """Return what each row says of an input, a condition or an axis, SI (n,); None where no column has it."""
-        kinds: tuple[Mapping[str, Any], ...] = (self.columns, self.axes, self.series)
-        return next((np.asarray(kind[name], dtype=float) for kind in kinds if name in kind), None)
-
     def taken(self, places: NDArray[np.intp] | slice) -> RowsFile:
         """Return some of the rows, in this order."""
 
