@@ -280,14 +280,8 @@ class _Repair:
         table[path[-1]] = UNREADABLE if value is None else value
 
 
-class _Unreadable:
-    """Stands for a value that was named as a fault already."""
-
-    def __repr__(self) -> str:
-        return "unreadable"
-
-
-UNREADABLE = _Unreadable()
+UNREADABLE = object()
+"""Stands for a value that was named as a fault already."""
 
 
 def _meant(key: str, rest: str) -> tuple[str, str | None] | None:

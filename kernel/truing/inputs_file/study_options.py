@@ -70,7 +70,8 @@ def study_section(study: Study) -> Section:
 
 def _read_option(name: str, hint: Any, raw: Any, _: InputsRead) -> Any:
     """Return an option as the study wants it. Raises ValueError with one sentence."""
-    if isinstance(raw, bool) and not _takes_bool(hint):
+    takes_bool = hint is Any or hint is bool or bool in getattr(hint, "__args__", ())
+    if isinstance(raw, bool) and not takes_bool:
         raise SentenceError(f"{name} = {written(raw)} is no {_spoken(hint)}")
     try:
         value = _adapter(hint).validate_python(raw)
@@ -89,10 +90,6 @@ def _adapter(hint: Any) -> TypeAdapter[Any]:
     return TypeAdapter(
         hint, config=None if dataclasses.is_dataclass(hint) else ConfigDict(arbitrary_types_allowed=True)
     )
-
-
-def _takes_bool(hint: Any) -> bool:
-    return hint is Any or hint is bool or bool in getattr(hint, "__args__", ())
 
 
 def _wrong(name: str, hint: Any, raw: Any, error: Any) -> str:
