@@ -722,7 +722,7 @@ def width_of(spread: Spread, target: Target) -> float:
     """Return the full band of a spread, SI."""
     resolved = spread.resolve(target)
     assert resolved is not None
-    return resolved.width
+    return float(resolved.width)
 
 
 @pytest.mark.parametrize(("spread", "target", "width"), WIDTHS)
