@@ -151,7 +151,7 @@ class Counting(WorkerPool):
         self.asked: list[str] = []
 
     def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        self.asked.append(getattr(args[0], "__name__", "?"))
+        self.asked.append(getattr(getattr(args[0], "func", args[0]), "__name__", "?"))
         return SerialExecutor().submit(function, *args, **kwargs)
 
 

@@ -1078,17 +1078,9 @@ def _own_results(problem: Problem, columns: Mapping[str, Any], count: int) -> Ma
     return evaluate_rows(replace(setup, effects=()), neutral, count, wanted=within - {TOTAL_PRICE}).results
 
 
-@dataclass(frozen=True)
-class DesignBatch:
-    """Some designs, as they go to a worker: plain data, except in this process."""
-
-    problem: Problem | tuple[Packed, Optimise, Known]
-    designs: Matrix
-
-
-def run_job(job: DesignBatch) -> Answers:
-    """Answer the designs of one job."""
-    return answers_of(job.problem if isinstance(job.problem, Problem) else _unpacked(*job.problem), job.designs)
+def run_job(packed: Packed, study: Optimise, known: Known, designs: Matrix) -> Answers:
+    """Answer some designs in a worker."""
+    return answers_of(_unpacked(packed, study, known), designs)
 
 
 @lru_cache(maxsize=4)
@@ -1108,8 +1100,8 @@ def answered(problem: Problem, designs: Matrix, executor: Executor) -> Answers:
     if isinstance(executor, SerialExecutor) or problem.stand_in is not None:
         return joined([answers_of(problem, part) for part in parts])
     study = replace(problem.study, vary=tuple(problem.study.vary), gives=None)
-    carried = (pack(problem.setup), study, problem.known)
-    return joined(list(in_order(executor, run_job, (DesignBatch(carried, part) for part in parts))))
+    run = partial(run_job, pack(problem.setup), study, problem.known)
+    return joined(list(in_order(executor, run, parts)))
 
 
 # What an optimisation is for: objectives and limits of many designs at once

@@ -514,16 +514,6 @@ LONGEST = 3.0
 keepable(Rows)
 
 
-@dataclass(frozen=True)
-class SurrogateBatch:
-    """Some points, as they go to a worker: plain data, except in this process."""
-
-    setup: Setup | Packed
-    columns: Mapping[str, Any]
-    rows: int
-    wanted: tuple[str, ...]
-
-
 def designed(setup: Setup, box: Box, stage: int, points: int, study: str) -> dict[str, Matrix]:
     """Return a Latin hypercube: every side of the box in as many layers as there are points.
 
@@ -533,11 +523,13 @@ def designed(setup: Setup, box: Box, stage: int, points: int, study: str) -> dic
     return box.sampled(stats.qmc.LatinHypercube(len(box.features), seed=rng).random(points))
 
 
-def run_points(job: SurrogateBatch) -> tuple[Rows, float]:
-    """Run the model at some points, all in one call; return the seconds too."""
-    setup = _unpacked(job.setup) if isinstance(job.setup, Packed) else job.setup
+def run_points(
+    carried: Setup | Packed, wanted: tuple[str, ...], part: tuple[Mapping[str, Any], int]
+) -> tuple[Rows, float]:
+    """Run the model at some points (their columns, their number), all in one call; return the seconds too."""
+    setup = _unpacked(carried) if isinstance(carried, Packed) else carried
     start = perf_counter()
-    rows = evaluate_rows(setup, job.columns, job.rows, wanted=job.wanted).complete()
+    rows = evaluate_rows(setup, *part, wanted=wanted).complete()
     return rows, perf_counter() - start
 
 
@@ -558,9 +550,8 @@ def ran(
     """Run the model at all points, so many in one call; return the seconds that it worked, too."""
     carried: Setup | Packed = setup if isinstance(executor, SerialExecutor) else pack(setup)
     points = len(next(iter(columns.values())))
-    jobs = (SurrogateBatch(carried, part, rows, wanted) for part, rows in _parts(columns, points, batch))
     answers = []
-    for answer in in_order(executor, run_points, jobs):
+    for answer in in_order(executor, partial(run_points, carried, wanted), _parts(columns, points, batch)):
         answers.append(answer)
         done(min(len(answers) * batch, points), points)
     parts = [rows for rows, _ in answers]
@@ -618,7 +609,7 @@ def clocked(
     predictions = perf_counter() - start
     spent, run, wanted = 0.0, 0, tuple(stand_in.emulators)
     for part, rows in _parts(columns, points, batch):
-        spent += run_points(SurrogateBatch(setup, part, rows, wanted))[1]
+        spent += run_points(setup, wanted, (part, rows))[1]
         run += rows
         done(max(run, round(points * spent / LONGEST)), points)
         if spent > LONGEST:
