@@ -17,9 +17,9 @@ from scipy.special import ndtri
 
 from truing.arrays import Matrix
 from truing.declare.blocks import Block, Cell, Drawing, Table, Words
-from truing.declare.checks import TOTAL_PRICE
 from truing.declare.fields import InputField
 from truing.declare.goals import Maximise, Minimise, Require, Vary
+from truing.declare.model import TOTAL_PRICE
 from truing.declare.near_miss import near_miss
 from truing.declare.sources import Tolerance
 from truing.declare.spreads import (

@@ -89,7 +89,9 @@ class Surrogate:
         box = open_box(setup, self.over, self.logarithmic, self.name)
         along = self._along(box)
         sampling, judging, learning, timing = (bench.part(self.name, *ends) for ends in pairwise(SHARES))
-        learnt, judge = (self._ran(bench, box, names, stage, done) for stage, done in enumerate((sampling, judging)))
+        learnt, judge = (
+            self._ran(bench, box, names, stage=stage, done=done) for stage, done in enumerate((sampling, judging))
+        )
         emulators, seconds = self._learnt(setup, box, learnt, learning)
         stand_in = StandIn(box, emulators)
         units = {part.name: setup.print_unit(part.name) if part.is_plain else part.unit for part in box.features}
@@ -144,7 +146,7 @@ class Surrogate:
             for name, band in bands.items()
         }
 
-    def _ran(self, bench: Bench, box: Box, names: tuple[str, ...], stage: int, done: StepProgress) -> DesignedSample:
+    def _ran(self, bench: Bench, box: Box, names: tuple[str, ...], *, stage: int, done: StepProgress) -> DesignedSample:
         """Run the model at designed points; those can be used that have every result, above 0 for a logarithm."""
         setup, batch, executor = bench.setup, self.batch, bench.executor
         points = (self.design, self.held_out)[stage]
