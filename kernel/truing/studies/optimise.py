@@ -653,7 +653,7 @@ class Trail:
 
 def search(problem: Problem, executor: Executor, done: Callable[[int, int], None]) -> Trail:
     """Look for the designs that no other beats; each generation is answered at once."""
-    algorithm, shell = _algorithm(problem)
+    algorithm = _algorithm(problem)
     population, generations = problem.study.population, problem.study.generations
     rng = np.random.default_rng([problem.setup.seed, LED])
     kept: Answers | None = None
@@ -667,7 +667,7 @@ def search(problem: Problem, executor: Executor, done: Callable[[int, int], None
             asked.set("X", _led(problem, (asked.get("X"), algorithm.pop.get("X")), kept.designs, rng))
         generated = answered(problem, problem.space.designs(asked.get("X")), executor)
         evaluations, failed = evaluations + len(generated.designs), failed + int(generated.failed.sum())
-        _tell(algorithm, shell, asked, problem, generated)
+        _tell(algorithm, asked, problem, generated)
         kept = _best(problem, generated if kept is None else joined([kept, generated]), ROOM * population)
         fronts.append(small(problem, kept))
         done(generation + 1, generations)
@@ -760,19 +760,18 @@ def spread_out(values: Matrix, front: NDArray[np.intp], most: int) -> NDArray[np
     return front
 
 
-def _tell(algorithm: Any, shell: Any, asked: Any, problem: Problem, answers: Answers) -> None:
+def _tell(algorithm: Any, asked: Any, problem: Problem, answers: Answers) -> None:
     """Hand the answers back; a design without one is finite and worse than any other."""
     signs = np.array([aim.sign for aim in problem.aims])
     objectives = np.where(answers.failed[:, None], FAILED, answers.objectives * signs)
     missing = np.where(answers.failed, FAILED, -1.0)
     limits = np.where(answers.failed[:, None], FAILED, -answers.margins)
-    pymoo_evaluator.Evaluator().eval(
-        pymoo_static.StaticProblem(shell, F=objectives, G=np.column_stack([limits, missing])), asked
-    )
+    shell = pymoo_static.StaticProblem(algorithm.problem, F=objectives, G=np.column_stack([limits, missing]))
+    pymoo_evaluator.Evaluator().eval(shell, asked)
     algorithm.tell(infills=asked)
 
 
-def _algorithm(problem: Problem) -> tuple[Any, Any]:
+def _algorithm(problem: Problem) -> Any:
     """Set up the algorithm of the literature with the first population."""
     pymoo_config.Config.warnings["not_compiled"] = False
     count = len(problem.space.variables)
@@ -789,7 +788,7 @@ def _algorithm(problem: Problem) -> tuple[Any, Any]:
     )
     termination = ("n_gen", problem.study.generations)
     algorithm.setup(shell, termination=termination, seed=problem.setup.seed, verbose=False)
-    return algorithm, shell
+    return algorithm
 
 
 def _first(problem: Problem) -> Matrix:
