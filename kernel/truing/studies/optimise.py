@@ -214,8 +214,8 @@ def _too_few(problem: Problem) -> tuple[str, ...]:
     words = []
     for bound in problem.by_chance:
         goal = goal_of(bound.require, problem.setup)
-        if goal is not None and problem.cloud.draws * (1 - goal) < 1:
-            words.append(f"{problem.cloud.draws} machines cannot tell {goal:g} of '{bound.name}' from certainty")
+        if goal is not None and problem.study.draws * (1 - goal) < 1:
+            words.append(f"{problem.study.draws} machines cannot tell {goal:g} of '{bound.name}' from certainty")
     return tuple(words)
 
 
@@ -1091,7 +1091,7 @@ def answered(problem: Problem, designs: Matrix, executor: Executor) -> Answers:
     """Answer designs (m, v), cut into jobs in a way that does not depend on who computes them."""
     rows = 1
     if problem.cloud is not None:
-        rows = problem.cloud.draws
+        rows = problem.study.draws
     elif problem.by_chance:
         rows = 1 + 2 * len(problem.scatter.columns)
     size = max(1, min(ROWS // rows, -(-len(designs) // problem.study.parts)))
@@ -1525,13 +1525,8 @@ def total_prices(setup: Setup, spreads: Spreads, rows: int) -> Matrix:
 STEP = 0.1  # of a standard deviation, for central differences
 
 
-@dataclass(frozen=True, eq=False)
-class Cloud:
-    """The causes of scatter, and by name standard normal values (k, n), or deviations where a function draws them."""
-
-    causes: tuple[ScatterSource, ...]
-    standard: Mapping[str, Matrix]
-    draws: int
+Cloud = Mapping[str, Matrix]
+"""By cause of scatter standard normal values (k, n), or deviations where a function draws them."""
 
 
 def cloud_of(scatter: Scatter, seed: int, study: Optimise) -> Cloud:
@@ -1545,7 +1540,7 @@ def cloud_of(scatter: Scatter, seed: int, study: Optimise) -> Cloud:
             standard[cause.name] = np.array([np.asarray(deviations[column], dtype=float) for column in cause.columns])
         else:
             standard[cause.name] = np.array([_stratified(rng, draws) for _ in cause.columns])
-    return Cloud(scatter.causes, standard, draws)
+    return standard
 
 
 def _stratified(rng: np.random.Generator, draws: int) -> Matrix:
@@ -1554,12 +1549,10 @@ def _stratified(rng: np.random.Generator, draws: int) -> Matrix:
 
 def by_draws(problem: Problem, designs: Designs) -> Matrix:
     """Return the share of machines (m, limits) that keep each limit; a machine without an answer keeps none."""
-    cloud, wanted = problem.cloud, designs.by_chance
-    assert cloud is not None  # else it is done to first order
-    shape = (designs.rows, cloud.draws)
-    columns = _machines(cloud, designs)
+    shape, wanted = (designs.rows, problem.study.draws), designs.by_chance
+    columns = _machines(problem, designs)
     flat = {name: np.ascontiguousarray(values).reshape(-1) for name, values in columns.items()}
-    results = problem.answer(flat, designs.rows * cloud.draws, results_needed(designs.setup, wanted))
+    results = problem.answer(flat, designs.rows * problem.study.draws, results_needed(designs.setup, wanted))
     each = {name: np.asarray(values).reshape(*shape, *np.shape(values)[1:]) for name, values in results.items()}
     shares = []
     for demand in wanted:
@@ -1582,12 +1575,13 @@ def _worst(chances: Any) -> Any:
     return chances.min(axis=tuple(range(1, chances.ndim))) if chances.ndim > 1 else chances
 
 
-def _machines(cloud: Cloud, designs: Designs) -> dict[str, Any]:
+def _machines(problem: Problem, designs: Designs) -> dict[str, Any]:
     """Return the columns of all machines of all designs (m, n); two tolerances on one input add their deviations."""
-    shape = (designs.rows, cloud.draws)
+    assert problem.cloud is not None  # else it is done to first order
+    shape = (designs.rows, problem.study.draws)
     columns: dict[str, Any] = {}
-    for cause in cloud.causes:
-        for column, values in _of_cause(cause, cloud.standard[cause.name], designs):
+    for cause in problem.scatter.causes:
+        for column, values in _of_cause(cause, problem.cloud[cause.name], designs):
             if column in columns:
                 values = columns[column] + (values - designs.nominal(column)[:, None])
             columns[column] = np.broadcast_to(values, shape)
