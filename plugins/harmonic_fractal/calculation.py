@@ -5,20 +5,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 
 from harmonic_fractal import clearance as gap
-from harmonic_fractal.contact import (
-    Contact,
-    Pressed,
-    Rough,
-    contact_of,
-    critical_pressure,
-    flanks_of,
-    interface_of,
-    is_accepted,
-    is_half_stated,
-    pressed,
-    range_of,
-    spacing_of,
-)
+from harmonic_fractal import contact as rough_contact
 from harmonic_fractal.mesh import DriveMesh, line_stiffness, load_of_largest, mesh_of, mesh_torsion, normal_stiffness
 from harmonic_fractal.micro import LEAST_DIMENSION, MOST_DIMENSION, elastic_sum
 from harmonic_fractal.quantities import SIZES, Drive, Stiffness
@@ -91,14 +78,14 @@ def ratio_of(drive: Drive) -> float:
 # What must hold before roughness, pairs and drive can be calculated: the sentence names the inputs and what to do
 
 
-def require_surface(drive: Drive, rough: Rough) -> None:
+def require_surface(drive: Drive, rough: rough_contact.Rough) -> None:
     """Refuse what is no rough surface; NaN is none."""
     feasible(
-        np.logical_not(is_half_stated(drive)),
+        np.logical_not(rough_contact.is_half_stated(drive)),
         "the mating flank is half stated: state mating_dimension and mating_roughness, or neither if it is smooth",
     )
-    if flanks_of(drive)[1] is not None:
-        shortest, longest = range_of(drive)
+    if rough_contact.flanks_of(drive)[1] is not None:
+        shortest, longest = rough_contact.range_of(drive)
         feasible(
             longest > shortest,
             "two flanks are added over the lags that both have, and these have none: enlarge longest_lag beyond "
@@ -129,7 +116,7 @@ COMPARED = ("catalogue_torsion", "catalogue_stiffness", "rough_share")
 """The results that need the catalogue."""
 
 
-def require_contact(drive: Drive, contact: Contact, mesh: DriveMesh) -> None:
+def require_contact(drive: Drive, contact: rough_contact.Contact, mesh: DriveMesh) -> None:
     """Refuse more pairs than there are teeth; without stiffness where the torsion begins nothing counts from there."""
     feasible(
         drive.engaged_pairs * np.asarray(mesh.engagement.factor(drive.torque)) <= drive.flexspline_teeth,
@@ -154,7 +141,7 @@ def require_contact(drive: Drive, contact: Contact, mesh: DriveMesh) -> None:
         )
 
 
-def require_flank(drive: Drive, one: Pressed, largest: Pressed) -> None:
+def require_flank(drive: Drive, one: rough_contact.Pressed, largest: rough_contact.Pressed) -> None:
     """Refuse contacts larger than the flank: of the pair that is looked at, and of the one that carries most."""
     flank: Float = drive.face_width * drive.flank_height
     for pair, load in ((one, "pair_load"), (largest, "torque")):
@@ -178,13 +165,13 @@ def require_catalogue(drive: Drive) -> Polyline:
 
 def harmonic_fractal(drive: Drive) -> Stiffness:
     """One drive or a batch of them; every Float is a number or an array (n,), SI."""
-    rough = interface_of(drive)
+    rough = rough_contact.interface_of(drive)
     require_surface(drive, rough)
-    contact = contact_of(drive, rough)
+    contact = rough_contact.contact_of(drive, rough)
     mesh = mesh_of(drive, contact)
     require_contact(drive, contact, mesh)
-    pair = pressed(drive.pair_load, contact)
-    require_flank(drive, pair, pressed(load_of_largest(drive.torque, mesh), contact))
+    pair = rough_contact.pressed(drive.pair_load, contact)
+    require_flank(drive, pair, rough_contact.pressed(load_of_largest(drive.torque, mesh), contact))
     return Stiffness(
         lag=drive.lags,
         structure_function=_seen(drive, rough),
@@ -206,7 +193,7 @@ def around_of(drive: Drive) -> dict[str, Float]:
     return {"shear_modulus": shear, "cup_moment": moment, "cup_stiffness": cup, "series_compliance": compliance}
 
 
-def _seen(drive: Drive, rough: Rough) -> Float:
+def _seen(drive: Drive, rough: rough_contact.Rough) -> Float:
     """Return the structure function over the lags, as an instrument that averages over a spot sees it."""
     lags, dimension = np.asarray(drive.lags), column(rough.dimension) - 1.0
     seen = structure_function(lags, dimension, column(rough.roughness))
@@ -215,30 +202,30 @@ def _seen(drive: Drive, rough: Rough) -> Float:
     return seen * kept_share(lags, column(drive.spot_width), 4.0 - 2.0 * dimension)
 
 
-def _interface(drive: Drive, rough: Rough) -> dict[str, Any]:
+def _interface(drive: Drive, rough: rough_contact.Rough) -> dict[str, Any]:
     return {
-        "surface_accepted": is_accepted(drive),
-        "spacing": spacing_of(drive),
+        "surface_accepted": rough_contact.is_accepted(drive),
+        "spacing": rough_contact.spacing_of(drive),
         "dimension": rough.dimension,
         "profile_dimension": rough.dimension - 1.0,
         "roughness": rough.roughness,
     }
 
 
-def _contact(drive: Drive, contact: Contact) -> dict[str, Any]:
+def _contact(drive: Drive, contact: rough_contact.Contact) -> dict[str, Any]:
     """Return what does not depend on the load by the names of its results."""
     return {
         "equivalent_modulus": contact.modulus,
-        "critical_pressure": critical_pressure(drive),
+        "critical_pressure": rough_contact.critical_pressure(drive),
         "domain_factor": contact.domain_factor,
         "critical_area": contact.critical_area,
-        "resolved_share": np.sqrt(contact.critical_area / np.pi) / spacing_of(drive),
+        "resolved_share": np.sqrt(contact.critical_area / np.pi) / rough_contact.spacing_of(drive),
         "plastic_limit": contact.plastic_limit,
         "tip_factor": contact.tip_factor,
     }
 
 
-def _pair(drive: Drive, contact: Contact, pair: Pressed) -> dict[str, Any]:
+def _pair(drive: Drive, contact: rough_contact.Contact, pair: rough_contact.Pressed) -> dict[str, Any]:
     """Return one pair under its load by the names of its results."""
     plastic = np.exp(contact.law.growth * pair.size) * contact.plastic_limit / drive.pair_load
     return {
@@ -254,7 +241,9 @@ def _pair(drive: Drive, contact: Contact, pair: Pressed) -> dict[str, Any]:
     }
 
 
-def _clearance(drive: Drive, contact: Contact, mesh: DriveMesh, pair: Pressed) -> dict[str, Any]:
+def _clearance(
+    drive: Drive, contact: rough_contact.Contact, mesh: DriveMesh, pair: rough_contact.Pressed
+) -> dict[str, Any]:
     """Return the clearance of one pair by the names of its results."""
     largest = np.sqrt(pair.largest_area / np.pi)
     radius, multiple = gap.read_radius(drive, largest)
@@ -277,7 +266,7 @@ def _clearance(drive: Drive, contact: Contact, mesh: DriveMesh, pair: Pressed) -
     }
 
 
-def _mesh(drive: Drive, contact: Contact, mesh: DriveMesh) -> dict[str, Any]:
+def _mesh(drive: Drive, contact: rough_contact.Contact, mesh: DriveMesh) -> dict[str, Any]:
     """Return mesh and drive by the names of their results; torsions have the sense of the torque."""
     around, printed, sense = around_of(drive), require_catalogue(drive), np.sign(drive.torque)
     compliance = around["series_compliance"]

@@ -156,7 +156,9 @@ def chances(odds: Odds) -> Chances:
     moves = {demand.name: bool(demand.moving) for demand in odds.demands}
     mean = odds.first_mean.get("backlash", nan) + (limit if moves.get("backlash") else 0.0)
     drawn = odds.moments.get("backlash")
-    time, curve = over_time(odds)
+    curve, nothing = odds.curve, np.empty(0)
+    if curve is not None and (curve.over != "working_time" or "backlash" not in curve.probability):
+        curve = None
     return Chances(
         accuracy_reliability=odds.probability.get("backlash", nan),
         normal_reliability=odds.analytic.get("backlash", nan),
@@ -165,17 +167,9 @@ def chances(odds: Odds) -> Chances:
         sampled_mean=drawn.mean if drawn else nan,
         sampled_sd=drawn.sd if drawn else nan,
         largest_backlash=drawn.largest if drawn else nan,
-        reliability_time=time,
-        reliability_history=curve,
+        reliability_time=curve.axis if curve else nothing,
+        reliability_history=curve.probability["backlash"] if curve else nothing,
     )
-
-
-def over_time(odds: Odds) -> "tuple[NDArray[np.float64], NDArray[np.float64]]":
-    """Working times and reliabilities; empty where the study did not run over the working time."""
-    curve = odds.curve
-    if curve is None or curve.over != "working_time" or "backlash" not in curve.probability:
-        return np.empty(0), np.empty(0)
-    return curve.axis, curve.probability["backlash"]
 
 
 # A study of our own: the backlash of machines when new, the paper's Fig. 4, and after their working time

@@ -24,7 +24,7 @@ from hidden_effects.asking import INPUTS, press_offer
 from hidden_effects.designs import Noise, wide
 from hidden_effects.press_machine import POSITION, SCATTER, TILT, Array, shown
 from hidden_effects.press_machine import Rows as Setting
-from truing import trials
+from truing import gauge
 from truing.diagnosis import competition
 from truing.diagnosis.engine import diagnose, laid_out
 from truing.diagnosis.machine import calibration_of, predict
@@ -118,7 +118,7 @@ def model_calls(results: tuple[str, ...], *, with_pairs: bool) -> int:
         return read_by_gauge(*held, **known)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(trials, "read_by_gauge", counting)
+        patch.setattr(gauge, "read_by_gauge", counting)
         if not with_pairs:
             patch.setattr(competition, "_pairs", lambda made: None)
         diagnose(press_setup(), in_memory(300, results))

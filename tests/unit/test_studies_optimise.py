@@ -3,7 +3,7 @@
 import itertools
 import json
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -30,19 +30,16 @@ from truing import (
 from truing.calculation import Calculation, calculate
 from truing.errors import DeclarationError, InputError, UsageError
 from truing.evaluate import evaluate, evaluate_rows
-from truing.executors import BatchLog, KeptExecutor, SerialExecutor, WorkerPool
+from truing.executors import WorkerPool
 from truing.fits import GRADES, tolerance
 from truing.inputs_file import read_setup
 from truing.kernel import Offer, Origin
 from truing.prices import price_answers, total_price
 from truing.setup import Setup, default_setup
-from truing.studies.bench import Bench
-from truing.studies.chances import chance, straightened
-from truing.studies.checks import limits, margin_of, plain_checks
-from truing.studies.demands import demands, worst
+from truing.studies.checks import demands, limits, margin_of, plain_checks, worst
+from truing.studies.first_order import chance, straightened
 from truing.studies.optimise import (
     REFERENCE,
-    ROWS,
     Problem,
     answers_of,
     knee_of,
@@ -125,22 +122,6 @@ def test_the_least_cost_of_two_tolerances_for_every_limit() -> None:
     assert over.max() < 0.015
     assert (limits_.min(), limits_.max()) == pytest.approx((6e-6, 20e-6), rel=5e-3)
     assert all(design.chances["length"] >= 0.95 for design in best.front)
-
-
-GOALS = (0.7, 0.9, 0.99)
-
-
-@pytest.mark.parametrize("method", ["first_order", "draws"])
-def test_a_tighter_reliability_never_lowers_the_least_cost(method: Any) -> None:
-    goal_named = Require("length", within="12 um", reliability="goal")
-    model = replace(PAIR, objectives=[Minimise("tolerance_price"), goal_named])
-    study = Optimise(tightest=0.25, widest=4.0, chance=method, population=40, generations=60, draws=4000, verify=10)
-    costs = [optimum(setup_of(model, goal=goal), study).front[0].objectives["tolerance_price"] for goal in GOALS]
-    assert costs == sorted(costs)
-    for goal, cost in zip(GOALS, costs, strict=True):
-        # 4000 machines know the chance, and by its slope the cost, to some percent only
-        accuracy = 1e-5 if method == "first_order" else 0.03
-        assert cost == pytest.approx(least_cost(goal, "reciprocal"), rel=accuracy)
 
 
 def test_grades_of_least_cost_against_trying_all() -> None:
@@ -366,41 +347,6 @@ def test_processes_give_the_same_bytes(chance_: Any, two_processes: WorkerPool) 
     assert written(apart) == written(calculate(setup).outcomes["optimise"])  # type: ignore[arg-type]
 
 
-def test_an_interrupted_search_takes_up_what_was_kept(tmp_path: Path) -> None:
-    setup = replace(setup_of(PAIR), studies=(replace(SMALL, tightest=0.25),))
-    wanted = written(calculate(setup).outcomes["optimise"])  # type: ignore[arg-type]
-    for resumed in (0, 13):  # twelve generations and the verification
-        log = BatchLog(tmp_path / "batches")
-        executor = KeptExecutor(SerialExecutor(), log)
-        assert written(calculate(setup, executor=executor).outcomes["optimise"]) == wanted  # type: ignore[arg-type]
-        assert executor.resumed == resumed
-        log.close()
-
-
-def test_it_prints_nothing(capfd: pytest.CaptureFixture[str]) -> None:
-    optimum(setup_of(PAIR), SMALL)
-    assert capfd.readouterr() == ("", "")
-
-
-def test_a_population_is_one_array(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Draws times designs in one call of the model, at most 2^16 rows at once."""
-    sizes: list[int] = []
-
-    def counted(setup: Setup, columns: Any, rows: int, **more: Any) -> Any:
-        sizes.append(rows)
-        return evaluate_rows(setup, columns, rows, **more)
-
-    monkeypatch.setattr("truing.studies.optimise.evaluate_rows", counted)
-    optimum(setup_of(PAIR), replace(SMALL, population=40, generations=1, draws=4000))
-    drawn = [rows for rows in sizes if rows >= 4000]
-    assert sum(drawn) == 40 * 4000  # one of them twice in the first population, and the start
-    assert max(drawn) <= ROWS
-    assert len(drawn) == 4
-    sizes.clear()
-    optimum(setup_of(PAIR), replace(SMALL, population=40, generations=1, chance="first_order"))
-    assert sizes == [39, 39 * 5, 1, 5]  # the designs, two inputs up and down; the start
-
-
 # What the outcome says
 
 
@@ -498,16 +444,6 @@ def test_results_json_has_printed_units_and_no_nan() -> None:
     assert {"length within", "length within by chance", "course at least", "course within"} <= set(first.margins)
 
 
-def test_the_front_is_sorted_feasible_and_nobody_is_beaten() -> None:
-    best = optimum(grown(), SMALL)
-    signs = np.array([aim.sign for aim in best.aims])
-    points = values(best, *(aim.name for aim in best.aims)) * signs
-    assert list(points[:, 0]) == sorted(points[:, 0])
-    assert all(design.feasible and min(design.margins.values()) >= 0 for design in best.front)
-    for one, other in itertools.permutations(points, 2):
-        assert not ((one <= other).all() and (one < other).any())
-
-
 def test_the_sheet_shows_the_front_and_both_figures() -> None:
     for best in (optimum(grown(), SMALL), optimum(setup_of(PAIR), SMALL), optimum(setup_of(GEAR), SMALL)):
         for block in best.blocks():
@@ -569,55 +505,6 @@ def test_the_hypervolume_of_known_fronts() -> None:
 # Surrogate on request
 
 
-@dataclass(frozen=True)
-class Known:
-    """Answers for the stress, a thousand times too small so that it is seen."""
-
-    of: tuple[str, ...] = ("stress",)
-    asked: list[int] = field(default_factory=list)
-
-    def predict(self, columns: Any) -> dict[str, Any]:
-        force, size, other, count = (np.asarray(columns[name]) for name in ("force", "size", "other", "count"))
-        self.asked.append(int(force.size))
-        return {"stress": 1e-3 * force / (size * other) * (1 + 0.1 * count)}
-
-    def as_json(self) -> dict[str, Any]:
-        return {}
-
-    def blocks(self) -> list[Any]:
-        return []
-
-    def checks(self) -> list[Any]:
-        return []
-
-    def warnings(self) -> list[str]:
-        return []
-
-
-@dataclass(frozen=True, kw_only=True)
-class Learnt:
-    """A study whose outcome can predict."""
-
-    outcome: Known = field(default_factory=Known)
-    name: str = "surrogate"
-    gives: None = None
-
-    def run(self, bench: Bench) -> Known:
-        return self.outcome
-
-
-def test_the_surrogate_answers_what_it_knows_and_the_knee_is_run_on_the_model() -> None:
-    learnt = Learnt()
-    done = calculate(replace(setup_of(PARTS), studies=(learnt, replace(SMALL, surrogate=True))))
-    best = done.outcomes["optimise"]
-    assert isinstance(best, Optimum)
-    assert best.knee is not None
-    assert sum(learnt.outcome.asked) >= best.evaluations
-    assert best.exact["stress"] == pytest.approx(1e3 * best.knee.objectives["stress"], rel=1e-9)
-    assert json.loads(written(best))["surrogate"] is True
-    assert "The surrogate answered" in best.blocks()[0].text  # type: ignore[union-attr]
-
-
 def test_a_learnt_surrogate_finds_the_front_and_says_where_it_learnt_nothing() -> None:
     learnt = Surrogate(of=("first", "second"), over={"a": "0.1..1", "b": "0..1"}, design=60, held_out=20, compare=0)
     study = Optimise(vary=("a", "b"), population=40, generations=30, surrogate=True)
@@ -632,6 +519,8 @@ def test_a_learnt_surrogate_finds_the_front_and_says_where_it_learnt_nothing() -
     assert words in best.warnings()
     assert best.knee is not None
     assert best.exact["first"] == pytest.approx(best.knee.inputs["a"], rel=1e-12)
+    assert json.loads(written(best))["surrogate"] is True
+    assert "The surrogate answered" in best.blocks()[0].text  # type: ignore[union-attr]
 
 
 def test_a_surrogate_that_is_not_there_is_asked_for() -> None:

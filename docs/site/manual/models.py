@@ -11,7 +11,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from manual.places import DOCS, SITE, place_in_site
-from truing.declare.checks import formula_scope
+from truing.declare.model import formula_scope
 from truing.describe import description
 from truing.formulas import parse, symbol_mathml
 from truing.formulas.write_mathml import MATHML

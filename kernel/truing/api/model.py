@@ -14,7 +14,7 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from truing.api.findings import NamedCause, Ranking, Residuals, causes_of
-from truing.api.notebook import bullets, fold, folds, heading, html_table, joined, paragraphs, picture, table_html
+from truing.api.notebook import bullets, fold, heading, html_table, joined, paragraphs, picture, table_html
 from truing.api.records import MeasuredRecord
 from truing.api.run import Differences, Run, comparison_of, performed
 from truing.api.study import StudyResult
@@ -241,7 +241,8 @@ class LoadedModel:
         results = html_table(tables.pop("Results", ()), ("result", "symbol", "unit", ""))
         studies = [f"Studies: {', '.join(said['studies'])}"] if said["studies"] else []
         head = heading(f"{self.name}: {self.title}") + paragraphs([said["summary"]] if said["summary"] else [])
-        return joined(head, inputs, results, folds(tables), paragraphs(studies))
+        rest = "".join(fold(f"{title} ({len(rows)})", html_table(rows)) for title, rows in tables.items())
+        return joined(head, inputs, results, rest, paragraphs(studies))
 
     def _settings(self, set: Mapping[str, Any] | None, values: Mapping[str, Any]) -> list[str]:
         return settings_of(self.offer.model, {**(set or {}), **values})

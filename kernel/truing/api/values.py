@@ -38,7 +38,9 @@ def text_of(model: Model[Any, Any], name: str, value: Any) -> str:
     if isinstance(value, str):
         return value
     if hasattr(value, "dimensionality"):
-        return _number(float(from_si(_in_si(name, value, unit), unit)), unit)
+        if value.dimensionality != pint_quantity(1.0, unit).dimensionality:
+            raise UsageError(f"{name}: {value} cannot be written in {unit or 'a number without a unit'}")
+        return _number(float(from_si(float(value.to_base_units().magnitude), unit)), unit)
     if isinstance(value, (bool, np.bool_)):
         return toml_value(bool(value))
     if isinstance(value, (Real, np.number)):
@@ -51,13 +53,6 @@ def text_of(model: Model[Any, Any], name: str, value: Any) -> str:
 def _number(value: Any, unit: str) -> str:
     plain = value.item() if hasattr(value, "item") else value
     return f"{plain!r} {unit}".rstrip()
-
-
-def _in_si(name: str, value: Any, unit: str) -> float:
-    """Return a quantity of pint in SI. Raises UsageError where its dimension is another one."""
-    if value.dimensionality != pint_quantity(1.0, unit).dimensionality:
-        raise UsageError(f"{name}: {value} cannot be written in {unit or 'a number without a unit'}")
-    return float(value.to_base_units().magnitude)
 
 
 # Quantities of pint, as a user of pint has them: of the application's registry, in the unit that is printed

@@ -25,6 +25,8 @@ P = ParamSpec("P")
 OfferedWord = tuple[str, str]
 """A word to offer, and what it is."""
 
+SPECIAL = set(" \t\"'`$\\;&|<>(){}*?!#~")
+"""A name with one of these is more than one word to a shell."""
 LONGEST_HELP = 90
 _door: Any = Later("truing.entry_points")
 _inside: Any = Later("truing.cli.inside")
@@ -38,7 +40,8 @@ def silent(function: Callable[P, Iterator[OfferedWord]]) -> Callable[P, list[Off
     def asked(*args: P.args, **kwargs: P.kwargs) -> list[OfferedWord]:
         with redirect_stdout(StringIO()), redirect_stderr(StringIO()):
             try:
-                return [(name, _one_line(words)) for name, words in function(*args, **kwargs) if _is_plain(name)]
+                words = [(name, _one_line(help_text)) for name, help_text in function(*args, **kwargs)]
+                return [(name, text) for name, text in words if name.isprintable() and not SPECIAL & set(name)]
             except (Exception, SystemExit):
                 return []
 
@@ -49,11 +52,6 @@ def _one_line(words: str) -> str:
     """Return a help text as one line that no shell and no markup takes for an order."""
     plain = one_line(words).replace("[", "(").replace("]", ")")
     return plain if len(plain) <= LONGEST_HELP else plain[: LONGEST_HELP - 1] + "…"
-
-
-def _is_plain(name: str) -> bool:
-    """Tell whether a shell can take a name as one word."""
-    return name.isprintable() and not set(name) & set(" \t\"'`$\\;&|<>(){}*?!#~")
 
 
 @silent

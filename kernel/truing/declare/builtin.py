@@ -22,14 +22,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Any, Literal, Protocol
 
 import numpy as np
 
 from truing.declare.batch import column
-from truing.declare.declared import Declared
-from truing.declare.fields import Axis, Float, Given, ResultField, read, with_values
-from truing.declare.sources import SINCE_START, Condition, Effect, Tolerance, Unknown
+from truing.declare.fields import Axis, Float, Given, InputField, ResultField, read, with_values
+from truing.declare.sources import SINCE_START, Condition, Effect, ErrorSource, Tolerance, Unknown
 from truing.units import difference_unit, same_dimension, to_si
 from truing.units.names import LEVELS, PURE
 
@@ -37,6 +36,27 @@ WIDE = 1e6
 LONGEST = 1e6
 """Hours: how late a step may come."""
 HIGHEST_ORDER = 3
+
+
+class Declared(Protocol):
+    """What is seen here of a model (see ``declare.model.Model``)."""
+
+    @property
+    def errors(self) -> Sequence[ErrorSource[Any, Any]]: ...  # noqa: D102
+    @property
+    def studies(self) -> Sequence[Any]: ...  # noqa: D102
+    @property
+    def input_fields(self) -> dict[str, InputField]: ...  # noqa: D102
+    @property
+    def own_result_fields(self) -> dict[str, ResultField]: ...  # noqa: D102
+    @property
+    def result_fields(self) -> dict[str, ResultField]: ...  # noqa: D102
+    @property
+    def measurable(self) -> list[str]: ...  # noqa: D102
+    @property
+    def effects(self) -> dict[str, Effect[Any, Any]]: ...  # noqa: D102
+    @property
+    def conditions(self) -> dict[str, Condition]: ...  # noqa: D102
 
 
 @dataclass(frozen=True)

@@ -8,10 +8,9 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from truing.declare.checks import TOTAL_PRICE
 from truing.declare.fields import Given, InputField, ResultField
 from truing.declare.goals import Require, Vary, prices_in
-from truing.declare.model import Model
+from truing.declare.model import TOTAL_PRICE, Model
 from truing.declare.near_miss import near_miss
 from truing.declare.spreads import Target
 from truing.errors import UnitError, UsageError

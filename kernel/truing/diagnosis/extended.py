@@ -17,10 +17,10 @@ from truing.declare.sources import Effect
 from truing.diagnosis.causes import Candidate, at_rest
 from truing.diagnosis.machine import Calibration, Tolerated, predict_each
 from truing.errors import PluginError
+from truing.gauge import Trial
 from truing.repeated import REMEMBERED as REPEATED
 from truing.repeated import forget
 from truing.setup import Setup, SwitchedOn, effect_column
-from truing.trials import Trial
 
 REMEMBERED = 64
 """So many setups with moved inputs are kept, and what the model showed at so many points."""

@@ -17,7 +17,6 @@ from truing.declare.sources import Effect, Tolerance
 from truing.errors import UsageError
 from truing.evaluate import evaluate
 from truing.explain.influence import (
-    Influences,
     Touched,
     chain,
     differentiable,
@@ -171,22 +170,19 @@ def _moves(setup: Setup, sources: Sequence[str]) -> list[dict[str, Any]]:
         name for name, field in setup.model.own_result_fields.items() if not getattr(field.spec, "is_table", False)
     ]
     moved_by = influences(setup, {name: answers[name] for name in results}, sources)
-    rows = [row for result in results if (row := _row(setup, moved_by, result, sources)) is not None]
+    rows = []
+    for result in results:
+        of = [influence for influence in moved_by.of[result] if influence.source in sources and influence.moves]
+        alone = of[0] if of and len(sources) == 1 else None
+        row = {
+            "name": result,
+            "note": setup.model.own_result_fields[result].spec.note,
+            "change": "" if alone is None else step_text(setup, result, alone.step),
+            "percent": None if alone is None else _percent(alone.relative),
+            "share": sum(influence.share for influence in of),
+        }
+        rows += [row] if of else []
     return sorted(rows, key=lambda row: (-row["share"], -abs(row["percent"] or 0.0)))
-
-
-def _row(setup: Setup, moved_by: Influences, result: str, sources: Sequence[str]) -> dict[str, Any] | None:
-    of = [influence for influence in moved_by.of[result] if influence.source in sources and influence.moves]
-    if not of:
-        return None
-    alone = of[0] if len(sources) == 1 else None
-    return {
-        "name": result,
-        "note": setup.model.own_result_fields[result].spec.note,
-        "change": step_text(setup, result, alone.step) if alone is not None else "",
-        "percent": None if alone is None else _percent(alone.relative),
-        "share": sum(influence.share for influence in of),
-    }
 
 
 def of_tolerance(setup: Setup, name: str) -> dict[str, Any]:

@@ -223,19 +223,18 @@ class _Proof:
             return self.alike((*arguments[:-1:2], arguments[-1]), f"{where}: what is chosen from")
         if function in OF_LIKES:
             return self.alike(arguments, f"{where}: what {function} takes")
-        if function == "atan2":
-            self.alike(arguments, f"{where}: what atan2 takes")
-            return PURE_NUMBER
         if function in KEEPS_DIMENSION:
             return self.of(arguments[0])
         if function in ("sqrt", "cbrt"):
             base = self.of(arguments[0])
             return None if base is None else _power(base, Fraction(1, 2 if function == "sqrt" else 3))
-        if function != "sign":
+        if function == "atan2":
+            self.alike(arguments, f"{where}: what atan2 takes")
+        elif function == "sign":
+            self.of(arguments[0])
+        else:
             wanted = "an angle or a pure number" if function in OF_ANGLE else "a pure number"
             self.pure(arguments[0], f"{where}: {function} needs {wanted}")
-        else:
-            self.of(arguments[0])
         return PURE_NUMBER
 
     def quoted(self, node: Node) -> str:
@@ -258,19 +257,15 @@ class _Proof:
 
     def alike(self, nodes: Sequence[Node], sentence: str) -> UnitsContainer | None:
         """Return the dimension all nodes share; a literal zero shares any."""
-        first: tuple[Node, UnitsContainer] | None = None
-        for node in nodes:
-            dimension = self.of(node)
-            if dimension is None:
-                continue
-            if first is None:
-                first = (node, dimension)
-            elif dimension != first[1]:
+        known = ((node, dimension) for node in nodes if (dimension := self.of(node)) is not None)
+        first, shared = next(known, (None, None))
+        for node, dimension in known:
+            if first is not None and dimension != shared:
                 self.fail(
-                    f"{sentence} must have one dimension, but '{self.quoted(first[0])}' is {_spoken(first[1])} "
+                    f"{sentence} must have one dimension, but '{self.quoted(first)}' is {_spoken(shared)} "
                     f"and '{self.quoted(node)}' is {_spoken(dimension)}"
                 )
-        return None if first is None else first[1]
+        return shared
 
     def fail(self, sentence: str) -> NoReturn:
         raise UnitError(f"formula {self.formula.text!r}: {sentence}")

@@ -6,7 +6,6 @@ import ast
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum, IntEnum
-from functools import reduce
 from itertools import pairwise
 from typing import Final
 
@@ -126,9 +125,12 @@ class Layout:
             case ast.Call(ast.Name(function), arguments):
                 return self.call(function, arguments, bare=bare)
             case ast.Compare(first, signs, others):
-                return self.comparison(first, [SIGNS[type(sign)] for sign in signs], others)
-            case ast.BoolOp(joint, operands):
-                return self.logic(SIGNS[type(joint)], operands)
+                operands = [self.at_least(operand, Binding.SUM) for operand in (first, *others)]
+                return Markup(self.chained(operands, [SIGNS[type(sign)] for sign in signs]), Binding.COMPARISON)
+            case ast.BoolOp(joint, conditions):
+                level = Binding.AND if isinstance(joint, ast.And) else Binding.OR
+                operands = [self.at_least(condition, level) for condition in conditions]
+                return Markup(self.chained(operands, [SIGNS[type(joint)]] * (len(operands) - 1)), level)
         raise AssertionError("parsing lets nothing else through")
 
     def leaf(self, name: str) -> Markup:
@@ -162,10 +164,11 @@ class Layout:
         for index, factor in enumerate(row):
             bare = index == len(row) - 1 or begins_with_function(row[index + 1])
             pieces.append(self.at_least(factor, Binding.PRODUCT, signed=index == 0, bare=bare))
-        markup = pieces[0].markup
-        for before, after in pairwise(pieces):
-            dot = self.numbers is not None or after.begins is not Edge.OTHER or before.ends is Edge.WORD
-            markup = self.writer.infix(markup, "dot" if dot else "gap", after.markup)
+        dots = (
+            self.numbers is not None or after.begins is not Edge.OTHER or before.ends is Edge.WORD
+            for before, after in pairwise(pieces)
+        )  # fmt: skip
+        markup = self.chained(pieces, ["dot" if dot else "gap" for dot in dots])
         return Markup(markup, Binding.PRODUCT, pieces[0].negative, begins=pieces[0].begins, ends=pieces[-1].ends)
 
     def power(self, base: Node, exponent: Node, *, bare: bool) -> Markup:
@@ -194,9 +197,7 @@ class Layout:
         head = self.function(function)
         if len(arguments) == 1:
             return self.applied(head, arguments[0], may_be_bare=bare and function in MAY_BE_BARE)
-        inner = self.at_least(arguments[0], Binding.SUM).markup
-        for argument in arguments[1:]:
-            inner = self.writer.infix(inner, ",", self.at_least(argument, Binding.SUM).markup)
+        inner = self.chained([self.at_least(each, Binding.SUM) for each in arguments], [","] * (len(arguments) - 1))
         return Markup(self.writer.applied(head, self.writer.parenthesised(inner)), Binding.TIGHT)
 
     def function(self, name: str, exponent: str | None = None) -> str:
@@ -210,37 +211,28 @@ class Layout:
             return Markup(self.writer.applied_bare(head, piece.markup), Binding.TIGHT)
         return Markup(self.writer.applied(head, self.writer.parenthesised(piece.markup)), Binding.TIGHT)
 
-    def comparison(self, first: Node, signs: Sequence[str], others: Sequence[Node]) -> Markup:
-        """Set a condition: a comparison or a chain of them."""
-        markup = self.at_least(first, Binding.SUM).markup
-        for sign, operand in zip(signs, others, strict=True):
-            markup = self.writer.infix(markup, sign, self.at_least(operand, Binding.SUM).markup)
-        return Markup(markup, Binding.COMPARISON)
-
-    def logic(self, word: str, operands: Sequence[Node]) -> Markup:
-        """Set conditions joined by and/or."""
-        level = Binding.AND if word == "and" else Binding.OR
-        markups = [self.at_least(operand, level).markup for operand in operands]
-        return Markup(reduce(lambda left, right: self.writer.infix(left, word, right), markups), level)
+    def chained(self, operands: Sequence[Markup], signs: Sequence[str]) -> str:
+        """Join operands by the signs between them."""
+        markup = operands[0].markup
+        for sign, operand in zip(signs, operands[1:], strict=True):
+            markup = self.writer.infix(markup, sign, operand.markup)
+        return markup
 
     def cases(self, arguments: Sequence[Node]) -> Markup:
         """Set alternatives behind a brace."""
-        rows = [
-            (self.piece(value).markup, self.writer.condition(self.piece(condition).markup))
-            for value, condition in zip(arguments[:-1:2], arguments[1::2], strict=True)
-        ]
-        rows.append((self.piece(arguments[-1]).markup, self.writer.prose("otherwise")))
-        return Markup(self.writer.table(rows), Binding.CASES)
+        conditions = [self.writer.condition(self.piece(condition).markup) for condition in arguments[1::2]]
+        return self.alternatives(arguments[::2], [*conditions, self.writer.prose("otherwise")])
 
     def either(self, first: Node, second: Node) -> Markup:
         """Set "the first if it is given, otherwise the second"; with numbers at hand only the one that counts."""
         if self.numbers is not None and isinstance(first, ast.Name) and first.id in self.numbers:
             return self.piece(first if read_number(self.numbers[first.id][0]) is not None else second)
-        rows = [
-            (self.piece(first).markup, self.writer.prose("if given")),
-            (self.piece(second).markup, self.writer.prose("otherwise")),
-        ]
-        return Markup(self.writer.table(rows), Binding.CASES)
+        return self.alternatives((first, second), [self.writer.prose("if given"), self.writer.prose("otherwise")])
+
+    def alternatives(self, values: Sequence[Node], conditions: Sequence[str]) -> Markup:
+        """Set values behind a brace, each with what is said of it."""
+        markups = [self.piece(value).markup for value in values]
+        return Markup(self.writer.table(list(zip(markups, conditions, strict=True))), Binding.CASES)
 
 
 def factors(node: Node) -> list[Node]:

@@ -7,23 +7,13 @@ from collections.abc import Sequence
 from typing import Final
 
 from truing.formulas.layout import Writer
-from truing.formulas.symbols import GREEK, LetterRun, Style, printable, read_number, read_symbol, word_text
+from truing.formulas.symbols import GREEK, printable, read_number, read_symbol, word_text
 
 SIGNS: Final = {
-    "+": " + ",
-    "-": " - ",
-    "dot": r" \cdot ",
-    "gap": r" \thinspace ",
-    ",": r",\thinspace ",
-    "==": " = ",
-    "!=": r" \ne ",
-    "<": r" \lt ",
-    "<=": r" \le ",
-    ">": r" \gt ",
-    ">=": r" \ge ",
-    "and": r"\ \mathrm{and}\ ",
+    "+": " + ", "-": " - ", "dot": r" \cdot ", "gap": r" \thinspace ", ",": r",\thinspace ", "==": " = ",
+    "!=": r" \ne ", "<": r" \lt ", "<=": r" \le ", ">": r" \gt ", ">=": r" \ge ", "and": r"\ \mathrm{and}\ ",
     "or": r"\ \mathrm{or}\ ",
-}
+}  # fmt: skip
 _LOOK_LATIN: Final = "οΑΒΕΖΗΙΚΜΝΟΡΤΧ"
 LETTERS: Final = {
     **{letter: f"\\{name}" for name, letter in GREEK.items()},
@@ -33,32 +23,19 @@ LETTERS: Final = {
 }
 """Greek letters; those that look Latin have no command of their own."""
 SUPERSCRIPTS: Final = dict(zip("⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺", "0123456789-+", strict=True))
+_NAMED: Final = {
+    "{": "lbrace", "}": "rbrace", "[": "lbrack", "]": "rbrack", "|": "vert", "<": "lt", ">": "gt", "µ": "mu",
+}  # fmt: skip
+_GROUPED: Final = {
+    "\\": r"\backslash", "^": r"\wedge", "~": r"\sim", "*": r"\ast", "`": "'", "'": "'", "′": "'", '"': "''", "″": "''",
+    "·": r"\cdot", "⋅": r"\cdot", "×": r"\times", "±": r"\pm", "°": r"^{\circ}",
+}  # fmt: skip
 ESCAPES: Final = {
-    "\\": r"{\backslash}",
-    "{": r"\lbrace{}",
-    "}": r"\rbrace{}",
-    "[": r"\lbrack{}",
-    "]": r"\rbrack{}",
-    "|": r"\vert{}",
-    "<": r"\lt{}",
-    ">": r"\gt{}",
-    "^": r"{\wedge}",
-    "~": r"{\sim}",
-    "*": r"{\ast}",
-    "`": "{'}",
-    "'": "{'}",
-    "′": "{'}",
-    '"': "{''}",
-    "″": "{''}",
+    **{character: rf"\{name}{{}}" for character, name in _NAMED.items()},
+    **{character: f"{{{marks}}}" for character, marks in _GROUPED.items()},
     " ": r"\ ",
-    "·": r"{\cdot}",
-    "⋅": r"{\cdot}",
-    "×": r"{\times}",
-    "±": r"{\pm}",
-    "°": r"{^{\circ}}",
     "−": "-",
     "–": r"\text{–}",
-    "µ": r"\mu{}",
     **{character: f"\\{character}" for character in "$#%&_"},
     **{letter: f"{command}{{}}" for letter, command in LETTERS.items()},
 }
@@ -105,19 +82,20 @@ def number_latex(text: str) -> str:
     return f"{'-' if number.negative else ''}{digits}{power}"
 
 
-def _piece(piece: LetterRun) -> str:
-    if piece.style is Style.DIGITS or piece.text == ",":
-        return piece.text
-    if piece.text in LETTERS:
-        letter = LETTERS[piece.text]
+def _piece(run: str) -> str:
+    """Write digits, a comma, a letter in italics, or upright letters."""
+    if run == "," or (run.isascii() and run.isdigit()):
+        return run
+    if run in LETTERS:
+        letter = LETTERS[run]
         return letter if letter.startswith("\\") else rf"\mathrm{{{letter}}}"
-    if piece.style is Style.ITALIC:
-        return ESCAPES.get(piece.text, piece.text)
-    return upright(piece.text)
+    if len(run) == 1 and run.isalpha():
+        return ESCAPES.get(run, run)
+    return upright(run)
 
 
-def _grouped(pieces: Sequence[LetterRun]) -> str:
-    return " ".join(_piece(piece) for piece in pieces).replace(" , ", ",")
+def _grouped(runs: Sequence[str]) -> str:
+    return " ".join(map(_piece, runs)).replace(" , ", ",")
 
 
 def symbol_latex(text: str, exponent: str | None = None) -> str:

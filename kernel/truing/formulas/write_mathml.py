@@ -7,24 +7,15 @@ from html import escape
 from typing import Final
 
 from truing.formulas.layout import Writer
-from truing.formulas.symbols import LetterRun, Style, printable, read_number, read_symbol, word_text
+from truing.formulas.symbols import printable, read_number, read_symbol, word_text
 
 THIN_GAP: Final = '<mspace width="0.1667em"></mspace>'
 SIGNS: Final = {
-    "+": "<mo>+</mo>",
-    "-": "<mo>−</mo>",
-    "dot": "<mo>⋅</mo>",
-    "gap": f"<mo>\N{INVISIBLE TIMES}</mo>{THIN_GAP}",
-    ",": "<mo>,</mo>",
-    "==": "<mo>=</mo>",
-    "!=": "<mo>≠</mo>",
-    "<": "<mo>&lt;</mo>",
-    "<=": "<mo>≤</mo>",
-    ">": "<mo>&gt;</mo>",
-    ">=": "<mo>≥</mo>",
-    "and": f"<mtext>{chr(0xA0)}and{chr(0xA0)}</mtext>",
+    "+": "<mo>+</mo>", "-": "<mo>−</mo>", "dot": "<mo>⋅</mo>", "gap": f"<mo>\N{INVISIBLE TIMES}</mo>{THIN_GAP}",
+    ",": "<mo>,</mo>", "==": "<mo>=</mo>", "!=": "<mo>≠</mo>", "<": "<mo>&lt;</mo>", "<=": "<mo>≤</mo>",
+    ">": "<mo>&gt;</mo>", ">=": "<mo>≥</mo>", "and": f"<mtext>{chr(0xA0)}and{chr(0xA0)}</mtext>",
     "or": f"<mtext>{chr(0xA0)}or{chr(0xA0)}</mtext>",
-}
+}  # fmt: skip
 WITHOUT_SPACE: Final = frozenset("°'′\"″")
 """Units that follow their number closely."""
 
@@ -51,14 +42,14 @@ def _unsigned(digits: str, negative: bool) -> str:
     return row('<mo form="prefix">−</mo>', number) if negative else number
 
 
-def _piece(piece: LetterRun) -> str:
-    text = escape(piece.text)
-    if piece.style is Style.DIGITS:
+def _piece(run: str) -> str:
+    """Write digits, a comma, a letter in italics, or upright letters."""
+    text = escape(run)
+    if run.isascii() and run.isdigit():
         return f"<mn>{text}</mn>"
-    if piece.text == ",":
+    if run == ",":
         return '<mo separator="true">,</mo>'
-    is_upright = len(piece.text) > 1 or piece.style is Style.UPRIGHT
-    return upright_mathml(text) if is_upright else f"<mi>{text}</mi>"
+    return f"<mi>{text}</mi>" if len(run) == 1 and run.isalpha() else upright_mathml(text)
 
 
 def upright_mathml(text: str) -> str:
@@ -66,8 +57,8 @@ def upright_mathml(text: str) -> str:
     return f'<mi mathvariant="normal">{text}</mi>'
 
 
-def _grouped(pieces: Sequence[LetterRun]) -> str:
-    parts = [_piece(piece) for piece in pieces]
+def _grouped(runs: Sequence[str]) -> str:
+    parts = [_piece(run) for run in runs]
     return parts[0] if len(parts) == 1 else row(*parts)
 
 
@@ -86,7 +77,10 @@ def symbol_mathml(text: str, exponent: str | None = None) -> str:
         core = f"<msub>{core}{_grouped(symbol.subscript)}</msub>"
     elif raised:
         core = f"<msup>{core}{raised}</msup>"
-    return row(*map(_piece, before), core) if before else core
+    if not before:
+        return core
+    first = upright_mathml(before[0]) if symbol.is_difference else _piece(before[0])
+    return row(first, *map(_piece, before[1:]), core)
 
 
 def _word(name: str) -> str:

@@ -132,18 +132,18 @@ HEADS = ("Cause", "Unknown", "Value", "95 % interval", "Unit")
 
 def diagnosis_chapters(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[Chapter]:
     """Write the chapters in the order in which they are asked for."""
-    yield _chapter("wrong", "What is wrong", _wrong(diagnosis, drawn))
-    yield _chapter("cause", "Cause", _cause(diagnosis, drawn))
-    yield _chapter("model", "Extended model", _model(diagnosis))
-    yield _chapter("gain", "Gain", _gain(diagnosis, drawn))
-    yield _chapter("next", "Next measurement", _next(diagnosis))
-    yield _chapter("data", "Data", _data(diagnosis))
-
-
-def _chapter(ident: str, title: str, parts: ChapterParts) -> Chapter:
-    said = list(parts)
-    lines = tuple(part for part in said if isinstance(part, str))
-    return Chapter(title, tuple(part for part in said if not isinstance(part, str)), ident, lines=lines)
+    chapters: dict[str, tuple[str, ChapterParts]] = {
+        "wrong": ("What is wrong", _wrong(diagnosis, drawn)),
+        "cause": ("Cause", _cause(diagnosis, drawn)),
+        "model": ("Extended model", _model(diagnosis)),
+        "gain": ("Gain", _gain(diagnosis, drawn)),
+        "next": ("Next measurement", _next(diagnosis)),
+        "data": ("Data", _data(diagnosis)),
+    }
+    for ident, (title, parts) in chapters.items():
+        said = list(parts)
+        lines = tuple(part for part in said if isinstance(part, str))
+        yield Chapter(title, tuple(part for part in said if not isinstance(part, str)), ident, lines=lines)
 
 
 # What is wrong
@@ -558,16 +558,14 @@ def _data(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
     for label, count in zip(file_labels(records.files), records.counts, strict=True):
         if count.unused:
             yield Paragraph(f"{label}: {count.sentence()}.")
-    yield table_of("Covariates", ("Name", "From", "To", "Role", "Remark"), list(_covariates(diagnosis)), (1, 2))
+    covariates = []
+    for covariate in records.covariates.values():
+        finite = covariate.values[np.isfinite(covariate.values)]
+        ends = (float(finite.min()), float(finite.max())) if finite.size else ()
+        low, high = (amount_text(Amount(end, covariate.unit), 4) for end in ends) if ends else (ABSENT, ABSENT)
+        missing = len(covariate.values) - finite.size
+        remarks = ["never changes"] * covariate.is_constant + [f"{missing} missing"] * (missing > 0)
+        covariates.append((spoken(covariate.name), low, high, covariate.role, ", ".join(remarks) or ABSENT))
+    yield table_of("Covariates", ("Name", "From", "To", "Role", "Remark"), covariates, (1, 2))
     for sentence in records.notes:
         yield Paragraph(sentence.rstrip(".") + ".")
-
-
-def _covariates(diagnosis: DiagnosisResult) -> Iterator[tuple[str, ...]]:
-    for covariate in diagnosis.records.covariates.values():
-        finite = covariate.values[np.isfinite(covariate.values)]
-        ends = (float(finite.min()), float(finite.max())) if finite.size else (None, None)
-        low, high = (ABSENT if end is None else amount_text(Amount(end, covariate.unit), 4) for end in ends)
-        missing = len(covariate.values) - finite.size
-        remarks = [*(["never changes"] if covariate.is_constant else []), *([f"{missing} missing"] if missing else [])]
-        yield spoken(covariate.name), low, high, covariate.role, ", ".join(remarks) or ABSENT

@@ -229,11 +229,6 @@ def is_gain(gain: Gain) -> bool:
     return gain.p_value <= LIKELY and gain.rmse_after.value < gain.rmse_before.value
 
 
-def is_perhaps_gain(gain: Gain) -> bool:
-    """Tell whether an error falls by much, but in too few independent blocks to be more than chance."""
-    return not is_gain(gain) and gain.reducible_removed >= MUCH and gain.p_value < FEW_BLOCKS
-
-
 def _cause_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
     results = listed([spoken(name) for name in wrong_results(diagnosis)])
     has_further = bool(further_of(diagnosis))
@@ -263,7 +258,11 @@ def _cause_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
 
 def _gain_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
     gains = [gain for gain in diagnosis.gain if is_gain(gain)]
-    perhaps = [gain for gain in diagnosis.gain if is_perhaps_gain(gain)]
+    perhaps = [  # their error falls by much, but in too few independent blocks to be more than chance
+        gain
+        for gain in diagnosis.gain
+        if gain not in gains and gain.reducible_removed >= MUCH and gain.p_value < FEW_BLOCKS
+    ]
     for gain in (*gains, *perhaps):
         before, after = amount_text(gain.rmse_before), amount_text(gain.rmse_after)
         falls = f"on rows that were not fitted the error of {spoken(gain.result)} falls from {before} to {after}"

@@ -11,15 +11,19 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
+from truing.errors import UnitError
 from truing.formulas import Formula, symbol_text
 from truing.numbers import pretty, with_unit
 from truing.runs.provenance import Provenance
-from truing.studies.checks import SHORT, State
+from truing.studies.checks import SHORT
+from truing.units import unit_text
 
 MARKS = {
     "passes": "✓", "proposed": "!", "undecided": "?", "fails": "✗", "none": "○", "calm": "✓", "found": "●", "open": "?",
 }  # fmt: skip
 """The sign before a verdict: of a limit or a run, and of a diagnosis (calm, found, open)."""
+STATES = {str(state): (MARKS[state], word) for state, word in SHORT.items()}
+"""The sign and the word for the state of a limit."""
 
 
 # Pieces of a text
@@ -39,21 +43,15 @@ class Marked:
 
     ``kind``: symbol (of a quantity, as declared: h_0), code (a name as it stands in files; bracketed where it stands
     behind words that say the same), strong (what is to be seen first), aside (what is less important than the words
-    before it), source (literature), break (the end of a line; on a single line its text stands there).
+    before it), source (literature), break (the end of a line; on a single line its text stands there),
+    state (of a limit: a sign and a word).
     """
 
-    kind: Literal["symbol", "code", "bracketed code", "strong", "aside", "source", "break"]
+    kind: Literal["symbol", "code", "bracketed code", "strong", "aside", "source", "break", "state"]
     text: str | Value
 
 
-@dataclass(frozen=True)
-class Judgement:
-    """What became of a limit: its state in a sign and a word."""
-
-    state: State
-
-
-Piece: TypeAlias = str | Value | Marked | Judgement
+Piece: TypeAlias = str | Value | Marked
 Text: TypeAlias = Piece | tuple[Piece, ...]
 
 
@@ -88,10 +86,18 @@ def _plain(piece: Piece) -> str:
             return f"({name})"
         case Marked("break" | "code", text):
             return str(text)
+        case Marked("state", state):
+            return " ".join(STATES[str(state)])
         case Marked(_, inner):
             return _plain(inner)
-        case Judgement(state):
-            return f"{MARKS[state]} {SHORT[state]}"
+
+
+def unit_as_said(unit: str) -> str:
+    """Write a unit for print; a heading that is no unit stays as it is."""
+    try:
+        return unit_text(unit) if unit else ""
+    except UnitError:
+        return unit
 
 
 def with_source(words: str, source: str) -> Text:

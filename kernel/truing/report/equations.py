@@ -7,14 +7,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from truing.declare.checks import formula_scope
 from truing.declare.fields import Found, InputField, ResultField
+from truing.declare.model import formula_scope
 from truing.errors import DeclarationError
 from truing.evaluate import acting_inputs
 from truing.formulas import Formula, evaluate, parse, symbol_text
 from truing.formulas.layout import Binding, Layout, Writer, symbolic
 from truing.formulas.tree import CONSTANTS, SIGNS, Node, children, simplified
-from truing.numbers import ABSENT, RESULT_DIGITS, format_number, format_value
+from truing.numbers import ABSENT, format_value
 from truing.report.document import Equation, Value
 from truing.setup import Setup
 from truing.units import difference_unit, from_si, to_si
@@ -111,7 +111,8 @@ def _results(setup: Setup, result: ResultField, value: Any, *, numeric: bool) ->
 def lines(writer: Writer, equation: Equation, *, limit: float = LINE) -> list[EquationLine]:
     """Set an equation: on one line if it fits, otherwise a line each for expression, numbers and result."""
     formula = equation.formula
-    name = EquationLine(_left_hand(writer, equation), _name_width(equation.symbol or equation.name))
+    left = writer.symbol(equation.symbol, None) if equation.symbol else writer.word(equation.name)
+    name = EquationLine(left, _name_width(equation.symbol or equation.name))
     if formula.left is not None:
         return _solved(writer, equation, name)
     said = _broken(writer, formula, equation, None, limit - name.width)
@@ -121,10 +122,6 @@ def lines(writer: Writer, equation: Equation, *, limit: float = LINE) -> list[Eq
         numbers = _broken(writer, formula, equation, equation.numbers, limit)
         rest = [_after(writer, "==", numbers[0]), *numbers[1:], *rest]
     return _packed([first, *said[1:], *rest], limit)
-
-
-def _left_hand(writer: Writer, equation: Equation) -> str:
-    return writer.symbol(equation.symbol, None) if equation.symbol else writer.word(equation.name)
 
 
 def _solved(writer: Writer, equation: Equation, name: EquationLine) -> list[EquationLine]:
@@ -216,12 +213,3 @@ def _name_width(text: str) -> float:
         return 0.58 * len(text) + 0.2
     base, _, subscript = symbol_text(text).partition("_")
     return 0.6 * len(base) + 0.42 * len(subscript)
-
-
-def value_text(value: Any, digits: int = RESULT_DIGITS) -> str:
-    """Write a cell of a plugin's table: a number, a text, yes or no, or nothing."""
-    if isinstance(value, bool) or type(value).__name__ == "bool":
-        return "yes" if value else "no"
-    if value is None or isinstance(value, (int, float)) or hasattr(value, "dtype"):
-        return format_number(value, digits)
-    return str(value)

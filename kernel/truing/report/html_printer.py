@@ -16,19 +16,7 @@ from truing.formulas.symbols import printable
 from truing.formulas.write_mathml import MATHML, symbol_mathml
 from truing.numbers import pretty, with_unit
 from truing.report import equations
-from truing.report.document import (
-    MARKS,
-    BlockView,
-    Document,
-    Equation,
-    Judgement,
-    Marked,
-    Piece,
-    ResultEntry,
-    Text,
-    Value,
-)
-from truing.studies.checks import SHORT
+from truing.report.document import MARKS, STATES, BlockView, Document, Equation, Marked, Piece, ResultEntry, Text, Value
 from truing.templating import template_folder
 
 COLUMN = equations.LINE
@@ -116,10 +104,11 @@ def _piece(piece: Piece) -> str:
             return f'<span class="aside">{_piece(text)}</span>'
         case Marked("source", text):
             return f'<span class="aside">[{_piece(text)}]</span>'
+        case Marked("state", state):
+            sign, word = STATES[str(state)]
+            return f'<span aria-hidden="true">{sign}</span> {word}'
         case Marked():
             return "<br>"
-        case Judgement(state):
-            return f'<span aria-hidden="true">{MARKS[state]}</span> {SHORT[state]}'
 
 
 def _breakable(name: str) -> Any:

@@ -12,12 +12,12 @@ from typing import Any
 from urllib.parse import quote
 
 from truing.atomic import write_files
-from truing.errors import OutputError, UnitError
+from truing.errors import OutputError
 from truing.numbers import ABSENT, counted, format_number, pretty, with_unit
+from truing.report.document import unit_as_said
 from truing.report.html_printer import page
 from truing.runs.index import FolderEntry, ListedNumber, Listing
 from truing.templating import template_folder
-from truing.units import unit_text
 
 MARK = '<meta name="generator" content="calc index">'
 """What an index of ours holds, and no other page."""
@@ -67,11 +67,7 @@ def _margin(entry: FolderEntry) -> str:
 
 
 def _number(one: ListedNumber, value: float | None) -> str:
-    try:
-        unit = unit_text(one.unit) if one.unit else ""
-    except UnitError:
-        unit = one.unit
-    return with_unit(pretty(format_number(value, 4)), unit)
+    return with_unit(pretty(format_number(value, 4)), unit_as_said(one.unit))
 
 
 def listing_document(listing: Listing) -> dict[str, Any]:

@@ -12,13 +12,12 @@ from truing.formulas.write_latex import LATEX, symbol_latex
 from truing.numbers import pretty
 from truing.report import equations
 from truing.report.document import (
-    MARKS,
+    STATES,
     BlockView,
     Document,
     Equation,
     FigureView,
     Items,
-    Judgement,
     Marked,
     Paragraph,
     Piece,
@@ -28,7 +27,6 @@ from truing.report.document import (
     Value,
     plain_text,
 )
-from truing.studies.checks import SHORT
 
 LINE = 60.0
 """How wide a line of a formula may be, in em as estimated."""
@@ -142,11 +140,11 @@ def _piece(piece: Piece, *, begins: bool = True) -> str:
             return _piece(text)
         case Marked("aside", text):
             return escaped(text)
+        case Marked("state", state):
+            sign, word = STATES[str(state)]
+            return f"{sign} {word if state == 'passes' else f'**{word}**'}"
         case Marked(_, instead):
             return str(instead)
-        case Judgement(state):
-            word = SHORT[state]
-            return f"{MARKS[state]} {word if state == 'passes' else f'**{word}**'}"
 
 
 def _words(text: str, *, begins: bool) -> str:

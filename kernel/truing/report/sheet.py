@@ -13,7 +13,6 @@ from truing.cases import CaseResult, CasesTable
 from truing.declare.fields import Given, InputField
 from truing.declare.goals import Require
 from truing.declare.published import rules_of
-from truing.declare.spreads import Distribution
 from truing.evaluate import acting_inputs
 from truing.inputs_file.values import halving_in_words
 from truing.numbers import (
@@ -36,7 +35,6 @@ from truing.report.document import (
     Document,
     Head,
     Items,
-    Judgement,
     Marked,
     Paragraph,
     Piece,
@@ -79,7 +77,11 @@ def make_sheet(
     warnings = tuple(_warnings(calculation, cases, figures.failures))
     front = _front(calculation, cases, detail)
     back = () if detail == "short" else _back(setup, verified)
-    end = end_chapters(warnings, provenance, references(calculation, detail))
+    cites = [
+        *setup.model.cites,
+        *(text for each in calculation.outcomes.values() for text in getattr(each, "cites", ())),
+    ]
+    end = end_chapters(warnings, provenance, () if detail == "short" else tuple(dict.fromkeys(cites)))
     head = head_of(setup, provenance)
     return Document(
         kind=SHEET,
@@ -180,13 +182,6 @@ def _warnings(calculation: Calculation, cases: CasesTable | None, failures: Sequ
     if len(calculation.failed) > len(shown) and cases is None:
         yield f"{len(calculation.failed) - len(shown)} further rows failed"
     yield from failures
-
-
-def references(calculation: Calculation, detail: str) -> tuple[str, ...]:
-    """Name the literature of the model, then that of the studies that ran; a short sheet has none."""
-    outcomes = calculation.outcomes.values()
-    texts = [*calculation.setup.model.cites, *(text for outcome in outcomes for text in getattr(outcome, "cites", ()))]
-    return () if detail == "short" else tuple(dict.fromkeys(texts))
 
 
 def _front(calculation: Calculation, cases: CasesTable | None, detail: str) -> Iterator[Chapter]:
@@ -339,7 +334,7 @@ def _input_row(setup: Setup, name: str, value: Value, *, calibrated: bool) -> tu
 
 
 def input_value(setup: Setup, field: InputField, value: Any) -> Value:
-    """Write one input: a number in its printed unit, a choice, a switch, a file."""
+    """Write one input: a number in its printed unit, a choice, a switch, a file, a series (a long one by its ends)."""
     if field.kind == "file":
         if field.name in setup.source.tables:
             return Value(PurePath(setup.source.tables[field.name]["file"]).name)
@@ -350,24 +345,18 @@ def input_value(setup: Setup, field: InputField, value: Any) -> Value:
         return Value(str(value))
     unit = setup.print_unit(field.name)
     if field.kind == "series":
-        return series_value(value, unit)
+        texts = [format_value(float(number), unit) for number in value] or [(ABSENT, "")]
+        (first, shown_unit), (last, _) = texts[0], texts[-1]
+        if len(texts) <= LONGEST_SERIES:
+            return Value(", ".join(text for text, _ in texts), shown_unit)
+        return Value(f"{first} … {last} ({len(texts)} values)", shown_unit)
     if value != value:
         return Value(NOT_GIVEN)
     return Value(*format_value(value, unit, STATED_DIGITS))
 
 
-def series_value(value: Any, unit: str) -> Value:
-    """Write a series: all of it if it is short, otherwise its ends and its length."""
-    texts = [format_value(float(number), unit) for number in value]
-    if not texts:
-        return Value(ABSENT)
-    if len(texts) <= LONGEST_SERIES:
-        return Value(", ".join(text for text, _ in texts), texts[0][1])
-    return Value(f"{texts[0][0]} … {texts[-1][0]} ({len(texts)} values)", texts[0][1])
-
-
 def tolerance_table(setup: Setup) -> TableView:
-    """Say every tolerance that scatters, with the standard deviation of what it is on."""
+    """Say every tolerance that scatters: the standard deviation of what it is on, and how far the mean lies off."""
     columns = (
         Column("Tolerance", kind="name"), Column("On"), Column("Spread"), Column("Standard deviation", kind="number"),
         Column("Why"),
@@ -375,26 +364,20 @@ def tolerance_table(setup: Setup) -> TableView:
     rows = []
     for name, distributions in setup.distributions().items():
         tolerance = setup.model.tolerances[name]
-        sds = [
-            Value(*format_difference(distribution.sd, setup.print_unit(on), 4))
-            for on, distribution in distributions.items()
-        ]
+        sds, shifts = [], []
+        for on, distribution in distributions.items():
+            unit, shift = setup.print_unit(on), distribution.mean - float(setup.nominal(on))
+            sds.append(Value(*format_difference(distribution.sd, unit, 4)))
+            if abs(shift) > 1e-12 * max(abs(float(setup.nominal(on))), distribution.sd):
+                number, printed = format_difference(shift, unit, 4)
+                shifts.append(Value(number if number.startswith("-") else f"+{number}", printed))
         scatter: list[Piece] = [*joined(dict.fromkeys(sds))]
-        for shift in dict.fromkeys(_shifts(setup, distributions)):
-            scatter += [Marked("break", ", "), "mean ", shift]
+        for mean in dict.fromkeys(shifts):
+            scatter += [Marked("break", ", "), "mean ", mean]
         targets = ", ".join(on.replace("_", " ") for on in distributions)
         why = with_source(tolerance.why, tolerance.source)
         rows.append((name.replace("_", " "), targets, setup.spread_of(name).text, tuple(scatter), why))
     return TableView("How the inputs scatter about their nominal values", columns, tuple(rows), kind="tolerances")
-
-
-def _shifts(setup: Setup, distributions: Mapping[str, Distribution]) -> Iterator[Value]:
-    """Say how far the mean lies from the nominal, where it does."""
-    for name, distribution in distributions.items():
-        nominal = float(setup.nominal(name))
-        if abs(distribution.mean - nominal) > 1e-12 * max(abs(nominal), distribution.sd):
-            number, unit = format_difference(distribution.mean - nominal, setup.print_unit(name), 4)
-            yield Value(number if number.startswith("-") else f"+{number}", unit)
 
 
 def effect_blocks(setup: Setup) -> Iterator[BlockView]:
@@ -440,13 +423,8 @@ def _changed_inputs(setup: Setup) -> Iterator[Text]:
         if field.varies and before != after and not (before != before and after != after):
             unit = setup.print_unit(name)
             old, new = (Value(*format_value(value, unit, digits)) for value, digits in ((before, 10), (after, 7)))
-            yield (
-                Marked("symbol", field.symbol) if field.symbol else name.replace("_", " "),
-                " = ",
-                new,
-                " instead of ",
-                old,
-            )
+            what = Marked("symbol", field.symbol) if field.symbol else name.replace("_", " ")
+            yield what, " = ", new, " instead of ", old
 
 
 def check_table(calculation: Calculation) -> TableView:
@@ -465,8 +443,9 @@ def check_table(calculation: Calculation) -> TableView:
         about = (*label, Marked("bracketed code", check.compared or check.name))
         about += (Marked("break", ", "), Marked("aside", remark)) if remark else ()
         proposed = (row.proposed or "",) if has_proposal else ()
-        rows.append((about, row.value, *proposed, check.relation, row.limit, row.margin, Judgement(check.state)))
-    title = f"Limits, and what is left of them. A margin is {margins_words(calculation.checks)}; above zero is safe"
+        rows.append((about, row.value, *proposed, check.relation, row.limit, row.margin, Marked("state", check.state)))
+    margin = "in per cent of the limit" if relative_margins(calculation.checks) else "the distance to the limit"
+    title = f"Limits, and what is left of them. A margin is {margin}; above zero is safe"
     states = tuple(check.state for check in calculation.checks)
     return TableView(title, columns, tuple(rows), states=states, kind="checks")
 
@@ -508,11 +487,6 @@ def check_value(check: Check, number: float, digits: int = RESULT_DIGITS) -> Val
 def relative_margins(checks: Iterable[Check]) -> bool:
     """Tell whether the margins of a sheet are shares of their limits: where no limit is 0, else all are distances."""
     return all(check.limit for check in checks if not check.flag)
-
-
-def margins_words(checks: Iterable[Check]) -> str:
-    """Say what the margins of a sheet are."""
-    return "in per cent of the limit" if relative_margins(checks) else "the distance to the limit"
 
 
 def margin_value(check: Check, *, relative: bool) -> Value:
@@ -587,18 +561,14 @@ def _compared(title: str, compared: Sequence[ComparedRow], *, with_settings: boo
         settings = ", ".join(f"{name.replace('_', ' ')} = {text}" for name, text in printed.settings.items())
         said = "as above" if printed.settings == before else settings or "defaults"
         unit = unit_text(printed.unit) if printed.unit else ""
-        cells = (name, printed.where, *_digits(row), unit, ratio, verdict)
+        paper = format_number(printed.value, 10)
+        digits = len(paper.partition("e")[0].replace(".", "").replace("-", "").lstrip("0"))
+        ours = format_number(row.value, max(digits + 1, 4))  # with one digit more than the paper prints
+        cells = (name, printed.where, paper, ours, unit, ratio, verdict)
         rows.append((*cells, said) if with_settings else cells)
         before = printed.settings
     states = tuple("agrees" if row.matches else "differs" for row in compared)
     return TableView(title, columns, tuple(rows), states=states, kind="published")
-
-
-def _digits(row: ComparedRow) -> tuple[str, str]:
-    """Write the paper's number as it prints it and ours with as many digits, at least four."""
-    paper = format_number(row.published.value, 10)
-    digits = len(paper.partition("e")[0].replace(".", "").replace("-", "").lstrip("0"))
-    return paper, format_number(row.value, max(digits + 1, 4))
 
 
 def provenance_items(origin: Provenance) -> Items:

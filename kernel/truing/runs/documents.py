@@ -101,11 +101,9 @@ def _cases(setup: Setup, cases: CasesTable) -> dict[str, Any]:
 
 def large_arrays(calculation: Calculation) -> dict[str, Any]:
     """Return the results that are too large for results.json, in the unit each is printed in."""
-    arrays = {}
-    for name, value in calculation.answers.items():
-        if np.size(value) > LARGE:
-            arrays[name] = from_si(np.asarray(value, dtype=float), calculation.setup.print_unit(name))
-    return arrays
+    large = {name: value for name, value in calculation.answers.items() if np.size(value) > LARGE}
+    unit_of = calculation.setup.print_unit
+    return {name: from_si(np.asarray(value, dtype=float), unit_of(name)) for name, value in large.items()}
 
 
 def clean(value: Any) -> Any:

@@ -11,10 +11,12 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
+from pydantic.dataclasses import dataclass as validated
+
 from truing.errors import UnknownPluginError
 from truing.runs.folder import DOCUMENTS, FolderKind
 from truing.runs.partial import HEADER
-from truing.studies.checks import EXIT_CODES, HEADLINES, State
+from truing.studies.checks import HEADLINES, State
 from truing.studies.verdicts import worst
 
 DEEPEST = 20
@@ -27,7 +29,7 @@ VERDICTS = {
 }  # fmt: skip
 
 
-@dataclass(frozen=True, kw_only=True)
+@validated(frozen=True, kw_only=True, config={"strict": True})
 class ListedNumber:
     """One number of an entry: a check with its limit and margin, a result, or the size of a cause."""
 
@@ -168,11 +170,14 @@ def _json(path: Path) -> dict[str, Any]:
 
 def _of_run(document: Mapping[str, Any], name: str) -> FolderEntry:
     cases = list(document.get("cases") or [])
-    checks = [_check(check) for each in (cases or [document]) for check in each["checks"]]
+    stated = [check for each in (cases or [document]) for check in each["checks"]]
+    checks = [  # an older run has no state
+        ListedNumber(**{"state": "passes" if check["passed"] else "fails", **check}) for check in stated
+    ]
     impossible = any(case.get("failed") is not None for case in cases)
     states = {check.name: check.state for check in checks if check.state not in {None, "passes"}}
     verdict = worst(check.state for check in checks if check.state is not None) if not impossible else "fails"
-    state = _state(document.get("verdict", verdict)) if checks or impossible else None
+    state: State | None = document.get("verdict", verdict) if checks or impossible else None
     concerned = ", ".join(name for name, of_one in states.items() if of_one == state)
     words = "no limits" if state is None else HEADLINES[state].lower()
     words += f": {concerned or 'a case'}" if state not in {None, "passes"} else ""
@@ -196,33 +201,6 @@ def _made_by(document: Mapping[str, Any], name: str, kind: FolderKind) -> dict[s
     return {"name": name, "kind": kind, "warnings": warnings, "head": {}} | {key: str(v) for key, v in named.items()}
 
 
-def _check(check: Mapping[str, Any]) -> ListedNumber:
-    return ListedNumber(
-        name=str(check["name"]),
-        value=_number(check["value"]),
-        unit=str(check["unit"]),
-        limit=_number(check["limit"]),
-        margin=_number(check["margin"]),
-        relation=str(check.get("relation", "")),
-        state=_state(check.get("state", "passes" if check["passed"] else "fails")),  # an older run has no state
-    )
-
-
-def _state(word: Any) -> State:
-    state: State = word
-    if state not in EXIT_CODES:
-        raise ValueError
-    return state
-
-
-def _number(value: Any) -> float | None:
-    if value is None:
-        return None
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise TypeError
-    return float(value)
-
-
 def _of_diagnosis(document: Mapping[str, Any], name: str) -> FolderEntry:
     causes = document["causes"]
     words = VERDICTS[document["verdict"]]
@@ -234,7 +212,7 @@ def _of_diagnosis(document: Mapping[str, Any], name: str) -> FolderEntry:
     if document.get("remainder") and document["verdict"] == "named":
         words += "; a remainder left"
     sizes = [
-        ListedNumber(name=f"{cause['effect']} {unknown}", value=_number(size["value"]), unit=str(size["unit"]))
+        ListedNumber(name=f"{cause['effect']} {unknown}", value=size["value"], unit=size["unit"])
         for cause in causes
         for unknown, size in cause["unknowns"].items()
     ]

@@ -30,9 +30,9 @@ FUNCTIONS = frozenset({
 CONSTANTS = frozenset({"pi", "e"})
 TAKEN = frozenset({"np", "inputs", "results", "factor", "truing", "model", "replace", "Any", "Float", NAME})
 _NODES = (
-    ast.Expression, ast.BinOp, ast.UnaryOp, ast.Compare, ast.Call, ast.Attribute, ast.Name, ast.Constant, ast.Load,
-    ast.Add, ast.Sub, ast.Mult, ast.Div, ast.Pow, ast.Mod, ast.FloorDiv, ast.USub, ast.UAdd, ast.BitAnd, ast.BitOr,
-    ast.Invert, ast.Lt, ast.LtE, ast.Gt, ast.GtE, ast.Eq, ast.NotEq,
+    ast.Expression, ast.BinOp, ast.UnaryOp, ast.Compare, ast.Load, ast.Add, ast.Sub, ast.Mult, ast.Div, ast.Pow,
+    ast.Mod, ast.FloorDiv, ast.USub, ast.UAdd, ast.BitAnd, ast.BitOr, ast.Invert, ast.Lt, ast.LtE, ast.Gt, ast.GtE,
+    ast.Eq, ast.NotEq,
 )  # fmt: skip
 
 
@@ -136,22 +136,18 @@ def safe_expression(text: str, names: Mapping[str, str]) -> str | None:
 
 
 def _is_harmless(node: ast.AST, names: set[str], called: Sequence[ast.expr]) -> bool:
-    if not isinstance(node, _NODES):
-        return False
-    if isinstance(node, ast.Constant):
-        return isinstance(node.value, (int, float)) and not isinstance(node.value, bool)
-    if isinstance(node, ast.Name):
-        return node.id in names or node.id == "np"
-    if isinstance(node, ast.Attribute):
-        is_numpy = isinstance(node.value, ast.Name) and node.value.id == "np"
-        return is_numpy and node.attr in (FUNCTIONS if node in called else CONSTANTS)
-    if isinstance(node, ast.Call):
-        return isinstance(node.func, ast.Attribute) and not node.keywords
-    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow):
-        exponent = node.right.operand if isinstance(node.right, ast.UnaryOp) else node.right
-        power = exponent.value if isinstance(exponent, ast.Constant) else None
-        return isinstance(power, (int, float)) and abs(power) <= 64
-    return True
+    match node:
+        case ast.Constant(value=number):
+            return type(number) in {int, float}
+        case ast.Name(id=name):
+            return name in names or name == "np"
+        case ast.Attribute(value=ast.Name(id="np"), attr=name):
+            return name in (FUNCTIONS if node in called else CONSTANTS)
+        case ast.Call(func=ast.Attribute(), keywords=[]):
+            return True
+        case ast.BinOp(op=ast.Pow(), right=ast.Constant(value=power) | ast.UnaryOp(operand=ast.Constant(value=power))):
+            return isinstance(power, (int, float)) and abs(power) <= 64
+    return isinstance(node, _NODES) and not (isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow))
 
 
 def _quoted(text: str) -> str:
@@ -174,14 +170,9 @@ def _imports(diagnosis: DiagnosisResult) -> list[str]:
     needed = {"Effect", "Float", "Model", "Unknown", "hookimpl"}
     if any(source.condition is not None for source in _sources(diagnosis)):
         needed.add("Condition")
-    if any(_is_curve(diagnosis, result) for result in _terms(diagnosis)):
+    if any(diagnosis.setup.model.own_result_fields[result].along for result in _terms(diagnosis)):
         needed.add("column")
     return sorted(needed, key=lambda name: (name.islower(), name))
-
-
-def _is_curve(diagnosis: DiagnosisResult, result: str) -> bool:
-    """Tell whether a result runs along an axis, so that one row holds many values."""
-    return bool(diagnosis.setup.model.own_result_fields[result].along)
 
 
 def _conditions(sources: Sequence[_Source]) -> list[str]:
@@ -212,6 +203,10 @@ def _shape(
 ) -> dict[str, Any]:
     """Say the fitted shape of one result as code: a function of its covariates, all SI, and how it is added."""
     names = {source.name: source.code for source in sources}
+    field = diagnosis.setup.model.own_result_fields[result]
+    arguments = [source.path or source.code for source in sources]
+    if field.along:  # beside a result along an axis a value per row is a column
+        arguments = [each if each.startswith("results.") else f"column({each})" for each in arguments]
     written, left_out = [], []
     for term in terms:
         expression = safe_expression(term.expression, names)
@@ -224,16 +219,9 @@ def _shape(
         "code": code_name(result),
         "terms": written,
         "left_out": left_out,
-        "arguments": ", ".join(_argument(diagnosis, result, source) for source in sources),
-        "replaced": _replaced(diagnosis.setup.model.own_result_fields[result].path),
+        "arguments": ", ".join(arguments),
+        "replaced": _replaced(field.path),
     }
-
-
-def _argument(diagnosis: DiagnosisResult, result: str, source: _Source) -> str:
-    """Write one value handed to a shape; beside a result along an axis a value per row is a column."""
-    value = source.path or source.code
-    is_column = _is_curve(diagnosis, result) and not value.startswith("results.")
-    return f"column({value})" if is_column else value
 
 
 def _replaced(path: Sequence[str]) -> str:

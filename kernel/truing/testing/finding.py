@@ -189,7 +189,9 @@ def advice_on(hidden: Hidden) -> str:
     missing = diagnosis.not_measured.get(name)
     if missing:
         return f"not measured: add {', '.join(missing)} to over"
-    seen = _seen(hidden)
+    known = {visible.name: visible for visible in diagnosis.seen}
+    names = (name, *(f"{name}.{unknown}" for unknown in hidden.truth))
+    seen = next((known[each] for each in names if each in known), None)
     if seen is not None and seen.smallest is None:
         return f"not excited: {_vary(hidden)}"
     if diagnosis.remainder is not None and not diagnosis.causes:
@@ -200,13 +202,6 @@ def advice_on(hidden: Hidden) -> str:
     if seen is not None and seen.smallest is not None:
         return _too_small(hidden, seen, seen.smallest)
     return f"too small for this noise, or what was hidden is not its curve: hide more, or {_vary(hidden)}"
-
-
-def _seen(hidden: Hidden) -> VisibleSize | None:
-    """Return what the diagnosis says of how small the effect may be."""
-    known = {visible.name: visible for visible in hidden.answered.diagnosis.seen}
-    names = [hidden.effect, *(f"{hidden.effect}.{unknown}" for unknown in hidden.truth)]
-    return next((known[name] for name in names if name in known), None)
 
 
 def _too_small(hidden: Hidden, seen: VisibleSize, least: Amount) -> str:

@@ -6,6 +6,7 @@ import inspect
 import json
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -34,6 +35,7 @@ from truing.kernel import Offer
 from truing.measurements import TableText, read_rows, table_text
 from truing.measurements.table import WORDS, read_word
 from truing.runs.diagnosis_document import diagnosis_document
+from truing.runs.extension import extended_setup
 from truing.runs.inputs_written import complete_inputs
 from truing.setup import Setup, SwitchedOn
 from truing.studies.reading import read_range
@@ -84,7 +86,12 @@ def _hidden(
 ) -> Hidden:  # fmt: skip
     """Check everything that was asked for, then draw the record."""
     faults: list[str] = []
-    setup = _setup(model, settings, faults)
+    setup = Subject(model).setup
+    if settings:
+        try:
+            setup = setup_from_settings(Subject(model).offer, settings)
+        except TruingError as error:
+            faults.append(str(error))
     effect = effect_of(model, name, faults)
     noises = noise_of(setup, noise, measure, faults)
     truth = truth_of(effect, size, list(noises), faults)
@@ -162,16 +169,6 @@ def _correlated(rng: np.random.Generator, design: RecordDesign, correlation: flo
 def _raise(model: Model[Any, Any], faults: Sequence[str]) -> None:
     if faults:
         raise InputError([Fault(f"{model.name}: {sentence}") for sentence in faults])
-
-
-def _setup(model: Model[Any, Any], settings: Mapping[str, str], faults: list[str]) -> Setup:
-    subject = Subject(model)
-    if settings:
-        try:
-            return setup_from_settings(subject.offer, settings)
-        except TruingError as error:
-            faults.append(str(error))
-    return subject.setup
 
 
 # A record with what was hidden in it, and what a diagnosis answers to it
@@ -270,8 +267,7 @@ def records_of(setup: Setup, text: str, name: str, *, with_unit_errors: bool = T
 
 def predicted(diagnosis: DiagnosisResult, setup: Setup, records: Records) -> dict[str, NDArray[np.float64]]:
     """Predict rows that were not fitted, by every cause and shape that was found on the calibrated machine; SI."""
-    calibrated = {calibrated.name: calibrated.value for calibrated in diagnosis.calibrated}
-    machine = diagnosis.extended or replace(setup, calibrated={**setup.calibrated, **calibrated})
+    machine = extended_setup(diagnosis) or setup
     shown = read_by_gauge(one_machine(machine), records.rows, diagnosis.measured).results
     known: dict[str, Any] = {name: covariate.values for name, covariate in records.covariates.items()}
     readings = {}
@@ -295,11 +291,10 @@ ENDLESS = 1e6
 
 def effect_of(model: Model[Any, Any], name: str | None, faults: list[str]) -> Effect[Any, Any] | None:
     """Return the effect of this name, of the model or of the kernel."""
-    if name is None or name in model.known_effects:
-        return model.known_effects[name] if name is not None else None
-    known = list(model.known_effects)
-    faults.append(f"no effect '{name}'.{near_miss(name, known) or ' It has ' + ', '.join(known)}")
-    return None
+    known = model.known_effects
+    if name is not None and name not in known:
+        faults.append(f"no effect '{name}'.{near_miss(name, known) or ' It has ' + ', '.join(known)}")
+    return known.get(name or "")
 
 
 def truth_of(
@@ -486,7 +481,11 @@ def noise_of(setup: Setup, said: Any, measure: str | Sequence[str] | None, fault
 
 def _fitting(gauged: Mapping[str, str], said: Any, faults: list[str]) -> list[str]:
     """Return the one result that a noise can be of; of several the only one that is in the very unit of the noise."""
-    fits = [name for name, unit in gauged.items() if _is_share(said) or _fits(said, unit)]
+    fits = []
+    for name, unit in gauged.items():
+        with suppress(TruingError):
+            _read(said, unit)
+            fits.append(name)
     if isinstance(said, str) and len(fits) > 1 and not _is_share(said):
         same = [name for name in fits if gauged[name] == split_quantity(said).unit]
         fits = same if len(same) == 1 else fits
@@ -502,14 +501,6 @@ def _fitting(gauged: Mapping[str, str], said: Any, faults: list[str]) -> list[st
 
 def _is_share(said: Any) -> bool:
     return isinstance(said, str) and said.strip().endswith("%")
-
-
-def _fits(said: Any, unit: str) -> bool:
-    try:
-        _read(said, unit)
-    except TruingError:
-        return False
-    return True
 
 
 def _read(said: Any, unit: str) -> RecordNoise:
@@ -531,26 +522,25 @@ RUN = "run"
 
 @dataclass(frozen=True)
 class DesignColumn:
-    """A column that varies: the unit in its header, its ends (or the ``levels`` it takes) in that unit.
+    """A column that varies: its header, its ends in the unit that stands there, or the ``levels`` or words it takes.
 
     One that ``rises`` goes from end to end with the rows, as a clock does; one that ``places`` the rows on an axis does
-    so in every run. ``words`` are the values of a choice.
+    so in every run.
     """
 
     name: str
-    unit: str
+    header: str
     low: float = 0.0
     high: float = 0.0
-    levels: tuple[float, ...] = ()
-    words: tuple[str, ...] = ()
+    levels: tuple[Any, ...] = ()
     rises: bool = False
     places: bool = False
     whole: bool = False
 
     def at(self, shares: NDArray[np.float64]) -> Any:
         """Return the values (n,) at these shares of the range, 0 to 1."""
-        if self.words or self.levels:
-            chosen: Any = np.array(self.words or self.levels, dtype=object if self.words else float)
+        if self.levels:
+            chosen = np.array(self.levels, dtype=float if isinstance(self.levels[0], float) else object)
             return chosen[np.minimum((shares * len(chosen)).astype(int), len(chosen) - 1)]
         values = self.low + (self.high - self.low) * shares
         decimals = 0 if self.whole else -math.floor(math.log10((self.high - self.low) / STEPS))
@@ -584,7 +574,7 @@ class RecordDesign:
                 own = np.tile(np.linspace(0.0, 1.0, self.rows), self.runs)
             else:
                 own = clock if column.rises else shares[:, spread.index(column)]
-            columns[f"{column.name} [{column.unit or '1'}]" if not column.words else column.name] = column.at(own)
+            columns[column.header] = column.at(own)
         return columns
 
 
@@ -598,7 +588,9 @@ def columns_of(
     """
     asked: dict[str, Any] = dict(over) if over is not None else dict(_by_default(setup, effect))
     for axis in _axes(setup, measured):
-        asked.setdefault(axis, _whole_axis(setup, axis))
+        unit = setup.model.own_result_fields[axis].unit  # its range is that at the defaults
+        places = from_si(np.asarray(setup.model.read_results(evaluate(setup))[axis], dtype=float), unit)
+        asked.setdefault(axis, f"{float(np.min(places))!r}..{float(np.max(places))!r} {unit}".strip())
     columns, faults = [], []
     for name, said in asked.items():
         try:
@@ -657,13 +649,6 @@ def _axes(setup: Setup, measured: Sequence[str]) -> Iterator[str]:
             yield own if own in fields else result.along
 
 
-def _whole_axis(setup: Setup, axis: str) -> str:
-    """Return the range of an axis at the defaults."""
-    unit = setup.model.own_result_fields[axis].unit
-    places = from_si(np.asarray(setup.model.read_results(evaluate(setup))[axis], dtype=float), unit)
-    return f"{float(np.min(places))!r}..{float(np.max(places))!r} {unit}".strip()
-
-
 def _column(setup: Setup, name: str, said: Any, measured: Sequence[str]) -> DesignColumn:
     """Read one range, or the values that a column takes. Raises UsageError with a sentence."""
     model = setup.model
@@ -677,13 +662,13 @@ def _column(setup: Setup, name: str, said: Any, measured: Sequence[str]) -> Desi
     if input_field is not None and input_field.kind not in {"float", "whole"}:
         raise UsageError("a file or a series cannot change from row to row")
     low, high, levels, shown = _ends(said, known[name] if name in known else model.own_result_fields[name].unit)
-    for end in (low, high, *levels) if input_field is not None else ():
-        broken = broken_bound(input_field, float(to_si(end, shown)))
+    for end in (low, high, *levels):
+        broken = broken_bound(input_field, float(to_si(end, shown))) if input_field is not None else ""
         if broken:
             raise UsageError(broken)
     condition = model.known_conditions.get(name)
     return DesignColumn(
-        name, shown, low, high, levels,
+        name, f"{name} [{shown or '1'}]", low, high, levels,
         rises=name == "time" or (condition is not None and condition.history == SINCE_START),
         places=name in axes,
         whole=input_field is not None and input_field.kind == "whole",
@@ -712,7 +697,7 @@ def _words(input_field: Any, said: Any) -> DesignColumn:
             read_word(input_field, word, decimal_comma=False)
         except ValueError as error:
             raise UsageError(str(error)) from error
-    return DesignColumn(input_field.name, "", words=tuple(words))
+    return DesignColumn(input_field.name, input_field.name, levels=tuple(words))
 
 
 def _units(setup: Setup) -> dict[str, str]:

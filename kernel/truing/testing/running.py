@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from truing.declare.fields import Axis, Given, InputField, with_values
-from truing.declare.sources import Condition, Unknown
+from truing.declare.sources import Condition
 from truing.errors import InfeasibleError, PluginError, TruingError
 from truing.evaluate import Rows, evaluate, evaluate_rows
 from truing.executors import in_order, open_executor
@@ -258,7 +258,14 @@ def batch_equals_loop(subject: Subject) -> None:
     """A batch is what single calls give, to rounding: each input, condition and unknown varied alone, then together."""
     batches = [together(subject)]
     if not is_row_by_row(subject):
-        batches += [*_inputs_alone(subject), *_effects_alone(subject)]
+        first = single(subject.setup, {})
+        alone = {name: input_values(subject, name) for name in subject.model.input_fields}
+        batches += [
+            Batch(subject.setup, {name: values}, f"only '{name}' varies", first)
+            for name, values in alone.items()
+            if len(values) > 1
+        ]
+        batches += _effects_alone(subject)
     for batch in batches:
         compare(subject.model.name, batch)
 
@@ -336,14 +343,6 @@ def together(subject: Subject) -> Batch:
     return Batch(subject.setup, columns, "all Float inputs vary")
 
 
-def _inputs_alone(subject: Subject) -> Iterator[Batch]:
-    first = single(subject.setup, {})
-    for name in subject.model.input_fields:
-        values = input_values(subject, name)
-        if len(values) > 1:
-            yield Batch(subject.setup, {name: values}, f"only '{name}' varies", first)
-
-
 def input_values(subject: Subject, name: str) -> list[Any]:
     """Return values of an input, SI, its own first; one alone where no other can be thought of (a file, a series)."""
     field = subject.model.input_fields[name]
@@ -378,21 +377,17 @@ def _effects_alone(subject: Subject) -> Iterator[Batch]:
         setup = switched(off_reference(subject.setup), effect)
         if setup is None:
             continue
-        alone: dict[str, list[float]] = {
-            effect_column(effect.name, unknown.name): unknown_values(setup, unknown) for unknown in effect.unknowns
-        } | {need.name: condition_values(setup, need) for need in effect.needs}
+        alone = {need.name: condition_values(setup, need) for need in effect.needs}
+        for unknown in effect.unknowns:
+            own = setup.effects[0].values[unknown.name]
+            others = (share * own if unknown.is_amplitude else shape(unknown, share) for share in (0.0, 0.3))
+            alone[effect_column(effect.name, unknown.name)] = [own, *others]
         first = single(setup, {})
         for name, values in alone.items():
             yield Batch(setup, {name: values}, f"effect '{effect.name}' is on and only '{name}' varies", first)
         points = subject.points(ROWS)[:ALONE]
         inputs = {name: np.array([point[name] for point in points]) for name in subject.scattering}
         yield Batch(setup, {**inputs, **alone}, f"effect '{effect.name}' is on and all it knows varies")
-
-
-def unknown_values(setup: Setup, unknown: Unknown) -> list[float]:
-    """Return values of an unknown of the one effect that is on, SI, its own first: smaller ones, or other shapes."""
-    own = setup.effects[0].values[unknown.name]
-    return [own, *(share * own if unknown.is_amplitude else shape(unknown, share) for share in (0.0, 0.3))]
 
 
 def condition_values(setup: Setup, need: Condition) -> list[float]:

@@ -34,9 +34,11 @@ def spreads_resolve(subject: Subject) -> None:
                 distribution = tolerance.spread.resolve(target) if target.nominal == target.nominal else None
             except TruingError as error:
                 fail(f"{subject.model.name}: tolerance '{tolerance.name}' on '{name}': {error}")
-            if distribution is not None and not distribution.sd > 0:
+            if distribution is None:
+                continue
+            if not distribution.sd > 0:
                 fail(f"{subject.model.name}: tolerance '{tolerance.name}' on '{name}' does not scatter; write off()")
-            for price in prices_in(tolerance.price) if distribution is not None else ():
+            for price in prices_in(tolerance.price):
                 paid = price.at(distribution.width)
                 if not math.isfinite(paid) or paid < 0:
                     what = f"the price of tolerance '{tolerance.name}'"

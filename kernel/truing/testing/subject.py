@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -116,16 +117,10 @@ class Subject:
                 if len(points) == count:
                     return points
                 point = {name: self.near(field, share, rng) for name, field in self.scattering.items()}
-                if self._answers(point):
+                with suppress(InfeasibleError):
+                    evaluate(self.at(point))
                     points.append(point)
         fail(f"{self.model.name}: no point within a millionth of the defaults can be calculated; state what must hold")
-
-    def _answers(self, point: Mapping[str, float]) -> bool:
-        try:
-            evaluate(self.at(point))
-        except InfeasibleError:
-            return False
-        return True
 
     def near(self, field: InputField, share: float, rng: np.random.Generator) -> float:
         """Draw a value of an input within its bounds, SI, up to so large a share of its own away from that."""
