@@ -57,7 +57,9 @@ def test_the_cause_is_named_with_its_size(document: Document) -> None:
 def test_the_error_falls_to_the_scatter_of_the_gauge(document: Document) -> None:
     gained = document["gain"]["slider_position"]
     assert gained["rmse_before"]["value"] > 20
-    assert gained["rmse_after"]["value"] == pytest.approx(make_examples.PRESS_NOISE.sd["slider_position"] * 1e6, rel=0.2)
+    assert gained["rmse_after"]["value"] == pytest.approx(
+        make_examples.PRESS_NOISE.sd["slider_position"] * 1e6, rel=0.2
+    )
 
 
 def interval_shown(page: str, words: str, unit: str) -> tuple[float, float]:
