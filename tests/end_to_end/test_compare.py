@@ -14,7 +14,8 @@ import pytest
 from shared import Calc
 from truing.cli import main
 from truing.cli.compare import styles_of
-from truing.runs.comparison import Change, amount_of, changes, differing, words_of
+from truing.runs.comparison import Change, amount_of, differing, words_of
+from truing.runs.comparison import compared as changes
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
 

@@ -12,7 +12,7 @@ import pytest
 from measured import Document, documented, names, read_document
 from shown_in_docs import EXAMPLES, ROOT
 
-from truing.diagnosis import chance, choice, steps
+from truing.diagnosis import choice
 from truing.diagnosis.noise import SETTINGS
 
 PLAY = EXAMPLES / "press_off_by_40_um"
@@ -106,9 +106,9 @@ def test_the_explanation_states_the_levels_in_force() -> None:
     text = " ".join(METHOD.read_text(encoding="utf-8").split())
     words = {13: "Thirteen"}
     for said in (
-        f"Something is there if it is at most {steps.ANY_LEVEL}",
-        f"with what is believed so far as what is true, at {steps.FURTHER_LEVEL}",
-        f"{chance.DRAWS} records are simulated",
+        f"Something is there if it is at most {choice.ANY_LEVEL}",
+        f"with what is believed so far as what is true, at {choice.FURTHER_LEVEL}",
+        f"{choice.DRAWS} records are simulated",
         f"whose score is within {choice.CLOSE:g} (",
         f"{words[len(SETTINGS)]} such filters are tried",
     ):

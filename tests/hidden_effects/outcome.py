@@ -5,13 +5,13 @@ from typing import Any
 
 import numpy as np
 
-from hidden_effects.asking import Answer
 from hidden_effects.candidates import Candidate, stacked
 from hidden_effects.cases import Case
 from hidden_effects.information import Lens, beside_groups, over_results
 from hidden_effects.oracle import calibrated, judged, oracle, rms, scale
 from hidden_effects.press_machine import SCATTER, Array, shown
 from hidden_effects.shapes import family_of, groups
+from truing.testing.hiding import Answered
 from truing.units import to_si
 
 Document = Mapping[str, Any]
@@ -19,22 +19,23 @@ FIRST = 4
 DOUBTS = 12
 
 
-def outcome(case: Case, answer: Answer) -> dict[str, Any]:
+def outcome(case: Case, answer: Answered) -> dict[str, Any]:
     """Everything about one case and its answer; numbers and texts only."""
     document = answer.document
+    predicted = judged(case, stacked(answer.predicted, case.results))
     exact = is_exact(case, document)
     return {
         **about(case),
         "seconds": answer.seconds,
         **essentials(document),
         "exact": exact,
-        "in_set": exact or any(is_alternative(case, other) for other in document["alternatives"][:FIRST]),
+        "in_set": is_in_set(case, document),
         "extra": has_extra(case, document),
         "wrong_name": has_wrong_name(case, document),
         "to_truth": None if exact or not document["explanations"] else to_truth(case, document),
         "covered": covered(case, document) if exact else {},
-        "held_out": held_out(case, answer.predicted),
-        "gain": gains(case, document, answer.predicted),
+        "held_out": held_out(case, predicted),
+        "gain": gains(case, document, predicted),
     }
 
 
@@ -109,6 +110,11 @@ def is_exact(case: Case, document: Document) -> bool:
     has_shape = remainder is not None and set(case.shape.depends_on) <= set(remainder["depends_on"])
     has_other_name = len(own) < len(causes) and remainder is None
     return (has_shape or has_other_name) and are_named(true_candidates(case), own)
+
+
+def is_in_set(case: Case, document: Document) -> bool:
+    """Whether the truth is the verdict or among its first alternatives."""
+    return is_exact(case, document) or any(is_alternative(case, other) for other in document["alternatives"][:FIRST])
 
 
 def is_alternative(case: Case, other: Mapping[str, Any]) -> bool:

@@ -1,4 +1,4 @@
-"""Backlash of the RV reducer: equation 21 written a second time, its derivatives, its machines and their price.
+"""Backlash of the RV reducer: equation 21 a second time, its derivatives, its machines, their price, its studies.
 
 Sixteen factors with their coefficients in the backlash, in arc minutes per millimetre, worked out by hand from the
 geometry: q = sqrt(1 - K_1^2), K_1 = e z_p / r_p, and the arms r_1 i_H (involute), e z_c (cycloid), a (crank bearings).
@@ -11,13 +11,17 @@ from typing import Any
 
 import numpy as np
 import pytest
+from rv_wear_by_hand import PLACE, PRICE_OF, RUNOUT, SIZE, by_power
 
 from rv_wear.calculation import rv_wear
+from rv_wear.discs import DiscValidity, Modifications
 from rv_wear.machines import FACTORS
 from rv_wear.model import RV_WEAR
 from rv_wear.quantities import Reducer
+from truing import Sweep
 from truing.calculation import Calculation, calculate
 from truing.declare.spreads import Off
+from truing.errors import TruingError
 from truing.setup import Setup, default_setup
 from truing.studies.reliability import Reliability
 from truing.studies.sensitivity import Sensitivity
@@ -111,16 +115,6 @@ def test_each_error_of_a_part_moves_the_backlash_by_its_coefficient(number: int)
     assert float(up.max_wear) == float(down.max_wear)
 
 
-def test_the_coefficients_are_those_of_the_reference_list() -> None:
-    """Arc minutes per millimetre, rounded as listed."""
-    listed = {
-        1: -1.891, 2: 1.293, 3: 1.293, 4: 80.13, 5: -51.27, 6: 51.27, 7: -80.13, 8: 40.07, 9: 20.03, 10: 61.59,
-        11: -30.79, 12: 80.13, 13: -51.27, 14: 0.008, 15: 80.13, 16: 54.57,
-    }  # fmt: skip
-    for number, value in listed.items():
-        assert COEFFICIENTS[number] == pytest.approx(value, abs=6e-3 if abs(value) > 2 else 6e-4), number
-
-
 @pytest.mark.parametrize("number", PRINTED)
 def test_each_index_is_the_coefficient_over_that_of_the_pin_circle_and_the_printed_one(
     new: Calculation, number: int
@@ -166,21 +160,6 @@ def wear_scatter(hours: float) -> float:
     return float(high.max_wear - low.max_wear) / 0.02 * 0.0126
 
 
-def test_after_6000_hours_the_printed_reliability_follows_within_one_percent() -> None:
-    found = run(default_setup(RV_WEAR), replace(study("reliability"), over="", at=""))
-    assert found.answers["normal_reliability"] == pytest.approx(0.893, abs=1.5e-3)
-    assert found.answers["accuracy_reliability"] == pytest.approx(0.887, rel=1e-2)
-
-
-def test_the_reliability_never_rises_with_the_working_time() -> None:
-    found = run(default_setup(RV_WEAR), replace(study("reliability"), draws=20_000, points=13))
-    curve = np.asarray(found.answers["reliability_history"])
-    assert found.answers["reliability_time"][-1] == 6000 * 3600
-    assert (np.diff(curve) <= 0).all()
-    assert curve[0] == 1.0
-    assert curve[-1] < 0.91
-
-
 @pytest.mark.parametrize(("limit", "chance"), [("0.9485 arcmin", 0.0), ("0.9495 arcmin", 1.0)])
 def test_zones_without_width_leave_a_reliability_of_0_or_1(limit: str, chance: float) -> None:
     """0.949 arcmin lies between both limits."""
@@ -198,20 +177,6 @@ def test_both_ground_modifications_are_drawn_for_themselves() -> None:
 
 
 # ---- cost ---------------------------------------------------------------------------------------------------------
-
-SIZE = (16.140, 0.324, 0.217, 0.013, 2.845)
-PLACE = (4.862, 0.483, 0.877, 1.020)
-RUNOUT = (23.729, 0.682)
-
-
-def by_power(kind: str, width: float) -> float:
-    if kind == "size":
-        a1, a2, a3, a4, a5 = SIZE
-        return a1 * width**-a2 + a3 * exp(-a4 * width) + a5
-    if kind == "place":
-        b1, b2, b3, b4 = PLACE
-        return b1 * width**-b2 + b3 * exp(-b4 * width)
-    return RUNOUT[0] * width ** -RUNOUT[1]
 
 
 def by_exponential(kind: str, width: float) -> float:
@@ -235,10 +200,6 @@ def by_process(kind: str, width: float) -> float:
 
 
 FORMS = {"power": by_power, "exponential": by_exponential, "process": by_process}
-PRICED = {
-    "pin_circle_error": ("size", 6), "pin_radius_error": ("size", 7), "modification_error": ("size", 12),
-    "pin_position_error": ("place", 10), "disc_pitch_error": ("place", 11), "disc_runout": ("runout", 9),
-}  # fmt: skip
 
 
 def costs(**values: str) -> Mapping[str, Any]:
@@ -247,40 +208,20 @@ def costs(**values: str) -> Mapping[str, Any]:
 
 @pytest.mark.parametrize("form", FORMS)
 def test_the_cost_is_the_sum_of_six_functions_in_each_form(form: str) -> None:
-    expected = sum(FORMS[form](kind, ZONES[number][1]) for kind, number in PRICED.values())
+    expected = sum(FORMS[form](kind, ZONES[number][1]) for kind, number in PRICE_OF.values())
     found = costs(cost_form=form)
     assert found["manufacturing_cost"] == pytest.approx(expected, rel=1e-9)
     assert found["tolerance_price"] == found["manufacturing_cost"]
 
 
-def test_the_power_form_gives_the_printed_total() -> None:
-    assert costs()["manufacturing_cost"] == pytest.approx(1402, rel=1e-3)
-    assert costs()["manufacturing_cost"] == pytest.approx(146 + 154 + 146 + 126 + 99 + 732, abs=2.5)
-
-
 def test_the_bill_shows_every_form_of_every_zone() -> None:
     bill = run(default_setup(RV_WEAR), study("costs")).outcomes["costs"].as_json()
-    for name, (kind, number) in PRICED.items():
+    for name, (kind, number) in PRICE_OF.items():
         line = bill["tolerances"][name]
         assert line["width"]["value"] == pytest.approx(1000 * ZONES[number][1], rel=1e-9)
         for form, function in FORMS.items():
             assert line["prices"][form] == pytest.approx(function(kind, ZONES[number][1]), rel=1e-9)
-    assert set(bill["tolerances"]) == set(PRICED)
-
-
-@pytest.mark.parametrize("form", ["power", "exponential"])
-@pytest.mark.parametrize("name", PRICED)
-def test_a_wider_zone_always_costs_less(name: str, form: str) -> None:
-    from truing import zone
-
-    setup = default_setup(RV_WEAR, cost_form=form)
-    half = 500 * ZONES[PRICED[name][1]][1]
-    found = []
-    for factor in (0.5, 1.0, 1.5, 2.0, 4.0):
-        spread = zone(f"-{half * factor} um", f"{half * factor} um")
-        changed = replace(setup, spreads={**setup.spreads, name: spread})
-        found.append(run(changed, study("costs")).answers["manufacturing_cost"])
-    assert (np.diff(found) < 0).all()
+    assert set(bill["tolerances"]) == set(PRICE_OF)
 
 
 def test_a_zone_that_grows_up_keeps_its_lower_end_at_nothing() -> None:
@@ -294,3 +235,72 @@ def test_a_zone_that_grows_up_keeps_its_lower_end_at_nothing() -> None:
         assert wide is not None
         assert wide.mean == pytest.approx(2 * middle * MM, rel=1e-9)
         assert wide.sd == pytest.approx(2 * width * MM / 6, rel=1e-9)
+
+
+# ---- zones, studies and what may be chosen --------------------------------------------------------------------------
+
+
+def test_every_factor_scatters_normally_in_its_zone_six_standard_deviations_wide() -> None:
+    groups = default_setup(RV_WEAR).distributions().values()
+    scattering = {name: item for inner in groups for name, item in inner.items()}
+    for number, (middle, width) in ZONES.items():
+        name = FACTORS[number]
+        assert scattering[name].mean == pytest.approx(MM * middle, abs=1e-15)
+        assert scattering[name].sd == pytest.approx(MM * width / 6, rel=1e-9)
+        assert scattering[name].shape == "normal"
+        assert getattr(Reducer(), name) == pytest.approx(MM * middle, abs=1e-15)
+    assert set(scattering) == {*(FACTORS[number] for number in ZONES), "composite_roughness"}
+    assert scattering["composite_roughness"].sd == pytest.approx(0.0126 * 0.694e-6, rel=1e-9)
+
+
+def test_the_least_cost_lies_within_the_widths_and_reaches_its_goal() -> None:
+    at = {"equidistant_modification": "-27 um", "shift_modification": "-31 um"}
+    found = run(default_setup(RV_WEAR, **at), replace(study("allocation"), draws=20_000))
+    plan = found.outcomes["allocation"].least_cost
+    setup = default_setup(RV_WEAR)
+    for name, width in plan.widths.items():
+        now = next(iter(setup.distributions()[name].values())).width
+        assert now * (1 - 1e-9) <= width <= 2 * now * (1 + 1e-9), name
+    assert plan.reached
+    assert found.answers["least_cost"] == pytest.approx(1336, rel=2e-3)
+
+
+def test_without_a_design_that_reaches_the_goal_there_is_no_least_cost() -> None:
+    assert np.isnan(run(default_setup(RV_WEAR), study("allocation")).answers["least_cost"])
+
+
+def test_a_sweep_over_something_else_leaves_the_histories_empty() -> None:
+    swept = Sweep(over="output_torque", at="1000..4500 N*m", points=5, gives=study("sweep").gives)
+    found = run(default_setup(RV_WEAR), swept)
+    for name in ("history_time", "wear_history", "backlash_history"):
+        assert len(found.answers[name]) == 0
+    assert found.answers["wear_depth"].max() == pytest.approx(found.answers["max_wear"], rel=1e-9)
+
+
+def test_the_deepest_wear_lies_in_the_middle_of_the_contact() -> None:
+    """58 degree in a contact from about 9 to about 100 degree."""
+    found = run(default_setup(RV_WEAR), study("sweep"))
+    assert 0.4 < found.answers["wear_place"] < 0.6
+    assert np.degrees(found.answers["wear_angle"]) == pytest.approx(58, abs=1.0)
+
+
+@pytest.mark.parametrize("options", [{"points": 1}, {"points": 101}, {"hours": 0.0}])
+def test_impossible_options_are_refused(options: dict[str, Any]) -> None:
+    with pytest.raises(TruingError, match="study 'modifications'"):
+        Modifications(**options)
+
+
+def test_both_readings_of_the_lower_bound_are_shown() -> None:
+    valid = run(default_setup(RV_WEAR), DiscValidity()).outcomes["validity"]
+    assert valid.lowest * 1e6 == pytest.approx(-53.75, abs=5e-3)
+    assert valid.highest * 1e6 == pytest.approx(11.104, abs=1e-3)
+    assert -53 < valid.lowest_by_approach * 1e6 < -30
+    assert valid.warnings() == []
+    assert "twice the radial" in str(valid.blocks()[0])
+
+
+def test_the_example_file_states_every_input_or_names_it_as_neutral() -> None:
+    assert RV_WEAR.example is not None
+    text = RV_WEAR.example.read_text(encoding="utf-8")
+    for name in [*RV_WEAR.input_fields, *RV_WEAR.tolerances, *RV_WEAR.effects, *RV_WEAR.conditions]:
+        assert name in text, name

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -93,18 +93,16 @@ class Residuals:
 
         Raises UsageError for a column that the record does not have and a result that was not measured.
         """
-        return plotted(self.drawing(over, name))
+        return plotted(lambda: self.drawn(over, name))
 
-    def drawing(self, over: str = "", name: str = "") -> Callable[[], Figure]:
-        """Return what draws that figure; without any covariate that varies it is measured against simulated."""
+    def drawn(self, over: str = "", name: str = "") -> Figure:
+        """Draw that figure as the present style has it; without a covariate that varies, measured against simulated."""
         covariates = self.result.records.covariates
         if over and over not in covariates:
             raise UsageError(f"'{over}' is no column of the record; there are {', '.join(covariates)}")
         shown = [covariates[over]] if over else main_covariates(self.result)
         curves = self._curves(name)
-        if not shown:
-            return lambda: against_simulated(self.result, curves)
-        return lambda: over_covariate(self.result, curves, shown[0])
+        return over_covariate(self.result, curves, shown[0]) if shown else against_simulated(self.result, curves)
 
     def _curves(self, name: str) -> found.ResultCurves:
         by_name = {curves.result: curves for curves in self.result.curves}
@@ -115,16 +113,13 @@ class Residuals:
 
 def causes_of(diagnosis: found.DiagnosisResult) -> tuple[NamedCause, ...]:
     """Return the causes that are named, the largest first, unknowns in the units they were declared in."""
-    return tuple(
-        NamedCause(
-            cause.effect, {unknown.name: _fitted(unknown) for unknown in cause.unknowns}, cause.share, cause.same_as
-        )
-        for cause in diagnosis.causes
-    )
-
-
-def _fitted(unknown: found.FittedUnknown) -> Fitted:
-    """Return an unknown in the unit that it was declared in."""
-    low, high = (None if end is None else float(from_si(end, unknown.unit)) for end in (unknown.low, unknown.high))
-    value = float(from_si(unknown.value, unknown.unit))
-    return Fitted(value, (low, high), unknown.unit, quantity_of(unknown.value, unknown.unit))
+    causes = []
+    for cause in diagnosis.causes:
+        fitted = {}
+        for unknown in cause.unknowns:
+            unit, ends = unknown.unit, (unknown.low, unknown.high)
+            low, high = (None if end is None else float(from_si(end, unit)) for end in ends)
+            value = float(from_si(unknown.value, unit))
+            fitted[unknown.name] = Fitted(value, (low, high), unit, quantity_of(unknown.value, unit))
+        causes.append(NamedCause(cause.effect, fitted, cause.share, cause.same_as))
+    return tuple(causes)

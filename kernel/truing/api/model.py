@@ -14,9 +14,9 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from truing.api.findings import NamedCause, Ranking, Residuals, causes_of
-from truing.api.notebook import bullets, fold, folds, heading, html_table, joined, paragraphs, picture, table_html
+from truing.api.notebook import bullets, fold, heading, html_table, joined, paragraphs, picture, table_html
 from truing.api.records import MeasuredRecord
-from truing.api.run import Differences, Order, Run, comparison_of, performed
+from truing.api.run import Differences, Run, comparison_of, performed
 from truing.api.study import StudyResult
 from truing.api.tables import LABEL, beside, frame_text
 from truing.api.values import settings_of, text_of
@@ -122,9 +122,9 @@ class LoadedModel:
         ``resume`` finished batches are kept beside it, and those of an interrupted run are taken up; ``pdf`` and
         ``excel`` are as in ``Run.save``. Raises TruingError with one sentence.
         """
-        folder = None if output is None else Path(output)
-        order = Order(folder, cases, workers, cluster, resume, pdf, excel)
-        return performed(self.setup(inputs, set=set, **values), self.offer, order, progress)
+        setup = self.setup(inputs, set=set, **values)
+        how: dict[str, Any] = {"workers": workers, "cluster": cluster, "resume": resume, "pdf": pdf, "excel": excel}
+        return performed(setup, self.offer, progress, output=output, cases=cases, **how)
 
     def study(
         self,
@@ -140,7 +140,7 @@ class LoadedModel:
         if not hasattr(study, "run"):
             raise UsageError(f"{study!r:.60} is no study; hand in one, such as truing.Sensitivity()")
         setup = replace(self.setup(inputs, set=set, **values), studies=(study,))
-        run = performed(setup, self.offer, Order(workers=workers), progress)
+        run = performed(setup, self.offer, progress, workers=workers)
         return replace(run.studies[study.name], warnings=run.warnings)
 
     def sweep(self, over: str, low: Any, high: Any, points: int = 181, **more: Any) -> StudyResult:
@@ -200,7 +200,9 @@ class LoadedModel:
         written without ``output``, a folder that is complete or absent; ``pdf`` prints the sheet there. Raises
         TruingError with one sentence, or every fault of a file.
         """
-        _demand_record(record)
+        if not isinstance(record, MeasuredRecord):
+            made = "truing.read(files, model) or truing.record(dataframe, model)"
+            raise UsageError(f"a {type(record).__name__} is no record; make one with {made}")
         if pdf and output is None:
             raise UsageError("pdf needs output, the folder that is written")
         options = {"hold_out": hold_out, "per_file": list(per_file), "budget": budget}
@@ -209,8 +211,12 @@ class LoadedModel:
         if output is not None:
             demand_place(Path(output), "diagnosis")
         with progress_bar(progress) as report, told_by_line(setup):
+
+            def as_one(stage: str, step: int, steps: int) -> None:
+                report("diagnosis" if steps else stage, step, steps)
+
             started, records = time.time(), read_records(record.files, self.offer, setup)
-            diagnosis = Diagnosis(self.offer, diagnose(setup, records, progress=_as_one(report)), started)
+            diagnosis = Diagnosis(self.offer, diagnose(setup, records, progress=as_one), started)
             report("sheet and PDF" if pdf else "sheet", 0, 0)
             return diagnosis if output is None else replace(diagnosis, note=diagnosis.written(Path(output), pdf=pdf))
 
@@ -235,35 +241,23 @@ class LoadedModel:
         results = html_table(tables.pop("Results", ()), ("result", "symbol", "unit", ""))
         studies = [f"Studies: {', '.join(said['studies'])}"] if said["studies"] else []
         head = heading(f"{self.name}: {self.title}") + paragraphs([said["summary"]] if said["summary"] else [])
-        return joined(head, inputs, results, folds(tables), paragraphs(studies))
+        rest = "".join(fold(f"{title} ({len(rows)})", html_table(rows)) for title, rows in tables.items())
+        return joined(head, inputs, results, rest, paragraphs(studies))
 
     def _settings(self, set: Mapping[str, Any] | None, values: Mapping[str, Any]) -> list[str]:
         return settings_of(self.offer.model, {**(set or {}), **values})
 
 
-def _demand_record(record: Any) -> None:
-    if not isinstance(record, MeasuredRecord):
-        made = "truing.read(files, model) or truing.record(dataframe, model)"
-        raise UsageError(f"a {type(record).__name__} is no record; make one with {made}")
-
-
 def _demand_known(rows: RowsFile, setup: Setup) -> None:
     """Raise InputError for a column that changes nothing and is called nearly like one that would."""
     known = [*setup.model.input_fields, *setup.conditions]
-    others = [name for name in rows.others if name not in setup.model.result_fields]
-    hints = {name: near_miss(name[:80], [one for one in known if one not in rows.columns]) for name in others}
-    faults = [
-        Fault(f"column {shown(name)} changes nothing.{hint} Rename it or leave it out", LABEL, 1)
-        for name, hint in hints.items()
-        if hint
-    ]
+    faults = []
+    for name in rows.others:
+        hint = near_miss(name[:80], [one for one in known if one not in rows.columns])
+        if hint and name not in setup.model.result_fields:
+            faults.append(Fault(f"column {shown(name)} changes nothing.{hint} Rename it or leave it out", LABEL, 1))
     if faults:
         raise InputError(faults)
-
-
-def _as_one(progress: Progress) -> Progress:
-    """Return what shows the stages of a diagnosis as one task, and what comes after it as another."""
-    return lambda stage, step, steps: progress("diagnosis" if steps else stage, step, steps)
 
 
 @dataclass(frozen=True)
@@ -370,7 +364,7 @@ class Diagnosis:
         lines = {**questions(self.result), **({"Record": list(self.notes)} if self.notes else {})}
         rest = "".join(fold(title, bullets(texts)) for title, texts in lines.items())
         head = heading(f"Diagnosis of {self.result.setup.model.title}, {data_words(self.result)}")
-        shown = picture(self.residuals.drawing(), "Residuals before and after")
+        shown = picture(self.residuals.drawn, "Residuals before and after")
         return joined(head + paragraphs([*said, *warned]), table, shown, fold("More", rest))
 
 

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from base64 import b64encode
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from html import escape
 from io import BytesIO
-from typing import Any
 
 from matplotlib.figure import Figure
 
@@ -99,8 +98,3 @@ def joined(*parts: str) -> str:
 def fold(title: str, content: str) -> str:
     """Return what is hidden until its title is clicked, which needs no script."""
     return f"<details><summary>{escape(title)}</summary>{content}</details>" if content else ""
-
-
-def folds(tables: Mapping[str, Sequence[Sequence[Any]]]) -> str:
-    """Return a fold-out for each table, with the number of its rows."""
-    return "".join(fold(f"{title} ({len(rows)})", html_table(rows)) for title, rows in tables.items())

@@ -13,7 +13,7 @@ import numpy as np
 from truing.api.notebook import heading, html_table, joined, paragraphs
 from truing.api.tables import frame_of, frame_text
 from truing.declare.near_miss import near_miss
-from truing.diagnosis.data_file import DataRows, read_data_files
+from truing.diagnosis.data_rows import DataRows, read_data_files
 from truing.errors import UsageError
 from truing.kernel import Offer
 from truing.measurements import TableSource, read_table
@@ -80,16 +80,12 @@ class MeasuredRecord:
         """Show what each column is to the model, and what it holds."""
         shown = []
         for file, columns in zip(self.files, self.columns, strict=False):
-            rows = [
-                (column.name, unit_text(column.unit), column.part, column.values, *_ends(column)) for column in columns
-            ]
+            rows = []
+            for column in columns:
+                ends = ("" if end is None else format_number(end, 5) for end in (column.low, column.high))
+                rows.append((column.name, unit_text(column.unit), column.part, column.values, *ends))
             shown += [heading(file.name), html_table(rows, ("column", "unit", "is", "values", "from", "to"))]
         return joined(*shown, paragraphs([f"{counted(self.rows)} measured"]))
-
-
-def _ends(column: RecordColumn) -> tuple[str, str]:
-    low, high = (("" if end is None else format_number(end, 5)) for end in (column.low, column.high))
-    return low, high
 
 
 def read(files: str | Path | Sequence[str | Path], model: HasOffer) -> MeasuredRecord:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import time
 import warnings
 from collections.abc import Iterator, Mapping
-from concurrent.futures import Executor
-from contextlib import nullcontext
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
+from math import nan
 from pathlib import Path
 from typing import Any
 
@@ -17,14 +17,14 @@ from truing.api.study import StudyResult
 from truing.api.tables import frame_of, frame_text
 from truing.api.values import quantity_of
 from truing.calculation import Calculation, calculate
-from truing.cases import CaseResult, CasesTable, run_cases
+from truing.cases import CasesTable, run_cases
 from truing.declare.near_miss import near_miss
 from truing.errors import UsageError
 from truing.executors import BatchLog, KeptExecutor, open_executor
 from truing.formulas import symbol_text
 from truing.inputs_file.sentences import told_by_line
 from truing.kernel import Offer
-from truing.measurements import CasesFile, read_cases
+from truing.measurements import read_cases
 from truing.numbers import format_value, with_unit
 from truing.progress import progress_bar
 from truing.report.document import plain_text
@@ -43,37 +43,6 @@ from truing.units import from_si
 FIRST = 12
 """So many results are shown, in the order declared; a click shows the others."""
 COLUMNS = ("name", "symbol", "value", "unit", "note")
-
-
-@dataclass(frozen=True)
-class Order:
-    """What is asked of a run beside its inputs: cases (a file or a dataframe), where it is computed, what is written.
-
-    Raises UsageError for what does not go together.
-    """
-
-    folder: Path | None = None
-    cases: Any = None
-    workers: int | None = None
-    cluster: str = ""
-    resume: bool = False
-    pdf: bool = False
-    excel: bool = False
-
-    def __post_init__(self) -> None:
-        """Refuse what does not go together."""
-        if self.cluster and self.workers is not None:
-            raise UsageError("cluster and workers exclude each other: a cluster has its own workers")
-        for name in ("resume", "pdf", "excel"):
-            if getattr(self, name) and self.folder is None:
-                raise UsageError(f"{name} needs output, the folder that is written")
-
-    @property
-    def place(self) -> str:
-        """Where it is computed, as ``open_executor`` reads it."""
-        if self.cluster:
-            return f"dask:{self.cluster}"
-        return "serial" if self.workers in (None, 1) else f"processes:{self.workers}"
 
 
 @dataclass(frozen=True)
@@ -172,21 +141,20 @@ class Run:
         """
         target = Path(folder)
         demand_place(target)
-        note = self.written(Order(target, pdf=pdf, excel=excel), silent)
+        note = self.written(target, pdf=pdf, excel=excel)
         if note.startswith("no PDF"):
             warnings.warn(note, stacklevel=2)
         return target
 
-    def written(self, order: Order, progress: Progress) -> str:
-        """Write the folder of an order and return what became of the PDF."""
-        assert order.folder is not None
+    def written(self, folder: Path, *, pdf: bool, excel: bool, progress: Progress = silent) -> str:
+        """Write the folder and return what became of the PDF."""
         sheet = sheet_of(self.calculation, self.offer, started=self.started, cases=self.cases, progress=progress)
-        if order.pdf:
+        if pdf:
             progress("printing", 0, 0)
-        sheets, note = sheets_of(sheet, order.folder, pdf=order.pdf)
+        sheets, note = sheets_of(sheet, folder, pdf=pdf)
         write_run(
-            order.folder, self.calculation, provenance=sheet.provenance, sheets=sheets,
-            run_info={**run_info(self.started), **self.computed}, cases=self.cases, excel=order.excel,
+            folder, self.calculation, provenance=sheet.provenance, sheets=sheets,
+            run_info={**run_info(self.started), **self.computed}, cases=self.cases, excel=excel,
         )  # fmt: skip
         return note
 
@@ -225,49 +193,63 @@ class Run:
             }  # fmt: skip
 
 
-def performed(setup: Setup, offer: Offer, order: Order, progress: Progress | bool) -> Run:
-    """Run the calculation of a setup, and write the folder of the order where it names one, whole or not at all.
+def performed(
+    setup: Setup,
+    offer: Offer,
+    progress: Progress | bool,
+    *,
+    output: str | Path | None = None,
+    cases: Any = None,
+    workers: int | None = None,
+    cluster: str = "",
+    resume: bool = False,
+    pdf: bool = False,
+    excel: bool = False,
+) -> Run:
+    """Run the calculation of a setup, and write the folder ``output`` where it is named, whole or not at all.
 
-    With ``resume`` finished batches are kept beside the folder until then, and those of an interrupted run are taken
-    up. Raises TruingError; what is impossible is said at the input that is to blame.
+    ``cases`` is a file or a dataframe. With ``resume`` finished batches are kept beside the folder until then, and
+    those of an interrupted run are taken up. Raises TruingError; what is impossible is said at the input that is to
+    blame, and UsageError for what does not go together.
     """
-    if order.folder is not None:
-        demand_place(order.folder)
-    keeping = nullcontext()
-    if order.resume and order.folder is not None:
-        keeping = kept_batches(order.folder, identity_of(setup, code_of(setup)))  # type: ignore[assignment]
+    if cluster and workers is not None:
+        raise UsageError("cluster and workers exclude each other: a cluster has its own workers")
+    for name, is_asked in {"resume": resume, "pdf": pdf, "excel": excel}.items():
+        if is_asked and output is None:
+            raise UsageError(f"{name} needs output, the folder that is written")
+    folder = None if output is None else Path(output)
+    keeping: AbstractContextManager[BatchLog | None] = nullcontext()
+    if folder is not None:
+        demand_place(folder)
+        keeping = kept_batches(folder, identity_of(setup, code_of(setup))) if resume else keeping
+    place = f"dask:{cluster}" if cluster else "serial" if workers in (None, 1) else f"processes:{workers}"
     with progress_bar(progress) as report, told_by_line(setup), keeping as log:
-        run = _calculated(setup, offer, order, progress=report, log=log)
-        return run if order.folder is None else replace(run, note=run.written(order, report))
+        run = _calculated(setup, offer, cases, place=place, progress=report, log=log)
+        if folder is not None:
+            return replace(run, note=run.written(folder, pdf=pdf, excel=excel, progress=report))
+        return run
 
 
-def _calculated(setup: Setup, offer: Offer, order: Order, *, progress: Progress, log: BatchLog | None) -> Run:
+def _calculated(setup: Setup, offer: Offer, cases: Any, *, place: str, progress: Progress, log: BatchLog | None) -> Run:
     started = time.time()
-    with open_executor(order.place) as pool:
-        if order.cluster:
+    with open_executor(place) as pool:
+        if place.startswith("dask:"):
             pool.compare(code_of(setup))
         executor = pool if log is None else KeptExecutor(pool, log)
-        calculation, cases = _with_cases(setup, offer, order, executor=executor, progress=progress)
+        table = None
+        if cases is None:
+            calculation = calculate(setup, executor=executor, progress=progress)
+        else:
+            source = Path(cases) if isinstance(cases, (str, Path)) else frame_text(cases, {})
+            stated = read_cases(source, offer, setup)
+            calculation, table = run_cases(setup, stated, executor=executor, progress=progress)
         pool.settle()
         computed = {
             "workers": {"count": executor.workers, "lost": executor.losses, "where": executor.where},
             "resumed": executor.resumed if isinstance(executor, KeptExecutor) else 0,
             "warnings": executor.remarks(),
         }
-    return Run(offer, calculation, started, cases, computed)
-
-
-def _with_cases(
-    setup: Setup, offer: Offer, order: Order, *, executor: Executor, progress: Progress
-) -> tuple[Calculation, CasesTable | None]:
-    if order.cases is None:
-        return calculate(setup, executor=executor, progress=progress), None
-    return run_cases(setup, _cases_of(order.cases, offer, setup), executor=executor, progress=progress)
-
-
-def _cases_of(cases: Any, offer: Offer, setup: Setup) -> CasesFile:
-    """Read cases from a file, or from a dataframe, which goes by that name."""
-    return read_cases(Path(cases) if isinstance(cases, (str, Path)) else frame_text(cases, {}), offer, setup)
+    return Run(offer, calculation, started, table, computed)
 
 
 def _case_columns(cases: CasesTable, setup: Setup) -> dict[str, list[Any]]:
@@ -275,24 +257,14 @@ def _case_columns(cases: CasesTable, setup: Setup) -> dict[str, list[Any]]:
     answers = next((case.answers for case in cases.cases if case.reason is None), {})
     results = [name for name, value in answers.items() if not getattr(value, "ndim", 0)]
     columns: dict[str, list[Any]] = {"case": [case.name for case in cases.cases]}
-    for name in cases.varied:
-        columns[_with_unit(name, setup)] = [_in_unit(case.values[name], setup.print_unit(name)) for case in cases.cases]
-    for name in results:
-        columns[_with_unit(name, setup)] = [_answer(case, name, setup) for case in cases.cases]
+    for name in (*cases.varied, *results):
+        unit = setup.print_unit(name)
+        values = [{**case.answers, **case.values}.get(name, nan) for case in cases.cases]
+        columns[f"{name} [{unit}]" if unit else name] = [
+            value if isinstance(value, (str, bool)) else float(from_si(value, unit)) for value in values
+        ]
     columns["verdict"] = [case.verdict for case in cases.cases]
     return {**columns, "fault": [case.reason or "" for case in cases.cases]}
-
-
-def _with_unit(name: str, setup: Setup) -> str:
-    return f"{name} [{unit}]" if (unit := setup.print_unit(name)) else name
-
-
-def _answer(case: CaseResult, name: str, setup: Setup) -> float:
-    return float("nan") if case.reason else float(from_si(case.answers[name], setup.print_unit(name)))
-
-
-def _in_unit(value: Any, unit: str) -> Any:
-    return value if isinstance(value, (str, bool)) else float(from_si(value, unit))
 
 
 # What differs between two runs, or two diagnoses

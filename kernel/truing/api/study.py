@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -40,7 +40,12 @@ class StudyResult:
         Raises UsageError where there is no such table.
         """
         if isinstance(self.outcome, Swept) and not title:
-            return frame_of(dict(_swept_columns(self.outcome)))
+            shown = {name: values for name, values in self.outcome.results.items() if values.ndim == 1}
+            units = self.outcome.units
+            return frame_of({
+                f"{name} [{units[name] or '1'}]": np.asarray(from_si(values, units[name])).tolist()
+                for name, values in {self.outcome.over: self.outcome.axis, **shown}.items()
+            })  # fmt: skip
         tables = {block.title: block for block in self.outcome.blocks() if isinstance(block, Table)}
         table = _chosen(title, tables, "table")
         return frame_of({name: [row[index] for row in table.rows] for index, name in enumerate(_headers(table))})
@@ -65,15 +70,11 @@ class StudyResult:
         said = [*self.warnings, *(block.text for block in blocks if isinstance(block, Words))]
         tables = [block for block in blocks if isinstance(block, Table)]
         first, *others = [table_html(table_view(table, MOST_ROWS)) for table in tables] or [""]
-        return joined(
-            heading(self.title), self._first_picture(), first, paragraphs(said), fold("more", "".join(others))
-        )
-
-    def _first_picture(self) -> str:
         try:
-            return picture(self._drawing(()), self.title)
+            drawn = picture(self._drawing(()), self.title)
         except UsageError:  # a study need not draw
-            return ""
+            drawn = ""
+        return joined(heading(self.title), drawn, first, paragraphs(said), fold("more", "".join(others)))
 
 
 def _chosen(title: str, blocks: dict[str, Any], kind: str) -> Any:
@@ -101,10 +102,3 @@ def _moving_results(swept: Swept, names: tuple[str, ...]) -> list[str]:
     if not moving:
         raise UsageError(f"no result changes along '{swept.over}'; name those to draw")
     return moving
-
-
-def _swept_columns(swept: Swept) -> Iterator[tuple[str, list[float]]]:
-    shown = {name: values for name, values in swept.results.items() if values.ndim == 1}
-    for name, values in {swept.over: swept.axis, **shown}.items():
-        unit = swept.units[name]
-        yield f"{name} [{unit or '1'}]", np.asarray(from_si(values, unit)).tolist()

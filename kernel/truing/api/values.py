@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from numbers import Real
 from typing import Any
 
@@ -22,55 +22,37 @@ def settings_of(model: Model[Any, Any], values: Mapping[str, Any]) -> list[str]:
     ``draws`` is that of every study that draws. Other names are those of ``--set``: inputs, conditions, ``seed``, and
     dotted names such as "tolerances.load".
     """
-    return [f"{name}={text}" for name, value in values.items() for name, text in _each(model, name, value)]
-
-
-def _each(model: Model[Any, Any], name: str, value: Any) -> Iterator[tuple[str, str]]:
-    is_declared = name in model.input_fields or name in model.known_conditions
-    if name == "draws" and not is_declared:
+    said = dict(values)
+    if "draws" in values and "draws" not in {*model.input_fields, *model.known_conditions}:
         drawing = [study.name for study in model.studies if hasattr(study, "draws")]
         if not drawing:
             raise UsageError(f"{model.name} has no study that draws; leave out draws")
-        yield from ((f"studies.{study}.draws", str(value)) for study in drawing)
-        return
-    yield name, text_of(model, name, value)
+        said |= dict.fromkeys([f"studies.{study}.draws" for study in drawing], str(said.pop("draws")))
+    return [f"{name}={text_of(model, name, value)}" for name, value in said.items()]
 
 
 def text_of(model: Model[Any, Any], name: str, value: Any) -> str:
     """Return the value of an input or condition as a file has it. Raises UsageError for what is no value."""
-    return _text(name, value, _unit_of(model, name))
-
-
-def _unit_of(model: Model[Any, Any], name: str) -> str:
-    if name in model.input_fields:
-        return model.input_fields[name].unit
-    return model.known_conditions[name].unit if name in model.known_conditions else ""
-
-
-def _text(name: str, value: Any, unit: str) -> str:
+    declared = model.input_fields.get(name) or model.known_conditions.get(name)
+    unit = declared.unit if declared is not None else ""
     if isinstance(value, str):
         return value
     if hasattr(value, "dimensionality"):
-        return _number(float(from_si(_in_si(name, value, unit), unit)), unit)
+        if value.dimensionality != pint_quantity(1.0, unit).dimensionality:
+            raise UsageError(f"{name}: {value} cannot be written in {unit or 'a number without a unit'}")
+        return _number(float(from_si(float(value.to_base_units().magnitude), unit)), unit)
     if isinstance(value, (bool, np.bool_)):
         return toml_value(bool(value))
     if isinstance(value, (Real, np.number)):
         return _number(value, unit)
     if isinstance(value, (Sequence, np.ndarray)):
-        return "[" + ", ".join(toml_value(_text(name, each, unit)) for each in value) + "]"
+        return "[" + ", ".join(toml_value(text_of(model, name, each)) for each in value) + "]"
     raise UsageError(f"{name}: {value!r:.60} is no text, number or quantity")
 
 
 def _number(value: Any, unit: str) -> str:
     plain = value.item() if hasattr(value, "item") else value
     return f"{plain!r} {unit}".rstrip()
-
-
-def _in_si(name: str, value: Any, unit: str) -> float:
-    """Return a quantity of pint in SI. Raises UsageError where its dimension is another one."""
-    if value.dimensionality != pint_quantity(1.0, unit).dimensionality:
-        raise UsageError(f"{name}: {value} cannot be written in {unit or 'a number without a unit'}")
-    return float(value.to_base_units().magnitude)
 
 
 # Quantities of pint, as a user of pint has them: of the application's registry, in the unit that is printed

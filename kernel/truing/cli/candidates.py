@@ -25,6 +25,8 @@ P = ParamSpec("P")
 OfferedWord = tuple[str, str]
 """A word to offer, and what it is."""
 
+SPECIAL = set(" \t\"'`$\\;&|<>(){}*?!#~")
+"""A name with one of these is more than one word to a shell."""
 LONGEST_HELP = 90
 _door: Any = Later("truing.entry_points")
 _inside: Any = Later("truing.cli.inside")
@@ -38,7 +40,8 @@ def silent(function: Callable[P, Iterator[OfferedWord]]) -> Callable[P, list[Off
     def asked(*args: P.args, **kwargs: P.kwargs) -> list[OfferedWord]:
         with redirect_stdout(StringIO()), redirect_stderr(StringIO()):
             try:
-                return [(name, _one_line(words)) for name, words in function(*args, **kwargs) if _is_plain(name)]
+                words = [(name, _one_line(help_text)) for name, help_text in function(*args, **kwargs)]
+                return [(name, text) for name, text in words if name.isprintable() and not SPECIAL & set(name)]
             except (Exception, SystemExit):
                 return []
 
@@ -49,11 +52,6 @@ def _one_line(words: str) -> str:
     """Return a help text as one line that no shell and no markup takes for an order."""
     plain = one_line(words).replace("[", "(").replace("]", ")")
     return plain if len(plain) <= LONGEST_HELP else plain[: LONGEST_HELP - 1] + "…"
-
-
-def _is_plain(name: str) -> bool:
-    """Tell whether a shell can take a name as one word."""
-    return name.isprintable() and not set(name) & set(" \t\"'`$\\;&|<>(){}*?!#~")
 
 
 @silent
@@ -100,13 +98,9 @@ def runs(incomplete: str) -> Iterator[OfferedWord]:
     folders = sorted(entry for entry in searched.iterdir() if entry.is_dir() and not entry.name.startswith("."))
     for folder in folders:
         name = f"{incomplete[: len(incomplete) - len(incomplete.rpartition('/')[2])]}{folder.name}"
-        kind = _kind(folder)
+        kinds = {"results.json": "a run", "diagnosis.json": "a diagnosis"}
+        kind = next((kind for file, kind in kinds.items() if (folder / file).is_file()), "")
         yield (name, kind) if kind else (f"{name}/", "a folder")
-
-
-def _kind(folder: Path) -> str:
-    kinds = {"results.json": "a run", "diagnosis.json": "a diagnosis"}
-    return next((kind for file, kind in kinds.items() if (folder / file).is_file()), "")
 
 
 def _is_file(incomplete: str) -> bool:

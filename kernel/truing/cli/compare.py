@@ -6,6 +6,7 @@ import os
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
+from itertools import accumulate
 from pathlib import Path
 
 from rich.console import Console
@@ -26,15 +27,10 @@ def compare(settings: Settings, *, first: Path, second: Path, as_json: bool) -> 
     elif not changes:
         out("equal")
     else:
-        _print(changes, (str(first), str(second)))
+        ordered = in_order(changes)
+        rows = [("what", "name", one_line(first), one_line(second), "change"), *map(words_of, ordered)]
+        out_table(rows, [("",) * 5, *map(styles_of, ordered)])
     return 1 if changes else 0
-
-
-def _print(changes: list[Change], titles: tuple[str, str]) -> None:
-    """Print a row for each change, checks that flipped above all others; where there is colour it repeats the words."""
-    ordered = in_order(changes)
-    rows = [("what", "name", *map(one_line, titles), "change"), *map(words_of, ordered)]
-    out_table(rows, [("",) * 5, *map(styles_of, ordered)])
 
 
 # The colours that repeat what changed between two runs
@@ -73,28 +69,19 @@ def shows_colour() -> bool:
     return sys.stdout.isatty() and not plain
 
 
-def out_table(rows: Sequence[Sequence[str]], styles: Sequence[Sequence[str]], *, right: Sequence[int] = ()) -> None:
+def out_table(rows: Sequence[Sequence[str]], styles: Sequence[Sequence[str]]) -> None:
     """Print rows in aligned columns; ``styles`` names the colour of each cell, or nothing. Colour changes no text."""
-    lines = aligned(rows, right=right)
+    lines = aligned(rows)
     if not shows_colour():
         out("\n".join(lines))
         return
     console = Console(file=sys.stdout, highlight=False, soft_wrap=True)
-    starts = _starts(rows)
+    widths = [max(map(len, column)) + len(GAP) for column in zip(*rows, strict=True)]
     with console.capture() as coloured:
         for line, of_cells in zip(lines, styles, strict=True):
             text = Text(harmless(line))
-            for index, style in enumerate(of_cells):
+            for style, end, width in zip(of_cells, accumulate(widths), widths, strict=True):
                 if style:
-                    end = starts[index + 1] if index + 1 < len(of_cells) else len(line)
-                    text.stylize(style, starts[index], end)
+                    text.stylize(style, end - width, end if end < sum(widths) else None)
             console.print(text)
     put(coloured.get())
-
-
-def _starts(rows: Sequence[Sequence[str]]) -> list[int]:
-    """Return where each column begins."""
-    starts = [0]
-    for column in zip(*rows, strict=True):
-        starts.append(starts[-1] + max(map(len, column)) + len(GAP))
-    return starts

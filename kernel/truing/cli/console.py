@@ -189,11 +189,6 @@ def close_stream(stream: TextIO) -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
-def columns(rows: Sequence[Sequence[str]], *, right: Sequence[int] = ()) -> str:
-    """Return rows of text in aligned columns, one below the other."""
-    return "\n".join(aligned(rows, right=right))
-
-
 def aligned(rows: Sequence[Sequence[str]], *, right: Sequence[int] = (), width: int = 0) -> list[str]:
     """Return each row of text with its columns aligned; those at the indices ``right`` are flush right.
 

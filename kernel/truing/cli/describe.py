@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from truing.cli.console import Settings, columns, out, out_json
+from truing.cli.console import Settings, aligned, out, out_json
 from truing.cli.load import find_model
 from truing.describe import sections
 from truing.inputs_file import json_schema
@@ -31,7 +31,7 @@ def _lines(said: dict[str, Any]) -> Iterator[str]:
     for title, rows in sections(said).items():
         yield ""
         yield title
-        yield columns([("  " + one_line(row[0]), *map(one_line, row[1:])) for row in rows])
+        yield from aligned([("  " + one_line(row[0]), *map(one_line, row[1:])) for row in rows])
     if said["studies"]:
         yield ""
         yield "Studies: " + ", ".join(said["studies"])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 import sys
 import textwrap
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -97,8 +97,8 @@ def _result(told: Told) -> ToldParts:
     yield from _chain(told)
     yield from _scatter(told)
     yield from _slopes(told)
-    yield from _limits([_limit_words(limit) for limit in told["limits"]])
-    yield from _published(told)
+    yield from _listed("Limits that rest on it", map(_limit_words, told["limits"]))
+    yield from _listed("What the source prints, and ours", map(_published_words, told["published"]))
     yield from _effects("Effects that change it", told["effects"])
     yield from _followed(told)
 
@@ -113,17 +113,13 @@ def _formula(told: Told, width: int) -> Iterator[str]:
         indent, steps = INDENT * 2, [steps[0], *(f"{told['symbol'] or told['name']} = {one}" for one in steps[1:])]
     for index, step in enumerate(steps):
         head = INDENT + left if not index else indent + ("= " if left else "")
-        for number, line in enumerate(folded(one_line_held(step), width - len(head))):
+        held = "".join(c if c.isprintable() or c == HOLD else " " for c in step)  # what holds number and unit together
+        for number, line in enumerate(folded(held, width - len(head))):
             yield ((head if not number else " " * len(head)) + line).replace(HOLD, " ")
     if formula["departs"]:
         yield from wrapped(
             "An effect on the results is on: the calculation answers another value than the formula.", width
         )
-
-
-def one_line_held(text: str) -> str:
-    """Return a formula without control characters; what holds number and unit together stays."""
-    return "".join(c if c.isprintable() or c == HOLD else " " for c in text)
 
 
 def _chain(told: Told) -> ToldParts:
@@ -149,14 +145,13 @@ def _chain(told: Told) -> ToldParts:
 def _scatter(told: Told) -> ToldParts:
     scatter = told["scatter"]
     if scatter is not None:
-        rows = [(share["name"], _percent(share["share"]), _tolerance_words(share)) for share in scatter["shares"]]
+        rows = []
+        for share in scatter["shares"]:
+            names = ", ".join(share["tolerances"])
+            named = "" if names in {"", share["name"]} else f", tolerance {names}"
+            rows.append((share["name"], _percent(share["share"]), share["spread"] + named))
         title = f"Scatter of the tolerances in force: standard deviation {scatter['sd']}, of which"
         yield Chapter(title, (_table(rows, (1,), MOST),))
-
-
-def _tolerance_words(share: Told) -> str:
-    names = ", ".join(share["tolerances"])
-    return share["spread"] if names in {"", share["name"]} else f"{share['spread']}, tolerance {names}"
 
 
 def _slopes(told: Told) -> ToldParts:
@@ -169,9 +164,10 @@ def _slopes(told: Told) -> ToldParts:
         yield from told["remarks"]
 
 
-def _limits(sentences: Sequence[str]) -> ToldParts:
-    if sentences:
-        yield Chapter("Limits that rest on it", (Items("limits", tuple(sentences)),))
+def _listed(title: str, sentences: Iterable[str]) -> ToldParts:
+    texts = tuple(sentences)
+    if texts:
+        yield Chapter(title, (Items("", texts),))
 
 
 def _limit_words(limit: Told) -> str:
@@ -183,12 +179,6 @@ def _limit_words(limit: Told) -> str:
     value = f"{format_number(check['value'], 5)} {unit_text(check['unit'])}".strip()
     verdict = "passes" if check["passed"] else "FAILS"
     return f"{limit['says']}: {value} {verdict}, margin {format_number(check['margin'], 3)}"
-
-
-def _published(told: Told) -> ToldParts:
-    if told["published"]:
-        title = "What the source prints, and ours"
-        yield Chapter(title, (Items("published", tuple(map(_published_words, told["published"]))),))
 
 
 def _published_words(number: Told) -> str:
@@ -227,7 +217,7 @@ def _input(told: Told) -> ToldParts:
         yield f"the tolerance of this name scatters {', '.join(told['namesake'])}: see {address}"
     yield from (*told["varied"], *(f"is the limit of {result}" for result in told["limit_of"]))
     yield from _moves(told)
-    yield from _limits(told["limits"])
+    yield from _listed("Limits that rest on it", told["limits"])
     yield from _followed(told)
     yield from _effects("Effects that change it", told["effects"])
 
@@ -274,26 +264,20 @@ def _effect(told: Told) -> ToldParts:
     if told["built_in"]:
         yield "One of the kernel's own: it can act on the reading of any result, and never on a machine."
     if told["unknowns"]:
-        rows = [
-            (
-                entry["name"],
-                f"{entry['low']:g} .. {entry['high']:g} {entry['unit']}".strip(),
-                entry["text"],
-                entry["note"],
-            )
-            for entry in told["unknowns"]
+        unknowns = [
+            (one["name"], f"{one['low']:g} .. {one['high']:g} {one['unit']}".strip(), one["text"], one["note"])
+            for one in told["unknowns"]
         ]
-        yield Chapter("Unknowns", (_table(rows),))
+        yield Chapter("Unknowns", (_table(unknowns),))
     if told["needs"]:
         needs = [(need["name"], f"reference {need['reference']}", need["note"]) for need in told["needs"]]
         yield Chapter("Conditions it needs", (_table(needs),))
-    yield from _tried(told)
+    if told["tried_at"]:
+        yield from _tried(told)
 
 
 def _tried(told: Told) -> ToldParts:
     """Say what changed when the effect was tried."""
-    if not told["tried_at"]:
-        return
     at = ", ".join(f"{setting['name']} {setting['text']}" for setting in told["tried_at"])
     rows = [(move["name"], _per_cent(move["percent"]) or "from 0", move["note"]) for move in told["moves"]]
     shown = _table(rows, (1,), 2 * MOST) if rows else Paragraph("no result changes there")

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import functools
 import inspect
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 import typer
 
 from truing.cli.candidates import OfferedWord
+from truing.declare.fields import Loaded
 from truing.declare.model import Model
-from truing.declare.specs import Loaded
-from truing.inputs_file.file_model import schemas
+from truing.inputs_file.entries import sections
 from truing.kernel import Kernel, Offer
 
 
@@ -28,13 +28,13 @@ def names_of(incomplete: str) -> Iterator[OfferedWord]:
 
 def names_inside(context: typer.Context) -> Iterator[OfferedWord]:
     """Offer what the calculation that is typed already answers, takes, and could have wrong."""
-    yield from _declared(_typed_model(context))
+    return _declared(_typed_model(context))
 
 
 def changes(context: typer.Context, incomplete: str) -> Iterator[OfferedWord]:
     """Offer what ``--set`` takes for the plugin that is typed already: NAME=, section by section, and choices."""
     model = _typed_model(context)
-    known = schemas(model)
+    known = {name: section.schema["properties"] for name, section in sections(model).items()}
     direct: Mapping[str, Any] = {**known["inputs"], **known["conditions"], "seed": known["studies"]["seed"]}
     name, equals, _ = incomplete.partition("=")
     *above, last = name.split(".")
@@ -45,15 +45,16 @@ def changes(context: typer.Context, incomplete: str) -> Iterator[OfferedWord]:
     else:
         inside = functools.reduce(_inside, above, known)
     if equals:
-        yield from ((f"{name}={word}", _words(inside[last])) for word in _choices(inside[last]))
+        words = ("true", "false") if inside[last].get("type") == "boolean" else inside[last].get("enum", ())
+        yield from ((f"{name}={word}", _words(inside[last])) for word in words)
         return
     for key, schema in inside.items():
         yield f"{'.'.join([*above, key])}{'.' if 'properties' in schema else '='}", _words(schema)
     if not above:
         files = (key for key, field in model.input_fields.items() if field.kind == "file")
         yield from ((f"{key}.", "how the data file is read") for key in files)
-        sections = (key for key, entries in known.items() if entries and key not in {"inputs", "conditions"})
-        yield from ((f"{key}.", "a section of the inputs file") for key in sections)
+        titles = (key for key, entries in known.items() if entries and key not in {"inputs", "conditions"})
+        yield from ((f"{key}.", "a section of the inputs file") for key in titles)
 
 
 def _inside(names: Mapping[str, Any], name: str) -> Mapping[str, Any]:
@@ -65,11 +66,6 @@ def _inside(names: Mapping[str, Any], name: str) -> Mapping[str, Any]:
 
 def _words(schema: Mapping[str, Any]) -> str:
     return str(schema.get("description") or (f"now {schema['default']}" if "default" in schema else ""))
-
-
-def _choices(schema: Mapping[str, Any]) -> Sequence[Any]:
-    words: Sequence[Any] = schema.get("enum", ())
-    return ("true", "false") if schema.get("type") == "boolean" else words
 
 
 def _options_of_reader(model: Model[Any, Any], name: str) -> dict[str, Any]:

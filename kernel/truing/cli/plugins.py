@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import asdict
 
-from truing.cli.console import Settings, columns, out, out_json
-from truing.kernel import Kernel
+from truing.cli.console import Settings, aligned, out, out_json
+from truing.kernel import Kernel, Offer
 from truing.texts import one_line
 
 
@@ -14,13 +14,13 @@ def plugins(settings: Settings, *, as_json: bool, strict: bool) -> int:
     kernel = Kernel.installed(strict=strict)
     offers = kernel.offers
     if as_json:
-        out_json(_document(kernel))
+        out_json({"models": [_model(offer) for offer in offers.values()], "broken": list(map(asdict, kernel.broken))})
         return 0
     rows = [("model", "version", "from", "title")]
     for offer in offers.values():
         home = offer.origin.distribution or offer.origin.file
         rows.append((offer.name, offer.origin.version, home, one_line(offer.model.title)))
-    out(columns(rows))
+    out("\n".join(aligned(rows)))
     for offer in offers.values():
         for addition in offer.added:
             out(f"  {offer.name}: {addition.plugin} {addition.version} adds '{addition.what}'")
@@ -29,19 +29,13 @@ def plugins(settings: Settings, *, as_json: bool, strict: bool) -> int:
     return 0
 
 
-def _document(kernel: Kernel) -> dict[str, object]:
+def _model(offer: Offer) -> dict[str, object]:
     return {
-        "models": [
-            {
-                "name": offer.name,
-                "title": offer.model.title,
-                "plugin": offer.origin.name,
-                "version": offer.origin.version,
-                "distribution": offer.origin.distribution,
-                "file": offer.origin.file,
-                "added": [asdict(addition) for addition in offer.added],
-            }
-            for offer in kernel.offers.values()
-        ],
-        "broken": [asdict(broken) for broken in kernel.broken],
+        "name": offer.name,
+        "title": offer.model.title,
+        "plugin": offer.origin.name,
+        "version": offer.origin.version,
+        "distribution": offer.origin.distribution,
+        "file": offer.origin.file,
+        "added": [asdict(addition) for addition in offer.added],
     }

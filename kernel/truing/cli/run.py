@@ -11,7 +11,7 @@ from truing.api.run import Run
 from truing.atomic import writings, written
 from truing.calculation import Calculation
 from truing.cases import CaseResult, CasesTable
-from truing.cli.console import Settings, aligned, columns, out, out_json, say
+from truing.cli.console import Settings, aligned, out, out_json, say
 from truing.cli.load import find_model, say_example
 from truing.errors import UsageError
 from truing.numbers import ABSENT, format_ends, format_value, with_unit
@@ -52,11 +52,7 @@ def run(
             inputs, cases=cases, workers=workers, cluster=cluster, output=folder, resume=resume, pdf=pdf, excel=excel,
             progress=not settings.quiet,
         )  # fmt: skip
-    _say_beside(done, settings)
-    if excel:
-        tables = ["results.csv", *(["cases.csv"] if done.cases is not None else [])]
-        settings.say(f"for a spreadsheet: {' and '.join(str(folder / name) for name in tables)}")
-    _say_where_from(done, settings)
+    _say_beside(done, folder if excel else None, settings)
     if as_json:
         out_json(done.document)
     else:
@@ -78,20 +74,18 @@ def _told_what_is_kept(folder: Path, resume: bool, settings: Settings) -> Iterat
         raise
 
 
-def _say_beside(done: Run, settings: Settings) -> None:
-    """Say what is no result: warnings, cases that failed, how the printing went."""
+def _say_beside(done: Run, tables: Path | None, settings: Settings) -> None:
+    """Say what is no result: warnings, cases that failed, what else was written, and where the numbers come from."""
     for warning in done.warnings:
         settings.say(f"warning: {one_line(warning)}")
-    if done.cases is not None:
-        for case in done.cases.cases:
-            if case.reason is not None:
-                say(str(case.fault))
+    for case in done.cases.cases if done.cases is not None else ():
+        if case.reason is not None:
+            say(str(case.fault))
     if done.note:
         settings.say(done.note)
-
-
-def _say_where_from(done: Run, settings: Settings) -> None:
-    """Say what was taken up of an interrupted run, and for those who ask for more where the numbers come from."""
+    if tables is not None:
+        names = ["results.csv", *(["cases.csv"] if done.cases is not None else [])]
+        settings.say(f"for a spreadsheet: {' and '.join(str(tables / name) for name in names)}")
     if done.computed["resumed"]:
         settings.say(f"{done.computed['resumed']} finished batches of an interrupted run were taken up")
     setup = done.calculation.setup
@@ -118,7 +112,7 @@ def lines_of(done: Run, folder: Path, *, with_titles: bool) -> Iterator[str]:
     yield from _absent_lines(calculation)
     if calculation.checks:
         yield ""
-        yield _checks(calculation)
+        yield from _checks(calculation)
     yield ""
     yield from _verdict_lines(done)
     yield f"sheet: {folder / 'sheet.html'}"
@@ -143,7 +137,7 @@ def _cases_lines(cases: CasesTable, setup: Setup) -> Iterator[str]:
     shown = [index for index in range(len(cases.cases)) if index < MOST_CASES or index == cases.governing]
     rows = [_case_row(cases.cases[index], setup, governs=index == cases.governing) for index in shown]
     yield ""
-    yield columns([("row", "case", *heads, "margin", ""), *rows], right=(0, *range(2, len(heads) + 3)))
+    yield from aligned([("row", "case", *heads, "margin", ""), *rows], right=(0, *range(2, len(heads) + 3)))
     if len(shown) < len(cases.cases):
         yield f"{len(cases.cases) - len(shown)} further cases stand in results.json"
     if cases.count.unused:
@@ -204,19 +198,16 @@ def _result_row(calculation: Calculation, name: str) -> tuple[str, ...]:
     return (name, *format_value(value, print_unit, result.digits), one_line(result.spec.note))
 
 
-def _checks(calculation: Calculation) -> str:
+def _checks(calculation: Calculation) -> list[str]:
     """Say every limit: what is compared, with what, and what is left."""
-    rows = list(check_rows(calculation))
     proposed = calculation.decided.proposal is not None
     head = ("check", "as stated" if proposed else "value", "", "limit", "margin", "", "as proposed" if proposed else "")
-    lines = [
-        (
-            one_line(row.compared), _written(row.value), row.relation, _written(row.limit), _written(row.margin),
-            SHORT[row.state], _written(row.proposed) if row.proposed is not None else one_line(row.remark),
-        )
-        for row in rows
-    ]  # fmt: skip
-    return columns([head, *lines], right=(1, 3, 4))
+    lines = []
+    for row in check_rows(calculation):
+        check, last = row.check, one_line(row.remark) if row.proposed is None else _written(row.proposed)
+        numbers = _written(row.value), check.relation, _written(row.limit), _written(row.margin)
+        lines.append((one_line(check.compared or check.name), *numbers, SHORT[check.state], last))
+    return aligned([head, *lines], right=(1, 3, 4))
 
 
 def _written(value: Value) -> str:

@@ -34,7 +34,9 @@ def table(
     """Print what the gauge would show at every row: the file's columns, then the results, units in the header."""
     if excel and output is None:
         raise UsageError("--excel writes a file for a spreadsheet; name it with -o")
-    _demand_new(output, inputs, rows)
+    for path in (inputs, rows):
+        if output is not None and output.exists() and path.exists() and output.samefile(path):
+            raise OutputError(f"{output} is read by this command; name another file for the output")
     offer = find_offer(plugin, settings)
     setup = read_setup(inputs, offer, overrides=changed or ())
     read = read_rows(rows, offer, setup)
@@ -57,13 +59,6 @@ def table(
     if output is not None:
         settings.say(f"wrote {output}: {len(read)} rows, {len(shown.reasons)} of them failed")
     return 0
-
-
-def _demand_new(output: Path | None, *read: Path) -> None:
-    """Raise OutputError where the output would replace a file that is read."""
-    for path in read:
-        if output is not None and output.exists() and path.exists() and output.samefile(path):
-            raise OutputError(f"{output} is read by this command; name another file for the output")
 
 
 def _with_commas(header: str, cells: Sequence[str], setup: Setup) -> Sequence[str]:

@@ -52,7 +52,8 @@ def watch(
     if measured and (cases or excel or workers > 1):
         raise UsageError("--cases, --excel and --workers are for runs; a diagnosis (--data) has none of them")
     for file in (inputs, *measured):
-        _demand_file(file)
+        if not file.is_file():
+            refuse_file(file, largest=0, instead="", is_table=False)
     folder = output or Path("runs") / (measured or (inputs,))[0].stem
     how = {} if measured else {"cases": cases, "workers": workers, "excel": excel}
     watcher = _Watcher(plugin, inputs, measured, tuple(changed or ()), folder, how, settings)
@@ -72,11 +73,6 @@ def watch(
         many = counted(watcher.runs, *(("diagnosis", "diagnoses") if measured else ("run",)))
         settings.say(f"calc: watched {many}; {watcher.what_stays()}")
         return watcher.exit_code
-
-
-def _demand_file(inputs: Path) -> None:
-    if not inputs.is_file():
-        refuse_file(inputs, largest=0, instead="", is_table=False)
 
 
 @dataclass
@@ -134,8 +130,13 @@ class _Watcher:
         if self.broken:
             return
         started, self.before, self.calculating = time.monotonic(), writings(), True
+        model = LoadedModel(offer, self.overrides, label=LABEL)
+        how = {"output": self.folder, "progress": not self.settings.quiet, **self.how}
         try:
-            done = self._made(LoadedModel(offer, self.overrides, label=LABEL))
+            if self.measured:
+                done: Run | Diagnosis = model.diagnose(MeasuredRecord(self.measured), self.inputs, **how)
+            else:
+                done = model.run(self.inputs, **how)
         except Exception as error:
             self.calculating = False
             self._complain(error)
@@ -143,17 +144,13 @@ class _Watcher:
         self.calculating = False
         self._report(done, time.monotonic() - started)
 
-    def _made(self, model: LoadedModel) -> Run | Diagnosis:
-        """Run or diagnose, and write the folder."""
-        how = {"output": self.folder, "progress": not self.settings.quiet, **self.how}
-        if self.measured:
-            return model.diagnose(MeasuredRecord(self.measured), self.inputs, **how)
-        return model.run(self.inputs, **how)
-
     def _report(self, done: Run | Diagnosis, seconds: float) -> None:
         self._warn(done)
         self.runs += 1
-        state = _state(done.document) if isinstance(done, Run) else _verdict(done)
+        if isinstance(done, Run):
+            state = _state(done.document)
+        else:
+            state = f"{verdict_word(done.result)}. {done.sentences[0]}".rstrip(".")
         sheet = f"{state}; sheet: {self.folder / 'sheet.html'}"
         what = sheet if self.last is None else f"{_changes(self.last, done.document)}; {state}"
         self.last, self.made_at = done.document, time.strftime("%H:%M:%S")
@@ -193,11 +190,6 @@ def _state(document: Mapping[str, Any]) -> str:
     of = {state: list(dict.fromkeys(check["name"] for check in checks if check["state"] == state)) for state in SHORT}
     said = [f"{SHORT[state]}: {', '.join(of[state])}" for state in ("fails", "undecided", "proposed") if of[state]]
     return "; ".join(said) or ("all checks pass" if checks else "no checks")
-
-
-def _verdict(done: Diagnosis) -> str:
-    """Say what a diagnosis found."""
-    return f"{verdict_word(done.result)}. {done.sentences[0]}".rstrip(".")
 
 
 def _changes(before: Mapping[str, Any], after: Mapping[str, Any]) -> str:

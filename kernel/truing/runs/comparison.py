@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from truing.errors import UsageError
-from truing.numbers import format_number
+from truing.numbers import counted, format_number
 from truing.studies.checks import EXIT_CODES, SHORT
 from truing.texts import one_line
 from truing.units import difference_unit, unit_text
@@ -62,36 +62,38 @@ def in_order(unordered: Sequence[Change]) -> list[Change]:
 
 
 def compared(before: Mapping[str, Any], after: Mapping[str, Any]) -> list[Change]:
-    """Return what differs between two documents of one kind; raises UsageError for a run beside a diagnosis."""
+    """Return what differs between two documents of one kind, settings first; raises UsageError for two of two kinds.
+
+    Numbers that agree to ``ROUNDING`` are equal: another order of summation is no change.
+    """
     schemas = [str(document.get("schema")) for document in (before, after)]
     kinds = ["diagnosis" if schema.startswith("truing.diagnosis") else "run" for schema in schemas]
     if kinds[0] != kinds[1]:
         raise UsageError(f"the first is a {kinds[0]} and the second a {kinds[1]}; compare two of one kind")
-    return changes_of_diagnoses(before, after) if kinds[0] == "diagnosis" else changes(before, after)
+    named = _of_diagnosis if kinds[0] == "diagnosis" else _of_run
+    changes = [
+        Change("settings", name, before.get(name), after.get(name))
+        for name in ("plugin", "kernel", "seed")
+        if before.get(name) != after.get(name)
+    ]
+    one, other = named(before), named(after)
+    for kind, here in one.items():
+        there = other[kind]
+        names = [name for name in dict.fromkeys([*here, *there]) if not same(here.get(name), there.get(name))]
+        changes += [Change(kind, name, here.get(name), there.get(name)) for name in names]
+    return changes
 
 
-def changes(before: Mapping[str, Any], after: Mapping[str, Any]) -> list[Change]:
-    """Return what differs between two results.json documents, settings first.
-
-    Numbers that agree to ``ROUNDING`` are equal: another order of summation is no change.
-    """
-    changed = [*_versions(before, after)]
-    for kind in ("inputs", "tolerances", "conditions", "effects", "results"):
-        changed += _of_mapping(kind, before.get(kind) or {}, after.get(kind) or {})
-    changed += _of_mapping("checks", _by_name(before.get("checks")), _by_name(after.get("checks")))
-    return [*changed, *_of_mapping("studies", before.get("studies") or {}, after.get("studies") or {})]
+def _of_run(document: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
+    """Return what a run found, by kind and name."""
+    checks = {check["name"]: {**check} for check in document.get("checks") or []}
+    for check in checks.values():
+        del check["name"]
+    kinds = ("inputs", "tolerances", "conditions", "effects", "results", "checks", "studies")
+    return {kind: checks if kind == "checks" else document.get(kind) or {} for kind in kinds}
 
 
-def changes_of_diagnoses(before: Mapping[str, Any], after: Mapping[str, Any]) -> list[Change]:
-    """Return what differs between two diagnosis.json documents: settings, data, verdict, causes, errors, gain."""
-    changed = [*_versions(before, after)]
-    one, other = _flat(before), _flat(after)
-    for kind in one:
-        changed += _of_mapping(kind, one[kind], other[kind])
-    return changed
-
-
-def _flat(document: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
+def _of_diagnosis(document: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     """Return what a diagnosis found as single values, by kind and name."""
     causes: dict[str, Any] = {}
     for cause in document.get("causes") or []:
@@ -118,22 +120,6 @@ def _flat(document: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
 
 def _parts(of_results: Mapping[str, Any], names: Sequence[str]) -> dict[str, Any]:
     return {f"{result}.{name}": numbers.get(name) for result, numbers in of_results.items() for name in names}
-
-
-def _versions(before: Mapping[str, Any], after: Mapping[str, Any]) -> Iterator[Change]:
-    for name in ("plugin", "kernel", "seed"):
-        if before.get(name) != after.get(name):
-            yield Change("settings", name, before.get(name), after.get(name))
-
-
-def _by_name(checks: Any) -> dict[str, Any]:
-    return {check["name"]: {key: value for key, value in check.items() if key != "name"} for check in checks or []}
-
-
-def _of_mapping(kind: str, before: Mapping[str, Any], after: Mapping[str, Any]) -> Iterator[Change]:
-    for name in dict.fromkeys([*before, *after]):
-        if not same(before.get(name), after.get(name)):
-            yield Change(kind, name, before.get(name), after.get(name))
 
 
 def same(one: Any, other: Any) -> bool:
@@ -163,23 +149,18 @@ LONGEST = 60
 ABSENT = "-"
 MANY_TIMES = 10.0
 """From here on a growth is said as a factor."""
+STATES = {"proposed": "not as stated", "undecided": "undecided", "fails": "fails"}
 LEAST = 1e-9
 """A smaller share is more than rounding, and no more than that is said of it."""
 
 
 def words_of(change: Change) -> tuple[str, str, str, str, str]:
     """Say what changed: kind, name, before, after, and by how much."""
-    before, after = map(_value, pieces_of(change))
+    pieces = (change.before, change.after)
+    before, after = map(_value, pieces)
     if change.kind == "studies":
-        before, after = (
-            "" if _is_study(change) else ABSENT if piece is None else "there" for piece in pieces_of(change)
-        )
+        before, after = ("" if None not in pieces else ABSENT if piece is None else "there" for piece in pieces)
     return change.kind, one_line(change.name), before, after, amount_of(change)
-
-
-def pieces_of(change: Change) -> tuple[Any, Any]:
-    """Return what stood before and after."""
-    return change.before, change.after
 
 
 def amount_of(change: Change) -> str:
@@ -188,19 +169,11 @@ def amount_of(change: Change) -> str:
         return "new"
     if change.after is None:
         return "gone"
-    if _is_study(change):
-        count = differing(change.before, change.after)
-        return f"{count} {'value differs' if count == 1 else 'values differ'} (see results.json)"
-    parts = [_flip(change), _moved(change), _series(change), _limit(change), _scatter(change), _interval(change)]
+    if change.kind == "studies":
+        return f"{counted(differing(change.before, change.after), 'value differs', 'values differ')} (see results.json)"
+    flip = f"now {'passes' if change.after['passed'] else SHORT[change.after['state']]}" if change.flipped else ""
+    parts = [flip, _moved(change), _series(change), _limit(change), _scatter(change), _interval(change)]
     return ", ".join(part for part in parts if part)
-
-
-def _is_study(change: Change) -> bool:
-    return change.kind == "studies" and change.before is not None and change.after is not None
-
-
-def _flip(change: Change) -> str:
-    return f"now {'passes' if change.after['passed'] else SHORT[change.after['state']]}" if change.flipped else ""
 
 
 def _moved(change: Change) -> str:
@@ -208,13 +181,13 @@ def _moved(change: Change) -> str:
     if before is None or after is None or before == after:
         return ""
     unit = str(change.before.get("unit") or "")
-    if share is None or unit in LEVELS or _is_count(change):
-        return _difference(before, after, unit) if unit == (change.after.get("unit") or "") else "in another unit"
-    return growth(share)
-
-
-def _is_count(change: Change) -> bool:
-    return all(isinstance(piece.get("value"), int) for piece in (change.before, change.after))
+    is_count = all(isinstance(piece["value"], int) for piece in (change.before, change.after))
+    if share is not None and unit not in LEVELS and not is_count:
+        return growth(share)
+    if unit != (change.after.get("unit") or ""):
+        return "in another unit"
+    step = f"{format_number(after - before, 3)} {unit_text(difference_unit(unit))}".strip()
+    return f"+{step}" if after > before else step
 
 
 def _series(change: Change) -> str:
@@ -235,11 +208,6 @@ def growth(share: float) -> str:
     if share >= MANY_TIMES - 1:
         return f"x {format_number(share + 1, 3)}"
     return f"{'+' if share > 0 else ''}{format_number(100 * share, 3)} %"
-
-
-def _difference(before: float, after: float, unit: str) -> str:
-    step = format_number(after - before, 3)
-    return f"{'+' if after > before else ''}{step} {unit_text(difference_unit(unit))}".strip()
 
 
 def _limit(change: Change) -> str:
@@ -285,17 +253,13 @@ def _value(value: Any) -> str:
         number = value["value"]
         is_number = isinstance(number, (int, float)) and not isinstance(number, bool)
         said = f"{format_number(number, 8) if is_number else number} {value.get('unit') or ''}".strip()
-        return _short(_with_state(said, value.get("state", "passes")))
+        state = STATES.get(value.get("state", ""))
+        return _short(f"{said} ({state})" if state else said)
     if isinstance(value, dict) and {"name", "version", "model"} <= value.keys():
         return _short(f"{value['model']} {value['version']}")
     if isinstance(value, dict) and all(isinstance(member, dict) for member in value.values()):
         return _short(", ".join(f"{name} = {_value(member)}" for name, member in value.items()), 2 * LONGEST)
     return _short(str(value))
-
-
-def _with_state(said: str, state: str) -> str:
-    words = {"proposed": "not as stated", "undecided": "undecided", "fails": "fails"}
-    return f"{said} ({words[state]})" if state in words else said
 
 
 def _short(text: str, longest: int = LONGEST) -> str:

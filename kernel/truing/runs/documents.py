@@ -42,7 +42,7 @@ def results_document(
         "seed": provenance.seed,
         "inputs": {name: _input_value(setup, model.input_fields[name], value) for name, value in inputs.items()},
         "tolerances": _tolerances(setup),
-        "conditions": {name: _value(value, setup.print_unit(name)) for name, value in setup.conditions.items()},
+        "conditions": _values(setup, setup.conditions),
         "effects": {active.effect.name: _effect_values(active) for active in setup.effects},
         "results": {name: _result(calculation, name) for name in model.result_fields if name in calculation.answers},
         "verdict": calculation.verdict if cases is None else cases.verdict,
@@ -52,23 +52,20 @@ def results_document(
         "failed": [{"row": int(row), "reason": reason} for row, reason in calculation.failed],
         "added": [{"what": what, "plugin": plugin, "version": version} for what, plugin, version in provenance.added],
         "warnings": list(calculation.warnings),
-        **({} if cases is None else {"rows": _rows(cases), "cases": _cases(calculation, cases)}),
+        **({} if cases is None else _cases(setup, cases)),
     }
 
 
 def _check(check: Check) -> dict[str, Any]:
+    numbers = {name: clean(getattr(check, name)) for name in ("name", "value", "limit", "unit", "margin")}
     return {
-        "name": check.name,
-        "value": _number(check.value),
-        "limit": _number(check.limit),
-        "unit": check.unit,
-        "margin": _number(check.margin),
+        **numbers,
         "compared": check.compared or check.name,
         "relation": check.relation,
         "state": check.state,
         "passed": bool(check.passed),
         "undecided": check.undecided,
-        "proposed": None if check.proposed is None else _number(check.proposed.value),
+        "proposed": None if check.proposed is None else clean(check.proposed.value),
     }
 
 
@@ -80,14 +77,9 @@ def _proposal(proposal: Proposal | None) -> dict[str, Any] | None:
     return {"study": proposal.study, "what": proposal.what, "changes": changes}
 
 
-def _rows(cases: CasesTable) -> dict[str, Any]:
-    """Return what became of every row of the file of cases; its folder is no part of the results."""
-    return {"file": PurePath(cases.read.file.replace("\\", "/")).name, **cases.count.as_json()}
-
-
-def _cases(calculation: Calculation, cases: CasesTable) -> list[dict[str, Any]]:
-    """Return every case in the order of the file; one is governing."""
-    setup = calculation.setup
+def _cases(setup: Setup, cases: CasesTable) -> dict[str, Any]:
+    """Return what became of every row of the file of cases, whose folder is no part of it, and every case in order."""
+    rows = {"file": PurePath(cases.read.file.replace("\\", "/")).name, **cases.count.as_json()}
     listed = []
     for index, case in enumerate(cases.cases):
         single = {name: value for name, value in case.answers.items() if not getattr(value, "ndim", 0)}
@@ -96,32 +88,22 @@ def _cases(calculation: Calculation, cases: CasesTable) -> list[dict[str, Any]]:
                 "row": case.row,
                 "name": case.name,
                 "governing": index == cases.governing,
-                "values": {name: _case_value(setup, name, value) for name, value in case.values.items()},
-                "results": {
-                    name: _known(value, setup.print_unit(name), case.absent.get(name)) for name, value in single.items()
-                },
+                "values": _values(setup, case.values),
+                "results": _values(setup, single, case.absent),
                 "verdict": case.verdict,
                 "proposal": _proposal(case.decided.proposal),
                 "checks": [_check(check) for check in case.checks],
                 "failed": case.reason,
             }
         )
-    return listed
-
-
-def _case_value(setup: Setup, name: str, value: Any) -> dict[str, Any]:
-    if isinstance(value, (str, bool)):
-        return {"value": value, "unit": ""}
-    return _value(value, setup.print_unit(name))
+    return {"rows": rows, "cases": listed}
 
 
 def large_arrays(calculation: Calculation) -> dict[str, Any]:
     """Return the results that are too large for results.json, in the unit each is printed in."""
-    arrays = {}
-    for name, value in calculation.answers.items():
-        if np.size(value) > LARGE:
-            arrays[name] = from_si(np.asarray(value, dtype=float), calculation.setup.print_unit(name))
-    return arrays
+    large = {name: value for name, value in calculation.answers.items() if np.size(value) > LARGE}
+    unit_of = calculation.setup.print_unit
+    return {name: from_si(np.asarray(value, dtype=float), unit_of(name)) for name, value in large.items()}
 
 
 def clean(value: Any) -> Any:
@@ -133,16 +115,21 @@ def clean(value: Any) -> Any:
     if isinstance(value, (list, tuple, set, frozenset)):
         return [clean(one) for one in (sorted(value) if isinstance(value, (set, frozenset)) else value)]
     if isinstance(value, float):
-        return _number(value)
+        return value if math.isfinite(value) else None
     return value if value is None or isinstance(value, (bool, int, str)) else str(value)
 
 
-def _number(value: Any) -> float | int | None:
-    plain = value.item() if hasattr(value, "item") else value
-    if plain is None or isinstance(plain, int):
-        return plain
-    number = float(plain)
-    return number if math.isfinite(number) else None
+def _values(
+    setup: Setup, values: Mapping[str, Any], absent: Mapping[str, str] | None = None
+) -> dict[str, dict[str, Any]]:
+    """Return values in the units they are printed in; words have none, and what does not exist has its reason."""
+    said = {}
+    for name, value in values.items():
+        is_word = isinstance(value, (str, bool))
+        said[name] = {"value": value, "unit": ""} if is_word else _value(value, setup.print_unit(name))
+        if absent and absent.get(name):
+            said[name]["reason"] = absent[name]
+    return said
 
 
 def _value(value: Any, unit: str) -> dict[str, Any]:
@@ -169,7 +156,7 @@ def _tolerances(setup: Setup) -> dict[str, Any]:
         for target, distribution in scattering.get(name, {}).items():
             unit = setup.print_unit(target)
             sd = distribution.sd / unit_factor(difference_unit(unit))
-            on[target] = {"mean": _number(from_si(distribution.mean, unit)), "sd": _number(sd), "unit": unit}
+            on[target] = {"mean": clean(from_si(distribution.mean, unit)), "sd": clean(sd), "unit": unit}
         said[name] = {"spread": setup.spread_of(name).text if on else "off", "on": on}
     return said
 
@@ -180,7 +167,7 @@ def _effect_values(active: SwitchedOn) -> dict[str, Any]:
         value = _value(active.values[unknown.name], unknown.unit)
         sd = active.sds.get(unknown.name)
         if sd is not None:
-            value["sd"] = _number(sd / unit_factor(difference_unit(unknown.unit)))
+            value["sd"] = clean(sd / unit_factor(difference_unit(unknown.unit)))
         said[unknown.name] = value
     return said
 
@@ -189,9 +176,5 @@ def _result(calculation: Calculation, name: str) -> dict[str, Any]:
     value, unit = calculation.answers[name], calculation.setup.print_unit(name)
     if np.size(value) > LARGE:
         return {"value": None, "unit": unit, "array": name, "shape": list(np.shape(value))}
-    return _known(value, unit, calculation.absent.get(name))
-
-
-def _known(value: Any, unit: str, absent: str | None) -> dict[str, Any]:
-    """Return a result, with the reason where it does not exist."""
-    return {**_value(value, unit), **({"reason": absent} if absent else {})}
+    (said,) = _values(calculation.setup, {name: value}, calculation.absent).values()
+    return said

@@ -2,28 +2,22 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
-from truing.diagnosis.result import Calibrated, Cause, DiagnosisResult, FittedUnknown, explanations_of
-from truing.formulas.symbols import printable
+from truing.diagnosis.result import Cause, DiagnosisResult, FittedUnknown, explanations_of
 from truing.numbers import format_number
 from truing.runs.diagnosis_document import file_labels
-from truing.runs.inputs_written import complete_inputs
+from truing.runs.inputs_written import comment_lines, complete_inputs
 from truing.setup import Setup
 from truing.units import from_si
-
-WIDTH = 116
 
 
 def extended_setup(diagnosis: DiagnosisResult) -> Setup | None:
     """Return the setup that the diagnosis leaves: causes on, inputs calibrated; None where neither is."""
-    if diagnosis.extended is not None:
+    if diagnosis.extended is not None or not diagnosis.calibrated:
         return diagnosis.extended
-    if not diagnosis.calibrated:
-        return None
     fitted = {calibrated.name: calibrated.value for calibrated in diagnosis.calibrated}
     return replace(diagnosis.setup, calibrated={**diagnosis.setup.calibrated, **fitted})
 
@@ -36,7 +30,7 @@ def extended_text(diagnosis: DiagnosisResult, folder: Path | None = None) -> str
     setup = extended_setup(diagnosis)
     if setup is None:
         return ""
-    lines = [*_comment(_head(diagnosis))]
+    lines = _comment(_head(diagnosis))
     for line in complete_inputs(setup, folder).splitlines():
         if line.startswith("["):
             lines += _comment(_of_section(line.strip("[]"), diagnosis))
@@ -44,10 +38,8 @@ def extended_text(diagnosis: DiagnosisResult, folder: Path | None = None) -> str
     return "\n".join(lines) + "\n"
 
 
-def _comment(sentences: Iterator[str]) -> Iterator[str]:
-    """Write sentences as comments, each beginning a line of its own."""
-    for sentence in sentences:
-        yield from (f"# {line}" for line in textwrap.wrap(printable(sentence), WIDTH))
+def _comment(sentences: Iterator[str]) -> list[str]:
+    return [line for sentence in sentences for line in comment_lines(sentence)]
 
 
 def _head(diagnosis: DiagnosisResult) -> Iterator[str]:
@@ -78,16 +70,13 @@ def _of_section(name: str, diagnosis: DiagnosisResult) -> Iterator[str]:
             "Inputs as fitted to this one machine, within their tolerances. table and diagnose use them; run and its "
             "studies draw machines from the tolerances and do not."
         )
-        yield from map(_moved, diagnosis.calibrated)
+        for moved in diagnosis.calibrated:
+            yield f"{moved.name}: moved by {moved.of_its_sd:+.2f} of its standard deviation."
     if name == "conditions":
         yield "Conditions as they were measured; what is drawn or changed is your choice."
     for cause in diagnosis.causes:
         if name == f"effects.{cause.effect}":
             yield from _of_cause(cause, diagnosis)
-
-
-def _moved(calibrated: Calibrated) -> str:
-    return f"{calibrated.name}: moved by {calibrated.of_its_sd:+.2f} of its standard deviation."
 
 
 def _of_cause(cause: Cause, diagnosis: DiagnosisResult) -> Iterator[str]:
@@ -101,15 +90,12 @@ def _of_cause(cause: Cause, diagnosis: DiagnosisResult) -> Iterator[str]:
             continue
         yield f"{unknown.name}: fitted for each file alone; their mean stands here, write that of the file you mean."
         for file, (value, low, high) in unknown.per_file.items():
-            yield f"{labels.get(file, file)}: {_number(value, unknown)}, {_interval(low, high, unknown)}."
+            fitted = format_number(from_si(value, unknown.unit))
+            yield f"{labels.get(file, file)}: {fitted}, {_interval(low, high, unknown)}."
     if cause.same_as:
         yield f"The same curve on this data: {', '.join(cause.same_as)}."
 
 
-def _number(value: float, unknown: FittedUnknown) -> str:
-    return format_number(from_si(value, unknown.unit))
-
-
 def _interval(low: float | None, high: float | None, unknown: FittedUnknown) -> str:
-    ends = ("open" if end is None else _number(end, unknown) for end in (low, high))
+    ends = ("open" if end is None else format_number(from_si(end, unknown.unit)) for end in (low, high))
     return f"95 % interval from {' to '.join(ends)} {unknown.unit}".rstrip()

@@ -115,12 +115,11 @@ def npz_bytes(arrays: Mapping[str, Any]) -> bytes:
 
 def is_ours(folder: Path, kind: FolderKind) -> bool:
     """Tell whether a folder is a run, or a diagnosis, of ours: its document of our schema, and run.json."""
-    name, schema = DOCUMENTS[kind]
     try:
-        document = json.loads((folder / name).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+        _loaded(folder, kind)
+    except UnknownPluginError:
         return False
-    return isinstance(document, dict) and document.get("schema") == schema and (folder / "run.json").is_file()
+    return (folder / "run.json").is_file()
 
 
 def demand_place(folder: Path, kind: FolderKind = "run") -> None:
@@ -138,7 +137,9 @@ def demand_place(folder: Path, kind: FolderKind = "run") -> None:
 def _demand_place(folder: Path, kind: FolderKind) -> None:
     if folder.is_dir():
         if not is_ours(folder, kind):
-            what = _what_is_there(folder, kind)
+            other: FolderKind = "diagnosis" if kind == "run" else "run"
+            what = f"an existing folder but no {kind} of ours" if any(folder.iterdir()) else "an existing empty folder"
+            what = f"an existing {other} of ours but no {kind}" if is_ours(folder, other) else what
             raise OutputError(f"{folder}: is {what}, so it is left alone; name another folder or remove this one")
     elif folder.is_symlink() and not folder.exists():
         raise OutputError(f"{folder}: is a link that leads nowhere; name another place or remove this one")
@@ -151,13 +152,6 @@ def _demand_place(folder: Path, kind: FolderKind) -> None:
             return
         if parent.exists():
             raise OutputError(f"{folder}: {parent} is a file, so there can be no folder below it; name another place")
-
-
-def _what_is_there(folder: Path, kind: FolderKind) -> str:
-    other: FolderKind = "diagnosis" if kind == "run" else "run"
-    if is_ours(folder, other):
-        return f"an existing {other} of ours but no {kind}"
-    return f"an existing folder but no {kind} of ours" if any(folder.iterdir()) else "an existing empty folder"
 
 
 def write_folder(folder: Path, files: Mapping[str, str | bytes], kind: FolderKind = "run") -> None:
@@ -238,12 +232,13 @@ def write_diagnosis(
     replaced whole if it is a diagnosis of ours. Raises OutputError where it is not, or where nothing can be written.
     """
     document = diagnosis_document(diagnosis)
-    data = {"data": dict(diagnosis.records.digests)}
     extension = {"extended.toml": extended_text(diagnosis, folder), "new_effect.py": new_effect_source(diagnosis)}
     files = {"arrays.npz": npz_bytes(curve_arrays(diagnosis)), **sheets}
     files |= {name: text for name, text in extension.items() if text}
-    setup, run_info = diagnosis.setup, {**run_info, **data}
-    write_outcome(folder, "diagnosis", setup, document, provenance=provenance, run_info=run_info, files=files)
+    write_outcome(
+        folder, "diagnosis", diagnosis.setup, document, provenance=provenance, files=files,
+        run_info={**run_info, "data": dict(diagnosis.records.digests)},
+    )  # fmt: skip
     return document
 
 

@@ -5,16 +5,18 @@ from __future__ import annotations
 import json
 import os
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
+from pydantic.dataclasses import dataclass as validated
+
 from truing.errors import UnknownPluginError
 from truing.runs.folder import DOCUMENTS, FolderKind
 from truing.runs.partial import HEADER
-from truing.studies.checks import EXIT_CODES, HEADLINES, State
+from truing.studies.checks import HEADLINES, State
 from truing.studies.verdicts import worst
 
 DEEPEST = 20
@@ -27,7 +29,7 @@ VERDICTS = {
 }  # fmt: skip
 
 
-@dataclass(frozen=True, kw_only=True)
+@validated(frozen=True, kw_only=True, config={"strict": True})
 class ListedNumber:
     """One number of an entry: a check with its limit and margin, a result, or the size of a cause."""
 
@@ -100,16 +102,10 @@ def list_folder(folder: Path) -> Listing:
     if not folder.is_dir():
         what = "is a file; name the folder that holds the runs" if folder.exists() else "no such folder"
         raise UnknownPluginError(f"{folder}: {what}")
-    entries: list[FolderEntry] = []
-    others: list[Other] = []
-    for listed in _walk(folder, folder, 0):
-        if isinstance(listed, FolderEntry):
-            entries.append(listed)
-        else:
-            others.append(listed)
-    entries.sort(key=lambda entry: entry.name)
-    entries.sort(key=lambda entry: -(entry.stamp or 0.0))
-    return Listing(str(folder), tuple(entries), tuple(sorted(others, key=lambda other: other.name)))
+    listed = sorted(_walk(folder, folder, 0), key=lambda entry: entry.name)
+    entries = [entry for entry in listed if isinstance(entry, FolderEntry)]
+    others = [entry for entry in listed if isinstance(entry, Other)]
+    return Listing(str(folder), tuple(sorted(entries, key=lambda entry: -(entry.stamp or 0.0))), tuple(others))
 
 
 def _walk(root: Path, path: Path, depth: int) -> Iterator[FolderEntry | Other]:
@@ -130,11 +126,6 @@ def _walk(root: Path, path: Path, depth: int) -> Iterator[FolderEntry | Other]:
     if (path / HEADER).exists():
         yield Other(name, "finished batches of an interrupted run; calc run --resume takes them up")
         return
-    yield from _below(root, path, depth, inside=inside)
-
-
-def _below(root: Path, path: Path, depth: int, *, inside: Sequence[os.DirEntry[str]]) -> Iterator[FolderEntry | Other]:
-    name = path.relative_to(root).as_posix()
     folders = [child for child in inside if child.is_dir() and not child.name.startswith(".")]
     if depth >= DEEPEST and folders:
         yield Other(name, f"lies {DEEPEST} folders deep; what is below it was not looked at")
@@ -179,19 +170,27 @@ def _json(path: Path) -> dict[str, Any]:
 
 def _of_run(document: Mapping[str, Any], name: str) -> FolderEntry:
     cases = list(document.get("cases") or [])
-    checks = [_check(check) for each in (cases or [document]) for check in each["checks"]]
+    stated = [check for each in (cases or [document]) for check in each["checks"]]
+    checks = [  # an older run has no state
+        ListedNumber(**{"state": "passes" if check["passed"] else "fails", **check}) for check in stated
+    ]
     impossible = any(case.get("failed") is not None for case in cases)
     states = {check.name: check.state for check in checks if check.state not in {None, "passes"}}
     verdict = worst(check.state for check in checks if check.state is not None) if not impossible else "fails"
-    state = _state(document.get("verdict", verdict)) if checks or impossible else None
+    state: State | None = document.get("verdict", verdict) if checks or impossible else None
     concerned = ", ".join(name for name, of_one in states.items() if of_one == state)
     words = "no limits" if state is None else HEADLINES[state].lower()
     words += f": {concerned or 'a case'}" if state not in {None, "passes"} else ""
     failed = [check for check in checks if check.state != "passes"]
     ranked = sorted(checks, key=lambda one: float("-inf") if one.margin is None else one.margin)
+    first_results = (
+        ListedNumber(name=str(name), value=float(result["value"]), unit=str(result["unit"]))
+        for name, result in document["results"].items()
+        if isinstance(result["value"], (int, float)) and not isinstance(result["value"], bool)
+    )
     return FolderEntry(
         **_made_by(document, name, "run"), verdict=words, state=state, checks=len(checks), failed=len(failed),
-        cases=len(cases), findings=tuple(ranked) or tuple(_first_results(document)),
+        cases=len(cases), findings=tuple(ranked or first_results),
     )  # fmt: skip
 
 
@@ -200,39 +199,6 @@ def _made_by(document: Mapping[str, Any], name: str, kind: FolderKind) -> dict[s
     named = {"model": plugin["model"], "plugin": plugin["name"], "version": plugin["version"]}
     warnings = len(document.get("warnings") or [])
     return {"name": name, "kind": kind, "warnings": warnings, "head": {}} | {key: str(v) for key, v in named.items()}
-
-
-def _check(check: Mapping[str, Any]) -> ListedNumber:
-    return ListedNumber(
-        name=str(check["name"]),
-        value=_number(check["value"]),
-        unit=str(check["unit"]),
-        limit=_number(check["limit"]),
-        margin=_number(check["margin"]),
-        relation=str(check.get("relation", "")),
-        state=_state(check.get("state", "passes" if check["passed"] else "fails")),  # an older run has no state
-    )
-
-
-def _state(word: Any) -> State:
-    state: State = word
-    if state not in EXIT_CODES:
-        raise ValueError
-    return state
-
-
-def _number(value: Any) -> float | None:
-    if value is None:
-        return None
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise TypeError
-    return float(value)
-
-
-def _first_results(document: Mapping[str, Any]) -> Iterator[ListedNumber]:
-    for name, result in document["results"].items():
-        if isinstance(result["value"], (int, float)) and not isinstance(result["value"], bool):
-            yield ListedNumber(name=str(name), value=float(result["value"]), unit=str(result["unit"]))
 
 
 def _of_diagnosis(document: Mapping[str, Any], name: str) -> FolderEntry:
@@ -246,7 +212,7 @@ def _of_diagnosis(document: Mapping[str, Any], name: str) -> FolderEntry:
     if document.get("remainder") and document["verdict"] == "named":
         words += "; a remainder left"
     sizes = [
-        ListedNumber(name=f"{cause['effect']} {unknown}", value=_number(size["value"]), unit=str(size["unit"]))
+        ListedNumber(name=f"{cause['effect']} {unknown}", value=size["value"], unit=size["unit"])
         for cause in causes
         for unknown, size in cause["unknowns"].items()
     ]

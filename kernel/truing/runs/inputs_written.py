@@ -6,6 +6,7 @@ import hashlib
 import json
 import math
 import os
+import textwrap
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -19,6 +20,8 @@ from truing.inputs_file.study_options import options_of
 from truing.setup import Setup, SwitchedOn
 from truing.units import difference_unit, from_si, read_quantity, to_si, unit_factor
 from truing.units.names import PURE
+
+WIDTH = 116
 
 
 def input_hash(setup: Setup) -> str:
@@ -46,6 +49,11 @@ def complete_inputs(setup: Setup, folder: Path | None = None) -> str:
     return "\n".join(lines) + "\n"
 
 
+def comment_lines(sentence: str) -> list[str]:
+    """Write a sentence as comments, in an inputs file or in code."""
+    return [f"# {line}" for line in textwrap.wrap(printable(sentence), WIDTH)]
+
+
 def _sections(setup: Setup, folder: Path | None) -> Iterator[tuple[str, dict[str, Any]]]:
     """Yield every section of the inputs file with its entries as plain TOML values."""
     detail = {"detail": setup.sheet.detail} if setup.sheet.detail != "normal" else {}
@@ -57,7 +65,14 @@ def _sections(setup: Setup, folder: Path | None) -> Iterator[tuple[str, dict[str
     fields = setup.model.input_fields
     stated = {name: _input(setup, fields[name], value, folder) for name, value in inputs.items()}
     yield "inputs", {name: value for name, value in stated.items() if value is not None}
-    yield "tolerances", {name: text for name in setup.spreads if (text := _spread(setup, name))}
+    yield (
+        "tolerances",
+        {
+            name: spread.text
+            for name, spread in setup.spreads.items()
+            if name in setup.model.tolerances and spread.text and not isinstance(spread, (ByChoice, Drawn))
+        },
+    )
     yield "conditions", {name: exact(value, setup.unit_of(name)) for name, value in setup.conditions.items()}
     yield "calibrated", {name: exact(value, setup.unit_of(name)) for name, value in setup.calibrated.items()}
     for active in setup.effects:
@@ -66,8 +81,7 @@ def _sections(setup: Setup, folder: Path | None) -> Iterator[tuple[str, dict[str
     declared = {study.name: study for study in setup.model.studies}
     for study in setup.studies:
         yield f"studies.{study.name}", _options(study, declared.get(study.name))
-    diagnose = _of_diagnosis(setup)
-    if diagnose:
+    if diagnose := _of_diagnosis(setup):
         yield "studies.diagnose", diagnose
     yield "units", dict(setup.units)
 
@@ -148,14 +162,6 @@ def _seen_from(folder: Path, path: Path) -> str:
     except ValueError:
         relative = str(path.resolve())
     return relative.replace("\\", "/") if os.name == "nt" else relative
-
-
-def _spread(setup: Setup, name: str) -> str:
-    """Return a tolerance as a file writes it; nothing for one that follows a choice or is drawn by a function."""
-    spread = setup.spreads[name]
-    if isinstance(spread, (ByChoice, Drawn)) or name not in setup.model.tolerances:
-        return ""
-    return spread.text
 
 
 def _effect(active: SwitchedOn) -> dict[str, Any]:

@@ -10,7 +10,6 @@ from __future__ import annotations
 import ast
 import keyword
 import re
-import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite
@@ -20,6 +19,7 @@ from truing.declare.sources import Condition
 from truing.diagnosis.result import DiagnosisResult, Remainder, ShapeTerm
 from truing.formulas.symbols import printable
 from truing.runs.diagnosis_document import file_labels
+from truing.runs.inputs_written import comment_lines
 from truing.templating import rendered
 
 NAME = "remainder"
@@ -30,9 +30,9 @@ FUNCTIONS = frozenset({
 CONSTANTS = frozenset({"pi", "e"})
 TAKEN = frozenset({"np", "inputs", "results", "factor", "truing", "model", "replace", "Any", "Float", NAME})
 _NODES = (
-    ast.Expression, ast.BinOp, ast.UnaryOp, ast.Compare, ast.Call, ast.Attribute, ast.Name, ast.Constant, ast.Load,
-    ast.Add, ast.Sub, ast.Mult, ast.Div, ast.Pow, ast.Mod, ast.FloorDiv, ast.USub, ast.UAdd, ast.BitAnd, ast.BitOr,
-    ast.Invert, ast.Lt, ast.LtE, ast.Gt, ast.GtE, ast.Eq, ast.NotEq,
+    ast.Expression, ast.BinOp, ast.UnaryOp, ast.Compare, ast.Load, ast.Add, ast.Sub, ast.Mult, ast.Div, ast.Pow,
+    ast.Mod, ast.FloorDiv, ast.USub, ast.UAdd, ast.BitAnd, ast.BitOr, ast.Invert, ast.Lt, ast.LtE, ast.Gt, ast.GtE,
+    ast.Eq, ast.NotEq,
 )  # fmt: skip
 
 
@@ -86,7 +86,7 @@ def _sources(diagnosis: DiagnosisResult) -> Iterator[_Source]:
     taken = set(TAKEN)
     texts = [term.expression for terms in _terms(diagnosis).values() for term in terms]
     rest = sorted({*diagnosis.records.covariates, *model.input_fields, *model.conditions})
-    named = [name for name in rest if any(_names(name, text) for text in texts)]
+    named = [name for name in rest if any(_named(name).search(text) for text in texts)]
     for name in dict.fromkeys([*diagnosis.remainder.depends_on, *named]):
         code = code_name(name, taken)
         taken.add(code)
@@ -100,14 +100,15 @@ def _sources(diagnosis: DiagnosisResult) -> Iterator[_Source]:
             yield _Source(name, code, condition=model.conditions.get(name) or Condition(code, unit))
 
 
-def _names(name: str, text: str) -> bool:
-    """Tell whether an expression names a covariate."""
-    return re.search(rf"(?<![\w.]){re.escape(name)}(?!\w)", text) is not None
+def _named(name: str) -> re.Pattern[str]:
+    """Return the pattern of a covariate in an expression."""
+    return re.compile(rf"(?<![\w.]){re.escape(name)}(?!\w)")
 
 
 def code_name(name: str, taken: set[str] | frozenset[str] = TAKEN) -> str:
     """Return a name that can stand in code: the name itself if it can, otherwise the like of it, not taken yet."""
-    plain = re.sub(r"\W+", "_", name, flags=re.ASCII).strip("_").lower() if not _is_plain(name) else name
+    is_plain = name.isidentifier() and name.isascii() and not keyword.iskeyword(name)
+    plain = name if is_plain else re.sub(r"\W+", "_", name, flags=re.ASCII).strip("_").lower()
     plain = plain if plain and not plain[0].isdigit() else f"column_{plain}".rstrip("_")
     if keyword.iskeyword(plain) or plain in taken or plain.startswith("__"):
         plain = f"column_{plain.strip('_')}"
@@ -117,10 +118,6 @@ def code_name(name: str, taken: set[str] | frozenset[str] = TAKEN) -> str:
     return plain
 
 
-def _is_plain(name: str) -> bool:
-    return name.isidentifier() and name.isascii() and not keyword.iskeyword(name)
-
-
 def safe_expression(text: str, names: Mapping[str, str]) -> str | None:
     """Return an expression over covariates as code, or None where it is anything but arithmetic on them.
 
@@ -128,7 +125,7 @@ def safe_expression(text: str, names: Mapping[str, str]) -> str | None:
     """
     for name in sorted(names, key=len, reverse=True):
         if name != names[name]:
-            text = re.sub(rf"(?<![\w.]){re.escape(name)}(?!\w)", names[name], text)
+            text = _named(name).sub(names[name], text)
     try:
         tree = ast.parse(text.strip(), mode="eval")
     except (SyntaxError, ValueError, MemoryError, RecursionError):
@@ -139,22 +136,18 @@ def safe_expression(text: str, names: Mapping[str, str]) -> str | None:
 
 
 def _is_harmless(node: ast.AST, names: set[str], called: Sequence[ast.expr]) -> bool:
-    if not isinstance(node, _NODES):
-        return False
-    if isinstance(node, ast.Constant):
-        return isinstance(node.value, (int, float)) and not isinstance(node.value, bool)
-    if isinstance(node, ast.Name):
-        return node.id in names or node.id == "np"
-    if isinstance(node, ast.Attribute):
-        is_numpy = isinstance(node.value, ast.Name) and node.value.id == "np"
-        return is_numpy and node.attr in (FUNCTIONS if node in called else CONSTANTS)
-    if isinstance(node, ast.Call):
-        return isinstance(node.func, ast.Attribute) and not node.keywords
-    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow):
-        exponent = node.right.operand if isinstance(node.right, ast.UnaryOp) else node.right
-        power = exponent.value if isinstance(exponent, ast.Constant) else None
-        return isinstance(power, (int, float)) and abs(power) <= 64
-    return True
+    match node:
+        case ast.Constant(value=number):
+            return type(number) in {int, float}
+        case ast.Name(id=name):
+            return name in names or name == "np"
+        case ast.Attribute(value=ast.Name(id="np"), attr=name):
+            return name in (FUNCTIONS if node in called else CONSTANTS)
+        case ast.Call(func=ast.Attribute(), keywords=[]):
+            return True
+        case ast.BinOp(op=ast.Pow(), right=ast.Constant(value=power) | ast.UnaryOp(operand=ast.Constant(value=power))):
+            return isinstance(power, (int, float)) and abs(power) <= 64
+    return isinstance(node, _NODES) and not (isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow))
 
 
 def _quoted(text: str) -> str:
@@ -163,17 +156,13 @@ def _quoted(text: str) -> str:
     return f'"{inner}"'
 
 
-def _comment(text: str) -> list[str]:
-    return [f"# {line}" for line in textwrap.wrap(printable(text), 116)]
-
-
 def _about(diagnosis: DiagnosisResult, remainder: Remainder) -> list[str]:
     """Say where the shape comes from, as comments."""
     files = ", ".join(file_labels(diagnosis.records.files))
     over, seen_in = ", ".join(remainder.depends_on), ", ".join(remainder.results)
     return [
-        *_comment(f"From {files}, {len(diagnosis.records)} rows, model {diagnosis.setup.model.name}."),
-        *_comment(f"Shape: {remainder.shape}; over {over}; seen in {seen_in}."),
+        *comment_lines(f"From {files}, {len(diagnosis.records)} rows, model {diagnosis.setup.model.name}."),
+        *comment_lines(f"Shape: {remainder.shape}; over {over}; seen in {seen_in}."),
     ]
 
 
@@ -181,14 +170,9 @@ def _imports(diagnosis: DiagnosisResult) -> list[str]:
     needed = {"Effect", "Float", "Model", "Unknown", "hookimpl"}
     if any(source.condition is not None for source in _sources(diagnosis)):
         needed.add("Condition")
-    if any(_is_curve(diagnosis, result) for result in _terms(diagnosis)):
+    if any(diagnosis.setup.model.own_result_fields[result].along for result in _terms(diagnosis)):
         needed.add("column")
     return sorted(needed, key=lambda name: (name.islower(), name))
-
-
-def _is_curve(diagnosis: DiagnosisResult, result: str) -> bool:
-    """Tell whether a result runs along an axis, so that one row holds many values."""
-    return bool(diagnosis.setup.model.own_result_fields[result].along)
 
 
 def _conditions(sources: Sequence[_Source]) -> list[str]:
@@ -198,7 +182,9 @@ def _conditions(sources: Sequence[_Source]) -> list[str]:
         if source.condition is None:
             continue
         if source.condition.name != source.name:
-            lines += _comment(f"The column {source.name!r} of the data must be called {source.code} to be read here.")
+            lines += comment_lines(
+                f"The column {source.name!r} of the data must be called {source.code} to be read here."
+            )
         lines.append(f"{source.code.upper()} = {_condition(source.condition)}")
     return lines
 
@@ -217,29 +203,25 @@ def _shape(
 ) -> dict[str, Any]:
     """Say the fitted shape of one result as code: a function of its covariates, all SI, and how it is added."""
     names = {source.name: source.code for source in sources}
+    field = diagnosis.setup.model.own_result_fields[result]
+    arguments = [source.path or source.code for source in sources]
+    if field.along:  # beside a result along an axis a value per row is a column
+        arguments = [each if each.startswith("results.") else f"column({each})" for each in arguments]
     written, left_out = [], []
     for term in terms:
         expression = safe_expression(term.expression, names)
         coefficient = float(term.coefficient)
         if expression is None or not isfinite(coefficient):
-            left_out += _comment(f"A term is left out, it is no arithmetic on covariates: {term.expression!r}")
+            left_out += comment_lines(f"A term is left out, it is no arithmetic on covariates: {term.expression!r}")
         else:
             written.append(f"({coefficient!r}) * ({expression})")
     return {
         "code": code_name(result),
         "terms": written,
         "left_out": left_out,
-        "arguments": ", ".join(_argument(diagnosis, result, source) for source in sources),
-        "replaced": _replaced(diagnosis.setup.model.own_result_fields[result].path),
+        "arguments": ", ".join(arguments),
+        "replaced": _replaced(field.path),
     }
-
-
-def _argument(diagnosis: DiagnosisResult, result: str, source: _Source) -> str:
-    """Write one value handed to a shape; beside a result along an axis a value per row is a column."""
-    value = source.path or source.code
-    if _is_curve(diagnosis, result) and not value.startswith("results."):
-        return f"column({value})"
-    return value
 
 
 def _replaced(path: Sequence[str]) -> str:

@@ -7,7 +7,7 @@ import os
 import shutil
 import sys
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import IO, Any
 
@@ -111,35 +111,25 @@ def kept_batches(folder: Path, identity: Mapping[str, Any]) -> Iterator[BatchLog
 def _opened(batch_folder: Path, identity: Mapping[str, Any]) -> tuple[IO[bytes], BatchLog]:
     """Take hold of the folder for this process alone; the system lets go of it however the process ends."""
     batch_folder.mkdir(parents=True, exist_ok=True)
-    _demand_ours(batch_folder)
-    lock = open(batch_folder / LOCK, "a+b")  # noqa: SIM115
-    try:
+    strange = sorted(path.name for path in batch_folder.iterdir() if path.name not in OURS)
+    if strange:
+        raise OutputError(f"{batch_folder}: holds '{strange[0]}', so it is none of ours; name another --output")
+    with ExitStack() as closing:
+        lock = closing.enter_context(open(batch_folder / LOCK, "a+b"))
         try:
-            _lock(lock)
+            if os.name == "nt":
+                lock.seek(0)
+                msvcrt.locking(lock.fileno(), msvcrt.LK_NBLCK, 1)  # type: ignore[attr-defined,unused-ignore]
+            else:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
             raise OutputError(
                 f"{batch_folder}: is in use by another run; wait for it, or name another --output"
             ) from None
         _demand_same(batch_folder, identity)
-        return lock, BatchLog(batch_folder / BATCHES)
-    except BaseException:
-        lock.close()
-        raise
-
-
-def _lock(file: IO[bytes]) -> None:
-    if os.name == "nt":
-        file.seek(0)
-        msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)  # type: ignore[attr-defined,unused-ignore]
-    else:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-
-
-def _demand_ours(batch_folder: Path) -> None:
-    """Refuse a folder of that name that is somebody else's."""
-    strange = sorted(path.name for path in batch_folder.iterdir() if path.name not in OURS)
-    if strange:
-        raise OutputError(f"{batch_folder}: holds '{strange[0]}', so it is none of ours; name another --output")
+        log = BatchLog(batch_folder / BATCHES)
+        closing.pop_all()
+    return lock, log
 
 
 def _demand_same(batch_folder: Path, identity: Mapping[str, Any]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from math import inf
 from typing import Any
 
 from truing.declare.model import Model
@@ -16,7 +17,7 @@ SpreadsheetRow = dict[str, Any]
 
 def spreadsheets(document: Mapping[str, Any], model: Model[Any, Any]) -> dict[str, str]:
     """Return results.csv, every number of results.json with its unit, and cases.csv where there are cases."""
-    rows = [*_single(document, model), *_spread_out(document, model)]
+    rows = [*_single(document, model), *_spread_out(document)]
     files = {"results.csv": table_text(HEADERS, [[row.get(name) for row in rows] for name in HEADERS], form=EXCEL)}
     if "cases" in document:
         files["cases.csv"] = _cases(document["cases"])
@@ -25,11 +26,13 @@ def spreadsheets(document: Mapping[str, Any], model: Model[Any, Any]) -> dict[st
 
 def _single(document: Mapping[str, Any], model: Model[Any, Any]) -> Iterator[SpreadsheetRow]:
     """Give what is one number, or one word: results, checks, inputs, and what acts on them."""
-    yield from _named("result", document["results"], _notes(model))
+    fields = model.input_fields | model.result_fields
+    notes = {name: printable(field.spec.note) for name, field in fields.items()}
+    yield from _named("result", document["results"], notes)
     for check in document["checks"]:
         said = {name: check[name] for name in ("name", "value", "unit", "limit", "margin")}
         yield {"part": "check", **said, "verdict": SHORT[check["state"]], "note": check["compared"]}
-    yield from _named("input", document["inputs"], _notes(model))
+    yield from _named("input", document["inputs"], notes)
     for name, tolerance in document["tolerances"].items():
         for target, distribution in tolerance["on"].items():
             for part in ("mean", "sd"):
@@ -45,10 +48,6 @@ def _single(document: Mapping[str, Any], model: Model[Any, Any]) -> Iterator[Spr
     yield {"part": "run", "name": "seed", "value": document["seed"]}
 
 
-def _notes(model: Model[Any, Any]) -> dict[str, str]:
-    return {name: printable(field.spec.note) for name, field in (model.input_fields | model.result_fields).items()}
-
-
 def _named(part: str, items: Mapping[str, Any], notes: Mapping[str, str]) -> Iterator[SpreadsheetRow]:
     for name, quantity in items.items():
         if not isinstance(quantity["value"], (list, dict)):
@@ -56,7 +55,7 @@ def _named(part: str, items: Mapping[str, Any], notes: Mapping[str, str]) -> Ite
             yield {"part": part, "name": name, "value": quantity["value"], "unit": quantity["unit"], "note": note}
 
 
-def _spread_out(document: Mapping[str, Any], model: Model[Any, Any]) -> Iterator[SpreadsheetRow]:
+def _spread_out(document: Mapping[str, Any]) -> Iterator[SpreadsheetRow]:
     """Give what has many numbers, one a row: results and inputs along an axis, and what the studies say."""
     for part in ("result", "input"):
         for name, quantity in document[f"{part}s"].items():
@@ -81,39 +80,18 @@ def _leaves(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
 
 
 def _cases(cases: Sequence[Mapping[str, Any]]) -> str:
-    """Return the cases, one a row: what they change and what they answer, units in the header."""
+    """Return the cases, one a row: what they change and what they answer, units in the header; words have none."""
     columns: dict[str, list[Any]] = {"case": [], "row": []}
     for index, case in enumerate(cases):
-        cells = {
-            "case": case["name"],
-            "row": case["row"],
-            **_with_units(case["values"]),
-            **_with_units(case["results"]),
-        }
+        cells: dict[str, Any] = {"case": case["name"], "row": case["row"]}
+        for name, quantity in (*case["values"].items(), *case["results"].items()):
+            is_word = isinstance(quantity["value"], (str, bool))
+            cells[name if is_word else f"{name} [{quantity['unit'] or '1'}]"] = quantity["value"]
         margins = [check["margin"] for check in case["checks"] if check["state"] != "undecided"]
         if margins:
-            cells["margin [1]"] = min(margins, key=_order)
-        cells["verdict"] = _verdict(case)
+            cells["margin [1]"] = min(margins, key=lambda margin: -inf if margin is None else margin)
+        verdict = SHORT[case["verdict"]] + (", governing" if case["governing"] else "")
+        cells["verdict"] = f"failed: {case['failed']}" if case["failed"] else verdict
         for header in {**columns, **cells}:
             columns.setdefault(header, [None] * index).append(cells.get(header))
     return table_text(list(columns), list(columns.values()), form=EXCEL)
-
-
-def _with_units(items: Mapping[str, Any]) -> dict[str, Any]:
-    """Return values under headers with their units; words have none."""
-    words = {name for name, quantity in items.items() if isinstance(quantity["value"], (str, bool))}
-    headers = {
-        name: name if name in words else f"{name} [{quantity['unit'] or '1'}]" for name, quantity in items.items()
-    }
-    return {headers[name]: quantity["value"] for name, quantity in items.items()}
-
-
-def _order(margin: float | None) -> float:
-    return float("-inf") if margin is None else margin
-
-
-def _verdict(case: Mapping[str, Any]) -> str:
-    if case["failed"]:
-        return f"failed: {case['failed']}"
-    verdict = SHORT[case["verdict"]]
-    return f"{verdict}, governing" if case["governing"] else verdict

@@ -13,11 +13,10 @@ from typing import Any
 
 import numpy as np
 
-from truing.declare.checks import formula_scope
-from truing.declare.fields import InputField, ResultField
+from truing.declare.fields import Given, InputField, ResultField
 from truing.declare.goals import Vary
+from truing.declare.model import formula_scope
 from truing.declare.quantities import unread_goals, unread_units
-from truing.declare.specs import Given
 from truing.errors import DeclarationError, InputError, TruingError, UnitError
 from truing.evaluate import evaluate
 from truing.example_file import example_text
@@ -34,13 +33,9 @@ SAME = 1e-12
 
 def units_are_known(subject: Subject) -> None:
     """Every unit that is declared is one that Truing knows; history is in a unit of what it is made from."""
-    for unread in unread_units(subject.model):
-        fail(f"{subject.model.name}: {unread.sentence}")
-    _check_histories(subject)
-
-
-def _check_histories(subject: Subject) -> None:
     model = subject.model
+    for unread in unread_units(model):
+        fail(f"{model.name}: {unread.sentence}")
     units = {name: field.unit for name, field in model.input_fields.items()}
     units |= {name: condition.unit for name, condition in model.conditions.items()}
     for name, condition in model.conditions.items():
@@ -113,12 +108,14 @@ def inputs_survive_a_file(subject: Subject) -> None:
     for point in ({}, *subject.points(1)):
         setup = subject.at(point)
         stated = {name: value for name, value in _stated(subject, setup) if value is not None} | files
+        through_json = json.loads(json.dumps(stated, allow_nan=False))
         text = "[inputs]\n" + "".join(
-            f"{toml_key(name)} = {toml_value(value)}\n" for name, value in _through_json(stated).items()
+            f"{toml_key(name)} = {toml_value(value)}\n" for name, value in through_json.items()
         )
-
+        example = subject.model.example
         try:
-            back = setup_from_text(text, subject.offer, file="inputs.toml", folder=_folder(subject))
+            folder = example.parent if example is not None else Path()
+            back = setup_from_text(text, subject.offer, file="inputs.toml", folder=folder)
         except InputError as error:
             fail(f"{subject.model.name}: inputs do not survive a file: {error}")
         before, after = (subject.model.read_inputs(one.inputs) for one in (setup, back))
@@ -146,15 +143,6 @@ def _stated(subject: Subject, setup: Any) -> Iterator[tuple[str, Any]]:
         else:
             number = float(from_si(float(value), field.unit))
             yield name, None if math.isnan(number) else f"{number!r} {field.unit}".strip()
-
-
-def _through_json(stated: dict[str, Any]) -> dict[str, Any]:
-    back: dict[str, Any] = json.loads(json.dumps(stated, allow_nan=False))
-    return back
-
-
-def _folder(subject: Subject) -> Path:
-    return subject.model.example.parent if subject.model.example is not None else Path()
 
 
 def _same(one: Any, other: Any) -> bool:
@@ -216,7 +204,10 @@ def formulas_equal_the_function(subject: Subject) -> None:
             if np.isnan(result).any():  # it does not exist at this point, for a reason that the function states
                 continue
             expected = from_si(result, field.unit) if numeric and formula.left is None else result
-            fault = _difference(formula, _in_formula(formula, values, numeric, scope), expected)
+            meant = {name: np.asarray(values[scope[name].name], dtype=float) for name in formula.names}
+            units = {name: scope[name].unit for name in meant}
+            given = {name: from_si(value, units[name]) for name, value in meant.items()} if numeric else meant
+            fault = _difference(formula, given, expected)
             if fault:
                 fail(f"{subject.model.name}: the formula of '{field.name}' ({formula.text}) {fault}")
 
@@ -226,14 +217,6 @@ def _values(subject: Subject, point: Mapping[str, float]) -> dict[str, Any]:
     setup = subject.at(point)
     results = subject.model.read_results(evaluate(setup))
     return {**subject.model.read_inputs(setup.inputs), **results}
-
-
-def _in_formula(formula: Formula, values: Mapping[str, Any], numeric: bool, scope: Scope) -> dict[str, Any]:
-    given = {}
-    for name in formula.names:
-        value = np.asarray(values[scope[name].name], dtype=float)
-        given[name] = from_si(value, scope[name].unit) if numeric else value
-    return given
 
 
 def _difference(formula: Formula, given: Mapping[str, Any], expected: Any) -> str:

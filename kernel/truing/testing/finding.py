@@ -7,7 +7,7 @@ from typing import Any
 
 from truing.declare.model import Model
 from truing.declare.sources import Effect
-from truing.diagnosis.result import Cause, DiagnosisResult, VisibleSize, explanations_of
+from truing.diagnosis.result import Amount, Cause, DiagnosisResult, VisibleSize, explanations_of
 from truing.errors import UsageError
 from truing.report.diagnosis_words import cause_text, fitted_text, listed, settings_text
 from truing.testing.hiding import Hidden, hide
@@ -153,7 +153,8 @@ def _demand_gain(hidden: Hidden, within: float) -> None:
     __tracebackhide__ = True
     for result, noise in hidden.noise.items():
         if result not in hidden.answered.predicted:
-            fail(f"{_model(hidden)}: '{result}' was measured and is not used; {_notes(hidden)}")
+            notes = "; ".join(hidden.answered.diagnosis.records.notes) or "no reason is given"
+            fail(f"{_model(hidden)}: '{result}' was measured and is not used; {notes}")
         error = hidden.answered.error_of(result)
         if not error <= within * noise:
             unit = hidden.setup.print_unit(result)
@@ -163,10 +164,6 @@ def _demand_gain(hidden: Hidden, within: float) -> None:
                 f"{error / noise:.2f} times its noise ({sizes[1]}); {within:g} times was demanded: fit more "
                 "rows, or the curve is not what was hidden"
             )
-
-
-def _notes(hidden: Hidden) -> str:
-    return "; ".join(hidden.answered.diagnosis.records.notes) or "no reason is given"
 
 
 def _found(diagnosis: DiagnosisResult) -> str:
@@ -192,7 +189,9 @@ def advice_on(hidden: Hidden) -> str:
     missing = diagnosis.not_measured.get(name)
     if missing:
         return f"not measured: add {', '.join(missing)} to over"
-    seen = _seen(hidden)
+    known = {visible.name: visible for visible in diagnosis.seen}
+    names = (name, *(f"{name}.{unknown}" for unknown in hidden.truth))
+    seen = next((known[each] for each in names if each in known), None)
     if seen is not None and seen.smallest is None:
         return f"not excited: {_vary(hidden)}"
     if diagnosis.remainder is not None and not diagnosis.causes:
@@ -200,39 +199,27 @@ def advice_on(hidden: Hidden) -> str:
     rivals = [alternative for alternative in diagnosis.alternatives if name in alternative.causes]
     if rivals and diagnosis.causes:
         return f"cannot be told apart from '{diagnosis.causes[0].effect}': {_next(diagnosis)}"
-    if seen is not None:
-        return _too_small(hidden, seen, _size(hidden) / (seen.smallest.value if seen.smallest else 1.0))
+    if seen is not None and seen.smallest is not None:
+        return _too_small(hidden, seen, seen.smallest)
     return f"too small for this noise, or what was hidden is not its curve: hide more, or {_vary(hidden)}"
 
 
-def _seen(hidden: Hidden) -> VisibleSize | None:
-    """Return what the diagnosis says of how small the effect may be."""
-    known = {visible.name: visible for visible in hidden.answered.diagnosis.seen}
-    names = [hidden.effect, *(f"{hidden.effect}.{unknown}" for unknown in hidden.truth)]
-    return next((known[name] for name in names if name in known), None)
-
-
-def _too_small(hidden: Hidden, seen: VisibleSize, factor: float) -> str:
-    """Compare what was hidden with what can be seen; ``factor`` is how often it is that."""
-    assert seen.smallest is not None
-    smallest = quantity_text(seen.smallest.value, seen.smallest.unit)
+def _too_small(hidden: Hidden, seen: VisibleSize, least: Amount) -> str:
+    """Compare the first amplitude that was hidden with what can be seen."""
+    smallest = quantity_text(least.value, least.unit)
+    amplitudes = [unknown.name for unknown in _effect(hidden).unknowns if unknown.is_amplitude]
+    size = next((abs(hidden.truth[name]) for name in amplitudes if hidden.truth.get(name)), 0.0)
     if seen.sight == "hidden in the tolerances":
         return (
             f"hidden in the tolerances: what is left of it beside them is seen from {smallest} on; hide more, measure "
             "a result that they do not move, or vary more (over)"
         )
-    if factor < 1:
+    if size < least.value:
         return f"too small: it is seen from {smallest} on; hide more, measure more rows, or with less noise"
     return (
         f"to be seen from {smallest} on: try another seed; if it is never found, the curve that was hidden is not that "
         f"of '{hidden.effect}' (a sign, a unit), or {_vary(hidden)}"
     )
-
-
-def _size(hidden: Hidden) -> float:
-    """Return the first amplitude that was hidden."""
-    amplitudes = [unknown.name for unknown in _effect(hidden).unknowns if unknown.is_amplitude]
-    return next((abs(hidden.truth[name]) for name in amplitudes if hidden.truth.get(name)), 0.0)
 
 
 def _effect(hidden: Hidden) -> Effect[Any, Any]:

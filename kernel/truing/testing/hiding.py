@@ -6,10 +6,10 @@ import inspect
 import json
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from time import perf_counter
 from typing import Any, TypeAlias
 
@@ -31,10 +31,11 @@ from truing.evaluate import evaluate
 from truing.gauge import one_machine, read_by_gauge
 from truing.inputs_file import setup_from_settings, setup_from_text
 from truing.inputs_file.values import broken_bound
-from truing.kernel import Offer, Origin
-from truing.measurements import read_rows, table_text
+from truing.kernel import Offer
+from truing.measurements import TableText, read_rows, table_text
 from truing.measurements.table import WORDS, read_word
 from truing.runs.diagnosis_document import diagnosis_document
+from truing.runs.extension import extended_setup
 from truing.runs.inputs_written import complete_inputs
 from truing.setup import Setup, SwitchedOn
 from truing.studies.reading import read_range
@@ -72,50 +73,45 @@ def hide(
 
     Raises InputError with every fault of the call, a sentence each.
     """
-    return _hidden(_Wish(
-        effect, size, noise, measure, over, rows, runs, seed, by, settings or {}, machine, correlation,
-    ), model)  # fmt: skip
+    return _hidden(
+        effect, model, size=size, noise=noise, over=over, measure=measure, rows=rows, runs=runs, seed=seed, by=by,
+        settings=settings or {}, machine=machine, correlation=correlation,
+    )  # fmt: skip
 
 
-@dataclass(frozen=True)
-class _Wish:
-    """What was asked for."""
-
-    effect: str | None
-    size: Size | None
-    noise: Size | None
-    measure: str | Sequence[str] | None
-    over: Mapping[str, str | Sequence[Any]] | None
-    rows: int
-    runs: int
-    seed: int
-    by: Strange | None
-    settings: Mapping[str, str]
-    machine: int | None
-    correlation: float
-
-
-def _hidden(wish: _Wish, model: Model[Any, Any]) -> Hidden:
+def _hidden(
+    name: str | None, model: Model[Any, Any], *, size: Size | None, noise: Size | None,
+    over: Mapping[str, str | Sequence[Any]] | None, measure: str | Sequence[str] | None, rows: int, runs: int,
+    seed: int, by: Strange | None, settings: Mapping[str, str], machine: int | None, correlation: float,
+) -> Hidden:  # fmt: skip
     """Check everything that was asked for, then draw the record."""
     faults: list[str] = []
-    setup = _setup(model, wish.settings, faults)
-    effect = effect_of(model, wish.effect, faults)
-    noises = noise_of(setup, wish.noise, wish.measure, faults)
-    truth = truth_of(effect, wish.size, list(noises), faults)
-    check_by(wish.by, effect, model, faults)
-    _check_counts(wish, faults)
-    columns, wrong = columns_of(setup, effect, list(noises), wish.over)
+    setup = Subject(model).setup
+    if settings:
+        try:
+            setup = setup_from_settings(Subject(model).offer, settings)
+        except TruingError as error:
+            faults.append(str(error))
+    effect = effect_of(model, name, faults)
+    noises = noise_of(setup, noise, measure, faults)
+    truth = truth_of(effect, size, list(noises), faults)
+    check_by(by, effect, model, faults)
+    faults += [f"{what} is {count}; at least one" for what, count in {"rows": rows, "runs": runs}.items() if count < 1]
+    if not -1 < correlation < 1:
+        faults.append(f"correlation is {correlation:g}; it lies between -1 and 1")
+    columns, wrong = columns_of(setup, effect, list(noises), over)
     _raise(model, [*faults, *wrong])
-    design = RecordDesign(tuple(columns), wish.rows, wish.runs)
-    off = {} if wish.machine is None else _drawn(setup, wish.machine)
+    design = RecordDesign(tuple(columns), rows, runs)
+    drawn = {} if machine is None else scatter_of(setup).draw(machine, 0, 1)
+    off = {drawn_input: float(values[0]) for drawn_input, values in drawn.items()}
     known = {column.name: setup.nominal(column.name) for column in columns if column.name in model.known_conditions}
     setup = replace(setup, conditions={**setup.conditions, **known})
-    plan = _Plan(setup, wrong_machine(setup.changed(off), effect, truth, wish.by), noises, wish.correlation, wish.seed)
+    plan = _Plan(setup, wrong_machine(setup.changed(off), effect, truth, by), noises, correlation, seed)
     measured, _ = plan.recorded(design, 0)
-    held, left = plan.recorded(design if wish.runs > 1 or design.is_record else replace(design, rows=HELD_OUT_ROWS), 1)
+    held, left = plan.recorded(design if runs > 1 or design.is_record else replace(design, rows=HELD_OUT_ROWS), 1)
     return Hidden(
-        setup=setup, measured=measured, held_out=held, effect=wish.effect, truth=truth, machine=off, noise=left,
-        is_strange=effect is None and wish.by is not None,
+        setup=setup, measured=measured, held_out=held, effect=name, truth=truth, machine=off, noise=left,
+        is_strange=effect is None and by is not None,
     )  # fmt: skip
 
 
@@ -147,10 +143,8 @@ class _Plan:
 
     def _shown(self, columns: Mapping[str, Any]) -> Mapping[str, NDArray[np.float64]]:
         """Return what the gauges would show without noise, SI. Raises InputError where the model has no answer."""
-        with TemporaryDirectory() as folder:
-            file = Path(folder) / MEASURED
-            file.write_text(_csv(columns), encoding="utf-8")
-            rows = read_rows(file, offer_of(self.true), self.true)
+        table = TableText(MEASURED, _csv(columns))
+        rows = read_rows(table, offer_of(self.true), self.true)
         reading = read_by_gauge(self.true, rows, list(self.noises))
         if reading.failed.any():
             row, reason = next(iter(reading.reasons.items()))
@@ -175,29 +169,6 @@ def _correlated(rng: np.random.Generator, design: RecordDesign, correlation: flo
 def _raise(model: Model[Any, Any], faults: Sequence[str]) -> None:
     if faults:
         raise InputError([Fault(f"{model.name}: {sentence}") for sentence in faults])
-
-
-def _setup(model: Model[Any, Any], settings: Mapping[str, str], faults: list[str]) -> Setup:
-    subject = Subject(model)
-    if settings:
-        try:
-            return setup_from_settings(subject.offer, settings)
-        except TruingError as error:
-            faults.append(str(error))
-    return subject.setup
-
-
-def _check_counts(wish: _Wish, faults: list[str]) -> None:
-    for name, count in {"rows": wish.rows, "runs": wish.runs}.items():
-        if count < 1:
-            faults.append(f"{name} is {count}; at least one")
-    if not -1 < wish.correlation < 1:
-        faults.append(f"correlation is {wish.correlation:g}; it lies between -1 and 1")
-
-
-def _drawn(setup: Setup, seed: int) -> dict[str, float]:
-    """Draw a machine from the tolerances: its inputs in SI."""
-    return {name: float(values[0]) for name, values in scatter_of(setup).draw(seed, 0, 1).items()}
 
 
 # A record with what was hidden in it, and what a diagnosis answers to it
@@ -247,7 +218,15 @@ class Hidden:
     @cached_property
     def answered(self) -> Answered:
         """Diagnose the record, once, and predict the rows held out."""
-        return _answered(self)
+        records = records_of(self.setup, self.measured, MEASURED)
+        start = perf_counter()
+        diagnosis = diagnose(self.setup, records)
+        seconds = perf_counter() - start
+        document = json.loads(json.dumps(diagnosis_document(diagnosis)))
+        if not self.held_out:
+            return Answered(diagnosis, document, {}, {}, seconds)
+        judged = records_of(self.setup, self.held_out, HELD_OUT, with_unit_errors=False)
+        return Answered(diagnosis, document, judged.measured, predicted(diagnosis, self.setup, judged), seconds)
 
     def write(self, folder: Path) -> None:
         """Write inputs.toml, measured.csv and held_out.csv, to look at and to diagnose on the command line."""
@@ -278,35 +257,17 @@ def recorded(
 
 def offer_of(setup: Setup) -> Offer:
     """Return the model of a setup as the command line would offer it."""
-    name = setup.model.name
-    origin = setup.origin if setup.origin.name else Origin(name, "", "", "", f"entry:{name}")
-    return Offer(name, setup.model, origin)
-
-
-def _answered(hidden: Hidden) -> Answered:
-    records = records_of(hidden.setup, hidden.measured, MEASURED)
-    start = perf_counter()
-    diagnosis = diagnose(hidden.setup, records)
-    seconds = perf_counter() - start
-    document = json.loads(json.dumps(diagnosis_document(diagnosis)))
-    if not hidden.held_out:
-        return Answered(diagnosis, document, {}, {}, seconds)
-    judged = records_of(hidden.setup, hidden.held_out, HELD_OUT, with_unit_errors=False)
-    return Answered(diagnosis, document, judged.measured, predicted(diagnosis, hidden.setup, judged), seconds)
+    return Offer(setup.model.name, setup.model, setup.origin)
 
 
 def records_of(setup: Setup, text: str, name: str, *, with_unit_errors: bool = True) -> Records:
     """Read a record as the command line does; without a search for wrong units where nobody is told of them."""
-    with TemporaryDirectory() as folder:
-        file = Path(folder) / name
-        file.write_text(text, encoding="utf-8")
-        return read_records([file], offer_of(setup), setup, with_unit_errors=with_unit_errors)
+    return read_records([TableText(name, text)], offer_of(setup), setup, with_unit_errors=with_unit_errors)
 
 
 def predicted(diagnosis: DiagnosisResult, setup: Setup, records: Records) -> dict[str, NDArray[np.float64]]:
     """Predict rows that were not fitted, by every cause and shape that was found on the calibrated machine; SI."""
-    calibrated = {calibrated.name: calibrated.value for calibrated in diagnosis.calibrated}
-    machine = diagnosis.extended or replace(setup, calibrated={**setup.calibrated, **calibrated})
+    machine = extended_setup(diagnosis) or setup
     shown = read_by_gauge(one_machine(machine), records.rows, diagnosis.measured).results
     known: dict[str, Any] = {name: covariate.values for name, covariate in records.covariates.items()}
     readings = {}
@@ -330,11 +291,10 @@ ENDLESS = 1e6
 
 def effect_of(model: Model[Any, Any], name: str | None, faults: list[str]) -> Effect[Any, Any] | None:
     """Return the effect of this name, of the model or of the kernel."""
-    if name is None or name in model.known_effects:
-        return model.known_effects[name] if name is not None else None
-    known = list(model.known_effects)
-    faults.append(f"no effect '{name}'.{near_miss(name, known) or ' It has ' + ', '.join(known)}")
-    return None
+    known = model.known_effects
+    if name is not None and name not in known:
+        faults.append(f"no effect '{name}'.{near_miss(name, known) or ' It has ' + ', '.join(known)}")
+    return known.get(name or "")
 
 
 def truth_of(
@@ -487,7 +447,8 @@ class RecordNoise:
 
 def noise_of(setup: Setup, said: Any, measure: str | Sequence[str] | None, faults: list[str]) -> dict[str, RecordNoise]:
     """Return the noise by measured result; what is wrong is added to ``faults``, a sentence each."""
-    gauged = gauged_results(setup)
+    fields = setup.model.own_result_fields  # numbers and curves can be measured, axes not
+    gauged = {name: field.unit for name, field in fields.items() if not isinstance(field.spec, Axis)}
     named = [measure] if isinstance(measure, str) else list(measure or ())
     if said is None:
         like = f"{{'{named[0]}': ...}}" if named else "'0.1 kN'"
@@ -518,15 +479,13 @@ def noise_of(setup: Setup, said: Any, measure: str | Sequence[str] | None, fault
     return noises
 
 
-def gauged_results(setup: Setup) -> dict[str, str]:
-    """Return the results that can be measured, with their units: numbers and curves."""
-    fields = setup.model.own_result_fields
-    return {name: field.unit for name, field in fields.items() if not isinstance(field.spec, Axis)}
-
-
 def _fitting(gauged: Mapping[str, str], said: Any, faults: list[str]) -> list[str]:
     """Return the one result that a noise can be of; of several the only one that is in the very unit of the noise."""
-    fits = [name for name, unit in gauged.items() if _is_share(said) or _fits(said, unit)]
+    fits = []
+    for name, unit in gauged.items():
+        with suppress(TruingError):
+            _read(said, unit)
+            fits.append(name)
     if isinstance(said, str) and len(fits) > 1 and not _is_share(said):
         same = [name for name in fits if gauged[name] == split_quantity(said).unit]
         fits = same if len(same) == 1 else fits
@@ -544,21 +503,11 @@ def _is_share(said: Any) -> bool:
     return isinstance(said, str) and said.strip().endswith("%")
 
 
-def _fits(said: Any, unit: str) -> bool:
-    try:
-        _read(said, unit)
-    except TruingError:
-        return False
-    return True
-
-
 def _read(said: Any, unit: str) -> RecordNoise:
     """Read a standard deviation, a difference in the unit of the result, or a share of its span."""
     if _is_share(said):
-        noise = RecordNoise(share=read_quantity(said, ""))
-    else:
-        noise = RecordNoise(sd=read_quantity(said if isinstance(said, str) else repr(said), difference_unit(unit)))
-    return noise
+        return RecordNoise(share=read_quantity(said, ""))
+    return RecordNoise(sd=read_quantity(said if isinstance(said, str) else repr(said), difference_unit(unit)))
 
 
 # How a hidden record is taken: which columns vary, between which ends, and where each row lies
@@ -573,26 +522,25 @@ RUN = "run"
 
 @dataclass(frozen=True)
 class DesignColumn:
-    """A column that varies: the unit in its header, its ends (or the ``levels`` it takes) in that unit.
+    """A column that varies: its header, its ends in the unit that stands there, or the ``levels`` or words it takes.
 
     One that ``rises`` goes from end to end with the rows, as a clock does; one that ``places`` the rows on an axis does
-    so in every run. ``words`` are the values of a choice.
+    so in every run.
     """
 
     name: str
-    unit: str
+    header: str
     low: float = 0.0
     high: float = 0.0
-    levels: tuple[float, ...] = ()
-    words: tuple[str, ...] = ()
+    levels: tuple[Any, ...] = ()
     rises: bool = False
     places: bool = False
     whole: bool = False
 
     def at(self, shares: NDArray[np.float64]) -> Any:
         """Return the values (n,) at these shares of the range, 0 to 1."""
-        if self.words or self.levels:
-            chosen: Any = np.array(self.words or self.levels, dtype=object if self.words else float)
+        if self.levels:
+            chosen = np.array(self.levels, dtype=float if isinstance(self.levels[0], float) else object)
             return chosen[np.minimum((shares * len(chosen)).astype(int), len(chosen) - 1)]
         values = self.low + (self.high - self.low) * shares
         decimals = 0 if self.whole else -math.floor(math.log10((self.high - self.low) / STEPS))
@@ -626,7 +574,7 @@ class RecordDesign:
                 own = np.tile(np.linspace(0.0, 1.0, self.rows), self.runs)
             else:
                 own = clock if column.rises else shares[:, spread.index(column)]
-            columns[f"{column.name} [{column.unit or '1'}]" if not column.words else column.name] = column.at(own)
+            columns[column.header] = column.at(own)
         return columns
 
 
@@ -640,7 +588,9 @@ def columns_of(
     """
     asked: dict[str, Any] = dict(over) if over is not None else dict(_by_default(setup, effect))
     for axis in _axes(setup, measured):
-        asked.setdefault(axis, _whole_axis(setup, axis))
+        unit = setup.model.own_result_fields[axis].unit  # its range is that at the defaults
+        places = from_si(np.asarray(setup.model.read_results(evaluate(setup))[axis], dtype=float), unit)
+        asked.setdefault(axis, f"{float(np.min(places))!r}..{float(np.max(places))!r} {unit}".strip())
     columns, faults = [], []
     for name, said in asked.items():
         try:
@@ -699,32 +649,28 @@ def _axes(setup: Setup, measured: Sequence[str]) -> Iterator[str]:
             yield own if own in fields else result.along
 
 
-def _whole_axis(setup: Setup, axis: str) -> str:
-    """Return the range of an axis at the defaults."""
-    unit = setup.model.own_result_fields[axis].unit
-    places = from_si(np.asarray(setup.model.read_results(evaluate(setup))[axis], dtype=float), unit)
-    return f"{float(np.min(places))!r}..{float(np.max(places))!r} {unit}".strip()
-
-
 def _column(setup: Setup, name: str, said: Any, measured: Sequence[str]) -> DesignColumn:
     """Read one range, or the values that a column takes. Raises UsageError with a sentence."""
     model = setup.model
     input_field = model.input_fields.get(name)
     if input_field is not None and input_field.kind in WORDS:
         return _words(input_field, said)
-    unit = _unit_of(setup, name, measured)
-    if unit is None:
-        known = [*model.input_fields, *model.known_conditions, *_sources(setup)]
-        raise UsageError(f"{model.name} has no input or condition of that name.{near_miss(name, known)}")
+    known = _units(setup)
+    axes = set(_axes(setup, measured))
+    if name not in {*known, *axes}:
+        raise UsageError(f"{model.name} has no input or condition of that name.{near_miss(name, list(known))}")
     if input_field is not None and input_field.kind not in {"float", "whole"}:
         raise UsageError("a file or a series cannot change from row to row")
-    low, high, levels, shown = _ends(said, unit)
-    if input_field is not None:
-        _demand_bounds(input_field, [low, high, *levels], shown)
+    low, high, levels, shown = _ends(said, known[name] if name in known else model.own_result_fields[name].unit)
+    for end in (low, high, *levels):
+        broken = broken_bound(input_field, float(to_si(end, shown))) if input_field is not None else ""
+        if broken:
+            raise UsageError(broken)
+    condition = model.known_conditions.get(name)
     return DesignColumn(
-        name, shown, low, high, levels,
-        rises=name == "time" or _is_counted(setup, name),
-        places=name in set(_axes(setup, measured)),
+        name, f"{name} [{shown or '1'}]", low, high, levels,
+        rises=name == "time" or (condition is not None and condition.history == SINCE_START),
+        places=name in axes,
         whole=input_field is not None and input_field.kind == "whole",
     )  # fmt: skip
 
@@ -751,48 +697,20 @@ def _words(input_field: Any, said: Any) -> DesignColumn:
             read_word(input_field, word, decimal_comma=False)
         except ValueError as error:
             raise UsageError(str(error)) from error
-    return DesignColumn(input_field.name, "", words=tuple(words))
+    return DesignColumn(input_field.name, input_field.name, levels=tuple(words))
 
 
-def _demand_bounds(input_field: Any, ends: Sequence[float], unit: str) -> None:
-    """Raise UsageError where a range leaves the bounds of an input."""
-    for end in ends:
-        broken = broken_bound(input_field, float(to_si(end, unit)))
-        if broken:
-            raise UsageError(broken)
-
-
-def _unit_of(setup: Setup, name: str, measured: Sequence[str]) -> str | None:
-    """Return the declared unit of a column, None where nobody knows it."""
+def _units(setup: Setup) -> dict[str, str]:
+    """Return the declared units of what can be a column: inputs, conditions, and what conditions are made from."""
     model = setup.model
-    if name in model.input_fields:
-        return model.input_fields[name].unit
-    if name in model.known_conditions:
-        return model.known_conditions[name].unit
-    if name in set(_axes(setup, measured)):
-        return model.own_result_fields[name].unit
-    return _sources(setup).get(name)
-
-
-def _sources(setup: Setup) -> dict[str, str]:
-    """Return the columns from which conditions are made that are neither input nor condition, with their units."""
-    model = setup.model
-    conditions = [
-        condition
-        for condition in model.known_conditions.values()
-        if condition.made_from and condition.history != "direction"
-    ]
-    units = {condition.made_from: condition.unit for condition in conditions}
-    axes = {name: field.unit for name, field in model.own_result_fields.items() if isinstance(field.spec, Axis)}
-    units |= {
-        condition.made_from: "" for condition in model.known_conditions.values() if condition.history == "direction"
-    } | units
-    return {name: unit for name, unit in units.items() if name not in axes}
-
-
-def _is_counted(setup: Setup, name: str) -> bool:
-    condition = setup.model.known_conditions.get(name)
-    return condition is not None and condition.history == SINCE_START
+    units = {name: field.unit for name, field in model.input_fields.items()}
+    units |= {name: condition.unit for name, condition in model.known_conditions.items()}
+    axes = {name for name, field in model.own_result_fields.items() if isinstance(field.spec, Axis)}
+    made = [condition for condition in list(model.known_conditions.values())[::-1] if condition.made_from]
+    for condition in sorted(made, key=lambda condition: condition.history == "direction"):  # which has no unit
+        if condition.made_from not in axes:
+            units.setdefault(condition.made_from, "" if condition.history == "direction" else condition.unit)
+    return units
 
 
 def _not_varied(setup: Setup, effect: Effect[Any, Any] | None, asked: set[str], *, is_stated: bool) -> Iterator[str]:
@@ -804,7 +722,7 @@ def _not_varied(setup: Setup, effect: Effect[Any, Any] | None, asked: set[str], 
     for source, conditions in missing.items():
         names = " and ".join(f"'{condition.name}'" for condition in conditions)
         made = f" (made from '{source}')" if source != conditions[0].name else ""
-        unit = _unit_of(setup, source, ()) or ""
+        unit = _units(setup).get(source, "")
         usual = usual_range(conditions[0]) if not made else ""
         why = "over does not vary it" if is_stated else "no range is declared for it"
         yield (

@@ -6,8 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from truing.declare.checks import Promise
-from truing.declare.model import Model
+from truing.declare.model import Model, Promise
 from truing.testing import declared, running, sources
 from truing.testing.subject import Subject, fail
 
@@ -78,11 +77,8 @@ def conformance(model: Model[Any, Any]) -> Callable[[ConformanceCheck], None]:
         obstacle = check.obstacle(subject)
         if obstacle:
             pytest.skip(obstacle)
-        said = _said(check, subject)
-        reason = model.exceptions.get(check.name, "")
-        if said and reason:
-            pytest.xfail(reason)
-        _demand_exception(check, subject, said)
+        if _is_excepted(check, subject):
+            pytest.xfail(model.exceptions[check.name])
 
     return test
 
@@ -98,29 +94,27 @@ def failures(model: Model[Any, Any]) -> dict[str, str]:
         if check.obstacle(subject):
             continue
         try:
-            said = _said(check, subject)
-            if not (said and check.name in model.exceptions):
-                _demand_exception(check, subject, said)
+            _is_excepted(check, subject)
         except Exception as error:  # whatever a model under test raises is its failure
             sentences[check.name] = str(error)
     return sentences
 
 
-def _said(check: ConformanceCheck, subject: Subject) -> AssertionError | None:
-    """Run a check and return what it says against the model."""
+def _is_excepted(check: ConformanceCheck, subject: Subject) -> bool:
+    """Run a check; tell whether it fails and the model declares that it does.
+
+    Raises what it says of another model, and AssertionError where it is kept although an exception is declared.
+    """
+    is_declared = check.name in subject.model.exceptions
     try:
         check.run(subject)
-    except AssertionError as failure:
-        return failure
-    return None
-
-
-def _demand_exception(check: ConformanceCheck, subject: Subject, said: AssertionError | None) -> None:
-    """Raise what a check says; where it says nothing, demand that no exception is declared from it."""
-    if said is not None:
-        raise said
-    if check.name in subject.model.exceptions:
+    except AssertionError:
+        if is_declared:
+            return True
+        raise
+    if is_declared:
         fail(
             f"{subject.model.name}: '{check.name}' holds, but the model declares a known exception from it; take the "
             "exception away"
         )
+    return False

@@ -10,13 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from truing.declare.fields import Axis, InputField, with_values
-from truing.declare.sources import Condition, Unknown
-from truing.declare.specs import Given
+from truing.declare.fields import Axis, Given, InputField, with_values
+from truing.declare.sources import Condition
 from truing.errors import InfeasibleError, PluginError, TruingError
 from truing.evaluate import Rows, evaluate, evaluate_rows
 from truing.executors import in_order, open_executor
 from truing.inputs_file import setup_from_settings
+from truing.inputs_file.values import broken_bound
 from truing.packed import Packed, pack, unpack
 from truing.setup import Setup, effect_column
 from truing.studies.sampling import scatter_of
@@ -134,17 +134,10 @@ def bounds_are_answered(subject: Subject) -> None:
         for word, bound in bounds.items():
             if bound is None:
                 continue
-            _refused(subject, name, word, _beyond(bound, word))
+            step = max(abs(bound), 1.0) * 1e-3  # to what lies just outside; an exclusive bound is outside itself
+            _refused(subject, name, word, bound + {"at least": -step, "at most": step}.get(word, 0.0))
             if word in {"at least", "at most"}:
                 _answered(subject, name, bound)
-
-
-def _beyond(bound: float, word: str) -> float:
-    """Return a value just outside; an exclusive bound is outside itself."""
-    if word in {"above", "below"}:
-        return bound
-    step = max(abs(bound), 1.0) * 1e-3
-    return bound - step if word == "at least" else bound + step
 
 
 def _refused(subject: Subject, name: str, word: str, value: float) -> None:
@@ -182,11 +175,13 @@ def steps_may_be_halved(subject: Subject) -> None:
     for field in numerical(subject):
         for point in ({}, *subject.points(POINTS)):
             setup = subject.at(point)
+            value = setup.model.read_inputs(setup.inputs)[field.name]
+            step = {field.path: value * 2 if field.is_count else value / 2}
             try:
-                finer = halved(setup, field)
+                finer = evaluate(replace(setup, inputs=with_values(setup.inputs, step)))
             except InfeasibleError as error:
                 fail(f"{subject.model.name}: '{field.name}' is finer by a half, and the model refuses it: {error}")
-            for sentence in moved(setup, finer, field):
+            for sentence in _moved(setup, finer, field):
                 fail(f"{subject.model.name}: {sentence}; refuse what is too coarse (feasible), or say what it changes")
 
 
@@ -196,14 +191,7 @@ def numerical(subject: Subject) -> list[InputField]:
     return [field for field in fields if isinstance(field.spec, Given) and field.spec.halving is not None]
 
 
-def halved(setup: Setup, field: InputField) -> Any:
-    """Return the results with a numerical input made finer; raises InfeasibleError where the model refuses it."""
-    value = setup.model.read_inputs(setup.inputs)[field.name]
-    finer = value * 2 if field.is_count else value / 2
-    return evaluate(replace(setup, inputs=with_values(setup.inputs, {field.path: finer})))
-
-
-def moved(setup: Setup, finer: Any, field: InputField) -> Iterator[str]:
+def _moved(setup: Setup, finer: Any, field: InputField) -> Iterator[str]:
     """Say of every result that a finer step moves further than declared by how much it does."""
     spec, model = field.spec, setup.model
     assert isinstance(spec, Given)
@@ -270,7 +258,14 @@ def batch_equals_loop(subject: Subject) -> None:
     """A batch is what single calls give, to rounding: each input, condition and unknown varied alone, then together."""
     batches = [together(subject)]
     if not is_row_by_row(subject):
-        batches += [*_inputs_alone(subject), *_effects_alone(subject)]
+        first = single(subject.setup, {})
+        alone = {name: input_values(subject, name) for name in subject.model.input_fields}
+        batches += [
+            Batch(subject.setup, {name: values}, f"only '{name}' varies", first)
+            for name, values in alone.items()
+            if len(values) > 1
+        ]
+        batches += _effects_alone(subject)
     for batch in batches:
         compare(subject.model.name, batch)
 
@@ -348,14 +343,6 @@ def together(subject: Subject) -> Batch:
     return Batch(subject.setup, columns, "all Float inputs vary")
 
 
-def _inputs_alone(subject: Subject) -> Iterator[Batch]:
-    first = single(subject.setup, {})
-    for name in subject.model.input_fields:
-        values = input_values(subject, name)
-        if len(values) > 1:
-            yield Batch(subject.setup, {name: values}, f"only '{name}' varies", first)
-
-
 def input_values(subject: Subject, name: str) -> list[Any]:
     """Return values of an input, SI, its own first; one alone where no other can be thought of (a file, a series)."""
     field = subject.model.input_fields[name]
@@ -365,17 +352,11 @@ def input_values(subject: Subject, name: str) -> list[Any]:
     if field.kind == "choice" and isinstance(own, str):
         return [own, *(word for word in field.choices if word != own)][:ALONE]
     if field.kind == "integer":
-        return [own, *(value for value in (own + 1, own - 1) if _is_within(field, value))]
+        return [own, *(value for value in (own + 1, own - 1) if not broken_bound(field, value))]
     if not field.varies:
         return [own]
     others = [point[name] for point in subject.points(ROWS)][: ALONE - 1]
     return [own, *(others if own == own else optional_values(field))]
-
-
-def _is_within(field: InputField, value: float) -> bool:
-    spec = field.spec
-    assert isinstance(spec, Given)
-    return (spec.at_least is None or value >= spec.at_least) and (spec.at_most is None or value <= spec.at_most)
 
 
 def optional_values(field: InputField) -> list[float]:
@@ -396,21 +377,17 @@ def _effects_alone(subject: Subject) -> Iterator[Batch]:
         setup = switched(off_reference(subject.setup), effect)
         if setup is None:
             continue
-        alone: dict[str, list[float]] = {
-            effect_column(effect.name, unknown.name): unknown_values(setup, unknown) for unknown in effect.unknowns
-        } | {need.name: condition_values(setup, need) for need in effect.needs}
+        alone = {need.name: condition_values(setup, need) for need in effect.needs}
+        for unknown in effect.unknowns:
+            own = setup.effects[0].values[unknown.name]
+            others = (share * own if unknown.is_amplitude else shape(unknown, share) for share in (0.0, 0.3))
+            alone[effect_column(effect.name, unknown.name)] = [own, *others]
         first = single(setup, {})
         for name, values in alone.items():
             yield Batch(setup, {name: values}, f"effect '{effect.name}' is on and only '{name}' varies", first)
         points = subject.points(ROWS)[:ALONE]
         inputs = {name: np.array([point[name] for point in points]) for name in subject.scattering}
         yield Batch(setup, {**inputs, **alone}, f"effect '{effect.name}' is on and all it knows varies")
-
-
-def unknown_values(setup: Setup, unknown: Unknown) -> list[float]:
-    """Return values of an unknown of the one effect that is on, SI, its own first: smaller ones, or other shapes."""
-    own = setup.effects[0].values[unknown.name]
-    return [own, *(share * own if unknown.is_amplitude else shape(unknown, share) for share in (0.0, 0.3))]
 
 
 def condition_values(setup: Setup, need: Condition) -> list[float]:

@@ -10,13 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from truing.declare.checks import formula_scope
 from truing.declare.goals import prices_in
 from truing.declare.sources import Effect, Unknown
 from truing.errors import InfeasibleError, TruingError
 from truing.evaluate import evaluate
-from truing.formulas import parse
 from truing.setup import Setup, SwitchedOn
+from truing.testing.declared import formulas_of
 from truing.testing.subject import Subject, fail
 from truing.units import to_si, unit_factor
 
@@ -24,8 +23,6 @@ SAME = 1e-12
 COMMUTES = 0.01
 SHAPES = (0.0, 0.5, 1.0)
 SIZES = (0.5, 0.05, 5e-3, 5e-5, 5e-7)
-
-SampledInputs = dict[str, Any]
 
 
 def spreads_resolve(subject: Subject) -> None:
@@ -37,17 +34,15 @@ def spreads_resolve(subject: Subject) -> None:
                 distribution = tolerance.spread.resolve(target) if target.nominal == target.nominal else None
             except TruingError as error:
                 fail(f"{subject.model.name}: tolerance '{tolerance.name}' on '{name}': {error}")
-            if distribution is not None and not distribution.sd > 0:
+            if distribution is None:
+                continue
+            if not distribution.sd > 0:
                 fail(f"{subject.model.name}: tolerance '{tolerance.name}' on '{name}' does not scatter; write off()")
-            if distribution is not None:
-                for price in prices_in(tolerance.price):
-                    _priced(subject, tolerance.name, price, distribution.width)
-
-
-def _priced(subject: Subject, tolerance: str, price: Any, width: float) -> None:
-    paid = price.at(width)
-    if not math.isfinite(paid) or paid < 0:
-        fail(f"{subject.model.name}: the price of tolerance '{tolerance}' is {paid:g} at its declared width")
+            for price in prices_in(tolerance.price):
+                paid = price.at(distribution.width)
+                if not math.isfinite(paid) or paid < 0:
+                    what = f"the price of tolerance '{tolerance.name}'"
+                    fail(f"{subject.model.name}: {what} is {paid:g} at its declared width")
 
 
 def zero_is_the_base(subject: Subject) -> None:
@@ -125,26 +120,13 @@ def only_last_results_are_edited(subject: Subject) -> None:
 
 def _users(subject: Subject) -> Iterator[tuple[str, str]]:
     """Yield each result that a formula names, with the result whose formula it is."""
-    for field in subject.model.own_result_fields.values():
-        text = getattr(field.spec, "formula", "")
-        if text:
-            scope = formula_scope(subject.model, field)
-            meant = {scope[name].name for name in parse(text).names}
-            yield from ((name, field.name) for name in meant & set(subject.model.own_result_fields) - {field.name})
+    for field, formula, _, scope in formulas_of(subject):
+        meant = {scope[name].name for name in formula.names}
+        yield from ((name, field.name) for name in meant & set(subject.model.own_result_fields) - {field.name})
 
 
 def order_is_free(subject: Subject) -> None:
     """Effects at one place commute: their order changes no result by more than 1 % of what they do."""
-    pairs = order_matters(subject)
-    if pairs:
-        fail(
-            f"{subject.model.name}: effects {'; '.join(pairs)}; they act in the order of declaration: say why that is "
-            'right, exceptions={"order of effects": "..."} of the model'
-        )
-
-
-def order_matters(subject: Subject) -> list[str]:
-    """Name the pairs of effects at one place whose order changes a result by more than 1 % of what they do."""
     setup = off_reference(subject.setup)
     base = _answers(setup)
     pairs: list[str] = []
@@ -158,10 +140,14 @@ def order_matters(subject: Subject) -> list[str]:
         share = _difference_by_order([replace(order, effects=both) for order in (setup, backwards)], base)
         if share > COMMUTES:
             pairs.append(f"'{first.name}' and '{second.name}' do not commute: their order changes {share:.0%} of it")
-    return pairs
+    if pairs:
+        fail(
+            f"{subject.model.name}: effects {'; '.join(pairs)}; they act in the order of declaration: say why that is "
+            'right, exceptions={"order of effects": "..."} of the model'
+        )
 
 
-def _difference_by_order(orders: Sequence[Setup], base: SampledInputs) -> float:
+def _difference_by_order(orders: Sequence[Setup], base: dict[str, Any]) -> float:
     """Return the largest difference between two orders, as a share of what both effects do together."""
     try:
         answers = [_answers(setup) for setup in orders]
@@ -221,16 +207,15 @@ def off_reference(setup: Setup, steps: float = 10) -> Setup:
     return replace(setup, conditions={**setup.conditions, **moved})
 
 
-def _answers(setup: Setup) -> SampledInputs:
+def _answers(setup: Setup) -> dict[str, Any]:
     """Return what the gauge shows, by flat name."""
     return setup.model.read_results(evaluate(setup, reading=True))
 
 
-def _changed(answers: SampledInputs, base: SampledInputs) -> list[str]:
-    def differs(name: str) -> bool:
-        one, other = np.asarray(answers[name], dtype=float), np.asarray(base[name], dtype=float)
-        if one.shape != other.shape:
-            return True
-        return bool(np.any(np.abs(one - other) > SAME * np.abs(other)))
-
-    return [name for name in base if differs(name)]
+def _changed(answers: dict[str, Any], base: dict[str, Any]) -> list[str]:
+    changed = []
+    for name, value in base.items():
+        one, other = np.asarray(answers[name], dtype=float), np.asarray(value, dtype=float)
+        if one.shape != other.shape or np.any(np.abs(one - other) > SAME * np.abs(other)):
+            changed.append(name)
+    return changed

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -12,12 +13,12 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from truing.declare.fields import InputField, with_values
+from truing.declare.fields import Given, InputField, with_values
 from truing.declare.model import Model
-from truing.declare.specs import Given
 from truing.errors import InfeasibleError, TruingError, UsageError
 from truing.evaluate import evaluate
 from truing.inputs_file import read_setup
+from truing.inputs_file.values import broken_bound
 from truing.kernel import Kernel, Offer, Origin
 from truing.kernel.loading import PREFIX
 from truing.setup import Setup, default_setup
@@ -116,16 +117,10 @@ class Subject:
                 if len(points) == count:
                     return points
                 point = {name: self.near(field, share, rng) for name, field in self.scattering.items()}
-                if self._answers(point):
+                with suppress(InfeasibleError):
+                    evaluate(self.at(point))
                     points.append(point)
         fail(f"{self.model.name}: no point within a millionth of the defaults can be calculated; state what must hold")
-
-    def _answers(self, point: Mapping[str, float]) -> bool:
-        try:
-            evaluate(self.at(point))
-        except InfeasibleError:
-            return False
-        return True
 
     def near(self, field: InputField, share: float, rng: np.random.Generator) -> float:
         """Draw a value of an input within its bounds, SI, up to so large a share of its own away from that."""
@@ -137,13 +132,9 @@ class Subject:
             moved = value + float(rng.integers(-1, 2))
         else:
             moved = value + share * self._span(field, value) * float(rng.uniform(-1, 1))
-        closed = (spec.at_least, spec.at_most)
-        low, high = (to_si(bound, field.unit) if bound is not None else None for bound in closed)
-        moved = max(moved, low) if low is not None else moved
-        moved = min(moved, high) if high is not None else moved
-        above, below = (to_si(bound, field.unit) if bound is not None else None for bound in (spec.above, spec.below))
-        outside = (above is not None and moved <= above) or (below is not None and moved >= below)
-        return value if outside else moved
+        moved = max(moved, to_si(spec.at_least, field.unit)) if spec.at_least is not None else moved
+        moved = min(moved, to_si(spec.at_most, field.unit)) if spec.at_most is not None else moved
+        return value if broken_bound(field, moved) else moved
 
     def _span(self, field: InputField, value: float) -> float:
         """Return how far a tenth of the input reaches, times ten."""
