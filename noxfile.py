@@ -40,4 +40,4 @@ def manual(session: nox.Session) -> None:
 def benchmarks(session: nox.Session) -> None:
     """Measure ratios of speed; arguments behind ``--`` name the benchmarks."""
     session.install("-e", ".[test]")
-    session.run("python", "-m", "pytest", *(session.posargs or ["tests/benchmarks"]), "--benchmark-enable", "-s")
+    session.run("python", "-m", "pytest", *(session.posargs or ["tests/benchmarks"]), "-s")

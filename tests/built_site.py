@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import os
 import sys
-import time
 from pathlib import Path
 
 import pytest
 
-from shared import ROOT, Answer, process
+from shared import ROOT, Answer, made_once, process
 
 
 def build(target: Path) -> Answer:
@@ -22,19 +21,9 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of the built site; of several processes that test, the first builds and the others wait."""
     if "TRUING_SITE" in os.environ:  # one that was built already, to look at tests alone
         return Path(os.environ["TRUING_SITE"])
-    alone = "PYTEST_XDIST_WORKER" not in os.environ
-    place = tmp_path_factory.mktemp("manual") if alone else tmp_path_factory.getbasetemp().parent
-    target, done, said = place / "site", place / "site.done", place / "site.said"
-    try:
-        os.close(os.open(place / "site.begun", os.O_CREAT | os.O_EXCL))
-    except FileExistsError:
-        end = time.monotonic() + 300
-        while not done.exists() and time.monotonic() < end:
-            time.sleep(0.2)
-    else:
-        answer = build(target)
-        said.write_text(f"{answer.code}\n{answer.out}{answer.err}", encoding="utf-8")
-        done.touch()
-    code, _, words = said.read_text(encoding="utf-8").partition("\n")
-    assert code == "0", words
-    return target
+
+    def built(folder: Path) -> None:
+        answer = build(folder)
+        assert answer.code == 0, answer.out + answer.err
+
+    return made_once(tmp_path_factory, "site", built)

@@ -3,12 +3,16 @@
 import gc
 import os
 import sys
+from collections.abc import Iterator
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
 from xdist.scheduler import WorkStealingScheduling
 
-from shared import GUESTS, ROOT, TESTS, copied_guest, process
+from shared import GUESTS, ROOT, TESTS, copied_guest, made_once, process
+from truing.executors import WorkerPool, open_executor
+from truing.testing import running
 
 collect_ignore = ["third_party", "data"]
 sys.path += [str(TESTS / "data"), str(TESTS / "data" / "gear_record")]
@@ -49,12 +53,29 @@ def full_torture(request: pytest.FixtureRequest) -> bool:
 
 
 @pytest.fixture(scope="session")
+def two_processes() -> Iterator[WorkerPool]:
+    """Two worker processes, for all tests that end none of them: starting them takes seconds."""
+    with open_executor("processes:2") as executor:
+        yield executor
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _kit_shares_processes(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Let the kit compute in the two processes whatever it wants computed in another one."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(running, "open_executor", lambda _: nullcontext(request.getfixturevalue("two_processes")))
+        yield
+
+
+@pytest.fixture(scope="session")
 def strangers(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return a folder with the strangers' plugins, installed as pip installs them, beside this environment."""
-    folder = tmp_path_factory.mktemp("strangers")
-    sources = [str(copied_guest(name, folder / "sources")) for name in GUESTS]
-    options = ["--quiet", "--no-deps", "--no-build-isolation", "--no-index", "--disable-pip-version-check"]
-    target = folder / "installed"
-    done = process([sys.executable, "-m", "pip", "install", *options, "--target", str(target), *sources], folder)
-    assert done.code == 0, done.err
-    return target
+
+    def installed(folder: Path) -> None:
+        sources = [str(copied_guest(name, folder / "sources")) for name in GUESTS]
+        options = ["--quiet", "--no-deps", "--no-build-isolation", "--no-index", "--disable-pip-version-check"]
+        target = ["--target", str(folder / "installed")]
+        done = process([sys.executable, "-m", "pip", "install", *options, *target, *sources], folder)
+        assert done.code == 0, done.err
+
+    return made_once(tmp_path_factory, "strangers", installed) / "installed"

@@ -70,7 +70,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ("GRADES[column - 1] if column", "GRADES[column - 2] if column"),
     ),
     *changes(
-        "kernel/truing/numbers.py", "unit/test_numbers.py",
+        "kernel/truing/numbers.py", "unit/test_units.py",
         ('"-" if found["sign"] == "-" else ""', '"" if found["sign"] == "-" else ""'),
     ),
     *changes(
@@ -79,7 +79,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ('"inv": lambda x: np.tan(x) - x', '"inv": lambda x: np.tan(x) + x'),
     ),
     *changes(
-        "kernel/truing/declare/spreads.py", "unit/test_declare.py unit/test_studies_reliability.py unit/test_widths.py",
+        "kernel/truing/declare/spreads.py", "unit/test_declare.py unit/test_studies_reliability.py",
         ('"band": amount / 2 / half_to_sd', '"band": amount / half_to_sd'),
         ("log_variance / 2 + np.sqrt", "log_variance + np.sqrt"),
         ("target.nominal + (low + high) / 2", "target.nominal + (high - low) / 2"),
@@ -101,7 +101,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ("value / item.value if item.value", "item.value / value if item.value"),
     ),
     *changes(
-        "kernel/truing/measurements/derived.py", "unit/test_derived.py",
+        "kernel/truing/measurements/derived.py", "unit/test_gauge.py",
         ("np.cumsum(np.abs(np.diff(values)))", "np.cumsum(np.diff(values))"),
         ("turned_at[turns + 1] = turns", "turned_at[turns + 1] = turns + 1"),
     ),
@@ -112,12 +112,12 @@ MUTANTS: tuple[Mutant, ...] = (
         ("return values - beside(limit, values)", "return values + _beside(limit, values)"),
     ),
     *changes(
-        "kernel/truing/studies/checks.py", "unit/test_checks.py",
+        "kernel/truing/studies/checks.py", "unit/test_calculation.py",
         ("return distance / abs(limit) if limit", "return distance / limit if limit"),
         ("(limit.high - limit.low) / 2", "(limit.high - limit.low)"),
     ),
     *changes(
-        "kernel/truing/studies/chances.py", "unit/test_studies_allocation_widths.py",
+        "kernel/truing/studies/chances.py", "unit/test_studies_allocation.py",
         ("mean = value + sum(", "mean = value - sum("),
     ),
     *changes(
@@ -149,11 +149,11 @@ MUTANTS: tuple[Mutant, ...] = (
         ("(value * (1 - value) / draws) ** 0.5", "(value * (1 - value) / draws)"),
     ),
     *changes(
-        "kernel/truing/studies/sweep.py", "unit/test_studies_sweep.py",
+        "kernel/truing/studies/sweep.py", "unit/test_studies_sensitivity.py",
         ("np.floor(axis[-1]) + 1", "np.floor(axis[-1])"),
     ),
     *changes(
-        "kernel/truing/studies/grades.py", "unit/test_studies_allocation_widths.py",
+        "kernel/truing/studies/allocation.py", "unit/test_studies_allocation.py",
         ("self.variances[demand] * (width / self.start) ** 2", "self.variances[demand] * (width / self.start)"),
         ("paid.imag / (COMPLEX_STEP * widths)", "paid.imag / COMPLEX_STEP"),
     ),
@@ -163,12 +163,12 @@ MUTANTS: tuple[Mutant, ...] = (
         ("return float((reach * 10.0**log_sd) ** 2)", "return float(reach * 10.0**log_sd)"),
     ),
     *changes(
-        "kernel/truing/studies/optimise_problem.py", "unit/test_studies_optimise.py",
+        "kernel/truing/studies/optimise.py", "unit/test_studies_optimise.py",
         ("mean = mean + slopes[column] * beside(shift", "mean = mean - slopes[column] * beside(shift"),
         ("beside(own[column].sd, slopes[column])) ** 2", "beside(own[column].sd, slopes[column]))"),
     ),
     *changes(
-        "kernel/truing/studies/optimise_search.py", "unit/test_studies_optimise.py",
+        "kernel/truing/studies/optimise.py", "unit/test_studies_optimise.py",
         ("(1.0 - scaled.sum(axis=1))", "(scaled.sum(axis=1) - 1.0)"),
         ("(REFERENCE - order[:, 0])", "(order[:, 0])"),
     ),
@@ -178,7 +178,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ("np.exp(values) if self.logarithmic", "values if self.logarithmic"),
     ),
     *changes(
-        "kernel/truing/diagnosis/noise.py", "unit/test_diagnosis_noise.py unit/test_diagnosis_memory.py",
+        "kernel/truing/diagnosis/noise.py", "unit/test_diagnosis_sample.py unit/test_diagnosis_memory.py",
         ("1 + self.theta**2 - 2 * self.rho * self.theta", "1 + self.theta**2 + 2 * self.rho * self.theta"),
         ("white[1:] -= setting.rho * values[:-1]", "white[1:] -= 0.9 * setting.rho * values[:-1]"),
         ("return 1.4826 * float(np.median(", "return 1.0 * float(np.median("),
@@ -191,20 +191,20 @@ MUTANTS: tuple[Mutant, ...] = (
         ("gammaln(freedom / 2) - 0.5 * log(pi * (freedom - 2))", "gammaln(freedom / 2) - 0.5 * log(pi * freedom)"),
     ),
     *changes(
-        "kernel/truing/diagnosis/intervals.py", "unit/test_diagnosis_intervals.py",
+        "kernel/truing/diagnosis/intervals.py", "unit/test_diagnosis_fit.py",
         ("QUANTILE = 0.975", "QUANTILE = 0.9"),
         ("log1p(student**2 * certainty.variance / known)", "log1p(student * certainty.variance / known)"),
     ),
     *changes(
-        "kernel/truing/diagnosis/findings.py", "unit/test_diagnosis_halves.py",
+        "kernel/truing/diagnosis/findings.py", "unit/test_diagnosis_alarms.py",
         ("1 - floor**2 / rmse**2", "1 - floor / rmse"),
     ),
     *changes(
-        "kernel/truing/diagnosis/visibility.py", "unit/test_diagnosis_known_answers.py",
+        "kernel/truing/diagnosis/visibility.py", "unit/test_diagnosis_gain_design.py",
         ("1 - LEVEL / (2 * max(explanations, 1))", "1 - LEVEL / (2 * 1)"),
     ),
     *changes(
-        "kernel/truing/diagnosis/unit_errors.py", "unit/test_diagnosis_unit_errors.py",
+        "kernel/truing/diagnosis/unit_errors.py", "unit/test_diagnosis_reading.py",
         ("> FAR_OFF * _size(values, mode)", "> 30 * FAR_OFF * _size(values, mode)"),
         ("best = max(gains, key=gains.__getitem__", "best = min(gains, key=gains.__getitem__"),
     ),
@@ -251,7 +251,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ("(k + 1.0) ** exponent - 2.0 * k**exponent", "(k + 1.0) ** exponent - 1.0 * k**exponent"),
     ),
     *changes(
-        "plugins/harmonic_fractal/structure.py", "unit/test_harmonic_power_law.py published/test_harmonic_effects.py",
+        "plugins/harmonic_fractal/structure.py", "unit/test_harmonic_structure.py published/test_harmonic_effects.py",
         ("roughness * ratio ** (1.0 / (2.0", "roughness * ratio ** (1.0 / (1.0"),
         ("scale * x ** (-exponent / 2.0), 1.0)", "scale * x ** (exponent / 2.0), 1.0)"),
     ),
@@ -260,11 +260,11 @@ MUTANTS: tuple[Mutant, ...] = (
         ("2.0 - slopes / 2.0", "2.0 - slopes"),
     ),
     *changes(
-        "plugins/harmonic_fractal/estimate.py", "unit/test_harmonic_noise.py",
+        "plugins/harmonic_fractal/estimate.py", "unit/test_harmonic_estimate.py",
         ("curve.pooled - 2.0 * noise**2", "curve.pooled - 1.0 * noise**2"),
     ),
     *changes(
-        "plugins/harmonic_fractal/made_flank.py", "unit/test_harmonic_made_flank.py",
+        "plugins/harmonic_fractal/made_flank.py", "unit/test_harmonic_generators.py",
         ("single / share ** (1.0 / (2.0 - exponent))", "single * share ** (1.0 / (2.0 - exponent))"),
         ("np.log10(found.roughness / truth.areal)", "np.log(found.roughness / truth.areal)"),
     ),
@@ -294,7 +294,7 @@ MUTANTS: tuple[Mutant, ...] = (
     ),
     *changes(
         "plugins/roller_screw_shift/geometry.py", "published/test_roller_screw_geometry.py",
-        ("2.0 * geometry.mounted_distance * (involute", "geometry.mounted_distance * (involute"),
+        ("2.0 * geometry.mounted_distance * opened", "geometry.mounted_distance * opened"),
         ("2.0 * geometry.roller.tip_radius * half", "geometry.roller.tip_radius * half"),
     ),
     *changes(
@@ -309,7 +309,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ("+ at_ring_tip**2", "- at_ring_tip**2"),
     ),
     *changes(
-        "plugins/rv_gearing/geometry.py", "published/test_rv_gearing_factors.py published/test_rv_gearing_published.py",
+        "plugins/rv_gearing/geometry.py", "published/test_rv_gearing_factors.py",
         ("2.0 * stage.module * (stage.dedendum - gear.shift)", "2.0 * stage.module * (stage.dedendum + gear.shift)"),
         ("contact / np.cos(base_helix) ** 2", "contact / np.cos(base_helix)"),
     ),
@@ -329,7 +329,7 @@ MUTANTS: tuple[Mutant, ...] = (
     ),
     *changes(
         "plugins/rv_wear/calculation.py", "published/test_rv_wear_backlash.py",
-        ("wear=2.0 * felt_wear / arm", "wear=felt_wear / arm"),
+        (", 2.0 * felt_wear / arm", ", felt_wear / arm"),
         ("involute - reducer.base_tangent_error", "involute + reducer.base_tangent_error"),
     ),
     *changes(

@@ -2,6 +2,8 @@
 
 import os
 import shutil
+import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import NoReturn
 
@@ -17,7 +19,7 @@ ROUNDING = 8 * 2.0**-52
 place of an array, on another processor. numpy keeps its functions within 4 units in the last place on every processor,
 so two ways agree to 8; what follows multiplies that by its condition."""
 GUESTS = ("screw_joint", "broken_guest")
-__all__ = ["GUESTS", "ROOT", "ROUNDING", "TESTS", "Answer", "Calc", "copied_guest", "missed", "process"]
+__all__ = ["GUESTS", "ROOT", "ROUNDING", "TESTS", "Answer", "Calc", "copied_guest", "made_once", "missed", "process"]
 
 
 def copied_guest(name: str, folder: Path) -> Path:
@@ -32,3 +34,33 @@ def missed(words: str) -> NoReturn:
     if os.environ.get("CI", "").lower() == "true":
         pytest.fail(words)
     pytest.skip(words)
+
+
+def made_once(factory: pytest.TempPathFactory, name: str, make: Callable[[Path], None]) -> Path:
+    """Return a folder that is filled once: of several processes that test, the first makes it and the others wait.
+
+    What is wrong with it fails whoever asks for it.
+    """
+    alone = "PYTEST_XDIST_WORKER" not in os.environ
+    place = (factory.getbasetemp() if alone else factory.getbasetemp().parent) / "once"
+    place.mkdir(exist_ok=True)
+    folder, said = place / name, place / f"{name}.said"
+    try:
+        folder.mkdir()
+    except FileExistsError:
+        end = time.monotonic() + 900
+        while not said.exists() and time.monotonic() < end:
+            time.sleep(0.2)
+    else:
+        words = place / f"{name}.words"
+        try:
+            make(folder)
+            words.write_text("", encoding="utf-8")
+        except BaseException as error:
+            words.write_text(f"{type(error).__name__}: {error}", encoding="utf-8")
+            raise
+        finally:
+            words.rename(said)
+    fault = said.read_text(encoding="utf-8")
+    assert not fault, fault
+    return folder

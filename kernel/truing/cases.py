@@ -11,7 +11,7 @@ from truing.calculation import Calculation, calculate
 from truing.declare.model import Study
 from truing.errors import Fault, InputError, UsageError
 from truing.evaluate import evaluate_rows
-from truing.executors import SerialExecutor, in_order, open_executor
+from truing.executors import SerialExecutor, in_order, keepable, open_executor
 from truing.measurements import CasesFile, RowCount, StatedCase
 from truing.packed import Packed, pack, travels, unpack
 from truing.prices import price_answers
@@ -35,6 +35,7 @@ DECIDE_CHANCES = (Allocation, Reliability)
 """Studies that decide no other limits than those on a chance."""
 
 
+@keepable
 @dataclass(frozen=True)
 class CaseResult:
     """One case, what it answers in SI and its checks, or why it failed; ``absent``: why a result does not exist."""
@@ -79,6 +80,9 @@ class CaseResult:
     def fault(self) -> Fault:
         """Why it failed, with file and line."""
         return Fault(self.reason or "", self.case.file, self.case.line)
+
+
+keepable(StatedCase)
 
 
 @dataclass(frozen=True)
@@ -172,99 +176,81 @@ def _one_by_one(setup: Setup, cases: Sequence[StatedCase], executor: Executor, p
 
     Where cases are many, each is a job of its own; where they are few, the batches of each are shared out.
     """
-    answers: Iterable[CaseAnswer]
-    apart = len(cases) >= 2 * getattr(executor, "slots", 1) > 2 and travels(setup)
-    if apart:
-        answers = in_order(executor, _packed_case, (pack(case_setup(setup, case), studies=True) for case in cases))
+    results: Iterable[CaseResult]
+    if len(cases) >= 2 * getattr(executor, "slots", 1) > 2 and travels(setup):
+        jobs = ((pack(case_setup(setup, case), studies=True), case) for case in cases)
+        results = in_order(executor, _packed_case, jobs)
     else:
-        answers = (
-            _case_answer(case_setup(setup, case), executor, _of_case(setup, index, len(cases), progress))
-            for index, case in enumerate(cases)
+        names = [study.name for study in setup.studies]
+        parts = (
+            within(progress, "cases", index / len(cases), (index + 1) / len(cases), names)
+            for index in range(len(cases))
+        )
+        results = (
+            _in_full(case_setup(setup, case), case, executor, part) for case, part in zip(cases, parts, strict=True)
         )
     done = []
     progress("cases", 0, FINE)
-    for case, (values, decided, reason, absent) in zip(cases, answers, strict=True):
-        done.append(CaseResult(case, values, decided, reason, absent))
+    for result in results:
+        done.append(result)
         progress("cases", round(FINE * len(done) / len(cases)), FINE)
     return done
 
 
-CaseAnswer = tuple[Mapping[str, Any], Decided, str | None, Mapping[str, str]]
-
-
-def _packed_case(packed: Packed) -> CaseAnswer:
+def _packed_case(job: tuple[Packed, StatedCase]) -> CaseResult:
     """Calculate one case in a worker, all by itself."""
     with open_executor("serial") as alone:
-        return _case_answer(unpack(packed), alone)
+        return _in_full(unpack(job[0]), job[1], alone, silent)
 
 
-def _of_case(setup: Setup, index: int, count: int, progress: Progress) -> Progress:
-    """Return what reports the studies of one case as its part of all cases."""
-    return within(progress, "cases", index / count, (index + 1) / count, [study.name for study in setup.studies])
-
-
-def _case_answer(setup: Setup, executor: Executor, progress: Progress = silent) -> CaseAnswer:
-    """Return what a case answers and its checks, or why it failed."""
+def _in_full(setup: Setup, case: StatedCase, executor: Executor, progress: Progress) -> CaseResult:
+    """Calculate one case with its studies."""
     try:
         calculation = calculate(setup, executor=executor, progress=progress)
     except UsageError as error:  # impossible, or a tolerance that its size outgrows
-        return {}, UNDECIDED, str(error), {}
-    return calculation.answers, calculation.decided, None, calculation.absent
+        return CaseResult(case, {}, reason=str(error))
+    return CaseResult(case, calculation.answers, calculation.decided, absent=calculation.absent)
 
 
 def _in_blocks(setup: Setup, cases: Sequence[StatedCase], executor: Executor, progress: Progress) -> list[CaseResult]:
     """Calculate cases in array calls of fixed length: a block is the same wherever it is calculated."""
     blocks = [cases[start : start + BLOCK] for start in range(0, len(cases), BLOCK)]
-    jobs = ([case.values for case in block] for block in blocks)
-    answers: Iterable[list[CaseRow]]
+    results: Iterable[list[CaseResult]]
     if len(blocks) == 1 or isinstance(executor, SerialExecutor) or not travels(setup):
-        answers = (_block_answer(setup, rows) for rows in jobs)
+        results = (_block(setup, block) for block in blocks)
     else:
         packed = pack(setup)
-        answers = in_order(executor, _packed_block, ((packed, rows) for rows in jobs))
+        results = in_order(executor, _packed_block, ((packed, block) for block in blocks))
     done: list[CaseResult] = []
-    for block, block_answers in zip(blocks, answers, strict=True):
-        done += [_block_case(setup, case, *answer) for case, answer in zip(block, block_answers, strict=True)]
+    for result in results:
+        done += result
         progress("cases", len(done), len(cases))
     return done
 
 
-CaseRow = tuple[dict[str, Any], str | None, dict[str, str]]
-
-
-def _packed_block(job: tuple[Packed, list[Mapping[str, Any]]]) -> list[CaseRow]:
+def _packed_block(job: tuple[Packed, Sequence[StatedCase]]) -> list[CaseResult]:
     """Calculate one block in a worker."""
-    return _block_answer(unpack(job[0]), job[1])
+    return _block(unpack(job[0]), job[1])
 
 
-def _block_answer(setup: Setup, block: list[Mapping[str, Any]]) -> list[CaseRow]:
-    """Return what each case of a block answers, or why it failed, and why it lacks a result."""
-    rows = evaluate_rows(setup, {name: [values[name] for values in block] for name in block[0]}, len(block))
-    return [
-        (
-            {name: _plain(values[index]) for name, values in rows.results.items()},
-            rows.reasons.get(index),
-            {name: lacking[index] for name, lacking in rows.absent.items() if index in lacking},
-        )
-        for index in range(len(block))
-    ]
-
-
-def _block_case(
-    setup: Setup, case: StatedCase, answers: Mapping[str, Any], reason: str | None, absent: Mapping[str, str]
-) -> CaseResult:
-    if reason is not None:
-        return CaseResult(case, {}, reason=reason)
-    return replace(_checked(case, case_setup(setup, case), answers), absent=absent)
-
-
-def _checked(case: StatedCase, setup: Setup, answers: Mapping[str, Any]) -> CaseResult:
-    """Add what the tolerances cost in this case, and its checks."""
-    try:
-        known = {**answers, **price_answers(setup)}
-    except UsageError as error:  # a tolerance that its size outgrows
-        return CaseResult(case, {}, reason=str(error))
-    return CaseResult(case, known, decide(setup, known, {}))
+def _block(setup: Setup, cases: Sequence[StatedCase]) -> list[CaseResult]:
+    """Calculate some cases in one array call, with what the tolerances cost in each, and its checks."""
+    columns = {name: [case.values[name] for case in cases] for name in cases[0].values}
+    rows = evaluate_rows(setup, columns, len(cases))
+    done = []
+    for index, case in enumerate(cases):
+        own, reason = case_setup(setup, case), rows.reasons.get(index)
+        answers: dict[str, Any] = {name: _plain(values[index]) for name, values in rows.results.items()}
+        absent = {name: lacking[index] for name, lacking in rows.absent.items() if index in lacking}
+        try:
+            answers |= price_answers(own) if reason is None else {}
+        except UsageError as error:  # a tolerance that its size outgrows
+            reason = str(error)
+        if reason is None:
+            done.append(CaseResult(case, answers, decide(own, answers, {}), absent=absent))
+        else:
+            done.append(CaseResult(case, {}, reason=reason))
+    return done
 
 
 def _plain(value: Any) -> Any:

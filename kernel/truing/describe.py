@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from truing.declare.builtin import may_stand
-from truing.declare.fields import Axis, Found, Given, InputField, Loaded, ResultField
+from truing.declare.fields import Axis, Given, InputField, Loaded, ResultField
 from truing.declare.goals import Maximise, Minimise, Require, Vary
 from truing.declare.published import Published
 from truing.declare.sources import Tolerance
@@ -61,33 +61,24 @@ def _input(field: InputField) -> dict[str, Any]:
     spec = field.spec
     default = spec.default if isinstance(spec, Given) else None
     return {
-        "name": field.name,
-        "symbol": field.symbol,
-        "kind": field.kind,
-        "unit": field.unit,
+        **_named(field, ("name", "symbol", "kind", "unit")),
         "default": list(default) if isinstance(default, tuple) else default,
         "optional": field.is_optional,
         "choices": list(field.choices),
         "options": list(inspect.signature(spec.reader).parameters)[1:] if isinstance(spec, Loaded) else [],
         "bounds": bounds_in_words(field, with_unit=False),
-        "note": spec.note,
-        "source": spec.source,
+        **_named(spec, ("note", "source")),
     }
 
 
 def _result(field: ResultField) -> dict[str, Any]:
     spec = field.spec
-    formula = spec.formula if isinstance(spec, Found) else ""
     kind = ("table" if spec.is_table else "axis") if isinstance(spec, Axis) else "result"
     return {
-        "name": field.name,
-        "symbol": field.symbol,
+        **_named(field, ("name", "symbol")),
         "kind": kind,
         "unit": field.unit,
-        "note": spec.note,
-        "formula": formula,
-        "method": spec.method if isinstance(spec, Found) else "",
-        "source": spec.source if isinstance(spec, Found) else "",
+        **{name: getattr(spec, name, "") for name in ("note", "formula", "method", "source")},
         "along": field.along if kind == "result" else "",
     }
 
@@ -108,8 +99,7 @@ def _tolerance(tolerance: Tolerance) -> dict[str, Any]:
         "name": tolerance.name,
         "spread": tolerance.spread.text,
         "on": list(tolerance.on),
-        "why": tolerance.why,
-        "source": tolerance.source,
+        **_named(tolerance, ("why", "source")),
         "price": dataclasses.asdict(tolerance.price) if tolerance.price else None,
     }
 
@@ -118,9 +108,7 @@ def _effect(effect: Any) -> dict[str, Any]:
     return {
         "name": effect.name,
         "acts_on": effect.place,
-        "looks_like": effect.looks_like,
-        "why": effect.why,
-        "source": effect.source,
+        **_named(effect, ("looks_like", "why", "source")),
         "unknowns": [
             {**_named(unknown, UNKNOWN), "amplitude": unknown.is_amplitude, **_named(unknown, ("whole", "along"))}
             for unknown in effect.unknowns
@@ -137,18 +125,21 @@ def _published(published: Published) -> dict[str, Any]:
 
 def _objective(objective: Any) -> dict[str, Any]:
     kinds: Mapping[type[Any], str] = {Vary: "vary", Minimise: "minimise", Maximise: "maximise", Require: "require"}
-    own = {
-        field.name: getattr(objective, field.name) for field in dataclasses.fields(objective) if field.name != "kind"
-    }
+    names = [field.name for field in dataclasses.fields(objective)]
+    if isinstance(objective, Require):
+        names = ["result", "limit", "reliability", "is_flag"]
     limit = {"limit_kind": objective.kind} if isinstance(objective, Require) else {}
-    return {"kind": kinds[type(objective)], **own, **limit}
+    return {"kind": kinds[type(objective)], **_named(objective, names), **limit}
 
 
 def sections(said: Mapping[str, Any]) -> dict[str, list[Sequence[str]]]:
     """Return a description as tables for people: rows of texts by title, those that have any."""
     results = [result["name"] for result in said["results"]]
     built_in = [_built_in_row(effect, results) for effect in said["built_in"]["effects"]]
-    measured = [row for row in WHERE_MEASURED if _is_among(row[0], said["built_in"]["where_measured"])]
+    varied = [effect["name"] for effect in said["built_in"]["where_measured"]]
+    measured = [
+        row for row in WHERE_MEASURED if any(name.startswith(row[0].removesuffix("_of_INPUT")) for name in varied)
+    ]
     tables: dict[str, list[Sequence[str]]] = {
         "Inputs": [_input_row(entry) for entry in said["inputs"]],
         "Results": [
@@ -196,11 +187,6 @@ def _built_in_row(effect: dict[str, Any], results: list[str]) -> tuple[str, ...]
     unknowns = ", ".join("RESULT" + name.removeprefix(own) for name in first)
     needs = "needs " + ", ".join(effect["needs"]) if effect["needs"] else ""
     return (effect["name"], unknowns, needs, effect["looks_like"])
-
-
-def _is_among(name: str, effects: list[dict[str, Any]]) -> bool:
-    """Whether one of the effects is of the kind of this name."""
-    return any(effect["name"].startswith(name.removesuffix("_of_INPUT")) for effect in effects)
 
 
 def _effect_row(effect: dict[str, Any]) -> tuple[str, ...]:

@@ -5,7 +5,7 @@ Columns of a batch are named by input, by condition, or by ``effects.NAME.UNKNOW
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
@@ -14,12 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from truing.declare.batch import FailedRows, watching
-from truing.declare.fields import with_values
+from truing.declare.fields import Axis, InputKind, with_values
 from truing.declare.near_miss import near_miss
 from truing.declare.sources import Unknown
 from truing.errors import InfeasibleError, PluginError, TruingError, UsageError
 from truing.kernel.blame import home_of, place_of
-from truing.parts_of_batch import uniform_parts
 from truing.repeated import results_of
 from truing.setup import Case, SwitchedOn, effect_column
 from truing.units import to_si
@@ -122,7 +121,7 @@ def evaluate_rows(
     parts: list[Rows] = []
     order: list[NDArray[np.intp]] = []
     finished = 0
-    for index, part in uniform_parts(case, fixed, arrays, rows):
+    for index, part in _uniform_parts(case, fixed, arrays, rows):
         copies = repeats if len(index) == rows else 0
         parts.append(_one_call(case, part, len(index), names, reading=reading, repeats=copies))
         if len(index) == rows > 0:
@@ -249,6 +248,69 @@ def _sorted_columns(case: Case, columns: Mapping[str, Any], rows: int) -> tuple[
             raise UsageError(f"the column '{name}' has the shape {numbers.shape}; expected one value or ({rows},)")
         arrays[name] = numbers if numbers.ndim else np.float64(numbers)
     return fixed, arrays
+
+
+# Parts of a batch in which everything but Float inputs has one value, as one call of a model needs it
+
+
+def _uniform_parts(
+    case: Case, fixed: Mapping[str, Any], arrays: Mapping[str, Any], rows: int
+) -> Iterator[tuple[NDArray[np.intp], dict[str, Any]]]:
+    """Split a batch so that everything but Float inputs has one value; tables are made row by row, equal rows once."""
+    per_row = {name: _each(values, case.model.input_fields[name].kind) for name, values in fixed.items()}
+    for name, values in per_row.items():
+        if values is not None and len(values) != rows:
+            raise UsageError(f"the column '{name}' has {len(values)} values for {rows} rows")
+    common = {name: values for name, values in fixed.items() if per_row[name] is None}
+    differing = {name: values for name, values in per_row.items() if values is not None}
+    alone = any(
+        isinstance(result.spec, Axis) and result.spec.is_table for result in case.model.own_result_fields.values()
+    )
+    vary = differing or any(isinstance(values, np.ndarray) for values in arrays.values())
+    groups = [np.array([row]) for row in range(rows)] if alone and vary else _groups(differing, rows)
+    for index in groups:
+        part = {name: _taken(values, index, rows, alone=alone) for name, values in arrays.items()}
+        yield index, {**common, **part, **{name: values[index[0]] for name, values in differing.items()}}
+
+
+def _each(values: Any, kind: InputKind) -> list[Any] | None:
+    """Return the value of each row, or None where there is one for all; a series is a value itself."""
+    if isinstance(values, np.ndarray):
+        if kind == "series" and values.ndim == 1:
+            return None
+        return list(values) if kind == "series" else values.tolist() if values.ndim else None
+    if kind in {"series", "file"}:
+        return values if isinstance(values, list) else None
+    return list(values) if isinstance(values, (list, tuple)) else None
+
+
+def _taken(values: Any, index: NDArray[Any], rows: int, *, alone: bool) -> Any:
+    if not isinstance(values, np.ndarray) or (len(index) == rows and not alone):
+        return values
+    return values[index[0]] if alone else values[index]
+
+
+def _groups(differing: Mapping[str, list[Any]], rows: int) -> list[NDArray[Any]]:
+    """Return the row numbers that share the values of every differing column, in the order they first appear."""
+    if not differing:
+        return [np.arange(rows)] if rows else []
+    places: dict[tuple[Any, ...], list[int]] = {}
+    for row in range(rows):
+        places.setdefault(tuple(_key(values[row]) for values in differing.values()), []).append(row)
+    return [np.array(indices) for indices in places.values()]
+
+
+def _key(value: Any) -> Any:
+    if isinstance(value, np.ndarray):
+        return value.shape, value.tobytes()
+    try:
+        hash(value)
+    except TypeError:
+        return id(value)
+    return value
+
+
+# One call, with the effects that are on
 
 
 def _apply(case: Case, columns: Mapping[str, Any], calculate: Callable[[Any], Any], *, reading: bool) -> Any:

@@ -13,7 +13,7 @@ from truing.declare.model import Model, Study
 from truing.declare.sources import Tolerance, Unknown
 from truing.errors import PluginError
 from truing.inputs_file.assemble import default_of, spread_text, toml_key, toml_value
-from truing.inputs_file.file_model import described
+from truing.inputs_file.entries import described
 from truing.inputs_file.study_options import options_of
 from truing.inputs_file.values import plain
 from truing.kernel import Offer

@@ -5,12 +5,12 @@ from __future__ import annotations
 import io
 import pickle
 import threading
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
-from truing.declare.fields import Part, spec_of
+from truing.declare.fields import make
 from truing.declare.model import Model
 from truing.errors import PluginError
 from truing.kernel import Kernel, Origin, kernel_for
@@ -78,7 +78,7 @@ def unpack(packed: Packed) -> Setup:
     return Setup(
         model=model,
         origin=origin,
-        inputs=made(model.input_type, values),
+        inputs=make(model.input_type, values),
         spreads={**spreads, **content["spreads"]},
         conditions=content["conditions"],
         effects=tuple(
@@ -106,17 +106,6 @@ def travels(setup: Setup) -> bool:
 def _with_gives(study: Any, model: Model[Any, Any]) -> Any:
     declared = {study.name: study.gives for study in model.studies}
     return replace(study, gives=declared.get(study.name))
-
-
-def made(cls: type[Any], values: Mapping[tuple[str, ...], Any]) -> Any:
-    """Make nested inputs from the values of all their fields, given by path."""
-    own = {path[0]: value for path, value in values.items() if len(path) == 1}
-    for field in fields(cls):
-        spec = spec_of(field)
-        if isinstance(spec, Part):
-            inner = {path[1:]: value for path, value in values.items() if path[0] == field.name}
-            own[field.name] = made(spec.of, inner)
-    return cls(**own)
 
 
 def _plain_effect(

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from truing.declare.checks import TOTAL_PRICE
 from truing.declare.goals import Price, PriceByChoice
+from truing.declare.model import TOTAL_PRICE
 from truing.declare.sources import Tolerance
 from truing.setup import Setup
 from truing.units import to_si

@@ -7,7 +7,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -110,7 +110,6 @@ class Tasks:
 
     task: Task = field(default_factory=lambda: Task("working", time.monotonic()))
     _line: Any = None
-    _timer: threading.Timer | None = None
     _lock: threading.Lock = field(default_factory=threading.Lock)
     _over: bool = False
 
@@ -122,21 +121,21 @@ class Tasks:
                 self.task = Task(task, now, first=done)
             self.task.done, self.task.total = done, total
 
-    def begin(self) -> None:
-        """Show the line once the patience is over."""
-        self._timer = threading.Timer(PATIENCE, self._show)
-        self._timer.daemon = True
-        self._timer.start()
-
-    def end(self) -> None:
-        """Take the line away."""
-        if self._timer is not None:
-            self._timer.cancel()
-        with self._lock:
-            self._over = True
-            line, self._line = self._line, None
-        if line is not None:
-            line.stop()
+    @contextmanager
+    def shown(self) -> Iterator[Progress]:
+        """Give what takes reports, and show the line once the patience is over, until the work is."""
+        timer = threading.Timer(PATIENCE, self._show)
+        timer.daemon = True
+        timer.start()
+        try:
+            yield self.report
+        finally:
+            timer.cancel()
+            with self._lock:
+                self._over = True
+                line, self._line = self._line, None
+            if line is not None:
+                line.stop()
 
     def _show(self) -> None:
         with self._lock:
@@ -163,15 +162,9 @@ class Tasks:
         return table
 
 
-@contextmanager
-def shown_progress() -> Iterator[Progress]:
+def shown_progress() -> AbstractContextManager[Progress]:
     """Give what takes reports of progress, and show them until the work is over."""
-    watched = Tasks()
-    watched.begin()
-    try:
-        yield watched.report
-    finally:
-        watched.end()
+    return Tasks().shown()
 
 
 @contextmanager

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -36,20 +36,6 @@ class ComparedRow:
     as_stated: bool
 
 
-def compare(
-    calculation_for: Callable[[Mapping[str, str]], Calculation], published: Iterable[Published]
-) -> list[ComparedRow]:
-    """Compare every printed number with ours; each distinct set of settings is calculated once."""
-    done: dict[frozenset[tuple[str, str]], Calculation] = {}
-    rows = []
-    for printed in published:
-        key = frozenset(printed.settings.items())
-        if key not in done:
-            done[key] = calculation_for(printed.settings)
-        rows.append(compare_one(printed, done[key]))
-    return rows
-
-
 def compare_published(
     offer: Offer, *, progress: Progress = silent, known: Calculation | None = None
 ) -> list[ComparedRow]:
@@ -67,22 +53,17 @@ def compare_published(
 def _compared(offer: Offer, progress: Progress, known: Calculation | None) -> list[ComparedRow]:
     asked = {frozenset(printed.settings.items()): printed.settings for printed in offer.model.published}
     wanted = {key: setup_from_settings(offer, settings) for key, settings in asked.items()}
-    missing = [
-        key
-        for key, setup in wanted.items()
-        if known is None or not (_covers(known.setup, setup) and same_run(known.setup, setup))
-    ]
-
-    def calculation_for(settings: Mapping[str, str]) -> Calculation:
-        key = frozenset(settings.items())
-        if known is not None and key not in missing:
-            return known
+    done: dict[frozenset[tuple[str, str]], Calculation] = {}
+    for key, setup in wanted.items():
+        if known is not None and _covers(known.setup, setup) and same_run(known.setup, setup):
+            done[key] = known
+    missing = [key for key in wanted if key not in done]
+    for count, key in enumerate(missing):
         names = [study.name for study in wanted[key].studies]
-        begin, end = (count / len(missing) for count in (missing.index(key), missing.index(key) + 1))
+        begin, end = count / len(missing), (count + 1) / len(missing)
         progress(TASK, round(FINE * begin), FINE)
-        return calculate(wanted[key], progress=within(progress, TASK, begin, end, names))
-
-    return compare(calculation_for, offer.model.published)
+        done[key] = calculate(wanted[key], progress=within(progress, TASK, begin, end, names))
+    return [compare_one(printed, done[frozenset(printed.settings.items())]) for printed in offer.model.published]
 
 
 def _covers(known: Setup, wanted: Setup) -> bool:

@@ -1,8 +1,12 @@
-"""How a mesh spreads its load over the face, and how a resonance raises it: what effects of gear models share."""
+"""What effects of gear models share: load over the face, a resonance, the viscosity of an oil, one wave per turn."""
 
 import numpy as np
 
-from truing import Float
+from truing import Float, Unknown
+
+FORTY = 313.15  # K, at which the viscosity of an oil is stated
+SLOPE = 3.567  # of an ISO VG 100 oil with viscosity index 95: 100 mm²/s at 40 degC and 11.1 mm²/s at 100 degC
+ADDED = 0.7  # mm²/s, in the law of the viscosity
 
 
 def face_factor(ratio: Float) -> Float:
@@ -24,3 +28,25 @@ def shaken_by_error(speed_ratio: Float, damping: Float) -> Float:
     """
     square = np.square(speed_ratio)
     return square / np.sqrt((1.0 - square) ** 2 + 4.0 * np.square(damping) * square)
+
+
+def viscosity_at(temperature: Float, at_forty: Float) -> Float:
+    """Return the kinematic viscosity, mm²/s, from that at 40 degC, mm²/s: log log (nu + 0.7) falls with log T.
+
+    The temperature in K. For mineral oils of viscosity index about 95, 0 to 150 degC; others have another slope.
+    Reference: ASTM D341.
+    """
+    return 10.0 ** (np.log10(at_forty + ADDED) * (temperature / FORTY) ** -SLOPE) - ADDED
+
+
+def wave(angle: Float, cosine: Float, sine: Float) -> Float:
+    """Return one harmonic of an angle."""
+    return cosine * np.cos(angle) + sine * np.sin(angle)
+
+
+def wave_unknowns(limit: float, unit: str, of: str, cosine: str = "cosine", sine: str = "sine") -> list[Unknown]:
+    """Declare both parts of one harmonic."""
+    return [
+        Unknown(cosine, -limit, limit, unit, note=f"in proportion to the cosine of {of}"),
+        Unknown(sine, -limit, limit, unit, note=f"in proportion to the sine of {of}"),
+    ]

@@ -39,14 +39,13 @@ def angle_of_involute(value: Float) -> Float:
 
 def transverse_angle(pressure_angle: Float, helix_angle: Float) -> Float:
     """Return the pressure angle of the transverse section, rad."""
-    angle: Float = np.arctan(np.tan(pressure_angle) / np.cos(helix_angle))
-    return angle
+    return np.arctan(np.tan(pressure_angle) / np.cos(helix_angle))
 
 
 def base_helix_angle(pressure_angle: Float, helix_angle: Float) -> Float:
     """Return the helix angle at the base cylinder, rad."""
-    angle: Float = np.arcsin(np.sin(helix_angle) * np.cos(pressure_angle))
-    return angle
+    value: Float = np.arcsin(np.sin(helix_angle) * np.cos(pressure_angle))
+    return value
 
 
 def working_angle(shift_per_tooth: Float, pressure_angle: Float, transverse: Float | None = None) -> Float:

@@ -213,8 +213,7 @@ def _turned(ratio: Float, constant: Float, slope: Float) -> Float:
 
 
 def _direction(ratio: Float, angle: Float) -> Float:
-    direction: Float = np.arctan(ratio * np.sin(angle) / (ratio * np.cos(angle) - 1.0))
-    return direction
+    return np.arctan(ratio * np.sin(angle) / (ratio * np.cos(angle) - 1.0))
 
 
 def _trochoid(centre: Float, pitch: Float, turned: Float, distance: Float) -> Float:

@@ -1,25 +1,11 @@
 """From rough flanks to the stiffness of one pair, of the mesh and of the drive, and what must hold before."""
 
-from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
 from harmonic_fractal import clearance as gap
-from harmonic_fractal.contact import (
-    Contact,
-    Pressed,
-    Rough,
-    contact_of,
-    critical_pressure,
-    flanks_of,
-    interface_of,
-    is_accepted,
-    is_half_stated,
-    pressed,
-    range_of,
-    spacing_of,
-)
+from harmonic_fractal import contact as rough_contact
 from harmonic_fractal.mesh import DriveMesh, line_stiffness, load_of_largest, mesh_of, mesh_torsion, normal_stiffness
 from harmonic_fractal.micro import LEAST_DIMENSION, MOST_DIMENSION, elastic_sum
 from harmonic_fractal.quantities import SIZES, Drive, Stiffness
@@ -92,14 +78,14 @@ def ratio_of(drive: Drive) -> float:
 # What must hold before roughness, pairs and drive can be calculated: the sentence names the inputs and what to do
 
 
-def require_surface(drive: Drive, rough: Rough) -> None:
+def require_surface(drive: Drive, rough: rough_contact.Rough) -> None:
     """Refuse what is no rough surface; NaN is none."""
     feasible(
-        np.logical_not(is_half_stated(drive)),
+        np.logical_not(rough_contact.is_half_stated(drive)),
         "the mating flank is half stated: state mating_dimension and mating_roughness, or neither if it is smooth",
     )
-    if flanks_of(drive)[1] is not None:
-        shortest, longest = range_of(drive)
+    if rough_contact.flanks_of(drive)[1] is not None:
+        shortest, longest = rough_contact.range_of(drive)
         feasible(
             longest > shortest,
             "two flanks are added over the lags that both have, and these have none: enlarge longest_lag beyond "
@@ -130,7 +116,7 @@ COMPARED = ("catalogue_torsion", "catalogue_stiffness", "rough_share")
 """The results that need the catalogue."""
 
 
-def require_contact(drive: Drive, contact: Contact, mesh: DriveMesh) -> None:
+def require_contact(drive: Drive, contact: rough_contact.Contact, mesh: DriveMesh) -> None:
     """Refuse more pairs than there are teeth; without stiffness where the torsion begins nothing counts from there."""
     feasible(
         drive.engaged_pairs * np.asarray(mesh.engagement.factor(drive.torque)) <= drive.flexspline_teeth,
@@ -155,7 +141,7 @@ def require_contact(drive: Drive, contact: Contact, mesh: DriveMesh) -> None:
         )
 
 
-def require_flank(drive: Drive, one: Pressed, largest: Pressed) -> None:
+def require_flank(drive: Drive, one: rough_contact.Pressed, largest: rough_contact.Pressed) -> None:
     """Refuse contacts larger than the flank: of the pair that is looked at, and of the one that carries most."""
     flank: Float = drive.face_width * drive.flank_height
     for pair, load in ((one, "pair_load"), (largest, "torque")):
@@ -177,27 +163,15 @@ def require_catalogue(drive: Drive) -> Polyline:
     return printed or Polyline(np.nan, np.nan, (np.nan, np.nan, np.nan))
 
 
-# From rough flanks to the stiffness of one pair, of the mesh and of the drive
-
-
-@dataclass(frozen=True)
-class Around:
-    """What is in series with the mesh."""
-
-    shear_modulus: Float
-    moment: Float
-    compliance: Float
-
-
 def harmonic_fractal(drive: Drive) -> Stiffness:
     """One drive or a batch of them; every Float is a number or an array (n,), SI."""
-    rough = interface_of(drive)
+    rough = rough_contact.interface_of(drive)
     require_surface(drive, rough)
-    contact = contact_of(drive, rough)
+    contact = rough_contact.contact_of(drive, rough)
     mesh = mesh_of(drive, contact)
     require_contact(drive, contact, mesh)
-    pair = pressed(drive.pair_load, contact)
-    require_flank(drive, pair, pressed(load_of_largest(drive.torque, mesh), contact))
+    pair = rough_contact.pressed(drive.pair_load, contact)
+    require_flank(drive, pair, rough_contact.pressed(load_of_largest(drive.torque, mesh), contact))
     return Stiffness(
         lag=drive.lags,
         structure_function=_seen(drive, rough),
@@ -209,47 +183,49 @@ def harmonic_fractal(drive: Drive) -> Stiffness:
     )
 
 
-def around_of(drive: Drive) -> Around:
-    """Return cup and compliance in series with the mesh; elasticity acts on both."""
+def around_of(drive: Drive) -> dict[str, Float]:
+    """Return cup and compliance in series with the mesh by the names of their results; elasticity acts on both."""
     shear = drive.modulus_factor * drive.flexspline.youngs_modulus / (2.0 * (1.0 + drive.flexspline.poisson_ratio))
     moment = 2.0 * np.pi * drive.cup_radius**3 * drive.cup_wall
     compliance = drive.drive_compliance / drive.modulus_factor + drive.cup_length / (shear * moment)
-    return Around(shear, moment, compliance)
+    length = np.asarray(drive.cup_length)
+    cup = np.where(length > 0.0, shear * moment / np.where(length > 0.0, length, 1.0), 0.0)
+    return {"shear_modulus": shear, "cup_moment": moment, "cup_stiffness": cup, "series_compliance": compliance}
 
 
-def _seen(drive: Drive, rough: Rough) -> Float:
+def _seen(drive: Drive, rough: rough_contact.Rough) -> Float:
     """Return the structure function over the lags, as an instrument that averages over a spot sees it."""
     lags, dimension = np.asarray(drive.lags), column(rough.dimension) - 1.0
     seen = structure_function(lags, dimension, column(rough.roughness))
-    return (
-        seen * kept_share(lags, column(drive.spot_width), 4.0 - 2.0 * dimension) if np.any(drive.spot_width) else seen
-    )
+    if not np.any(drive.spot_width):
+        return seen
+    return seen * kept_share(lags, column(drive.spot_width), 4.0 - 2.0 * dimension)
 
 
-def _interface(drive: Drive, rough: Rough) -> dict[str, Any]:
+def _interface(drive: Drive, rough: rough_contact.Rough) -> dict[str, Any]:
     return {
-        "surface_accepted": is_accepted(drive),
-        "spacing": spacing_of(drive),
+        "surface_accepted": rough_contact.is_accepted(drive),
+        "spacing": rough_contact.spacing_of(drive),
         "dimension": rough.dimension,
         "profile_dimension": rough.dimension - 1.0,
         "roughness": rough.roughness,
     }
 
 
-def _contact(drive: Drive, contact: Contact) -> dict[str, Any]:
+def _contact(drive: Drive, contact: rough_contact.Contact) -> dict[str, Any]:
     """Return what does not depend on the load by the names of its results."""
     return {
         "equivalent_modulus": contact.modulus,
-        "critical_pressure": critical_pressure(drive),
+        "critical_pressure": rough_contact.critical_pressure(drive),
         "domain_factor": contact.domain_factor,
         "critical_area": contact.critical_area,
-        "resolved_share": np.sqrt(contact.critical_area / np.pi) / spacing_of(drive),
+        "resolved_share": np.sqrt(contact.critical_area / np.pi) / rough_contact.spacing_of(drive),
         "plastic_limit": contact.plastic_limit,
         "tip_factor": contact.tip_factor,
     }
 
 
-def _pair(drive: Drive, contact: Contact, pair: Pressed) -> dict[str, Any]:
+def _pair(drive: Drive, contact: rough_contact.Contact, pair: rough_contact.Pressed) -> dict[str, Any]:
     """Return one pair under its load by the names of its results."""
     plastic = np.exp(contact.law.growth * pair.size) * contact.plastic_limit / drive.pair_load
     return {
@@ -265,7 +241,9 @@ def _pair(drive: Drive, contact: Contact, pair: Pressed) -> dict[str, Any]:
     }
 
 
-def _clearance(drive: Drive, contact: Contact, mesh: DriveMesh, pair: Pressed) -> dict[str, Any]:
+def _clearance(
+    drive: Drive, contact: rough_contact.Contact, mesh: DriveMesh, pair: rough_contact.Pressed
+) -> dict[str, Any]:
     """Return the clearance of one pair by the names of its results."""
     largest = np.sqrt(pair.largest_area / np.pi)
     radius, multiple = gap.read_radius(drive, largest)
@@ -288,9 +266,10 @@ def _clearance(drive: Drive, contact: Contact, mesh: DriveMesh, pair: Pressed) -
     }
 
 
-def _mesh(drive: Drive, contact: Contact, mesh: DriveMesh) -> dict[str, Any]:
+def _mesh(drive: Drive, contact: rough_contact.Contact, mesh: DriveMesh) -> dict[str, Any]:
     """Return mesh and drive by the names of their results; torsions have the sense of the torque."""
     around, printed, sense = around_of(drive), require_catalogue(drive), np.sign(drive.torque)
+    compliance = around["series_compliance"]
     whole, rough = (sense * size for size in mesh_torsion(drive.torque, drive.reference_torque, mesh))
     more = mesh.engagement.factor(drive.torque)
     normal = normal_stiffness(drive.torque, mesh)
@@ -306,19 +285,11 @@ def _mesh(drive: Drive, contact: Contact, mesh: DriveMesh) -> dict[str, Any]:
         "normal_stiffness": normal,
         "mesh_stiffness": stiffness,
         "mesh_torsion": whole,
-        "shear_modulus": around.shear_modulus,
-        "cup_moment": around.moment,
-        "cup_stiffness": _stiffness_of_cup(drive, around),
-        "series_compliance": around.compliance,
-        "torsional_stiffness": stiffness / (1.0 + around.compliance * stiffness),
-        "torsion": whole + sense * around.compliance * beyond,
+        **around,
+        "torsional_stiffness": stiffness / (1.0 + compliance * stiffness),
+        "torsion": whole + sense * compliance * beyond,
         "rough_torsion": rough,
         "catalogue_torsion": in_catalogue,
         "catalogue_stiffness": printed.stiffness(drive.torque),
         "rough_share": np.where(in_catalogue == 0.0, 0.0, rough / np.where(in_catalogue == 0.0, 1.0, in_catalogue)),
     }
-
-
-def _stiffness_of_cup(drive: Drive, around: Around) -> Float:
-    length = np.asarray(drive.cup_length)
-    return np.where(length > 0.0, around.shear_modulus * around.moment / np.where(length > 0.0, length, 1.0), 0.0)

@@ -55,8 +55,14 @@ def interface_of(drive: Drive) -> Rough:
 
 
 def together(first: Rough, second: Rough | None, drive: Drive) -> Rough:
-    """Return one rough surface for both flanks, without any deviation; the second one may be smooth."""
-    return first if second is None else _sum_or_first(first, second, drive)
+    """Return one rough surface for both flanks, without any deviation; the second may be smooth, in some rows."""
+    if second is None:
+        return first
+    both, smooth = _sum(first, second, drive), np.isnan(second.dimension)
+    return Rough(
+        dimension=np.where(smooth, first.dimension, both.dimension),
+        roughness=np.where(smooth, first.roughness, both.roughness),
+    )
 
 
 def is_accepted(drive: Drive) -> float:
@@ -92,15 +98,6 @@ def _measured(flank: Flank | None) -> Rough | None:
 def _stated(drive: Drive, dimension: Float, roughness: Float) -> Rough:
     areal = converted(roughness, dimension - 1.0, drive.density, source=drive.convention, target="areal")
     return Rough(dimension=dimension, roughness=areal)
-
-
-def _sum_or_first(first: Rough, second: Rough, drive: Drive) -> Rough:
-    """Return the sum of both, and in rows where the second one is smooth the first."""
-    both, smooth = _sum(first, second, drive), np.isnan(second.dimension)
-    return Rough(
-        dimension=np.where(smooth, first.dimension, both.dimension),
-        roughness=np.where(smooth, first.roughness, both.roughness),
-    )
 
 
 def _sum(first: Rough, second: Rough, drive: Drive) -> Rough:

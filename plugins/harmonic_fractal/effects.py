@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from gear_geometry.mesh_load import wave
 from harmonic_fractal.calculation import TABLE
 from harmonic_fractal.quantities import Drive, Stiffness
 from truing import Condition, Effect, Float, Unknown, column
@@ -86,8 +87,7 @@ def held_share(
     sense = np.sign(direction)
     way = np.abs(drive.torque - reversal_torque) / (torque_scale * rated_torque(drive))
     is_first = (drive.torque >= peak_torque) & (sense > 0.0)
-    share: Float = sense * np.where(is_first, -np.expm1(-2.0 * way), 1.0 - 2.0 * np.exp(-way))
-    return share
+    return sense * np.where(is_first, -np.expm1(-2.0 * way), 1.0 - 2.0 * np.exp(-way))
 
 
 def hysteresis(
@@ -133,8 +133,7 @@ def viscous_hysteresis(
 
 def crossed(drive: Drive, torque_scale: Float) -> Float:
     """Return the share of a play that is crossed, in the sense of the torque; the scale is in parts of T_2."""
-    share: Float = np.tanh(drive.torque / (torque_scale * rated_torque(drive)))
-    return share
+    return np.tanh(drive.torque / (torque_scale * rated_torque(drive)))
 
 
 def lost_motion(drive: Drive, results: Stiffness, *, play: Float, torque_scale: Float) -> Stiffness:
@@ -193,17 +192,16 @@ def creep(drive: Drive, results: Stiffness, *, share: Float, time_scale: Float, 
 def ellipticity(drive: Drive, results: Stiffness, *, wave_angle: Float, **unknowns: Float) -> Stiffness:
     """The two lobes of the wave generator are not alike: two waves per turn, of the angle and of the stiffness."""
 
-    def wave(name: str) -> Float:
-        cosine, sine = unknowns.get(f"{name}cosine", 0.0), unknowns.get(f"{name}sine", 0.0)
-        return cosine * np.cos(2.0 * wave_angle) + sine * np.sin(2.0 * wave_angle)
-
-    stiffer = replace(results, mesh_stiffness=results.mesh_stiffness * (1.0 + wave("stiffness_")))
-    return turned(stiffer, wave(""))
+    by_angle, by_stiffness = (
+        wave(2.0 * wave_angle, unknowns.get(f"{name}cosine", 0.0), unknowns.get(f"{name}sine", 0.0))
+        for name in ("", "stiffness_")
+    )
+    return turned(replace(results, mesh_stiffness=results.mesh_stiffness * (1.0 + by_stiffness)), by_angle)
 
 
 def eccentricity(drive: Drive, results: Stiffness, *, cosine: Float, sine: Float, wave_angle: Float) -> Stiffness:
     """The wave generator is off its axis: one wave of the angle per turn."""
-    return turned(results, cosine * np.cos(wave_angle) + sine * np.sin(wave_angle))
+    return turned(results, wave(wave_angle, cosine, sine))
 
 
 def rig_drift(drive: Drive, results: Stiffness, *, rate: Float, time: Float) -> Stiffness:
@@ -286,8 +284,6 @@ def modulus_temperature(drive: Drive, *, softening: Float, temperature: Float) -
     return replace(drive, modulus_factor=drive.modulus_factor * left)
 
 
-# What the rough flanks leave out of the torsion and the stiffness of a drive, or of a measured surface
-#
 # They act in the order declared: first what changes flanks, pairs and springs, then what is added to the torsion, then
 # the surface, then the readings. A new effect is a function beside the others and one more entry in EFFECTS.
 
@@ -302,7 +298,7 @@ FRICTION_SCALE = Unknown("torque_scale", 0.005, 4, "", note=f"torque after which
 PLAY_SCALE = Unknown("torque_scale", 0.002, 1, "", note=f"torque at which 76 % of the play is crossed, {PARTS}")
 
 
-def wave(limit: float, unit: str, prefix: str = "", of: str = "the torsion") -> list[Unknown]:
+def parts_of_wave(limit: float, unit: str, prefix: str = "", of: str = "the torsion") -> list[Unknown]:
     """Declare both parts of one harmonic."""
     return [
         Unknown(f"{prefix}cosine", -limit, limit, unit, note=f"part of the wave of {of}"),
@@ -310,7 +306,7 @@ def wave(limit: float, unit: str, prefix: str = "", of: str = "the torsion") -> 
     ]
 
 
-MESH: list[Effect[Drive, Stiffness]] = [
+EFFECTS: list[Effect[Drive, Stiffness]] = [
     Effect("series_compliance", on_inputs=series_compliance,
            unknowns=[Unknown("compliance", 0, 1000, "urad/(N*m)",
                              note="1 over a stiffness; 1.4 to 530 in the catalogue")],
@@ -349,8 +345,6 @@ MESH: list[Effect[Drive, Stiffness]] = [
            looks_like="torsion too large by one share when warm, of flanks, teeth and cup alike",
            why="Young's modulus falls with the temperature",
            source="handbook: elasticity of steel over temperature"),
-]  # fmt: skip
-MOTION: list[Effect[Drive, Stiffness]] = [
     Effect("creep", on_results=creep, needs=[TIME],
            unknowns=[Unknown("share", 0, 0.2, "", note="of the elastic torsion, per e-fold of time; 0.002 to 0.02"),
                      Unknown("time_scale", 1e-3, 10, "h", note="time from which it counts")],
@@ -358,19 +352,18 @@ MOTION: list[Effect[Drive, Stiffness]] = [
            why="joints, bearing and bonded cup settle under a torque that stays",
            source="logarithmic creep"),
     Effect("ellipticity", on_results=ellipticity, needs=[WAVE_ANGLE], acts_at_reference=True,
-           unknowns=[*wave(1000, "urad"), *wave(0.5, "", "stiffness_", "the mesh stiffness, as a share of it")],
+           unknowns=[*parts_of_wave(1000, "urad"),
+                     *parts_of_wave(0.5, "", "stiffness_", "the mesh stiffness, as a share of it")],
            parts=[("cosine", "sine"), ("stiffness_cosine", "stiffness_sine")],
            looks_like="two waves per turn of the wave generator, of the torsion at any torque, or of the mesh "
                       "stiffness",
            why="the two lobes of the wave generator, or the bores it sits in, are not alike",
            source="second harmonic of the shape of the wave generator"),
     Effect("eccentricity", on_results=eccentricity, needs=[WAVE_ANGLE], acts_at_reference=True,
-           unknowns=wave(1000, "urad"),
+           unknowns=parts_of_wave(1000, "urad"),
            looks_like="one wave of the torsion per turn of the wave generator, at any torque",
            why="the wave generator, or its coupling, is off the axis of the drive",
            source="first harmonic of an eccentricity"),
-]  # fmt: skip
-FRICTION: list[Effect[Drive, Stiffness]] = [
     Effect("hysteresis", on_results=hysteresis, needs=[DIRECTION, REVERSAL_TORQUE, PEAK_TORQUE],
            unknowns=[Unknown("loop", 0, 2000, "urad", note="whole width; 290 to 870 (1 to 3 arcmin)"), FRICTION_SCALE],
            looks_like="the torsion is smaller on the way up than on the way down at the same torque, and turns round "
@@ -412,8 +405,6 @@ FRICTION: list[Effect[Drive, Stiffness]] = [
            looks_like="a lost motion that grows, or shrinks, in proportion to the temperature",
            why="the two splines are of different metal and move apart, or together, as they get warm",
            source="linear expansion; play of teeth that move apart, 2 tan(alpha) times the distance"),
-]  # fmt: skip
-SURFACE: list[Effect[Drive, Stiffness]] = [
     Effect("lateral_filter", on_inputs=lateral_filter,
            unknowns=[Unknown("width", 0, 20, "um",
                              note="standard deviation of its weight; 0.187 of the cutoff of ISO 16610-21")],
@@ -428,8 +419,6 @@ SURFACE: list[Effect[Drive, Stiffness]] = [
            looks_like="the structure function has a hump at half a wavelength, and a dip at a whole one",
            why="chatter and feed of the tool leave waves on a flank",
            source="structure function of a sine"),
-]  # fmt: skip
-READING: list[Effect[Drive, Stiffness]] = [
     Effect("rig_drift", on_reading=rig_drift, needs=[TIME],
            unknowns=[Unknown("rate", -500, 500, "urad/h", note="1 to 30")],
            looks_like="the torsion moves with time, whatever the torque, as with a sensor that drifts",
@@ -442,4 +431,3 @@ READING: list[Effect[Drive, Stiffness]] = [
            why="every height has the noise of its instrument",
            source="structure function of white noise: twice its variance"),
 ]  # fmt: skip
-EFFECTS: list[Effect[Drive, Stiffness]] = [*MESH, *MOTION, *FRICTION, *SURFACE, *READING]

@@ -109,26 +109,24 @@ def _stepped(x: Array, y: Array, found: Array, damping: Array) -> Array:
     diagonal += damping[:, None] * diagonal + 1e-30
     change = np.linalg.solve(normal, gradient[..., None])[..., 0]
     low, high = np.array([FLATTEST, 0.0]), np.array([STEEPEST, np.inf])
-    clipped: Array = np.clip(found + change, low, high)
-    return clipped
+    return np.clip(found + change, low, high)
 
 
 def _shape(x: Array, found: Array) -> Array:
-    shape: Array = np.log(np.exp(found[:, :1] * x) + found[:, 1:])
-    return shape
+    return np.log(np.exp(found[:, :1] * x) + found[:, 1:])
 
 
 def _residuals(x: Array, y: Array, found: Array) -> Array:
     left = y - _shape(x, found)
-    centred: Array = left - left.mean(axis=-1, keepdims=True)
-    return centred
+    value: Array = left - left.mean(axis=-1, keepdims=True)
+    return value
 
 
 def _explained(left: Array, y: Array) -> Array:
     spread = np.square(y - y.mean(axis=-1, keepdims=True)).sum(axis=-1)
     left_over = np.square(left).sum(axis=-1)
-    explained: Array = np.divide(spread - left_over, spread, out=np.full(spread.shape, np.nan), where=spread > 0)
-    return explained
+    value: Array = np.divide(spread - left_over, spread, out=np.full(spread.shape, np.nan), where=spread > 0)
+    return value
 
 
 # How far D and G scatter: blocks of neighbouring lines, or of neighbouring pieces of them, drawn anew many times
@@ -162,7 +160,9 @@ def units_of(heights: Array, curve: StructureFunction, steps: Steps, block: int)
 
 def are_independent(curve: StructureFunction) -> bool:
     """Tell whether what a line says about the slope has nothing to do with what its neighbour says (5 % level)."""
-    scores = _scores(curve)
+    x = np.log(curve.lags)
+    pull = (x - x.mean()) / (curve.pooled * curve.pairs)
+    scores = (curve.sums - curve.pooled * curve.counts) @ pull  # of the slope of ln S over ln lag; their sum is 0
     return bool(scores[1:] @ scores[:-1] <= 1.96 * (scores @ scores) / np.sqrt(len(scores)))
 
 
@@ -191,14 +191,6 @@ def _grouped(curve: StructureFunction, together: int) -> StructureFunction:
 
 def _at_most(block: int, units: int) -> int:
     return max(1, min(block, units // FEWEST_BLOCKS))
-
-
-def _scores(curve: StructureFunction) -> Array:
-    """Return how far every line pulls the slope of ln S over ln lag, to first order; their sum is 0."""
-    x = np.log(curve.lags)
-    pull = (x - x.mean()) / (curve.pooled * curve.pairs)
-    scores: Array = (curve.sums - curve.pooled * curve.counts) @ pull
-    return scores
 
 
 # The roughness-length method: how the roughness of a piece of a line grows with its length (Malinverno 1990)
@@ -324,8 +316,6 @@ def span_of(shortest: float, longest: float) -> str:
     return f"{shortest * 1e6:.4g} um to {longest * 1e6:.4g} um"
 
 
-# From the lines of a surface to fractal dimension and roughness: settings, and what was found
-
 FEWEST_POINTS = 64  # of a line
 FEWEST_LAGS = 8
 FEWEST_PAIRS = 100
@@ -446,6 +436,7 @@ def estimate_of(lines: Lines, direction: Direction, settings: Estimation) -> Est
     found = _fit(curve, settings)
     reason = _refusal(lines.heights.shape[1], local, curve.lags, found)
     noise_dimension, noise_share = _with_noise(curve)
+    roughness = float(np.exp(found.logarithm)) if abs(found.logarithm) < 700.0 else float("nan")  # no such number
     whole = np.unique(np.concatenate([coarse.lags, curve.lags]), return_index=True)[1]
     return Estimate(
         direction=direction,
@@ -454,7 +445,7 @@ def estimate_of(lines: Lines, direction: Direction, settings: Estimation) -> Est
         local_lags=local.lags,
         local_dimensions=local.dimensions,
         dimension=found.dimension,
-        roughness=_exponential(found.logarithm),
+        roughness=roughness,
         r_squared=found.r_squared,
         line_scatter=found.scatter,
         noise=found.noise,
@@ -473,18 +464,13 @@ def estimate_of(lines: Lines, direction: Direction, settings: Estimation) -> Est
 def _curves(lines: Lines, settings: Estimation) -> tuple[StructureFunction, _Local, StructureFunction]:
     """Return S between whose lags the local slopes are taken, these slopes, and S at the lags of the fit."""
     points = lines.heights.shape[1]
-    every = _steps(points, lines.spacing, settings)
-    coarse = _measured(lines, local_steps(points, _shortest(settings) / lines.spacing))
+    every, shortest = _steps(points, lines.spacing, settings), min(settings.lags, default=settings.shortest_lag)
+    coarse = _measured(lines, local_steps(points, shortest / lines.spacing))
     noise = _noise(lines, every, settings)
     local = _local(coarse, noise, settings)
     is_whole = local.reason or settings.fit == "all"
     steps = every if is_whole else _within(points, lines.spacing, _reach(coarse, noise, local), settings)
     return coarse, local, _measured(lines, steps)
-
-
-def _shortest(settings: Estimation) -> float:
-    """Return the shortest lag that may be looked at, m, NaN where the data decide."""
-    return min(settings.lags, default=settings.shortest_lag)
 
 
 def _steps(points: int, spacing: float, settings: Estimation) -> Steps:
@@ -583,11 +569,6 @@ def _fit(curve: StructureFunction, settings: Estimation) -> _Fit:
     )
 
 
-def _exponential(logarithm: float) -> float:
-    """Return G, NaN where it is beyond all numbers: a slope near 2 of a surface that is refused."""
-    return float(np.exp(logarithm)) if abs(logarithm) < 700.0 else float("nan")
-
-
 def _with_noise(curve: StructureFunction) -> tuple[float, float]:
     """Return the profile dimension of a fit with noise, and the share of noise in S at the shortest lag."""
     if curve.lags.size < FEWEST_LAGS:
@@ -626,5 +607,5 @@ def _resampled(lines: Lines, curve: StructureFunction, found: _Fit, settings: Es
     else:
         pairs = _pairs(_law(curve.lags, mean_squares(weights @ units.sums, weights @ units.counts), settings))
         pairs += np.array([found.dimension, found.logarithm]) - _pairs(_law(curve.lags, curve.pooled, settings))
-    kept: Array = pairs[np.isfinite(pairs).all(axis=1)] + np.array([1.0, 0.0])
-    return kept
+    value: Array = pairs[np.isfinite(pairs).all(axis=1)] + np.array([1.0, 0.0])
+    return value

@@ -1,14 +1,16 @@
 """The figures and tables of the sheet: the flank, both flanks as one, one pair over its load, torsion."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
+from itertools import product
 from typing import Any, Literal
 
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.figure import Figure
 
+from gear_geometry.drawing import BLUE, GREEN, GREY, INK, ORANGE, PALE, WIDTH, panels, quiet, signed
 from harmonic_fractal import clearance as gap
 from harmonic_fractal.calculation import Polyline, around_of, polyline_of, ratio_of
 from harmonic_fractal.contact import Rough, contact_of, flanks_of, interface_of, pressed
@@ -18,40 +20,12 @@ from harmonic_fractal.mesh import load_of_largest, mesh_of, mesh_torsion
 from harmonic_fractal.quantities import Drive, Stiffness
 from harmonic_fractal.structure import Convention, constant, converted, structure_function
 from harmonic_fractal.surface import Direction
-from truing import Array, Block, Drawing, Record, Table, Words
-
-# What the figures and tables share: colours, sizes, numbers in words, and the inputs as effects leave them
+from truing import Array, Block, Drawing, Float, Record, Table, Words
 
 DriveRun = Record[Drive, Stiffness]
 
-BLUE, ORANGE, GREEN, INK, GREY, PALE = "#1f5a8a", "#c8641e", "#2f6b4f", "#22262b", "#7d838c", "#e8eff5"
 DIRECTIONS = {"x": BLUE, "y": ORANGE, "both": GREEN}
-WIDTH = 6.4
 MICRO, NANO = 1e6, 1e9
-
-
-def panels(rows: int, height: float, **options: Any) -> "tuple[Figure, Any]":
-    """A figure as wide as the sheet with panels below one another."""
-    figure = Figure(figsize=(WIDTH, height), layout="constrained")
-    return figure, figure.subplots(rows, 1, squeeze=False, **options)[:, 0]
-
-
-def quiet(panel: Any, x_label: str = "", y_label: str = "") -> None:
-    """Labels and a grid behind the lines."""
-    panel.set_xlabel(x_label)
-    panel.set_ylabel(y_label)
-    panel.grid(alpha=0.4)
-    panel.set_axisbelow(True)
-
-
-def signed(value: float, form: str = ".3g") -> str:
-    """Write a number with a true minus sign and its power of ten as such."""
-    text = format(value, form)
-    digits, _, power = text.partition("e")
-    if power:
-        exponent = str(int(power)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
-        text = f"{digits}·10{exponent}"
-    return text.replace("-", "−")
 
 
 def microns(length: float, form: str = ".3g") -> str:
@@ -75,14 +49,17 @@ def map_figure(flank: "Flank") -> "Figure":
     if size[1] > size[0]:
         heights, size, names = heights.T, size[::-1], names[::-1]
     steps = [max(1, -(-count // PIXELS)) for count in heights.shape]
-    height = float(np.clip(0.8 * WIDTH * size[1] / size[0], 1.0, 5.0))
-    figure = Figure(figsize=(WIDTH, height + 0.7), layout="constrained")
-    panel = figure.subplots()
-    low, high = np.nanpercentile(heights, (0.2, 99.8))
-    colours = colormaps["viridis"].with_extremes(bad=ORANGE)
+    limits = np.nanpercentile(heights, (0.2, 99.8))
+    return from_above(heights[:: steps[0], :: steps[1]], size, names, limits)
+
+
+def from_above(heights: Array, size: Array, names: Sequence[str], limits: Array, tallest: float = 5.0) -> Figure:
+    """Draw heights, nm, of a rectangle of this size, um; what is NaN is orange."""
+    height = float(np.clip(0.8 * WIDTH * size[1] / size[0], 1.0, tallest))
+    figure, panel = panels(1, height + 0.7)
     image = panel.imshow(
-        heights[:: steps[0], :: steps[1]], origin="lower", extent=(0.0, size[0], 0.0, size[1]), cmap=colours,
-        vmin=low, vmax=high, rasterized=True, interpolation="nearest",
+        heights, origin="lower", extent=(0.0, size[0], 0.0, size[1]), vmin=limits[0], vmax=limits[1],
+        cmap=colormaps["viridis"].with_extremes(bad=ORANGE), rasterized=True, interpolation="nearest",
     )  # fmt: skip
     panel.set_xlabel(names[0])
     panel.set_ylabel(names[1])
@@ -96,15 +73,21 @@ def profiles_figure(flank: "Flank") -> "Figure":
     lines = flank.surface.lines(direction)
     count, points = lines.heights.shape
     chosen = np.unique(np.linspace(0, count - 1, min(count, SHOWN) + 2).round().astype(int)[1:-1]) if count > 1 else [0]
-    level: Array = NANO * lines.heights[chosen]
-    level -= np.nanmean(level, axis=1, keepdims=True)
-    gap = 1.1 * float(np.nanmax(np.nanmax(level, axis=1) - np.nanmin(level, axis=1))) or 1.0
-    figure, (panel,) = panels(1, 1.3 + 0.55 * len(level))
     place: Array = MICRO * lines.spacing * np.arange(points, dtype=float)
+    return set_off(place, NANO * lines.heights[chosen], direction)
+
+
+def set_off(x: Array, heights: Array, direction: Direction, names: Sequence[str] = ()) -> Figure:
+    """Draw lines (lines, points), nm, over x, um, one above the other, with their names at their ends."""
+    level = heights - np.nanmean(heights, axis=1, keepdims=True)
+    gap = 1.1 * float(np.nanmax(np.nanmax(level, axis=1) - np.nanmin(level, axis=1))) or 1.0
+    figure, panel = panels(1, 1.3 + 0.55 * len(level))
     for number, line in enumerate(level):
-        x, z = _thinned(place, line)
-        panel.plot(x, z + number * gap, color=DIRECTIONS[direction], linewidth=0.8)
-    panel.set_xlim(place[0], place[-1])
+        along, z = _thinned(x, line)
+        panel.plot(along, z + number * gap, color=DIRECTIONS[direction], linewidth=0.8)
+    for number, name in enumerate(names):
+        panel.annotate(name, (1.0, number * gap), xycoords=("axes fraction", "data"), fontsize=7.5, va="center")
+    panel.set_xlim(x[0], x[-1])
     quiet(panel, f"{direction}, µm", "height, nm" if len(level) == 1 else "height, nm,\neach line set off")
     return figure
 
@@ -237,39 +220,20 @@ def pictures(flank: "Flank") -> "Iterator[Block]":
 def tables(flank: "Flank") -> "Iterator[Block]":
     """Both directions with their verdict, and the local slopes."""
     name = flank.surface.name
-    rows = [_row(found, flank) for found in flank.estimates]
-    columns: tuple[str, ...] = (
-        "direction",
-        "lags of the fit from",
-        "to",
-        "D_s",
-        "G, areal",
-        "R²",
-        "sd of D_s over lines",
-        "verdict",
-    )
-    units: tuple[str, ...] = ("", "µm", "µm", "", "m", "", "", "")
     has_noise = any(found.noise > 0.0 for found in flank.estimates)
-    if has_noise:
-        columns, units = (*columns[:-1], "noise", columns[-1]), (*units[:-1], "nm", "")
-        rows = [(*row[:-1], NANO * found.noise, row[-1]) for row, found in zip(rows, flank.estimates, strict=True)]
+    columns = ("direction", "lags of the fit from", "to", "D_s", "G, areal", "R²", "sd of D_s over lines",
+               *["noise"] * has_noise, "verdict")  # fmt: skip
+    units = ("", "µm", "µm", "", "m", "", "", *["nm"] * has_noise, "")
+    rows: list[tuple[str | float | None, ...]] = []
+    for found in flank.estimates:
+        ends = [MICRO * float(found.lags[end]) for end in (0, -1)] if found.lags.size else [None, None]
+        fit = [or_none(each) for each in (found.dimension, found.roughness, found.r_squared, found.line_scatter)]
+        state = "self-affine, not used" if found.is_accepted else "refused, for comparison only"
+        state = "used" if found.direction == flank.chosen else state
+        rows.append((ALONG[found.direction], *ends, *fit, *[NANO * found.noise] * has_noise, state))
     yield Table(f"{name}: what each direction says", columns, rows, units)
     yield _others(flank)
     yield _slopes(flank)
-
-
-def _row(found: "Estimate", flank: "Flank") -> tuple[str | float | None, ...]:
-    low, high = (found.lags[0], found.lags[-1]) if found.lags.size else (None, None)
-    state = "self-affine, not used" if found.is_accepted else "refused, for comparison only"
-    fit = [or_none(value) for value in (found.dimension, found.roughness, found.r_squared)]
-    return (
-        ALONG[found.direction],
-        None if low is None else MICRO * float(low),
-        None if high is None else MICRO * float(high),
-        *fit,
-        or_none(found.line_scatter),
-        "used" if found.direction == flank.chosen else state,
-    )
 
 
 def _others(flank: "Flank") -> Table:
@@ -332,22 +296,17 @@ def flanks(record: "DriveRun") -> "Sequence[Block]":
     drive = record.acting
     blocks: list[Block] = []
     if drive.surface is not None:
-        blocks += said_of(
-            drive.surface, "flexspline", f"it is that of the D and G stated in the inputs, {_stated(drive)}"
-        )
+        blocks += said_of(drive.surface, "flexspline", _stated(drive.fractal_dimension, drive.fractal_roughness))
     if drive.mating_surface is not None:
-        blocks += said_of(drive.mating_surface, "circular spline", _mating(drive))
+        instead = "mating_dimension is not stated, so the circular spline is taken as smooth"
+        if not np.isnan(drive.mating_dimension):
+            instead = _stated(drive.mating_dimension, drive.mating_roughness)
+        blocks += said_of(drive.mating_surface, "circular spline", instead)
     return blocks or [Words(STATED)]
 
 
-def _stated(drive: "Drive") -> str:
-    return f"D = {float(drive.fractal_dimension):.4g} and G = {signed(float(drive.fractal_roughness))} m"
-
-
-def _mating(drive: "Drive") -> str:
-    if np.isnan(drive.mating_dimension):
-        return "mating_dimension is not stated, so the circular spline is taken as smooth"
-    stated = f"D = {float(drive.mating_dimension):.4g} and G = {signed(float(drive.mating_roughness))} m"
+def _stated(dimension: Float, roughness: Float) -> str:
+    stated = f"D = {float(dimension):.4g} and G = {signed(float(roughness))} m"
     return f"it is that of the D and G stated in the inputs, {stated}"
 
 
@@ -359,17 +318,16 @@ def interface(record: "DriveRun") -> "Sequence[Block]":
 def _both(record: "DriveRun") -> Table:
     drive = record.acting
     first, second = flanks_of(drive)
+    mating: tuple[float | None, float | None, str] = (None, None, "smooth")
+    if second is not None:
+        mating = (float(second.dimension), float(second.roughness), _origin(drive.mating_surface))
     rows = [
-        ("flexspline", *_numbers(first), _origin(drive.surface)),
-        ("circular spline", *_numbers(second), "smooth" if second is None else _origin(drive.mating_surface)),
+        ("flexspline", float(first.dimension), float(first.roughness), _origin(drive.surface)),
+        ("circular spline", *mating),
         ("both together", float(record.answers["dimension"]), float(record.answers["roughness"]), _sum(drive, second)),
     ]
     note = "Independent flanks add their structure functions; one power law is fitted to the sum."
     return Table("Both flanks", ("flank", "D", "G, areal", "from"), rows, ("", "", "m", ""), note)
-
-
-def _numbers(rough: "Rough | None") -> tuple[float | None, float | None]:
-    return (None, None) if rough is None else (float(rough.dimension), float(rough.roughness))
 
 
 def _origin(flank: object) -> str:
@@ -389,15 +347,10 @@ def conventions(record: "DriveRun") -> Table:
     """G of both flanks in every convention, and by the constant that lacks a factor."""
     drive, areal = record.acting, float(record.answers["roughness"])
     profile, density = float(record.answers["profile_dimension"]), float(drive.density)
-    rows = [
-        (
-            words,
-            float(constant(profile, density, kind)),
-            value := _converted(areal, profile, density, kind),
-            value / areal,
-        )
-        for kind, words in KINDS.items()
-    ]
+    rows = []
+    for kind, words in KINDS.items():
+        value = float(converted(areal, profile, density, source="areal", target=kind))
+        rows.append((words, float(constant(profile, density, kind)), value, value / areal))
     shorter = (2.0 * np.pi) ** (4.0 - 2.0 * profile)
     lacking = rows[-1][2] * shorter ** (1.0 / (2.0 * (profile - 1.0)))
     usual = "profile, by the constant often printed, without (2π)^(4 − 2 D_s)"
@@ -409,55 +362,32 @@ def conventions(record: "DriveRun") -> Table:
     return Table("G in each convention", ("convention", "C", "G", "over the areal one"), rows, ("", "", "m", ""), note)
 
 
-def _converted(areal: float, profile: float, density: float, kind: Convention) -> float:
-    return float(converted(areal, profile, density, source="areal", target=kind))
-
-
 # One pair of teeth over its load: stiffness by every rule, clearance in every reading, and the table of both
 
 Critical = Literal["hardness", "yield_onset"]
 Tip = Literal["fixed", "scaled"]
 LOAD_POINTS = 121
 LOADS = (0.1, 1.0, 2.0, 5.0, 10.0, 25.0, 50.0, 100.0)
-RULES: tuple[tuple[Critical, Tip], ...] = (
-    ("hardness", "fixed"),
-    ("hardness", "scaled"),
-    ("yield_onset", "fixed"),
-    ("yield_onset", "scaled"),
-)
-NAMES: dict[Critical, str] = {
-    "hardness": "elastic from load = hardness × area",
-    "yield_onset": "elastic up to first yield",
+NAMES: dict[Critical, tuple[str, str]] = {
+    "hardness": (BLUE, "elastic from load = hardness × area"),
+    "yield_onset": (ORANGE, "elastic up to first yield"),
 }
-TIPS: dict[Tip, str] = {"fixed": "tip radius its own", "scaled": "tip radius follows the area"}
+TIPS: dict[Tip, tuple[str, str]] = {
+    "fixed": ("-", "tip radius its own"),
+    "scaled": (":", "tip radius follows the area"),
+}
 MEAN_PLANE = 0.48  # of the rms height: how far mean planes part while the load falls by e (Persson 2007)
 
 
-@dataclass(frozen=True, kw_only=True)
-class LoadedPair:
-    """One pair over its load, N: stiffness in N/m, load exponent, clearances in m; NaN where nothing can be counted."""
-
-    load: Array
-    stiffness: Array
-    exponent: Array
-    amplitude: Array
-    closing: Array
-
-
-def loaded(drive: "Drive", load: Array) -> LoadedPair:
-    """Calculate one pair at these loads."""
+def clearances(drive: "Drive", load: Array) -> tuple[Array, Array]:
+    """Return the clearance of equation 7 and the closing one at these loads, m; NaN where nothing can be counted."""
     contact = contact_of(drive, interface_of(drive))
-    pair = pressed(load, contact)
+    radius = np.sqrt(pressed(load, contact).largest_area / np.pi)
     reference = load_of_largest(drive.reference_torque, mesh_of(drive, contact))
     opened = sum(gap.heights(drive)) / 2.0
     closed = gap.approach(load, reference, contact)
-    return LoadedPair(
-        load=load,
-        stiffness=np.asarray(pair.stiffness),
-        exponent=np.asarray(pair.load_exponent),
-        amplitude=np.asarray(gap.amplitude(np.sqrt(pair.largest_area / np.pi), contact, drive.density)),
-        closing=np.where(np.isinf(closed), np.nan, np.maximum(opened - closed, 0.0)),
-    )
+    closing = np.where(np.isinf(closed), np.nan, np.maximum(opened - closed, 0.0))
+    return np.asarray(gap.amplitude(radius, contact, drive.density)), closing
 
 
 def pair_figure(drive: "Drive") -> "Figure":
@@ -474,13 +404,12 @@ def pair_figure(drive: "Drive") -> "Figure":
 
 
 def _stiffnesses(panel: Any, drive: "Drive", load: Array) -> None:
-    own = (drive.critical_rule, drive.tip_rule)
-    for rule, colour in zip(RULES, (BLUE, BLUE, ORANGE, ORANGE), strict=True):
-        critical, tip = rule
-        values = loaded(replace(drive, critical_rule=critical, tip_rule=tip), load).stiffness
-        label = f"{NAMES[critical]}, {TIPS[tip]}{' (used)' if rule == own else ''}"
-        panel.loglog(load, np.where(values > 0.0, values, np.nan), "-" if tip == "fixed" else ":", color=colour,
-                     linewidth=2.2 if rule == own else 1.1, label=label)  # fmt: skip
+    for (critical, (colour, name)), (tip, (dashes, radius)) in product(NAMES.items(), TIPS.items()):
+        used = (critical, tip) == (drive.critical_rule, drive.tip_rule)
+        ruled = replace(drive, critical_rule=critical, tip_rule=tip)
+        values = np.asarray(pressed(load, contact_of(ruled, interface_of(ruled))).stiffness)
+        panel.loglog(load, np.where(values > 0.0, values, np.nan), dashes, color=colour, linewidth=2.2 if used else 1.1,
+                     label=f"{name}, {radius}{' (used)' if used else ''}")  # fmt: skip
     height = gap.patch_rms(interface_of(drive), drive.patch_length, drive.density)
     panel.loglog(load, load / (MEAN_PLANE * height), "--", color=GREY, linewidth=1.1,
                  label="F / (0.48 rms height of the patch), Persson 2007")  # fmt: skip
@@ -489,19 +418,19 @@ def _stiffnesses(panel: Any, drive: "Drive", load: Array) -> None:
 
 
 def _clearances(panel: Any, drive: "Drive", load: Array) -> None:
-    curves = loaded(drive, load)
-    own = {"amplitude": 1.0, "interference": 2.0}
-    for rule, multiple in own.items():
-        used = drive.clearance_rule == rule
-        words = "amplitude of the largest contact" if rule == "amplitude" else "twice it: its interference"
-        panel.semilogx(load, NANO * multiple * curves.amplitude, "-" if rule == "amplitude" else ":", color=GREEN,
-                       linewidth=2.2 if used else 1.1, label=f"equation 7, {words}")  # fmt: skip
+    amplitude, closing = clearances(drive, load)
+    for rule, multiple, dashes, words in (
+        ("amplitude", 1.0, "-", "amplitude of the largest contact"),
+        ("interference", 2.0, ":", "twice it: its interference"),
+    ):
+        panel.semilogx(load, NANO * multiple * amplitude, dashes, color=GREEN, label=f"equation 7, {words}",
+                       linewidth=2.2 if drive.clearance_rule == rule else 1.1)  # fmt: skip
     contact = contact_of(drive, interface_of(drive))
     patch = float(gap.amplitude(drive.patch_length / 2.0, contact, drive.density))
     panel.axhline(
         NANO * patch, color=GREY, linestyle="--", linewidth=1.1, label="equation 7, longest wave of the patch"
     )
-    panel.semilogx(load, NANO * curves.closing, color=ORANGE, linewidth=1.6, label="what closes: $b_0 - ∫dF/K$")
+    panel.semilogx(load, NANO * closing, color=ORANGE, linewidth=1.6, label="what closes: $b_0 - ∫dF/K$")
     panel.set_ylim(bottom=0.0)
     quiet(panel, "", "clearance, nm")
     panel.legend(loc="best", fontsize=7)
@@ -511,10 +440,10 @@ def stiffness(record: "DriveRun") -> "Sequence[Block]":
     """The pair over its load, in a figure and in numbers, with what limits the number."""
     drive = record.acting
     stated = float(drive.pair_load)
-    curves = loaded(drive, np.array(sorted({*LOADS, stated})))
-    columns = zip(curves.load, curves.stiffness, curves.exponent, NANO * curves.amplitude, NANO * curves.closing,
-                  strict=True)  # fmt: skip
-    rows = [tuple(float(value) for value in row) for row in columns]
+    load = np.array(sorted({*LOADS, stated}))
+    pair, (amplitude, closing) = pressed(load, contact_of(drive, interface_of(drive))), clearances(drive, load)
+    columns = np.array([load, pair.stiffness, pair.load_exponent, NANO * amplitude, NANO * closing])
+    rows = [tuple(row) for row in columns.T.tolist()]
     blocks: list[Block] = [
         Drawing(
             "Stiffness and clearance over the load", partial(pair_figure, drive),
@@ -576,27 +505,13 @@ def _limits(record: "DriveRun") -> "Sequence[Block]":
 TORQUE_POINTS = 101
 
 
-@dataclass(frozen=True, kw_only=True)
-class Torsions:
-    """Over torques, N m: torsions in rad."""
-
-    torque: Array
-    rough: Array
-    model: Array
-    catalogue: Array
-
-
-def torsions(drive: "Drive", printed: Polyline, torque: Array) -> Torsions:
-    """Calculate the torsion at positive torques."""
+def torsions(drive: "Drive", printed: Polyline, torque: Array) -> tuple[Array, Array, Array]:
+    """Return the torsion, rad, at positive torques: of roughness alone, of this model, and of the catalogue."""
     mesh = mesh_of(drive, contact_of(drive, interface_of(drive)))
     whole, rough = mesh_torsion(torque, drive.reference_torque, mesh)
     beyond = np.maximum(torque - drive.reference_torque, 0.0)
-    return Torsions(
-        torque=torque,
-        rough=np.asarray(rough),
-        model=np.asarray(whole + around_of(drive).compliance * beyond),
-        catalogue=np.asarray(printed.torsion(torque)),
-    )
+    model = whole + around_of(drive)["series_compliance"] * beyond
+    return np.asarray(rough), np.asarray(model), np.asarray(printed.torsion(torque))
 
 
 def torsion(record: "DriveRun") -> "Sequence[Block]":
@@ -607,11 +522,10 @@ def torsion(record: "DriveRun") -> "Sequence[Block]":
         return []
     stated = abs(float(drive.torque))
     first, second = printed.first_torque, printed.second_torque
-    curves = torsions(drive, printed, np.array(sorted({first, second, 2.0 * second, *([stated] if stated else [])})))
-    rows = [
-        (float(torque), MICRO * float(rough), MICRO * float(model), MICRO * float(known), 100.0 * float(rough / known))
-        for torque, rough, model, known in zip(curves.torque, curves.rough, curves.model, curves.catalogue, strict=True)
-    ]
+    torque = np.array(sorted({first, second, 2.0 * second, *([stated] if stated else [])}))
+    rough, model, known = torsions(drive, printed, torque)
+    columns = np.array([torque, MICRO * rough, MICRO * model, MICRO * known, 100.0 * (rough / known)])
+    rows = [tuple(row) for row in columns.T.tolist()]
     name = f"size {drive.catalogue_size}, ratio {ratio_of(drive):g}"
     return [
         Drawing(
@@ -624,12 +538,11 @@ def torsion(record: "DriveRun") -> "Sequence[Block]":
             ("torque", "roughness alone", "this model", f"catalogue, {name}", "share of roughness"), rows,
             ("N*m", "urad", "urad", "urad", "%"),
         ),
-        Words(_conclusion(record, curves, float(around_of(drive).compliance))),
+        Words(_conclusion(100.0 * float(np.max(rough / known)), float(around_of(drive)["series_compliance"]))),
     ]  # fmt: skip
 
 
-def _conclusion(record: "DriveRun", curves: Torsions, compliance: float) -> str:
-    most = 100.0 * float(np.max(curves.rough / curves.catalogue))
+def _conclusion(most: float, compliance: float) -> str:
     text = (
         f"Rough contacts alone explain at most {signed(most, '.2g')} % of the torsion in the catalogue. They are not "
         "the weakest link of the drive; bending of the teeth, cup, wave generator and bearing are."
@@ -648,17 +561,13 @@ def _conclusion(record: "DriveRun", curves: Torsions, compliance: float) -> str:
 def torsion_figure(drive: "Drive", printed: Polyline) -> "Figure":
     """Draw the torsions, and below what share of the catalogue's each explains."""
     last = max(2.0 * printed.second_torque, 1.1 * abs(float(drive.torque)))
-    curves = torsions(drive, printed, np.linspace(last / TORQUE_POINTS, last, TORQUE_POINTS))
+    torque = np.linspace(last / TORQUE_POINTS, last, TORQUE_POINTS)
+    rough, model, known = torsions(drive, printed, torque)
     figure, (upper, lower) = panels(2, 5.6, sharex=True, height_ratios=(3, 2))
-    drawn = (
-        ("catalogue", curves.catalogue, INK, "-"),
-        ("this model", curves.model, BLUE, "-"),
-        ("roughness alone", curves.rough, ORANGE, "--"),
-    )
-    for words, values, colour, style in drawn:
-        upper.plot(curves.torque, MICRO * values, style, color=colour, linewidth=1.6, label=words)
-        if words != "catalogue":
-            lower.semilogy(curves.torque, 100.0 * values / curves.catalogue, style, color=colour, linewidth=1.6)
+    upper.plot(torque, MICRO * known, "-", color=INK, linewidth=1.6, label="catalogue")
+    for words, values, colour, style in (("this model", model, BLUE, "-"), ("roughness alone", rough, ORANGE, "--")):
+        upper.plot(torque, MICRO * values, style, color=colour, linewidth=1.6, label=words)
+        lower.semilogy(torque, 100.0 * values / known, style, color=colour, linewidth=1.6)
     for knee in (printed.first_torque, printed.second_torque):
         upper.axvline(knee, color=GREY, linewidth=0.8, linestyle=":")
     lower.axhline(100.0, color=INK, linewidth=1.0)

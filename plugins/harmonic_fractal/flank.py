@@ -142,7 +142,9 @@ class Prepared:
 def prepared(raw: Surface, options: Options) -> Prepared:
     """Cut the rectangle, count the holes, remove the form, take out spikes. Raises ValueError with one sentence."""
     surface = cut(raw, options.rectangle, options.corner) if options.rectangle else raw
-    _demand_points(surface)
+    rows, points = surface.heights.shape
+    if max(rows, points) < FEWEST_POINTS:
+        raise ValueError(f"{rows} x {points} points (rows x points) are too few: a line needs {FEWEST_POINTS} or more")
     missing = float(np.mean(~np.isfinite(surface.heights)))
     if missing > MANY_MISSING:
         raise ValueError(
@@ -161,12 +163,6 @@ def prepared(raw: Surface, options: Options) -> Prepared:
         sq_plane=root_mean_square(plane), sq_second_order=root_mean_square(second),
         warnings=(*_shares(missing, spiked, options), *_steps(clean, step)),
     )  # fmt: skip
-
-
-def _demand_points(surface: Surface) -> None:
-    rows, points = surface.heights.shape
-    if max(rows, points) < FEWEST_POINTS:
-        raise ValueError(f"{rows} x {points} points (rows x points) are too few: a line needs {FEWEST_POINTS} or more")
 
 
 def _shares(missing: float, spiked: float, options: Options) -> list[str]:

@@ -7,20 +7,8 @@ from typing import Any, Literal
 
 import numpy as np
 
+from harmonic_fractal import generators
 from harmonic_fractal.estimate import Estimate, Estimation, estimate_of
-from harmonic_fractal.generators import (
-    Instrument,
-    Waves,
-    as_measured,
-    brownian_profiles,
-    brownian_surface,
-    field_side,
-    levelled_structure,
-    profile_sum,
-    surface_sum,
-    weierstrass_profile,
-    weierstrass_surface,
-)
 from harmonic_fractal.structure import converted, structure_function, structure_sums
 from harmonic_fractal.surface import Direction, Lines, Surface, without_form, without_line
 from truing import (
@@ -177,9 +165,9 @@ def is_patch(made: Made, truth: Truth) -> bool:
     return truth.shape[0] > 1 and made.kind != "profile"
 
 
-def instrument_of(made: Made) -> Instrument:
+def instrument_of(made: Made) -> generators.Instrument:
     """Return the instrument that looks at the flank."""
-    return Instrument(
+    return generators.Instrument(
         cutoff=float(made.filter_cutoff),
         noise=float(made.noise),
         step=float(made.height_step),
@@ -189,7 +177,7 @@ def instrument_of(made: Made) -> Instrument:
     )
 
 
-def waves_of(made: Made) -> Waves:
+def waves_of(made: Made) -> generators.Waves:
     """Return the waves, with G of their own form: S along the lines is that of the truth however many directions."""
     truth = truth_of(made)
     if made.kind == "profile":
@@ -200,7 +188,7 @@ def waves_of(made: Made) -> Waves:
         angles = np.pi * np.arange(1, made.directions + 1) / made.directions
         share = float(np.mean(np.abs(np.cos(angles)) ** exponent))  # of S across one ridge, along the lines
         roughness = single / share ** (1.0 / (2.0 - exponent))
-    return Waves(
+    return generators.Waves(
         dimension=truth.dimension,
         roughness=roughness,
         lowest=truth.lowest,
@@ -230,7 +218,7 @@ def _demands(made: Made, truth: Truth) -> Iterator[tuple[bool, str]]:
     told = "shortest_lag is more than a twentieth of a line, and the longest lag of the fit is a tenth"
     yield not shortest > 0.05 * points * float(made.spacing), told
     if made.kind == "brownian":
-        is_small = lines == 1 or field_side(dimension, shape) ** 2 <= LARGEST_FIELD
+        is_small = lines == 1 or generators.field_side(dimension, shape) ** 2 <= LARGEST_FIELD
         yield is_small, "the field of the Brownian patch does not fit into memory: make it smaller or spacing larger"
         return
     yield truth.highest > truth.lowest, "the shortest wave is not shorter than the longest one"
@@ -239,8 +227,6 @@ def _demands(made: Made, truth: Truth) -> Iterator[tuple[bool, str]]:
     told = "the waves of the flank do not fit into memory: fewer directions, a larger density or a smaller flank"
     yield bool(waves * sum(shape) <= MOST_WAVES), told
 
-
-# A flank is made, looked at, and its dimension and roughness are found again
 
 ROWS = 20  # lags of the table
 
@@ -284,7 +270,7 @@ def surface_of(made: Made) -> Surface:
     truth, instrument, spacing = truth_of(made), instrument_of(made), float(made.spacing)
     of_flank, of_instrument = np.random.default_rng(made.seed).spawn(2)
     made_heights = _heights(made, instrument.margin(spacing), of_flank)
-    heights = as_measured(made_heights, spacing, instrument, of_instrument, across=is_patch(made, truth))
+    heights = generators.as_measured(made_heights, spacing, instrument, of_instrument, across=is_patch(made, truth))
     across = spacing if truth.shape[0] > 1 else float("nan")
     return Surface(heights=heights, spacing_x=spacing, spacing_y=across, name=f"made flank, seed {made.seed}")
 
@@ -297,15 +283,15 @@ def _heights(made: Made, margin: int, rng: np.random.Generator) -> Array:
     lines, points = lines + 2 * beside, points + 2 * margin
     if made.kind == "brownian":
         step = float(np.asarray(structure_function(spacing, truth.dimension, truth.areal)))
-        make = brownian_surface if lines > 1 else brownian_profiles
+        make = generators.brownian_surface if lines > 1 else generators.brownian_profiles
         return make(truth.dimension, step, (lines, points), rng)
     x, y = (
         spacing * np.arange(-before, count - before, dtype=np.float64)
         for before, count in ((margin, points), (beside, lines))
     )
     if made.kind == "profile":
-        return weierstrass_profile(waves_of(made), x, lines, rng)
-    return weierstrass_surface(waves_of(made), x, y, rng)
+        return generators.weierstrass_profile(waves_of(made), x, lines, rng)
+    return generators.weierstrass_surface(waves_of(made), x, y, rng)
 
 
 def exact_structure_function(made: Made, lags: Array) -> Array:
@@ -313,14 +299,14 @@ def exact_structure_function(made: Made, lags: Array) -> Array:
     truth = truth_of(made)
     if made.kind == "brownian":
         return np.asarray(structure_function(lags, truth.dimension, truth.areal))
-    return (profile_sum if made.kind == "profile" else surface_sum)(waves_of(made), lags)
+    return (generators.profile_sum if made.kind == "profile" else generators.surface_sum)(waves_of(made), lags)
 
 
 def levelled_structure_function(made: Made, lags: Array) -> Array:
     """Return S (k,), m^2, to be expected at whole spacings of lines that have lost their own straight line."""
     points, spacing = truth_of(made).shape[1], float(made.spacing)
     beyond = exact_structure_function(made, spacing * np.arange(1, points, dtype=np.float64))
-    every = levelled_structure(np.concatenate([[0.0], beyond]))
+    every = generators.levelled_structure(np.concatenate([[0.0], beyond]))
     return np.asarray(every[np.round(lags / spacing).astype(int)])
 
 

@@ -7,24 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from matplotlib import colormaps
 from matplotlib.figure import Figure
 
+from gear_geometry.drawing import BLUE, GREY, INK, ORANGE, PALE, panels, quiet
+from harmonic_fractal import made_flank as making
 from harmonic_fractal.estimate import Estimate, straight_fit
-from harmonic_fractal.figures import BLUE, GREY, INK, MICRO, NANO, ORANGE, PALE, WIDTH, quiet
-from harmonic_fractal.made_flank import (
-    FlankFile,
-    Made,
-    MadeFlank,
-    Truth,
-    estimate_along,
-    exact_structure_function,
-    is_patch,
-    levelled_structure_function,
-    made_flank,
-    surface_of,
-    truth_of,
-)
+from harmonic_fractal.figures import MICRO, NANO, from_above, set_off
 from harmonic_fractal.structure import log_roughness_of, structure_function
 from harmonic_fractal.surface import Surface, quantisation, spikes_of, without_form
 from truing import Array, Block, Drawing, Model, Record, Section, Table, Words
@@ -38,49 +26,28 @@ SHOWN = 5  # lines that are drawn
 def map_figure(surface: Surface) -> "Figure":
     """The patch from above, less its mean plane; holes are orange."""
     rows, points = surface.heights.shape
-    extent = (0.0, (points - 1) * surface.spacing_x * MICRO, 0.0, (rows - 1) * surface.spacing_y * MICRO)
-    height = float(np.clip(0.8 * WIDTH * extent[3] / extent[1], 1.2, 7.0))
-    figure = Figure(figsize=(WIDTH, height + 0.6), layout="constrained")
-    panel = figure.subplots()
+    size = MICRO * np.array([(points - 1) * surface.spacing_x, (rows - 1) * surface.spacing_y])
     level = NANO * without_form(surface.heights, "plane")
-    low, high = np.nanpercentile(level, (0.1, 99.9))
-    colours = colormaps["viridis"].with_extremes(bad=ORANGE)
-    image = panel.imshow(level, origin="lower", extent=extent, cmap=colours, vmin=low, vmax=high,
-                         interpolation="nearest")  # fmt: skip
-    panel.set_xlabel("x, along the lines, µm")
-    panel.set_ylabel("y, µm")
-    figure.colorbar(image, ax=panel, label="height, nm", shrink=0.9, extend="both")
-    return figure
+    return from_above(level, size, ("x, along the lines, µm", "y, µm"), np.nanpercentile(level, (0.1, 99.9)), 7.0)
 
 
 def lines_figure(surface: Surface) -> "Figure":
     """Some lines, evenly over the patch, one above the other."""
     rows, points = surface.heights.shape
     chosen = np.unique(np.linspace(0, rows - 1, min(rows, SHOWN)).round().astype(int))
+    names = [f"y = {MICRO * surface.spacing_y * row:.4g} µm" for row in chosen] if rows > 1 else []
     level = NANO * without_form(surface.heights, "plane")[chosen]
-    gap = 1.2 * float(np.nanmax(np.nanmax(level, axis=1) - np.nanmin(level, axis=1))) or 1.0
-    figure = Figure(figsize=(WIDTH, 1.2 + 0.6 * len(chosen)), layout="constrained")
-    panel = figure.subplots()
-    x = MICRO * surface.spacing_x * np.arange(points)
-    for place, (row, line) in enumerate(zip(chosen, level, strict=True)):
-        panel.plot(x, line - np.nanmean(line) + place * gap, color=BLUE, linewidth=0.8)
-        if rows > 1:
-            name = f"y = {MICRO * surface.spacing_y * row:.4g} µm"
-            panel.annotate(name, (1.0, place * gap), xycoords=("axes fraction", "data"), fontsize=7.5, va="center")
-    panel.set_xlim(x[0], x[-1])
-    quiet(panel, "x, µm", "height, nm" if len(chosen) == 1 else "height, nm, each line set off")
-    return figure
+    return set_off(MICRO * surface.spacing_x * np.arange(points, dtype=float), level, "x", names)
 
 
-def structure_figure(made: Made, truth: Truth, answer: "MadeFlank", found: Estimate) -> "Figure":
+def structure_figure(made: making.Made, truth: making.Truth, answer: making.MadeFlank, found: Estimate) -> "Figure":
     """S of this flank beside the exact one and what was fitted; the same over the power law; local slopes."""
-    figure = Figure(figsize=(WIDTH, 7.6), layout="constrained")
-    upper, middle, lower = figure.subplots(3, 1, sharex=True, height_ratios=(3, 2, 2))
+    figure, (upper, middle, lower) = panels(3, 7.6, sharex=True, height_ratios=(3, 2, 2))
     shown = np.asarray(answer.lag, dtype=np.float64)
     lags = np.geomspace(shown[0], shown[-1], 400)
-    exact = exact_structure_function(made, lags)
+    exact = making.exact_structure_function(made, lags)
     own = np.asarray(answer.structure_function, dtype=np.float64)
-    curves = ((shown, own), (lags, exact), (shown, levelled_structure_function(made, shown)))
+    curves = ((shown, own), (lags, exact), (shown, making.levelled_structure_function(made, shown)))
     for panel, over in ((upper, None), (middle, truth)):
         _curves(panel, over, curves, found)
     upper.set_yscale("log")
@@ -93,7 +60,9 @@ def structure_figure(made: Made, truth: Truth, answer: "MadeFlank", found: Estim
     return figure
 
 
-def _curves(panel: Any, over: Truth | None, curves: tuple[DrawnCurve, DrawnCurve, DrawnCurve], found: Estimate) -> None:
+def _curves(
+    panel: Any, over: making.Truth | None, curves: tuple[DrawnCurve, DrawnCurve, DrawnCurve], found: Estimate
+) -> None:
     """Draw S of this flank, the exact one and that of levelled lines: in nm^2, or over the power law of the truth."""
     own, exact, levelled = curves
 
@@ -112,7 +81,7 @@ def _curves(panel: Any, over: Truth | None, curves: tuple[DrawnCurve, DrawnCurve
         panel.axhline(1.0, color=GREY, linestyle="--", linewidth=1.0)
 
 
-def _local_slopes(panel: Any, truth: Truth, exact: DrawnCurve, found: Estimate) -> None:
+def _local_slopes(panel: Any, truth: making.Truth, exact: DrawnCurve, found: Estimate) -> None:
     """Draw the dimension between neighbouring lags, of the levelled lines and of the exact S."""
     edges = np.linspace(np.log(exact[0][0]), np.log(exact[0][-1]), 11)
     slopes = np.diff(np.interp(edges, np.log(exact[0]), np.log(exact[1]))) / np.diff(edges)
@@ -128,9 +97,7 @@ def _local_slopes(panel: Any, truth: Truth, exact: DrawnCurve, found: Estimate) 
     panel.legend(loc="best")
 
 
-# The sheet of a made flank
-
-MadeRun = Record[Made, MadeFlank]
+MadeRun = Record[making.Made, making.MadeFlank]
 
 FOUND_AGAIN = (
     "The estimator sees the flank as it would see a measured one: each line without its own straight line, and one "
@@ -155,7 +122,7 @@ def truth(record: "MadeRun") -> "Sequence[Block]":
 
 def look(record: "MadeRun") -> "Sequence[Block]":
     """The patch and some of its lines."""
-    surface = surface_of(record.inputs)
+    surface = making.surface_of(record.inputs)
     lines = Drawing("Lines of the flank", partial(lines_figure, surface))
     if surface.is_profile:
         return [lines]
@@ -166,26 +133,26 @@ def look(record: "MadeRun") -> "Sequence[Block]":
 
 def structure(record: "MadeRun") -> "Sequence[Block]":
     """The structure function beside the truth."""
-    made, surface = record.inputs, surface_of(record.inputs)
-    found = estimate_along(made, surface, "x")
+    made, surface = record.inputs, making.surface_of(record.inputs)
+    found = making.estimate_along(made, surface, "x")
     caption = (
         "Middle: the same S over the power law of the truth. At long lags one flank strays from the mean of all, and "
         "levelled lines fall below it as the dotted line says. Below: the dimension between neighbouring lags; dashed: "
         "the true one."
     )
-    draw = partial(structure_figure, made, truth_of(made), record.results, found)
+    draw = partial(structure_figure, made, making.truth_of(made), record.results, found)
     return [Drawing("Structure function and local slopes", draw, caption)]
 
 
 def found_again(record: "MadeRun") -> "Sequence[Block]":
     """Both directions beside the truth, and the verdict."""
-    made, surface, true = record.inputs, surface_of(record.inputs), truth_of(record.inputs)
-    along = estimate_along(made, surface, "x")
+    made, surface, true = record.inputs, making.surface_of(record.inputs), making.truth_of(record.inputs)
+    along = making.estimate_along(made, surface, "x")
     found = [("along the lines, x", along)]
     if made.spikes > 0.0:
-        found.append(("the same, spikes taken out", estimate_along(made, _cleaned(surface), "x")))
-    if is_patch(made, true) and made.directions > 1:
-        found.append(("across the lines, y", estimate_along(made, surface, "y")))
+        found.append(("the same, spikes taken out", making.estimate_along(made, _cleaned(surface), "x")))
+    if making.is_patch(made, true) and made.directions > 1:
+        found.append(("across the lines, y", making.estimate_along(made, surface, "y")))
     rows = [_row(name, each) for name, each in found]
     table = Table(
         "Truth and what was found",
@@ -198,9 +165,9 @@ def found_again(record: "MadeRun") -> "Sequence[Block]":
     return [Words(FOUND_AGAIN), table, *_said(along)]
 
 
-def _expected(made: Made, found: Estimate) -> tuple[str | float | None, ...]:
+def _expected(made: making.Made, found: Estimate) -> tuple[str | float | None, ...]:
     """What levelling alone makes of the truth, over the lags of the fit."""
-    law = straight_fit(found.lags, levelled_structure_function(made, found.lags))
+    law = straight_fit(found.lags, making.levelled_structure_function(made, found.lags))
     dimension = 2.0 - float(law.slope) / 2.0
     roughness = float(np.exp(log_roughness_of(law.intercept, dimension)))
     return ("expected along levelled lines", dimension + 1.0, None, roughness, None, float(law.r_squared), "", "")
@@ -253,8 +220,6 @@ SECTIONS = [
 ]  # fmt: skip
 
 
-# A made flank as truing knows it: function, study and sheet
-
 LITERATURE = [
     "Majumdar, A., Tien, C. L., Fractal characterization and simulation of rough surfaces, Wear 136 (1990), p. 313.",
     "Yan, W., Komvopoulos, K., Contact analysis of elastic-plastic fractal surfaces, Journal of Applied Physics 84 "
@@ -268,8 +233,8 @@ LITERATURE = [
 MADE_FLANK = Model(
     name="made_flank",
     title="Made flank: a rough surface of known truth",
-    function=made_flank,
-    studies=[FlankFile()],
+    function=making.made_flank,
+    studies=[making.FlankFile()],
     sheet=SECTIONS,
     cites=LITERATURE,
     example=Path(__file__).with_name("made_flank.toml"),

@@ -1,6 +1,5 @@
 """All engaged pairs of teeth together: who carries how much, how stiff the mesh is, and its torsion."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -36,8 +35,7 @@ class Engagement:
 
     def factor(self, torque: Float) -> Float:
         """Return how many times as many pairs as stated are engaged at a torque of either sense, N m."""
-        found: Float = self.start * (1.0 - self.gain * np.expm1(-np.abs(torque) / self.scale))
-        return found
+        return self.start * (1.0 - self.gain * np.expm1(-np.abs(torque) / self.scale))
 
     def torque_of(self, share: Float) -> Float:
         """Return the torque above 0 that is ``share`` for each of as many pairs as stated, N m.
@@ -58,8 +56,8 @@ class Engagement:
             moved, way = np.abs(after - way), after
             if not (moved > FINE * (1.0 + np.abs(way))).any():
                 break
-        found: Float = np.exp(way)
-        return found
+        value: Float = np.exp(way)
+        return value
 
     def of_rows(self, index: NDArray[np.intp], rows: int, axes: int) -> "Engagement":
         """Return that of these rows out of so many, with axes behind."""
@@ -71,8 +69,6 @@ def engagement_of(drive: Drive) -> Engagement:
     """Return the engagement of a drive."""
     return Engagement(start=drive.engaged_factor, gain=drive.engaged_gain, scale=drive.engaged_torque)
 
-
-# All engaged pairs of teeth together: who carries how much, and how stiff the mesh is
 
 CHUNK = 2**14  # numbers at a time: they stay in the cache, and memory stays flat
 
@@ -90,8 +86,8 @@ class Arcs:
     @cached_property
     def offsets(self) -> NDArray[np.float64]:
         """ln of the share in parts of the largest, 0 or less."""
-        logarithms: NDArray[np.float64] = np.log(self.shares / self.shares[0])
-        return logarithms
+        value: NDArray[np.float64] = np.log(self.shares / self.shares[0])
+        return value
 
 
 def arcs_of(pairs: int) -> Arcs:
@@ -174,8 +170,8 @@ class DriveMesh:
     @cached_property
     def plastic_share(self) -> Float:
         """The torque at which the first contact would turn elastic if there were just the pairs stated, N m."""
-        torque: Float = self.plastic_limit * self.radius / self.arcs.shares[0]
-        return torque
+        value: Float = self.plastic_limit * self.radius / self.arcs.shares[0]
+        return value
 
     @cached_property
     def plastic_torque(self) -> Float:
@@ -183,16 +179,11 @@ class DriveMesh:
         return self.engagement.torque_of(self.plastic_share)
 
 
-def effective_radius(drive: Drive) -> Float:
-    """Return the lever of the normal force of a pair about the axis, m."""
-    return drive.pitch_radius * np.cos(drive.pressure_angle)
-
-
 def mesh_of(drive: Drive, contact: Contact) -> DriveMesh:
     """Return the mesh of a drive; with more pairs each carries less."""
     return DriveMesh(
         pair=pair_of(drive, contact), arcs=arcs_of(drive.engaged_pairs), engagement=engagement_of(drive),
-        radius=effective_radius(drive), plastic_limit=contact.plastic_limit,
+        radius=drive.pitch_radius * np.cos(drive.pressure_angle), plastic_limit=contact.plastic_limit,
     )  # fmt: skip
 
 
@@ -217,18 +208,15 @@ def pair_of(drive: Drive, contact: Contact) -> ToothPair:
 
 def load_of_largest(torque: Float, mesh: DriveMesh) -> Float:
     """Return the normal load of the pair that carries most, N."""
-    load: Float = np.abs(torque) * mesh.arcs.shares[0] / (mesh.radius * mesh.engagement.factor(torque))
-    return load
-
-
-def torque_logarithm(torque: Float, mesh: DriveMesh) -> Float:
-    """Return ln(F/F_c) of the pair that carries most at a torque; for none a number far below 0."""
-    return np.log(np.maximum(np.abs(torque), 1e-300) / (mesh.engagement.factor(torque) * mesh.plastic_share))
+    value: Float = np.abs(torque) * mesh.arcs.shares[0] / (mesh.radius * mesh.engagement.factor(torque))
+    return value
 
 
 def normal_stiffness(torque: Float, mesh: DriveMesh) -> Float:
     """Return the stiffness of all engaged pairs along their normals, N/m; 0 where every contact is plastic."""
-    given, factor = mesh.with_rows(torque_logarithm(torque, mesh), mesh.engagement.factor(torque))
+    factor = mesh.engagement.factor(torque)
+    logarithm = np.log(np.maximum(np.abs(torque), 1e-300) / (factor * mesh.plastic_share))  # ln(F/F_c) of the largest
+    given, factor = mesh.with_rows(logarithm, factor)
     first, factor = np.atleast_1d(given), np.atleast_1d(factor)
     rows, found = len(first), np.empty(len(first))
     step = max(CHUNK // len(mesh.arcs.shares), 1)
@@ -262,12 +250,6 @@ class Panels:
     start: NDArray[np.float64]
     width: NDArray[np.float64]
 
-    def in_pieces(self, count: int) -> "Iterator[Panels]":
-        """Yield so many at a time."""
-        for start in range(0, len(self.owner), count):
-            some = slice(start, start + count)
-            yield Panels(self.owner[some], self.start[some], self.width[some])
-
 
 def mesh_torsion(torque: Float, reference: Float, mesh: DriveMesh) -> tuple[Float, Float]:
     """Return the torsion of the mesh from the reference to the size of the torque, rad, and that of its roughness.
@@ -280,24 +262,15 @@ def mesh_torsion(torque: Float, reference: Float, mesh: DriveMesh) -> tuple[Floa
     given = mesh.with_rows(np.log(np.maximum(np.abs(torque), 1e-300) / begin), np.log(reference / begin), lever)
     last, first, lever = (np.atleast_1d(item) for item in given)
     totals = np.zeros((2, len(last)))
-    active, way = _ways(np.flatnonzero((last > first) & (first > 0.0)), first, mesh)  # NaN is not
+    active = np.flatnonzero((last > first) & (first > 0.0))  # NaN is not
+    order, way = _alike(active, first, *mesh.law_numbers, *mesh.pair.numbers)
+    active = active[order]
     for start in range(0, int(way[-1]) + 1 if len(way) else 0, ROWS):
         some = slice(*np.searchsorted(way, (start, start + ROWS)))
         totals[:, active[some]] = _torsions(active[some], way[some] - start, first, last, mesh)
     endless = (first <= 0.0) & (last > first)
     whole, rough = np.where(endless, np.inf, totals / lever)
     return (whole, rough) if np.ndim(given[0]) else (whole[0], rough[0])
-
-
-def _ways(
-    rows: NDArray[np.intp], first: NDArray[np.float64], mesh: DriveMesh
-) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Return these rows in an order in which those with the same mesh and reference follow each other, and their way.
-
-    Ways are numbers from 0 on.
-    """
-    order, way = _alike(rows, first, *mesh.law_numbers, *mesh.pair.numbers)
-    return rows[order], way
 
 
 def _alike(rows: NDArray[np.intp], *numbers: Float) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
@@ -378,7 +351,10 @@ def _onsets(index: NDArray[np.intp], offsets: NDArray[np.float64], mesh: DriveMe
 def _integrals(panels: Panels, rows: NDArray[np.intp], mesh: DriveMesh, count: int) -> NDArray[np.float64]:
     """Integrate torque over stiffness on every panel of these rows of ``count``, (2, panels)."""
     together = CHUNK // (len(RULE[0]) * len(mesh.arcs.shares)) + 1
-    parts = [_integrated(piece, rows[piece.owner], mesh, count) for piece in panels.in_pieces(together)]
+    parts = []
+    for start in range(0, len(panels.owner), together):
+        piece = Panels(*(values[start : start + together] for values in vars(panels).values()))
+        parts.append(_integrated(piece, rows[piece.owner], mesh, count))
     return np.concatenate([np.empty((2, 0)), *parts], axis=1)
 
 
@@ -394,8 +370,8 @@ def _integrated(panels: Panels, rows: NDArray[np.intp], mesh: DriveMesh, count: 
     touched = micro.touched_area(size, law)[kind] if np.any(pair.film) else 0.0
     whole, rough = pair.around(alone, touched), alone @ mesh.arcs.counts
     sums = np.stack([rough if whole is alone else whole @ mesh.arcs.counts, rough])
-    found: NDArray[np.float64] = (0.5 * panels.width[:, np.newaxis] * RULE[1] * step[kind, :, 0] / sums).sum(axis=2)
-    return found
+    value: NDArray[np.float64] = (0.5 * panels.width[:, np.newaxis] * RULE[1] * step[kind, :, 0] / sums).sum(axis=2)
+    return value
 
 
 def _distinct(panels: Panels, rows: NDArray[np.intp], mesh: DriveMesh) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

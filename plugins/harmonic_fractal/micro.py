@@ -63,22 +63,19 @@ def domain_factor(dimension: Float) -> Float:
         off = (grown - held) * profile - rest
         slope = 0.5 * rest * (profile * (grown + 1.0) - (held + 1.0) * profile * inverse / (1.0 + inverse))
         logarithm = logarithm - off / slope
-    factor: Float = np.exp(logarithm)
-    return factor
+    return np.exp(logarithm)
 
 
 def elastic_sum(size: Float, law: ContactLaw) -> Float:
     """Return (x^((5-2D)/2) - 1)/(5 - 2D) at x = a_L/a_c, (ln x)/2 at D = 2.5; 0 where all contacts are plastic."""
-    value: Float = 0.5 * np.expm1(law.bend * np.maximum(size, 0.0)) / law.bend
-    return value
+    return 0.5 * np.expm1(law.bend * np.maximum(size, 0.0)) / law.bend
 
 
 def load_logarithm(size: Float, law: ContactLaw) -> Float:
     """Return ln(F/F_c) at u."""
     above = np.maximum(size, 0.0)
     grown = np.log1p(law.elastic * np.expm1(law.bend * above) / law.bend)
-    value: Float = np.where(np.asarray(size) > 0.0, law.growth * above + grown, size)
-    return value
+    return np.where(np.asarray(size) > 0.0, law.growth * above + grown, size)
 
 
 def load_slope(size: Float, law: ContactLaw) -> Float:
@@ -86,8 +83,7 @@ def load_slope(size: Float, law: ContactLaw) -> Float:
     above = np.maximum(size, 0.0)
     grown = np.expm1(law.bend * above)
     elastic = law.growth + law.elastic * (grown + 1.0) / (1.0 + law.elastic * grown / law.bend)
-    value: Float = np.where(np.asarray(size) > 0.0, elastic, 1.0)
-    return value
+    return np.where(np.asarray(size) > 0.0, elastic, 1.0)
 
 
 def size_of(load: Float, law: ContactLaw) -> Float:
@@ -119,23 +115,20 @@ def size_of(load: Float, law: ContactLaw) -> Float:
         np.maximum(np.subtract(size, step, out=size), 0.0, out=size)
         if not (np.abs(step, out=step) > FINE * (1.0 + size)).any():
             break
-    value: Float = np.where(wanted > 0.0, size, wanted)
-    return value
+    return np.where(wanted > 0.0, size, wanted)
 
 
 def stiffness_share(size: Float, law: ContactLaw) -> NDArray[np.float64]:
     """Return K/K_s at u, with K_s the stiffness that the contacts of a_L = a_c would have; 0 where all are plastic."""
     above = np.maximum(size, 0.0)
-    share: NDArray[np.float64] = -np.exp(law.growth * above) * np.expm1(-law.decay * above)
-    return share
+    return -np.exp(law.growth * above) * np.expm1(-law.decay * above)
 
 
 def load_exponent(size: Float, law: ContactLaw) -> Float:
     """Return m = d ln K/d ln F at u; 0 where all contacts are plastic and there is no stiffness."""
     above = np.where(np.asarray(size) > 0.0, size, 1.0)
     stiffness = law.growth + law.decay / np.expm1(law.decay * above)
-    value: Float = np.where(np.asarray(size) > 0.0, stiffness / load_slope(above, law), 0.0)
-    return value
+    return np.where(np.asarray(size) > 0.0, stiffness / load_slope(above, law), 0.0)
 
 
 def area_shares(size: Float, law: ContactLaw) -> tuple[Float, NDArray[np.float64]]:

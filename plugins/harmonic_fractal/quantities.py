@@ -5,8 +5,6 @@ from typing import Literal
 from harmonic_fractal.flank import Flank, read_flank
 from truing import Float, axis, found, given, inputs, loaded, part, results
 
-# What the calculation is told: flanks, materials, one pair of teeth, the drive, and what acts on it
-
 PATENT = "the patent"
 CATALOGUE = "catalogue of component sets, size 20, ratio 100"
 HANDBOOK = "handbook: alloy steel"

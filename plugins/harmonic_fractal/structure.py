@@ -74,8 +74,8 @@ class StructureFunction:
     @property
     def pairs(self) -> Array:
         """Numbers of pairs (k,) of all lines together."""
-        counted: Array = self.counts.sum(axis=0)
-        return counted
+        value: Array = self.counts.sum(axis=0)
+        return value
 
     def at(self, chosen: NDArray[np.bool_]) -> "StructureFunction":
         """Return the same for a choice (k,) of its lags."""
@@ -153,8 +153,8 @@ def piece_sums(heights: Array, steps: Steps, pieces: int) -> tuple[Array, Array]
 
 def mean_squares(sums: Array, counts: Array) -> Array:
     """Return sums over counts, NaN where nothing was counted."""
-    quotient: Array = np.divide(sums, counts, out=np.full(np.shape(sums), np.nan), where=counts > 0)
-    return quotient
+    value: Array = np.divide(sums, counts, out=np.full(np.shape(sums), np.nan), where=counts > 0)
+    return value
 
 
 # The power law of the structure function of a Weierstrass-Mandelbrot surface, and the conventions of its constant
@@ -195,8 +195,7 @@ def spectral_constant(dimension: Float) -> Float:
     without 0 times infinity at D_s = 1.5.
     """
     exponent = 4.0 - 2.0 * np.asarray(dimension)
-    value: Float = np.pi / (2.0 * np.sin(np.pi * exponent / 2.0) * gamma(1.0 + exponent))
-    return value
+    return np.pi / (2.0 * np.sin(np.pi * exponent / 2.0) * gamma(1.0 + exponent))
 
 
 def constant(dimension: Float, density: Float, convention: Convention) -> Float:
@@ -221,8 +220,7 @@ def converted(roughness: Float, dimension: Float, density: Float, *, source: Con
     G_B = G_A (C_A/C_B)^(1/(2(D_s-1))); ``dimension`` is D_s of the profile, 1 to 2.
     """
     ratio = constant(dimension, density, source) / constant(dimension, density, target)
-    changed: Float = roughness * ratio ** (1.0 / (2.0 * (np.asarray(dimension) - 1.0)))
-    return changed
+    return roughness * ratio ** (1.0 / (2.0 * (np.asarray(dimension) - 1.0)))
 
 
 def log_roughness_of(
@@ -235,8 +233,7 @@ def log_roughness_of(
     inside = (np.asarray(dimension) > 1.0) & (np.asarray(dimension) < 2.0)
     safe = np.where(inside, dimension, 1.5)
     logarithm = (intercept - np.log(constant(safe, density, convention))) / (2.0 * (safe - 1.0))
-    roughness: Float = np.where(inside, logarithm, np.nan)[()]
-    return roughness
+    return np.where(inside, logarithm, np.nan)[()]
 
 
 def structure_function(lag: Float, dimension: Float, roughness: Float) -> Float:
@@ -265,8 +262,7 @@ def kept_share(lag: Float, width: Float, exponent: Float) -> Float:
     near = np.minimum(x, FAR)
     found = scale * near ** (-exponent / 2.0) * hyp1f1(-exponent / 2.0, 0.5, -near)
     whole = np.where(x > FAR, _far(np.maximum(x, FAR), exponent / 2.0), found)
-    share: Float = np.where(np.asarray(width) > 0.0, whole - scale * x ** (-exponent / 2.0), 1.0)
-    return share
+    return np.where(np.asarray(width) > 0.0, whole - scale * x ** (-exponent / 2.0), 1.0)
 
 
 def _far(x: Float, half: Float) -> Float:

@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 
 from truing import Array
 
-# A measured or made surface: heights on a rectangular grid, and its lines along either direction
-
 Direction = Literal["x", "y", "both"]
 EQUAL = 0.01  # relative difference up to which two spacings are the same
 

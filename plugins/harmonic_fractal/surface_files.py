@@ -72,10 +72,9 @@ def read_table(text: str, *, skip_lines: int = 0) -> TextTable:
     values, lines = _values(rows, separator)
     if values.shape[1] == 1:
         _demand_no_gap(every, rows)
-    return TextTable(
-        values=values, lines=lines, header=tuple(line.strip() for line in header if line.strip()),
-        stated=_stated_in(header), separator=separator,
-    )  # fmt: skip
+    stated = {match[1]: match[2] for line in header if (match := STATED.fullmatch(line.strip()))}
+    header = tuple(line.strip() for line in header if line.strip())
+    return TextTable(values=values, lines=lines, header=header, stated=stated, separator=separator)
 
 
 def _demand_header(lines: list[str], skipped: int, first: str) -> None:
@@ -204,11 +203,6 @@ def _number(cell: str, line: int) -> float:
     return float(cell)
 
 
-def _stated_in(header: tuple[str, ...]) -> dict[str, str]:
-    found = [STATED.fullmatch(line.strip()) for line in header]
-    return {match[1]: match[2] for match in found if match is not None}
-
-
 # Columns of points: which one is which, and how they become a profile or a grid of equal spacing
 
 ROLES = {
@@ -218,12 +212,8 @@ NAMED = re.compile(r"\"?([A-Za-z]+)\"?\s*(?:[\[(]([^\])]*)[\])]|/\s*(\S+))?\"?")
 UNIT = re.compile(r"\"?[\[(]([^\])]*)[\])]\"?")
 
 
-@dataclass(frozen=True)
-class HeightColumn:
-    """A column of a file: its place, and its unit, empty where it states none."""
-
-    place: int
-    unit: str
+HeightColumn = tuple[int, str]
+"""A column of a file: its place, and its unit, empty where it states none."""
 
 
 def columns_of(table: TextTable, named: Sequence[str] = ()) -> dict[str, HeightColumn]:
@@ -284,7 +274,7 @@ def _roles(cells: list[str], units: list[str]) -> dict[str, HeightColumn] | None
         if role in found:
             raise ValueError(f"two columns are {role}: {'; '.join(cells)}")
         unit = match[2] or match[3] or ""
-        found[role] = HeightColumn(place, unit.strip() or (units[place].strip() if units else ""))
+        found[role] = place, unit.strip() or (units[place].strip() if units else "")
     return found
 
 
@@ -437,8 +427,6 @@ def _filter(topography: Any) -> float:
     return width if width > 0.0 else NAN
 
 
-# Surfaces from files: texts by our own reader, profilometer formats through an optional library
-
 FORMATS_IN_TEXT = {".sdf"}  # those of the library that may be written in letters and digits
 ASK_UNIT = (
     'the unit of the heights is not stated: write height_unit = "um", or the length of one count where the file counts '
@@ -477,14 +465,18 @@ def read_surface(path: Path, layout: FileLayout) -> Reading:
     if not content.strip():
         raise ValueError("the file is empty")
     if not is_text(content) or path.suffix.lower() in FORMATS_IN_TEXT:
-        return _checked(_from_format(path, layout))
-    table = read_table(decoded(content), skip_lines=layout.skip_lines)
-    columns = columns_of(table, layout.columns)
-    known = _stated(table, layout)
-    surface = _points(table, columns, known, path.name) if columns else _matrix(table, known, path.name)
-    text = table.stated.get("filter_width", "")
-    width = length(text, "filter_width in the file") if text else NAN
-    return _checked(Reading(surface=surface, filter_width=width, remarks=_contradictions(table, layout)))
+        reading = _from_format(path, layout)
+    else:
+        table = read_table(decoded(content), skip_lines=layout.skip_lines)
+        columns = columns_of(table, layout.columns)
+        known = _stated(table, layout)
+        surface = _points(table, columns, known, path.name) if columns else _matrix(table, known, path.name)
+        text = table.stated.get("filter_width", "")
+        width = length(text, "filter_width in the file") if text else NAN
+        reading = Reading(surface=surface, filter_width=width, remarks=_contradictions(table, layout))
+    if not np.isfinite(reading.surface.heights).any():
+        raise ValueError("no point of the surface is measured")
+    return reading
 
 
 def _from_format(path: Path, layout: FileLayout) -> Reading:
@@ -545,12 +537,13 @@ def _matrix(table: TextTable, known: FileLayout, name: str) -> Surface:
 
 
 def _points(table: TextTable, columns: dict[str, HeightColumn], known: FileLayout, name: str) -> Surface:
-    unit = known.height_unit or columns["z"].unit
+    place, own_unit = columns["z"]
+    unit = known.height_unit or own_unit
     if not unit:
         raise ValueError(ASK_UNIT)
-    z = table.values[:, columns["z"].place] * metres_per_unit(unit)
+    z = table.values[:, place] * metres_per_unit(unit)
     if "valid" in columns:
-        z = np.where(table.values[:, columns["valid"].place] == 0.0, np.nan, z)
+        z = np.where(table.values[:, columns["valid"][0]] == 0.0, np.nan, z)
     x = _place(table, columns, "x")
     if "y" in columns:
         heights, spacing_x, spacing_y = grid(x, _place(table, columns, "y"), z)
@@ -567,21 +560,15 @@ def _points(table: TextTable, columns: dict[str, HeightColumn], known: FileLayou
 def _place(
     table: TextTable, columns: dict[str, HeightColumn], axis: str
 ) -> "np.ndarray[tuple[int], np.dtype[np.float64]]":
-    column = columns[axis]
-    if not column.unit:
+    number, unit = columns[axis]
+    if not unit:
         raise ValueError(
             f"column {axis} has no unit: head it '{axis} [um]', or name all columns in the inputs file, as in "
             'columns = ["x [um]", "z [um]"]'
         )
-    place = table.values[:, column.place]
+    place = table.values[:, number]
     if np.isnan(place).any():
         raise ValueError(
             f"line {table.lines[np.argmax(np.isnan(place))]}: the point has no {axis}; only heights may be missing"
         )
-    return place * metres_per_unit(column.unit, f"the unit of column {axis}")
-
-
-def _checked(reading: Reading) -> Reading:
-    if not np.isfinite(reading.surface.heights).any():
-        raise ValueError("no point of the surface is measured")
-    return reading
+    return place * metres_per_unit(unit, f"the unit of column {axis}")

@@ -1,17 +1,17 @@
 """What scatters, how far the finite number of measured lines leaves the answer open, and where laws end."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from math import nan
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from gear_geometry.drawing import BLUE, panels, quiet
 from harmonic_fractal.contact import Rough, contact_of, flanks_of, interface_of, pressed, together
-from harmonic_fractal.figures import BLUE, or_none, panels, quiet
+from harmonic_fractal.figures import or_none
 from harmonic_fractal.flank import Flank
 from harmonic_fractal.quantities import Drive
 from truing import (
@@ -36,7 +36,6 @@ from truing import (
 
 # What scatters: the estimate of D and G from a measured flank, the materials, and the compliance around the mesh
 
-Pairs = NDArray[np.float64]
 FLANKS = (
     "surface", "mating_surface", "fractal_dimension", "fractal_roughness", "mating_dimension", "mating_roughness",
     "convention", "density", "sampling", "longest_lag",
@@ -50,12 +49,12 @@ def flank_samples(rng: np.random.Generator, rows: int, **flanks: Any) -> Mapping
     Returns deviations (rows,) from the estimate by name of their input; nothing where no flank was measured. Errors of
     D and ln G hang together closely, so they are never drawn apart. The mean of the pairs counts as the estimate.
     """
-    pairs = [_centred(flanks["surface"]), _centred(flanks["mating_surface"])]
-    if not any(len(found) for found in pairs):
+    measured = flanks["surface"], flanks["mating_surface"]
+    if not any(flank is not None and len(flank.resampled) for flank in measured):
         return {}
     drive = replace(Drive(), **flanks)
     first, second = flanks_of(drive)
-    sampled = _shifted(first, _some(pairs[0], rng, rows)), _shifted(second, _some(pairs[1], rng, rows))
+    sampled = [_redrawn(rough, flank, rng, rows) for rough, flank in zip((first, second), measured, strict=True)]
     middle, both = together(first, second, drive), together(sampled[0] or first, sampled[1], drive)
     return {
         "dimension_deviation": both.dimension - middle.dimension,
@@ -63,21 +62,11 @@ def flank_samples(rng: np.random.Generator, rows: int, **flanks: Any) -> Mapping
     }
 
 
-def _centred(flank: "Flank | None") -> Pairs:
-    """Return the pairs (B, 2) of a flank less their mean."""
-    pairs = np.empty((0, 2)) if flank is None else flank.resampled
-    return pairs - pairs.mean(axis=0) if len(pairs) else pairs
-
-
-def _some(pairs: Pairs, rng: np.random.Generator, rows: int) -> Pairs:
-    """Draw so many pairs; none if there are none."""
-    return pairs[rng.integers(len(pairs), size=rows)] if len(pairs) else pairs
-
-
-def _shifted(rough: Rough | None, pairs: Pairs) -> Rough | None:
-    """Return a flank with these deviations of D and ln G (rows, 2); as it is without any."""
-    if rough is None or not len(pairs):
+def _redrawn(rough: Rough | None, flank: Flank | None, rng: np.random.Generator, rows: int) -> Rough | None:
+    """Return a flank with as many deviations of D and ln G as rows, from its pairs less their mean; or as it is."""
+    if rough is None or flank is None or not len(flank.resampled):
         return rough
+    pairs = (flank.resampled - flank.resampled.mean(axis=0))[rng.integers(len(flank.resampled), size=rows)]
     return Rough(dimension=rough.dimension + pairs[:, 0], roughness=rough.roughness * np.exp(pairs[:, 1]))
 
 
@@ -144,7 +133,6 @@ def slopes(found_by: Sensitivities) -> LocalSlopes:
 
 # A study of our own: how far the finite number of measured lines leaves stiffness and torsion open
 
-
 OF = ("stiffness", "clearance", "mesh_stiffness", "torsion")
 PAIR = ("dimension_deviation", "roughness_deviation")
 MOST = 100_000
@@ -178,23 +166,24 @@ class Uncertainty:
         unknown = [name for name in self.of if name not in known or known[name].along]
         if unknown:
             raise TruingError(f"study '{self.name}': '{unknown[0]}' is no result that is one number")
-        pairs = self._pairs(bench)
         units = {name: bench.setup.print_unit(name) for name in self.of}
-        if pairs is None:
+        rng = np.random.default_rng(np.random.SeedSequence(bench.setup.seed, spawn_key=(1,)))
+        drawn_pairs = flank_samples(rng, self.draws, **{name: getattr(bench.inputs, name) for name in FLANKS})
+        if not drawn_pairs:
             return Propagated(name=self.name, inputs=bench.inputs, units=units)
-        apart = np.random.default_rng(bench.setup.seed).permutation(pairs[:, 1])
+        pairs = np.stack([drawn_pairs[name] for name in PAIR], axis=1)
+        shuffled = np.random.default_rng(bench.setup.seed).permutation(pairs[:, 1])
         nominal = [float(bench.setup.nominal(name)) for name in PAIR]
 
-        def answered(logarithm: "Array", begin: float) -> Mapping[str, Any]:
+        def answered(logarithm: Array, begin: float) -> Mapping[str, Any]:
             columns = dict(zip(PAIR, (nominal[0] + pairs[:, 0], nominal[1] + logarithm), strict=True))
             return self._answered(bench, columns, bench.part(self.name, begin, begin + 0.5))
 
-        return Propagated(
-            name=self.name, inputs=bench.inputs, units=units, pairs=pairs, together=answered(pairs[:, 1], 0.0),
-            apart=answered(apart, 0.5), nominal={name: float(bench.answers[name]) for name in self.of},
-        )  # fmt: skip
+        together, apart = answered(pairs[:, 1], 0.0), answered(shuffled, 0.5)
+        summaries = {name: _summary(float(bench.answers[name]), together[name], apart[name]) for name in self.of}
+        return Propagated(name=self.name, inputs=bench.inputs, units=units, pairs=pairs, summaries=summaries)
 
-    def _answered(self, bench: "Bench", columns: Mapping[str, Any], done: Callable[[int, int], None]) -> dict[str, Any]:
+    def _answered(self, bench: Bench, columns: Mapping[str, Any], done: Callable[[int, int], None]) -> dict[str, Any]:
         """Calculate all pairs, so many in one call that nobody waits long for the next word."""
         parts = []
         for start in range(0, self.draws, TOGETHER):
@@ -203,119 +192,6 @@ class Uncertainty:
             parts.append(bench.rows(rows, min(TOGETHER, self.draws - start), *self.of))
         done(self.draws, self.draws)
         return {name: np.concatenate([part[name] for part in parts]) for name in self.of}
-
-    def _pairs(self, bench: "Bench") -> "Array | None":
-        """Draw the pairs as deviations (draws, 2), or nothing where no flank was measured."""
-        rng = np.random.default_rng(np.random.SeedSequence(bench.setup.seed, spawn_key=(1,)))
-        found = flank_samples(rng, self.draws, **{name: getattr(bench.inputs, name) for name in FLANKS})
-        return np.stack([found[name] for name in PAIR], axis=1) if found else None
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Propagated(Outcome):
-    """Pairs (n, 2) as deviations of D and ln G, and by result what they give (n,) in SI: together, and drawn apart.
-
-    ``pairs`` is None where no flank was measured. ``inputs`` are those of the run, as effects leave them.
-    """
-
-    name: str
-    inputs: Drive
-    units: Mapping[str, str]
-    pairs: "Array | None" = None
-    together: Mapping[str, Any] | None = None
-    apart: Mapping[str, Any] | None = None
-    nominal: Mapping[str, float] | None = None
-
-    @property
-    def correlation(self) -> float:
-        """Of the deviations of D and of ln G."""
-        return float("nan") if self.pairs is None else float(np.asarray(np.corrcoef(self.pairs.T))[0, 1])
-
-    def summary(self, result: str) -> "Summary":
-        """Return what the pairs say of one result."""
-        assert self.together is not None
-        assert self.apart is not None
-        assert self.nominal is not None
-        values, independent = (np.asarray(each[result]) for each in (self.together, self.apart))
-        known = values[np.isfinite(values)]
-        low, median, high = np.percentile(known, (2.5, 50.0, 97.5)) if known.size else (np.nan,) * 3
-        return Summary(
-            nominal=self.nominal[result], low=float(low), median=float(median), high=float(high),
-            relative_sd=_relative_sd(values), independent_sd=_relative_sd(independent),
-            failed=int(len(values) - known.size),
-        )  # fmt: skip
-
-    def as_json(self) -> Mapping[str, Any]:
-        """Return spread and correlation of the pairs, and by result median, interval and relative deviations."""
-        if self.pairs is None or self.together is None:
-            return {"draws": 0}
-        results = {}
-        for result in self.together:
-            found, unit = self.summary(result), self.units[result]
-            one = quantity(f"1 {unit}", unit)
-            numbers = {name: or_none(getattr(found, name) / one) for name in ("nominal", "median")}
-            interval = [or_none(end / one) for end in (found.low, found.high)]
-            shares = {"relative_sd": or_none(found.relative_sd), "if_independent": or_none(found.independent_sd)}
-            results[result] = {**numbers, "interval95": interval, "unit": unit, **shares, "failed": found.failed}
-        sd = self.pairs.std(axis=0, ddof=1)
-        return {
-            "draws": len(self.pairs),
-            "dimension_sd": float(sd[0]),
-            "log_roughness_sd": float(sd[1]),
-            "correlation": or_none(self.correlation),
-            "results": results,
-        }
-
-    def blocks(self) -> Sequence[Block]:
-        """Return what the pairs give, in a table and a figure."""
-        if self.pairs is None or self.together is None:
-            return [Words(NOTHING)]
-        rows: list[tuple[str | float, ...]] = []
-        for result in self.together:
-            found, unit = self.summary(result), self.units[result]
-            one = quantity(f"1 {unit}", unit)
-            numbers = (value / one for value in (found.nominal, found.median, found.low, found.high))
-            shares = (100.0 * found.relative_sd, 100.0 * found.independent_sd)
-            rows.append((result.replace("_", " "), *(float(value) for value in numbers), _spoken(unit), *shares))
-        return [
-            Words(self._said()),
-            Table(
-                "What the measured lines leave open",
-                ("result", "at the estimate", "median", "2.5 %", "97.5 %", "unit", "sd", "sd if independent"), rows,
-                ("", "", "", "", "", "", "%", "%"),
-                "Of D and G alone; hardness and moduli scatter beside. Model errors are not in it.",
-            ),
-            Drawing(
-                "Pairs of D and ln G", partial(pairs_figure, self.pairs),
-                "Each point is one set of resampled lines: where D is found larger, so is G.",
-            ),
-        ]  # fmt: skip
-
-    def _said(self) -> str:
-        assert self.pairs is not None
-        assert self.together is not None
-        sd, first = self.pairs.std(axis=0, ddof=1), next(iter(self.together))
-        found = self.summary(first)
-        ratio = found.independent_sd / found.relative_sd if found.relative_sd else float("nan")
-        return (
-            f"{len(self.pairs)} pairs of D and ln G from resampled blocks of lines: standard deviations {sd[0]:.2g} "
-            f"and {sd[1]:.2g}, correlation {self.correlation:.4f}".replace("-", "−")
-            + f". Their errors go together: the {first.replace('_', ' ')} has a standard deviation of "
-            f"{100 * found.relative_sd:.2g} %. Two independent error bars would claim {100 * found.independent_sd:.2g} "
-            f"%, {ratio:.2g} times as much."
-        )
-
-    def warnings(self) -> Sequence[str]:
-        """Name pairs without an answer."""
-        if self.together is None:
-            return ()
-        failed = max(self.summary(result).failed for result in self.together)
-        lost = (
-            f"study '{self.name}': {failed} of {len(next(iter(self.together.values())))} pairs have no answer"
-            if failed
-            else ""
-        )
-        return (lost,) if lost else ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -331,6 +207,98 @@ class Summary:
     failed: int
 
 
+def _summary(nominal: float, values: Array, independent: Array) -> Summary:
+    """Return what the pairs say of one result: taken together (n,), and apart (n,)."""
+    known = values[np.isfinite(values)]
+    low, median, high = np.percentile(known, (2.5, 50.0, 97.5)) if known.size else (np.nan,) * 3
+    return Summary(
+        nominal=nominal, low=float(low), median=float(median), high=float(high), relative_sd=_relative_sd(values),
+        independent_sd=_relative_sd(independent), failed=int(len(values) - known.size),
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Propagated(Outcome):
+    """Pairs (n, 2) as deviations of D and ln G, and by result what they give, together and drawn apart.
+
+    There are none where no flank was measured. ``inputs`` are those of the run, as effects leave them.
+    """
+
+    name: str
+    inputs: Drive
+    units: Mapping[str, str]
+    pairs: Array = field(default_factory=lambda: np.empty((0, 2)))
+    summaries: Mapping[str, Summary] = field(default_factory=dict)
+
+    @property
+    def correlation(self) -> float:
+        """Of the deviations of D and of ln G."""
+        return float(np.asarray(np.corrcoef(self.pairs.T))[0, 1])
+
+    def as_json(self) -> Mapping[str, Any]:
+        """Return spread and correlation of the pairs, and by result median, interval and relative deviations."""
+        if not self.summaries:
+            return {"draws": 0}
+        results = {}
+        for result, each in self.summaries.items():
+            unit = self.units[result]
+            one = quantity(f"1 {unit}", unit)
+            numbers = {name: or_none(getattr(each, name) / one) for name in ("nominal", "median")}
+            interval = [or_none(end / one) for end in (each.low, each.high)]
+            shares = {"relative_sd": or_none(each.relative_sd), "if_independent": or_none(each.independent_sd)}
+            results[result] = {**numbers, "interval95": interval, "unit": unit, **shares, "failed": each.failed}
+        sd = self.pairs.std(axis=0, ddof=1)
+        return {
+            "draws": len(self.pairs),
+            "dimension_sd": float(sd[0]),
+            "log_roughness_sd": float(sd[1]),
+            "correlation": or_none(self.correlation),
+            "results": results,
+        }
+
+    def blocks(self) -> Sequence[Block]:
+        """Return what the pairs give, in a table and a figure."""
+        if not self.summaries:
+            return [Words(NOTHING)]
+        rows: list[tuple[str | float, ...]] = []
+        for result, each in self.summaries.items():
+            unit = self.units[result]
+            one = quantity(f"1 {unit}", unit)
+            numbers = (value / one for value in (each.nominal, each.median, each.low, each.high))
+            shares = (100.0 * each.relative_sd, 100.0 * each.independent_sd)
+            spoken = unit.replace("*", "·").replace("urad", "µrad").replace("um", "µm")
+            rows.append((result.replace("_", " "), *(float(value) for value in numbers), spoken, *shares))
+        return [
+            Words(self._said()),
+            Table(
+                "What the measured lines leave open",
+                ("result", "at the estimate", "median", "2.5 %", "97.5 %", "unit", "sd", "sd if independent"), rows,
+                ("", "", "", "", "", "", "%", "%"),
+                "Of D and G alone; hardness and moduli scatter beside. Model errors are not in it.",
+            ),
+            Drawing(
+                "Pairs of D and ln G", partial(pairs_figure, self.pairs),
+                "Each point is one set of resampled lines: where D is found larger, so is G.",
+            ),
+        ]  # fmt: skip
+
+    def _said(self) -> str:
+        sd, (first, summary) = self.pairs.std(axis=0, ddof=1), next(iter(self.summaries.items()))
+        ratio = summary.independent_sd / summary.relative_sd if summary.relative_sd else float("nan")
+        return (
+            f"{len(self.pairs)} pairs of D and ln G from resampled blocks of lines: standard deviations {sd[0]:.2g} "
+            f"and {sd[1]:.2g}, correlation {self.correlation:.4f}".replace("-", "−")
+            + f". Their errors go together: the {first.replace('_', ' ')} has a standard deviation of "
+            f"{100 * summary.relative_sd:.2g} %. Two independent error bars would claim "
+            f"{100 * summary.independent_sd:.2g} %, {ratio:.2g} times as much."
+        )
+
+    def warnings(self) -> Sequence[str]:
+        """Name pairs without an answer."""
+        failed = max((each.failed for each in self.summaries.values()), default=0)
+        return [f"study '{self.name}': {failed} of {len(self.pairs)} pairs have no answer"] if failed else []
+
+
 def _relative_sd(values: "Array") -> float:
     """Return the standard deviation over the size of the mean; NaN without any."""
     known = values[np.isfinite(values)]
@@ -338,14 +306,9 @@ def _relative_sd(values: "Array") -> float:
     return float(known.std(ddof=1)) / mean if mean else float("nan")
 
 
-def _spoken(unit: str) -> str:
-    """Write a unit as it is printed."""
-    return unit.replace("*", "·").replace("urad", "µrad").replace("um", "µm")
-
-
 def pairs_figure(pairs: "Array") -> "Figure":
     """Draw the cloud of pairs."""
-    figure, (panel,) = panels(1, 3.0)
+    figure, panel = panels(1, 3.0)
     panel.plot(pairs[:, 0], pairs[:, 1], ".", color=BLUE, markersize=2.5, alpha=0.5, rasterized=True)
     quiet(panel, "deviation of D", "deviation of ln G")
     return figure

@@ -7,24 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from press_linkage.errors import (
-    ARM,
-    KINDS,
-    PASSIVE,
-    POLAR_ANGLES,
-    permitted_tilt,
-    salience,
-    side_sensitivities,
-    source,
-    without_rounding,
-)
+from press_linkage import errors
 from press_linkage.kinematics import Half, crank_at, cycle_demands, nominal, smallest_sine, solve, top_crank_angle
 from press_linkage.quantities import Cycle, ErrorInfluence, Press, PressChances, Synthesis
 from truing import Allocation, Allotted, Bench, Odds, Outcome, Sensitivities, Swept, Table, feasible
 
-# What each study gives back as results of the press linkage
-
-EVERY = (*KINDS, "platform_arm")
+EVERY = (*errors.KINDS, "platform_arm")
 KEY_TILT = (
     "slider_joint_angle", "ground_pivot_angle", "lower_knee_length", "upper_knee_length", "knee_drive_length",
 )  # fmt: skip
@@ -39,8 +27,8 @@ SWING = "; if the crank only swings, leave the sweep out of the studies"
 
 def sources_of(kinds: tuple[str, ...]) -> list[str]:
     """The inputs that carry errors of these kinds: one per side, the platform arm once."""
-    both = [source(kind, side) for kind in kinds if kind != "platform_arm" for side in (1, 2)]
-    return [*both, ARM] if "platform_arm" in kinds else both
+    both = [errors.source(kind, side) for kind in kinds if kind != "platform_arm" for side in (1, 2)]
+    return [*both, errors.ARM] if "platform_arm" in kinds else both
 
 
 def cycle(swept: Swept) -> Cycle:
@@ -67,16 +55,16 @@ def influence(found: Sensitivities) -> ErrorInfluence:
     """The nominal chain with the influence of each error, and what the sources in force do together."""
     press: Press = found.inputs
     exact = solve(nominal(press))
-    by_kind = side_sensitivities(exact.side_1)
+    by_kind = errors.side_sensitivities(exact.side_1)
     shift = solve(press).slider_position - exact.slider_position
     return ErrorInfluence(
         **_chain(press, exact.side_1, float(press.crank_angle)),
         platform_height=float(exact.platform_height),
         nominal_position=float(exact.slider_position),
         slider_shift=float(shift),
-        **{f"influence_{kind}": float(without_rounding(value)) for kind, value in by_kind.items()},
+        **{f"influence_{kind}": float(errors.without_rounding(value)) for kind, value in by_kind.items()},
         salience_position_key=_key_salience(found, "slider_position", KEY_POSITION, EVERY),
-        salience_tilt_key=_key_salience(found, "slider_tilt", KEY_TILT, PASSIVE),
+        salience_tilt_key=_key_salience(found, "slider_tilt", KEY_TILT, errors.PASSIVE),
         **_variances(found),
         position_sd=found.sd.get("slider_position", nan),
         tilt_sd=found.sd.get("slider_tilt", nan),
@@ -108,7 +96,7 @@ def _key_salience(found: Sensitivities, result: str, key: tuple[str, ...], among
     named = {name: by_source[name] for name in sources_of(among) if name in by_source}
     if not set(sources_of(key)) <= set(named):
         return nan
-    shares = salience(named)
+    shares = errors.salience(named)
     return float(sum(shares[name] for name in sources_of(key)))
 
 
@@ -118,10 +106,10 @@ def _variances(found: Sensitivities) -> dict[str, float]:
     if shares is None:
         return dict.fromkeys(VARIANCES, nan)
     whole = found.sd["slider_position"] ** 2
-    parts = [sources_of(kinds) for kinds in (LINKS, ALONG, POLAR_ANGLES)]
+    parts = [sources_of(kinds) for kinds in (LINKS, ALONG, errors.POLAR_ANGLES)]
     other = [name for name in shares if not any(name in part for part in parts)]
     return {
-        name: whole * sum(shares.get(source, 0.0) for source in part)
+        name: whole * sum(shares.get(error, 0.0) for error in part)
         for name, part in zip(VARIANCES, [*parts, other], strict=True)
     }
 
@@ -173,7 +161,7 @@ class Readings:
         found = {}
         for place, reading in enumerate(READINGS):
             press = replace(bench.setup.inputs, reading=reading)
-            answers = {**bench.answers, "permitted_tilt": permitted_tilt(press)}
+            answers = {**bench.answers, "permitted_tilt": errors.permitted_tilt(press)}
             setup = replace(bench.setup, inputs=press)
             told = _part(bench, self.name, place)
             own = replace(bench, setup=setup, answers=answers, progress=told)

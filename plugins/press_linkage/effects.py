@@ -39,15 +39,17 @@ def longer(side: PressSide, by: Mapping[str, Float]) -> PressSide:
     return replace(side, **{name: getattr(side, name) + by[kind] for kind, name in names.items()})
 
 
-def stretched(press: Press, strain_1: Float, strain_2: Float) -> Press:
+def with_sides(press: Press, *by: Mapping[str, Float]) -> Press:
+    """The press with each side off by so much more."""
+    side_1, side_2 = (longer(side, more) for side, more in zip((press.side_1, press.side_2), by, strict=True))
+    return replace(press, side_1=side_1, side_2=side_2)
+
+
+def stretched(press: Press, *strains: Float) -> Press:
     """The press with every link of a side longer by the strain of that side, the platform arm by their mean."""
-    arm = 0.5 * (strain_1 + strain_2) * press.platform_arm
-    return replace(
-        press,
-        platform_arm_deviation=press.platform_arm_deviation + arm,
-        side_1=longer(press.side_1, {kind: strain_1 * getattr(press, kind) for kind in HEATED}),
-        side_2=longer(press.side_2, {kind: strain_2 * getattr(press, kind) for kind in HEATED}),
-    )
+    arm = 0.5 * (strains[0] + strains[1]) * press.platform_arm
+    warm = with_sides(press, *({kind: strain * getattr(press, kind) for kind in HEATED} for strain in strains))
+    return replace(warm, platform_arm_deviation=press.platform_arm_deviation + arm)
 
 
 def link_heating(press: Press, *, expansion: Float, link_temperature: Float) -> Press:
@@ -75,9 +77,7 @@ TURN = 2.0 * np.pi
 
 def ahead(press: Press, by: Float) -> Press:
     """The press with both cranks ahead, rad, in the sense in which the crank angle grows."""
-    return replace(
-        press, side_1=longer(press.side_1, {"crank_angle": by}), side_2=longer(press.side_2, {"crank_angle": by})
-    )
+    return with_sides(press, {"crank_angle": by}, {"crank_angle": by})
 
 
 def crank_phase(press: Press, *, phase: Float) -> Press:
@@ -159,12 +159,11 @@ def net_force(press: Press, forming_force: Float) -> Float:
 
 def pressed(press: Press, position: Position, force_by_stiffness: Float) -> Press:
     """The press under a central force F, given as F/(EA) with equal sections: each link shortens by N L/(EA)."""
-    sides = zip((press.side_1, press.side_2), shares_of_load(position), strict=True)
-    side_1, side_2 = (
-        longer(side, {kind: -force_by_stiffness * share * getattr(press, kind) for kind, share in shares.items()})
-        for side, shares in sides
+    one, two = (
+        {kind: -force_by_stiffness * share * getattr(press, kind) for kind, share in shares.items()}
+        for shares in shares_of_load(position)
     )
-    return replace(press, side_1=side_1, side_2=side_2)
+    return with_sides(press, one, two)
 
 
 def slackened(press: Press, clearance: Float, forming_force: Float) -> Press:
@@ -172,11 +171,8 @@ def slackened(press: Press, clearance: Float, forming_force: Float) -> Press:
     force = net_force(press, forming_force)
     upward = np.where(np.isnan(force), np.nan, np.where(force < 0, -1.0, 1.0))
     play = JOINTS * clearance * upward
-    sides = zip((press.side_1, press.side_2), shares_of_load(solve(press)), strict=True)
-    side_1, side_2 = (
-        longer(side, {kind: -play * np.sign(share) for kind, share in shares.items()}) for side, shares in sides
-    )
-    return replace(press, side_1=side_1, side_2=side_2)
+    by = ({kind: -play * np.sign(share) for kind, share in shares.items()} for shares in shares_of_load(solve(press)))
+    return with_sides(press, *by)
 
 
 def elastic_deflection(press: Press, *, compliance: Float, forming_force: Float) -> Press:
@@ -209,8 +205,6 @@ def slider_inertia(press: Press, *, mass_compliance: Float, speed: Float) -> Pre
     return pressed(press, position, mass_compliance * by_angle * (TURN * speed) ** 2)
 
 
-# What the mechanism of the paper leaves out, each acting on the deviations of the press
-#
 # They act in the order declared: heat, then errors of the crank angle, then load, so that the load meets the position
 # in which the press really is. A new effect is a function beside the others and one more entry in EFFECTS.
 
@@ -224,7 +218,7 @@ def die_inclination(press: Press, slider: Slider, *, inclination: Float, height:
     )
 
 
-HEAT: list[Effect[Press, Slider]] = [
+EFFECTS: list[Effect[Press, Slider]] = [
     Effect("link_heating", on_inputs=link_heating, needs=[LINK_TEMPERATURE],
            unknowns=[Unknown("expansion", -20, 20, "um/(m*K)",
                              note="of the links, less that of the frame and the gauge's support")],
@@ -247,8 +241,6 @@ HEAT: list[Effect[Press, Slider]] = [
            looks_like="the slider sinks and tilts with the temperature of the links, lower on the warmer side",
            why="one side is oiled less, stands in the sun or beside a furnace: its links are warmer than was measured",
            source=EXPANSION),
-]  # fmt: skip
-CRANK: list[Effect[Press, Slider]] = [
     Effect("crank_phase", on_inputs=crank_phase,
            unknowns=[Unknown("phase", -20, 20, "mrad", note="both cranks ahead of the angle that is shown")],
            looks_like="the slider is too low before the bottom dead centre and too high after it, by its speed per "
@@ -271,8 +263,6 @@ CRANK: list[Effect[Press, Slider]] = [
            why="gears and couplings between encoder and crank have play, or the servo drive lags behind its command; "
                "what acts before and after the dead centre may be different flanks",
            source="reversal error of a drive: half the play to either side"),
-]  # fmt: skip
-LOAD: list[Effect[Press, Slider]] = [
     Effect("elastic_deflection", on_inputs=elastic_deflection, needs=[FORMING_FORCE],
            unknowns=[Unknown("compliance", 0, 5, "1/GN", note="1/(EA) of rods and knee links, equal sections")],
            looks_like="the slider gives way in proportion to the forming force, upward under a positive one; no "
@@ -303,8 +293,6 @@ LOAD: list[Effect[Press, Slider]] = [
                       "no tilt",
            why="a heavy slider loads its links by its own acceleration",
            source="d'Alembert: elastic deflection under the inertia of the slider, +m z'' omega^2 upward"),
-]  # fmt: skip
-DIE: list[Effect[Press, Slider]] = [
     Effect("die_inclination", on_results=die_inclination,
            unknowns=[Unknown("inclination", -1000, 1000, "urad", note="added to the tilt"),
                      Unknown("height", -1000, 1000, "um", note="added to the position")],
@@ -313,4 +301,3 @@ DIE: list[Effect[Press, Slider]] = [
            why="the die or the bolster is not level, or stands on a shim",
            source="geometry"),
 ]  # fmt: skip
-EFFECTS: list[Effect[Press, Slider]] = [*HEAT, *CRANK, *LOAD, *DIE]

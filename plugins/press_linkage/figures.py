@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
 from matplotlib.patheffects import withStroke
 
+from gear_geometry.drawing import BLUE, GREEN, INK, ORANGE, panels, quiet
 from press_linkage.answers import KEY_POSITION, KEY_TILT
 from press_linkage.errors import ARM, KINDS, PASSIVE, SOURCES, derivatives, salience, side_sensitivities, source
 from press_linkage.kinematics import Half, Position, nominal, solve, top_crank_angle
@@ -16,7 +17,7 @@ from truing import Allotted, Record, Sensitivities
 
 # The mechanism to scale: one position in full, a few others of the turn behind it, and the way of the slider
 
-BLUE, ORANGE, GREEN, INK, GREY = "#1f5a8a", "#c8641e", "#2f6b4f", "#22262b", "#9aa1ab"
+GREY = "#9aa1ab"
 FRAME, CRANK, KNEE, SLIDER = "#7d838c", ORANGE, BLUE, GREEN
 LINK = "#565c66"
 PALE = ("#d9dde2", "#c9ced6", "#b7bec8")
@@ -56,8 +57,7 @@ def mechanism(record: "Record[Press, Slider]") -> "Figure":
     """Draw the press at the crank angle of this run, with earlier positions of its way down in grey."""
     press = nominal(record.inputs)
     crank_angle = float(record.inputs.crank_angle)
-    figure = Figure(figsize=(6.4, 6.6), layout="constrained")
-    panel: Any = figure.subplots()
+    figure, panel = panels(1, 6.6)
     panel.set_aspect("equal")
     panel.invert_yaxis()
     earlier = [float(share * top_crank_angle(press)) for share in GHOSTS]
@@ -70,11 +70,8 @@ def mechanism(record: "Record[Press, Slider]") -> "Figure":
     _frame(panel, position)
     _press(panel, position)
     _names(panel, position)
-    panel.set_xlabel("y, m")
-    panel.set_ylabel("z, m (downward)")
     panel.set_xlim(-1.22 * press.slider_half_width, 1.22 * press.slider_half_width)
-    panel.grid(alpha=0.35)
-    panel.set_axisbelow(True)
+    quiet(panel, "y, m", "z, m (downward)", alpha=0.35)
     panel.set_title(_title(crank_angle, earlier), fontsize=9)
     return figure
 
@@ -207,8 +204,7 @@ def way(press: Press) -> "Figure":
     """Draw the height of the slider over one turn of the crank, with both dead centres."""
     top = float(top_crank_angle(press))
     height = np.asarray(solve(press, TURN).slider_position)
-    figure = Figure(figsize=(6.4, 2.9), layout="constrained")
-    panel: Any = figure.subplots()
+    figure, panel = panels(1, 2.9)
     panel.plot(np.degrees(TURN), height, color=BLUE)
     panel.invert_yaxis()
     for angle, name, side in ((0.0, "bottom dead centre", "top"), (top, "top dead centre", "bottom")):
@@ -238,8 +234,7 @@ def over_the_turn(record: "PressRun") -> "Figure":
     press = nominal(record.inputs)
     turn = solve(press, TURN)
     by_kind = side_sensitivities(turn.side_1)
-    figure = Figure(figsize=(6.4, 5.0), layout="constrained")
-    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
+    figure, (upper, lower) = panels(2, 5.0, sharex=True, height_ratios=(3, 2))
     for kind, (colour, dashes) in DRAWN.items():
         upper.plot(np.degrees(TURN), by_kind[kind], color=colour, linestyle=dashes, label=rf"$\xi_{{{SYMBOLS[kind]}}}$")
     upper.legend(ncols=6, loc="upper center", bbox_to_anchor=(0.5, 1.16), handlelength=1.6, columnspacing=1.4)
@@ -266,12 +261,11 @@ def _both(kind: str) -> list[str]:
 
 def salience_bars(found: "Sensitivities") -> "Figure":
     """Draw the salience of every kind of error for position and tilt; the key errors stand out."""
-    figure = Figure(figsize=(6.4, 4.0), layout="constrained")
-    panels = figure.subplots(1, 2, width_ratios=(1, 1))
+    figure, (left, right) = panels(1, 4.0, 2, width_ratios=(1, 1))
     position, tilt = found.derivatives["slider_position"], found.derivatives["slider_tilt"]
     passive = {name: tilt[name] for kind in PASSIVE for name in _both(kind)}
-    _bars(panels[0], salience({name: position[name] for name in SOURCES}), KEY_POSITION, "slider position")
-    _bars(panels[1], salience(passive), KEY_TILT, "slider tilt")
+    _bars(left, salience({name: position[name] for name in SOURCES}), KEY_POSITION, "slider position")
+    _bars(right, salience(passive), KEY_TILT, "slider tilt")
     return figure
 
 
@@ -295,8 +289,7 @@ def _bars(panel: Any, shares: Mapping[str, Any], key: Sequence[str], title: str)
 
 def along_the_synthesis(allotted: "Allotted", printed: Mapping[str, Sequence[float]]) -> "Figure":
     """Draw both reliabilities after every adjustment, with their goals and with what the paper prints."""
-    figure = Figure(figsize=(6.4, 3.4), layout="constrained")
-    panel: Any = figure.subplots()
+    figure, panel = panels(1, 3.4)
     steps = range(len(allotted.steps) + 1)
     looks = {"slider_position": (BLUE, "o", "position"), "slider_tilt": (ORANGE, "s", "tilt")}
     for check, (colour, marker, name) in looks.items():

@@ -161,8 +161,8 @@ def built(press: Press, crank: tuple[Float, Float], off: PressSide, *, mirror: f
     ground = np.cos(press.ground_pivot_angle), np.sin(press.ground_pivot_angle)
 
     def length(kind: str) -> Float:
-        made: Float = getattr(press, kind) + getattr(off, f"{kind}_deviation")
-        return made
+        value: Float = getattr(press, kind) + getattr(off, f"{kind}_deviation")
+        return value
 
     return Parts(
         pivot=Polar(length("crank_pivot_radius"), *cosine_and_sine(mirror * off.crank_pivot_angle_deviation)),
@@ -261,11 +261,14 @@ SINGULAR = 1e-6  # sine of an angle between two links below which the position i
 NEARLY_SINGULAR = 0.05  # below it the sensitivities exceed 20: worth a warning
 
 
+Holds = bool | NDArray[np.bool_]
+
+
 class TiltDemand(NamedTuple):
     """What must hold: a name, where it holds, and the sentence for the engineer where it does not."""
 
     name: str
-    holds: "bool | NDArray[np.bool_]"
+    holds: Holds
     sentence: str
 
 
@@ -339,68 +342,51 @@ def demands(press: Press, position: Position) -> Iterator[TiltDemand]:
 def _sizes(half: Half, side: int) -> TiltDemand:
     """Every length of one side is positive, its deviation included."""
     parts = half.parts
+    known = (parts.pivot, parts.crank, parts.platform, parts.ground, parts.slider)
     holds = parts.rod > 0.0
-    for length in (parts.drive, parts.upper, parts.lower, *(polar.length for polar in _polars(parts))):
+    for length in (parts.drive, parts.upper, parts.lower, *(polar.length for polar in known)):
         holds = holds & (length > 0.0)
     return TiltDemand(f"sizes {side}", holds, f"side {side}: every length with its deviation must be greater than zero")
 
 
-def _polars(parts: Parts) -> tuple[Polar, ...]:
-    """The parts whose direction is known before the loops are solved."""
-    return parts.pivot, parts.crank, parts.platform, parts.ground, parts.slider
+def _loop(loop: str, side: int, closed: Holds, regular: Holds, words: tuple[str, str]) -> Iterator[TiltDemand]:
+    """A loop closes, and not in a singular position; ``words`` say what it needs, and what is singular."""
+    yield TiltDemand(f"loop {loop}", closed, f"loop {loop}, side {side} does not close: {words[0]}")
+    yield TiltDemand(f"singular {loop}", regular, f"loop {loop}, side {side} is singular: {words[1]}")
 
 
 def _rod_demands(half: Half, side: int) -> Iterator[TiltDemand]:
     """Loop I (VI on side 2): the rod reaches the platform, and not in a horizontal position."""
-    loop = "I" if side == 1 else "VI"
-    yield TiltDemand(
-        f"loop {loop}",
-        half.rod_drop >= 0.0,
-        f"loop {loop}, side {side} does not close: the rod cannot reach the platform, it needs "
-        "|e cos(beta_1) - y_B| < k_R (horizontal distance of its ends below rod_length)",
+    words = (
+        "the rod cannot reach the platform, it needs |e cos(beta_1) - y_B| < k_R (horizontal distance of its ends "
+        "below rod_length)",
+        f"the rod is horizontal (|sin(theta_2{side})| < 1e-6), the platform height is undetermined",
     )
-    yield TiltDemand(
-        f"singular {loop}",
-        half.rod_drop >= SINGULAR * half.parts.rod,
-        f"loop {loop}, side {side} is singular: the rod is horizontal (|sin(theta_2{side})| < 1e-6), "
-        "the platform height is undetermined",
-    )
+    regular = half.rod_drop >= SINGULAR * half.parts.rod
+    return _loop("I" if side == 1 else "VI", side, half.rod_drop >= 0.0, regular, words)
 
 
 def _knee_demands(half: Half, side: int) -> Iterator[TiltDemand]:
     """Loop II (V on side 2): knee drive and upper link meet, and not in line."""
-    loop = "II" if side == 1 else "V"
-    yield TiltDemand(
-        f"loop {loop}",
-        half.knee_fold >= 0.0,
-        f"loop {loop}, side {side} does not close: the knee drive is open, it needs "
-        "|l_m - l_g| < |M - B_5| < l_m + l_g "
-        "(distance from platform arm to ground pivot between difference and sum of "
-        "upper_knee_length and knee_drive_length)",
+    words = (
+        "the knee drive is open, it needs |l_m - l_g| < |M - B_5| < l_m + l_g (distance from platform arm to ground "
+        "pivot between difference and sum of upper_knee_length and knee_drive_length)",
+        f"platform arm, knee and ground pivot lie in line (|sin(theta_{side}9 - theta_{side}7)| < 1e-6)",
     )
     links = half.parts.drive * half.parts.upper
-    yield TiltDemand(
-        f"singular {loop}",
-        half.knee_fold * (half.knee_span * half.knee_span) >= (SINGULAR * SINGULAR) * (links * links),
-        f"loop {loop}, side {side} is singular: platform arm, knee and ground pivot lie in line "
-        f"(|sin(theta_{side}9 - theta_{side}7)| < 1e-6)",
-    )
+    regular = half.knee_fold * (half.knee_span * half.knee_span) >= (SINGULAR * SINGULAR) * (links * links)
+    return _loop("II" if side == 1 else "V", side, half.knee_fold >= 0.0, regular, words)
 
 
 def _slider_demands(half: Half, side: int) -> Iterator[TiltDemand]:
     """Loop III (IV on side 2): the lower link reaches the slider, and not in a horizontal position."""
-    loop = "III" if side == 1 else "IV"
-    yield TiltDemand(
-        f"loop {loop}",
-        half.lower_drop >= 0.0,
-        f"loop {loop}, side {side} does not close: the lower link cannot reach the slider, it needs "
-        "|l - y_G| < l_h (horizontal distance of its ends below lower_knee_length)",
+    words = (
+        "the lower link cannot reach the slider, it needs |l - y_G| < l_h (horizontal distance of its ends below "
+        "lower_knee_length)",
+        f"the lower link is horizontal (|sin(theta_{side}8)| < 1e-6)",
     )
-    yield TiltDemand(
-        f"singular {loop}",
-        half.lower_drop >= SINGULAR * half.parts.lower,
-        f"loop {loop}, side {side} is singular: the lower link is horizontal (|sin(theta_{side}8)| < 1e-6)",
-    )
+    regular = half.lower_drop >= SINGULAR * half.parts.lower
+    return _loop("III" if side == 1 else "IV", side, half.lower_drop >= 0.0, regular, words)
 
 
 def cycle_demands(press: Press, samples: int = 721) -> Iterator[TiltDemand]:

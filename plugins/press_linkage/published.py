@@ -4,8 +4,6 @@ from collections.abc import Iterator, Mapping
 
 from truing import Finding, Published
 
-# What the paper prints, for comparison with what this calculation gives under the same settings
-
 PRINTED = {"reading": "printed"}
 TABLE_ANGLE = {"reading": "printed", "ground_pivot_angle": "0.117 rad"}
 TABLE_PIVOTS = {"reading": "printed", "tolerances.crank_pivot_radius": "±0.1 mm"}

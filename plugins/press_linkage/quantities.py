@@ -1,6 +1,6 @@
 """What the press linkage is told and what it answers: every quantity with unit, symbol, bounds and source."""
 
-from typing import Literal
+from typing import Any, Literal
 
 from truing import Float, found, given, inputs, part, results
 
@@ -14,17 +14,15 @@ LARGEST = 30.0  # m: no press is larger, so a length above it was meant in anoth
 FARTHEST = 10.0  # mm and mrad: beyond it a part is not off its size, it is another part
 
 
-def size(value: float, symbol: str, note: str, source: str = GIVEN) -> float:
+def size(value: float, symbol: str, note: str, source: str = GIVEN) -> Any:
     """Declare a nominal length of the mechanism."""
-    declared: float = given(value, "m", symbol=symbol, note=note, source=source, above=0, below=LARGEST)
-    return declared
+    return given(value, "m", symbol=symbol, note=note, source=source, above=0, below=LARGEST)
 
 
-def off(unit: Literal["mm", "mrad"], symbol: str, note: str) -> float:
+def off(unit: Literal["mm", "mrad"], symbol: str, note: str) -> Any:
     """Declare a deviation of one side."""
     note = f"deviation: {note}"
-    declared: float = given(0.0, unit, symbol=f"delta {symbol}", note=note, at_least=-FARTHEST, at_most=FARTHEST)
-    return declared
+    return given(0.0, unit, symbol=f"delta {symbol}", note=note, at_least=-FARTHEST, at_most=FARTHEST)
 
 
 @inputs
@@ -185,10 +183,9 @@ CLOSED_FORM = "closed form of the loop increments"
 KEPT = "first-order variances of the sources, by the sensitivity study"
 
 
-def influence_of(symbol: str, note: str, formula: str, unit: Literal["", "m/rad"] = "") -> float:
+def influence_of(symbol: str, note: str, formula: str, unit: Literal["", "m/rad"] = "") -> Any:
     """Declare the change of a slider face by one error of its side."""
-    declared: float = found(unit, symbol=f"xi_{symbol}", note=note, formula=formula, source=CLOSED_FORM)
-    return declared
+    return found(unit, symbol=f"xi_{symbol}", note=note, formula=formula, source=CLOSED_FORM)
 
 
 @results

@@ -3,24 +3,14 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gear_geometry.roots import Fillet, gap_offset, notch
 from roller_screw_shift import geometry as geo
+from roller_screw_shift import strength
 from roller_screw_shift.geometry import Geometry, involute_margin
 from roller_screw_shift.objectives import margins_at
 from roller_screw_shift.quantities import Meshing, Pair
-from roller_screw_shift.strength import (
-    Tooth,
-    acting,
-    is_cut,
-    load_of,
-    ring_rack,
-    ring_tooth,
-    roller_fillet,
-    roller_tooth,
-)
-from truing import Float, feasible
+from truing import feasible
 
 # What a pair needs before it can be calculated: the sentence names the inputs and what to do
 
@@ -34,12 +24,12 @@ def require_pair(pair: Pair, geometry: Geometry) -> None:
         f"the formulas hold for ring_teeth at least {FEWEST} above roller_teeth: enlarge ring_teeth",
     )
     feasible(
-        _real(geometry.working_angle),
+        np.asarray(geometry.working_angle) > 0.0,
         "the base circles are farther apart than the centres: centre_distance must exceed "
         "module * (ring_teeth - roller_teeth) * cos(pressure_angle) / 2",
     )
     feasible(
-        _real(geometry.mounted_angle),
+        np.asarray(geometry.mounted_angle) > 0.0,
         "the base circles are farther apart than the centres as mounted: centre_distance + centre_distance_deviation "
         "must exceed module * (ring_teeth - roller_teeth) * cos(pressure_angle) / 2",
     )
@@ -59,19 +49,20 @@ def require_pair(pair: Pair, geometry: Geometry) -> None:
     )
 
 
-def require_roots(pair: Pair, roller: Tooth, ring: Tooth, fillet: Fillet) -> None:
+def require_roots(pair: Pair, roller: strength.Tooth, ring: strength.Tooth, fillet: Fillet) -> None:
     """Refuse teeth without a critical section; ``fillet`` is that of the rack of the roller."""
-    for gear, offset, cut in (("roller", fillet.offset, False), ("ring", gap_offset(ring_rack(pair)), is_cut(pair))):
+    of_ring = gap_offset(strength.rack_of(pair, pair.ring_fillet))
+    for gear, offset, cut in (("roller", fillet.offset, False), ("ring", of_ring, strength.is_cut(pair))):
         feasible(
             cut | (np.asarray(offset) >= 0.0),
             f"the rack of the {gear} is pointed before it is round: reduce {gear}_fillet, addendum or clearance",
         )
     feasible(
-        ~is_cut(pair) | (pair.cutter_teeth <= pair.ring_teeth - FEWEST),
+        ~strength.is_cut(pair) | (pair.cutter_teeth <= pair.ring_teeth - FEWEST),
         f"the cutter does not fit into the ring: cutter_teeth must be at least {FEWEST} below ring_teeth",
     )
     feasible(
-        ~is_cut(pair) | np.isfinite(ring.root.chord + ring.arm.height),
+        ~strength.is_cut(pair) | np.isfinite(ring.root.chord + ring.arm.height),
         "the cutter makes no such ring: its tip is pointed before it is round; reduce cutter_fillet or cutter_addendum",
     )
     feasible(
@@ -93,33 +84,27 @@ def require_roots(pair: Pair, roller: Tooth, ring: Tooth, fillet: Fillet) -> Non
         )
 
 
-def _real(angle: Float) -> NDArray[np.bool_]:
-    """Whether an angle exists and is one of a pair that turns."""
-    real: NDArray[np.bool_] = np.asarray(angle) > 0.0
-    return real
-
-
 # From the profile shift to geometry, objectives and constraints; one call answers for thousands of shifts
 
 
 def roller_screw_shift(pair: Pair) -> Meshing:
     """The pair at one shift or at a batch of them; every Float is a number or an array (n,), SI."""
-    geometry, fillet = geo.geometry_of(pair), roller_fillet(pair)
+    geometry, fillet = geo.geometry_of(pair), strength.roller_fillet(pair)
     require_pair(pair, geometry)
-    roller, ring = roller_tooth(pair), ring_tooth(pair, geometry)
+    roller, ring = strength.roller_tooth(pair), strength.ring_tooth(pair, geometry)
     require_roots(pair, roller, ring, fillet)
     return Meshing(
         **_circles(geometry),
         **_mesh(pair, geometry),
-        tangential_force=load_of(pair).tangential_force,
+        tangential_force=strength.load_of(pair).tangential_force,
         fillet_offset_roller=fillet.offset,
         fillet_height_roller=fillet.height,
         tangent_constant_roller=fillet.constant,
         tangent_angle_roller=fillet.angle,
         **_roots(roller, ring),
         **_cut(pair, ring),
-        root_stress_roller=roller.stress * acting(pair),
-        root_stress_ring=ring.stress * acting(pair) * pair.rim_factor,
+        root_stress_roller=roller.stress * strength.acting(pair),
+        root_stress_ring=ring.stress * strength.acting(pair) * pair.rim_factor,
         shift_sum=pair.roller_shift + geometry.ring_shift,
         stress_difference=np.abs(roller.stress - ring.stress),
         **vars(margins_at(pair, geometry)),
@@ -156,11 +141,11 @@ def _mesh(pair: Pair, geometry: geo.Geometry) -> dict[str, Any]:
         "sliding_roller": roller,
         "sliding_ring": ring,
         "sliding_difference": np.abs(roller - ring),
-        "ring_meshes": load_of(pair).ring_meshes,
+        "ring_meshes": strength.load_of(pair).ring_meshes,
     }
 
 
-def _roots(roller: Tooth, ring: Tooth) -> dict[str, Any]:
+def _roots(roller: strength.Tooth, ring: strength.Tooth) -> dict[str, Any]:
     """Return sections, factors and nominal stresses of both by the names of their results."""
     found: dict[str, Any] = {}
     for gear, tooth in (("roller", roller), ("ring", ring)):
@@ -175,7 +160,7 @@ def _roots(roller: Tooth, ring: Tooth) -> dict[str, Any]:
     return found
 
 
-def _cut(pair: Pair, ring: Tooth) -> dict[str, Any]:
+def _cut(pair: Pair, ring: strength.Tooth) -> dict[str, Any]:
     """Return the section that a cutter leaves by the names of its results; 0 where the ring is taken as a rack."""
     section = {"chord": ring.root.chord, "fillet": ring.root.fillet, "arm": ring.arm.height, "angle": ring.arm.angle}
-    return {f"cut_{name}_ring": np.where(is_cut(pair), value, 0.0) for name, value in section.items()}
+    return {f"cut_{name}_ring": np.where(strength.is_cut(pair), value, 0.0) for name, value in section.items()}

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from gear_geometry.mesh_load import face_factor, shaken_by_error
+from gear_geometry.mesh_load import face_factor, shaken_by_error, viscosity_at, wave, wave_unknowns
 from roller_screw_shift.quantities import Meshing, Pair
 from roller_screw_shift.strength import load_of
 from truing import Condition, Effect, Float, Unknown
@@ -100,8 +100,7 @@ TURN = 2.0 * np.pi
 
 def with_wave(meshing: Meshing, angle: Float, cosine: Float, sine: Float) -> Meshing:
     """Return the results with one harmonic of an angle on the transmission error."""
-    wave = cosine * np.cos(angle) + sine * np.sin(angle)
-    return replace(meshing, transmission_error=meshing.transmission_error + wave)
+    return replace(meshing, transmission_error=meshing.transmission_error + wave(angle, cosine, sine))
 
 
 def roller_runout(pair: Pair, meshing: Meshing, *, cosine: Float, sine: Float, screw_angle: Float) -> Meshing:
@@ -128,9 +127,6 @@ LEAST_SPEED = 1.0 / 60.0  # turns per second: below it friction is that at one t
 ROUGHNESS = 0.8  # um, Ra of the flanks
 DENSITY = 0.88  # g/cm³ of the oil
 VISCOSITY_AT_FORTY = 100.0  # mm²/s, ISO VG 100
-FORTY = 313.15  # K
-SLOPE = 3.567  # of its viscosity over temperature: 11.1 mm²/s at 100 degC
-ADDED = 0.7  # mm²/s, in the law of the viscosity
 
 
 def thermal_centre_distance(pair: Pair, *, expansion: Float, temperature: Float) -> Pair:
@@ -202,18 +198,15 @@ def mean_friction(pair: Pair, meshing: Meshing, pitch_speed: Float, temperature:
     line_load = 1e-3 * load_of(pair).tangential_force / (np.cos(pair.pressure_angle) * pair.face_width)  # N/mm
     together = 2.0 * pitch_speed * sine
     oil = (DENSITY * viscosity(temperature)) ** -0.05
-    mean: Float = 0.048 * (line_load / (together * radius_mm)) ** 0.2 * oil * ROUGHNESS**0.25
-    return mean
+    value: Float = 0.048 * (line_load / (together * radius_mm)) ** 0.2 * oil * ROUGHNESS**0.25
+    return value
 
 
 def viscosity(temperature: Float) -> Float:
-    """Return the kinematic viscosity of the oil, mm²/s: log log (nu + 0.7) falls with log T. Reference: ASTM D341."""
-    found: Float = 10.0 ** (np.log10(VISCOSITY_AT_FORTY + ADDED) * (temperature / FORTY) ** -SLOPE) - ADDED
-    return found
+    """Return the kinematic viscosity of the oil, mm²/s."""
+    return viscosity_at(temperature, VISCOSITY_AT_FORTY)
 
 
-# What the paper leaves out of the pair, and what is measured of it that is 0 in the calculation
-#
 # They act in the order declared: first what changes the load of a tooth or the place of the parts, then what is added
 # to a result. A new effect is a function beside the others and one more entry in EFFECTS.
 
@@ -225,15 +218,7 @@ FRICTION = (
 )
 
 
-def wave(of: str) -> list[Unknown]:
-    """Declare both parts of one harmonic."""
-    return [
-        Unknown("cosine", -200, 200, "um", note=f"in proportion to the cosine of the angle of the {of}"),
-        Unknown("sine", -200, 200, "um", note=f"in proportion to the sine of the angle of the {of}"),
-    ]
-
-
-LOAD: list[Effect[Pair, Meshing]] = [
+EFFECTS: list[Effect[Pair, Meshing]] = [
     Effect("face_misalignment", on_inputs=face_misalignment,
            unknowns=[Unknown("misalignment", 0, 20, "um",
                              note="gap at one end of the face without load; 0.2 to 2 mrad of tilt"),
@@ -275,8 +260,6 @@ LOAD: list[Effect[Pair, Meshing]] = [
                       "gauge, which another gauge or a weight on the tooth tells apart",
            why="the ring is thin behind its teeth and bends as a whole",
            source="ISO 6336-3: rim factor Y_B = 1.15 ln(8.324 m/s_R) of an internal gear, 1.75 < s_R/m < 3.5"),
-]  # fmt: skip
-HEAT: list[Effect[Pair, Meshing]] = [
     Effect("thermal_centre_distance", on_inputs=thermal_centre_distance, needs=[TEMPERATURE],
            unknowns=[Unknown("expansion", -40, 40, "um/(m*K)",
                              note="linear, of screw and nut less that of the ring; steel 11.5")],
@@ -284,16 +267,14 @@ HEAT: list[Effect[Pair, Meshing]] = [
                       "with steel beside a cold ring; a thermal drift of its gauge looks the same",
            why="the threads hold the rollers at their distance, and are warmer than the ring, or of another metal",
            source="linear expansion; backlash of an internal involute pair, ISO 21771"),
-]  # fmt: skip
-ROTATION: list[Effect[Pair, Meshing]] = [
     Effect("roller_runout", on_results=roller_runout, needs=[SCREW_ANGLE], acts_at_reference=True,
-           unknowns=wave("roller"),
+           unknowns=wave_unknowns(200, "um", "the angle of the roller"),
            looks_like="transmission error with one wave per turn of the roller against the carrier, 1.875 per turn "
                       "of the screw",
            why="the teeth of a roller are off the axis of its thread",
            source=HARMONIC),
     Effect("carrier_runout", on_results=carrier_runout, needs=[SCREW_ANGLE], acts_at_reference=True,
-           unknowns=wave("carrier"),
+           unknowns=wave_unknowns(200, "um", "the angle of the carrier"),
            looks_like="transmission error with one wave per turn of the carrier, 0.375 per turn of the screw",
            why="the ring is off the axis of the nut, or the carrier off that of the screw",
            source=HARMONIC),
@@ -304,8 +285,6 @@ ROTATION: list[Effect[Pair, Meshing]] = [
                       "back",
            why="the teeth keep one ratio, the pitch diameters of the threads as made another",
            source="kinematics of the planetary roller screw"),
-]  # fmt: skip
-FLANKS: list[Effect[Pair, Meshing]] = [
     Effect("flank_wear", on_results=flank_wear, needs=[CYCLES],
            unknowns=[Unknown("rate", 0, 50, "um",
                              note="depth per million cycles at 51.943 N and a specific sliding of 1")],
@@ -320,4 +299,3 @@ FLANKS: list[Effect[Pair, Meshing]] = [
            why="flanks slide on one another away from the pitch point",
            source=FRICTION),
 ]  # fmt: skip
-EFFECTS: list[Effect[Pair, Meshing]] = [*LOAD, *HEAT, *ROTATION, *FLANKS]

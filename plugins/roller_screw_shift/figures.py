@@ -8,35 +8,16 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from gear_geometry.drawing import BLUE, GREEN, GREY, INK, ORANGE, PALE, panels, quiet
 from gear_geometry.pairs import involute
 from roller_screw_shift.geometry import geometry_of
-from roller_screw_shift.objectives import ShiftCourse, Three, course_of, normalised, weights_of
+from roller_screw_shift.objectives import SENSES, ShiftCourse, Three, course_of, normalised, weights_of
 from roller_screw_shift.optimum import LIMITS, MM, READING, READINGS, ChosenShift, Field, grid_optimum, signed
 from roller_screw_shift.quantities import Meshing, Pair
 from roller_screw_shift.strength import roller_fillet
 from truing import Array, Optimum, Record
 
-# What the figures share: colours, sizes, and the outcomes of a run
-
 PairRun = Record[Pair, Meshing]
-
-BLUE, ORANGE, GREEN, INK, GREY, PALE = "#1f5a8a", "#c8641e", "#2f6b4f", "#22262b", "#7d838c", "#e8eff5"
-WIDTH = 6.4
-
-
-def panels(rows: int, height: float, **options: Any) -> "tuple[Figure, Any]":
-    """A figure as wide as the sheet with panels below one another."""
-    figure = Figure(figsize=(WIDTH, height), layout="constrained")
-    return figure, figure.subplots(rows, 1, squeeze=False, **options)[:, 0]
-
-
-def quiet(panel: Any, x_label: str = "", y_label: str = "") -> None:
-    """Labels and a grid behind the lines."""
-    panel.set_xlabel(x_label)
-    panel.set_ylabel(y_label)
-    panel.grid(alpha=0.4)
-    panel.set_axisbelow(True)
-
 
 # Objectives, limits and margins over the shift of the roller, with the optimum
 
@@ -117,24 +98,18 @@ def _bars(panel: Any, course: ShiftCourse) -> None:
         panel.broken_barh(parts, (place - 0.32, 0.64), facecolors="#8fb3cf", zorder=2)
     panel.set_yticks(range(len(LIMITS)), [" ".join(words) for words in LIMITS.values()], fontsize=8)
     panel.set_ylim(len(LIMITS) - 0.4, -0.6)
-    panel.grid(axis="x", alpha=0.4)
-    panel.set_axisbelow(True)
+    quiet(panel, axis="x")
 
 
 def _lines(panel: Any, course: ShiftCourse) -> None:
     """The margins that change sign in the picture."""
-    shown = [(name, margin) for name, margin in course.margins.items() if _crosses(margin)]
-    for number, (name, margin) in enumerate(shown):
+    shown = {name: margin for name, margin in course.margins.items() if len(np.unique(margin >= 0.0)) > 1}
+    for number, (name, margin) in enumerate(shown.items()):
         colour = SHADES[number % len(SHADES)]
         panel.plot(course.shifts, margin, color=colour, linewidth=1.6, label=" ".join(LIMITS[name]))
     panel.axhline(0.0, color=INK, linewidth=0.9)
     panel.set_ylim(-0.3 * HIGHEST, HIGHEST)
     quiet(panel, "", "margin")
-
-
-def _crosses(margin: Array) -> bool:
-    """Whether a limit is kept somewhere in the picture and missed elsewhere."""
-    return bool((margin >= 0.0).any() and (margin < 0.0).any())
 
 
 # The outlines of the teeth: involutes, the root fillet that a rack leaves on the roller, and a round one on the ring
@@ -171,16 +146,9 @@ def _rack_fillet(pair: Pair) -> Outline:
     along = np.linspace(-height / np.tan(pair.pressure_angle), 0.0, OUTLINE_POINTS)
     centre = along + 1j * height
     point = centre + rho * centre / np.abs(centre) + 0.5j * teeth
-    turned = 2.0 * (along - _offset(pair)) / teeth
+    turned = 2.0 * (along - float(np.asarray(fillet.offset))) / teeth
     gap = point * np.exp(1j * turned)  # beside the axis of the gap, its flank to the right
     return np.asarray(float(pair.module) * _mirrored(gap * np.exp(1j * np.pi / teeth)))
-
-
-def _offset(pair: Pair) -> float:
-    """The centre of the rounding beside the middle of the tooth of the rack, in modules."""
-    alpha, rho = pair.pressure_angle, pair.roller_fillet
-    depth = pair.addendum + pair.clearance
-    return float(0.25 * np.pi - depth * np.tan(alpha) - (1.0 - np.sin(alpha)) * rho / np.cos(alpha))
 
 
 def _mirrored(points: Outline) -> Outline:
@@ -253,8 +221,8 @@ def teeth_figure(pair: Pair, shifts: "Sequence[tuple[str, float]]") -> "Figure":
     """Draw the pair at each of these shifts (words, shift of the roller), all to one scale."""
     pitch = MM * float(np.pi * pair.module)
     reach = PITCHES * pitch
-    figure, rows = panels(len(shifts), 3.15 * len(shifts), sharex=True)
-    for panel, (words, shift) in zip(rows, shifts, strict=True):
+    figure, rows = panels(len(shifts), 3.15 * len(shifts), sharex=True, squeeze=False)
+    for panel, (words, shift) in zip(rows[:, 0], shifts, strict=True):
         shifted = replace(pair, roller_shift=shift)
         _teeth(panel, shifted)
         _path(panel, shifted)
@@ -266,7 +234,7 @@ def teeth_figure(pair: Pair, shifts: "Sequence[tuple[str, float]]") -> "Figure":
             f"{words}: roller {signed(shift)}, ring {signed(ring_shift(shifted))}", fontsize="medium", loc="left"
         )
         quiet(panel, "", "mm from the axis of the nut")
-    rows[-1].set_xlabel("mm")
+    rows[-1, 0].set_xlabel("mm")
     return figure
 
 
@@ -332,7 +300,7 @@ def sliding_figure(pair: Pair, shifts: "Sequence[tuple[str, float]]") -> "Figure
 
     The shift moves the ends of the path; the curves between them stay.
     """
-    figure, (panel,) = panels(1, 3.8)
+    figure, panel = panels(1, 3.8)
     paths = [path_of(replace(pair, roller_shift=shift)) for _, shift in shifts]
     for path in paths:
         panel.plot(MM * path.place, path.roller, color=BLUE, label="roller" if path is paths[0] else "")
@@ -352,26 +320,23 @@ def sliding_figure(pair: Pair, shifts: "Sequence[tuple[str, float]]") -> "Figure
 
 MANY = 72  # weights along each side of the triangle
 GRID = 401
+OBJECTIVE = ("shift_sum", "stress_difference", "sliding_difference")
 MARKS = {"own_ranges": ("o", ORANGE), "printed_ranges": ("s", GREEN), "printed": ("^", INK)}
 SIDES = (0.0 + 0.0j, 1.0 + 0.0j, 0.5 + 0.5j * np.sqrt(3.0))  # all weight on the sum, on the stresses, on the sliding
-
-
-def chosen_shifts(chosen: "ChosenShift", field: Field) -> dict[str, float]:
-    """The optimum on the grid by every reading of the weights."""
-    return {reading: grid_optimum(field, weights_of(reading, field.ranges)) for reading in READINGS}
 
 
 def front_figure(chosen: "ChosenShift", field: Field, optimum: "Optimum | None") -> "Figure":
     """Draw the objectives against one another along the shift, and where the weights choose."""
     figure, rows = panels(2, 6.2)
     course = field.course
-    found = chosen_shifts(chosen, field)
+    found = {reading: grid_optimum(field, weights_of(reading, field.ranges)) for reading in READINGS}
     for panel, other, label in zip(rows, (0, 2), ("sum of the shifts", "difference of sliding"), strict=True):
         panel.plot(course.objectives[1], course.objectives[other], color=BLUE, linewidth=1.4,
                    label="all shifts that keep every limit")  # fmt: skip
-        if optimum is not None and optimum.front and _names(optimum) >= {"shift_sum", "stress_difference"}:
+        if optimum is not None and optimum.front and {aim.name for aim in optimum.aims} >= {OBJECTIVE[0], OBJECTIVE[1]}:
             panel.plot(*_designs(optimum, other), ".", color=GREY, markersize=5, label="front found by the search")
-        _stated(panel, chosen, other)
+        at = course_of(chosen.inputs, np.array([float(chosen.inputs.roller_shift)])).objectives[:, 0]
+        panel.plot(at[1], at[other], "X", markersize=8, color=INK, linestyle="", label="as stated")
         for size, (reading, shift) in enumerate(found.items()):
             marker, colour = MARKS[reading]
             at = course_of(chosen.inputs, np.array([shift])).objectives[:, 0]
@@ -382,21 +347,11 @@ def front_figure(chosen: "ChosenShift", field: Field, optimum: "Optimum | None")
     return figure
 
 
-def _names(optimum: "Optimum") -> set[str]:
-    return {aim.name for aim in optimum.aims}
-
-
 def _designs(optimum: "Optimum", other: int) -> tuple[list[float], list[float]]:
-    name = ("shift_sum", "stress_difference", "sliding_difference")[other]
     return (
-        [design.objectives["stress_difference"] / 1e6 for design in optimum.front],
-        [design.objectives.get(name, float("nan")) for design in optimum.front],
+        [design.objectives[OBJECTIVE[1]] / 1e6 for design in optimum.front],
+        [design.objectives.get(OBJECTIVE[other], float("nan")) for design in optimum.front],
     )
-
-
-def _stated(panel: Any, chosen: "ChosenShift", other: int) -> None:
-    at = course_of(chosen.inputs, np.array([float(chosen.inputs.roller_shift)])).objectives[:, 0]
-    panel.plot(at[1], at[other], "X", markersize=8, color=INK, linestyle="", label="as stated")
 
 
 def triangle(field: Field) -> tuple[Array, Array]:
@@ -410,7 +365,7 @@ def triangle(field: Field) -> tuple[Array, Array]:
         sense * np.asarray(normalised(course.objectives[number, places], field.ranges[number]))
         if field.ranges[number][1] > field.ranges[number][0]
         else np.zeros(len(places))
-        for number, sense in enumerate((-1.0, 1.0, 1.0))
+        for number, sense in enumerate(SENSES)
     ]
     best = np.argmin(shares @ np.array(parts), axis=1)
     return shares, course.shifts[places][best]
@@ -419,7 +374,7 @@ def triangle(field: Field) -> tuple[Array, Array]:
 def triangle_figure(chosen: "ChosenShift", field: Field) -> "Figure":
     """Draw the chosen shift over all weights; only their ratios matter, so they fill a triangle."""
     shares, shifts = triangle(field)
-    figure, (panel,) = panels(1, 4.6)
+    figure, panel = panels(1, 4.6)
     at = shares @ np.array(SIDES)
     map_of = panel.scatter(at.real, at.imag, c=shifts, s=17, marker="h", cmap="viridis", linewidths=0)
     for reading in READINGS:

@@ -9,15 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gear_geometry.pairs import (
-    clear_of_base,
-    internal_contact_ratio,
-    internal_sliding,
-    internal_tip_sliding,
-    involute,
-    shift_per_tooth,
-    working_angle_at,
-)
+from gear_geometry import pairs
 from roller_screw_shift.quantities import Pair
 from truing import Float
 
@@ -61,8 +53,8 @@ def geometry_of(pair: Pair) -> Geometry:
     """Return the geometry of the pair; every Float is a number or an array (n,)."""
     alpha, difference = pair.pressure_angle, pair.ring_teeth - pair.roller_teeth
     base_distance = 0.5 * pair.module * difference * np.cos(alpha)
-    working = working_angle_at(pair.centre_distance, base_distance)
-    shift_difference = difference * shift_per_tooth(working, alpha)
+    working = pairs.working_angle_at(pair.centre_distance, base_distance)
+    shift_difference = difference * pairs.shift_per_tooth(working, alpha)
     mounted_distance = pair.centre_distance + pair.centre_distance_deviation
     ring_shift = pair.roller_shift + shift_difference
     return Geometry(
@@ -70,7 +62,7 @@ def geometry_of(pair: Pair) -> Geometry:
         shift_difference=shift_difference,
         ring_shift=ring_shift,
         mounted_distance=mounted_distance,
-        mounted_angle=working_angle_at(mounted_distance, base_distance),
+        mounted_angle=pairs.working_angle_at(mounted_distance, base_distance),
         roller=_gear(pair, pair.roller_teeth, pair.roller_shift, outward=1.0),
         ring=_gear(pair, pair.ring_teeth, ring_shift, outward=-1.0),
     )
@@ -88,12 +80,12 @@ def _gear(pair: Pair, teeth: Float, shift: Float, *, outward: float) -> PairGear
 
 def contact_ratio(geometry: Geometry) -> Float:
     """Return the contact ratio as mounted."""
-    return internal_contact_ratio(_teeth(geometry), _tip_angles(geometry), geometry.mounted_angle)
+    return pairs.internal_contact_ratio(_teeth(geometry), _tip_angles(geometry), geometry.mounted_angle)
 
 
 def involute_margin(geometry: Geometry) -> Float:
     """Return what must be above 0 for the tip of the ring to meet an involute of the roller."""
-    return clear_of_base(_teeth(geometry), geometry.ring.tip_angle, geometry.mounted_angle)
+    return pairs.clear_of_base(_teeth(geometry), geometry.ring.tip_angle, geometry.mounted_angle)
 
 
 def sliding(pair: Pair, geometry: Geometry) -> tuple[Float, Float]:
@@ -113,18 +105,18 @@ def tips_count(pair: Pair) -> float:
 
 def sliding_at_roots(geometry: Geometry) -> tuple[Float, Float]:
     """Return the magnitudes of specific sliding at the roots of roller and ring; NaN under involute interference."""
-    return internal_sliding(_teeth(geometry), _tip_angles(geometry), geometry.mounted_angle)
+    return pairs.internal_sliding(_teeth(geometry), _tip_angles(geometry), geometry.mounted_angle)
 
 
 def sliding_at_tips(geometry: Geometry) -> tuple[Float, Float]:
     """Return the magnitudes of specific sliding at the tips of roller and ring."""
-    return internal_tip_sliding(_teeth(geometry), _tip_angles(geometry), geometry.mounted_angle)
+    return pairs.internal_tip_sliding(_teeth(geometry), _tip_angles(geometry), geometry.mounted_angle)
 
 
 def half_angle_at_tip(pair: Pair, geometry: Geometry) -> Float:
     """Return half the angle of the tooth of the roller at its tip, rad; below 0 the tooth is pointed before."""
     half = (0.5 * np.pi + 2.0 * pair.roller_shift * np.tan(pair.pressure_angle)) / pair.roller_teeth
-    return half + involute(pair.pressure_angle) - involute(geometry.roller.tip_angle)
+    return half + pairs.involute(pair.pressure_angle) - pairs.involute(geometry.roller.tip_angle)
 
 
 def tip_land(pair: Pair, geometry: Geometry) -> Float:
@@ -142,9 +134,9 @@ def crossing_of(geometry: Geometry) -> Crossing:
     at_roller = np.arccos(np.clip((squares - distance**2) / (2.0 * distance * roller.tip_radius), -1.0, 1.0))
     at_ring = np.arccos(np.clip((squares + distance**2) / (2.0 * distance * ring.tip_radius), -1.0, 1.0))
     clearance = (
-        roller.teeth * (at_roller + involute(roller.tip_angle))
-        - ring.teeth * (at_ring + involute(ring.tip_angle))
-        + (ring.teeth - roller.teeth) * involute(geometry.mounted_angle)
+        roller.teeth * (at_roller + pairs.involute(roller.tip_angle))
+        - ring.teeth * (at_ring + pairs.involute(ring.tip_angle))
+        + (ring.teeth - roller.teeth) * pairs.involute(geometry.mounted_angle)
     )
     crossing = np.asarray(distance + roller.tip_radius > ring.tip_radius)
     return Crossing(roller=at_roller, ring=at_ring, clearance=np.where(crossing, clearance, APART))
@@ -156,7 +148,8 @@ def backlash(geometry: Geometry) -> Float:
     Exact for involutes. It is 0 at the nominal centre distance and close to -2 Delta a tan(alpha_w) beside it: the
     roller lies inside the ring, so that centres farther apart press it into the ring's teeth.
     """
-    return 2.0 * geometry.mounted_distance * (involute(geometry.working_angle) - involute(geometry.mounted_angle))
+    opened = pairs.involute(geometry.working_angle) - pairs.involute(geometry.mounted_angle)
+    return 2.0 * geometry.mounted_distance * opened
 
 
 def _teeth(geometry: Geometry) -> tuple[Float, Float]:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from roller_screw_shift.calculation import roller_screw_shift
 from roller_screw_shift.effects import EFFECTS
-from roller_screw_shift.optimum import Shifting, choice
+from roller_screw_shift.optimum import LIMITS, Shifting, choice
 from roller_screw_shift.published import FINDINGS, PUBLISHED
 from roller_screw_shift.sheet import SECTIONS
 from truing import Maximise, Minimise, Model, Optimise, Require, Tolerance, Vary, plus_minus
@@ -17,8 +17,6 @@ TOLERANCES = [
 ]
 
 
-# The pair of roller and ring as truing knows it: function, error sources, goals, studies and sheet
-
 LITERATURE = [
     "The paper: Gao Yang, Yang Jiajun, Liang Han, Deng Bo, Zhu Jisheng (高揚, 楊家軍, 梁漢, 鄧波, 朱繼生), "
     "Optimization of Planetary Roller Screw Gear Modification Coefficient, Journal of Hubei University of Technology "
@@ -28,11 +26,7 @@ LITERATURE = [
     "Guin, J. A., Modification of the complex method of constrained optimization, The Computer Journal 10 (1968), p. "
     "416.",
 ]
-MARGINS = (
-    "margin_ring_base", "margin_roller_base", "margin_contact_ratio", "margin_interference", "margin_opposite_tips",
-    "margin_roller_root", "margin_ring_root", "margin_involute", "margin_undercut", "margin_tip_land",
-    "margin_sliding",
-)  # fmt: skip
+MARGINS = tuple(LIMITS)
 
 ROLLER_SCREW_SHIFT = Model(
     name="roller_screw_shift",

@@ -8,16 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from roller_screw_shift.geometry import (
-    Geometry,
-    contact_ratio,
-    crossing_of,
-    geometry_of,
-    involute_margin,
-    sliding,
-    sliding_at_roots,
-    tip_land,
-)
+from roller_screw_shift import geometry as geo
 from roller_screw_shift.quantities import Pair
 from roller_screw_shift.strength import ring_tooth, roller_tooth
 from truing import Array, Float, TruingError
@@ -40,7 +31,7 @@ def objectives_of(pair: Pair) -> Objectives:
     The stresses are nominal: the neutral factors of load, rim and face width do not change the choice of the shift.
     """
     with np.errstate(all="ignore"):
-        geometry = geometry_of(pair)
+        geometry = geo.geometry_of(pair)
         difference = np.abs(roller_tooth(pair).stress - ring_tooth(pair, geometry).stress)
         return Objectives(
             shift_sum=pair.roller_shift + geometry.ring_shift,
@@ -49,9 +40,9 @@ def objectives_of(pair: Pair) -> Objectives:
         )
 
 
-def sliding_difference(pair: Pair, geometry: Geometry) -> Float:
+def sliding_difference(pair: Pair, geometry: geo.Geometry) -> Float:
     """Return the difference of the magnitudes of specific sliding that count of both gears."""
-    roller, ring = sliding(pair, geometry)
+    roller, ring = geo.sliding(pair, geometry)
     return np.abs(roller - ring)
 
 
@@ -82,23 +73,23 @@ def margins_of(pair: Pair) -> Margins:
     of the ring meets no involute, sliding does not. Another margin is below 0 then.
     """
     with np.errstate(all="ignore"):
-        return margins_at(pair, geometry_of(pair))
+        return margins_at(pair, geo.geometry_of(pair))
 
 
-def margins_at(pair: Pair, geometry: Geometry) -> Margins:
+def margins_at(pair: Pair, geometry: geo.Geometry) -> Margins:
     """Return the margins of a pair whose geometry is known."""
     roller, ring, distance = geometry.roller, geometry.ring, geometry.mounted_distance
     return Margins(
         margin_ring_base=ring.tip_radius / ring.base_radius - 1.0,
         margin_roller_base=roller.tip_radius / roller.base_radius - 1.0,
-        margin_contact_ratio=contact_ratio(geometry) - pair.least_contact_ratio,
-        margin_interference=crossing_of(geometry).clearance - pair.interference_margin,
+        margin_contact_ratio=geo.contact_ratio(geometry) - pair.least_contact_ratio,
+        margin_interference=geo.crossing_of(geometry).clearance - pair.interference_margin,
         margin_opposite_tips=_over(pair, ring.tip_radius - roller.tip_radius + distance),
         margin_roller_root=_over(pair, ring.tip_radius - roller.root_radius - distance),
         margin_ring_root=_over(pair, ring.root_radius - roller.tip_radius - distance),
-        margin_involute=involute_margin(geometry),
+        margin_involute=geo.involute_margin(geometry),
         margin_undercut=pair.roller_shift - undercut_limit(pair),
-        margin_tip_land=tip_land(pair, geometry) / pair.module - pair.least_tip_land,
+        margin_tip_land=geo.tip_land(pair, geometry) / pair.module - pair.least_tip_land,
         margin_sliding=pair.most_sliding_difference - sliding_difference(pair, geometry),
     )
 
@@ -139,8 +130,7 @@ def normalised(value: Float, reach: Range) -> Float:
     if not (low < high and np.isfinite(high - low)):
         raise TruingError(f"an objective from {low:g} to {high:g} cannot be brought to 0 to 1: its range has no width")
     turn = 2.0 * np.pi * np.clip((value - low) / (high - low), 0.0, 1.0)
-    curve: Float = (turn - np.sin(turn)) / (2.0 * np.pi)
-    return curve
+    return (turn - np.sin(turn)) / (2.0 * np.pi)
 
 
 def weight(reach: Range) -> float:
@@ -294,7 +284,7 @@ def equal_sliding(pair: Pair, span: tuple[float, float], points: int) -> float:
 
     def excess(shifts: Array) -> Array:
         with np.errstate(all="ignore"):
-            roller, ring = sliding_at_roots(geometry_of(replace(pair, roller_shift=shifts)))
+            roller, ring = geo.sliding_at_roots(geo.geometry_of(replace(pair, roller_shift=shifts)))
         return np.asarray(np.asarray(roller) - np.asarray(ring))
 
     shifts = np.linspace(*span, points)

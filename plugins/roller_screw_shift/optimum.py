@@ -7,25 +7,8 @@ from typing import Any, Literal
 
 import numpy as np
 
+from roller_screw_shift import objectives
 from roller_screw_shift.geometry import geometry_of
-from roller_screw_shift.objectives import (
-    MEGA,
-    PRINTED_RANGES,
-    PRINTED_WEIGHTS,
-    Interval,
-    Margins,
-    Ranges,
-    ShiftCourse,
-    Three,
-    course_of,
-    dense,
-    equal_sliding,
-    intervals_of,
-    lower_limit,
-    rule_weights,
-    total,
-    weights_of,
-)
 from roller_screw_shift.quantities import Pair
 from truing import Array, Bench, Block, Float, Outcome, Table, TruingError, Words, found, results
 
@@ -177,46 +160,46 @@ class Field:
     """Where every limit is kept: intervals, a dense course over them, and the range of each objective there."""
 
     pair: Pair
-    intervals: tuple[Interval, ...]
-    course: ShiftCourse
-    ranges: Ranges
+    intervals: tuple[objectives.Interval, ...]
+    course: objectives.ShiftCourse
+    ranges: objectives.Ranges
 
-    def around(self, shift: float) -> Interval:
+    def around(self, shift: float) -> objectives.Interval:
         """The interval that holds this shift, or the nearest one."""
         return min(self.intervals, key=lambda part: max(part.low - shift, shift - part.high, 0.0))
 
 
 def field_of(pair: Pair, span: tuple[float, float], points: int) -> Field | None:
     """Return where between the ends of ``span`` every limit is kept; None where no shift of the grid does."""
-    intervals = intervals_of(pair, span, points)
+    intervals = objectives.intervals_of(pair, span, points)
     if not intervals:
         return None
-    course = dense(pair, intervals, points)
+    course = objectives.dense(pair, intervals, points)
     return Field(pair, intervals, course, course.ranges)
 
 
 def box_optimum(
-    field: Field, weights: Three, span: tuple[float, float], rng: np.random.Generator, plan: Plan
+    field: Field, weights: objectives.Three, span: tuple[float, float], rng: np.random.Generator, plan: Plan
 ) -> BoxOptimum:
     """Return what Box's method finds; it knows the limits by rejection only."""
 
     def cost(points: Array) -> Array:
-        course = course_of(field.pair, points[:, 0])
+        course = objectives.course_of(field.pair, points[:, 0])
         with np.errstate(invalid="ignore"):
-            return np.where(course.kept, total(course.objectives, field.ranges, weights), np.inf)
+            return np.where(course.kept, objectives.total(course.objectives, field.ranges, weights), np.inf)
 
     return complex_method(cost, (np.array([span[0]]), np.array([span[1]])), rng, plan)
 
 
-def grid_optimum(field: Field, weights: Three) -> float:
+def grid_optimum(field: Field, weights: objectives.Three) -> float:
     """Return the best shift of the dense course, then of as many points between its neighbours."""
     course = field.course
-    place = int(np.argmin(total(course.objectives, field.ranges, weights)))
+    place = int(np.argmin(objectives.total(course.objectives, field.ranges, weights)))
     part = field.around(float(course.shifts[place]))
     ends = course.shifts[max(place - 1, 0)], course.shifts[min(place + 1, len(course.shifts) - 1)]
     low, high = max(float(ends[0]), part.low), min(float(ends[1]), part.high)
-    finer = course_of(field.pair, np.linspace(low, high, len(course.shifts)))
-    costs = np.where(finer.kept, total(finer.objectives, field.ranges, weights), np.inf)
+    finer = objectives.course_of(field.pair, np.linspace(low, high, len(course.shifts)))
+    costs = np.where(finer.kept, objectives.total(finer.objectives, field.ranges, weights), np.inf)
     return float(finer.shifts[int(np.argmin(costs))])
 
 
@@ -234,7 +217,7 @@ class Variant:
 
     least_contact_ratio: float
     reading: str
-    weights: Three
+    weights: objectives.Three
     shift: float
     contact_ratio: float
     limits: tuple[str, ...]
@@ -248,19 +231,19 @@ def variants(pair: Pair, ratios: Sequence[float], span: tuple[float, float], poi
             if field is None:
                 yield None
                 continue
-            weights = weights_of(reading, field.ranges)
+            weights = objectives.weights_of(reading, field.ranges)
             shift = grid_optimum(field, weights)
-            margin = course_of(field.pair, np.array([shift])).margins["margin_contact_ratio"][0]
+            margin = objectives.course_of(field.pair, np.array([shift])).margins["margin_contact_ratio"][0]
             yield Variant(ratio, reading, weights, shift, ratio + float(margin), limits_at(field, shift))
 
 
 def other_optimum(pair: Pair, span: tuple[float, float], points: int) -> float:
     """Return the optimum on the grid by the other reading of the sliding; NaN where no shift keeps every limit then."""
     field = field_of(replace(pair, sliding_reading=OTHER[pair.sliding_reading]), span, points)
-    return float("nan") if field is None else grid_optimum(field, weights_of(pair.weights, field.ranges))
+    return float("nan") if field is None else grid_optimum(field, objectives.weights_of(pair.weights, field.ranges))
 
 
-def stress_factor(field: Field, weights: Three, shift: float) -> float | None:
+def stress_factor(field: Field, weights: objectives.Three, shift: float) -> float | None:
     """Return how many times as heavy the stresses must be before the optimum leaves the end at which it stands.
 
     None where it stands at no end, or a weight is missing, or a million times is not enough.
@@ -271,7 +254,7 @@ def stress_factor(field: Field, weights: Three, shift: float) -> float | None:
 
     def leaves(exponent: float) -> bool:
         heavier = (weights[0], weights[1] * 10.0**exponent, weights[2])
-        place = int(np.argmin(total(field.course.objectives, field.ranges, heavier)))
+        place = int(np.argmin(objectives.total(field.course.objectives, field.ranges, heavier)))
         return bool(abs(field.course.shifts[place] - shift) > NEAR + np.diff(field.course.shifts).max())
 
     if leaves(low) or not leaves(high):
@@ -282,16 +265,9 @@ def stress_factor(field: Field, weights: Three, shift: float) -> float | None:
     return float(10.0**high)
 
 
-# A study of our own: the shift that the paper's weighed objectives prefer among those that keep every limit
-
 FOUND = "found"
 BEFORE = 2  # steps before the variants: the field, and Box's search with the grid beside it
 SCREWS = 8192  # drawn to tell what scatter leaves of the margins
-COMPARED = (
-    "roller_shift", "ring_shift", "tip_radius_roller", "tip_radius_ring", "contact_ratio", "tip_land",
-    "sliding_roller", "sliding_ring", "sliding_difference", "nominal_stress_roller", "nominal_stress_ring",
-    "stress_difference", "shift_sum",
-)  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -327,11 +303,11 @@ class Shifting:
         ratios = sorted({*self.ratios, float(pair.least_contact_ratio)})
         bench.progress(self.name, 0, _steps(ratios))
         field = field_of(pair, span, self.points)
-        equal = equal_sliding(pair, span, self.points)
+        equal = objectives.equal_sliding(pair, span, self.points)
         if field is None:
             return ChosenShift(pair, span, equal, status=self._nothing(pair, span))
         bench.progress(self.name, 1, _steps(ratios))
-        weights = weights_of(pair.weights, field.ranges)
+        weights = objectives.weights_of(pair.weights, field.ranges)
         grid = grid_optimum(field, weights)
         box, remarks = self._box(bench, field, weights, span)
         best = grid if box is None else float(box.point[0])
@@ -351,7 +327,7 @@ class Shifting:
         )  # fmt: skip
 
     def _box(
-        self, bench: Bench, field: Field, weights: Three, span: tuple[float, float]
+        self, bench: Bench, field: Field, weights: objectives.Three, span: tuple[float, float]
     ) -> tuple[BoxOptimum | None, tuple[str, ...]]:
         plan = Plan(vertices=self.vertices, reflection=self.reflection, spread=self.spread)
         try:
@@ -370,7 +346,7 @@ class Shifting:
 
     def _nothing(self, pair: Pair, span: tuple[float, float]) -> str:
         """Say that no shift keeps every limit, and what the nearest one misses."""
-        course = course_of(pair, np.linspace(*span, self.points))
+        course = objectives.course_of(pair, np.linspace(*span, self.points))
         worst = np.array([np.where(np.isfinite(each), each, -np.inf) for each in course.margins.values()])
         place = int(np.argmax(worst.min(axis=0)))
         missed = (name for name in course.missed(place) if name in course.margins)
@@ -388,13 +364,13 @@ def _steps(ratios: Sequence[float]) -> int:
 def _compared(bench: Bench, field: Field, best: float) -> Mapping[str, Any]:
     """Geometry, sliding and stresses before, as stated and at the optimum, SI (3,) by name."""
     at = np.array([before(field), float(bench.inputs.roller_shift), best])
-    found = bench.rows({"roller_shift": at}, len(at), *COMPARED[1:])
+    found = bench.rows({"roller_shift": at}, len(at), *(name for _, name, *_ in ROWS[1:]))
     return {"roller_shift": at, **found}
 
 
 def _kept(bench: Bench, shift: float) -> float:
     """The share of screws of this shift that keep every limit, with the tolerances in force."""
-    names = tuple(Margins.__dataclass_fields__)
+    names = tuple(objectives.Margins.__dataclass_fields__)
     columns = {**bench.drawn(SCREWS), "roller_shift": np.full(SCREWS, shift)}
     found = bench.rows(columns, SCREWS, *names)
     return float(np.mean(np.all([found[name] >= 0.0 for name in names], axis=0)))
@@ -420,7 +396,7 @@ class ChosenShift(Outcome):
     equal: float
     status: str
     field: Field | None = None
-    weights: Three = (0.0, 0.0, 0.0)
+    weights: objectives.Three = (0.0, 0.0, 0.0)
     box: BoxOptimum | None = None
     grid: float = float("nan")
     other: float = float("nan")
@@ -442,7 +418,36 @@ class ChosenShift(Outcome):
 
     def as_json(self) -> Mapping[str, Any]:
         """Return intervals, ranges, weights, both optima and the variants."""
-        return chosen_json(self)
+        entry: dict[str, Any] = {"status": self.status, "equal_sliding": number(self.equal)}
+        field = self.field
+        if field is None:
+            return entry
+        names = ("shift_sum", "stress_difference", "sliding_difference")
+        ranges = zip(names, OBJECTIVES, field.ranges, strict=True)
+        entry["intervals"] = [
+            {"low": part.low, "high": part.high, "low_limits": list(part.low_limits),
+             "high_limits": list(part.high_limits)}
+            for part in field.intervals
+        ]  # fmt: skip
+        entry["ranges"] = {name: {"low": low, "high": high, "unit": unit} for name, (_, _, unit), (low, high) in ranges}
+        entry["weights"] = {"reading": self.inputs.weights, "values": list(self.weights)}
+        entry["grid"] = {"shift": self.grid, "points": len(field.course.shifts)}
+        if self.box is not None:
+            box = self.box
+            entry["box"] = {
+                "shift": float(box.point[0]), "cost": box.cost, "spread": box.spread, "evaluations": box.evaluations,
+                "drawn": box.drawn, "reflections": box.reflections, "settled": box.settled,
+            }  # fmt: skip
+        entry["other_sliding_reading"] = {"reading": OTHER[self.inputs.sliding_reading], "shift": number(self.other)}
+        entry["limits"] = list(self.limits)
+        entry["kept"] = {"stated": number(self.kept[0]), "optimum": number(self.kept[1])}
+        entry["stress_factor"] = self.factor
+        entry["variants"] = [
+            {"least_contact_ratio": each.least_contact_ratio, "weights": each.reading, "values": list(each.weights),
+             "shift": each.shift, "contact_ratio": each.contact_ratio, "limits": list(each.limits)}
+            for each in self.variants
+        ]  # fmt: skip
+        return entry
 
     def warnings(self) -> Sequence[str]:
         """Say what was not found."""
@@ -497,12 +502,12 @@ ROWS: tuple[tuple[str, str, str, float], ...] = (
     ("tip circle of the ring, radius", "tip_radius_ring", "mm", MM),
     ("contact ratio", "contact_ratio", "", 1.0),
     ("tip land of the roller", "tip_land", "mm", MM),
-    ("root stress of the roller, nominal", "nominal_stress_roller", "MPa", 1 / MEGA),
-    ("root stress of the ring, nominal", "nominal_stress_ring", "MPa", 1 / MEGA),
+    ("root stress of the roller, nominal", "nominal_stress_roller", "MPa", 1 / objectives.MEGA),
+    ("root stress of the ring, nominal", "nominal_stress_ring", "MPa", 1 / objectives.MEGA),
     ("specific sliding of the roller, largest", "sliding_roller", "", 1.0),
     ("specific sliding of the ring, largest", "sliding_ring", "", 1.0),
     ("sum of the shifts", "shift_sum", "", 1.0),
-    ("difference of the root stresses", "stress_difference", "MPa", 1 / MEGA),
+    ("difference of the root stresses", "stress_difference", "MPa", 1 / objectives.MEGA),
     ("difference of specific sliding", "sliding_difference", "", 1.0),
 )
 
@@ -515,38 +520,6 @@ def spoken(limits: Sequence[str]) -> str:
 def number(value: float) -> float | None:
     """Return a number as results.json may hold it."""
     return float(value) if isfinite(value) else None
-
-
-def chosen_json(chosen: "ChosenShift") -> Mapping[str, Any]:
-    """Return what results.json holds."""
-    entry: dict[str, Any] = {"status": chosen.status, "equal_sliding": number(chosen.equal)}
-    field = chosen.field
-    if field is None:
-        return entry
-    ranges = zip(("shift_sum", "stress_difference", "sliding_difference"), OBJECTIVES, field.ranges, strict=True)
-    entry["intervals"] = [
-        {"low": part.low, "high": part.high, "low_limits": list(part.low_limits), "high_limits": list(part.high_limits)}
-        for part in field.intervals
-    ]
-    entry["ranges"] = {name: {"low": low, "high": high, "unit": unit} for name, (_, _, unit), (low, high) in ranges}
-    entry["weights"] = {"reading": chosen.inputs.weights, "values": list(chosen.weights)}
-    entry["grid"] = {"shift": chosen.grid, "points": len(field.course.shifts)}
-    if chosen.box is not None:
-        box = chosen.box
-        entry["box"] = {
-            "shift": float(box.point[0]), "cost": box.cost, "spread": box.spread, "evaluations": box.evaluations,
-            "drawn": box.drawn, "reflections": box.reflections, "settled": box.settled,
-        }  # fmt: skip
-    entry["other_sliding_reading"] = {"reading": OTHER[chosen.inputs.sliding_reading], "shift": number(chosen.other)}
-    entry["limits"] = list(chosen.limits)
-    entry["kept"] = {"stated": number(chosen.kept[0]), "optimum": number(chosen.kept[1])}
-    entry["stress_factor"] = chosen.factor
-    entry["variants"] = [
-        {"least_contact_ratio": each.least_contact_ratio, "weights": each.reading, "values": list(each.weights),
-         "shift": each.shift, "contact_ratio": each.contact_ratio, "limits": list(each.limits)}
-        for each in chosen.variants
-    ]  # fmt: skip
-    return entry
 
 
 def intervals_words(field: "Field") -> Words:
@@ -571,10 +544,11 @@ def weights_table(chosen: "ChosenShift", field: "Field") -> Table:
 
 def printed_table() -> Table:
     """List what the paper prints of ranges and weights, and what its rule makes of it."""
+    by_rule = objectives.rule_weights(objectives.PRINTED_RANGES)
     rows = [
-        (name, unit, low, high, stated, by_rule, lower_limit(stated, high))
-        for (name, _, unit), (low, high), stated, by_rule in zip(
-            OBJECTIVES, PRINTED_RANGES, PRINTED_WEIGHTS, rule_weights(PRINTED_RANGES), strict=True
+        (name, unit, low, high, stated, weight, objectives.lower_limit(stated, high))
+        for (name, _, unit), (low, high), stated, weight in zip(
+            OBJECTIVES, objectives.PRINTED_RANGES, objectives.PRINTED_WEIGHTS, by_rule, strict=True
         )
     ]
     columns = ("printed", "unit", "from", "to", "weight", "weight by its rule", "or from")
@@ -685,22 +659,19 @@ BOX = "Box's complex method on the weighed sum"
 DRAWN = "8192 screws drawn from the tolerances in force"
 
 
-def weight(symbol: str, of: str, unit: str) -> float:
+def weight(symbol: str, of: str, unit: str) -> Any:
     """Declare a weight."""
-    declared: float = found(unit, symbol=symbol, note=f"weight of the {of}", method=RULE, source="the paper")
-    return declared
+    return found(unit, symbol=symbol, note=f"weight of the {of}", method=RULE, source="the paper")
 
 
-def reach(symbol: str, what: str, unit: str = "") -> float:
+def reach(symbol: str, what: str, unit: str = "") -> Any:
     """Declare an end of the range of an objective."""
-    declared: float = found(unit, symbol=symbol, note=what, method=KEPT)
-    return declared
+    return found(unit, symbol=symbol, note=what, method=KEPT)
 
 
-def optimal(symbol: str, what: str, unit: str = "") -> float:
+def optimal(symbol: str, what: str, unit: str = "") -> Any:
     """Declare a number at the optimum."""
-    declared: float = found(unit, symbol=symbol, note=f"{what} at the optimum", method=BOX)
-    return declared
+    return found(unit, symbol=symbol, note=f"{what} at the optimum", method=BOX)
 
 
 @results
@@ -756,11 +727,13 @@ def choice(chosen: ChosenShift) -> ShiftChoice:
         highest_shift=max(each.high for each in field.intervals),
         least_sum=sum_low,
         most_sum=sum_high,
-        least_stress_difference=MEGA * stress_low,
-        most_stress_difference=MEGA * stress_high,
+        least_stress_difference=objectives.MEGA * stress_low,
+        most_stress_difference=objectives.MEGA * stress_high,
         least_sliding=sliding_low,
         most_sliding=sliding_high,
-        **_weights(chosen.weights),
+        weight_sum=chosen.weights[0],
+        weight_stress=chosen.weights[1] / objectives.MEGA**2,
+        weight_sliding=chosen.weights[2],
         **_optimum(chosen, difference),
         limit_distance=max(min(chosen.shift - part.low, part.high - chosen.shift), 0.0),
         kept_as_stated=chosen.kept[0],
@@ -772,18 +745,14 @@ def choice(chosen: ChosenShift) -> ShiftChoice:
     )
 
 
-def _weights(weights: Three) -> dict[str, float]:
-    return {"weight_sum": weights[0], "weight_stress": weights[1] / MEGA**2, "weight_sliding": weights[2]}
-
-
 def _optimum(chosen: ChosenShift, difference: float) -> dict[str, float]:
-    at = course_of(chosen.inputs, np.array([chosen.shift]))
-    total, stress, sliding = (float(values[0]) for values in at.objectives)
+    at = objectives.course_of(chosen.inputs, np.array([chosen.shift]))
+    shift_sum, stress, sliding = (float(values[0]) for values in at.objectives)
     return {
         "optimal_shift_roller": chosen.shift,
         "optimal_shift_ring": chosen.shift + difference,
-        "optimal_sum": total,
-        "optimal_stress_difference": MEGA * stress,
+        "optimal_sum": shift_sum,
+        "optimal_stress_difference": objectives.MEGA * stress,
         "optimal_sliding_difference": sliding,
         "optimal_contact_ratio": float(at.margins["margin_contact_ratio"][0])
         + float(chosen.inputs.least_contact_ratio),

@@ -7,8 +7,6 @@ from typing import Literal
 from roller_screw_shift.objectives import PRINTED_RANGES, PRINTED_WEIGHTS
 from truing import Finding, Published
 
-# What the paper prints, for comparison with what this calculation gives under the same settings
-
 ShiftObtained = Literal["predicted", "calibrated"]
 ShiftRow = tuple[str, str, str, str]  # name, result, as printed, unit
 

@@ -3,12 +3,10 @@
 Index E is the roller (an external gear), index I the ring (an internal one). A margin above 0 is safe.
 """
 
-from typing import Literal
+from typing import Any, Literal
 
 from truing import Float, found, given, inputs, results
 
-# What the roller screw calculation is told: every quantity with unit, symbol, bounds and source
-#
 # The roller (external end gear) and the ring (internal gear) are named; no index is used, because those of the paper
 # contradict one another. A shift of the ring is positive outward.
 
@@ -21,10 +19,9 @@ LOST_LIMIT = "the limit in equation 8 is lost; 1.2 is the common alternative"
 LARGEST = 10000.0  # mm: a size above it was meant in another unit
 
 
-def size(value: float, symbol: str, note: str, source: str = SET) -> float:
+def size(value: float, symbol: str, note: str, source: str = SET) -> Any:
     """Declare a length, above zero."""
-    declared: float = given(value, "mm", symbol=symbol, note=note, source=source, above=0, below=LARGEST)
-    return declared
+    return given(value, "mm", symbol=symbol, note=note, source=source, above=0, below=LARGEST)
 
 
 @inputs

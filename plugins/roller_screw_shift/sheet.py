@@ -3,25 +3,7 @@
 from collections.abc import Sequence
 from functools import partial
 
-from roller_screw_shift.figures import (
-    PairRun,
-    front_figure,
-    limits_figure,
-    objectives_figure,
-    sliding_figure,
-    teeth_figure,
-    triangle_figure,
-)
-from roller_screw_shift.optimum import (
-    ChosenShift,
-    before,
-    compared_table,
-    intervals_words,
-    optimum_words,
-    printed_table,
-    variants_table,
-    weights_table,
-)
+from roller_screw_shift import figures, optimum
 from truing import Block, Drawing, Optimum, Section, Words
 
 # The figures and tables by section of the sheet: each is there where its study ran
@@ -53,81 +35,79 @@ CORNERS = (
 )
 
 
-def signs(record: "PairRun") -> "Sequence[Block]":
+def signs(record: figures.PairRun) -> "Sequence[Block]":
     """The sign convention in words, and the pair to scale."""
     pair = record.acting
-    chosen = record.outcome(ChosenShift)
-    draw = partial(teeth_figure, pair, places(record, chosen))
+    chosen = record.outcome(optimum.ChosenShift)
+    draw = partial(figures.teeth_figure, pair, places(record, chosen))
     return [Words(CONVENTION), Drawing("Roller and ring", draw, PATH)]
 
 
-def places(record: "PairRun", chosen: "ChosenShift | None") -> list[tuple[str, float]]:
+def places(record: figures.PairRun, chosen: optimum.ChosenShift | None) -> list[tuple[str, float]]:
     """The shifts that are drawn: before and after the optimisation, or what is stated where there was none."""
     if chosen is None or chosen.field is None:
         return [("as stated", float(record.acting.roller_shift))]
-    first = before(chosen.field)
+    first = optimum.before(chosen.field)
     words = "before, no shift of the roller" if first == 0.0 else "before, nearest to no shift"
     return [(words, first), ("optimum", chosen.shift)]
 
 
-def sliding(record: "PairRun") -> "Sequence[Block]":
+def sliding(record: figures.PairRun) -> "Sequence[Block]":
     """Specific sliding along the path of contact."""
-    pair, chosen = record.acting, record.outcome(ChosenShift)
+    pair, chosen = record.acting, record.outcome(optimum.ChosenShift)
     shown = places(record, chosen)
     if chosen is not None and chosen.field is not None:
         shown = [("before", shown[0][1]), ("as stated", float(pair.roller_shift)), ("optimum", chosen.shift)]
-    return [Drawing("Sliding along the path of contact", partial(sliding_figure, pair, shown), SLIDING)]
+    return [Drawing("Sliding along the path of contact", partial(figures.sliding_figure, pair, shown), SLIDING)]
 
 
-def limits(record: "PairRun") -> "Sequence[Block]":
+def limits(record: figures.PairRun) -> "Sequence[Block]":
     """Which shifts keep every limit."""
-    chosen = record.outcome(ChosenShift)
+    chosen = record.outcome(optimum.ChosenShift)
     if chosen is None:
         return []
     caption = (
         "Above: where each limit is kept. Below: the margins that change sign in the picture. Shaded: all limits are "
         "kept."
     )
-    figure = Drawing("Limits over the shift", partial(limits_figure, chosen), caption)
+    figure = Drawing("Limits over the shift", partial(figures.limits_figure, chosen), caption)
     if chosen.field is None:
         return [Words(f"{chosen.status[:1].upper()}{chosen.status[1:]}.", "finding"), figure]
-    return [intervals_words(chosen.field), figure]
+    return [optimum.intervals_words(chosen.field), figure]
 
 
-def choice(record: "PairRun") -> "Sequence[Block]":
+def choice(record: figures.PairRun) -> "Sequence[Block]":
     """Ranges, weights, objectives, optimum."""
-    chosen = record.outcome(ChosenShift)
+    chosen = record.outcome(optimum.ChosenShift)
     if chosen is None or chosen.field is None:
         return []
     caption = "The first objective is to be large, the others are to be small."
     return [
-        weights_table(chosen, chosen.field),
-        printed_table(),
-        Drawing("Objectives over the shift", partial(objectives_figure, chosen), caption),
-        *optimum_words(chosen, chosen.field),
-        compared_table(chosen, chosen.field),
+        optimum.weights_table(chosen, chosen.field),
+        optimum.printed_table(),
+        Drawing("Objectives over the shift", partial(figures.objectives_figure, chosen), caption),
+        *optimum.optimum_words(chosen, chosen.field),
+        optimum.compared_table(chosen, chosen.field),
     ]
 
 
-def weights(record: "PairRun") -> "Sequence[Block]":
+def weights(record: figures.PairRun) -> "Sequence[Block]":
     """What the weights choose."""
-    chosen = record.outcome(ChosenShift)
+    chosen = record.outcome(optimum.ChosenShift)
     if chosen is None or chosen.field is None:
         return []
     field = chosen.field
     blocks: list[Block] = [
         Drawing(
             "The front, and what the weights choose",
-            partial(front_figure, chosen, field, record.outcome(Optimum)),
+            partial(figures.front_figure, chosen, field, record.outcome(Optimum)),
             PLANES,
         )
     ]
     if any(high > low for low, high in field.ranges):
-        blocks.append(Drawing("The shift by weights", partial(triangle_figure, chosen, field), CORNERS))
-    return [*blocks, variants_table(chosen, field)]
+        blocks.append(Drawing("The shift by weights", partial(figures.triangle_figure, chosen, field), CORNERS))
+    return [*blocks, optimum.variants_table(chosen, field)]
 
-
-# The sheet, in the order an engineer reads it
 
 SECTIONS = [
     Section(

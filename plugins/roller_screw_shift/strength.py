@@ -5,22 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_geometry.roots import (
-    Arm,
-    Cutter,
-    Fillet,
-    Rack,
-    Root,
-    cut_ring_arm,
-    cut_ring_root,
-    external_arm,
-    external_root,
-    fillet_of,
-    form_factor,
-    ring_arm,
-    ring_root,
-    stress_correction,
-)
+from gear_geometry import roots
 from roller_screw_shift.geometry import Geometry
 from roller_screw_shift.quantities import Pair
 from truing import Float, either
@@ -68,37 +53,28 @@ def load_of(pair: Pair) -> Load:
 class Tooth:
     """Critical section and arm in modules, factors of form and stress, nominal root stress in Pa."""
 
-    root: Root
-    arm: Arm
+    root: roots.Root
+    arm: roots.Arm
     form: Float
     correction: Float
     stress: Float
 
 
-def roller_rack(pair: Pair) -> Rack:
-    """Return the rack that makes the roller."""
-    return _rack(pair, pair.roller_fillet)
+def rack_of(pair: Pair, fillet: Float) -> roots.Rack:
+    """Return the rack that makes the roller, or stands for the tooth of the ring, by its fillet."""
+    return roots.Rack(dedendum=pair.addendum + pair.clearance, fillet=fillet, pressure_angle=pair.pressure_angle)
 
 
-def ring_rack(pair: Pair) -> Rack:
-    """Return the rack that stands for the tooth of the ring."""
-    return _rack(pair, pair.ring_fillet)
-
-
-def _rack(pair: Pair, fillet: Float) -> Rack:
-    return Rack(dedendum=pair.addendum + pair.clearance, fillet=fillet, pressure_angle=pair.pressure_angle)
-
-
-def roller_fillet(pair: Pair) -> Fillet:
+def roller_fillet(pair: Pair) -> roots.Fillet:
     """Return how the rounding of the rack lies to the roller."""
-    return fillet_of(roller_rack(pair), pair.roller_teeth, pair.roller_shift)
+    return roots.fillet_of(rack_of(pair, pair.roller_fillet), pair.roller_teeth, pair.roller_shift)
 
 
 def roller_tooth(pair: Pair) -> Tooth:
     """Return the tooth of the roller: made by a rack, section at the tangent of 30 degrees. Source: ISO 6336-3."""
-    rack, teeth, shift = roller_rack(pair), pair.roller_teeth, pair.roller_shift
-    root = external_root(rack, teeth, shift)
-    return _tooth(pair, root, external_arm(rack, teeth, shift, root, teeth + 2.0 * (pair.addendum + shift)))
+    rack, teeth, shift = rack_of(pair, pair.roller_fillet), pair.roller_teeth, pair.roller_shift
+    root = roots.external_root(rack, teeth, shift)
+    return _tooth(pair, root, roots.external_arm(rack, teeth, shift, root, teeth + 2.0 * (pair.addendum + shift)))
 
 
 def ring_tooth(pair: Pair, geometry: Geometry) -> Tooth:
@@ -106,36 +82,38 @@ def ring_tooth(pair: Pair, geometry: Geometry) -> Tooth:
 
     Sources: GB/T 3480-1997 (as DIN 3990-3), section at the tangent of 30 degrees; ISO 6336-3, at that of 60 degrees.
     """
-    rack = ring_rack(pair)
-    root = ring_root(rack)
-    arm = ring_arm(rack, root, pair.addendum)
+    rack = rack_of(pair, pair.ring_fillet)
+    root = roots.ring_root(rack)
+    arm = roots.ring_arm(rack, root, pair.addendum)
     cut = is_cut(pair)
     if np.any(cut):
         cut_root, cut_arm = cut_section(pair, geometry)
-        root = Root(**{name: np.where(cut, value, getattr(root, name)) for name, value in vars(cut_root).items()})
-        arm = Arm(**{name: np.where(cut, value, getattr(arm, name)) for name, value in vars(cut_arm).items()})
+        root = roots.Root(**{name: np.where(cut, value, getattr(root, name)) for name, value in vars(cut_root).items()})
+        arm = roots.Arm(**{name: np.where(cut, value, getattr(arm, name)) for name, value in vars(cut_arm).items()})
     return _tooth(pair, root, arm)
 
 
 def is_cut(pair: Pair) -> NDArray[np.bool_]:
     """Return whether the ring is made by a cutter; else it is taken as a rack."""
-    cut: NDArray[np.bool_] = ~np.isnan(np.asarray(pair.cutter_teeth, dtype=float))
-    return cut
+    value: NDArray[np.bool_] = ~np.isnan(np.asarray(pair.cutter_teeth, dtype=float))
+    return value
 
 
-def cut_section(pair: Pair, geometry: Geometry) -> tuple[Root, Arm]:
+def cut_section(pair: Pair, geometry: Geometry) -> tuple[roots.Root, roots.Arm]:
     """Return section and arm of the ring as its cutter leaves it; NaN where none is given or it makes no such ring."""
     addendum = either(pair.cutter_addendum, pair.addendum + pair.clearance)
-    cutter = Cutter(teeth=pair.cutter_teeth, shift=pair.cutter_shift, addendum=addendum, fillet=pair.cutter_fillet)
+    cutter = roots.Cutter(
+        teeth=pair.cutter_teeth, shift=pair.cutter_shift, addendum=addendum, fillet=pair.cutter_fillet
+    )
     with np.errstate(all="ignore"):
-        root = cut_ring_root(cutter, pair.ring_teeth, geometry.ring_shift, pair.pressure_angle)
+        root = roots.cut_ring_root(cutter, pair.ring_teeth, geometry.ring_shift, pair.pressure_angle)
         tip = geometry.ring.tip_radius / pair.module
-        return root, cut_ring_arm(root, pair.ring_teeth, geometry.ring_shift, tip, pair.pressure_angle)
+        return root, roots.cut_ring_arm(root, pair.ring_teeth, geometry.ring_shift, tip, pair.pressure_angle)
 
 
-def _tooth(pair: Pair, root: Root, arm: Arm) -> Tooth:
+def _tooth(pair: Pair, root: roots.Root, arm: roots.Arm) -> Tooth:
     with np.errstate(invalid="ignore", divide="ignore"):
-        form, correction = form_factor(root, arm, pair.pressure_angle), stress_correction(root, arm)
+        form, correction = roots.form_factor(root, arm, pair.pressure_angle), roots.stress_correction(root, arm)
     per_area = load_of(pair).tangential_force / (pair.face_width * pair.module)
     return Tooth(root=root, arm=arm, form=form, correction=correction, stress=per_area * form * correction)
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from gear_geometry.mesh_load import shaken_by_error
+from gear_geometry.mesh_load import shaken_by_error, viscosity_at, wave, wave_unknowns
 from rv_gearing.geometry import ToothLoad, load_of
 from rv_gearing.groups import centre_distance_of
 from rv_gearing.quantities import Gearing
@@ -69,11 +69,6 @@ def relief_error(stage: Gearing, *, missing: Float) -> Gearing:
 #
 # The orders of the gears count the turns of the sun against the carrier, those of the output the turns of the housing's
 # frame. Angles in rad, errors in m along the line of action.
-
-
-def wave(angle: Float, cosine: Float, sine: Float) -> Float:
-    """Return one harmonic of an angle."""
-    return cosine * np.cos(angle) + sine * np.sin(angle)
 
 
 def relative_angle(load: ToothLoad, input_angle: Float) -> Float:
@@ -184,10 +179,7 @@ def half_width(stage: Gearing, force: Float, radius: Float) -> Float:
 # What follows the oil: how far its heat drives the gears apart, and what it holds back at any torque
 
 ROOM = 293.15  # K: at 20 degC the gears are as far apart as on the drawing
-FORTY = 313.15  # K, at which the viscosity of an oil is stated
-SLOPE = 3.567  # of an ISO VG 100 oil with viscosity index 95: 100 mm²/s at 40 degC and 11.1 mm²/s at 100 degC
 MM2_S = 1e-6
-ADDED = 0.7  # mm²/s, in the law
 REFERENCE = 100.0 * MM2_S * 1000.0 / 60.0  # m²/s times turns per second: 100 mm²/s at 1000 r/min
 LEAST_TORQUE = 1e-9  # N m, of an idle sun
 
@@ -200,12 +192,8 @@ def centre_distance_growth(stage: Gearing, *, expansion: Float) -> Gearing:
 
 
 def viscosity_at_work(stage: Gearing) -> Float:
-    """Return the kinematic viscosity at the temperature of the oil, m²/s: log log (nu + 0.7) falls with log T.
-
-    For mineral oils of viscosity index about 95, 0 to 150 degC; others have another slope. Reference: ASTM D341.
-    """
-    at_forty = np.log10(stage.viscosity / MM2_S + ADDED)
-    return MM2_S * (10.0 ** (at_forty * (stage.oil_temperature / FORTY) ** -SLOPE) - ADDED)
+    """Return the kinematic viscosity at the temperature of the oil, m²/s."""
+    return MM2_S * viscosity_at(stage.oil_temperature, stage.viscosity / MM2_S)
 
 
 def speed_dependent_loss(stage: Gearing, strength: Strength, *, constant: Float, viscous: Float) -> Strength:
@@ -258,8 +246,6 @@ def mesh_stiffening(stage: Gearing, strength: Strength, *, share: Float) -> Stre
     return with_error(strength, share * load.direction * deflection)
 
 
-# What the rating of the first stage leaves out, and what is measured of the stage that it does not calculate
-#
 # They act in the order declared: first what changes the load of a tooth, then what is added to a result. A new effect
 # is a function beside the others and one more entry in EFFECTS.
 
@@ -279,15 +265,7 @@ BLOK = (
 ARCHARD = "Archard, J. F., Contact and rubbing of flat surfaces, Journal of Applied Physics 24 (1953) 981"
 
 
-def wave_unknowns(cosine: str, sine: str, of: str) -> list[Unknown]:
-    """Declare both parts of one harmonic."""
-    return [
-        Unknown(cosine, -1000, 1000, "um", note=f"in proportion to the cosine of {of}"),
-        Unknown(sine, -1000, 1000, "um", note=f"in proportion to the sine of {of}"),
-    ]
-
-
-LOAD: list[Effect[Gearing, Strength]] = [
+EFFECTS: list[Effect[Gearing, Strength]] = [
     Effect("face_misalignment", on_inputs=face_misalignment,
            unknowns=[Unknown("misalignment", -3, 100, "um",
                              note="over the face width, beside that of the tolerances"),
@@ -331,8 +309,6 @@ LOAD: list[Effect[Gearing, Strength]] = [
            looks_like="the backlash grows with the temperature of the oil, back and forth, and never with the hours",
            why="the parts that hold the gears apart expand more than the gears, or get warmer",
            source="linear expansion; backlash of an involute pair on its working centre distance, ISO 21771"),
-]  # fmt: skip
-OIL: list[Effect[Gearing, Strength]] = [
     Effect("speed_dependent_loss", on_results=speed_dependent_loss,
            unknowns=[Unknown("constant", 0, 50, "N*m", note="holding back the sun at any speed: seals, preload"),
                      Unknown("viscous", 0, 50, "N*m",
@@ -346,30 +322,28 @@ OIL: list[Effect[Gearing, Strength]] = [
            looks_like="flanks warmer than the oil, with the load to the power 3/4 and the root of the speed",
            why="flanks slide on one another at the ends of the path of contact, and friction heats them",
            source=BLOK),
-]  # fmt: skip
-ROTATION: list[Effect[Gearing, Strength]] = [
     Effect("sun_runout", on_results=sun_runout, needs=[INPUT_ANGLE], acts_at_reference=True,
-           unknowns=wave_unknowns("cosine", "sine", "the angle of the sun against the carrier"),
+           unknowns=wave_unknowns(1000, "um", "the angle of the sun against the carrier"),
            looks_like="transmission error with one wave per turn of the sun against the carrier, a little slower "
                       "than the input shaft",
            why="the teeth of the sun are off the axis on which it turns",
            source=HARMONIC),
     Effect("planet_runout", on_results=planet_runout, needs=[INPUT_ANGLE], acts_at_reference=True,
-           unknowns=wave_unknowns("cosine", "sine", "the angle of the planet"),
+           unknowns=wave_unknowns(1000, "um", "the angle of the planet"),
            looks_like="transmission error with one wave per turn of the planet, z1/z2 of those of the sun",
            why="the teeth of a planet are off the axis of its crank",
            source=HARMONIC),
     Effect("mesh_ripple", on_results=mesh_ripple, needs=[INPUT_ANGLE], acts_at_reference=True,
-           unknowns=[*wave_unknowns("cosine", "sine", "the passing teeth"),
-                     *wave_unknowns("second_cosine", "second_sine", "the passing teeth, twice a tooth")],
+           unknowns=[*wave_unknowns(1000, "um", "the passing teeth"),
+                     *wave_unknowns(1000, "um", "the passing teeth, twice a tooth", "second_cosine", "second_sine")],
            parts=[("cosine", "sine"), ("second_cosine", "second_sine")],
            looks_like="a fast ripple of the transmission error: one wave, or two, for every tooth of the sun that "
                       "passes",
            why="one pair of teeth and two carry in turn, and flanks have errors of form",
            source="kinematics of the mesh"),
     Effect("output_eccentricity", on_results=output_eccentricity, needs=[INPUT_ANGLE], acts_at_reference=True,
-           unknowns=[*wave_unknowns("cosine", "sine", "the angle of the output"),
-                     *wave_unknowns("tooth_cosine", "tooth_sine", "the passing teeth of the discs")],
+           unknowns=[*wave_unknowns(1000, "um", "the angle of the output"),
+                     *wave_unknowns(1000, "um", "the passing teeth of the discs", "tooth_cosine", "tooth_sine")],
            parts=[("cosine", "sine"), ("tooth_cosine", "tooth_sine")],
            looks_like="a slow wave of the transmission error over one turn of the output, or one for every tooth of "
                       "the discs",
@@ -381,8 +355,6 @@ ROTATION: list[Effect[Gearing, Strength]] = [
            looks_like="transmission error in proportion to the angle that was turned, and it never comes back",
            why="the ratio in the evaluation is rounded, or an encoder loses counts: an error of counting alone",
            source="kinematics: relative error of the ratio times angle and base radius of the sun"),
-]  # fmt: skip
-TORQUE: list[Effect[Gearing, Strength]] = [
     Effect("wind_up", on_results=wind_up,
            unknowns=[Unknown("compliance", 0, 100, "um/(N*m)", note="at the base circle of the sun, by its torque")],
            looks_like="transmission error in proportion to the torque, with its sign",
@@ -407,4 +379,3 @@ TORQUE: list[Effect[Gearing, Strength]] = [
            why="teeth give way, and the more so while they hardly touch",
            source=STIFFNESS),
 ]  # fmt: skip
-EFFECTS: list[Effect[Gearing, Strength]] = [*LOAD, *OIL, *ROTATION, *TORQUE]

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from numpy.typing import NDArray
 
+from gear_geometry.drawing import BLUE, GREY, INK, ORANGE, PALE, panels, quiet
 from gear_geometry.roots import Arm, Rack, Root, external_arm, external_root
 from rv_gearing.geometry import gear, half_space, tooth, turned
 from rv_gearing.groups import FoundGroups, centre_distance_window, pin_circle_factors
@@ -15,13 +16,9 @@ from rv_gearing.quantities import Gearing
 from rv_gearing.rating import SAFETIES, Strength
 from truing import Array, Record, Swept
 
-# What the figures share: colours, panels, and what a finished run knows
-
 GearingRun = Record[Gearing, Strength]
 
-BLUE, ORANGE, GREEN, INK, GREY = "#1f5a8a", "#c8641e", "#2f6b4f", "#22262b", "#7d838c"
-SUN_FILL, PLANET_FILL = "#e8eff5", "#fbeee3"
-WIDTH = 6.4
+SUN_FILL, PLANET_FILL = PALE, "#fbeee3"
 MM, MPA = 1e3, 1e-6
 
 
@@ -35,12 +32,6 @@ def rack_of(stage: Gearing) -> Rack:
     return Rack(dedendum=float(stage.dedendum), fillet=float(stage.fillet), pressure_angle=float(stage.pressure_angle))
 
 
-def one_panel(height: float) -> "tuple[Figure, Any]":
-    """A figure as wide as the sheet with one panel."""
-    figure = Figure(figsize=(WIDTH, height), layout="constrained")
-    return figure, figure.subplots()
-
-
 # The groups that the search finds: where they lie in the window, and how hard each is loaded
 
 MOST_NUMBERED = 40
@@ -49,7 +40,7 @@ MOST_TICKS = 30
 
 def groups_figure(found: "FoundGroups") -> "Figure":
     """Draw the centre distance of every group over the deviation of its ratio, with the limits of both."""
-    figure, panel = one_panel(3.7)
+    figure, panel = panels(1, 3.7)
     groups = found.groups
     deviation, centre = 100.0 * groups.deviation, MM * groups.centre_distance
     limit = 100.0 * float(found.inputs.ratio_tolerance)
@@ -67,12 +58,9 @@ def groups_figure(found: "FoundGroups") -> "Figure":
         panel.scatter(deviation, centre, s=16, color=BLUE, zorder=4, linewidths=0)
     _numbers(panel, found, deviation, centre)
     _rated(panel, found, deviation, centre)
-    panel.set_xlabel("deviation of the ratio, %")
-    panel.set_ylabel("centre distance, mm")
     panel.set_xlim(-1.12 * limit, 1.12 * limit)
     panel.set_ylim(low - 0.08 * (high - low), high + 0.08 * (high - low))
-    panel.grid(alpha=0.35)
-    panel.set_axisbelow(True)
+    quiet(panel, "deviation of the ratio, %", "centre distance, mm", alpha=0.35)
     return figure
 
 
@@ -104,11 +92,10 @@ def window_words(found: "FoundGroups") -> str:
 
 def stresses_figure(found: "FoundGroups") -> "Figure":
     """Draw the root and contact stresses of all groups below what each of them may be."""
-    figure = Figure(figsize=(WIDTH, 4.8), layout="constrained")
-    panels = figure.subplots(2, 1, sharex=True)
+    figure, (upper, lower) = panels(2, 4.8, sharex=True)
     order = np.argsort(found.numbers)
     places = np.arange(len(order))
-    for panel, kind in zip(panels, ("root", "contact"), strict=True):
+    for panel, kind in ((upper, "root"), (lower, "contact")):
         for wheel, colour, marker in (("sun", BLUE, "o"), ("planet", ORANGE, "s")):
             stress, permitted = (
                 MPA * found.strength[f"{word}{kind}_stress_{wheel}"][order] for word in ("", "permitted_")
@@ -116,12 +103,10 @@ def stresses_figure(found: "FoundGroups") -> "Figure":
             panel.plot(places, stress, marker, markersize=4, color=colour, label=wheel)
             panel.step(places, permitted, where="mid", color=colour, linewidth=1.0, linestyle=(0, (5, 2)),
                        label=f"{wheel}, permissible")  # fmt: skip
-        panel.set_ylabel(f"{kind} stress, MPa")
+        quiet(panel, "", f"{kind} stress, MPa", alpha=0.35)
         panel.set_ylim(0, None)
-        panel.grid(alpha=0.35)
-        panel.set_axisbelow(True)
-    panels[0].legend(ncols=4, loc="upper center", bbox_to_anchor=(0.5, 1.22), handlelength=1.8, columnspacing=1.3)
-    _ticks(panels[1], found, order)
+    upper.legend(ncols=4, loc="upper center", bbox_to_anchor=(0.5, 1.22), handlelength=1.8, columnspacing=1.3)
+    _ticks(lower, found, order)
     return figure
 
 
@@ -249,15 +234,12 @@ def _transverse(record: "GearingRun", stage: "Gearing", name: str) -> tuple[Rack
 
 def mesh_figure(meshing: MeshFigure) -> "Figure":
     """Draw the whole stage on the left, and on the right what happens around the pitch point."""
-    figure = Figure(figsize=(WIDTH, 3.5), layout="constrained")
-    stage, close = figure.subplots(1, 2, width_ratios=(1.0, 1.12))
+    figure, (stage, close) = panels(1, 3.5, 2, width_ratios=(1.0, 1.12))
     _stage(stage, meshing)
     _close(close, meshing)
     for panel in (stage, close):
         panel.set_aspect("equal")
-        panel.set_xlabel("mm")
-        panel.grid(alpha=0.3)
-        panel.set_axisbelow(True)
+        quiet(panel, "mm", alpha=0.3)
     return figure
 
 
@@ -331,7 +313,7 @@ AXES = {
 
 def safeties_figure(swept: "Swept", here: float) -> "Figure":
     """Draw the four safeties along the swept input, with what is asked of them and the value of the run."""
-    figure, panel = one_panel(3.2)
+    figure, panel = panels(1, 3.2)
     label, factor = AXES.get(swept.over, (swept.over.replace("_", " "), 1.0))
     axis = factor * swept.axis
     for name in SAFETIES:
@@ -354,11 +336,8 @@ def safeties_figure(swept: "Swept", here: float) -> "Figure":
     panel.set_ylim(*RANGE)
     panel.set_yticks(TICKS, [f"{tick:g}" for tick in TICKS])
     panel.set_yticks([], minor=True)
-    panel.set_xlabel(label)
-    panel.set_ylabel("safety")
+    quiet(panel, label, "safety", alpha=0.35)
     panel.legend(ncols=4, loc="upper center", bbox_to_anchor=(0.5, 1.15), handlelength=1.8, columnspacing=1.2)
-    panel.grid(alpha=0.35)
-    panel.set_axisbelow(True)
     return figure
 
 
@@ -392,33 +371,24 @@ def _notched(record: "GearingRun", stage: "Gearing", name: str) -> Notched:
     higher = (number(record, f"tip_diameter_{name}") - number(record, f"reference_diameter_{name}")) / module
     tip = teeth + higher
     root = external_root(rack, teeth, shift)
-    outer = _single(rack, teeth, tip, number(record, "virtual_contact_ratio"))
+    outer = number(record, f"outer_diameter_{name}") / module
+    has_single = 1.0 < number(record, "virtual_contact_ratio") < 2.0  # else two pairs always carry
     return Notched(
         name=name,
         outline=tooth(rack, teeth, shift, 0.5 * tip),
         root=root,
         tip=(tip, external_arm(rack, teeth, shift, root, tip)),
-        single=None if outer is None else (outer, external_arm(rack, teeth, shift, root, outer)),
+        single=(outer, external_arm(rack, teeth, shift, root, outer)) if has_single else None,
         module=MM * module,
     )
 
 
-def _single(rack: Rack, teeth: float, tip: float, contact_ratio: float) -> float | None:
-    """Diameter at the outer point of single contact, in modules; None where two pairs always carry."""
-    if not 1.0 < contact_ratio < 2.0:
-        return None
-    base, pitch = teeth * np.cos(rack.pressure_angle), np.pi * np.cos(rack.pressure_angle)
-    along = 0.5 * np.sqrt(tip**2 - base**2) - pitch * (contact_ratio - 1.0)
-    return float(np.hypot(2.0 * along, base))
-
-
 def root_figure(teeth: tuple[Notched, Notched]) -> "Figure":
     """Draw both teeth to one scale with what the form factors are made from."""
-    figure = Figure(figsize=(WIDTH, 2.95), layout="constrained")
-    panels = figure.subplots(1, 2)
+    figure, both = panels(1, 2.95, 2)
     colours = ((SUN_FILL, BLUE), (PLANET_FILL, ORANGE))
     top = max(float(_down(one.outline, float(one.root.depth))[1].max()) for one in teeth)
-    for panel, one, (fill, edge) in zip(panels, teeth, colours, strict=True):
+    for panel, one, (fill, edge) in zip(both, teeth, colours, strict=True):
         _tooth(panel, one, fill, edge)
         panel.set_ylim(0.8 * BELOW, top + 0.95)
     return figure
@@ -437,17 +407,15 @@ def _tooth(panel: Any, one: Notched, fill: str, edge: str) -> None:
     panel.axvline(0.0, color=INK, linewidth=0.6, linestyle=(0, (8, 3, 1, 3)), zorder=3)
     panel.set_aspect("equal")
     panel.set_xlim(-2.5, 2.7)
-    panel.set_xlabel(f"modules of {one.module:g} mm")
+    quiet(panel, f"modules of {one.module:g} mm", alpha=0.3)
     chord, arm = float(one.root.chord) * one.module, float(one.tip[1].height) * one.module
     panel.set_title(f"{one.name}: chord {chord:.3f} mm, arm {arm:.3f} mm", fontsize=8.5, loc="left", color=edge)
-    panel.grid(alpha=0.3)
-    panel.set_axisbelow(True)
 
 
 def _down(points: "Array", depth: float) -> "Array":
     """With the critical section at height 0."""
-    lowered: Array = points - np.array([[0.0], [depth]])
-    return lowered
+    value: Array = points - np.array([[0.0], [depth]])
+    return value
 
 
 def _chord(panel: Any, one: Notched) -> None:

@@ -52,7 +52,8 @@ def load_of(stage: Gearing) -> ToothLoad:
     reduction = ratio * efficiency
     asked = np.abs(either(stage.load_torque, torque_of(stage.power, speed) * reduction))
     torque = either(stage.stated_sun_torque, asked / reduction)
-    radii = reference_radii(stage, teeth.sun, teeth.planet)
+    half = 0.5 * stage.module / np.cos(stage.helix_angle)
+    radii = half * teeth.sun, half * teeth.planet
     force = torque / (stage.planets * radii[0])
     inward = np.cos(transverse_angle(stage.pressure_angle, stage.helix_angle))
     return ToothLoad(
@@ -72,12 +73,6 @@ def load_of(stage: Gearing) -> ToothLoad:
         direction=np.where(stage.load_torque < 0.0, -1.0, 1.0),
         base_radii=(radii[0] * inward, radii[1] * inward),
     )
-
-
-def reference_radii(stage: Gearing, sun: Float, planet: Float) -> tuple[Float, Float]:
-    """Return the reference radii of sun and planet, m."""
-    half = 0.5 * stage.module / np.cos(stage.helix_angle)
-    return half * sun, half * planet
 
 
 # Sizes of sun and planet and of their mesh, spur or helical, and what a pair needs to mesh at all

@@ -110,19 +110,11 @@ def pin_circle_window(stage: Gearing, torque: Float, centre_distance: Float) -> 
 HUNTING_IN_PHASE, HUNTING, IN_PHASE, NEITHER = 1.0, 2.0, 3.0, 4.0
 
 
-@dataclass(frozen=True, kw_only=True)
-class Preference:
-    """Common factors of both meshes, kinds of planet, phases in which they mesh, and the preference: 1 is best."""
+def preference_of(stage: Gearing, sun: "Array", planet: "Array", pins: "Array") -> "dict[str, Array]":
+    """Return what speaks for each group, by its columns; the preference is NaN where neighbouring planets would touch.
 
-    common_first: "Array"
-    common_second: "Array"
-    planet_kinds: "Array"
-    mesh_phases: "Array"
-    preference: "Array"
-
-
-def preference_of(stage: Gearing, sun: "Array", planet: "Array", pins: "Array") -> Preference:
-    """Return what speaks for each group; the preference is NaN where neighbouring planets would touch."""
+    Common factors of both meshes, kinds of planet, phases in which they mesh, and the preference: 1 is best.
+    """
     planets = stage.planets
     first, second = np.gcd(_whole(sun), _whole(planet)), np.gcd(_whole(pins) - 1, _whole(pins))
     kinds = planets // np.gcd(_whole(sun + planet), planets)
@@ -132,10 +124,9 @@ def preference_of(stage: Gearing, sun: "Array", planet: "Array", pins: "Array") 
         np.where(phases == 1, HUNTING_IN_PHASE, HUNTING),
         np.where(phases == 1, IN_PHASE, NEITHER),
     )
-    return Preference(
-        common_first=first.astype(float), common_second=second.astype(float), planet_kinds=kinds.astype(float),
-        mesh_phases=phases.astype(float), preference=np.where(_touching(stage, sun, planet), np.nan, found),
-    )  # fmt: skip
+    counts = {"common_first": first, "common_second": second, "planet_kinds": kinds, "mesh_phases": phases}
+    preference = np.where(_touching(stage, sun, planet), np.nan, found)
+    return {name: count.astype(float) for name, count in counts.items()} | {"preference": preference}
 
 
 def _whole(teeth: "Array") -> "NDArray[np.int64]":
@@ -232,7 +223,7 @@ def groups_of(stage: Gearing, teeth: ToothNumbers) -> Groups:
     return Groups(
         sun=sun, planet=planet, pins=pins, ratio=ratio, deviation=ratio / stage.target_ratio - 1.0, torque=torque,
         centre_distance=centre, circle_low=np.asarray(low), circle_high=np.asarray(high),
-        **vars(preference_of(stage, sun, planet, pins)),
+        **preference_of(stage, sun, planet, pins),
     )  # fmt: skip
 
 
@@ -374,16 +365,18 @@ SIZES: tuple[GroupColumn, ...] = (
     "sun", "planet", "pins", "ratio", "deviation", "torque", "centre_distance", "circle_low", "circle_high",
 )  # fmt: skip
 MEETING: tuple[GroupColumn, ...] = ("common_first", "common_second", "planet_kinds", "mesh_phases", "preference")
-PERMITTED = (
-    "permitted_root_stress_sun", "permitted_root_stress_planet", "permitted_contact_stress_sun",
-    "permitted_contact_stress_planet",
-)  # fmt: skip
+PERMITTED = tuple(f"permitted_{name}" for name in STRENGTH if "stress" in name)
 PRINTED = {"deviation": ("%", 100.0), "torque": ("N*m", 1.0)} | dict.fromkeys(
     ("centre_distance", "circle_low", "circle_high"), ("mm", 1e3)
 )
 EXACT = 1e-12
 SCATTER = 0.004  # of the efficiency of a bearing: four standard deviations of its tolerance
 CONDITIONS = "meets all five conditions of section 2 of the paper"
+
+
+def listing(symbol: str, note: str, unit: str = "", source: str = "") -> Any:
+    """Declare a column of the list."""
+    return found(unit, symbol=symbol, along="group_number", note=note, source=source)
 
 
 @results
@@ -393,42 +386,33 @@ class Listed:
     group_count: Float = found("", symbol="N", note="groups of tooth numbers", method=CONDITIONS)
     exact_count: Float = found("", symbol="N_0", note="of them with just the wanted ratio", method="counted")
     group_number: Float = rows("number of the group")
-    group_sun_teeth: Float = found("", symbol="Z_1", along="group_number", note="teeth of the sun")
-    group_planet_teeth: Float = found("", symbol="Z_2", along="group_number", note="teeth of the planet")
-    group_pins: Float = found("", symbol="Z_5", along="group_number", note="pins")
-    group_ratio: Float = found("", symbol="i", along="group_number", note="ratio", source="equation 1")
-    group_deviation: Float = found("%", symbol="Delta i", along="group_number", note="deviation of the ratio",
-                                   source="equation 2")  # fmt: skip
-    group_torque: Float = found("N*m", symbol="T", along="group_number", note="output torque", source="equation 5")
-    group_centre_distance: Float = found("mm", symbol="a_0", along="group_number", note="centre distance")
-    group_circle_low: Float = found("mm", symbol="R_p,min", along="group_number", note="least radius of the pin circle",
-                                    source="equations 3 and 4")  # fmt: skip
-    group_circle_high: Float = found("mm", symbol="R_p,max", along="group_number",
-                                     note="largest radius of the pin circle", source="equations 3 and 4")  # fmt: skip
-    group_common_first: Float = found("", symbol="g_1", along="group_number", note="largest common factor of the teeth "
-                                      "of sun and planet; 1: hunting teeth")  # fmt: skip
-    group_common_second: Float = found("", symbol="g_2", along="group_number",
-                                       note="largest common factor of the teeth of a disc and the pins")  # fmt: skip
-    group_planet_kinds: Float = found("", symbol="n_k", along="group_number", note="kinds of planet, by the angle "
-                                      "between crank and teeth, for equal spacing; 1: all alike")  # fmt: skip
-    group_mesh_phases: Float = found("", symbol="n_f", along="group_number", note="phases in which the planets mesh; "
-                                     "1: all carry alike at any moment")  # fmt: skip
-    group_preference: Float = found("", symbol="r", along="group_number", note="1: hunting teeth and planets in phase, "
-                                    "better; 2: hunting teeth; 3: planets in phase; 4: neither; none: planets touch",
-                                    )  # fmt: skip
-    group_root_stress_sun: Float = found("MPa", symbol="sigma_F1", along="group_number", note="root stress of the sun")
-    group_root_stress_planet: Float = found("MPa", symbol="sigma_F2", along="group_number",
-                                            note="root stress of the planet")  # fmt: skip
-    group_contact_stress_sun: Float = found("MPa", symbol="sigma_H1", along="group_number",
-                                            note="contact stress of the sun")  # fmt: skip
-    group_contact_stress_planet: Float = found("MPa", symbol="sigma_H2", along="group_number",
-                                               note="contact stress of the planet")  # fmt: skip
-    group_root_safety_sun: Float = found("", symbol="S_F1", along="group_number", note="safety of the sun, breakage")
-    group_root_safety_planet: Float = found("", symbol="S_F2", along="group_number",
-                                            note="safety of the planet, breakage")  # fmt: skip
-    group_contact_safety_sun: Float = found("", symbol="S_H1", along="group_number", note="safety of the sun, pitting")
-    group_contact_safety_planet: Float = found("", symbol="S_H2", along="group_number",
-                                               note="safety of the planet, pitting")  # fmt: skip
+    group_sun_teeth: Float = listing("Z_1", "teeth of the sun")
+    group_planet_teeth: Float = listing("Z_2", "teeth of the planet")
+    group_pins: Float = listing("Z_5", "pins")
+    group_ratio: Float = listing("i", "ratio", source="equation 1")
+    group_deviation: Float = listing("Delta i", "deviation of the ratio", "%", "equation 2")
+    group_torque: Float = listing("T", "output torque", "N*m", "equation 5")
+    group_centre_distance: Float = listing("a_0", "centre distance", "mm")
+    group_circle_low: Float = listing("R_p,min", "least radius of the pin circle", "mm", "equations 3 and 4")
+    group_circle_high: Float = listing("R_p,max", "largest radius of the pin circle", "mm", "equations 3 and 4")
+    group_common_first: Float = listing("g_1", "largest common factor of the teeth of sun and planet; 1: hunting teeth")
+    group_common_second: Float = listing("g_2", "largest common factor of the teeth of a disc and the pins")
+    group_planet_kinds: Float = listing(
+        "n_k", "kinds of planet, by the angle between crank and teeth, for equal spacing; 1: all alike"
+    )
+    group_mesh_phases: Float = listing("n_f", "phases in which the planets mesh; 1: all carry alike at any moment")
+    group_preference: Float = listing(
+        "r", "1: hunting teeth and planets in phase, better; 2: hunting teeth; 3: planets in phase; 4: neither; none: "
+        "planets touch"
+    )  # fmt: skip
+    group_root_stress_sun: Float = listing("sigma_F1", "root stress of the sun", "MPa")
+    group_root_stress_planet: Float = listing("sigma_F2", "root stress of the planet", "MPa")
+    group_contact_stress_sun: Float = listing("sigma_H1", "contact stress of the sun", "MPa")
+    group_contact_stress_planet: Float = listing("sigma_H2", "contact stress of the planet", "MPa")
+    group_root_safety_sun: Float = listing("S_F1", "safety of the sun, breakage")
+    group_root_safety_planet: Float = listing("S_F2", "safety of the planet, breakage")
+    group_contact_safety_sun: Float = listing("S_H1", "safety of the sun, pitting")
+    group_contact_safety_planet: Float = listing("S_H2", "safety of the planet, pitting")
 
 
 @dataclass(frozen=True, kw_only=True)

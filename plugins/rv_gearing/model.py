@@ -18,8 +18,6 @@ TOLERANCES = [
 ]
 
 
-# The gearing as truing knows it: function, error sources, goals, studies and sheet
-
 LITERATURE = [
     "The paper: Han Linshan, Wei Guo, Li Tongtong (韓林山, 魏國, 李彤彤), Automatic gear calculation and strength "
     "calibration of RV reducer, Henan Science and Technology 2024 (13), p. 29, "

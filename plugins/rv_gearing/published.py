@@ -5,8 +5,6 @@ from collections.abc import Iterator, Mapping
 from rv_gearing.groups import PINS, RATIOS, TORQUE
 from truing import Finding, Published
 
-# What the paper, standards, handbooks and a catalogue print, for comparison under the same settings
-#
 # The paper prints the inputs of its example, and its tables and figures of results are lost. The credit of the strength
 # formulas therefore rests on examples that others have published.
 

@@ -3,7 +3,7 @@
 A factor that is calculated may be stated instead: ``stated_dynamic_factor = 1.05``. It is then used as it stands.
 """
 
-from typing import Literal
+from typing import Any, Literal
 
 from truing import Float, given, inputs, part
 
@@ -12,23 +12,20 @@ LOST = "not in the paper; usual"
 LARGEST = 10000.0  # mm, um: a size above it was meant in another unit
 
 
-def share(value: float, symbol: str, note: str) -> float:
+def share(value: float, symbol: str, note: str) -> Any:
     """Declare an efficiency: above 0, at most 1."""
-    declared: float = given(value, "", symbol=symbol, note=note, source=PAPER, above=0, at_most=1)
-    return declared
+    return given(value, "", symbol=symbol, note=note, source=PAPER, above=0, at_most=1)
 
 
-def positive(value: float, unit: str, symbol: str, note: str, source: str = LOST) -> float:
+def positive(value: float, unit: str, symbol: str, note: str, source: str = LOST) -> Any:
     """Declare a quantity above zero."""
-    declared: float = given(value, unit, symbol=symbol, note=note, source=source, above=0)
-    return declared
+    return given(value, unit, symbol=symbol, note=note, source=source, above=0)
 
 
-def stated(symbol: str, note: str) -> float:
+def stated(symbol: str, note: str) -> Any:
     """Declare a factor that is calculated unless it is stated here."""
     note = f"{note}; calculated where it is not stated"
-    declared: float = given(None, "", symbol=f"{symbol},st", note=note, above=0)
-    return declared
+    return given(None, "", symbol=f"{symbol},st", note=note, above=0)
 
 
 @inputs

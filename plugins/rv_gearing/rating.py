@@ -9,34 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_geometry.pairs import involute
+from rv_gearing import load_factors, stress_factors
 from rv_gearing.geometry import LEAST_LINE_LOAD, GearSize, MeshSize, ToothLoad, Which, gear_size, load_of, mesh_size
 from rv_gearing.groups import mesh_efficiency
-from rv_gearing.load_factors import (
-    Dynamics,
-    FaceLoad,
-    GearQuality,
-    MeshQuality,
-    MeshStiffness,
-    PlanetSharing,
-    Sharing,
-    dynamics_of,
-    face_load_of,
-    planets_of,
-    quality_of,
-    sharing_of,
-    stiffness_of,
-)
 from rv_gearing.material import Cycles, GearLife, Steel, cycles_of, life_of, steel_of
-from rv_gearing.quantities import Gear, Gearing
-from rv_gearing.stress_factors import (
-    BendingFactors,
-    ContactFactors,
-    GearRoot,
-    bending_factors,
-    contact_factors,
-    contact_ratio_factor,
-    root_of,
-)
+from rv_gearing.quantities import Gearing
 from truing import Array, Bench, Block, Float, Outcome, Sweep, Swept, Table, TruingError, found, part, results
 
 # What the gearing calculation answers: the duty, every factor, the stresses, and what they may be
@@ -50,6 +27,7 @@ PART_3 = "equation 10 of the paper; GB/T 3480-1997"
 BEARS_2 = "equation 14 of the paper; ISO 6336-2:2006, clause 5"
 BEARS_3 = "equation 11 of the paper; ISO 6336-3:2006, clause 5"
 METHOD_B = "ISO 6336-3:2006, clause 5, method B"
+GEARS: tuple[Which, Which] = ("sun", "planet")
 MOST_SAFETY = 1000.0  # a stage without load is that safe
 
 
@@ -142,8 +120,8 @@ class GearStress:
         formula="min(permitted_contact_stress * least_contact_safety / contact_stress, 1000)",
     )  # fmt: skip
     size: GearSize = part(GearSize, suffix="")
-    quality: GearQuality = part(GearQuality, suffix="")
-    root: GearRoot = part(GearRoot, suffix="")
+    quality: load_factors.GearQuality = part(load_factors.GearQuality, suffix="")
+    root: stress_factors.GearRoot = part(stress_factors.GearRoot, suffix="")
     life: GearLife = part(GearLife, suffix="")
 
 
@@ -177,15 +155,15 @@ class Strength:
     )  # fmt: skip
     duty: Duty = part(Duty, suffix="")
     mesh: MeshSize = part(MeshSize, suffix="")
-    quality: MeshQuality = part(MeshQuality, suffix="")
+    quality: load_factors.MeshQuality = part(load_factors.MeshQuality, suffix="")
     steel: Steel = part(Steel, suffix="")
-    stiffness: MeshStiffness = part(MeshStiffness, suffix="")
-    dynamics: Dynamics = part(Dynamics, suffix="")
-    planets: PlanetSharing = part(PlanetSharing, suffix="")
-    face: FaceLoad = part(FaceLoad, suffix="")
-    sharing: Sharing = part(Sharing, suffix="")
-    contact: ContactFactors = part(ContactFactors, suffix="")
-    bending: BendingFactors = part(BendingFactors, suffix="")
+    stiffness: load_factors.MeshStiffness = part(load_factors.MeshStiffness, suffix="")
+    dynamics: load_factors.Dynamics = part(load_factors.Dynamics, suffix="")
+    planets: load_factors.PlanetSharing = part(load_factors.PlanetSharing, suffix="")
+    face: load_factors.FaceLoad = part(load_factors.FaceLoad, suffix="")
+    sharing: load_factors.Sharing = part(load_factors.Sharing, suffix="")
+    contact: stress_factors.ContactFactors = part(stress_factors.ContactFactors, suffix="")
+    bending: stress_factors.BendingFactors = part(stress_factors.BendingFactors, suffix="")
     cycles: Cycles = part(Cycles, suffix="")
     sun: GearStress = part(GearStress, index="1")
     planet: GearStress = part(GearStress, index="2")
@@ -194,71 +172,38 @@ class Strength:
 # From load and factors to the stresses of one gear, what they may be, and how safe it is
 
 
-@dataclass(frozen=True, kw_only=True)
-class Acting:
-    """What acts on both gears alike: nominal stresses without the factors of one gear, and the load factors."""
-
-    contact: Float  # Pa, sigma_H0
-    contact_factor: Float  # root of the load factors for contact
-    contact_strength: Float  # factors of the contact strength without Z_NT
-    tip: Float  # Pa, F_t/(b m) with Y_epsilon and Y_beta
-    outer: Float  # Pa, F_t/(b m) with Y_beta and Y_DT
-    bending_factor: Float  # load factors for bending
-    tip_factor: Float
-
-
-def acting(
-    stage: Gearing, load: ToothLoad, size: tuple[GearSize, MeshSize], factors: tuple[ContactFactors, BendingFactors],
-    shares: tuple[Float, Float],
-) -> Acting:  # fmt: skip
-    """Return what acts on both gears; ``size`` is that of sun and mesh, ``shares`` the load factors behind K_A."""
-    contact, bending = factors
-    width = stage.carrying_share * stage.face_width
-    u = size[1].tooth_ratio
-    pressed = load.tangential_force / (size[0].reference_diameter * width) * (u + 1.0) / u
-    bent = load.tangential_force / (width * stage.module) * bending.helix_factor_bending
-    return Acting(
-        contact=contact.zone_factor * contact.elasticity_factor * contact.contact_ratio_factor * contact.helix_factor
-        * np.sqrt(pressed),
-        contact_factor=np.sqrt(stage.application_factor * shares[0]),
-        contact_strength=contact.lubricant_factor * contact.velocity_factor * contact.roughness_factor
-        * stage.work_hardening_factor * stage.contact_size_factor,
-        tip=bent * bending.contact_ratio_factor_bending,
-        outer=bent * bending.deep_tooth_factor,
-        bending_factor=stage.application_factor * shares[1],
-        tip_factor=bending.tip_load_factor,
-    )  # fmt: skip
-
-
-def stresses_of(
-    stage: Gearing, gear: Gear, act: Acting, single_contact: Float,
-    known: tuple[GearSize, GearQuality, GearRoot, GearLife],
+def gear_of(
+    stage: Gearing, which: Which, shares: tuple[Float, Float], nominal: Float, *, load: ToothLoad, mesh: MeshSize,
+    sizes: tuple[GearSize, GearSize], made: Sequence[load_factors.GearQuality], steel: Steel, cycles: Cycles,
+    contact: stress_factors.ContactFactors, bending: stress_factors.BendingFactors,
 ) -> GearStress:  # fmt: skip
-    """Return stresses and safeties of one gear."""
-    size, quality, root, life = known
-    nominal = act.tip * root.form_factor * root.stress_correction
-    nominal_outer = act.outer * root.form_factor_outer * root.stress_correction_outer
-    stress, outer = nominal * act.bending_factor * act.tip_factor, nominal_outer * act.bending_factor
+    """Return root, life, stresses and safeties of one gear.
+
+    ``shares`` are the load factors behind K_A for contact and bending, ``nominal`` is the contact stress without any.
+    """
+    gear, place = (stage.sun, 0) if which == "sun" else (stage.planet, 1)
+    root = stress_factors.root_of(stage, sizes[place], mesh, steel, which)
+    life = life_of(gear, steel, getattr(cycles, f"load_cycles_{which}"))
+    width = stage.carrying_share * stage.face_width
+    bent = load.tangential_force / (width * stage.module) * bending.helix_factor_bending
+    at_tip = bent * bending.contact_ratio_factor_bending * root.form_factor * root.stress_correction
+    at_outer = bent * bending.deep_tooth_factor * root.form_factor_outer * root.stress_correction_outer
+    raised = stage.application_factor * shares[1]
+    stress, outer = at_tip * raised * bending.tip_load_factor, at_outer * raised
     bears = gear.bending_limit * stage.stress_correction_of_test * life.bending_life_factor * root.notch_sensitivity
     bears = bears * root.root_surface * root.bending_size
-    contact = single_contact * act.contact * act.contact_factor
-    flank_bears = gear.contact_limit * life.contact_life_factor * act.contact_strength
+    single = getattr(contact, f"single_contact_factor_{which}")
+    pressed = single * nominal * np.sqrt(stage.application_factor * shares[0])
+    strength = contact.lubricant_factor * contact.velocity_factor * contact.roughness_factor
+    strength = strength * stage.work_hardening_factor * stage.contact_size_factor
+    flank_bears = gear.contact_limit * life.contact_life_factor * strength
     return GearStress(
-        nominal_root_stress=nominal,
-        root_stress=stress,
-        nominal_root_stress_outer=nominal_outer,
-        root_stress_outer=outer,
-        permitted_root_stress=bears / stage.least_bending_safety,
-        root_safety=safety(bears, stress),
-        root_safety_outer=safety(bears, outer),
-        contact_stress=contact,
+        nominal_root_stress=at_tip, root_stress=stress, nominal_root_stress_outer=at_outer, root_stress_outer=outer,
+        permitted_root_stress=bears / stage.least_bending_safety, root_safety=safety(bears, stress),
+        root_safety_outer=safety(bears, outer), contact_stress=pressed,
         permitted_contact_stress=flank_bears / stage.least_contact_safety,
-        contact_safety=safety(flank_bears, contact),
-        size=size,
-        quality=quality,
-        root=root,
-        life=life,
-    )
+        contact_safety=safety(flank_bears, pressed), size=sizes[place], quality=made[place], root=root, life=life,
+    )  # fmt: skip
 
 
 def safety(strength: Float, stress: Float) -> Float:
@@ -277,50 +222,39 @@ def rv_gearing(stage: Gearing) -> Strength:
     sun_size = gear_size(stage, load, mesh, "sun")
     sizes = sun_size, gear_size(stage, load, mesh, "planet")
     duty = duty_of(stage, load, sun_size, mesh)
-    made, quality = quality_of(stage, sizes, mesh, duty.pitch_line_velocity)
-    stiffness = stiffness_of(stage, load, sizes, mesh.contact_ratio)
-    dynamics = dynamics_of(stage, load, sizes, mesh.total_contact_ratio, (quality, stiffness))
-    planets = planets_of(stage, load.line_load, stiffness.mesh_stiffness)
+    made, quality = load_factors.quality_of(stage, sizes, mesh, duty.pitch_line_velocity)
+    stiffness = load_factors.stiffness_of(stage, load, sizes, mesh.contact_ratio)
+    dynamics = load_factors.dynamics_of(stage, load, sizes, mesh.total_contact_ratio, (quality, stiffness))
+    planets = load_factors.planets_of(stage, load.line_load, stiffness.mesh_stiffness)
     mean = np.maximum(load.line_load * dynamics.dynamic_factor * planets.planet_factor, LEAST_LINE_LOAD)
     seen = (sun_size, mesh, duty.pitch_line_velocity)
-    face = face_load_of(stage, made, mean, stiffness.mesh_stiffness_face, seen)
-    z_epsilon = contact_ratio_factor(stage, mesh)
+    face = load_factors.face_load_of(stage, made, mean, stiffness.mesh_stiffness_face, seen)
+    z_epsilon = stress_factors.contact_ratio_factor(stage, mesh)
     held = stiffness.mesh_stiffness, z_epsilon
-    sharing = sharing_of(stage, mesh, mean * face.face_factor, quality.pitch_left, held)
-    contact = contact_factors(stage, sizes, mesh, duty.pitch_line_velocity, z_epsilon)
-    bending = bending_factors(stage, mesh, stiffness.tooth_stiffness, load.line_load)
+    sharing = load_factors.sharing_of(stage, mesh, mean * face.face_factor, quality.pitch_left, held)
+    contact = stress_factors.contact_factors(stage, sizes, mesh, duty.pitch_line_velocity, z_epsilon)
+    bending = stress_factors.bending_factors(stage, mesh, stiffness.tooth_stiffness, load.line_load)
     for_contact = face.face_factor * sharing.transverse_factor * planets.planet_factor
     for_bending = face.face_factor_bending * sharing.transverse_factor_bending * planets.planet_factor_bending
     shares = dynamics.dynamic_factor * for_contact, dynamics.dynamic_factor * for_bending
-    act = acting(stage, load, (sun_size, mesh), (contact, bending), shares)
-    steel, cycles = steel_of(stage), cycles_of(stage, load)
-    sun = gear_of(
-        stage, mesh, act, steel, (sun_size, made[0], contact.single_contact_factor_sun, cycles.load_cycles_sun)
-    )
-    planet = gear_of(
-        stage, mesh, act, steel, (sizes[1], made[1], contact.single_contact_factor_planet, cycles.load_cycles_planet),
-        which="planet",
+    steel, cycles, u = steel_of(stage), cycles_of(stage, load), mesh.tooth_ratio
+    pressed = load.tangential_force / (sun_size.reference_diameter * duty.carrying_width) * (u + 1.0) / u
+    nominal = contact.zone_factor * contact.elasticity_factor * contact.contact_ratio_factor * contact.helix_factor
+    nominal = nominal * np.sqrt(pressed)
+    sun, planet = (
+        gear_of(stage, which, shares, nominal, load=load, mesh=mesh, sizes=sizes, made=made, steel=steel, cycles=cycles,
+                contact=contact, bending=bending)
+        for which in GEARS
     )  # fmt: skip
     return Strength(
         contact_stress=sun.contact_stress, transmission_error=0.0 * load.tangential_force, efficiency=load.efficiency,
         flank_temperature=stage.oil_temperature, backlash=backlash_of(stage, load, mesh),
-        nominal_contact_stress=act.contact, contact_safety=np.minimum(sun.contact_safety, planet.contact_safety),
+        nominal_contact_stress=nominal, contact_safety=np.minimum(sun.contact_safety, planet.contact_safety),
         root_safety=np.minimum(sun.root_safety, planet.root_safety),
         root_safety_outer=np.minimum(sun.root_safety_outer, planet.root_safety_outer), duty=duty, mesh=mesh,
         quality=quality, steel=steel, stiffness=stiffness, dynamics=dynamics, planets=planets, face=face,
         sharing=sharing, contact=contact, bending=bending, cycles=cycles, sun=sun, planet=planet,
     )  # fmt: skip
-
-
-def gear_of(
-    stage: Gearing, mesh: MeshSize, act: Acting, steel: Steel, known: tuple[GearSize, GearQuality, Float, Float],
-    *, which: Which = "sun",
-) -> GearStress:  # fmt: skip
-    """Return root, life, stresses and safeties of one gear; known are size, quality, Z_B or Z_D, and load cycles."""
-    size, made, single_contact, cycles = known
-    gear = stage.sun if which == "sun" else stage.planet
-    root, life = root_of(stage, size, mesh, steel, which), life_of(gear, steel, cycles)
-    return stresses_of(stage, gear, act, single_contact, (size, made, root, life))
 
 
 def duty_of(stage: Gearing, load: ToothLoad, sun: GearSize, mesh: MeshSize) -> Duty:
@@ -356,13 +290,13 @@ def backlash_of(stage: Gearing, load: ToothLoad, mesh: MeshSize) -> Float:
 HOUR = 3600.0
 SPAN = 1e4  # a limit is sought between the load as it is over SPAN and times SPAN
 HALVINGS = 60
-SAFETIES = ("root_safety_sun", "root_safety_planet", "contact_safety_sun", "contact_safety_planet")
 LIMITS = {
     "root_safety_sun": "breakage of the sun",
     "root_safety_planet": "breakage of the planet",
     "contact_safety_sun": "pitting of the sun",
     "contact_safety_planet": "pitting of the planet",
 }
+SAFETIES = tuple(LIMITS)
 AROUND = {  # unit in SI, and the range as parts of the value
     "load_torque": ("N*m", 0.1, 2.0), "stated_sun_torque": ("N*m", 0.1, 2.0), "power": ("W", 0.1, 2.0),
     "face_width": ("m", 0.5, 2.0), "working_life": ("s", 0.1, 10.0),

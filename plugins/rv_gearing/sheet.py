@@ -7,30 +7,7 @@ from itertools import chain
 
 import numpy as np
 
-from rv_gearing.figures import (
-    AXES,
-    GearingRun,
-    groups_figure,
-    mesh_figure,
-    meshing_of,
-    notched_of,
-    number,
-    root_figure,
-    safeties_figure,
-    stresses_figure,
-    window_words,
-)
-from rv_gearing.groups import (
-    MEETING,
-    MODULE,
-    SIZES,
-    STRENGTH,
-    FoundGroups,
-    GroupColumn,
-    Listed,
-    catalogue_table,
-    printed_in,
-)
+from rv_gearing import figures, groups
 from rv_gearing.rating import Reserve
 from truing import Block, Drawing, Section, Swept, Table, Words
 
@@ -45,13 +22,13 @@ HEADS = {
     "contact_safety_planet": "pitting, planet", "common_first": "common factor, sun and planet",
     "common_second": "disc and pins", "planet_kinds": "kinds of planet", "mesh_phases": "phases",
 }  # fmt: skip
-DIGITS: dict[GroupColumn, int] = {"ratio": 4, "deviation": 3, "torque": 2, "centre_distance": 3, "circle_low": 2,
+DIGITS: dict[groups.GroupColumn, int] = {"ratio": 4, "deviation": 3, "torque": 2, "centre_distance": 3, "circle_low": 2,
                              "circle_high": 2}  # fmt: skip
 
 
-def search(record: "GearingRun") -> "Sequence[Block]":
+def search(record: figures.GearingRun) -> "Sequence[Block]":
     """All groups as a table, where they lie in the window, and the catalogue beside them."""
-    found = record.outcome(FoundGroups)
+    found = record.outcome(groups.FoundGroups)
     if found is None:
         return []
     if not found.count:
@@ -61,45 +38,45 @@ def search(record: "GearingRun") -> "Sequence[Block]":
         )
         return [Words(words, "warning"), *_catalogue(found)]
     order = f" Sorted by {found.sort_by.replace('_', ' ')}{', the largest first' if found.descending else ''}."
-    table = _table(found, "Groups of tooth numbers", SIZES, _rated_words(found) + order)
+    table = _table(found, "Groups of tooth numbers", groups.SIZES, _rated_words(found) + order)
     if not len(found.groups):
         return [Words("None of the groups has just the wanted ratio.", "warning"), *_catalogue(found)]
     caption = "Every group by its number. Both dashed pairs are limits: of the ratio and of the centre distance."
     return [
         table,
         _preferred(found),
-        Words(window_words(found)),
-        Drawing("Groups in their window", partial(groups_figure, found), caption),
+        Words(figures.window_words(found)),
+        Drawing("Groups in their window", partial(figures.groups_figure, found), caption),
         *_catalogue(found),
     ]
 
 
-def _catalogue(found: FoundGroups) -> "list[Block]":
+def _catalogue(found: groups.FoundGroups) -> "list[Block]":
     """The catalogue of the example's size, beside stages of its module."""
-    same = np.isclose(float(found.inputs.module), MODULE) and float(found.inputs.helix_angle) == 0.0
-    return [catalogue_table(found.inputs)] if same else []
+    same = np.isclose(float(found.inputs.module), groups.MODULE) and float(found.inputs.helix_angle) == 0.0
+    return [groups.catalogue_table(found.inputs)] if same else []
 
 
-def _rated_words(found: FoundGroups) -> str:
+def _rated_words(found: groups.FoundGroups) -> str:
     if found.rated is None:
         return "The teeth that are rated are stated, and in none of these groups."
     return f"Rated below: no. {found.rated}."
 
 
-def _table(found: FoundGroups, title: str, columns: Sequence[GroupColumn], note: str) -> Table:
+def _table(found: groups.FoundGroups, title: str, columns: Sequence[groups.GroupColumn], note: str) -> Table:
     """Some columns of the list, with the number of the group in front."""
-    named: tuple[GroupColumn, ...] = ("group", *columns)
-    values = [np.asarray(found.column(name)) * printed_in(name)[1] for name in named]
+    named: tuple[groups.GroupColumn, ...] = ("group", *columns)
+    values = [np.asarray(found.column(name)) * groups.printed_in(name)[1] for name in named]
     digits = [DIGITS.get(name) for name in named]
     rows = [
         tuple(_cell(value, places) for value, places in zip(row, digits, strict=True))
         for row in zip(*values, strict=True)
     ]
     heads = tuple({"group": "no."}.get(name, HEADS.get(name, name)) for name in named)
-    return Table(title, heads, rows, tuple(printed_in(name)[0] for name in named), note)
+    return Table(title, heads, rows, tuple(groups.printed_in(name)[0] for name in named), note)
 
 
-def _preferred(found: FoundGroups) -> Table:
+def _preferred(found: groups.FoundGroups) -> Table:
     """Common factors, assembly and sharing of every group, with its preference and the reason."""
     of = f"{found.inputs.planets} planet{'s' if found.inputs.planets > 1 else ''}"
     note = (
@@ -107,7 +84,7 @@ def _preferred(found: FoundGroups) -> Table:
         "spread. Phase 1: planets mesh in phase and carry alike at any moment. Kinds: planets that differ by the angle "
         'of their teeth on the crank. sort_by = "preference" lists the better groups first.'
     )
-    table = _table(found, "Which groups are better", ("sun", "planet", *MEETING), note)
+    table = _table(found, "Which groups are better", ("sun", "planet", *groups.MEETING), note)
     rows = [(*row, reason) for row, reason in zip(table.rows, found.reasons(), strict=True)]
     return replace(table, columns=(*table.columns, "reason"), rows=rows, units=(*table.units, ""))
 
@@ -118,31 +95,31 @@ def _cell(value: float, places: int | None) -> float | None:
     return round(float(value), places) if places is not None else float(value)
 
 
-def geometry(record: "GearingRun") -> "Sequence[Block]":
+def geometry(record: figures.GearingRun) -> "Sequence[Block]":
     """The gears and their mesh to scale."""
     caption = (
         "Left the stage, the circle of the crank shafts dashed; right the mesh in its transverse section, both teeth "
         "as their rack generates them. A to E: path of contact, in single contact between B and D; C: pitch point. "
         "Dotted: base circles; chain lines: pitch circles."
     )
-    meshing = meshing_of(record, record.acting)
-    return [Drawing("Sun and planets, and one mesh", partial(mesh_figure, meshing), caption)]
+    meshing = figures.meshing_of(record, record.acting)
+    return [Drawing("Sun and planets, and one mesh", partial(figures.mesh_figure, meshing), caption)]
 
 
-def bending(record: "GearingRun") -> "Sequence[Block]":
+def bending(record: figures.GearingRun) -> "Sequence[Block]":
     """The critical sections of both teeth."""
     caption = (
         "Normal section. Tangents at 30° touch the fillets at the ends of the chord. The force at the tip meets the "
         "axis of the tooth at the height of its arm; grey: the force at the outer point of single contact, for "
         "method B."
     )
-    teeth = notched_of(record, record.acting)
-    return [Drawing("Critical sections of the teeth", partial(root_figure, teeth), caption)]
+    teeth = figures.notched_of(record, record.acting)
+    return [Drawing("Critical sections of the teeth", partial(figures.root_figure, teeth), caption)]
 
 
-def method_b(record: "GearingRun") -> "Sequence[Block]":
+def method_b(record: figures.GearingRun) -> "Sequence[Block]":
     """Say that the two conventions do not mix."""
-    tip, outer = number(record, "root_safety"), number(record, "root_safety_outer")
+    tip, outer = figures.number(record, "root_safety"), figures.number(record, "root_safety_outer")
     return [
         Words(
             f"Least safety with the load at the tip {tip:.3f}, with that at the outer point of single contact "
@@ -153,32 +130,32 @@ def method_b(record: "GearingRun") -> "Sequence[Block]":
     ]
 
 
-def comparison(record: "GearingRun") -> "Sequence[Block]":
+def comparison(record: figures.GearingRun) -> "Sequence[Block]":
     """Stresses and safeties of all groups."""
-    found = record.outcome(FoundGroups)
-    if found is None or not len(found.groups) or not any(np.isfinite(found.strength[name]).any() for name in STRENGTH):
+    found = record.outcome(groups.FoundGroups)
+    if found is None or not any(np.isfinite(found.strength[name]).any() for name in groups.STRENGTH):
         return []
     note = "Under the power or torque of the run, with the same face width, material and factors. " + _rated_words(
         found
     )
     caption = "What is permitted differs a little from group to group, by cycles, speed and notch."
     return [
-        Drawing("Stresses of all groups", partial(stresses_figure, found), caption),
-        _table(found, "Strength of all groups", ("sun", "planet", *STRENGTH), note),
+        Drawing("Stresses of all groups", partial(figures.stresses_figure, found), caption),
+        _table(found, "Strength of all groups", ("sun", "planet", *groups.STRENGTH), note),
     ]
 
 
-def courses(record: "GearingRun") -> "Sequence[Block]":
+def courses(record: figures.GearingRun) -> "Sequence[Block]":
     """The safeties along what was swept, one figure for each sweep."""
     blocks: list[Block] = []
     for swept in record.studies.values():
         if not isinstance(swept, Swept):
             continue
-        over = AXES.get(swept.over, (swept.over.replace("_", " "), 1.0))[0].split(",")[0]
+        over = figures.AXES.get(swept.over, (swept.over.replace("_", " "), 1.0))[0].split(",")[0]
         here = _here(record, swept.over)
         caption = "Dotted: what is asked of each. Breakage goes with the load, pitting with its square root."
         title = f"Safeties over the {over}"
-        blocks.append(Drawing(title, partial(safeties_figure, swept, here), caption if not blocks else ""))
+        blocks.append(Drawing(title, partial(figures.safeties_figure, swept, here), caption if not blocks else ""))
     reserve = record.outcome(Reserve)
     if reserve is not None and np.isfinite(reserve.torque).any():
         torque = float(np.min(reserve.torque))
@@ -187,15 +164,12 @@ def courses(record: "GearingRun") -> "Sequence[Block]":
     return blocks
 
 
-def _here(record: "GearingRun", over: str) -> float:
+def _here(record: figures.GearingRun, over: str) -> float:
     """Where the run itself lies along an input."""
     if over == "load_torque":
-        return number(record, "output_torque")
+        return figures.number(record, "output_torque")
     value = getattr(record.acting, over, np.nan)
     return float(value) if np.ndim(value) == 0 else float("nan")
-
-
-# The sheet, in the order in which an engineer rates a stage
 
 
 def both(*names: str) -> tuple[str, ...]:
@@ -222,7 +196,7 @@ SECTIONS = [
     ),
     Section(
         "The list as results",
-        *(name for name in Listed.__dataclass_fields__ if name not in ("group_count", "exact_count")),
+        *(name for name in groups.Listed.__dataclass_fields__ if name not in ("group_count", "exact_count")),
         level="full",
     ),
     Section(

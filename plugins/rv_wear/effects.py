@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from gear_geometry.mesh_load import wave as harmonic
 from rv_wear.quantities import Reducer, Wear
 from truing import Condition, Effect, Float, Unknown
 
@@ -99,8 +100,7 @@ def pin_pass_ripple(
 ) -> Wear:
     """Every tooth of the disc, or every pin, passes once per turn of the output and leaves its own play."""
     teeth, pins = (reducer.pin_count - 1) * output_angle, reducer.pin_count * output_angle
-    of_disc = disc_cosine * np.cos(teeth) + disc_sine * np.sin(teeth)
-    of_pins = pin_cosine * np.cos(pins) + pin_sine * np.sin(pins)
+    of_disc, of_pins = harmonic(teeth, disc_cosine, disc_sine), harmonic(pins, pin_cosine, pin_sine)
     return replace(wear, backlash=wear.backlash + of_disc + of_pins)
 
 
@@ -175,8 +175,6 @@ def duty_share(reducer: Reducer, *, idle: Float) -> Reducer:
     return replace(reducer, loaded_share=reducer.loaded_share * (1.0 - idle))
 
 
-# What the paper leaves out of the wear and the backlash of a reducer, or of their measurement
-#
 # They act in the order declared: first what changes the clearance, then what changes the wear and what is felt of it,
 # then what is in the reading alone. A new effect is a function beside the others and one more entry in EFFECTS.
 
@@ -188,7 +186,7 @@ ARCHARD = "Archard, J. F., Contact and rubbing of flat surfaces, Journal of Appl
 DOWSON = "Dowson, D., Higginson, G. R., Elasto-hydrodynamic lubrication, Pergamon 1966: film of a line contact"
 KINEMATICS = "kinematics of the cycloid drive"
 
-CLEARANCE: list[Effect[Reducer, Wear]] = [
+EFFECTS: list[Effect[Reducer, Wear]] = [
     Effect("thermal_clearance", on_inputs=thermal_clearance, needs=[HOUSING_TEMPERATURE, DISC_TEMPERATURE],
            unknowns=[Unknown("expansion", -40, 40, "um/(m*K)", note="linear, of housing and disc alike; steel 11.5")],
            looks_like="the backlash follows the difference of both temperatures, back and forth, and never the hours",
@@ -209,8 +207,6 @@ CLEARANCE: list[Effect[Reducer, Wear]] = [
            looks_like="the backlash grows evenly with torque, speed and hours; the flanks wear no deeper",
            why="the crank bearings carry the mesh forces; their raceways wear at a steady rate once they have run in",
            source=ARCHARD),
-]  # fmt: skip
-WEAR: list[Effect[Reducer, Wear]] = [
     Effect("running_in", on_inputs=running_in,
            unknowns=[Unknown("depth", 0, 5, "um", note="lost beside the law of wear when all is run in"),
                      Unknown("run_in_time", 50, 2000, "h", note="after it 63 % of that depth is lost")],
@@ -266,8 +262,6 @@ WEAR: list[Effect[Reducer, Wear]] = [
                       "log of the load tells: state it as the input reversing, and the question is answered",
            why="robots turn to and fro: what one flank wears the other does not",
            source="wear of both flanks, each after its own time"),
-]  # fmt: skip
-READING: list[Effect[Reducer, Wear]] = [
     Effect("pin_pass_ripple", on_results=pin_pass_ripple, needs=[OUTPUT_ANGLE], acts_at_reference=True,
            unknowns=[Unknown("disc_cosine", -1, 1, "arcmin", note="part of the wave with the teeth of the disc"),
                      Unknown("disc_sine", -1, 1, "arcmin", note="part of the wave with the teeth of the disc"),
@@ -297,4 +291,3 @@ READING: list[Effect[Reducer, Wear]] = [
            why="friction in the mesh and the seals keeps the output from coming to rest in the middle",
            source="friction torque over stiffness, with the sign of the motion"),
 ]  # fmt: skip
-EFFECTS: list[Effect[Reducer, Wear]] = [*CLEARANCE, *WEAR, *READING]

@@ -1,6 +1,6 @@
 """The figures of the sheet: the mesh to scale, along the flank, what scatter does, better tolerances."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Circle
 from numpy.typing import ArrayLike, NDArray
 
+from gear_geometry.drawing import BLUE, GREEN, GREY, INK, ORANGE, PALE, panels, quiet, signed
 from rv_wear import geometry
 from rv_wear.calculation import rv_wear
 from rv_wear.costs import PRICED, Bill, price
@@ -16,15 +17,12 @@ from rv_wear.discs import Ground, clearance_over_angle, flank
 from rv_wear.geometry import Mesh, longest_arm_angle, mesh_of, relative_arm
 from rv_wear.machines import Newborn
 from rv_wear.optimum import CostFront, Fronts
+from rv_wear.published import CHOSEN, COST, INDICES, RELIABILITY, WEAR
 from rv_wear.quantities import Reducer, Wear
 from truing import Array, Odds, Optimum, Record, Swept
 
-# What the figures share: colours, grids, and the inputs that a run was made with
-
 ReducerRun = Record[Reducer, Wear]
 
-BLUE, ORANGE, GREEN, INK, GREY = "#1f5a8a", "#c8641e", "#2f6b4f", "#22262b", "#7d838c"
-WIDTH = 6.4
 MICRO, HOUR, ARCMIN = 1e-6, 3600.0, np.pi / 10800.0
 SHADES = ("#12314d", "#1f5a8a", "#4f86b3", "#7d9a3c", "#c8941e", "#c8541e")
 DASHES = ("-", "--", "-.", (0, (1, 1)), (0, (6, 1, 1, 1)), (0, (3, 1)))
@@ -35,34 +33,17 @@ def hours_of(reducer: Reducer) -> str:
     return f"{float(reducer.working_time) / HOUR:.4g} h"
 
 
-def one_panel(height: float) -> "tuple[Figure, Any]":
-    """A figure as wide as the sheet with one panel."""
-    figure = Figure(figsize=(WIDTH, height), layout="constrained")
-    return figure, figure.subplots()
-
-
 def over_phase(panel: Any, label: str) -> None:
     """Axes over the phase angle."""
-    panel.set_xlabel("phase angle of the pin from the crank line, °")
-    panel.set_ylabel(label)
     panel.set_xlim(0, 180)
     panel.set_xticks(range(0, 181, 30))
-    panel.grid(alpha=0.4)
-    panel.set_axisbelow(True)
+    quiet(panel, "phase angle of the pin from the crank line, °", label)
 
 
 def over_hours(panel: Any, hours: ArrayLike, label: str) -> None:
     """Axes over the working time."""
-    panel.set_xlabel("working time, h")
-    panel.set_ylabel(label)
     panel.set_xlim(0, float(np.max(np.asarray(hours), initial=1.0)))
-    panel.grid(alpha=0.4)
-    panel.set_axisbelow(True)
-
-
-def signed(value: float, digits: str = ".4g") -> str:
-    """A number with a true minus."""
-    return f"{value:{digits}}".replace("-", "−")
+    quiet(panel, "working time, h", label)
 
 
 def degrees(angle: ArrayLike) -> NDArray[np.float64]:
@@ -116,10 +97,9 @@ def position_of(reducer: Reducer) -> FigurePosition:
 def mesh_figure(reducer: Reducer) -> "Figure":
     """Draw pins, disc and crank to scale, with the forces of the new mesh in one position."""
     mesh, position = mesh_of(reducer), position_of(reducer)
-    figure = Figure(figsize=(6.4, 6.3), layout="constrained")
-    panel: Any = figure.subplots()
+    figure, panel = panels(1, 6.3)
     panel.set_aspect("equal")
-    _disc(panel, position)
+    panel.fill(position.outline.real, position.outline.imag, facecolor=PALE, edgecolor=BLUE, linewidth=1.1, zorder=2)
     _pins(panel, position, MM * float(mesh.pin_radius))
     _forces(panel, position, MM * float(mesh.pin_radius))
     _angle_and_arm(panel, position)
@@ -127,16 +107,8 @@ def mesh_figure(reducer: Reducer) -> "Figure":
     reach = 1.04 * MM * (float(mesh.pin_circle_radius) + float(mesh.pin_radius))
     panel.set_xlim(-reach, reach)
     panel.set_ylim(-reach, reach)
-    panel.set_xlabel("mm, along the crank line")
-    panel.set_ylabel("mm")
-    panel.grid(alpha=0.3)
-    panel.set_axisbelow(True)
+    quiet(panel, "mm, along the crank line", "mm", alpha=0.3)
     return figure
-
-
-def _disc(panel: Any, position: FigurePosition) -> None:
-    panel.fill(position.outline.real, position.outline.imag, facecolor="#e8eff5", edgecolor=BLUE, linewidth=1.1,
-               zorder=2)  # fmt: skip
 
 
 def _pins(panel: Any, position: FigurePosition, radius: float) -> None:
@@ -218,7 +190,7 @@ def _centres(panel: Any, position: FigurePosition, mesh: Mesh) -> None:
             name, (point, 0.0), where, textcoords="offset points", fontsize=8,
             ha="right" if where[0] < 0 else "left", va="top",
             arrowprops={"arrowstyle": "-", "color": INK, "linewidth": 0.6, "shrinkB": 3},
-            zorder=8, bbox={"facecolor": "#e8eff5", "edgecolor": "none", "pad": 1.0},
+            zorder=8, bbox={"facecolor": PALE, "edgecolor": "none", "pad": 1.0},
         )  # fmt: skip
 
 
@@ -229,7 +201,7 @@ FINE = np.radians(np.linspace(0.0, 180.0, 361))
 
 def clearance_figure(reducer: Reducer) -> "Figure":
     """Draw the clearance over the phase angle, new and worn, and the approach under load that closes it."""
-    figure, panel = one_panel(3.3)
+    figure, panel = panels(1, 3.3)
     mesh = mesh_of(reducer)
     worn = flank(reducer, float(reducer.working_time))
     clear = clearance_over_angle(reducer, FINE)[0] / MICRO
@@ -253,7 +225,7 @@ def clearance_figure(reducer: Reducer) -> "Figure":
 
 def sharing_figure(reducer: Reducer) -> "Figure":
     """Draw the forces of the new mesh by both ways of sharing, and after the working time by that of the run."""
-    figure, panel = one_panel(3.3)
+    figure, panel = panels(1, 3.3)
     looks: dict[Literal["linear", "hertz"], tuple[str, str, str]]
     looks = {"linear": (BLUE, "-", "in proportion to the approach"), "hertz": (GREY, "--", "Hertz at every pin")}
     for sharing, (colour, dashes, words) in looks.items():
@@ -280,8 +252,7 @@ def difference_of_sharing(reducer: Reducer) -> tuple[float, float]:
 
 def modifications_figure(ground: "Ground", own: Reducer) -> "Figure":
     """Draw the forces of the new discs over the phase angle and below them the wear, as the paper's Figs. 1 and 2."""
-    figure = Figure(figsize=(WIDTH, 5.6), layout="constrained")
-    upper, lower = figure.subplots(2, 1, sharex=True)
+    figure, (upper, lower) = panels(2, 5.6, sharex=True)
     shift = float(own.equidistant_modification - own.shift_modification)
     angle = degrees(ground.new.angle)
     for place, modification in enumerate(ground.modifications):
@@ -300,7 +271,7 @@ def modifications_figure(ground: "Ground", own: Reducer) -> "Figure":
 
 def wear_figure(reducer: Reducer) -> "Figure":
     """Draw the wear along the flank at four times up to the working time."""
-    figure, panel = one_panel(3.1)
+    figure, panel = panels(1, 3.1)
     whole = float(reducer.working_time)
     for share, colour, dashes in zip((0.25, 0.5, 0.75, 1.0), (*SHADES[2::-1], ORANGE), DASHES[3::-1], strict=True):
         found = flank(reducer, share * whole)
@@ -314,8 +285,7 @@ def wear_figure(reducer: Reducer) -> "Figure":
 
 def history_figure(swept: "Swept") -> "Figure":
     """Draw deepest wear and backlash over the working time."""
-    figure = Figure(figsize=(WIDTH, 4.4), layout="constrained")
-    upper, lower = figure.subplots(2, 1, sharex=True)
+    figure, (upper, lower) = panels(2, 4.4, sharex=True)
     hours = swept.axis / HOUR
     upper.plot(hours, swept.results["max_wear"] / MICRO, color=BLUE)
     lower.plot(hours, swept.results["backlash"] / ARCMIN, color=ORANGE)
@@ -332,11 +302,6 @@ def history_figure(swept: "Swept") -> "Figure":
 
 # What scatter does: backlash of drawn machines, reliability over the hours, sensitivity indices, costs
 
-PRINTED_INDICES = {
-    1: -0.037, 2: 0.025, 3: 0.025, 4: 1.56, 5: -1.0, 6: 1.0, 7: -1.56, 8: 0.78, 9: 0.39, 10: 1.20, 11: -0.60,
-    12: 1.56, 13: -1.0, 14: 0.00016, 15: 1.56, 16: 1.06,
-}  # fmt: skip
-"""Table 2 of the paper."""
 FACTOR_WORDS = {
     1: "base tangent length", 2: "runout of the involute gears", 3: "centre distance", 4: "equidistant modification",
     5: "shift modification", 6: "radius of the pin circle", 7: "radius of the pins", 8: "fit of the pins",
@@ -344,13 +309,11 @@ FACTOR_WORDS = {
     12: "equidistant modification as ground", 13: "shift modification as ground", 14: "throw of the crank",
     15: "wear", 16: "crank bearings",
 }  # fmt: skip
-PRINTED_RELIABILITY = (6000.0, 0.887)
 
 
 def machines_figure(born: "Newborn") -> "Figure":
     """Draw the backlash of every machine, new, and the histograms of new and used ones with the limit."""
-    figure = Figure(figsize=(WIDTH, 3.4), layout="constrained")
-    left, right = figure.subplots(1, 2, sharey=True, width_ratios=(5, 2))
+    figure, (left, right) = panels(1, 3.4, 2, sharey=True, width_ratios=(5, 2))
     hours = f"after {float(born.inputs.working_time) / HOUR:.4g} h"
     known = [values[np.isfinite(values)] / ARCMIN for values in (born.new, born.used)]
     left.plot(np.arange(1, len(known[0]) + 1), known[0], ".", markersize=1.8, color=BLUE)
@@ -361,15 +324,12 @@ def machines_figure(born: "Newborn") -> "Figure":
     for panel in (left, right):
         panel.axhline(limit, color=INK, linestyle="--", linewidth=0.9)
     left.text(0.02, limit, f"permitted {limit:g}′", va="bottom", fontsize=8, transform=left.get_yaxis_transform())
-    left.set_xlabel("machine drawn")
-    left.set_ylabel("backlash, arc minutes")
+    quiet(left, "machine drawn", "backlash, arc minutes", axis="y")
     left.set_xlim(0, len(born.new) + 1)
     left.locator_params(axis="x", nbins=4, prune="upper")
     right.set_xlabel("number of machines")
     right.legend(loc="lower right")
-    left.grid(axis="y", alpha=0.4)
     right.grid(axis="y", alpha=0.4)
-    left.set_axisbelow(True)
     return figure
 
 
@@ -387,7 +347,7 @@ def reliability_figure(odds: "Odds", optimised: Mapping[str, tuple[Array, Array]
 
     *optimised* names further curves, each hours and probabilities.
     """
-    figure, panel = one_panel(3.2)
+    figure, panel = panels(1, 3.2)
     curve = odds.curve
     assert curve is not None  # drawn only where there is one
     hours = curve.axis / HOUR
@@ -396,20 +356,19 @@ def reliability_figure(odds: "Odds", optimised: Mapping[str, tuple[Array, Array]
     normal = 100 * np.asarray(curve.analytic["backlash"])
     panel.plot(hours, normal, color=GREY, linestyle="--", linewidth=1.0, label="normal distribution")
     lowest = [float(np.nanmin(chance))]
-    looks = ((ORANGE, "-"), ("#2f6b4f", "-."), (INK, ":"))
+    looks = ((ORANGE, "-"), (GREEN, "-."), (INK, ":"))
     for (name, (at, shares)), (colour, dashes) in zip((optimised or {}).items(), looks, strict=False):
         panel.plot(at / HOUR, 100 * shares, color=colour, linestyle=dashes, label=name)
         lowest.append(float(100 * np.nanmin(shares)))
     goal = 100 * float(odds.inputs.required_reliability)
     panel.axhline(goal, color=INK, linewidth=0.8, linestyle=(0, (5, 3)))
     panel.text(0.01, goal, f"required {goal:g} %", va="bottom", fontsize=8, transform=panel.get_yaxis_transform())
-    printed_at, share = PRINTED_RELIABILITY
-    panel.plot(
-        printed_at, 100 * share, "D", markersize=8, fillstyle="none", color=ORANGE, label="the paper, 88.7 % at 6000 h"
-    )
+    printed_at, share = 6000.0, float(RELIABILITY)
+    panel.plot(printed_at, share, "D", markersize=8, fillstyle="none", color=ORANGE,
+               label=f"the paper, {RELIABILITY} % at 6000 h")  # fmt: skip
     over_hours(panel, hours, "reliability, %")
     panel.set_xlim(0, 1.02 * max(float(hours.max()), printed_at))
-    bottom: float = min([*lowest, goal, 100 * share])
+    bottom: float = min([*lowest, goal, share])
     panel.set_ylim(max(-2.0, bottom - 0.08 * (100 - bottom) - 0.5), 100 + 0.06 * (100 - bottom) + 0.2)
     panel.legend(loc="lower left")
     return figure
@@ -417,13 +376,14 @@ def reliability_figure(odds: "Odds", optimised: Mapping[str, tuple[Array, Array]
 
 def indices_figure(indices: Mapping[int, float]) -> "Figure":
     """Draw the sensitivity indices by their number as bars, with those of the paper's Table 2 as diamonds."""
-    figure, panel = one_panel(4.6)
+    figure, panel = panels(1, 4.6)
     numbers = sorted(indices)
     places = range(len(numbers) - 1, -1, -1)
     values = [indices[number] for number in numbers]
     colours = [BLUE if value >= 0 else ORANGE for value in values]
     panel.barh(list(places), values, color=colours, height=0.62, alpha=0.85)
-    printed = [PRINTED_INDICES[number] for number in numbers]
+    told = {number: float(value) for number, value, *_ in INDICES}
+    printed = [told[number] for number in numbers]
     panel.plot(printed, list(places), "D", markersize=6.5, fillstyle="none", color=INK, label="the paper, Table 2")
     for place, value in zip(places, values, strict=True):
         left = value < 0
@@ -436,61 +396,48 @@ def indices_figure(indices: Mapping[int, float]) -> "Figure":
     panel.tick_params(axis="y", length=0)
     widest = max(1.6, *(abs(value) for value in values))
     panel.set_xlim(-1.42 * widest, 1.42 * widest)
-    panel.set_xlabel("change of backlash per change of the error, over that of factor 6")
+    quiet(panel, "change of backlash per change of the error, over that of factor 6", axis="x")
     panel.legend(loc="lower left")
-    panel.grid(axis="x", alpha=0.4)
-    panel.set_axisbelow(True)
     return figure
 
 
 def costs_figure(bill: "Bill", form: str) -> "Figure":
     """Draw the price of every zone in one form of the cost functions, and what another width would cost."""
-    figure = Figure(figsize=(WIDTH, 3.2), layout="constrained")
-    left, right = figure.subplots(1, 2, width_ratios=(1, 1))
-    _bars(left, {name: prices[form] for name, prices in bill.prices.items()}, "{:.0f}")
-    left.set_xlabel("price of the zone, yuan")
+    figure, (left, right) = panels(1, 3.2, 2, width_ratios=(1, 1))
+    _bars(left, {name: prices[form] for name, prices in bill.prices.items()}, "price of the zone, yuan")
     shares = np.linspace(0.5, 2.0, 61)
-    for place, name in enumerate(_first_of_kind(bill.widths, PRICED)):
+    first: dict[str, str] = {}  # zone of each cost function
+    for name in bill.widths:
+        first.setdefault(PRICED[name], name)
+    for place, name in enumerate(first.values()):
         width = bill.widths[name]
         paid = [price(PRICED[name], form).at(float(share * width)) for share in shares]
-        colour = (BLUE, ORANGE, "#2f6b4f")[place % 3]
+        colour = (BLUE, ORANGE, GREEN)[place % 3]
         words = f"{name.replace('_', ' ')}, now {width / MICRO:.3g} µm"
         right.plot(shares, paid, color=colour, label=words)
         right.plot(1.0, bill.prices[name][form], "o", color=colour, markersize=5)
-    right.set_xlabel("width of the zone over that now")
-    right.set_ylabel("price of the zone, yuan")
+    quiet(right, "width of the zone over that now", "price of the zone, yuan")
     right.set_ylim(0, None)
-    right.grid(alpha=0.4)
     if right.get_legend_handles_labels()[0]:
         right.legend(fontsize=7)
     return figure
 
 
-def _first_of_kind(widths: Mapping[str, float], kinds: Mapping[str, Any]) -> Sequence[str]:
-    """The first zone of each cost function."""
-    found: dict[Any, str] = {}
-    for name in widths:
-        found.setdefault(kinds[name], name)
-    return list(found.values())
-
-
-def _bars(panel: Any, values: Mapping[str, float], words: str) -> None:
+def _bars(panel: Any, values: Mapping[str, float], label: str) -> None:
     """Bars with their values, the longest on top."""
     ranked = sorted(values.items(), key=lambda item: item[1])
     panel.barh([name.replace("_", " ") for name, _ in ranked], [value for _, value in ranked], color=BLUE, height=0.66)
     for place, (_, value) in enumerate(ranked):
-        panel.text(value, place, " " + words.format(value), va="center", fontsize=7.5, color=INK)
+        panel.text(value, place, f" {value:.0f}", va="center", fontsize=7.5, color=INK)
     panel.set_xlim(0, 1.2 * max([value for _, value in ranked], default=1.0) or 1.0)
     panel.tick_params(axis="y", length=0, labelsize=8)
-    panel.grid(axis="x", alpha=0.4)
-    panel.set_axisbelow(True)
+    quiet(panel, label, axis="x")
 
 
 # Better tolerances: the fronts of cost and wear, and what they do to the reliability over the hours
 
-PRINTED_OPTIMA = {0.95: (1291.0, 3.151), 0.999: (1300.0, 3.207)}
+PRINTED_OPTIMA = {float(goal): (float(cost), float(wear)) for _, goal, cost, wear, _ in CHOSEN}
 """Cost (yuan) and wear (um) of the paper's optima by required reliability; its 100 % is read as 0.999."""
-PRINTED_START = (1402.0, 3.127)
 LOOKS = ((BLUE, "o"), (GREEN, "s"), (ORANGE, "^"))
 
 
@@ -499,7 +446,7 @@ def fronts_figure(fronts: "Fronts", optimum: "Optimum | None", start: tuple[floa
 
     *start* is the cost (yuan) and the wear (m) of the run.
     """
-    figure, panel = one_panel(4.2)
+    figure, panel = panels(1, 4.2)
     for front, (colour, marker) in zip(fronts.fronts, LOOKS, strict=False):
         if not front.designs:
             continue
@@ -515,15 +462,15 @@ def fronts_figure(fronts: "Fronts", optimum: "Optimum | None", start: tuple[floa
             panel.plot(cost[front.knee], wear[front.knee], marker, markersize=10, fillstyle="none", color=colour)
         _modifications(panel, front)
     if optimum is not None and optimum.front:
-        found = _found(optimum)
-        goal = float(fronts.inputs.required_reliability)
-        panel.plot(*found, ".", color=GREY, markersize=3.0, label=f"found by the search for {_percent(goal)}", zorder=1)
+        prices, depths = (
+            [design.objectives[name] for design in optimum.front] for name in ("tolerance_price", "max_wear")
+        )
+        words = f"found by the search for {_percent(float(fronts.inputs.required_reliability))}"
+        panel.plot(prices, np.divide(depths, MICRO), ".", color=GREY, markersize=3.0, label=words, zorder=1)
     panel.plot(start[0], start[1] / MICRO, "X", color=INK, markersize=8, linestyle="", label="as stated")
-    panel.plot(*PRINTED_START, "D", markersize=9, fillstyle="none", color=INK, label="the paper, before", linestyle="")
-    panel.set_xlabel("price of all zones, yuan")
-    panel.set_ylabel("deepest wear after the working time, µm")
-    panel.grid(alpha=0.4)
-    panel.set_axisbelow(True)
+    printed = float(COST), float(WEAR)
+    panel.plot(*printed, "D", markersize=9, fillstyle="none", color=INK, label="the paper, before", linestyle="")
+    quiet(panel, "price of all zones, yuan", "deepest wear after the working time, µm")
     panel.margins(0.08)
     panel.legend(loc="upper right", fontsize=7.5)
     return figure
@@ -534,13 +481,6 @@ def _places(front: "CostFront") -> tuple[NDArray[np.float64], NDArray[np.float64
     return (
         np.array([design.cost for design in front.designs]),
         np.array([design.wear / MICRO for design in front.designs]),
-    )
-
-
-def _found(optimum: "Optimum") -> tuple[list[float], list[float]]:
-    return (
-        [design.objectives["tolerance_price"] for design in optimum.front],
-        [design.objectives["max_wear"] / MICRO for design in optimum.front],
     )
 
 

@@ -256,8 +256,8 @@ def _refined_maximum(values: Array) -> Float:
     before, at, after = (np.take_along_axis(values, (place + step)[None], axis=0)[0] for step in (-1, 0, 1))
     with np.errstate(divide="ignore", invalid="ignore"):
         top = at - (after - before) ** 2 / (8.0 * (after - 2.0 * at + before))
-    refined: Float = np.where(np.isfinite(top), top, values.max(axis=0))
-    return refined
+    value: Float = np.where(np.isfinite(top), top, values.max(axis=0))
+    return value
 
 
 def profile(mesh: Mesh, turn: Float) -> tuple[Float, Float]:

@@ -48,13 +48,12 @@ class History:
                                     method="equation 21 with the wear at each time")  # fmt: skip
 
 
-def index(number: int, what: str) -> float:
+def index(number: int, what: str) -> Any:
     """Declare the sensitivity index of one factor."""
-    declared: float = found(
+    return found(
         "", symbol=f"s_{number}", note=f"{number}: {what}", source="equation 24",
         method="derivative of equation 21, divided by that of factor 6",
     )  # fmt: skip
-    return declared
 
 
 @results
@@ -142,15 +141,13 @@ def slopes_at_same_wear(reducer: Reducer) -> dict[str, float]:
         name = FACTORS[number]
         value = getattr(reducer, name)
         up, down = (replace(reducer, **{name: value + step}) for step in (STEP, -STEP))
-        slopes[name] = (total(up, 0.0) - total(down, 0.0)) / (2 * STEP)
-    slopes[FACTORS[15]] = (total(reducer, STEP) - total(reducer, -STEP)) / (2 * STEP)
+        slopes[name] = _slope(backlash_of(up, 0.0), backlash_of(down, 0.0))
+    slopes[FACTORS[15]] = _slope(backlash_of(reducer, STEP), backlash_of(reducer, -STEP))
     return slopes
 
 
-def total(reducer: Reducer, felt_wear: float) -> float:
-    """The backlash of equation 21 for a stated wear, rad."""
-    shares = backlash_of(reducer, felt_wear)
-    return float(shares.involute + shares.gearing + shares.wear + shares.bearing)
+def _slope(up: Mapping[str, Float], down: Mapping[str, Float]) -> float:
+    return (float(up["backlash"]) - float(down["backlash"])) / (2 * STEP)
 
 
 def chances(odds: Odds) -> Chances:
@@ -159,7 +156,9 @@ def chances(odds: Odds) -> Chances:
     moves = {demand.name: bool(demand.moving) for demand in odds.demands}
     mean = odds.first_mean.get("backlash", nan) + (limit if moves.get("backlash") else 0.0)
     drawn = odds.moments.get("backlash")
-    time, curve = over_time(odds)
+    curve, nothing = odds.curve, np.empty(0)
+    if curve is not None and (curve.over != "working_time" or "backlash" not in curve.probability):
+        curve = None
     return Chances(
         accuracy_reliability=odds.probability.get("backlash", nan),
         normal_reliability=odds.analytic.get("backlash", nan),
@@ -168,17 +167,9 @@ def chances(odds: Odds) -> Chances:
         sampled_mean=drawn.mean if drawn else nan,
         sampled_sd=drawn.sd if drawn else nan,
         largest_backlash=drawn.largest if drawn else nan,
-        reliability_time=time,
-        reliability_history=curve,
+        reliability_time=curve.axis if curve else nothing,
+        reliability_history=curve.probability["backlash"] if curve else nothing,
     )
-
-
-def over_time(odds: Odds) -> "tuple[NDArray[np.float64], NDArray[np.float64]]":
-    """Working times and reliabilities; empty where the study did not run over the working time."""
-    curve = odds.curve
-    if curve is None or curve.over != "working_time" or "backlash" not in curve.probability:
-        return np.empty(0), np.empty(0)
-    return curve.axis, curve.probability["backlash"]
 
 
 # A study of our own: the backlash of machines when new, the paper's Fig. 4, and after their working time

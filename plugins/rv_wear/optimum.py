@@ -241,14 +241,13 @@ class Front:
                                      note="equidistant modification of the designs", method=ORDER)  # fmt: skip
 
 
-def end(number: int, what: str, unit: str, symbol: str) -> float:
+def end(number: int, what: str, unit: str, symbol: str) -> Any:
     """Declare a number of the front under one of the paper's two constraints, found without a search."""
     reliability = CONSTRAINTS[number]
-    declared: float = found(
+    return found(
         unit, symbol=f"{symbol},{number}", note=f"{what}, reliability {reliability:g}",
         method=f"least cost at every modification, constraint {number} of the paper",
     )  # fmt: skip
-    return declared
 
 
 @results

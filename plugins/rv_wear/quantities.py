@@ -1,10 +1,8 @@
 """What the reducer calculation is told and what it answers: every quantity with unit, symbol, bounds and source."""
 
-from typing import Literal
+from typing import Any, Literal
 
 from truing import Float, found, given, inputs, results
-
-# What the reducer calculation is told: every quantity with unit, symbol, bounds and source
 
 PAPER = "section 1.5 of the paper"
 INDICES = "follows from the indices of Table 2; Table 1 is lost"
@@ -16,16 +14,14 @@ SAMPLED = {"loaded_pins": "1", "wear_angle": "20 deg"}  # a count, and the place
 ZONE = "middle of its zone; the zones were chosen to fit"
 
 
-def length(value: float, unit: Literal["mm", "um"], symbol: str, note: str, source: str) -> float:
+def length(value: float, unit: Literal["mm", "um"], symbol: str, note: str, source: str) -> Any:
     """Declare a size, above zero; a thousand of its unit was meant in another one."""
-    declared: float = given(value, unit, symbol=symbol, note=note, source=source, above=0, below=LARGEST)
-    return declared
+    return given(value, unit, symbol=symbol, note=note, source=source, above=0, below=LARGEST)
 
 
-def deviation(value: float, symbol: str, note: str) -> float:
+def deviation(value: float, symbol: str, note: str) -> Any:
     """Declare an error factor of the backlash at the middle of its zone; no part is off by a millimetre."""
-    declared: float = given(value, "um", symbol=symbol, note=note, source=ZONE, at_least=-LARGEST, at_most=LARGEST)
-    return declared
+    return given(value, "um", symbol=symbol, note=note, source=ZONE, at_least=-LARGEST, at_most=LARGEST)
 
 
 @inputs

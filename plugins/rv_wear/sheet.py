@@ -3,26 +3,9 @@
 from collections.abc import Sequence
 from functools import partial
 
+from rv_wear import figures
 from rv_wear.costs import Bill
 from rv_wear.discs import Ground
-from rv_wear.figures import (
-    PRINTED_OPTIMA,
-    ReducerRun,
-    at_printed_wear,
-    better,
-    clearance_figure,
-    costs_figure,
-    difference_of_sharing,
-    fronts_figure,
-    history_figure,
-    indices_figure,
-    machines_figure,
-    mesh_figure,
-    modifications_figure,
-    reliability_figure,
-    sharing_figure,
-    wear_figure,
-)
 from rv_wear.machines import FACTORS, Newborn
 from rv_wear.optimum import Fronts
 from truing import Block, Drawing, Odds, Optimum, Section, Sensitivities, Swept, Words
@@ -30,7 +13,7 @@ from truing import Block, Drawing, Odds, Optimum, Section, Sensitivities, Swept,
 # The figures by section of the sheet: each is there where its study ran, and drawn when the sheet is written
 
 
-def geometry(record: "ReducerRun") -> "Sequence[Block]":
+def geometry(record: figures.ReducerRun) -> "Sequence[Block]":
     """The mesh to scale, and the clearance along the flank."""
     reducer = record.acting
     mesh = (
@@ -43,15 +26,15 @@ def geometry(record: "ReducerRun") -> "Sequence[Block]":
         "exceeds the clearance (shaded); wear opens it most where force and sliding are large together."
     )
     return [
-        Drawing("Disc, pins and crank", partial(mesh_figure, reducer), mesh),
-        Drawing("Clearance along the flank", partial(clearance_figure, reducer), gaps),
+        Drawing("Disc, pins and crank", partial(figures.mesh_figure, reducer), mesh),
+        Drawing("Clearance along the flank", partial(figures.clearance_figure, reducer), gaps),
     ]
 
 
-def forces(record: "ReducerRun") -> "Sequence[Block]":
+def forces(record: figures.ReducerRun) -> "Sequence[Block]":
     """Forces along the flank by both ways of sharing, and how far these are apart."""
     reducer = record.acting
-    largest, one = difference_of_sharing(reducer)
+    largest, one = figures.difference_of_sharing(reducer)
     words = (
         f"With Hertz at every pin the largest force of the new disc is {100 * abs(largest):.1f} % "
         f"{'larger' if largest > 0 else 'smaller'} than in proportion to the approach; a single pin differs by up to "
@@ -61,34 +44,34 @@ def forces(record: "ReducerRun") -> "Sequence[Block]":
         "Every pin on the loaded side passes through all phase angles. The dip of the Hertz curve is where the flank "
         "turns from hollow to convex and is nearly straight."
     )
-    return [Drawing("Force on a pin", partial(sharing_figure, reducer), caption), Words(words)]
+    return [Drawing("Force on a pin", partial(figures.sharing_figure, reducer), caption), Words(words)]
 
 
-def wear(record: "ReducerRun") -> "Sequence[Block]":
+def wear(record: figures.ReducerRun) -> "Sequence[Block]":
     """Wear along the flank, and over the working time."""
     reducer = record.acting
     blocks: list[Block] = []
     if float(reducer.working_time) > 0.0:
         caption = "By the law of wear alone. Where the disc wears, the neighbours take over load: the worn part widens."
-        blocks.append(Drawing("Wear along the flank", partial(wear_figure, reducer), caption))
+        blocks.append(Drawing("Wear along the flank", partial(figures.wear_figure, reducer), caption))
     swept = record.outcome(Swept)
     if swept is not None and swept.over == "working_time" and {"max_wear", "backlash"} <= set(swept.results):
         caption = "Backlash of the reducer whose errors lie at the middle of their zones."
-        blocks.append(Drawing("Wear and backlash over the years", partial(history_figure, swept), caption))
+        blocks.append(Drawing("Wear and backlash over the years", partial(figures.history_figure, swept), caption))
     return blocks
 
 
-def other_discs(record: "ReducerRun") -> "Sequence[Block]":
+def other_discs(record: figures.ReducerRun) -> "Sequence[Block]":
     """The paper's Figs. 1 and 2."""
     ground = record.outcome(Ground)
     if ground is None:
         return []
     caption = "As Figs. 1 and 2 of the paper: new discs of one radial clearance, and their wear early in life."
-    draw = partial(modifications_figure, ground, record.acting)
+    draw = partial(figures.modifications_figure, ground, record.acting)
     return [Drawing("Forces and wear of discs ground in other ways", draw, caption)]
 
 
-def influence(record: "ReducerRun") -> "Sequence[Block]":
+def influence(record: figures.ReducerRun) -> "Sequence[Block]":
     """The sixteen indices beside those of the paper's Table 2."""
     if record.outcome(Sensitivities) is None:
         return []
@@ -98,10 +81,10 @@ def influence(record: "ReducerRun") -> "Sequence[Block]":
     caption = (
         "Diamonds: what the paper prints. Its indices gave the lost sizes of the gearing; see the comparison below."
     )
-    return [Drawing("How much backlash each error gives", partial(indices_figure, found), caption)]
+    return [Drawing("How much backlash each error gives", partial(figures.indices_figure, found), caption)]
 
 
-def reliability(record: "ReducerRun") -> "Sequence[Block]":
+def reliability(record: figures.ReducerRun) -> "Sequence[Block]":
     """The paper's Figs. 4 and 5."""
     blocks: list[Block] = []
     born = record.outcome(Newborn)
@@ -111,15 +94,15 @@ def reliability(record: "ReducerRun") -> "Sequence[Block]":
         if "mean" in found:
             caption += f" New: mean {found['mean']:.3f}′, standard deviation {found['sd']:.3f}′, largest "
             caption += f"{found['largest']:.3f}′. The paper: about 0.7′, and all below 1′."
-        blocks.append(Drawing("Backlash of new machines", partial(machines_figure, born), caption))
+        blocks.append(Drawing("Backlash of new machines", partial(figures.machines_figure, born), caption))
     odds = record.outcome(Odds)
     if odds is not None and odds.curve is not None and odds.curve.over == "working_time":
         caption = "As Fig. 5 of the paper. It says that the reliability begins to fall after 4000 h."
-        blocks.append(Drawing("Reliability over the working time", partial(reliability_figure, odds), caption))
+        blocks.append(Drawing("Reliability over the working time", partial(figures.reliability_figure, odds), caption))
     return blocks
 
 
-def costs(record: "ReducerRun") -> "Sequence[Block]":
+def costs(record: figures.ReducerRun) -> "Sequence[Block]":
     """What each zone costs, and what another width would."""
     bill = record.outcome(Bill)
     if bill is None or not bill.widths:
@@ -128,10 +111,10 @@ def costs(record: "ReducerRun") -> "Sequence[Block]":
     caption = (
         f"By the cost functions in the form '{form}'. Right: one zone of each function, from half to twice as wide."
     )
-    return [Drawing("Price of the zones", partial(costs_figure, bill, form), caption)]
+    return [Drawing("Price of the zones", partial(figures.costs_figure, bill, form), caption)]
 
 
-def better_tolerances(record: "ReducerRun") -> "Sequence[Block]":
+def better_tolerances(record: figures.ReducerRun) -> "Sequence[Block]":
     """The paper's Figs. 6 and 7."""
     fronts = record.outcome(Fronts)
     if fronts is None or not any(front.designs for front in fronts.fronts):
@@ -144,15 +127,15 @@ def better_tolerances(record: "ReducerRun") -> "Sequence[Block]":
     )
     if optimum is not None and optimum.front:
         caption += " Points: the front that the search of the study 'optimise' came to, a check of it."
-    draw = partial(fronts_figure, fronts, optimum, start)
+    draw = partial(figures.fronts_figure, fronts, optimum, start)
     blocks: list[Block] = [Drawing("Cost and wear", draw, caption), Words(_beside_the_paper(fronts))]
     odds = record.outcome(Odds)
-    if odds is not None and odds.curve is not None and odds.curve.over == "working_time" and better(fronts):
+    if odds is not None and odds.curve is not None and odds.curve.over == "working_time" and figures.better(fronts):
         caption = (
             "As Fig. 7 of the paper: the reducer as stated, and to first order the knees of the fronts with their cost "
             "and equidistant modification."
         )
-        draw = partial(reliability_figure, odds, better(fronts))
+        draw = partial(figures.reliability_figure, odds, figures.better(fronts))
         blocks.append(Drawing("Reliability before and after", draw, caption))
     return blocks
 
@@ -161,9 +144,9 @@ def _beside_the_paper(fronts: Fronts) -> str:
     """Our least cost at the wear of the paper's optima."""
     said = []
     for front in fronts.fronts:
-        ours = at_printed_wear(front)
+        ours = figures.at_printed_wear(front)
         if ours is not None:
-            cost, wear = PRINTED_OPTIMA[front.goal]
+            cost, wear = figures.PRINTED_OPTIMA[front.goal]
             said.append(
                 f"At {wear:g} µm the paper pays {cost:.0f} yuan, here it is {ours:.0f} for {100 * front.goal:g} %."
             )
@@ -174,8 +157,6 @@ def _beside_the_paper(fronts: Fronts) -> str:
     )
     return " ".join(said)
 
-
-# The sheet, in the order an engineer reads it
 
 SECTIONS = [
     Section(

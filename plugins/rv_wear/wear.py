@@ -217,8 +217,8 @@ def widened(teeth: Teeth, part: Teeth) -> tuple[Teeth, Array]:
 
 def _least_outside(teeth: Teeth, pins: slice) -> Array:
     outside = np.concatenate([teeth.slack[: pins.start], teeth.slack[pins.stop :]])
-    least: Array = outside.min(axis=0, initial=np.inf)
-    return least
+    value: Array = outside.min(axis=0, initial=np.inf)
+    return value
 
 
 def _put(values: Array, part: Teeth, whole: Teeth) -> Array:
@@ -347,7 +347,6 @@ def unworn(mesh: Mesh) -> Unworn:
     force = loads.force.reshape(-1, teeth.count)
     at_pitch_point = geometry.relative_radius(teeth.mesh, geometry.longest_arm_angle(teeth.mesh))
     scale = loads.scale.max(axis=0)
-    fastest = growth(teeth, loads)(loads.force).max(axis=(0, 1))
     return Unworn(
         scale=scale,
         approach=loads.approach.max(axis=0),
@@ -356,7 +355,7 @@ def unworn(mesh: Mesh) -> Unworn:
         pressure=np.asarray(geometry.mean_pressure(teeth.mesh, loads.force, teeth.relative_radius)).max(axis=(0, 1)),
         contact_part=np.asarray(contact_part(teeth.mesh.equivalent_modulus, scale / teeth.mesh.width, at_pitch_point)),
         lowest_equidistant=np.asarray(geometry.lowest_equidistant(teeth.mesh)),
-        first_step=np.where(fastest > 0.0, teeth.mesh.threshold / np.maximum(fastest, 1.0 / NEVER), NEVER),
+        first_step=_lasts(teeth, growth(teeth, loads)(loads.force)),
     )
 
 
@@ -412,7 +411,7 @@ def groups(order: NDArray[np.intp]) -> list[NDArray[np.intp]]:
 def all_unworn(mesh: Mesh, count: int) -> Unworn:
     """The new meshes, all of them."""
     if count == 0:
-        return unworn_of_nothing()
+        return Unworn(*np.empty((len(Unworn.__dataclass_fields__), 0)))
     if count > FEW:
         return _joined([unworn_of_group(key_of(mesh, places)) for places in groups(np.arange(count))])
     keys = [key_of(mesh, np.array([place])) for place in range(count)]
@@ -429,11 +428,6 @@ def all_unworn(mesh: Mesh, count: int) -> Unworn:
 def _joined(parts: Sequence[Unworn]) -> Unworn:
     names = Unworn.__dataclass_fields__
     return Unworn(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
-
-
-def unworn_of_nothing() -> Unworn:
-    """The answer where no mesh can be calculated."""
-    return Unworn(*(np.empty(0) for _ in Unworn.__dataclass_fields__))
 
 
 def all_histories(mesh: Mesh, reach: Array, first_step: Array) -> Iterator[tuple[NDArray[np.intp], Histories]]:
@@ -573,30 +567,11 @@ TOO_FEW = (
 )
 
 
-@dataclass(frozen=True)
-class Worn:
-    """Forces and pressures of the unworn mesh; of the flank that is loaded longer, the deepest wear (m) and its place.
+def worn(reducer: Reducer) -> dict[str, Float]:
+    """Forces of the new mesh and wear of the disc by their results, each a number or an array (n,), in any mixture.
 
-    ``felt`` is the mean of both flanks as the backlash feels it (m).
+    The deepest wear is that of the flank that is loaded longer; what the backlash feels is the mean of both.
     """
-
-    disc_torque: Float
-    start_force: Float
-    max_force: Float
-    approach: Float
-    largest_force: Float
-    loaded_pins: Float
-    max_pressure: Float
-    equidistant_low: Float
-    mesh_period: Float
-    coefficient: Float
-    depth: Float
-    angle: Float
-    felt: Float
-
-
-def worn(reducer: Reducer) -> Worn:
-    """Forces of the new mesh and wear of the disc, every Float a number or an array (n,), in any mixture."""
     meshes = meshes_of(reducer)
     new = all_unworn(meshes.mesh, meshes.count)
     oil = oil_part(reducer)
@@ -610,21 +585,21 @@ def worn(reducer: Reducer) -> Worn:
     other = depth if np.ndim(duty) == 0 and duty == 1.0 else depth_at(meshes, new, exposure * duty)[0]
     beside = reducer.extra_wear * np.where(np.asarray(duty) > 0.0, 1.0, 0.5)
     share = reducer.lost_motion_share * (1.0 + reducer.pin_wear_ratio)
-    return Worn(
-        disc_torque=reducer.torque_share * reducer.output_torque,
-        start_force=mesh_of(reducer).start_force,
-        max_force=meshes.to_rows(new.scale),
-        approach=approach,
-        largest_force=meshes.to_rows(new.largest_force),
-        loaded_pins=pins,
-        max_pressure=meshes.to_rows(new.pressure),
-        equidistant_low=meshes.to_rows(new.lowest_equidistant),
-        mesh_period=1.0 / (reducer.output_speed * reducer.pin_count),
-        coefficient=oil * meshes.to_rows(new.contact_part),
-        depth=reducer.depth_factor * depth + reducer.extra_wear,
-        angle=angle,
-        felt=share * (reducer.depth_factor * (depth + other) / 2.0 + beside),
-    )
+    return {
+        "equidistant_low": meshes.to_rows(new.lowest_equidistant),
+        "disc_torque": reducer.torque_share * reducer.output_torque,
+        "start_force": mesh_of(reducer).start_force,
+        "max_force": meshes.to_rows(new.scale),
+        "approach": approach,
+        "largest_force": meshes.to_rows(new.largest_force),
+        "loaded_pins": pins,
+        "max_pressure": meshes.to_rows(new.pressure),
+        "mesh_period": 1.0 / (reducer.output_speed * reducer.pin_count),
+        "coefficient": oil * meshes.to_rows(new.contact_part),
+        "max_wear": reducer.depth_factor * depth + reducer.extra_wear,
+        "wear_angle": angle,
+        "backlash_wear": share * (reducer.depth_factor * (depth + other) / 2.0 + beside),
+    }
 
 
 def meshes_of(reducer: Reducer) -> Meshes:

@@ -5,34 +5,30 @@ hides nothing (of harmonic drives and flanks a quarter, and a quarter something 
 one effect at a size drawn between half and the whole of a clear one, on every noise and in several designs, with the
 results measured in which it shows. A name counts if it is the verdict alone or another name of its curve. Prints
 counts, the names of what went wrong, how often an interval held the truth, and the error on rows that were not fitted
-over that of the truth itself. ``--catalogue`` asks for every size and ratio of the catalogue of harmonic drives
-instead: which causes carry the torsion, and with what shares.
+over that of the truth itself; ``--dump FILE`` writes one JSON line per case. ``--catalogue`` asks for every size and
+ratio of the catalogue of harmonic drives instead: which causes carry the torsion, and with what shares.
 """
 
-import argparse
-import os
-import sys
 from collections import Counter
-from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, field
-from pathlib import Path
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
-for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-    os.environ.setdefault(_name, "1")
-sys.path.insert(0, str(Path(__file__).parents[1]))
+import many_cases
+import numpy as np
+from many_cases import Outcome
 
-import numpy as np  # noqa: E402
-
-from hidden_effects import gearing_cases, harmonic_cases, rv_cases, screw_cases  # noqa: E402
-from hidden_effects.clear import DRIVES, REDUCERS, SCREWS, SHAPES, STAGE_STRESSES, STAGES  # noqa: E402
-from hidden_effects.harmonic_machine import MESH, Rows  # noqa: E402
-from hidden_effects.harmonic_surface import SurfaceWish  # noqa: E402
-from hidden_effects.noises import KINDS  # noqa: E402
-from hidden_effects.plugin_asking import Answer, model_of  # noqa: E402
-from hidden_effects.rig_cases import RigCase  # noqa: E402
-from hidden_effects.rows import Array  # noqa: E402
-from truing.testing import recorded  # noqa: E402
+from hidden_effects import gearing_cases, harmonic_cases, rv_cases, screw_cases
+from hidden_effects.clear import DRIVES, REDUCERS, SCREWS, SHAPES, STAGE_STRESSES, STAGES
+from hidden_effects.harmonic_machine import MESH, Rows
+from hidden_effects.harmonic_surface import SurfaceWish
+from hidden_effects.noises import KINDS
+from hidden_effects.plugin_asking import model_of
+from hidden_effects.rig_cases import RigCase
+from hidden_effects.rows import Array, Hidden
+from truing.testing import recorded
+from truing.testing.hiding import Answered
 
 OF_STAGES: list[tuple[tuple[str, ...], gearing_cases.Design]] = [
     (STAGE_STRESSES, "rig"),
@@ -73,10 +69,14 @@ def feed_marks(at: Array) -> Array:
     return np.asarray(0.06 * np.sign(np.sin(2 * np.pi * at / 9 + 1)))
 
 
-def sized(unknowns: Mapping[str, float], rng: np.random.Generator, without: Collection[str] = ()) -> dict[str, float]:
-    """The unknowns at a share of their size, half to the whole; shapes as they are."""
+def sized(hidden: Hidden, rng: np.random.Generator, without: Collection[str] = ()) -> Hidden:
+    """What is hidden at a share of its size, half to the whole; shapes as they are."""
     share = rng.uniform(0.5, 1.0)
-    return {key: value if key in SHAPES and key not in without else share * value for key, value in unknowns.items()}
+    kept = SHAPES - set(without)
+    return {
+        effect: {key: value if key in kept else share * value for key, value in unknowns.items()}
+        for effect, unknowns in hidden.items()
+    }
 
 
 def stage(place: int, seed: int) -> gearing_cases.Wish:
@@ -86,19 +86,19 @@ def stage(place: int, seed: int) -> gearing_cases.Wish:
     if place % 3 == 0:
         results, design = OF_STAGES[place // 3 % len(OF_STAGES)]
         return gearing_cases.Wish(seed=seed, results=results, design=design, kind=kind)
-    name, clear, results, design = STAGES[(place - place // 3 - 1) % len(STAGES)]
-    return gearing_cases.Wish(seed=seed, hidden={name: sized(clear, rng)}, results=results, design=design, kind=kind)
+    clear = STAGES[(place - place // 3 - 1) % len(STAGES)]
+    return replace(clear, seed=seed, hidden=sized(clear.hidden, rng), kind=kind)
 
 
 def reducer(_: int, seed: int) -> rv_cases.Wish:
     """A reducer: of three seeds one hides nothing, the others any effect."""
     rng = np.random.default_rng([seed, 9])
     name = "" if seed % 3 == 0 else list(REDUCERS)[int(rng.integers(len(REDUCERS)))]
-    unknowns = sized(REDUCERS.get(name, {}), rng, without=("exponent",))
+    hidden = sized({name: REDUCERS[name]} if name else {}, rng, without=("exponent",))
     design: rv_cases.Design = "fleet" if name in FLEETS or rng.random() < 0.5 else "endurance"
     results = (rv_cases.BACKLASH, rv_cases.WEAR) if rng.random() < 0.5 else (rv_cases.BACKLASH,)
     kind = KINDS[int(rng.integers(len(KINDS)))]
-    return rv_cases.Wish(seed=seed, hidden={name: unknowns} if name else {}, design=design, kind=kind, results=results)
+    return rv_cases.Wish(seed=seed, hidden=hidden, design=design, kind=kind, results=results)
 
 
 def screw(_: int, seed: int) -> screw_cases.Wish:
@@ -109,32 +109,28 @@ def screw(_: int, seed: int) -> screw_cases.Wish:
         results = tuple(rng.choice(OF_SCREWS, 2, replace=False).tolist())
         design: screw_cases.Design = "endurance" if rng.random() < 0.5 else "bench"
         return screw_cases.Wish(seed=seed, design=design, kind=kind, results=results)
-    name, clear, results = SCREWS[int(rng.integers(len(SCREWS)))]
-    unknowns = sized(clear, rng)
+    clear = SCREWS[int(rng.integers(len(SCREWS)))]
+    hidden, results = sized(clear.hidden, rng), clear.results
     if len(results) > 1 and rng.random() < 0.3:
         results = results[:1]
-    design = "endurance" if name == "flank_wear" else "bench" if rng.random() < 0.7 else "loaded"
-    return screw_cases.Wish(seed=seed, hidden={name: unknowns}, design=design, kind=kind, results=results)
+    design = clear.design if clear.design == "endurance" else "bench" if rng.random() < 0.7 else "loaded"
+    return replace(clear, seed=seed, hidden=hidden, design=design, kind=kind, results=results)
 
 
 def drive(_: int, seed: int) -> harmonic_cases.Wish | SurfaceWish:
     """A harmonic drive or a flank: of four seeds one hides nothing, one what nobody registered, two the next effect."""
     rng = np.random.default_rng([seed, 37])
     kind = KINDS[int(rng.integers(len(KINDS)))]
-    points: dict[str, Any] = {"design": "points", "results": (MESH,)}
     if seed % 4 in {0, 2}:
         which, is_strange = int(rng.integers(3)), seed % 4 == 2
         if which == 2:
             return SurfaceWish(seed=seed, strange=feed_marks if is_strange else None)
         strange = (fifth_order, stiff_when_hot_and_fast)[which] if is_strange else None
-        return harmonic_cases.Wish(seed=seed, kind=kind, strange=strange, **(points if which else {}))
-    name, unknowns, result = DRIVES[seed // 2 % len(DRIVES)]
-    hidden = {name: sized(unknowns, rng)}
-    if not result:
-        return SurfaceWish(seed=seed, hidden=hidden)
-    tooth = 2e7 if name == "engaged_pairs" else np.inf
-    more = points if result == MESH else {}
-    return harmonic_cases.Wish(seed=seed, kind=kind, hidden=hidden, tooth=tooth, **more)
+        points: dict[str, Any] = {"design": "points", "results": (MESH,)} if which else {}
+        return harmonic_cases.Wish(seed=seed, kind=kind, strange=strange, **points)
+    clear = DRIVES[seed // 2 % len(DRIVES)]
+    known: dict[str, Any] = {} if isinstance(clear, SurfaceWish) else {"kind": kind}
+    return replace(clear, seed=seed, hidden=sized(clear.hidden, rng), **known)
 
 
 @dataclass(frozen=True)
@@ -143,7 +139,7 @@ class Machines:
 
     wished: Callable[[int, int], Any]
     made: Callable[[Any], RigCase]
-    diagnosed: Callable[[RigCase], Answer]
+    diagnosed: Callable[[RigCase], Answered]
 
 
 MACHINES: dict[str, Machines] = {
@@ -154,17 +150,23 @@ MACHINES: dict[str, Machines] = {
 }
 
 
-def judge(machines: Machines, place: int, seed: int, tally: "Tally") -> None:
-    """Ask one case and count what was said."""
-    wish = machines.wished(place, seed)
+def outcome(seed: int, *, plugin: str, first: int) -> Outcome:
+    """Ask one case and say what was answered: in a word, with the intervals that hold the truth and the error left."""
+    machines = MACHINES[plugin]
+    wish = machines.wished(seed - first, seed)
     case = machines.made(wish)
     answer = machines.diagnosed(case)
-    said = tally.count(wish, answer.document, answer.seconds)
-    if wish.hidden:
-        tally.left.append(max(case.left_over_noise(answer.predicted, name) for name in wish.results))
-    if said == "named":
-        (cause,) = answer.document["causes"]
-        tally.cover(wish, cause, without={OF_ITS_OWN.get(cause["effect"], "")} if machines.wished is drive else ())
+    document = answer.document
+    said = said_of(wish, document)
+    without = {OF_ITS_OWN.get(effect, "") for effect in wish.hidden} if plugin == "harmonic_fractal" else set()
+    return {
+        "seed": seed, "title": wish.title, "seconds": answer.seconds, "said": said,
+        "hides": "something" if wish.strange is not None else "effect" if wish.hidden else "nothing",
+        "hidden": {effect: dict(unknowns) for effect, unknowns in wish.hidden.items()},
+        "causes": [cause["effect"] for cause in document["causes"]],
+        "covered": covered(wish.hidden, document["causes"][0], without) if said == "named" and wish.hidden else {},
+        "left": max((case.left_over_noise(answer.predicted, name) for name in wish.results), default=1.0),
+    }  # fmt: skip
 
 
 # Counts
@@ -174,58 +176,48 @@ QUIET = {"nothing", "named", "same curve", "called unknown"}
 """What may be said of a case without a line being printed."""
 
 
-@dataclass
-class Tally:
-    """What was said, counted; ``left`` is the error on rows not fitted over that of the truth, where it was taken."""
-
-    nothing: int = 0
-    false_alarms: int = 0
-    strange: Counter[str] = field(default_factory=Counter)
-    said: Counter[str] = field(default_factory=Counter)
-    covered: list[bool] = field(default_factory=list)
-    left: list[float] = field(default_factory=list)
-    seconds: list[float] = field(default_factory=list)
-
-    def count(self, wish: Any, document: Mapping[str, Any], seconds: float) -> str:
-        """Count one answer, say it where it is not the truth alone, and return it in a word."""
-        self.seconds.append(seconds)
+def said_of(wish: Any, document: Mapping[str, Any]) -> str:
+    """Say in a word what was answered."""
+    if wish.strange is not None:
         verdict = str(document["verdict"])
-        if wish.strange is not None:
-            said = {"unknown": "called unknown", "named": "another name"}.get(verdict, verdict)
-            self.strange[said] += 1
-        elif not wish.hidden:
-            self.nothing += 1
-            self.false_alarms += bool(document["explanations"])
-            said = "false alarm" if document["explanations"] else "nothing"
-        else:
-            said = verdict_on(document, next(iter(wish.hidden)))
-            self.said[said] += 1
-        if said not in QUIET:
-            named = [cause["effect"] for cause in document["causes"]]
-            print(f"  {wish.seed} {wish.title} {dict(wish.hidden)}: {said}: {named}", flush=True)
-        return said
+        return {"unknown": "called unknown", "named": "another name"}.get(verdict, verdict)
+    if not wish.hidden:
+        return "false alarm" if document["explanations"] else "nothing"
+    return verdict_on(document, next(iter(wish.hidden)))
 
-    def cover(self, wish: Any, cause: Mapping[str, Any], without: Collection[str] = ()) -> None:
-        """Count which intervals of a cause hold the truth."""
-        for name, value in wish.hidden[cause["effect"]].items():
-            if name not in cause["unknowns"] or name in without:
-                continue
+
+def covered(
+    hidden: Mapping[str, Mapping[str, float]], cause: Mapping[str, Any], without: Collection[str]
+) -> dict[str, bool]:
+    """Whether the interval of every unknown of a cause holds the truth."""
+    found = {}
+    for name, value in hidden[cause["effect"]].items():
+        if name in cause["unknowns"] and name not in without:
             low, high = cause["unknowns"][name]["interval95"]
-            self.covered.append((low is None or low <= value) and (high is None or value <= high))
-            if not self.covered[-1]:
-                print(f"  {wish.seed} {wish.title}: {name} is {value:.4g}, not {low} to {high}", flush=True)
+            found[name] = (low is None or low <= value) and (high is None or value <= high)
+    return found
 
-    def tell(self) -> None:
-        """Print all that was counted."""
-        print(f"nothing hidden: {self.false_alarms} false alarms in {self.nothing}")
-        if self.strange:
-            print("something unregistered: " + in_words(self.strange))
-        print(f"one effect hidden: {sum(self.said.values())}; {in_words(self.said)}")
-        print(f"intervals that hold the truth: {sum(self.covered)} of {len(self.covered)}")
-        if self.left:
-            middle, worst = np.median(self.left), max(self.left)
-            print(f"error on rows not fitted, over the truth: median {middle:.3f}, worst {worst:.2f}")
-        print(f"seconds: median {np.median(self.seconds):.1f}, longest {max(self.seconds):.1f}")
+
+def say(outcomes: Sequence[Outcome]) -> None:
+    """Print what was counted, and every case of which something else was said than the truth alone."""
+    for one in outcomes:
+        if one["said"] not in QUIET:
+            print(f"  {one['seed']} {one['title']} {one['hidden']}: {one['said']}: {one['causes']}")
+        for name, holds in one["covered"].items():
+            if not holds:
+                print(f"  {one['seed']} {one['title']}: the interval of {name} does not hold {one['hidden']}")
+    of = {what: [one for one in outcomes if one["hides"] == what] for what in ("nothing", "something", "effect")}
+    for what, title in (("nothing", "nothing hidden"), ("something", "something unregistered"),
+                        ("effect", "one effect hidden")):  # fmt: skip
+        counts = Counter(one["said"] for one in of[what])
+        print(f"{title}: {len(of[what])}; " + ", ".join(f"{name} {many}" for name, many in counts.most_common()))
+    holds = [hit for one in outcomes for hit in one["covered"].values()]
+    print(f"intervals that hold the truth: {sum(holds)} of {len(holds)}")
+    left = [one["left"] for one in of["effect"]]
+    if left:
+        print(f"error on rows not fitted, over the truth: median {np.median(left):.3f}, worst {max(left):.2f}")
+    seconds = [one["seconds"] for one in outcomes]
+    print(f"seconds: median {np.median(seconds):.1f}, longest {max(seconds):.1f}")
 
 
 def verdict_on(document: Mapping[str, Any], hidden: str) -> str:
@@ -241,11 +233,6 @@ def verdict_on(document: Mapping[str, Any], hidden: str) -> str:
     if [hidden] in [other["causes"] for other in document["alternatives"]]:
         return "alternative"
     return str(document["verdict"]) if document["verdict"] != "named" else "another name"
-
-
-def in_words(counts: Mapping[str, int]) -> str:
-    """Write counts in a line, the largest first."""
-    return ", ".join(f"{name} {many}" for name, many in Counter(counts).most_common())
 
 
 # The catalogue
@@ -286,19 +273,14 @@ def asked(size: str, ratio: int, read: tuple[Array, Array]) -> tuple[Mapping[str
 
 def main() -> None:
     """Read the options and run."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = many_cases.options_of(__doc__, 40)
     parser.add_argument("plugin", choices=MACHINES)
-    parser.add_argument("--cases", type=int, default=40)
-    parser.add_argument("--seed", type=int, default=1000, help="the first seed")
     parser.add_argument("--catalogue", action="store_true", help="ask for the drives of the catalogue instead")
     options = parser.parse_args()
     if options.catalogue:
         catalogue(options.seed)
         return
-    tally = Tally()
-    for place in range(options.cases):
-        judge(MACHINES[options.plugin], place, options.seed + place, tally)
-    tally.tell()
+    say(many_cases.gathered(partial(outcome, plugin=options.plugin, first=options.seed), options))
 
 
 if __name__ == "__main__":

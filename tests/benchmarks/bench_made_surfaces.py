@@ -1,18 +1,12 @@
 """How much faster is a made patch as one matrix product than as a loop over its waves?
 
-Run it: ``python -m pytest tests/benchmarks/bench_made_surfaces.py --benchmark-enable -s``, or as a script. The patch is
-that of the shipped example: 501 x 251 points, 40 ridge directions, 1480 plane waves. The loop adds one wave after the
-other to the whole patch, each with one cosine per point; it is numpy too, and a loop over the points would be slower by
-far. Both must make the same patch.
+Run it: ``python -m pytest tests/benchmarks/bench_made_surfaces.py -s``. The patch is that of the shipped example: 501 x
+251 points, 40 ridge directions, 1480 plane waves. The loop adds one wave after the other to the whole patch, each with
+one cosine per point; it is numpy too, and a loop over the points would be slower by far. Both must make the same patch.
 """
 
-import time
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
-import pytest
-from pytest_benchmark.fixture import BenchmarkFixture
+from timed import least
 
 from harmonic_fractal.generators import Array, Waves, brownian_profiles, brownian_surface, weierstrass_surface
 
@@ -41,46 +35,20 @@ def loop() -> Array:
     return heights
 
 
-def seconds(call: Callable[[], Any], times: int) -> float:
-    """The shortest of several calls."""
-    taken = []
-    for _ in range(times):
-        start = time.perf_counter()
-        call()
-        taken.append(time.perf_counter() - start)
-    return min(taken)
-
-
-def ratio() -> float:
-    """Loop over product, both measured in this run."""
-    return seconds(loop, 2) / seconds(product, 10)
-
-
 def test_both_make_the_same_patch() -> None:
     one, other = product(), loop()
     assert np.abs(one - other).max() < 1e-9 * np.abs(other).max()  # phases up to 2e5 rad lose five of sixteen digits
 
 
-@pytest.mark.benchmark(group="a patch of 501 x 251 points")
-def test_sum_of_waves(benchmark: BenchmarkFixture) -> None:
-    benchmark(product)
-
-
-@pytest.mark.benchmark(group="a patch of 501 x 251 points")
-def test_brownian_patch(benchmark: BenchmarkFixture) -> None:
-    benchmark(lambda: brownian_surface(1.4, 1e-16, (251, 501), np.random.default_rng(0)))
-
-
-@pytest.mark.benchmark(group="251 lines of 501 points")
-def test_brownian_lines(benchmark: BenchmarkFixture) -> None:
-    benchmark(lambda: brownian_profiles(1.4, 1e-16, (251, 501), np.random.default_rng(0)))
-
-
 def test_a_product_is_at_least_ten_times_as_fast_as_the_loop() -> None:
-    found = ratio()
-    print(f"\nloop over the waves over one matrix product: {found:.0f} (at least {AT_LEAST:.0f})")
-    assert found >= AT_LEAST
-
-
-if __name__ == "__main__":
-    print(f"loop over the waves over one matrix product: {ratio():.0f} (at least {AT_LEAST:.0f})")
+    """And so are Brownian patches and lines of as many points."""
+    brownian = (
+        lambda: brownian_surface(1.4, 1e-16, (251, 501), np.random.default_rng(0)),
+        lambda: brownian_profiles(1.4, 1e-16, (251, 501), np.random.default_rng(0)),
+    )
+    slow, *fast = least(loop, product, *brownian)
+    print(
+        "\nloop over the waves over one product, a Brownian patch, lines: "
+        + ", ".join(f"{slow / one:.0f}" for one in fast)
+    )
+    assert slow / fast[0] >= AT_LEAST

@@ -1,17 +1,17 @@
 """How much faster are 100 000 profile shifts in one call than one by one, and what does Box's method need?
 
-Run it: ``python -m pytest tests/benchmarks/bench_roller_screw.py --benchmark-enable -s``, or as a script, which prints
-the figures. There are two baselines: the loop over single calls of the same function, and a plain loop written well
-(what does not change with the shift is computed once, and only floats and functions of ``math`` are used) of
-objectives and margins. All are measured alternately in one process, in time of the processor; the least of each counts.
+Run it: ``python -m pytest tests/benchmarks/bench_roller_screw.py -s``. There are two baselines: the loop over single
+calls of the same function, and a plain loop written well (what does not change with the shift is computed once, and
+only floats and functions of ``math`` are used) of objectives and margins. All are measured alternately in one process,
+in time of the processor; the least of each counts.
 """
 
-import time
 from collections.abc import Callable
 from dataclasses import replace
 from math import acos, cos, pi, sin, sqrt, tan
 
 import numpy as np
+from timed import least
 
 from roller_screw_shift.calculation import roller_screw_shift
 from roller_screw_shift.model import ROLLER_SCREW_SHIFT
@@ -22,7 +22,6 @@ from roller_screw_shift.quantities import Pair
 SHIFTS = 100_000
 SINGLE = 200  # of them one by one; the time of each hardly varies
 PLAIN = 5000
-ROUNDS = 3
 SPAN = (-2.0, 3.0)
 SEEDS = 20
 ALPHA, ROLLER, RING, ADDENDUM, DEPTH, ROUNDING, RING_ROUNDING = pi / 9, 20, 100, 0.8, 1.1, 0.3, 0.15
@@ -114,36 +113,6 @@ def one_by_one(count: int) -> None:
         roller_screw_shift(replace(told, roller_shift=shift))
 
 
-def seconds(work: Callable[[], object]) -> float:
-    start = time.process_time()
-    work()
-    return time.process_time() - start
-
-
-def per_shift() -> tuple[float, float, float, float]:
-    """Least seconds per shift: single calls, one call, plain loop of objectives and margins, one call of these."""
-    told = pair()
-    works: list[tuple[Callable[[], object], int]] = [
-        (lambda: one_by_one(SINGLE), SINGLE),
-        (lambda: whole(SHIFTS), SHIFTS),
-        (lambda: by_hand(allowed(PLAIN).tolist()), PLAIN),
-        (lambda: course_of(told, allowed(SHIFTS)), SHIFTS),
-    ]
-    for work, _ in works:
-        work()
-    rounds = zip(*([seconds(work) / count for work, count in works] for _ in range(ROUNDS)), strict=True)
-    single, call, plain, course = (min(times) for times in rounds)
-    return single, call, plain, course
-
-
-def told(times: tuple[float, float, float, float]) -> str:
-    single, call, plain, course = (1e6 * each for each in times)
-    return (
-        f"per shift: single calls {single:.0f} us, one call {call:.2f} us: {single / call:.0f} times; objectives and "
-        f"margins alone: plain loop {plain:.1f} us, one call {course:.2f} us: {plain / course:.0f} times"
-    )
-
-
 def test_the_plain_loop_finds_the_same() -> None:
     shifts = allowed(601)
     course = course_of(pair(), shifts)
@@ -153,15 +122,20 @@ def test_the_plain_loop_finds_the_same() -> None:
     assert away.max() < 1e-9
 
 
-def test_one_call_is_fifty_times_faster_than_single_calls() -> None:
-    times = per_shift()
-    print(f"\n{told(times)}")
-    assert times[0] / times[1] >= 50.0
-
-
-def test_one_call_is_five_times_faster_than_a_plain_loop() -> None:
-    times = per_shift()
-    assert times[2] / times[3] >= 5.0
+def test_one_call_is_fifty_times_faster_than_single_calls_and_five_times_than_a_plain_loop() -> None:
+    told, plain = pair(), allowed(PLAIN).tolist()
+    works: list[tuple[Callable[[], object], int]] = [
+        (lambda: one_by_one(SINGLE), SINGLE),
+        (lambda: whole(SHIFTS), SHIFTS),
+        (lambda: by_hand(plain), PLAIN),
+        (lambda: course_of(told, allowed(SHIFTS)), SHIFTS),
+    ]
+    times = least(*(work for work, _ in works))
+    single, call, loop, course = (1e6 * spent / count for spent, (_, count) in zip(times, works, strict=True))
+    print(f"\nper shift: single calls {single:.0f} us, one call {call:.2f} us: {single / call:.0f} times; ", end="")
+    print(f"objectives and margins: plain loop {loop:.1f} us, one call {course:.2f} us: {loop / course:.0f} times")
+    assert single / call >= 50.0
+    assert loop / course >= 5.0
 
 
 def box_evaluations() -> list[tuple[float, str, float, float]]:
@@ -184,9 +158,3 @@ def test_box_needs_a_twentieth_of_the_dense_grid() -> None:
         print(f"\ncontact ratio {ratio:g}, {reading}: {evaluations:.0f} evaluations, {away:.1e} from the grid", end="")
         assert evaluations < 20_001 / 20
         assert away < 2e-6
-
-
-if __name__ == "__main__":
-    print(told(per_shift()))
-    for row in box_evaluations():
-        print("contact ratio {:g}, {}: {:.0f} evaluations, {:.1e} from the grid".format(*row))

@@ -1,17 +1,15 @@
 """How much faster is the strength of many first stages in one array call than stage by stage?
 
-Run it: ``python -m pytest tests/benchmarks/bench_rv_gearing.py --benchmark-enable -s``, or as a script, which prints
-the figures. The baseline calls the calculation itself once for each stage, with plain numbers and the inputs ready
-made, on a sample of the stages, and is scaled to all of them. Both are measured alternately in one process, in time of
-the processor, and the least of each counts.
+Run it: ``python -m pytest tests/benchmarks/bench_rv_gearing.py -s``. The baseline calls the calculation itself once for
+each stage, with plain numbers and the inputs ready made, on a sample of the stages, and is scaled to all of them. Both
+are measured alternately in one process, in time of the processor, and the least of each counts.
 """
 
-import time
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from timed import least
 
 from rv_gearing.model import RV_GEARING
 from rv_gearing.quantities import Gearing
@@ -19,7 +17,6 @@ from rv_gearing.rating import rv_gearing
 
 STAGES = 100_000
 ALONE = 200  # of them one by one; their time hardly varies
-ROUNDS = 5
 RESULTS = ("root_stress_sun", "root_stress_planet", "contact_stress", "contact_safety", "root_safety_outer")
 
 
@@ -45,30 +42,9 @@ def stages() -> tuple[Gearing, list[Gearing]]:
     return replace(one, **drawn), alone
 
 
-def seconds(work: Callable[[], object]) -> float:
-    start = time.process_time()
-    work()
-    return time.process_time() - start
-
-
 def one_by_one(alone: list[Gearing]) -> None:
     for stage in alone:
         rv_gearing(stage)
-
-
-def seconds_per_stage() -> tuple[float, float]:
-    """Least seconds per stage of single calls and of one call for all."""
-    together, alone = stages()
-    rv_gearing(together)
-    pairs = [(seconds(lambda: one_by_one(alone)), seconds(lambda: rv_gearing(together))) for _ in range(ROUNDS)]
-    return min(first for first, _ in pairs) / len(alone), min(second for _, second in pairs) / STAGES
-
-
-def told(single: float, call: float) -> str:
-    return (
-        f"strength per stage: single calls {single * 1e6:.0f} us, one call for {STAGES} {call * 1e6:.2f} us: "
-        f"{single / call:.0f} times (at least 50)"
-    )
 
 
 def test_both_find_the_same_strength() -> None:
@@ -82,10 +58,13 @@ def test_both_find_the_same_strength() -> None:
 
 
 def test_one_call_is_fifty_times_faster_than_the_loop_over_single_calls() -> None:
-    single, call = seconds_per_stage()
-    print(f"\n{told(single, call)}")
-    assert single / call >= 50.0
-
-
-if __name__ == "__main__":
-    print(told(*seconds_per_stage()))
+    together, alone = stages()
+    rv_gearing(together)
+    loop, call = least(lambda: one_by_one(alone), lambda: rv_gearing(together), rounds=5)
+    single, share = loop / len(alone), call / STAGES
+    print(
+        f"\nstrength per stage: single calls {single * 1e6:.0f} us, one call for {STAGES} {share * 1e6:.2f} us: ",
+        end="",
+    )
+    print(f"{single / share:.0f} times (at least 50)")
+    assert single / share >= 50.0

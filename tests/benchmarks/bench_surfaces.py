@@ -1,29 +1,21 @@
 """How much faster is the structure function of a whole map than the loop over its points, and than a library?
 
-Run it: ``python -m pytest tests/benchmarks/bench_surfaces.py --benchmark-enable -s``, or as a script. A map of
-1024 x 1024 points, 3 % of them missing, 16 lags from one point to a tenth of a line. Two baselines, both of the same
-map: the plain loop over pairs of points (floats in lists, which is how such a loop is quick; measured on 8 of the 1024
-lines and multiplied by 128), and ``autocorrelation_from_profile`` of SurfaceTopography, half the structure function at
-all lags by Fourier transforms. It leaves missing points out too; both are compared at the first lag before they are
-timed. All in time of the processor, alternately; the least of each counts.
+Run it: ``python -m pytest tests/benchmarks/bench_surfaces.py -s``. A map of 1024 x 1024 points, 3 % of them missing, 16
+lags from one point to a tenth of a line. Two baselines, both of the same map: the plain loop over pairs of points
+(floats in lists, which is how such a loop is quick; measured on 8 of the 1024 lines and multiplied by 128), and
+``autocorrelation_from_profile`` of SurfaceTopography, half the structure function at all lags by Fourier transforms. It
+leaves missing points out too; both are compared at the first lag before they are timed. All in time of the processor,
+alternately; the least of each counts.
 """
 
-import os
-import time
-from collections.abc import Callable
 from typing import Any
 
-for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-    os.environ.setdefault(_name, "1")
+import numpy as np
+import pytest
+from timed import least
 
-import numpy as np  # noqa: E402
-import pytest  # noqa: E402
-from pytest_benchmark.fixture import BenchmarkFixture  # noqa: E402
-
-from harmonic_fractal.estimate import Estimation, estimate_of  # noqa: E402
-from harmonic_fractal.generators import brownian_profiles  # noqa: E402
-from harmonic_fractal.structure import fit_steps, structure_sums  # noqa: E402
-from harmonic_fractal.surface import Lines  # noqa: E402
+from harmonic_fractal.generators import brownian_profiles
+from harmonic_fractal.structure import fit_steps, structure_sums
 
 POINTS, LOOPED, HOLES = 1024, 8, 0.03
 STEPS = fit_steps(POINTS, float("nan"), float("nan"), 18)  # 16 of them are different whole numbers
@@ -61,17 +53,6 @@ def topography(heights: np.ndarray) -> Any:
     return Topography(np.ma.masked_invalid(heights.T), (float(POINTS), float(POINTS)))
 
 
-def least(*timed: Callable[[], object], rounds: int = 5) -> list[float]:
-    """Least time of the processor of each, alternately, s."""
-    seconds = [float("inf")] * len(timed)
-    for _ in range(rounds):
-        for place, function in enumerate(timed):
-            start = time.process_time()
-            function()
-            seconds[place] = min(seconds[place], time.process_time() - start)
-    return seconds
-
-
 def agrees(heights: np.ndarray) -> None:
     """All three say the same: the loop on its lines at all lags, the library on the map at one spacing."""
     sums, counts = structure_sums(heights, STEPS)
@@ -89,32 +70,9 @@ def ratios() -> tuple[float, float, float]:
         lambda: structure_sums(heights, STEPS),
         lambda: loop(few, STEPS.tolist()),
         lambda: other.autocorrelation_from_profile(),
+        rounds=5,
     )
     return ours, looped * POINTS / LOOPED / ours, library / ours
-
-
-MAPS = pytest.mark.benchmark(group="structure function of 1024 x 1024 points with holes")
-
-
-@MAPS
-def test_sums_of_a_map(benchmark: BenchmarkFixture) -> None:
-    benchmark(structure_sums, measured_map(), STEPS)
-
-
-@MAPS
-def test_sums_of_a_map_along_y(benchmark: BenchmarkFixture) -> None:
-    benchmark(structure_sums, measured_map().T, STEPS)
-
-
-@MAPS
-def test_the_library(benchmark: BenchmarkFixture) -> None:
-    pytest.importorskip("SurfaceTopography")
-    benchmark(topography(measured_map()).autocorrelation_from_profile)
-
-
-@MAPS
-def test_a_whole_estimate(benchmark: BenchmarkFixture) -> None:
-    benchmark(estimate_of, Lines(measured_map(), 0.4e-6), "x", Estimation())
 
 
 def test_a_map_is_fifty_times_faster_than_the_loop_and_faster_than_the_library() -> None:
@@ -125,10 +83,3 @@ def test_a_map_is_fifty_times_faster_than_the_loop_and_faster_than_the_library()
     assert STEPS.size == 16
     assert loops >= 50.0
     assert libraries > 1.0
-
-
-if __name__ == "__main__":
-    seconds, of_the_loop, of_the_library = ratios()
-    print(f"1024 x 1024 points, {HOLES:.0%} missing, {STEPS.size} lags: {seconds * 1e3:.1f} ms")
-    print(f"the loop over points takes {of_the_loop:.0f} times as long (at least 50)")
-    print(f"SurfaceTopography's autocorrelation takes {of_the_library:.1f} times as long (at least 1)")

@@ -6,41 +6,19 @@ where nothing is hidden, and the processor time. ``--dump FILE`` writes one JSON
 the same seed is the same case, whatever the number of cases.
 """
 
-import argparse
-import json
-import os
-import sys
 import time
 import traceback
 from collections import Counter
-from collections.abc import Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from collections.abc import Sequence
 from dataclasses import asdict
 from functools import partial
-from multiprocessing import get_context
-from pathlib import Path
-from typing import Any
 
-for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-    os.environ.setdefault(_name, "1")
-sys.path.insert(0, str(Path(__file__).parents[1]))
+import many_cases
+import numpy as np
+from many_cases import Outcome
 
-import numpy as np  # noqa: E402
+from zoo.zoo import HALVES, NOISES, Case, Half, can_be_unregistered, diagnosis_of, families, judged, rig_of
 
-from hidden_effects.scoring import wilson  # noqa: E402
-from zoo.zoo import (  # noqa: E402
-    HALVES,
-    NOISES,
-    Case,
-    Half,
-    can_be_unregistered,
-    diagnosis_of,
-    families,
-    judged,
-    rig_of,
-)
-
-Outcome = dict[str, Any]
 JUDGED = ("right", "open", "silent", "partly", "wrong", "failed")
 NOTHING, UNREGISTERED = 0.25, 0.25
 """Share of the records with nothing hidden, and of those with something that is not registered."""
@@ -70,45 +48,11 @@ def outcome(seed: int, half: Half) -> Outcome:
     return {**asdict(case), **said, "seconds": time.process_time() - start}
 
 
-def every_outcome(seeds: Sequence[int], half: Half, workers: int) -> Iterator[Outcome]:
-    """Give the outcome of every seed, as they are done."""
-    work = partial(outcome, half=half)
-    if workers < 2:
-        yield from map(work, seeds)
-        return
-    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
-        for done in as_completed([pool.submit(work, seed) for seed in seeds]):
-            yield done.result()
-
-
-def gathered(seeds: Sequence[int], options: argparse.Namespace) -> list[Outcome]:
-    """Every outcome in the order of the seeds; dumped as they come, with a line of progress now and then."""
-    found: list[Outcome] = []
-    if options.dump:
-        Path(options.dump).write_text("", encoding="utf-8")
-    for one in every_outcome(seeds, options.half, options.workers):
-        found.append(one)
-        if options.dump:
-            with Path(options.dump).open("a", encoding="utf-8") as lines:
-                lines.write(json.dumps(one) + "\n")
-        if len(found) % 10 == 0 or len(found) == len(seeds):
-            print(f"{len(found)} of {len(seeds)} cases", file=sys.stderr, flush=True)
-    return sorted(found, key=lambda one: int(one["seed"]))
-
-
-def share(hits: int, count: int) -> str:
-    """A share in percent with its interval of Wilson."""
-    if not count:
-        return "-"
-    low, high = wilson(hits, count)
-    return f"{100 * hits / count:.0f} % [{low:.0f}, {high:.0f}]"
-
-
 def line(title: str, outcomes: Sequence[Outcome]) -> str:
     """One line of the table: counts, and the shares of right answers, of right or open ones, and of wrong ones."""
     counts = Counter(one["judged"] for one in outcomes)
     right, fine, wrong = counts["right"], counts["right"] + counts["open"], counts["wrong"]
-    shares = (share(hits, len(outcomes)) for hits in (right, fine, wrong))
+    shares = (many_cases.share(hits, len(outcomes)) for hits in (right, fine, wrong))
     numbers = " | ".join(f"{counts[name]:>6}" for name in JUDGED)
     return f"| {title:<24} | {len(outcomes):>5} | {numbers} | {' | '.join(f'{one:<17}' for one in shares)} |"
 
@@ -133,7 +77,9 @@ def say(outcomes: Sequence[Outcome]) -> None:
     print(table(outcomes))
     nothing = [one for one in outcomes if one["hidden"] is None]
     alarms = sum(bool(one["explanations"]) for one in nothing)
-    print(f"\nfalse alarms where nothing is hidden: {alarms} of {len(nothing)}, {share(alarms, len(nothing))}")
+    print(
+        f"\nfalse alarms where nothing is hidden: {alarms} of {len(nothing)}, {many_cases.share(alarms, len(nothing))}"
+    )
     seconds = [one["seconds"] for one in outcomes]
     print(f"processor time of a case: median {np.median(seconds):.1f} s, longest {max(seconds):.1f} s")
     for one in outcomes:
@@ -148,14 +94,10 @@ def say(outcomes: Sequence[Outcome]) -> None:
 
 def main() -> None:
     """Read the options and run."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = many_cases.options_of(__doc__, 60)
     parser.add_argument("--half", choices=HALVES, default="open")
-    parser.add_argument("--cases", type=int, default=60)
-    parser.add_argument("--seed", type=int, default=1000, help="the first seed")
-    parser.add_argument("--workers", type=int, default=1)
-    parser.add_argument("--dump", help="write one JSON line per case to this file")
     options = parser.parse_args()
-    say(gathered(range(options.seed, options.seed + options.cases), options))
+    say(many_cases.gathered(partial(outcome, half=options.half), options))
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ import pytest
 
 from shared import missed
 from truing.errors import OutputError
-from truing.report.pdf import find_browser, pdf_bytes, print_pdf
+from truing.report.pdf import find_browser, pdf_bytes
 
 POINT = 25.4 / 72
 ONE = pytest.mark.parametrize("sheet", ["hostile"], indirect=True)  # what does not depend on the sheet
@@ -60,11 +60,11 @@ def test_the_paper_is_a4_unless_letter_is_asked_for(sheet: Path, chromium: Path,
     copy.parent.mkdir()
     shutil.copyfile(sheet, copy)
     pdf = copy.with_suffix(".pdf")
-    print_pdf(copy, pdf, chromium)
+    pdf.write_bytes(pdf_bytes(copy.read_text(encoding="utf-8"), chromium))
     assert sizes_of(pdf) == {(210, 297)}
     test_the_print_is_complete(sheet, pdf)
     test_pages_are_numbered_and_named(sheet, pdf)
-    print_pdf(copy, pdf, chromium, paper="letter")
+    pdf.write_bytes(pdf_bytes(copy.read_text(encoding="utf-8"), chromium, paper="letter"))
     assert sizes_of(pdf) == {(216, 279)}
     assert sorted(path.name for path in copy.parent.iterdir()) == ["sheet.html", "sheet.pdf"]
     assert copy.read_bytes() == sheet.read_bytes()
@@ -76,7 +76,7 @@ def test_a_browser_that_prints_nothing_is_said_in_one_sentence(sheet: Path, tmp_
     if dumb is None:
         pytest.skip("there is no program 'true' on this machine")
     with pytest.raises(OutputError, match=r"^true printed no PDF \(exit 0\); open sheet.html in any browser"):
-        print_pdf(sheet, tmp_path / "sheet.pdf", Path(dumb))
+        pdf_bytes(sheet.read_text(encoding="utf-8"), Path(dumb))
     assert list(tmp_path.iterdir()) == []
 
 
@@ -85,7 +85,7 @@ def test_a_browser_that_is_not_there_is_said_in_one_sentence(
     sheet: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with pytest.raises(OutputError, match=r"cannot be started: No such file"):
-        print_pdf(sheet, tmp_path / "sheet.pdf", tmp_path / "chrome")
+        pdf_bytes(sheet.read_text(encoding="utf-8"), tmp_path / "chrome")
     monkeypatch.setenv("CHROME_PATH", str(tmp_path / "chrome"))
     assert find_browser() is None
     with pytest.raises(OutputError, match=r"no Chromium, Chrome or Edge was found .* print it to PDF \(Ctrl\+P\)"):

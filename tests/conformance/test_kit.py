@@ -37,7 +37,7 @@ from truing import (
     results,
 )
 from truing.calculation import calculate
-from truing.declare.checks import PROMISES
+from truing.declare.model import PROMISES
 from truing.describe import description
 from truing.errors import DeclarationError
 from truing.kernel.loading import load_file

@@ -4,27 +4,53 @@ from __future__ import annotations
 
 import csv
 import io
-import shutil
+import json
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from measured import Diagnosed, calc_here, read_document
+from measured import Diagnosed, diagnose_heated, read_document
 from refusals import listing, sentences
-from shown_in_docs import EXAMPLES
+from shown_in_docs import EXAMPLES, ROOT, check_page, desk_in
 
 import truing
-from shared import Calc
+from shared import Answer, Calc, made_once
 
 PRESS = EXAMPLES / "press_off_by_40_um"
 
 
 @pytest.fixture(scope="session")
-def play(tmp_path_factory: pytest.TempPathFactory) -> Diagnosed:
-    """The press with play, diagnosed from the command line as its README says."""
-    desk = tmp_path_factory.mktemp("play") / "desk"
-    shutil.copytree(PRESS, desk)
-    answer = calc_here(desk, "diagnose", "press_linkage", "--inputs", "inputs.toml", "--data", "measured.csv")
+def page_done(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Path], Path]:
+    """Do what a page of the manual shows, once for all tests; return the folder with ``faults.json`` and ``work``."""
+
+    def done(page: Path) -> Path:
+        def do(folder: Path) -> None:
+            faults = check_page(page, desk_in(folder))
+            (folder / "faults.json").write_text(json.dumps(faults), encoding="utf-8")
+
+        return made_once(tmp_path_factory, "-".join(page.relative_to(ROOT).parts), do)
+
+    return done
+
+
+@pytest.fixture(scope="session")
+def shown_runs(page_done: Callable[[Path], Path]) -> Callable[[str], Path]:
+    """Give the ``runs`` that the page of an example leaves in its folder; to be read, not changed."""
+    return lambda example: page_done(EXAMPLES / example / "README.md") / "work" / example / "runs"
+
+
+@pytest.fixture(scope="session")
+def play(page_done: Callable[[Path], Path]) -> Path:
+    """The press with play, diagnosed from the command line as the tutorial says."""
+    page = ROOT / "docs" / "tutorial" / "my_press_is_off_by_40_um.md"
+    return page_done(page) / "work" / PRESS.name / "runs" / "measured"
+
+
+@pytest.fixture(scope="session")
+def heated(tmp_path_factory: pytest.TempPathFactory) -> Diagnosed:
+    """A press whose links are hotter than the model knows, diagnosed; beside ``runs`` lie inputs and records."""
+    desk = made_once(tmp_path_factory, "heated", diagnose_heated)
+    answer = Answer(*json.loads((desk / "answer.json").read_text(encoding="utf-8")))
     assert (answer.code, answer.err) == (0, "")
     return Diagnosed(answer, read_document(desk / "runs" / "measured"), desk / "runs" / "measured")
 

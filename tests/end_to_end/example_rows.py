@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from measured import Diagnosed, Document, diagnose_here
+from measured import Document, documented
 from numpy.typing import NDArray
 from shown_in_docs import EXAMPLES
 
@@ -54,9 +54,9 @@ class ExampleRows:
         return [line.split(",")[column] for line in self.lines[2:]]
 
     def diagnosed(
-        self, desk: Path, taken: Callable[[Rows], Rows] = as_they_stand, *more: str,
-        declared: Callable[[str], str] = str,
-    ) -> Diagnosed:  # fmt: skip
+        self, desk: Path, taken: Callable[[Rows], Rows] = as_they_stand, *, declared: Callable[[str], str] = str,
+        hold_out: str | None = None,
+    ) -> Document:  # fmt: skip
         """Diagnose some of the rows in a folder of their own; ``declared`` may change the text of the plugin."""
         desk.mkdir(parents=True, exist_ok=True)
         shutil.copy(self.folder / "inputs.toml", desk)
@@ -64,7 +64,9 @@ class ExampleRows:
         (desk / f"{self.name}.py").write_text(declared(text), encoding="utf-8")
         _, header, *rows = self.lines
         measured = "\n".join([header, *taken(rows)]) + "\n"
-        return diagnose_here(desk, "rows", measured, *more, plugin=f"./{self.name}.py")
+        (desk / "rows.csv").write_text(measured, encoding="utf-8")
+        stated = {} if hold_out is None else {"set": {"studies.diagnose.hold_out": hold_out}}
+        return documented(desk, f"{self.name}.py", "rows.csv", **stated)
 
 
 def explanations(document: Document) -> set[frozenset[str]]:

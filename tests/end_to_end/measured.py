@@ -7,11 +7,12 @@ import io
 import json
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import chdir, redirect_stderr, redirect_stdout
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from pathlib import Path
 from typing import Any
 
-from hidden_effects.asking import INPUTS, write_case
+import truing
+from hidden_effects.asking import write_case
 from hidden_effects.making import Wish, make_case
 from hidden_effects.press_machine import POSITION
 from shared import Answer
@@ -70,11 +71,11 @@ def with_cells(columns: Columns, name: str, cells: Mapping[int, str]) -> Columns
     return {**columns, name: [cells.get(row, cell) for row, cell in enumerate(columns[name])]}
 
 
-def heated_press(folder: Path) -> Columns:
-    """A press of 90 rows whose links are hotter than the model knows; write its inputs and return its record."""
+def diagnose_heated(folder: Path) -> None:
+    """Diagnose a press of 90 rows whose links are hotter than the model knows; keep what was answered."""
     write_case(make_case(HEATED_SEED, HEATED), folder)
-    assert (folder / "inputs.toml").read_text(encoding="utf-8") == INPUTS
-    return columns_of((folder / "measured.csv").read_text(encoding="utf-8"))
+    answer = calc_here(folder, "diagnose", "press_linkage", "--inputs", "inputs.toml", "--data", "measured.csv")
+    (folder / "answer.json").write_text(json.dumps(astuple(answer)), encoding="utf-8")
 
 
 def calc_here(folder: Path, *arguments: str | Path) -> Answer:
@@ -90,6 +91,15 @@ def read_document(folder: Path) -> Document:
     text = (folder / "diagnosis.json").read_text(encoding="utf-8")
     document = json.loads(text, parse_constant=_refuse)
     assert isinstance(document, dict)
+    return document
+
+
+def documented(desk: Path, plugin: str, *data: str, inputs: str | Path = "inputs.toml", **options: Any) -> Document:
+    """Diagnose measured files in a folder by a call, which draws no sheet; test_api.py compares it with the command."""
+    with chdir(desk):
+        model = truing.load(plugin)
+        found = model.diagnose(truing.read(data, model), inputs, progress=False, **options)
+    document: Document = json.loads(json.dumps(found.document, allow_nan=False))
     return document
 
 

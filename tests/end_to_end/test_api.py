@@ -14,7 +14,7 @@ import pandas as pd
 import pint
 import pytest
 from matplotlib.figure import Figure
-from measured import Diagnosed
+from measured import read_document
 
 import truing
 from shared import TESTS, Calc
@@ -343,10 +343,10 @@ def test_a_diagnosis_names_the_cause_with_its_size(diagnosis: truing.Diagnosis) 
         diagnosis.residuals.plot("link")
 
 
-def test_a_diagnosis_is_that_of_the_command_line(diagnosis: truing.Diagnosis, play: Diagnosed, tmp_path: Path) -> None:
+def test_a_diagnosis_is_that_of_the_command_line(diagnosis: truing.Diagnosis, play: Path, tmp_path: Path) -> None:
     saved = diagnosis.save(tmp_path / "here")
-    assert json.loads((saved / "diagnosis.json").read_text("utf-8")) == play.document
-    assert (saved / "extended.toml").read_text("utf-8") == (play.folder / "extended.toml").read_text("utf-8")
+    assert json.loads((saved / "diagnosis.json").read_text("utf-8")) == read_document(play)
+    assert (saved / "extended.toml").read_text("utf-8") == (play / "extended.toml").read_text("utf-8")
     assert not diagnosis.compare(diagnosis)
 
 

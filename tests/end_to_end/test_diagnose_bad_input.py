@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -18,8 +19,9 @@ from measured import (
     Columns,
     Diagnosed,
     calc_here,
+    columns_of,
     diagnose_here,
-    heated_press,
+    documented,
     names,
     renamed,
     taken,
@@ -32,25 +34,27 @@ COMMAND = ("diagnose", "press_linkage", "--inputs", "inputs.toml")
 
 
 @pytest.fixture(scope="session")
-def desk(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with the inputs of the press; what is diagnosed once for several tests lies here."""
-    return tmp_path_factory.mktemp("press")
+def desk(heated: Diagnosed, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the inputs of the press; what is diagnosed lies here."""
+    folder = tmp_path_factory.mktemp("press")
+    shutil.copy(heated.folder.parents[1] / "inputs.toml", folder)
+    return folder
 
 
 @pytest.fixture(scope="session")
-def press(desk: Path) -> Columns:
+def press(heated: Diagnosed) -> Columns:
     """The record of a press whose links are warm, as cells of text."""
-    return heated_press(desk)
+    return columns_of((heated.folder.parents[1] / "measured.csv").read_text(encoding="utf-8"))
 
 
 @pytest.fixture(scope="session")
-def plain(desk: Path, press: Columns) -> Diagnosed:
+def plain(heated: Diagnosed) -> Diagnosed:
     """The diagnosis of that record as it is."""
-    return diagnose_here(desk, "plain", text_of(press))
+    return heated
 
 
 @pytest.fixture
-def bench(desk: Path, press: Columns, tmp_path: Path) -> Path:
+def bench(desk: Path, tmp_path: Path) -> Path:
     """An empty folder with the inputs of the press."""
     (tmp_path / "inputs.toml").write_bytes((desk / "inputs.toml").read_bytes())
     return tmp_path
@@ -135,11 +139,11 @@ def test_a_folder_that_is_something_else_is_left_alone(bench: Path, press: Colum
     ]
 
 
-def test_an_earlier_diagnosis_outlives_a_refusal(desk: Path, plain: Diagnosed) -> None:
-    before = contents(plain.folder)
-    (desk / "wrong.csv").write_text("slider_position [kN]\n1\n2\n3\n", encoding="utf-8")
-    refused(desk, "--data", "wrong.csv", "-o", plain.folder.name)
-    assert contents(plain.folder) == before
+def test_an_earlier_diagnosis_outlives_a_refusal(bench: Path, plain: Diagnosed) -> None:
+    earlier = shutil.copytree(plain.folder, bench / "earlier")
+    (bench / "wrong.csv").write_text("slider_position [kN]\n1\n2\n3\n", encoding="utf-8")
+    refused(bench, "--data", "wrong.csv", "-o", "earlier")
+    assert contents(earlier) == contents(plain.folder)
 
 
 # What is kept, said and counted
@@ -173,9 +177,10 @@ def test_what_never_changed_is_not_excited(desk: Path, press: Columns) -> None:
 
 def test_one_row_many_times_names_nothing(desk: Path, press: Columns) -> None:
     """A gauge that stands still: 80 times the same row are 80 readings, and no cause."""
-    found = diagnose_here(desk, "still", text_of(taken(press, [7] * 80)))
-    assert found.document["rows"] == 80
-    assert found.document["verdict"] in {"none", "undecided"}
+    (desk / "still.csv").write_text(text_of(taken(press, [7] * 80)), encoding="utf-8")
+    document = documented(desk, "press_linkage", "still.csv")
+    assert document["rows"] == 80
+    assert document["verdict"] in {"none", "undecided"}
 
 
 def test_some_readings_of_one_result_may_be_missing(desk: Path, press: Columns) -> None:
@@ -202,10 +207,8 @@ def test_a_condition_that_no_column_gives_is_not_measured(desk: Path, press: Col
 
 def test_what_a_budget_of_calls_leaves_out_is_said(desk: Path, press: Columns, plain: Diagnosed) -> None:
     """A budget that does not last forbids a plain name; one that does changes nothing."""
-    few, many = (
-        diagnose_here(desk, f"of {calls} calls", text_of(press), "--set", f"studies.diagnose.budget={calls}")
-        for calls in (150, 100_000)
-    )
+    few = diagnose_here(desk, "few", text_of(press), "--set", "studies.diagnose.budget=150")
+    many = documented(desk, "press_linkage", "few.csv", budget=100_000)
     (said,) = [text for text in few.document["warnings"] if text.startswith("the search ended after 150 calls of the ")]
     assert said.endswith("look further with [studies.diagnose] budget = 600")
     assert few.document["verdict"] == "undecided"
@@ -213,8 +216,8 @@ def test_what_a_budget_of_calls_leaves_out_is_said(desk: Path, press: Columns, p
     assert said in few.document["undecided"]
     assert "the search ended after 150 calls" in " ".join(few.answer.out.split())
     assert "the search ended after 150 calls" in (few.folder / "sheet.html").read_text(encoding="utf-8")
-    assert many.document["warnings"] == plain.document["warnings"] == []
-    assert names(many.document) == names(plain.document)
+    assert many["warnings"] == plain.document["warnings"] == []
+    assert names(many) == names(plain.document)
 
 
 def test_hostile_words_are_shown_and_obeyed_nowhere(desk: Path, press: Columns) -> None:
@@ -261,6 +264,6 @@ def test_a_unit_that_is_probably_wrong_is_named_and_nothing_is_changed(desk: Pat
 def test_another_way_to_write_a_file_gives_the_same_bytes(bench: Path, press: Columns, plain: Diagnosed) -> None:
     """A byte order mark, semicolons and decimal commas, spaces around them, other line ends and empty lines."""
     german = text_of(press).replace(",", " ; ").replace(".", ",").replace("\n", "\r\n\r\n")
-    again = diagnose_here(bench, "plain", b"\xef\xbb\xbf" + german.encode())
+    again = diagnose_here(bench, "measured", b"\xef\xbb\xbf" + german.encode())
     first, second = ((found.folder / "diagnosis.json").read_bytes() for found in (plain, again))
     assert first == second

@@ -9,16 +9,21 @@ from typing import Any
 
 import make_press_example
 import pytest
-from measured import Diagnosed
+from measured import Document, read_document
 from shown_in_docs import EXAMPLES, ROOT
 
-from truing.diagnosis import chance, choice, steps
+from truing.diagnosis import choice
 from truing.diagnosis.noise import SETTINGS
 
 PLAY = EXAMPLES / "press_off_by_40_um"
 WARM = EXAMPLES / "press_warm_links"
 REFERENCE = ROOT / "docs" / "reference" / "verbs" / "diagnose.md"
 METHOD = ROOT / "docs" / "explanation" / "diagnosis.md"
+
+
+@pytest.fixture(scope="module")
+def document(play: Path) -> Document:
+    return read_document(play)
 
 
 def stated(example: Path, unit: str) -> float:
@@ -39,17 +44,17 @@ def test_the_readmes_state_what_was_hidden() -> None:
     assert warm.hidden == {"link_heating": {"expansion": pytest.approx(stated(WARM, "µm/(m·K)") * 1e-6)}}
 
 
-def test_the_cause_is_named_with_its_size(play: Diagnosed) -> None:
-    (cause,) = play.document["causes"]
-    assert (play.document["verdict"], play.document["unique"], cause["effect"]) == ("named", True, "joint_clearance")
+def test_the_cause_is_named_with_its_size(document: Document) -> None:
+    (cause,) = document["causes"]
+    assert (document["verdict"], document["unique"], cause["effect"]) == ("named", True, "joint_clearance")
     clearance = cause["unknowns"]["clearance"]
     assert clearance["unit"] == "um"
     assert clearance["interval95"][0] < stated(PLAY, "µm") < clearance["interval95"][1]
     assert clearance["interval95"][1] - clearance["interval95"][0] < 0.3
 
 
-def test_the_error_falls_to_the_scatter_of_the_gauge(play: Diagnosed) -> None:
-    gained = play.document["gain"]["slider_position"]
+def test_the_error_falls_to_the_scatter_of_the_gauge(document: Document) -> None:
+    gained = document["gain"]["slider_position"]
     assert gained["rmse_before"]["value"] > 20
     assert gained["rmse_after"]["value"] == pytest.approx(make_press_example.NOISE.sd["slider_position"] * 1e6, rel=0.2)
 
@@ -79,8 +84,7 @@ def keys(document: Any, own: set[str]) -> Iterator[str]:
             yield from keys(value, own)
 
 
-def test_every_field_of_diagnosis_json_is_explained(play: Diagnosed) -> None:
-    document = play.document
+def test_every_field_of_diagnosis_json_is_explained(document: Document) -> None:
     own = {*document["measured"], *document["covariates"], *document["calibrated"], *document["not_measured"]}
     own |= {*document["smallest_visible"]} | {"name", "version", "model", "line", "file", "clearance"}
     own |= {name for item in document["ranking"] for name in item["causes"]}
@@ -99,9 +103,9 @@ def test_the_explanation_states_the_levels_in_force() -> None:
     text = " ".join(METHOD.read_text(encoding="utf-8").split())
     words = {13: "Thirteen"}
     for said in (
-        f"Something is there if it is at most {steps.ANY_LEVEL}",
-        f"with what is believed so far as what is true, at {steps.FURTHER_LEVEL}",
-        f"{chance.DRAWS} records are simulated",
+        f"Something is there if it is at most {choice.ANY_LEVEL}",
+        f"with what is believed so far as what is true, at {choice.FURTHER_LEVEL}",
+        f"{choice.DRAWS} records are simulated",
         f"whose score is within {choice.CLOSE:g} (",
         f"{words[len(SETTINGS)]} such filters are tried",
     ):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import shutil
 from pathlib import Path
 from typing import Any
 
@@ -21,12 +20,14 @@ from measured import (
     calc_here,
     columns_of,
     diagnose_here,
+    documented,
     names,
     read_document,
     taken,
     text_of,
 )
 
+import truing
 from hidden_effects.asking import INPUTS, write_case
 from hidden_effects.cases import Case
 from hidden_effects.making import Wish, make_case
@@ -34,8 +35,7 @@ from hidden_effects.press_machine import POSITION, Rows, shown
 
 pytestmark = pytest.mark.filterwarnings("error::RuntimeWarning")
 NOTHING_WRONG = Wish("none", "wide", "gaussian", (POSITION,), 120)
-COMMAND = ("diagnose", "press_linkage", "--inputs", "inputs.toml", "--data", "measured.csv")
-ODDS = ("--set", 'studies.run=["reliability"]', "--set", "studies.reliability.draws=20000")
+ODDS = {"studies.run": ["reliability"], "studies.reliability.draws": 20000}
 
 
 @pytest.fixture(scope="session")
@@ -53,12 +53,9 @@ def desk(case: Case, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session")
-def found(desk: Path) -> Diagnosed:
+def found(heated: Diagnosed) -> Diagnosed:
     """The diagnosis, in the folder that nobody named."""
-    answer = calc_here(desk, *COMMAND)
-    assert (answer.code, answer.err) == (0, "")
-    folder = desk / "runs" / "measured"
-    return Diagnosed(answer, read_document(folder), folder)
+    return heated
 
 
 def test_what_was_hidden_is_named_with_its_size(case: Case, found: Diagnosed) -> None:
@@ -149,27 +146,6 @@ def test_rows_held_out_are_predicted_to_about_the_noise(case: Case, desk: Path, 
     assert np.sqrt(np.mean(errors**2)) < 1.1 * noise
 
 
-def test_diagnosed_again_nothing_is_left(desk: Path, found: Diagnosed) -> None:
-    shutil.copy(found.folder / "extended.toml", desk / "extended.toml")
-    command = ("diagnose", "press_linkage", "--inputs", "extended.toml", "--data", "measured.csv", "-o", "again")
-    answer = calc_here(desk, *command)
-    assert (answer.code, answer.err) == (0, "")
-    document = read_document(desk / "again")
-    assert (document["explanations"], document["causes"], document["remainder"]) == ([], [], None)
-    assert document["wrong"][POSITION]["rmse"]["value"] < 1.2 * document["wrong"][POSITION]["noise_floor"]["value"]
-
-
-def test_the_same_data_gives_the_same_bytes_and_a_folder_is_replaced_whole(desk: Path, found: Diagnosed) -> None:
-    before = {name: (found.folder / name).read_bytes() for name in ("diagnosis.json", "extended.toml", "arrays.npz")}
-    (found.folder / "remark.txt").write_text("mine", encoding="utf-8")
-    answer = calc_here(desk, *COMMAND, "--json")
-    assert (answer.code, answer.err) == (0, "")
-    assert {name: (found.folder / name).read_bytes() for name in before} == before
-    assert {path.name for path in found.folder.iterdir()} == CONTRACT | {"extended.toml"}
-    assert sorted(path.name for path in found.folder.parent.iterdir()) == ["measured"]
-    assert json.loads(answer.out) == found.document  # one document and nothing else
-
-
 # A gauge that is off
 
 
@@ -192,10 +168,8 @@ def off(sound: tuple[Path, Columns]) -> Diagnosed:
     return diagnose_here(sound[0], "off", text_of(moved(sound[1], 5)))
 
 
-def reliability(folder: Path, inputs: Path) -> Any:
-    answer = calc_here(folder, "run", "press_linkage", "--inputs", inputs, "-o", "run", *ODDS)
-    assert answer.code in {0, 1}, answer.err
-    results = json.loads((folder / "run" / "results.json").read_text(encoding="utf-8"))
+def reliability(inputs: Path) -> Any:
+    results = truing.load("press_linkage").run(inputs, set=ODDS, progress=False).document
     return results["studies"]["reliability"], results["checks"], results["results"]
 
 
@@ -205,7 +179,7 @@ def test_a_gauge_that_is_off_fails_no_machine(sound: tuple[Path, Columns], off: 
     low, high = cause["unknowns"]["slider_position"]["interval95"]
     assert low < 5 < high
     assert high - low < 0.3
-    assert reliability(sound[0], off.folder / "extended.toml") == reliability(sound[0], sound[0] / "inputs.toml")
+    assert reliability(off.folder / "extended.toml") == reliability(sound[0] / "inputs.toml")
 
 
 # Several files, rows held out
@@ -232,7 +206,7 @@ def test_a_gauge_that_was_set_anew_for_each_file(sound: tuple[Path, Columns]) ->
         assert low < offset < high
         (written,) = re.findall(rf"^# {name}\.csv: (\S+), 95 % interval from ", extended, re.MULTILINE)
         assert float(written) == pytest.approx(by_file[f"{name}.csv"]["value"], rel=1e-3)
-    assert calc_here(folder, "run", "press_linkage", "--inputs", "runs/monday/extended.toml", *ODDS).code in {0, 1}
+    assert reliability(folder / "runs" / "monday" / "extended.toml")
 
 
 def test_one_offset_for_two_files_is_something_else(sound: tuple[Path, Columns]) -> None:
@@ -241,10 +215,7 @@ def test_one_offset_for_two_files_is_something_else(sound: tuple[Path, Columns])
     halves = [moved(taken(columns, range(60)), 5), moved(taken(columns, range(60, 120)), -3)]
     for name, half in zip(("first", "second"), halves, strict=True):
         (folder / f"{name}.csv").write_text(text_of(half), encoding="utf-8")
-    command = ("diagnose", "press_linkage", "--inputs", "inputs.toml", "first.csv", "second.csv", "-o", "both")
-    answer = calc_here(folder, *command)
-    assert answer.code == 0, answer.err
-    document = read_document(folder / "both")
+    document = documented(folder, "press_linkage", "first.csv", "second.csv")
     assert names(document) != ["sensor_offset"] or document["remainder"] is not None
     assert document["explanations"]
 
@@ -256,13 +227,16 @@ def test_rows_that_only_judge_change_nothing_that_is_learnt(desk: Path, found: D
     shifted = {
         row: float(cell) + 0.5 * (columns["record"][row] == "validation") for row, cell in enumerate(columns[HEIGHT])
     }
-    as_it_was = diagnose_here(tmp_path, "measured", text_of(columns))
-    spoilt = diagnose_here(tmp_path, "spoilt", text_of({**columns, HEIGHT: [repr(cell) for cell in shifted.values()]}))
-    assert as_it_was.answer.err == "note: 22 rows only judge: record = validation\n"
-    assert names(as_it_was.document) == ["link_heating"]
+    diagnosed = diagnose_here(tmp_path, "measured", text_of(columns))
+    answer, as_it_was = diagnosed.answer, diagnosed.document
+    spoilt_columns = {**columns, HEIGHT: [repr(cell) for cell in shifted.values()]}
+    (tmp_path / "spoilt.csv").write_text(text_of(spoilt_columns), encoding="utf-8")
+    spoilt = documented(tmp_path, "press_linkage", "spoilt.csv")
+    assert answer.err == "note: 22 rows only judge: record = validation\n"
+    assert names(as_it_was) == ["link_heating"]
     for name in ("causes", "calibrated", "wrong", "alternatives", "remainder", "smallest_visible"):
-        assert spoilt.document[name] == as_it_was.document[name]
-    held = [item.document["gain"][POSITION]["held_out"] for item in (as_it_was, spoilt)]
+        assert spoilt[name] == as_it_was[name]
+    held = [document["gain"][POSITION]["held_out"] for document in (as_it_was, spoilt)]
     after = [item["rmse_after"]["value"] for item in held]
     noise = found.document["wrong"][POSITION]["noise_floor"]["value"]
     assert after[0] < 1.4 * noise < held[0]["rmse_before"]["value"]

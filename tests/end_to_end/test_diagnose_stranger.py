@@ -146,6 +146,23 @@ def test_a_gauge_that_does_nothing_wrong(desk: Path) -> None:
     assert found.document["wrong"]["sag"]["noise_floor"]["value"] == pytest.approx(1.5, rel=3 / np.sqrt(2 * ROWS))
 
 
+def test_the_same_data_gives_the_same_bytes_and_a_folder_is_replaced_whole(
+    desk: Path, on_its_gauge: Callable[[str], Diagnosed]
+) -> None:
+    """With --json there is one document and nothing else."""
+    folder = on_its_gauge("sensor_offset").folder
+    before = {name: (folder / name).read_bytes() for name in ("diagnosis.json", "extended.toml", "arrays.npz")}
+    (folder / "remark.txt").write_text("mine", encoding="utf-8")
+    folders = sorted(path.name for path in folder.parent.iterdir())
+    words = ("--inputs", "inputs.toml", "--data", "sensor_offset.csv", "-o", folder.name, "--json")
+    answer = calc_here(desk, "diagnose", "./beam.py", *words)
+    assert (answer.code, answer.err) == (0, "")
+    assert {name: (folder / name).read_bytes() for name in before} == before
+    assert {path.name for path in folder.iterdir()} == CONTRACT | {"extended.toml"}
+    assert sorted(path.name for path in folder.parent.iterdir()) == folders
+    assert json.loads(answer.out) == on_its_gauge("sensor_offset").document
+
+
 def test_a_plugin_without_any_tolerance(desk: Path) -> None:
     """Nothing can be calibrated: a beam that is 1 % softer is named as a gauge that reads 1 % too much."""
     exact = measured_beam(GAUGES["sensor_drift"][0], 1.0)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from measured import calc_here, names, read_document
+from measured import documented, names
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from scipy.optimize import least_squares
@@ -91,9 +91,7 @@ def fitted(drops: list[tuple[Row, Row, float]], law: Any = fallen) -> tuple[floa
 def diagnosed(folder: Path, ball: str, numbers: str = "12") -> dict[str, Any]:
     shutil.copytree(EXAMPLE, folder / "desk", ignore=shutil.ignore_patterns("__pycache__", "runs"))
     drops = [f"drops/{ball}_{number}.csv" for number in numbers]
-    answer = calc_here(folder / "desk", "diagnose", "./falling_ball.py", "--inputs", "inputs.toml", "--data", *drops)
-    assert answer.code == 0, answer.err
-    return read_document(folder / "desk" / "runs" / f"{ball}_{numbers[0]}")
+    return documented(folder / "desk", "falling_ball.py", *drops)
 
 
 # The physics

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from example_rows import ExampleRows, as_they_stand, every_other, explanations, the_others
-from measured import Document
+from example_rows import ExampleRows, every_other, explanations, the_others
+from measured import Document, read_document
 from numpy.typing import NDArray
 from scipy.optimize import fmin, fminbound, least_squares
 from scipy.stats import t as student
@@ -25,7 +26,6 @@ AMPLITUDE = 343.3
 HALVES_APART = 0.015
 """By how much the period of rows 1-130 and that of rows 131-200 differ, in s: the wave keeps it no better."""
 KNOWN_NEARLY = '"period", 3.0, 3.6'
-HELD_OUT = ("--set", "studies.diagnose.hold_out=half = judge")
 Values = NDArray[np.float64]
 
 
@@ -46,13 +46,13 @@ def beam() -> Any:
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> Document:
-    return LEW.diagnosed(tmp_path_factory.mktemp("whole")).document
+def whole(shown_runs: Callable[[str], Path]) -> Document:
+    return read_document(shown_runs("beam_deflection") / "lew")
 
 
 @pytest.fixture(scope="module")
 def nearly(tmp_path_factory: pytest.TempPathFactory) -> Document:
-    return LEW.diagnosed(tmp_path_factory.mktemp("nearly"), declared=period_known_nearly).document
+    return LEW.diagnosed(tmp_path_factory.mktemp("nearly"), declared=period_known_nearly)
 
 
 # NIST/SEMATECH e-Handbook, section 1.4.2.5.2: mean and standard deviation of the 200 rows
@@ -184,7 +184,7 @@ def test_it_is_never_said_that_nothing_is_wrong(whole: Document) -> None:
 
 
 def test_without_a_cause_that_could_draw_it_no_cause_is_named(tmp_path: Path) -> None:
-    document = LEW.diagnosed(tmp_path, declared=without_a_wave).document
+    document = LEW.diagnosed(tmp_path, declared=without_a_wave)
     assert document["verdict"] in {"undecided", "unknown"}
     assert document["causes"] == []
 
@@ -214,12 +214,12 @@ def test_outliers_are_the_rows_that_lie_farthest_off_by_hand(nearly: Document) -
 @pytest.mark.parametrize("taken", [every_other, the_others])
 def test_half_of_the_rows_name_the_wave(taken: Any, tmp_path: Path) -> None:
     """Two seconds between readings have an alias at 5.05 s, outside of the range that is known."""
-    half = LEW.diagnosed(tmp_path, taken, declared=period_known_nearly).document
+    half = LEW.diagnosed(tmp_path, taken, declared=period_known_nearly)
     assert_names_the_wave(half)
 
 
 def test_half_of_the_rows_name_the_wave_or_its_alias(tmp_path: Path) -> None:
-    document = LEW.diagnosed(tmp_path, every_other).document
+    document = LEW.diagnosed(tmp_path, every_other)
     assert explanations(document) == {frozenset({"forced_vibration"})}
     alias = 1 / (1 / 2 - 1 / PERIOD)
     value = document["causes"][0]["unknowns"]["period"]["value"]
@@ -228,7 +228,7 @@ def test_half_of_the_rows_name_the_wave_or_its_alias(tmp_path: Path) -> None:
 
 def test_rows_held_out_are_predicted(tmp_path: Path) -> None:
     """The first rows lie far off and pull the period, but not far enough to lose the wave in the last 70."""
-    document = LEW.diagnosed(tmp_path, as_they_stand, *HELD_OUT, declared=period_known_nearly).document
+    document = LEW.diagnosed(tmp_path, declared=period_known_nearly, hold_out="half = judge")
     low, high = document["causes"][0]["unknowns"]["period"]["interval95"]
     assert low < heavy_tailed(130)[0] < high
     gain = document["gain"]["deflection"]["held_out"]

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import re
 import shutil
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from measured import calc_here, read_document
+from measured import documented
 from numpy.typing import NDArray
 from scipy.integrate import quad
 from scipy.optimize import least_squares
@@ -144,16 +145,10 @@ def test_up_to_600_k_the_second_cause_has_three_names_and_a_hotter_row_is_asked_
     assert int(asked[1]) > 852
 
 
-def test_with_what_was_found_on_nothing_is_left_to_name(tmp_path: Path) -> None:
-    desk = tmp_path / "desk"
-    shutil.copytree(EXAMPLE, desk, ignore=shutil.ignore_patterns("__pycache__", "runs"))
-    for inputs in ("inputs.toml", "runs/hahn1/extended.toml"):
-        output = "runs/hahn1" if inputs == "inputs.toml" else "runs/again"
-        answer = calc_here(
-            desk, "diagnose", "./copper_expansion.py", "--inputs", inputs, "--data", "hahn1.csv", "--output", output
-        )
-        assert answer.code == 0, answer.err
-    again = read_document(desk / "runs" / "again")
+def test_with_what_was_found_on_nothing_is_left_to_name(shown_runs: Callable[[str], Path], tmp_path: Path) -> None:
+    shutil.copytree(EXAMPLE, tmp_path / "desk", ignore=shutil.ignore_patterns("__pycache__", "runs"))
+    extended = shown_runs("copper_expansion") / "hahn1" / "extended.toml"
+    again = documented(tmp_path / "desk", "copper_expansion.py", "hahn1.csv", inputs=extended)
     assert (again["explanations"], again["remainder"]) == ([], None)
     visible = {name: item["value"] for name, item in again["smallest_visible"].items()}
     assert 0.3 < visible["thermocouple_offset"] < 0.8

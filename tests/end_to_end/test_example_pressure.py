@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
-from measured import Document, calc_here, read_document
+from measured import Document, documented, read_document
 from numpy.typing import NDArray
 from shown_in_docs import EXAMPLES
 
@@ -30,18 +31,10 @@ def waves(time: Values, *periods: float) -> list[Values]:
     return [wave(2 * np.pi * time / period) for period in periods for wave in (np.cos, np.sin)]
 
 
-@pytest.fixture(scope="module")
-def desk(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("pressure") / "desk"
-    shutil.copytree(EXAMPLE, folder, ignore=shutil.ignore_patterns("__pycache__", "runs"))
-    return folder
-
-
-def diagnosed(desk: Path, inputs: str, data: str, output: str) -> Document:
-    given = ["--inputs", inputs, "--data", data, "--output", output]
-    answer = calc_here(desk, "diagnose", "./pacific_pressure.py", *given)
-    assert answer.code == 0, answer.err
-    return read_document(desk / output)
+def diagnosed(desk: Path, rows: str, **options: Path) -> Document:
+    """Diagnose rows in a new folder."""
+    shutil.copytree(EXAMPLE, desk, ignore=shutil.ignore_patterns("__pycache__", "runs"), dirs_exist_ok=True)
+    return documented(desk, "pacific_pressure.py", rows, **options)
 
 
 def test_the_plugin_passes_the_kit() -> None:
@@ -57,10 +50,15 @@ def test_the_rows_are_those_that_nist_certifies() -> None:
 
 
 @pytest.mark.parametrize("every", [1, 2])
-def test_the_seasons_are_found_as_large_as_nist_certifies(desk: Path, every: int) -> None:
-    lines = (desk / "enso.csv").read_text(encoding="utf-8").splitlines()
-    (desk / "rows.csv").write_text("\n".join([*lines[:2], *lines[2::every]]) + "\n", encoding="utf-8")
-    document = diagnosed(desk, "inputs.toml", "rows.csv", f"runs/every{every}")
+def test_the_seasons_are_found_as_large_as_nist_certifies(
+    shown_runs: Callable[[str], Path], tmp_path: Path, every: int
+) -> None:
+    if every == 1:
+        document = read_document(shown_runs("pacific_pressure") / "enso")
+    else:
+        lines = (EXAMPLE / "enso.csv").read_text(encoding="utf-8").splitlines()
+        (tmp_path / "rows.csv").write_text("\n".join([*lines[:2], *lines[2::every]]) + "\n", encoding="utf-8")
+        document = diagnosed(tmp_path, "rows.csv")
     assert document["verdict"] in {"named", "one_of"}
     (seasons,) = [cause["unknowns"] for cause in document["causes"] if cause["effect"] == "seasons"]
     for name, certified in (("cosine", CERTIFIED[1]), ("sine", CERTIFIED[2])):
@@ -91,7 +89,7 @@ def test_beside_a_memory_of_the_weather_both_slow_cycles_are_nearly_worth_their_
 
 
 @pytest.mark.xfail(strict=False, reason="that nothing is wrong is said although two slow cycles are left in the rows")
-def test_with_the_seasons_on_the_rest_is_not_called_noise(desk: Path) -> None:
-    diagnosed(desk, "inputs.toml", "enso.csv", "runs/first")
-    again = diagnosed(desk, "runs/first/extended.toml", "enso.csv", "runs/second")
+def test_with_the_seasons_on_the_rest_is_not_called_noise(shown_runs: Callable[[str], Path], tmp_path: Path) -> None:
+    extended = shown_runs("pacific_pressure") / "enso" / "extended.toml"
+    again = diagnosed(tmp_path, "enso.csv", inputs=extended)
     assert again["verdict"] != "none"

@@ -11,12 +11,11 @@ import pytest
 from example_rows import (
     ExampleRows,
     Rows,
-    as_they_stand,
     explanations,
     spoken_of,
     the_others,
 )
-from measured import Diagnosed, Document
+from measured import Document, read_document
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 from scipy.stats import bartlett
@@ -41,10 +40,6 @@ def ultrasonic() -> Any:
     return load_file(CHWIRUT.folder / "ultrasonic_calibration.py")
 
 
-def by_name(which: str) -> Callable[[Rows], Rows]:
-    return {"file": as_they_stand, "sorted": sorted_by_distance}[which]
-
-
 def sorted_by_distance(rows: Rows) -> Rows:
     return sorted(rows, key=lambda row: float(row.split(",")[0]))
 
@@ -53,10 +48,9 @@ ORDERS = ("file", "sorted")
 
 
 @pytest.fixture(scope="module")
-def orders(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Document]:
-    desk = tmp_path_factory.mktemp("orders")
-    found: dict[str, Diagnosed] = {order: CHWIRUT.diagnosed(desk / order, by_name(order)) for order in ORDERS}
-    return {order: diagnosed.document for order, diagnosed in found.items()}
+def orders(tmp_path_factory: pytest.TempPathFactory, shown_runs: Callable[[str], Path]) -> dict[str, Document]:
+    other = CHWIRUT.diagnosed(tmp_path_factory.mktemp("sorted"), sorted_by_distance)
+    return {"file": read_document(shown_runs("ultrasonic_calibration") / "chwirut2"), "sorted": other}
 
 
 def test_the_rows_are_those_that_nist_certifies() -> None:
@@ -216,7 +210,7 @@ def test_the_scatter_depends_on_the_distance(order: str, orders: dict[str, Docum
 
 def test_half_of_the_rows_leave_spreading_among_the_explanations(tmp_path: Path) -> None:
     """And they are not surer than all: the law that draws the same curve is left too."""
-    half = CHWIRUT.diagnosed(tmp_path, the_others).document
+    half = CHWIRUT.diagnosed(tmp_path, the_others)
     assert half["verdict"] in {"named", "one_of", "undecided"}  # 27 rows may say too little, never something else
     assert (frozenset({"beam_spreading"}) in explanations(half)) == (half["verdict"] != "undecided")
     both = {frozenset({"beam_spreading"}), frozenset({"pulse_hardening"})}
@@ -230,13 +224,13 @@ def test_of_every_effect_something_is_said(ultrasonic: Any, orders: dict[str, Do
     assert effects <= spoken_of(orders["file"])
 
 
-def test_rows_held_out_are_predicted_as_well_as_by_the_certified_law(tmp_path: Path) -> None:
+def test_rows_held_out_are_predicted_as_well_as_by_the_certified_law(shown_runs: Callable[[str], Path]) -> None:
     distance, response = CHWIRUT.numbers(0, 1)
     judge = np.array(CHWIRUT.words(2)) == "judge"
     found, _ = unweighted("spreading", distance[~judge], response[~judge])
     by_hand = float(np.sqrt(np.mean((spreading(distance, found) - response)[judge] ** 2)))
-    more = ("--set", "studies.diagnose.hold_out=judged = judge")
-    gain = CHWIRUT.diagnosed(tmp_path, as_they_stand, *more).document["gain"]["response"]["held_out"]
+    document = read_document(shown_runs("ultrasonic_calibration") / "judged")
+    gain = document["gain"]["response"]["held_out"]
     assert gain["rmse_after"]["value"] == pytest.approx(by_hand, rel=0.1)
     assert 3 <= gain["rmse_after"]["value"] < 4  # as the page says
     assert gain["rmse_before"]["value"] > 1.3 * by_hand

@@ -9,19 +9,17 @@ from typing import Any
 
 import make_roller_screw_example
 import pytest
-from measured import calc_here, names, read_document
+from measured import documented, names
 from shown_in_docs import EXAMPLES
 
 EXAMPLE = EXAMPLES / "roller_screw_rubs"
 
 
 def diagnosed(file: str, folder: Path) -> dict[str, Any]:
-    """What the command says of one of the records."""
+    """What is said of one of the records."""
     desk = folder / "desk"
     shutil.copytree(EXAMPLE, desk)
-    answer = calc_here(desk, "diagnose", "roller_screw_shift", "--inputs", "inputs.toml", "--data", file)
-    assert answer.code == 0
-    return read_document(desk / "runs" / Path(file).stem)
+    return documented(desk, "roller_screw_shift", file)
 
 
 def test_the_shipped_rows_are_those_that_the_script_makes() -> None:

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cache
 from math import pi
 from pathlib import Path
-from typing import Any
-
-import numpy as np
 
 from hidden_effects.candidates import HOUR
 from hidden_effects.cases import Case
 from hidden_effects.press_machine import POSITION, TILT, Array, Rows
 from truing import Kernel
 from truing.kernel import Offer
+from truing.measurements import table_text
 from truing.testing import recorded
+from truing.testing.hiding import Answered
 
 INPUTS = (
     'plugin = "press_linkage"\n\n[inputs]\nreading = "complete"\n'
@@ -37,9 +35,7 @@ def table(rows: Rows, readings: Mapping[str, Array], counters: tuple[float, floa
         "direction [1]": rows.direction,
         **{f"{name} [{WRITTEN[name][0]}]": values * WRITTEN[name][1] for name, values in readings.items()},
     }
-    lines = [",".join(columns)]
-    lines += [",".join(repr(float(cell)) for cell in row) for row in zip(*columns.values(), strict=True)]
-    return "\n".join(lines) + "\n"
+    return table_text(list(columns), list(columns.values()))
 
 
 def tables(case: Case) -> tuple[str, str]:
@@ -61,22 +57,7 @@ def press_offer() -> Offer:
     return Kernel.installed().offer("press_linkage")
 
 
-@dataclass(frozen=True)
-class Answer:
-    """What was said to a case: the document, and what the model then predicts for rows that were held out.
-
-    ``predicted`` is what the calibrated machine shows with every cause and shape that was found, in SI, one result
-    after another, without the first row (that of the record).
-    """
-
-    document: Mapping[str, Any]
-    predicted: Array
-    seconds: float
-
-
-def diagnosed(case: Case) -> Answer:
+def diagnosed(case: Case) -> Answered:
     """Ask for a diagnosis of the record and predict the rows that were held out."""
     measured, held = tables(case)
-    said = recorded(press_offer().model, inputs=INPUTS, measured=measured, held_out=held).answered
-    predicted = np.concatenate([said.predicted[result][1:] for result in case.results])
-    return Answer(said.document, predicted, said.seconds)
+    return recorded(press_offer().model, inputs=INPUTS, measured=measured, held_out=held).answered

@@ -1,18 +1,16 @@
 """First stages with something wrong, or nothing: how they were measured, with what noise, and what a user has."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 import numpy as np
 
 from hidden_effects.gearing_machine import Rows, shown
-from hidden_effects.gearing_stage import Array, Stage
+from hidden_effects.gearing_stage import Stage
 from hidden_effects.plugin_asking import Rig
 from hidden_effects.rig_cases import RigCases, RigWish
 
 Design: TypeAlias = Literal["rig", "sweep", "one_way"]
-Strange: TypeAlias = Callable[[Rows], dict[str, Array]]
 SUN_ROOT, PLANET_ROOT, CONTACT = "root_stress_sun", "root_stress_planet", "contact_stress"
 ERROR, PLAY, LOSS, WARMTH = "transmission_error", "backlash", "efficiency", "flank_temperature"
 UNIT = {SUN_ROOT: "MPa", PLANET_ROOT: "MPa", CONTACT: "MPa", ERROR: "um", PLAY: "um", LOSS: "1", WARMTH: "degC"}
@@ -22,25 +20,16 @@ TURN_OF_OUTPUT = 39960.0  # deg of the sun
 
 @dataclass(frozen=True, kw_only=True)
 class Wish(RigWish):
-    """What a case is to be like; what is strange is added to the results it names, in the units of this module."""
+    """What a case is to be like."""
 
     design: Design = "rig"
     count: int = 100
-    strange: Strange | None = None
 
 
-def built(rng: np.random.Generator) -> Stage:
+def built(_: Wish, rng: np.random.Generator) -> Stage:
     """Draw a machine within its tolerances."""
     width, sun, planet, bearing = rng.standard_normal(4) * (0.033, 0.01, 0.01, 0.001)
     return Stage(12.0 + width, sun, planet, 0.99 + bearing)
-
-
-def true_readings(wish: Wish, rows: Rows, stage: Stage) -> dict[str, Array]:
-    """What the gauges would show without noise."""
-    read = shown(rows, stage, wish.hidden)
-    for name, more in (wish.strange(rows) if wish.strange else {}).items():
-        read[name] = read[name] + more
-    return read
 
 
 def measured(design: Design, count: int, rng: np.random.Generator) -> Rows:
@@ -60,7 +49,7 @@ def measured(design: Design, count: int, rng: np.random.Generator) -> Rows:
 
 
 CASES = RigCases(
-    stream=75, held=300, measured=measured, machine=built, true=true_readings,
+    stream=75, held=300, measured=measured, machine=built, shown=shown,
     spread=lambda rows: 0.4 + 1.6 * np.abs(rows.load_torque) / 1300, noise=NOISE,
 )  # fmt: skip
 make_case = CASES.made

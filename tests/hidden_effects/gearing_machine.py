@@ -12,16 +12,7 @@ import numpy as np
 from scipy.special import erf
 
 from hidden_effects.gearing_stage import ANGLE, BASE, MODULE, PINS, PLANET, SUN, Array, Stage, pair_of, play_between
-from hidden_effects.gearing_stress import (
-    POISSON,
-    YOUNG,
-    Loaded,
-    Wrong,
-    mesh_stiffness,
-    stresses,
-    swinging,
-    touched,
-)
+from hidden_effects.gearing_stress import POISSON, YOUNG, Loaded, Wrong, mesh_stiffness, stresses, swinging, touched
 from hidden_effects.rows import Hidden, MeasuredRows, of
 
 RATIO, MESHES = 111.0, 0.920941
@@ -191,6 +182,4 @@ def shown(rows: Rows, stage: Stage, hidden: Hidden) -> dict[str, Array]:
     read["backlash"] = play_between(stage, apart(rows, hidden)) + play + 2 * depth
     read["efficiency"] = efficiency(stage) - held_back(rows, hidden) / torque
     read["flank_temperature"] = rows.oil_temperature + flash(rows, stage, hidden)
-    for name in read:
-        read[name] = read[name] * (1 + of(hidden, "sensor_gain", name)) + of(hidden, "sensor_offset", name)
     return read

@@ -1,6 +1,5 @@
 """Harmonic drives with something wrong, or nothing: how they were measured, and with what noise."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from math import isfinite
 from typing import Literal, TypeAlias
@@ -10,12 +9,11 @@ from numpy.typing import NDArray
 
 from hidden_effects.harmonic_machine import MESH, TORSION, Array, Rows, shown
 from hidden_effects.harmonic_surface import FLANK, SurfaceWish, make_surface
-from hidden_effects.noises import noise_of
-from hidden_effects.plugin_asking import Answer, Rig
-from hidden_effects.rig_cases import RigCase, RigWish
+from hidden_effects.plugin_asking import Rig
+from hidden_effects.rig_cases import RigCase, RigCases, RigWish
+from truing.testing.hiding import Answered
 
 Design: TypeAlias = Literal["loops", "climb", "points"]
-Strange: TypeAlias = Callable[[Rows], Array]
 UNIT = {TORSION: "urad", MESH: "N*m/rad"}
 NOISE = {TORSION: 5.0, MESH: 6e4}
 INPUTS = """plugin = "harmonic_fractal"
@@ -37,54 +35,34 @@ PEAKS = (8.0, 16.0, 24.0, 32.0, 12.0, 40.0)
 
 @dataclass(frozen=True, kw_only=True)
 class Wish(RigWish):
-    """What a case is to be like; what is strange is added to the first result, in its unit."""
+    """What a case is to be like: a drive whose fitted readings and others know the whole past."""
 
     design: Design = "loops"
     results: tuple[str, ...] = (TORSION,)
     count: int = 60
-    strange: Strange | None = None
     tooth: float = np.inf
     """Stiffness of a tooth in bending, N/m."""
     logs: tuple[str, ...] = ("time", "wave_angle", "temperature", "cycles", "speed")
     """What the rig writes down beside the torque and its past."""
 
-    def noise(self, result: str) -> float:
-        """Root mean square of the noise; a mesh that bends is ten times as soft."""
-        return NOISE[result] * (0.1 if result == MESH and np.isfinite(self.tooth) else 1.0)
+    def quieter(self, result: str) -> float:
+        """A mesh that bends is ten times as soft."""
+        return 0.1 if result == MESH and np.isfinite(self.tooth) else 1.0
 
 
 def make_case(wish: Wish | SurfaceWish) -> RigCase:
     """Make a drive on the rig or a flank under an instrument, as was wished for."""
-    return make_surface(wish) if isinstance(wish, SurfaceWish) else make_drive(wish)
+    return make_surface(wish) if isinstance(wish, SurfaceWish) else CASES.made(wish)
 
 
-def make_drive(wish: Wish) -> RigCase:
-    """Put a drive on the rig, read it, and keep half of the readings back; both halves know the whole past.
+def of_both(count: int, held: int, rng: np.random.Generator) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """The places of the rows that are fitted and of those that are not; both begin with the clock.
 
-    Both begin with the clock, which counts from the first reading of a file.
+    It counts from the first reading of a file.
     """
-    rng = np.random.default_rng([wish.seed, 61])
-    every = measured(wish.design, 2 * wish.count, rng)
-    true = {name: values for name, values in shown(every, wish.hidden, wish.tooth).items() if name in wish.results}
-    if wish.strange is not None:
-        true[wish.results[0]] = true[wish.results[0]] + wish.strange(every)
-    is_held = np.zeros(len(every), dtype=bool)
-    is_held[[1, *rng.permutation(np.arange(2, len(every)))[: len(every) // 2 - 1]]] = True
-    parts = [np.flatnonzero(~is_held), np.flatnonzero(is_held)]
-    noise = {name: np.zeros(len(every)) for name in wish.results}
-    spread = 0.4 + np.abs(every.torque) / 25
-    for places in parts:
-        for name in wish.results:
-            noise[name][places] = noise_of(wish.kind, spread[places], wish.noise(name), rng)
-    read = [{name: true[name][places] + noise[name][places] for name in wish.results} for places in parts]
-    return RigCase(
-        wish=wish,
-        rows=every.taken(parts[0]),
-        held=every.taken(parts[1]),
-        readings=read[0],
-        held_readings=read[1],
-        held_true={name: true[name][parts[1]] for name in wish.results},
-    )
+    is_held = np.zeros(count, dtype=bool)
+    is_held[[1, *rng.permutation(np.arange(2, count))[: held - 1]]] = True
+    return np.flatnonzero(~is_held), np.flatnonzero(is_held)
 
 
 def measured(design: Design, count: int, rng: np.random.Generator) -> Rows:
@@ -136,7 +114,13 @@ def _points(count: int, rng: np.random.Generator) -> tuple[Array, Array, NDArray
     return torque, np.zeros(count), np.arange(count, dtype=np.intp)
 
 
-def diagnosed(case: RigCase) -> Answer:
+CASES = RigCases(
+    stream=61, held=None, measured=measured, machine=lambda wish, _: wish.tooth, shown=shown,
+    spread=lambda rows: 0.4 + np.abs(rows.torque) / 25, noise=NOISE, parted=of_both, is_path=True,
+)  # fmt: skip
+
+
+def diagnosed(case: RigCase) -> Answered:
     """Ask for a diagnosis of the record and predict the rows that were held out."""
     return (FLANK if isinstance(case.wish, SurfaceWish) else drive(case.wish)).diagnosed(case)
 

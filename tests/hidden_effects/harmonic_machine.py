@@ -195,7 +195,7 @@ def stiffened(rows: Rows, hidden: Hidden) -> Array:
     return np.asarray((1 + again) * (1 + lobes))
 
 
-def shown(rows: Rows, hidden: Hidden, tooth: float = np.inf) -> dict[str, Array]:
+def shown(rows: Rows, tooth: float, hidden: Hidden) -> dict[str, Array]:
     """What the gauges would show without noise: urad and N m/rad; teeth bend with ``tooth`` N/m."""
     stiffness, torsion = mesh(rows, hidden, tooth)
     softness = COMPLIANCE + of(hidden, "series_compliance", "compliance")
@@ -207,6 +207,3 @@ def shown(rows: Rows, hidden: Hidden, tooth: float = np.inf) -> dict[str, Array]
     angle = elastic + friction(rows, hidden) + play(rows, hidden) + turning(rows, hidden) + set_of(rows, hidden)
     drift = of(hidden, "rig_drift", "rate") * rows.time
     return {TORSION: angle + drift, MESH: stiffness * stiffened(rows, hidden)}
-
-
-__all__ = ["MESH", "TORSION", "Array", "Hidden", "Rows", "shown"]

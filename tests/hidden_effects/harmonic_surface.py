@@ -42,7 +42,7 @@ class Lags:
 class SurfaceWish:
     """What a surface is to be like: hidden unknowns in the units of the registry, and what nobody registered."""
 
-    seed: int
+    seed: int = 3
     hidden: Hidden = field(default_factory=dict)
     count: int = 40
     strange: Strange | None = None

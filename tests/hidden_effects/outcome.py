@@ -5,13 +5,13 @@ from typing import Any
 
 import numpy as np
 
-from hidden_effects.asking import Answer
 from hidden_effects.candidates import Candidate, stacked
 from hidden_effects.cases import Case
 from hidden_effects.information import Lens, beside_groups, over_results
 from hidden_effects.oracle import calibrated, judged, oracle, rms, scale
 from hidden_effects.press_machine import SCATTER, Array, shown
 from hidden_effects.shapes import family_of, groups
+from truing.testing.hiding import Answered
 from truing.units import to_si
 
 Document = Mapping[str, Any]
@@ -19,9 +19,10 @@ FIRST = 4
 DOUBTS = 12
 
 
-def outcome(case: Case, answer: Answer) -> dict[str, Any]:
+def outcome(case: Case, answer: Answered) -> dict[str, Any]:
     """Everything about one case and its answer; numbers and texts only."""
     document = answer.document
+    predicted = judged(case, stacked(answer.predicted, case.results))
     exact = is_exact(case, document)
     return {
         **about(case),
@@ -33,8 +34,8 @@ def outcome(case: Case, answer: Answer) -> dict[str, Any]:
         "wrong_name": has_wrong_name(case, document),
         "to_truth": None if exact or not document["explanations"] else to_truth(case, document),
         "covered": covered(case, document) if exact else {},
-        "held_out": held_out(case, answer.predicted),
-        "gain": gains(case, document, answer.predicted),
+        "held_out": held_out(case, predicted),
+        "gain": gains(case, document, predicted),
     }
 
 

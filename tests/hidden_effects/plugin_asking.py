@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any
 
@@ -12,20 +12,10 @@ import numpy as np
 from hidden_effects.rig_cases import RigCase
 from hidden_effects.rows import Array
 from truing import Kernel, Model
+from truing.measurements import table_text
 from truing.testing import Hidden, recorded
+from truing.testing.hiding import Answered
 from truing.units import from_si
-
-
-@dataclass(frozen=True)
-class Answer:
-    """What was said to a case: the document, what the extended model predicts for rows held out, and the time taken.
-
-    What is predicted is in the units of the file.
-    """
-
-    document: Mapping[str, Any]
-    predicted: dict[str, Array]
-    seconds: float
 
 
 @cache
@@ -48,19 +38,17 @@ class Rig:
         measured, held = self._table(case.rows, case.readings), self._table(case.held, case.held_readings)
         return recorded(model_of(self.plugin), inputs=self.inputs, measured=measured, held_out=held)
 
-    def diagnosed(self, case: RigCase) -> Answer:
-        """Ask for a diagnosis of the record and predict the rows that were held out."""
+    def diagnosed(self, case: RigCase) -> Answered:
+        """Ask for a diagnosis of the record; rows that were held out are predicted in the units of the file."""
         said = self.record(case).answered
         predicted = {name: np.asarray(from_si(values, self.measured[name])) for name, values in said.predicted.items()}
-        return Answer(said.document, predicted, said.seconds)
+        return replace(said, predicted=predicted)
 
     def _table(self, rows: Any, readings: Mapping[str, Array]) -> str:
         """The rows as CSV with units in the header, every digit kept."""
         columns = {f"{name} [{unit}]": getattr(rows, name) for name, unit in self.written.items()}
         columns |= {f"{name} [{self.measured[name]}]": values for name, values in readings.items()}
-        lines = [",".join(columns)]
-        lines += [",".join(repr(float(cell)) for cell in row) for row in zip(*columns.values(), strict=True)]
-        return "\n".join(lines) + "\n"
+        return table_text(list(columns), list(columns.values()))
 
 
 def demand_named(

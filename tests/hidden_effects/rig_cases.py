@@ -2,22 +2,27 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, TypeAlias, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hidden_effects.noises import Kind, held_out, noise_of, title_of
 from hidden_effects.rows import Array, Hidden, MeasuredRows
 
 RowsT = TypeVar("RowsT", bound=MeasuredRows)
 MachineT = TypeVar("MachineT")
+Places: TypeAlias = NDArray[np.intp]
 
 
 @dataclass(frozen=True, kw_only=True)
 class RigWish:
-    """What a case is to be like: hidden unknowns in the units of the registry, and what nobody registered."""
+    """What a case is to be like: hidden unknowns in the units of the registry, and what nobody registered.
 
-    seed: int
+    That is added to the first result, in its unit.
+    """
+
+    seed: int = 3
     hidden: Hidden = field(default_factory=dict)
     design: str
     kind: Kind = "gaussian"
@@ -29,6 +34,10 @@ class RigWish:
     def title(self) -> str:
         """What the case is called in the list of tests."""
         return title_of(self.hidden, self.strange, self.design, self.kind, "+".join(self.results))
+
+    def quieter(self, result: str) -> float:
+        """How the noise of a result compares with what is usual."""
+        return 1.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,28 +67,44 @@ class RigCase:
 class RigCases(Generic[RowsT, MachineT]):
     """How the cases of a machine are made: rows of a design, a machine, what its gauges show, and their noise.
 
-    ``spread`` says, row by row, how noise that grows compares; ``noise`` is its root mean square by result.
+    ``spread`` says, row by row, how noise that grows compares; ``noise`` is its root mean square by result. ``held``
+    rows are held out; None: as many as are fitted. ``is_path``: what is shown follows the rows before, fitted or not.
     """
 
     stream: int
-    held: int
+    held: int | None
     measured: Callable[[Any, int, np.random.Generator], RowsT]
-    machine: Callable[[np.random.Generator], MachineT]
-    true: Callable[[Any, RowsT, MachineT], dict[str, Array]]
+    machine: Callable[[Any, np.random.Generator], MachineT]
+    shown: Callable[[RowsT, MachineT, Hidden], Mapping[str, Array]]
     spread: Callable[[RowsT], Array]
     noise: Mapping[str, float]
+    parted: Callable[[int, int, np.random.Generator], tuple[Places, Places]] = held_out
+    is_path: bool = False
 
     def made(self, wish: RigWish) -> RigCase:
         """Draw a machine within its tolerances, measure it, and put the noise on."""
         rng = np.random.default_rng([wish.seed, self.stream])
-        every = self.measured(wish.design, wish.count + self.held, rng)
-        rows, held = (every.taken(places) for places in held_out(len(every), self.held, rng))
-        machine = self.machine(rng)
+        held = wish.count if self.held is None else self.held
+        every = self.measured(wish.design, wish.count + held, rng)
+        parts = self.parted(len(every), held, rng)
+        machine = self.machine(wish, rng)
+        whole = self._true(wish, every, machine) if self.is_path else None
+        rows = [every.taken(places) for places in parts]
         true, read = [], []
-        for part in (rows, held):
-            true.append(self.true(wish, part, machine))
-            noise = {name: noise_of(wish.kind, self.spread(part), self.noise[name], rng) for name in wish.results}
+        for places, part in zip(parts, rows, strict=True):
+            true.append({name: whole[name][places] for name in whole} if whole else self._true(wish, part, machine))
+            noise = {name: noise_of(wish.kind, self.spread(part), self._size(wish, name), rng) for name in wish.results}
             read.append({name: true[-1][name] + noise[name] for name in wish.results})
         return RigCase(
-            wish=wish, rows=rows, held=held, readings=read[0], held_readings=read[1], held_true=true[1]
+            wish=wish, rows=rows[0], held=rows[1], readings=read[0], held_readings=read[1], held_true=true[1]
         )  # fmt: skip
+
+    def _true(self, wish: RigWish, rows: RowsT, machine: MachineT) -> dict[str, Array]:
+        """What the gauges would show without noise; what nobody registered is added to the first result."""
+        read = dict(self.shown(rows, machine, wish.hidden))
+        if wish.strange is not None:
+            read[wish.results[0]] = read[wish.results[0]] + wish.strange(rows)
+        return read
+
+    def _size(self, wish: RigWish, result: str) -> float:
+        return self.noise[result] * wish.quieter(result)

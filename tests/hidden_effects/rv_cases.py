@@ -1,6 +1,6 @@
 """Reducers with something wrong, or nothing: how they were measured, with what noise, and what a user would have."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
@@ -11,33 +11,23 @@ from hidden_effects.rig_cases import RigCases, RigWish
 from hidden_effects.rv_machine import LIFE, RATED, ROUGHNESS_SCATTER, SPEED, ZONES, Array, Rows, shown
 
 Design: TypeAlias = Literal["endurance", "fleet"]
-Strange: TypeAlias = Callable[[Rows], Array]
 BACKLASH, WEAR = "backlash", "max_wear"
 UNIT = {BACKLASH: "arcmin", WEAR: "um"}
 
 
 @dataclass(frozen=True, kw_only=True)
 class Wish(RigWish):
-    """What a case is to be like; what is strange is added to the backlash, arcmin."""
+    """What a case is to be like."""
 
     design: Design = "endurance"
     results: tuple[str, ...] = (BACKLASH,)
     count: int = 100
-    strange: Strange | None = None
 
 
-def machine(rng: np.random.Generator) -> Mapping[str, float]:
+def machine(_: Wish, rng: np.random.Generator) -> Mapping[str, float]:
     """Draw a reducer within its zones."""
     off = {name: float(width / 6 * rng.standard_normal()) for name, width in ZONES.items()}
     return {**off, "roughness": float(ROUGHNESS_SCATTER * rng.standard_normal())}
-
-
-def true_readings(wish: Wish, rows: Rows, off: Mapping[str, float]) -> dict[str, Array]:
-    """What the gauges would show without noise."""
-    read = shown(rows, off, wish.hidden)
-    if wish.strange is not None:
-        read[BACKLASH] = read[BACKLASH] + wish.strange(rows)
-    return read
 
 
 def measured(design: Design, count: int, rng: np.random.Generator) -> Rows:
@@ -68,7 +58,7 @@ def measured(design: Design, count: int, rng: np.random.Generator) -> Rows:
 
 
 CASES = RigCases(
-    stream=74, held=300, measured=measured, machine=machine, true=true_readings,
+    stream=74, held=300, measured=measured, machine=machine, shown=shown,
     spread=lambda rows: 0.4 + 1.6 * rows.working_time / LIFE, noise={BACKLASH: 0.01, WEAR: 0.1},
 )  # fmt: skip
 make_case = CASES.made

@@ -258,8 +258,4 @@ def of_reading(rows: Rows, hidden: Hidden) -> Array:
 def shown(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> dict[str, Array]:
     """What the gauges would show without noise: backlash in arcmin, wear in um; ``off`` in mm, roughness as a share."""
     backlash = play(rows, off, hidden) / MINUTE + of_reading(rows, hidden)
-    read = {"backlash": backlash, "max_wear": worn(rows, off, hidden)[0] * 1e3}
-    for name in read:
-        read[name] = read[name] * (1 + of(hidden, "sensor_gain", name)) + of(hidden, "sensor_offset", name)
-        read[name] = read[name] + of(hidden, "sensor_drift", name) * (rows.time - rows.time[0])
-    return read
+    return {"backlash": backlash, "max_wear": worn(rows, off, hidden)[0] * 1e3}

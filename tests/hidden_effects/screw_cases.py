@@ -1,6 +1,6 @@
 """Roller screws with something wrong, or nothing: how they were measured, and with what noise."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
@@ -8,10 +8,9 @@ import numpy as np
 
 from hidden_effects.plugin_asking import Rig
 from hidden_effects.rig_cases import RigCases, RigWish
-from hidden_effects.screw_machine import WIDTHS, Array, Rows, shown
+from hidden_effects.screw_machine import WIDTHS, Rows, shown
 
 Design: TypeAlias = Literal["bench", "loaded", "endurance"]
-Strange: TypeAlias = Callable[[Rows], Array]
 ROLLER, RING, ERROR = "root_stress_roller", "root_stress_ring", "transmission_error"
 WEAR, AXIAL, TORQUE, BACKLASH = "wear_depth", "axial_shift", "friction_torque", "backlash"
 STRESSES = (ROLLER, RING)
@@ -22,26 +21,16 @@ LOADS: Mapping[Design, tuple[float, float]] = {"bench": (2.0, 20.0), "loaded": (
 
 @dataclass(frozen=True, kw_only=True)
 class Wish(RigWish):
-    """What a case is to be like; what is strange is added to the first result, in its unit."""
+    """What a case is to be like."""
 
     design: Design = "bench"
     results: tuple[str, ...] = STRESSES
     count: int = 80
-    strange: Strange | None = None
 
 
-def machine(rng: np.random.Generator) -> Mapping[str, float]:
+def machine(_: Wish, rng: np.random.Generator) -> Mapping[str, float]:
     """Draw a screw within its tolerances."""
     return {name: float(width / 6 * rng.standard_normal()) for name, width in WIDTHS.items()}
-
-
-def true_readings(wish: Wish, rows: Rows, off: Mapping[str, float]) -> dict[str, Array]:
-    """What the gauges would show without noise."""
-    read = shown(rows, off, wish.hidden)
-    if wish.strange is not None:
-        first = wish.results[0]
-        read[first] = read[first] + wish.strange(rows)
-    return read
 
 
 def measured(design: Design, count: int, rng: np.random.Generator) -> Rows:
@@ -69,7 +58,7 @@ def measured(design: Design, count: int, rng: np.random.Generator) -> Rows:
 
 
 CASES = RigCases(
-    stream=58, held=200, measured=measured, machine=machine, true=true_readings,
+    stream=58, held=200, measured=measured, machine=machine, shown=shown,
     spread=lambda rows: 0.4 + rows.axial_load / 12, noise=NOISE,
 )  # fmt: skip
 make_case = CASES.made

@@ -220,7 +220,7 @@ def shown(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> dict[str, Arr
     load = force(rows) / (width * MODULE) * crowding(rows, width, hidden) * sharing(rows, width, hidden)
     load = load * shaking(rows, hidden) / bearing_share(rows, hidden)
     depth, gap = wear(rows, off, hidden)
-    read = {
+    return {
         "root_stress_roller": load * ROLLER_FACTOR,
         "root_stress_ring": load * RING_FACTOR * (1 + of(hidden, "rim_compliance", "softness")),
         "transmission_error": error(rows, hidden),
@@ -229,6 +229,3 @@ def shown(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> dict[str, Arr
         "friction_torque": friction(rows, off, hidden),
         "backlash": play(rows, off, hidden) + gap / np.cos(mounted(rows, off, hidden)[1]),
     }
-    for name in read:
-        read[name] = read[name] * (1 + of(hidden, "sensor_gain", name)) + of(hidden, "sensor_offset", name)
-    return read

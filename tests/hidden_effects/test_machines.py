@@ -14,7 +14,6 @@ from hidden_effects.gearing_machine import shown as shown_by_stage
 from hidden_effects.gearing_stage import Stage
 from hidden_effects.gearing_stress import spread
 from hidden_effects.harmonic_contact import Flanks, table
-from hidden_effects.harmonic_machine import MESH
 from hidden_effects.harmonic_surface import SurfaceWish, lines, structure, true_structure
 from hidden_effects.plugin_asking import model_of
 from hidden_effects.rv_machine import RATED, ROUGHNESS, Wearing, wear_after
@@ -33,33 +32,11 @@ MAKERS: dict[str, Any] = {
 }
 
 
-def stiff_or_soft(name: str, unknowns: dict[str, float], result: str) -> Any:
-    """A drive or, where no result of it shows the effect, a flank."""
-    hidden = {name: unknowns}
-    if not result:
-        return SurfaceWish(seed=3, hidden=hidden)
-    tooth = 2e7 if name == "engaged_pairs" else np.inf
-    design: harmonic_cases.Design = "points" if result == MESH else "loops"
-    return harmonic_cases.Wish(seed=3, hidden=hidden, results=(result,), design=design, tooth=tooth)
-
-
-def screw(name: str, unknowns: dict[str, float], results: tuple[str, ...]) -> screw_cases.Wish:
-    """A screw, worn where its flanks wear."""
-    design: screw_cases.Design = "endurance" if name == "flank_wear" else "bench"
-    return screw_cases.Wish(seed=3, hidden={name: unknowns}, results=results, design=design)
-
-
 CLEAR: list[tuple[str, Any]] = [
-    *(
-        ("rv_gearing", gearing_cases.Wish(seed=3, hidden={name: unknowns}, results=results, design=design))
-        for name, unknowns, results, design in STAGES
-    ),
-    *(
-        ("rv_wear", rv_cases.Wish(seed=3, hidden={name: unknowns}, design="fleet"))
-        for name, unknowns in REDUCERS.items()
-    ),
-    *(("roller_screw_shift", screw(*clear)) for clear in SCREWS),
-    *(("harmonic_fractal", stiff_or_soft(*clear)) for clear in DRIVES),
+    *(("rv_gearing", wish) for wish in STAGES),
+    *(("rv_wear", rv_cases.Wish(hidden={name: unknowns}, design="fleet")) for name, unknowns in REDUCERS.items()),
+    *(("roller_screw_shift", wish) for wish in SCREWS),
+    *(("harmonic_fractal", wish) for wish in DRIVES),
 ]
 
 

@@ -17,20 +17,21 @@ from hidden_effects import gearing_cases, harmonic_cases, rv_cases, screw_cases
 from hidden_effects.gearing_cases import ERROR, LOSS, PLAY
 from hidden_effects.harmonic_machine import MESH, TORSION
 from hidden_effects.harmonic_surface import STRUCTURE, SurfaceWish
-from hidden_effects.plugin_asking import Answer, demand_named
+from hidden_effects.plugin_asking import demand_named
 from hidden_effects.rig_cases import RigCase
 from hidden_effects.rows import Array
 from hidden_effects.rv_cases import BACKLASH, WEAR
 from hidden_effects.screw_cases import AXIAL, RING, ROLLER, TORQUE
 from truing.diagnosis.result import APART
+from truing.testing.hiding import Answered
 
 PLUGINS = {"gearing": gearing_cases, "rv": rv_cases, "screw": screw_cases, "harmonic": harmonic_cases}
 Stage, Reducer, Screw, Drive = gearing_cases.Wish, rv_cases.Wish, screw_cases.Wish, harmonic_cases.Wish
 
 
-def fifth_order(rows: Any) -> dict[str, Array]:
+def fifth_order(rows: Any) -> Array:
     """A wave that nobody registered."""
-    return {ERROR: 2.0 * np.sin(5 * np.radians(rows.input_angle) + 0.4)}
+    return np.asarray(2.0 * np.sin(5 * np.radians(rows.input_angle) + 0.4))
 
 
 def warm_seal(rows: Any) -> Array:
@@ -95,10 +96,10 @@ OF_THE_GAUGE = {"rig_drift": (TORSION, 1.0), "instrument_noise": (STRUCTURE, 2e-
 """The unknown of the gauge that has the same curve, and its size per unit of the effect's own."""
 
 
-ANSWERS: dict[str, tuple[RigCase, Answer]] = {}
+ANSWERS: dict[str, tuple[RigCase, Answered]] = {}
 
 
-def answered(wish: Any) -> tuple[RigCase, Answer]:
+def answered(wish: Any) -> tuple[RigCase, Answered]:
     """A case and what was said to it; every case is asked once."""
     said = repr(wish)
     if said not in ANSWERS:

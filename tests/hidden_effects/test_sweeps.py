@@ -9,15 +9,14 @@ from numpy.testing import assert_allclose
 from hidden_effects.asking import press_offer, write_case
 from hidden_effects.making import Wish, make_case
 from hidden_effects.press_machine import POSITION, TILT
-from truing.diagnosis import curves, sweeps
-from truing.diagnosis.chance import law_of
-from truing.diagnosis.competition import Competition, competition_of
-from truing.diagnosis.conditional import Spanned, conditional_on
+from truing.diagnosis import conditional, curves
+from truing.diagnosis.choice import law_of
+from truing.diagnosis.competition import Competition, beside, competition_of
+from truing.diagnosis.conditional import ProjectedCurves, Spanned, conditional_on
 from truing.diagnosis.curves import Bundle
 from truing.diagnosis.engine import laid_out
 from truing.diagnosis.machine import calibration_of
 from truing.diagnosis.reading import read_records
-from truing.diagnosis.sweeps import ProjectedCurves
 from truing.inputs_file import read_setup
 
 EVERY, NONE = 0, 10**12
@@ -30,7 +29,7 @@ def competing(folder: Path) -> Competition:
     setup = read_setup(folder / "inputs.toml", press_offer())
     made = laid_out(calibration_of(setup, read_records([folder / "measured.csv"], press_offer(), setup)))
     (heating,) = (cause for cause in made.causes if cause.tag == "link_heating")
-    made.joined(made.null, heating, made.look(made.null, [heating])["link_heating"].starts)
+    made.fit_each(beside(made.null, heating, made.look(made.null, [heating])["link_heating"].starts))
     made.renew()
     assert any(channel.memory.rho for channel in made.sample.channels)
     swept = [cause for cause in made.causes if ":wave:" in cause.tag or ":step:" in cause.tag or ":order:" in cause.tag]
@@ -48,7 +47,7 @@ def test_a_table_gives_what_kept_curves_give(monkeypatch: pytest.MonkeyPatch, tm
     for made, limit in ((kept, NONE), (through, EVERY)):
         monkeypatch.setattr(curves, "LARGE", limit)
         assert {type(each.span) for each in made.look(made.null).values()} == {Spanned if limit else ProjectedCurves}
-    monkeypatch.setattr(sweeps, "BLOCK", 7 * 160)  # blocks of a few points, and one that is not full
+    monkeypatch.setattr(conditional, "BLOCK", 7 * 160)  # blocks of a few points, and one that is not full
     one = next(found for found in kept.known.values() if found.causes)
     for at in (kept.null, one):
         before, after = kept.look(at), through.look(at)

@@ -7,25 +7,17 @@ import pytest
 from numpy.typing import NDArray
 
 from press_linkage import errors, kinematics
-from press_linkage.errors import ARM, KINDS, POLAR_ANGLES
+from press_linkage.errors import KINDS, POLAR_ANGLES
 from press_linkage.kinematics import Position
 from press_linkage.quantities import Press, PressSide
 from truing import Float
 
 PAPER = Press()
 SIZES = {
-    "crank_radius": 0.25,
-    "rod_length": 1.1,
-    "platform_arm": 0.45,
-    "knee_drive_length": 0.95,
-    "upper_knee_length": 1.5,
-    "lower_knee_length": 1.35,
-    "slider_half_width": 1.25,
-    "crank_pivot_radius": 0.8,
-    "platform_half_width": 0.35,
-    "ground_pivot_radius": 1.2,
-    "ground_pivot_angle": 0.3,
-}
+    "crank_radius": 0.25, "rod_length": 1.1, "platform_arm": 0.45, "knee_drive_length": 0.95, "upper_knee_length": 1.5,
+    "lower_knee_length": 1.35, "slider_half_width": 1.25, "crank_pivot_radius": 0.8, "platform_half_width": 0.35,
+    "ground_pivot_radius": 1.2, "ground_pivot_angle": 0.3,
+}  # fmt: skip
 OTHER = Press(**SIZES)
 MECHANISMS = pytest.mark.parametrize("geometry", [PAPER, OTHER], ids=["paper", "other"])
 AROUND = np.radians([-140.3, -90.0, -40.0, -10.0, 0.0, 10.0, 40.0, 90.0, 150.0])
@@ -55,14 +47,6 @@ def scattered(size: float, seed: int, shape: tuple[int, ...] = ()) -> PressSide:
     """One side with every error present."""
     rng = np.random.default_rng(seed)
     return off_by(**{kind: size * rng.standard_normal(shape) for kind in KINDS})
-
-
-def moved(geometry: Press, angle: NDArray[np.float64], name: str, by: float) -> Position:
-    """The exact position with one of the 29 sources off by a given amount."""
-    if name == ARM:
-        return solve(geometry, angle, platform_arm=by)
-    kind, side = name.rsplit("_deviation_", 1)
-    return solve(geometry, angle, **{f"side_{side}": off_by(**{kind: by})})
 
 
 def sensitivities(geometry: Press, angle: float | NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:

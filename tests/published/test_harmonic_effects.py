@@ -27,11 +27,6 @@ from truing.inputs_file import read_setup
 URAD, UM, NM, ROOM = 1e-6, 1e-6, 1e-9, 293.15
 HOUR, RPM, DEGREE = 3600.0, 1 / 60, pi / 180
 BY_NAME: dict[str, Effect[Any, Any]] = {effect.name: effect for effect in EFFECTS}
-IDS = (
-    "hysteresis series_compliance ellipticity eccentricity engaged_pairs lost_motion oil_film viscous_hysteresis "
-    "first_load_set asperity_smoothing flank_wear modulus_temperature thermal_preload creep rig_drift waviness "
-    "instrument_noise lateral_filter"
-)
 LEG = {"direction": 1.0, "reversal_torque": -40.0, "peak_torque": 40.0}
 
 
@@ -59,18 +54,6 @@ def turned(name: str, drive: Drive, **values: float) -> float:
 def stiffer(name: str, drive: Drive, **values: float) -> float:
     """How many times as stiff the mesh is with one effect on."""
     return float(shown(name, drive, **values)["mesh_stiffness"] / harmonic_fractal(drive).mesh_stiffness)
-
-
-def test_the_effects_are_these() -> None:
-    assert set(BY_NAME) == set(IDS.split())
-    assert len(EFFECTS) == 18
-
-
-@pytest.mark.parametrize("effect", EFFECTS, ids=lambda effect: effect.name)
-def test_every_effect_says_what_it_looks_like_why_and_whence(effect: Effect[Any, Any]) -> None:
-    assert all(len(words) > 15 for words in (effect.looks_like, effect.why, effect.source))
-    assert all(unknown.note for unknown in effect.unknowns)
-    assert all(need.note and need.low is not None and need.high is not None for need in effect.needs)
 
 
 @pytest.mark.parametrize("torque", [25.0, -10.0])

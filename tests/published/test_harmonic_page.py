@@ -304,12 +304,6 @@ def test_beside_contact_over_all_scales() -> None:
         assert text.format(float(found["stiffness"] / (25.0 / (0.48 * height)))) in WORDS
 
 
-def test_every_effect_has_its_row() -> None:
-    named = set(re.findall(r"^\| `(\w+)` \| [^|]+ \| [^|]+ \| [^|]+ \|$", PAGE, re.MULTILINE))
-    assert set(HARMONIC_FRACTAL.effects) <= named
-    assert len(HARMONIC_FRACTAL.effects) == 18
-
-
 def test_every_option_of_a_measured_surface_is_in_its_table() -> None:
     text = (ROOT / "docs" / "how-to" / "read_a_measured_surface.md").read_text(encoding="utf-8")
     rows = dict(re.findall(r"^\| (`[^|]+`) \| ([^|]*) \|", text[text.index("## Options") :], re.MULTILINE))

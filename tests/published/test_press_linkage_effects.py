@@ -3,9 +3,8 @@
 Numbers marked as reference were worked out to first order from the loop increments of the linkage, by hand.
 """
 
-from collections import defaultdict
 from collections.abc import Callable
-from dataclasses import fields, replace
+from dataclasses import replace
 from functools import cache
 from itertools import product
 from math import exp, radians
@@ -175,83 +174,6 @@ def test_backlash_leaves_the_crank_behind_in_its_sense_of_turning(degrees: float
 
 
 # First-order numbers at the bottom dead centre
-
-
-def knee_alone(name: str, **values: float) -> float:
-    """Change of position with rods, cranks and platform arm left as they are."""
-    press = BY_NAME[name].function(press_at(), **values)
-    parts = {
-        f"side_{side}": replace(getattr(press, f"side_{side}"), crank_radius_deviation=0.0, rod_length_deviation=0.0)
-        for side in SIDES
-    }
-    there = press_linkage(replace(press, platform_arm_deviation=0.0, **parts))
-    return float(there.slider_position - press_linkage(press_at()).slider_position)
-
-
-HOT = {"link_temperature": ROOM + 1}
-UP = {"forming_force": 1e3}
-NUMBERS: list[tuple[str, Callable[[], Any], float, float]] = [  # reference; half a unit of its last digit
-    ("heat of the knee, um/K", lambda: 1e6 * knee_alone("link_heating", expansion=STEEL, **HOT), 46.2, 0.05),
-    ("heat of all links, um/K", lambda: 1e6 * moved("link_heating", expansion=STEEL, **HOT)[0], 46.2 + 3.7, 0.1),
-    (
-        "tilt of a warm side 1, urad/K",
-        lambda: 1e6 * moved("side_heating", expansion_1=STEEL, expansion_2=0.0, **HOT)[1],
-        14.4,
-        0.05,
-    ),
-    (
-        "tilt of a warm side 2, urad/K",
-        lambda: 1e6 * moved("side_heating", expansion_1=0.0, expansion_2=STEEL, **HOT)[1],
-        -14.4,
-        0.05,
-    ),
-    (
-        "compliance of the knee, m",  # the sum of xi^2 L
-        lambda: -2 * knee_alone("elastic_deflection", compliance=SOFT, **UP) / (SOFT * 1e3),
-        1.129368**2 * 1.6 + 0.905827**2 * 1.7 + 0.771624**2 * 0.868,
-        2e-5,
-    ),
-    (
-        "compliance of the rods, m",  # xi_kR^2 k_R
-        lambda: (
-            -2
-            * (
-                moved("elastic_deflection", compliance=SOFT, **UP)[0]
-                - knee_alone("elastic_deflection", compliance=SOFT, **UP)
-            )
-            / (SOFT * 1e3)
-        ),
-        0.149310**2 * 1.304,
-        1e-5,
-    ),
-    ("clearance of the knee", lambda: -knee_alone("joint_clearance", clearance=1e-6, **UP) * 1e6, 2 * 2.807, 2e-3),
-    (
-        "clearance with the rods",
-        lambda: -moved("joint_clearance", clearance=1e-6, **UP)[0] * 1e6,
-        2 * (2.807 + 0.1493),
-        2e-3,
-    ),
-    ("10 mrad of crank phase, um", lambda: 1e6 * moved("crank_phase", phase=0.01)[0], -3.4, 0.05),
-    (
-        "acceleration, m/rad^2",
-        lambda: slider_motion(solve(press_at(), 0.0)).acceleration,
-        -0.0686,
-        5e-5,
-    ),
-]
-
-
-@pytest.mark.parametrize(("name", "found", "expected", "within"), NUMBERS, ids=[row[0] for row in NUMBERS])
-def test_first_order_at_the_bottom_dead_centre(
-    name: str, found: Callable[[], Any], expected: float, within: float
-) -> None:
-    assert found() == pytest.approx(expected, abs=within), name
-
-
-def test_crank_phase_ahead_is_lower_before_the_dead_centre_and_higher_after_it() -> None:
-    """Reference table: 0.10929 m/rad at -40 degrees, -0.06716 at +40."""
-    before, after = (moved("crank_phase", radians(at), phase=1e-4)[0] for at in (-40.0, 40.0))
-    assert [before / 1e-4, after / 1e-4] == pytest.approx([0.10929, -0.06716], abs=3e-5)
 
 
 # Statics: every joint is in equilibrium
@@ -484,38 +406,6 @@ def keywords(effect: Effect[Any, Any], **changed: Float) -> dict[str, Float]:
 
 
 @EVERY
-def test_with_its_amplitudes_at_zero_it_is_the_base_to_the_last_digit(effect: Effect[Any, Any]) -> None:
-    nothing = {item.name: 0.0 for item in effect.unknowns if item.is_amplitude}
-    for at in (TURNED, *TURNED):
-        base = press_linkage(press_at(at))
-        there = shown(effect.name, at, **keywords(effect, **nothing))
-        for field in fields(Slider):
-            assert np.array_equal(getattr(there, field.name), getattr(base, field.name)), field.name
-
-
-@EVERY
-def test_rows_are_what_single_calculations_are(effect: Effect[Any, Any]) -> None:
-    rng = np.random.default_rng(7)
-    rows = {name: value * rng.uniform(0.2, 1.0, TURNED.shape) for name, value in CONDITIONS.items()}
-    rows |= {"link_temperature": ROOM + rng.uniform(-5, 30, TURNED.shape)}
-    rows |= {"forming_force": rng.uniform(-1e5, 1e6, TURNED.shape), "direction": rng.choice([-1.0, 1.0], TURNED.shape)}
-    batch = shown(effect.name, TURNED, **keywords(effect, **rows))
-    one_condition = shown(effect.name, TURNED, **keywords(effect))
-    one_angle = shown(effect.name, 0.4, **keywords(effect, **rows))
-    for row, at in enumerate(TURNED):
-        own = {name: float(values[row]) for name, values in rows.items()}
-        for found, alone in [
-            (batch, shown(effect.name, float(at), **keywords(effect, **own))),
-            (one_condition, shown(effect.name, float(at), **keywords(effect))),
-            (one_angle, shown(effect.name, 0.4, **keywords(effect, **own))),
-        ]:
-            for name in ("slider_position", "slider_tilt"):
-                values = np.broadcast_to(getattr(found, name), TURNED.shape)
-                assert np.ndim(getattr(alone, name)) == 0
-                assert values[row] == pytest.approx(getattr(alone, name), abs=2e-14)
-
-
-@EVERY
 @pytest.mark.parametrize(("degrees", "turned"), [(-10, 350), (5, 725), (5, -355), (180, -180), (-140, 580)])
 def test_a_crank_angle_means_the_same_in_every_turn(effect: Effect[Any, Any], degrees: float, turned: float) -> None:
     here, there = (moved(effect.name, radians(at), **keywords(effect)) for at in (degrees, turned))
@@ -555,62 +445,3 @@ def test_effects_that_act_together_add_up() -> None:
 
 
 # What is declared
-
-
-DECLARED = {  # unknowns with bounds and unit, conditions, place
-    "link_heating": ({"expansion": (-20, 20, "um/(m*K)")}, ["link_temperature"], "inputs"),
-    "warm_up": ({"rise": (-1000, 1000, "um/m"), "time_constant": (0.1, 20, "h")}, ["time"], "inputs"),
-    "side_heating": (
-        {"expansion_1": (-20, 20, "um/(m*K)"), "expansion_2": (-20, 20, "um/(m*K)")},
-        ["link_temperature"],
-        "inputs",
-    ),
-    "elastic_deflection": ({"compliance": (0, 5, "1/GN")}, ["forming_force"], "inputs"),
-    "joint_clearance": ({"clearance": (0, 500, "um")}, ["forming_force"], "inputs"),
-    "joint_wear": ({"wear": (0, 500, "um")}, ["strokes", "forming_force"], "inputs"),
-    "crank_phase": ({"phase": (-20, 20, "mrad")}, [], "inputs"),
-    "encoder_eccentricity": ({"sine": (-10, 10, "mrad"), "cosine": (-10, 10, "mrad")}, [], "inputs"),
-    "drive_backlash": (
-        {"play_before": (-10, 10, "mrad"), "play_after": (-10, 10, "mrad")},
-        ["direction"],
-        "inputs",
-    ),
-    "slider_inertia": ({"mass_compliance": (-20000, 20000, "kg/GN")}, ["speed"], "inputs"),
-    "die_inclination": ({"inclination": (-1000, 1000, "urad"), "height": (-1000, 1000, "um")}, [], "results"),
-}
-CONDITION_RANGES = {  # unit, reference, derived, range in which it can be set
-    "forming_force": ("kN", 0, "", -200, 2000),
-    "link_temperature": ("degC", 20, "", 15, 60),
-    "time": ("h", 0, "since_start", 0, 10),
-    "strokes": ("", 0, "since_start", 0, 1e6),
-    "speed": ("rpm", 0, "", 5, 60),
-    "direction": ("", 0, "", -1, 1),
-}
-
-
-def test_names_bounds_units_and_conditions_are_those_of_the_manual() -> None:
-    found = {
-        effect.name: (
-            {item.name: (item.low, item.high, item.unit) for item in effect.unknowns},
-            [item.name for item in effect.needs],
-            effect.place,
-        )
-        for effect in EFFECTS
-    }
-    assert found == DECLARED
-    assert {
-        name: (item.unit, item.reference, item.derived, item.low, item.high)
-        for name, item in PRESS_LINKAGE.conditions.items()
-        if name in CONDITION_RANGES
-    } == CONDITION_RANGES
-    assert BY_NAME["die_inclination"].parts == (("inclination",), ("height",))
-
-
-def test_effects_share_their_conditions_and_say_what_an_engineer_needs() -> None:
-    shared = defaultdict(set)
-    for effect in EFFECTS:
-        for need in effect.needs:
-            shared[need.name].add(id(need))
-        assert all((effect.looks_like, effect.why, effect.source))
-        assert all(item.note for item in (*effect.unknowns, *effect.needs))
-    assert {len(found) for found in shared.values()} == {1}

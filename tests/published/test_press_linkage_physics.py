@@ -1,4 +1,4 @@
-"""Exact positions of the press linkage: loops, dead centres, mirror image, small-angle series.
+"""Positions and sensitivities of the press linkage: dead centres, mirror image, rigid motions, small-angle series.
 
 The paper: error analysis and accuracy synthesis of a parallel-driven multi-link servo press (Shanghai Jiao Tong
 University). Where a number is not printed there, it was solved independently from the loop equations, to the digits
@@ -10,13 +10,11 @@ from math import factorial
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
-from press_linkage_cases import AROUND, MECHANISMS, PAPER, SIZES, mirrored, off_by, scattered, solve
+from press_linkage_cases import AROUND, MECHANISMS, PAPER, SIZES, mirrored, off_by, scattered, sensitivities, solve
 
-from press_linkage import kinematics
-from press_linkage.errors import KINDS
-from press_linkage.kinematics import Half, Position
-from press_linkage.quantities import Press, PressSide
+from press_linkage import errors, kinematics
+from press_linkage.errors import DRIVEN, KINDS, POLAR_ANGLES, source
+from press_linkage.quantities import Press
 
 
 def test_bottom_dead_centre() -> None:
@@ -26,13 +24,6 @@ def test_bottom_dead_centre() -> None:
     assert list(side.knee) == pytest.approx([0.85643, 2.14088], abs=5.001e-6)
     assert [side.parts.ground.y, side.parts.ground.z] == pytest.approx([1.30024, 0.49983], abs=5.001e-6)
     assert side.face == pytest.approx(3.55760, abs=5.001e-6)
-
-
-def test_top_dead_centre_and_stroke() -> None:
-    top = kinematics.top_crank_angle(PAPER)
-    assert np.degrees(top) == pytest.approx(-140.30, abs=5.001e-3)
-    assert solve(PAPER, top).slider_position == pytest.approx(2.39436, abs=5.001e-6)
-    assert kinematics.stroke(PAPER) == pytest.approx(1.16324, abs=5.001e-6)
 
 
 @MECHANISMS
@@ -50,46 +41,6 @@ def test_range_of_the_links_over_a_turn() -> None:
     ]:
         assert np.degrees([np.min(angle), np.max(angle)]) == pytest.approx([low, high], abs=0.0501)
     assert [np.min(side.knee.y), np.max(side.knee.y)] == pytest.approx([0.139, 0.856], abs=5.001e-4)
-
-
-def loops(geometry: Press, position: Position, side: int, off: PressSide, arm: float) -> list[NDArray]:
-    """What is left of the three loops of one side, in the frame, from angles and complex exponentials alone."""
-    half: Half = position.side_1 if side == 1 else position.side_2
-    own = {name: getattr(geometry, name) for name in SIZES}
-    size = {kind: own[kind] + getattr(off, f"{kind}_deviation") for kind in own if kind != "platform_arm"}
-
-    def turn(angle: object) -> NDArray[np.complex128]:
-        return np.exp(1j * np.asarray(angle))
-
-    def in_frame(angle: object) -> object:
-        return angle if side == 1 else np.pi - np.asarray(angle)
-
-    ground = size["ground_pivot_radius"] * turn(in_frame(own["ground_pivot_angle"]) + off.ground_pivot_angle_deviation)
-    pivot = size["crank_pivot_radius"] * turn(in_frame(0.0) + off.crank_pivot_angle_deviation)
-    platform = size["platform_half_width"] * turn(in_frame(0.0) + off.platform_joint_angle_deviation)
-    slider = size["slider_half_width"] * turn(in_frame(0.0) + off.slider_joint_angle_deviation)
-    crank = size["crank_radius"] * turn(in_frame(half.parts.crank.angle))
-    rod = size["rod_length"] * turn(in_frame(half.rod.angle))
-    drive = size["knee_drive_length"] * turn(in_frame(half.drive.angle))
-    upper = size["upper_knee_length"] * turn(in_frame(half.upper.angle))
-    lower = size["lower_knee_length"] * turn(in_frame(half.lower.angle))
-    own_height = (pivot + crank + rod - platform).imag
-    return [
-        1j * own_height + platform - pivot - crank - rod,
-        1j * (position.platform_height + geometry.platform_arm + arm) + drive - ground - upper,
-        1j * half.face + slider - ground - upper - lower,
-    ]
-
-
-@MECHANISMS
-@pytest.mark.parametrize("side", [1, 2])
-@pytest.mark.parametrize("size", [0.0, 2e-3])
-def test_loops_close(geometry: Press, side: int, size: float) -> None:
-    angles = np.linspace(-np.pi, np.pi, 50, endpoint=False)
-    one, two = scattered(size, 1), scattered(size, 2)
-    position = solve(geometry, angles, side_1=one, side_2=two, platform_arm=size)
-    for rest in loops(geometry, position, side, one if side == 1 else two, size):
-        assert np.abs(rest).max() < 1e-12
 
 
 @MECHANISMS
@@ -116,25 +67,6 @@ def test_crank_deviation_is_a_crank_angle(geometry: Press) -> None:
 def test_deviations_do_not_move_the_zero_of_the_crank_angle() -> None:
     crank = solve(PAPER, 0.0, side_1=scattered(1e-2, 5)).side_2.parts.crank
     assert crank == solve(PAPER, 0.0).side_2.parts.crank
-
-
-@pytest.mark.parametrize("side", [1, 2])
-def test_signs_of_a_raised_joint(side: int) -> None:
-    """A positive polar angle lowers a joint at y > 0 and raises it at y < 0; a lower slider joint raises the face."""
-    by = 1e-4
-    lower = -1.0 if side == 1 else 1.0
-    off = {f"side_{side}": off_by(slider_joint_angle=by)}
-    assert solve(PAPER, 0.0, **off).slider_position - solve(PAPER, 0.0).slider_position == pytest.approx(
-        0.5 * lower * 1.6 * by, rel=1e-3
-    )
-    off = {f"side_{side}": off_by(ground_pivot_angle=by)}
-    assert solve(PAPER, 0.0, **off).slider_position - solve(PAPER, 0.0).slider_position == pytest.approx(
-        -0.5 * lower * 1.255145 * by, rel=1e-3
-    )
-
-
-def test_height_at_bdc_to_eight_digits() -> None:
-    assert solve(PAPER, 0.0).slider_position == pytest.approx(3.5575988, abs=5.001e-8)
 
 
 @MECHANISMS
@@ -178,23 +110,98 @@ def test_larger_angles_leave_the_series(outlier: float) -> None:
         np.testing.assert_array_equal(ours, numpys)
 
 
+# Sensitivities
+
+
+def polar_errors(across: float, down: float, *, radius: float, angle: float) -> tuple[float, float]:
+    """Installation errors of a joint along y and z as errors of its polar radius (m) and polar angle (rad).
+
+    First order; *angle* is the polar angle in the frame, so pi minus that of side 1 on side 2.
+    """
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return across * cosine + down * sine, (down * cosine - across * sine) / radius
+
+
+def test_driven_chain_tilts_only_a_press_that_is_already_uneven() -> None:
+    even = errors.derivatives(PAPER, solve(PAPER, AROUND)).tilt
+    assert all(np.all(even[source(kind, side)] == 0.0) for kind in DRIVEN for side in (1, 2))
+    uneven = errors.derivatives(PAPER, solve(PAPER, 0.5, side_1=off_by(lower_knee_length=1e-3))).tilt
+    assert 0.0 < abs(uneven["rod_length_deviation_1"]) < 1e-3
+
+
 @MECHANISMS
-@pytest.mark.parametrize("size", [1e-4, 8e-3, 3e-2])
-def test_batch_equals_loop(geometry: Press, size: float) -> None:
-    one, two = scattered(size, 21, (25,)), scattered(size, 22, (25,))
-    batch = solve(geometry, 0.3, side_1=one, side_2=two, platform_arm=size)
-    for row in range(25):
-        first, second = (
-            off_by(**{kind: getattr(off, f"{kind}_deviation")[row] for kind in KINDS}) for off in (one, two)
-        )
-        single = solve(geometry, 0.3, side_1=first, side_2=second, platform_arm=size)
-        assert single.slider_position == pytest.approx(batch.slider_position[row], abs=1e-14)
-        assert single.slider_tilt == pytest.approx(batch.slider_tilt[row], abs=1e-14)
+def test_height_is_of_degree_one_in_the_lengths(geometry: Press) -> None:
+    """Euler: the sum of sensitivity times length is the height itself, at every crank angle."""
+    xi = sensitivities(geometry, AROUND)
+    lengths = [name for name in SIZES if name != "ground_pivot_angle"]
+    total = sum(xi[kind] * getattr(geometry, kind) for kind in lengths)
+    assert total == pytest.approx(np.asarray(solve(geometry, AROUND).slider_position), abs=1e-12)
+    double = replace(geometry, **{kind: 2 * getattr(geometry, kind) for kind in lengths})
+    assert solve(double, AROUND).slider_position == pytest.approx(
+        2 * np.asarray(solve(geometry, AROUND).slider_position), abs=1e-13
+    )
 
 
-def test_sizes_may_vary_too() -> None:
-    lengths = np.linspace(1.55, 1.65, 7)
-    batch = solve(replace(PAPER, lower_knee_length=lengths, ground_pivot_angle=lengths - 1.2), AROUND[:7])
-    for row, length in enumerate(lengths):
-        single = solve(replace(PAPER, lower_knee_length=length, ground_pivot_angle=length - 1.2), AROUND[row])
-        assert single.slider_position == pytest.approx(batch.slider_position[row], abs=1e-14)
+@MECHANISMS
+def test_lowering_the_whole_frame_lowers_the_slider(geometry: Press) -> None:
+    """A rigid motion: crank pivots and ground joints of both sides down by the same amount, in polar errors."""
+    found = errors.derivatives(geometry, solve(geometry, AROUND))
+    position, tilt = np.zeros_like(AROUND), np.zeros_like(AROUND)
+    for side in (1, 2):
+        for place, radius, angle in [
+            ("crank_pivot", geometry.crank_pivot_radius, 0.0),
+            ("ground_pivot", geometry.ground_pivot_radius, geometry.ground_pivot_angle),
+        ]:
+            polar = polar_errors(0.0, 1.0, radius=radius, angle=angle if side == 1 else np.pi - angle)
+            for suffix, error in zip(("radius", "angle"), polar, strict=True):
+                position += error * found.position[source(f"{place}_{suffix}", side)]
+                tilt += error * found.tilt[source(f"{place}_{suffix}", side)]
+    assert position == pytest.approx(np.ones_like(AROUND), abs=1e-12)
+    assert tilt == pytest.approx(np.zeros_like(AROUND), abs=1e-12)
+
+
+@MECHANISMS
+def test_frame_height_is_shared_by_upper_link_and_platform(geometry: Press) -> None:
+    xi = sensitivities(geometry, AROUND)
+    upper = solve(geometry, AROUND).side_1.upper
+    assert xi["upper_knee_length"] * upper.sine + xi["platform_arm"] == pytest.approx(np.ones_like(AROUND), abs=1e-12)
+
+
+@MECHANISMS
+@pytest.mark.parametrize("kind", KINDS)
+def test_equal_errors_do_not_tilt_and_opposite_ones_do_not_lower(geometry: Press, kind: str) -> None:
+    found = errors.derivatives(geometry, solve(geometry, AROUND))
+    sign = -1.0 if kind in POLAR_ANGLES else 1.0
+    first, second = (found.position[source(kind, side)] for side in (1, 2))
+    assert first == pytest.approx(sign * second, abs=1e-15)
+    first, second = (found.tilt[source(kind, side)] for side in (1, 2))
+    assert first == pytest.approx(-sign * second, abs=1e-15)
+
+
+@MECHANISMS
+@pytest.mark.parametrize("dead_centre", ["bottom", "top"])
+def test_dead_centres(geometry: Press, dead_centre: str) -> None:
+    angle = 0.0 if dead_centre == "bottom" else kinematics.top_crank_angle(geometry)
+    xi = sensitivities(geometry, angle)
+    sign = 1.0 if dead_centre == "bottom" else -1.0
+    assert xi["crank_angle"] == pytest.approx(0.0, abs=1e-14)
+    assert xi["crank_radius"] == pytest.approx(sign * xi["rod_length"], abs=1e-13)
+    rod = solve(geometry, angle).side_1.rod
+    assert xi["rod_length"] == pytest.approx(xi["platform_arm"] / rod.sine, abs=1e-13)
+
+
+# The paper's key sources: H and M positions and the knee links on both sides; the sums it prints, and ours
+JOINTS = ("slider_joint_angle", "ground_pivot_angle", "lower_knee_length", "upper_knee_length", "knee_drive_length")
+KEY = [("position", (*JOINTS, "slider_half_width"), 0.8766, 0.8771), ("tilt", JOINTS, 0.9006, 0.9016)]
+
+
+@pytest.mark.parametrize(("result", "kinds", "printed", "ours"), KEY, ids=["position", "tilt"])
+def test_salience_of_the_key_sources(result: str, kinds: tuple[str, ...], printed: float, ours: float) -> None:
+    derivative = getattr(errors.derivatives(PAPER, solve(PAPER, 0.0)), result)
+    shares = errors.salience(derivative)
+    assert sum(shares.values()) == pytest.approx(1.0, abs=1e-14)
+    key = sum(shares[source(kind, side)] for kind in kinds for side in (1, 2))
+    assert key == pytest.approx(ours, abs=5.001e-5)
+    assert key == pytest.approx(printed, rel=0.0012)
+    assert set(sorted(shares, key=shares.get)[-2 * len(kinds) :]) == {source(k, s) for k in kinds for s in (1, 2)}
+    assert errors.salience({name: 7.0 * value for name, value in derivative.items()}) == pytest.approx(shares)

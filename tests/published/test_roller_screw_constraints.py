@@ -88,28 +88,6 @@ def test_undercut_begins_at_17_teeth() -> None:
         assert undercut_limit(pair) == pytest.approx((least - teeth) / least, abs=1e-12)
 
 
-@pytest.mark.parametrize(("least", "last"), [(1.4, 0.2525), (1.42, 0.2150)])
-def test_the_contact_ratio_ends_the_shifts(least: float, last: float) -> None:
-    """Last shift on a grid 0.0025 apart, found by an independent program."""
-    shifts = np.arange(-800, 1201) * 0.0025
-    pair = pair_of(roller_shift=shifts, least_contact_ratio=least)
-    found = shifts[kept(pair, len(shifts))]
-    assert found.max() == pytest.approx(last, abs=1e-9)
-    above = margins_of(pair_of(roller_shift=last + 0.0025, least_contact_ratio=least))
-    assert above.margin_contact_ratio < 0.0
-
-
-def test_sliding_ends_the_shifts_from_below() -> None:
-    """By the roots the first shift is that of the smallest sum -0.480: x_E = (-0.480 + 0.37)/2."""
-    shifts = np.arange(-800, 1201) * 0.0025
-    found = shifts[kept(pair_of(roller_shift=shifts, sliding_reading="roots"), len(shifts))]
-    assert found.min() == pytest.approx(-0.055, abs=1e-9)
-    assert margins_of(pair_of(roller_shift=-0.0575, sliding_reading="roots")).margin_sliding < 0.0
-    assert margins_of(pair_of(roller_shift=-0.0575)).margin_sliding > 0.0, (
-        "the tip of the ring slides more than its root"
-    )
-
-
 def test_margins_and_objectives_answer_where_the_calculation_refuses(recwarn: pytest.WarningsRecorder) -> None:
     pair = pair_of(roller_shift=np.array([-3.0, -1.0, -0.3, 0.21]))
     margins, objectives = margins_of(pair), objectives_of(pair)

@@ -4,7 +4,7 @@ Numbers marked as reference follow by hand from the set of the model: 51.943 N o
 mesh of 14 N/(mm um), a ring and a roller of 100 and 20 teeth of 0.5 mm at 19.80778 mm, working angle 0.321344 rad.
 """
 
-from dataclasses import fields, replace
+from dataclasses import fields
 from functools import cache
 from math import acos, cos, exp, log, pi, sin, sqrt, tan
 from typing import Any
@@ -24,12 +24,7 @@ FORCE, FACE, STIFF = 51.943, 4.0, 14.0  # N, mm, N/(mm um)
 FACTORS = {"root_stress_roller": 2.12002 * 1.86315, "root_stress_ring": 1.83107 * 2.84399}
 WORKING = 0.321344  # rad
 BY_NAME: dict[str, Effect[Any, Any]] = {effect.name: effect for effect in EFFECTS}
-EVERY = pytest.mark.parametrize("effect", EFFECTS, ids=lambda effect: effect.name)
 BOTH = pytest.mark.parametrize("result", FACTORS)
-IDS = (
-    "face_misalignment mesh_resonance roller_load_sharing thermal_centre_distance rim_compliance roller_runout "
-    "carrier_runout interrupted_tooth flank_wear mesh_friction axial_migration"
-)
 
 
 def pair_at(kilonewtons: float = 10.0, **settings: float) -> Pair:
@@ -63,17 +58,6 @@ def change(name: str, result: str, pair: Pair | None = None, **values: float) ->
 def factor(name: str, result: str, pair: Pair | None = None, **values: float) -> float:
     """By what an effect multiplies a result."""
     return shown(name, pair, **values)[result] / shown("", pair)[result]
-
-
-def test_every_effect_of_the_list_is_there_and_no_other() -> None:
-    assert sorted(BY_NAME) == sorted(IDS.split())
-
-
-@EVERY
-def test_every_effect_says_what_it_looks_like_why_and_whence(effect: Effect[Any, Any]) -> None:
-    assert all(len(words) > 15 for words in (effect.looks_like, effect.why, effect.source))
-    assert all(unknown.note for unknown in effect.unknowns)
-    assert all(need.note and need.low is not None and need.high is not None for need in effect.needs)
 
 
 # Load
@@ -339,35 +323,3 @@ def test_warm_oil_rubs_a_little_more() -> None:
 
 
 # All
-
-
-@EVERY
-@pytest.mark.parametrize("share", [0.1, 0.9])
-def test_an_effect_of_no_size_is_the_pair_of_the_paper(effect: Effect[Any, Any], share: float) -> None:
-    from truing.units import to_si
-
-    values = {
-        item.name: 0.0 if item.is_amplitude else float(to_si(item.low + share * (item.high - item.low), item.unit))
-        for item in effect.unknowns
-    }
-    values |= {need.name: need.zero + 7.0 * (1 + place) for place, need in enumerate(effect.needs)}
-    assert shown(effect.name, pair_at(7.0), **values) == shown("", pair_at(7.0))
-
-
-@EVERY
-def test_many_rows_at_once_are_each_row_alone(effect: Effect[Any, Any]) -> None:
-    from truing.units import to_si
-
-    loads = np.array([-8e3, 0.0, 1e3, 12e3])
-    values = {item.name: float(to_si(item.low + 0.7 * (item.high - item.low), item.unit)) for item in effect.unknowns}
-    rows = {need.name: need.zero + np.array([-3.0, 0.0, 5.0, 20.0]) for need in effect.needs}
-    pair = replace(pair_at(), axial_load=loads)
-    if effect.place == "inputs":
-        found = roller_screw_shift(effect.function(pair, **values, **rows))
-    else:
-        found = effect.function(pair, roller_screw_shift(pair), **values, **rows)
-    for place, load in enumerate(loads):
-        there = {name: float(column[place]) for name, column in rows.items()}
-        alone = shown(effect.name, pair_at(load / 1e3), **values, **there)
-        for name, value in alone.items():
-            assert np.broadcast_to(getattr(found, name), 4)[place] == pytest.approx(value, rel=1e-12, abs=1e-18), name

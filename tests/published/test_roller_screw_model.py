@@ -1,6 +1,6 @@
 """The roller screw as a calculation: stresses by hand and as beams, objectives, neutral inputs, loads, batches."""
 
-from dataclasses import fields, replace
+from dataclasses import fields
 
 import numpy as np
 import pytest
@@ -8,13 +8,11 @@ from traced_gears import ALPHA, Flanks, line_of_action_meets, swept_root
 
 from gear_geometry.roots import Cutter, cut_ring_arm, cut_ring_root, form_factor, stress_correction
 from roller_screw_shift.model import ROLLER_SCREW_SHIFT
-from roller_screw_shift.objectives import margins_of, objectives_of
+from roller_screw_shift.objectives import objectives_of
 from roller_screw_shift.quantities import Meshing, Pair
 from roller_screw_shift.strength import load_of
 from shared import ROUNDING
-from truing.evaluate import evaluate_rows
 from truing.formulas import evaluate, parse
-from truing.setup import default_setup
 
 # Neutral input, a value, what it makes of the root stress of the roller and of the ring
 SOCKETS = [
@@ -154,31 +152,3 @@ def test_objectives_are_those_of_the_answer_in_one_call_and_one_by_one() -> None
         answer = answer_of(pair_of(roller_shift=float(shift)))
         for name in DESIGN:
             assert np.asarray(getattr(many, name))[place] == pytest.approx(float(getattr(answer, name)), rel=1e-13)
-
-
-def test_the_ranges_of_the_objectives_where_every_limit_is_kept() -> None:
-    """Ends of the three ranges by the roots, found by an independent program on shifts 0.0025 apart; in MPa."""
-    pair = pair_of(roller_shift=np.arange(-800, 1201) * 0.0025, sliding_reading="roots")
-    margins = np.array([np.broadcast_to(each, 2001) for each in vars(margins_of(pair)).values()])
-    with np.errstate(invalid="ignore"):
-        kept = (margins >= 0.0).all(axis=0)
-    found = objectives_of(pair)
-    sums, stresses, slides = (np.asarray(getattr(found, name))[kept] for name in DESIGN)
-    assert (sums.min(), sums.max()) == pytest.approx((-0.480, 0.135), abs=5.1e-4)
-    assert (stresses.min() / 1e6, stresses.max() / 1e6) == pytest.approx((27.61, 33.20), abs=5.1e-3)
-    assert (slides.min(), slides.max()) == pytest.approx((0.099, 3.034), abs=5.1e-4)
-
-
-def test_sliding_is_equal_where_it_was_found() -> None:
-    shifts = np.linspace(0.25, 0.32, 7001)
-    found = np.asarray(objectives_of(pair_of(roller_shift=shifts)).sliding_difference)
-    assert shifts[np.argmin(found)] == pytest.approx(0.2833, abs=5.1e-5)
-
-
-def test_one_bad_row_of_a_batch_keeps_its_reason() -> None:
-    setup = default_setup(ROLLER_SCREW_SHIFT)
-    rows = evaluate_rows(setup, {"roller_shift": np.array([0.21, -0.5, 0.1])}, 3)
-    assert list(rows.failed) == [False, True, False]
-    assert "involute interference" in rows.reasons[1]
-    alone = answer_of(replace(setup.inputs, roller_shift=0.1))
-    assert rows.results["contact_ratio"][2] == pytest.approx(float(alone.contact_ratio), rel=1e-14)

@@ -234,8 +234,3 @@ def test_orders_of_carrier_and_roller() -> None:
     carrier = 3.0 / (2.0 * 4.0)
     assert f"$k/(2(k + 1)) = {carrier}$ times per turn" in WORDS
     assert f"$z_I/z_E$ times as often, {carrier * 5}" in WORDS
-
-
-def test_every_effect_has_its_row() -> None:
-    named = set(re.findall(r"^\| `(\w+)` \| [^|]+ \| [^|]+ \| [^|]+ \|$", PAGE, re.MULTILINE))
-    assert set(ROLLER_SCREW_SHIFT.effects) <= named

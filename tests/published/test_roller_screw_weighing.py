@@ -1,19 +1,11 @@
 """How three objectives become one: curve, weights by the paper's rule, and what the printed ones do not follow from."""
 
-from math import pi, sin, sqrt
+from math import pi, sin
 
 import numpy as np
 import pytest
 
-from roller_screw_shift.objectives import (
-    PRINTED_RANGES,
-    PRINTED_WEIGHTS,
-    lower_limit,
-    normalised,
-    rule_weights,
-    total,
-    weight,
-)
+from roller_screw_shift.objectives import normalised, rule_weights, total, weight
 from truing import TruingError
 
 # X/(2 pi) - sin(X)/(2 pi) at quarters of a turn: sin is 1 at a quarter, 0 at a half.
@@ -33,42 +25,6 @@ def test_curve_rises_is_level_at_both_ends_and_clipped_beyond() -> None:
     assert (values[2000:] == 1.0).all()
     step = 1e-4  # level: the third power of the distance is all that is left
     assert normalised(step, (0.0, 1.0)) == pytest.approx((2 * pi * step) ** 3 / 6 / (2 * pi), rel=1e-4)
-
-
-def test_the_curve_as_printed_leaves_the_span_and_turns_back() -> None:
-    """y = x/2pi - sin x, read literally, falls below 0, exceeds 1 and is not monotone."""
-    turns = np.linspace(0.0, 2 * pi, 1001)
-    printed = turns / (2 * pi) - np.sin(turns)
-    assert printed.min() < -0.7
-    assert printed.max() > 1.7
-    assert (np.diff(printed) < 0).any()
-
-
-@pytest.mark.parametrize(
-    ("reach", "by_rule", "printed"),
-    [((2.68, 5.38), 0.5487, 0.35), ((0.0, 33.2), 0.0036, 0.01), ((0.0, 3.08), 0.4217, 0.81)],
-)
-def test_printed_weights_do_not_follow_from_printed_ranges(
-    reach: tuple[float, float], by_rule: float, printed: float
-) -> None:
-    assert weight(reach) == pytest.approx(4 / (reach[1] - reach[0]) ** 2, rel=1e-14)
-    assert weight(reach) == pytest.approx(by_rule, abs=5e-5)
-    assert abs(weight(reach) / printed - 1) > 0.3
-
-
-@pytest.mark.parametrize(("place", "limit"), [(0, 2.00), (1, 13.2), (2, 0.86)])
-def test_lower_limits_from_which_they_would_follow(place: int, limit: float) -> None:
-    given, high = PRINTED_WEIGHTS[place], PRINTED_RANGES[place][1]
-    found = lower_limit(given, high)
-    assert found == pytest.approx(high - 2 / sqrt(given), rel=1e-14)
-    assert found == pytest.approx(limit, abs=5e-3)
-    assert weight((found, high)) == pytest.approx(given, rel=1e-12)
-
-
-def test_the_rounded_second_weight_allows_many_lower_limits() -> None:
-    """0.01 stands for 0.005 to 0.015."""
-    assert lower_limit(0.005, 33.2) == pytest.approx(4.9, abs=0.05)
-    assert lower_limit(0.015, 33.2) == pytest.approx(16.9, abs=0.05)
 
 
 def test_total_objective_by_hand() -> None:

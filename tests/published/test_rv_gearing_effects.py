@@ -21,12 +21,6 @@ UM, HOUR, RPM = 1e-6, 3600.0, 1 / 60
 BASE_RADIUS = 12.5e-3 * cos(radians(20))
 EFFICIENCY = 0.920941 * 0.99**3
 BY_NAME: dict[str, Effect[Any, Any]] = {effect.name: effect for effect in EFFECTS}
-EVERY = pytest.mark.parametrize("effect", EFFECTS, ids=lambda effect: effect.name)
-IDS = (
-    "face_misalignment structural_resonance planet_load_sharing centre_distance_growth sun_runout planet_runout "
-    "mesh_ripple output_eccentricity speed_dependent_loss flash_temperature wind_up lost_motion crowned_contact "
-    "wear_drift ratio_drift mesh_stiffening relief_error"
-)
 STATED = "sun_teeth=20;planet_teeth=55"
 STRESSES = ("contact_stress", "root_stress_sun", "root_stress_planet")
 
@@ -58,17 +52,6 @@ def _numbers(results: Any) -> dict[str, float]:
 def change(name: str, settings: str = "", result: str = "transmission_error", **values: float) -> float:
     """What one effect adds to a result, SI."""
     return shown(name, settings, **values)[result] - shown("", settings)[result]
-
-
-def test_every_effect_of_the_list_is_there_and_no_other() -> None:
-    assert sorted(BY_NAME) == sorted(IDS.split())
-
-
-@EVERY
-def test_every_effect_says_what_it_looks_like_why_and_whence(effect: Effect[Any, Any]) -> None:
-    assert all(len(words) > 10 for words in (effect.looks_like, effect.why, effect.source))
-    assert all(unknown.note for unknown in effect.unknowns)
-    assert all(need.note and need.low is not None and need.high is not None for need in effect.needs)
 
 
 @pytest.mark.parametrize("name", ["transmission_error", "backlash"])
@@ -290,23 +273,3 @@ def test_a_tip_without_its_relief_is_loaded_more(missing: float, torque: float, 
 
 
 # All
-
-
-@EVERY
-@pytest.mark.parametrize("shape", [0.1, 0.9])
-def test_an_effect_of_no_size_is_the_stage_as_calculated(effect: Effect[Any, Any], shape: float) -> None:
-    from truing.units import to_si
-
-    values = {
-        item.name: 0.0 if item.is_amplitude else float(to_si(item.low + shape * (item.high - item.low), item.unit))
-        for item in effect.unknowns
-    }
-    values |= {need.name: need.zero + 7.0 * (1 + place) for place, need in enumerate(effect.needs)}
-    for settings in ("", "load_torque=-400 N*m;input_speed=700 rpm;oil_temperature=70 degC"):
-        assert shown(effect.name, settings, **values) == shown("", settings)
-
-
-@EVERY
-def test_every_effect_acts_where_machines_are_drawn(effect: Effect[Any, Any]) -> None:
-    """None is the gauge's."""
-    assert effect.place in {"inputs", "results"}

@@ -379,7 +379,7 @@ def test_a_figure_of_the_mesh_shows_as_many_planets_as_there_are() -> None:
 
 def test_a_limit_that_is_a_result_is_printed_as_one(whole: Calculation) -> None:
     """The permitted contact stress of the sun, 1093.394 MPa, with as many digits as a stress has."""
-    printed = {row.name: row.limit.text for row in check_rows(whole)}
+    printed = {row.check.name: row.limit.text for row in check_rows(whole)}
     assert printed["contact_stress_sun"] == "1093.4"
 
 

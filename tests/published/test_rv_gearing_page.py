@@ -1,4 +1,4 @@
-"""The numbers on the theory page of the gearing are those that the calculation gives."""
+"""The numbers on the theory page of the gearing and in its findings are those that the calculation gives."""
 
 import re
 from pathlib import Path
@@ -8,9 +8,20 @@ import numpy as np
 import pytest
 
 from rv_gearing.geometry import load_of
-from rv_gearing.groups import centre_distance_window, efficiency_of, mesh_efficiency, output_torque, ratio_of, search
+from rv_gearing.groups import (
+    RATIOS,
+    catalogue_table,
+    centre_distance_window,
+    efficiency_of,
+    mesh_efficiency,
+    output_torque,
+    ratio_of,
+    search,
+)
 from rv_gearing.material import steel_of
 from rv_gearing.model import RV_GEARING
+from rv_gearing.published import FINDINGS
+from rv_gearing.quantities import Gearing
 from rv_gearing.rating import rv_gearing
 
 PAGE = (Path(__file__).parents[2] / "docs" / "explanation" / "rv_gearing.md").read_text(encoding="utf-8")
@@ -174,6 +185,43 @@ def test_the_constants_of_the_materials(material: str, place: int) -> None:
     assert row("$Y_{RrelT}$ below")[place] == f"{steel.surface_smooth:g}"
 
 
-def test_every_effect_has_its_row() -> None:
-    named = set(re.findall(r"^\| `(\w+)` \| [^|]+ \| [^|]+ \| [^|]+ \|$", PAGE, re.MULTILINE))
-    assert set(RV_GEARING.effects) <= named
+# Findings
+
+
+def test_the_catalogue_stands_on_the_sheet_with_one_centre_distance() -> None:
+    table = catalogue_table(Gearing())
+    assert [row[0] for row in table.rows] == [ratio for ratio, *_ in RATIOS] == [81.0, 111.0, 127.7, 161.0, 175.2]
+    assert {row[6] for row in table.rows} == {46.875}
+    assert all(abs(float(row[5] or 0)) < 0.05 for row in table.rows)
+
+
+def said(title: str) -> str:
+    return next(finding.text for finding in FINDINGS if finding.title.startswith(title))
+
+
+def test_the_numbers_in_the_findings_are_ours() -> None:
+    first, last = (rv_gearing(RV_GEARING.inputs(group=number)) for number in (1, 25))
+    ends = f"{float(first.sun.contact_stress) / 1e6:.0f} to {float(last.sun.contact_stress) / 1e6:.0f} MPa"
+    assert ends in said("The first group")
+    grown = float(last.mesh.centre_distance) / float(first.mesh.centre_distance) - 1
+    assert f"grows by {100 * grown:.0f} %" in said("The first group")
+    plain = rv_gearing(RV_GEARING.inputs(single_contact=False))
+    left = [1 - float(one.sun.contact_stress) / float(one.sun.permitted_contact_stress) for one in (first, plain)]
+    assert f"with it {100 * left[0]:.1f} %" in said("Contact stress at the pitch point")
+    assert f"without it {100 * left[1]:.1f} %" in said("Contact stress at the pitch point")
+    assert f"{100 * (float(first.contact.single_contact_factor_sun) - 1):.1f} % more" in said("Contact stress")
+    told = said("Small gears")
+    assert f"factor is {float(first.face.face_factor):.2f}" in told
+    assert f"under {float(first.duty.line_load) / 1e3:.0f} N/mm" in told
+    aligned = rv_gearing(RV_GEARING.inputs(stated_face_factor=1.2))
+    lower = 1 - float(aligned.sun.contact_stress) / float(first.sun.contact_stress)
+    assert f"takes {100 * lower:.0f} % off" in told
+    factors = (
+        first.sun.root.form_factor, first.sun.root.stress_correction, first.sun.root.form_factor_outer,
+        first.sun.root.stress_correction_outer,
+    )  # fmt: skip
+    words = [f"{float(factor):.2f}" for factor in factors]
+    assert f"{words[0]} and {words[1]} by one, {words[2]} and {words[3]} by the other" in said("Two conventions")
+    assert f"{float(first.duty.sun_torque):.2f} instead of {float(first.duty.output_torque):.1f} N m" in said(
+        "The torque"
+    )

@@ -5,7 +5,7 @@ Numbers marked as reference follow by hand from equation 21: 2 q / (e z_c) is 51
 """
 
 from collections.abc import Callable
-from dataclasses import fields, replace
+from dataclasses import fields
 from functools import cache
 from math import exp, pi, sqrt
 from typing import Any
@@ -18,8 +18,7 @@ from rv_wear.calculation import rv_wear
 from rv_wear.effects import EFFECTS, runout
 from rv_wear.model import RV_WEAR
 from rv_wear.quantities import Reducer
-from truing import Effect, Float
-from truing.setup import SwitchedOn, default_setup
+from truing import Effect
 
 MINUTE = pi / 10800
 UM, HOUR = 1e-6, 3600.0
@@ -27,29 +26,19 @@ ROOM = 293.15
 ARM = 2.2e-3 * 39
 ROOT = sqrt(1 - (2.2 * 40 / 114.5) ** 2)
 BY_NAME: dict[str, Effect[Any, Any]] = {effect.name: effect for effect in EFFECTS}
-EVERY = pytest.mark.parametrize("effect", EFFECTS, ids=lambda effect: effect.name)
-IDS = (
-    "thermal_clearance running_in wear_temperature film_lubrication pin_rolling pin_wear lost_motion_share "
-    "bearing_wear wind_up stiffening runout pin_pass_ripple friction_hysteresis lubricant_ageing load_exponent "
-    "duty_share"
-)
 
 
 @cache
 def shown(name: str = "", settings: str = "", **values: float) -> dict[str, float]:
     """The results in SI with one effect on (unknowns and conditions in SI); settings as in an inputs file."""
     changed = dict(item.split("=") for item in settings.split(";") if item)
-    reducer: Reducer = RV_WEAR.inputs(**{key: _value(text) for key, text in changed.items()})
+    reducer: Reducer = RV_WEAR.inputs(**{key: text.strip() for key, text in changed.items()})
     if not name:
         return _numbers(rv_wear(reducer))
     effect = BY_NAME[name]
     if effect.place == "inputs":
         return _numbers(rv_wear(effect.function(reducer, **values)))
     return _numbers(effect.function(reducer, rv_wear(reducer), **values))
-
-
-def _value(text: str) -> Any:
-    return text.strip()
 
 
 def _numbers(results: Any) -> dict[str, float]:
@@ -59,17 +48,6 @@ def _numbers(results: Any) -> dict[str, float]:
 def change(name: str, settings: str = "", result: str = "backlash", **values: float) -> float:
     """What one effect adds to a result, SI."""
     return shown(name, settings, **values)[result] - shown("", settings)[result]
-
-
-def test_every_effect_of_the_list_is_there_and_no_other() -> None:
-    assert sorted(BY_NAME) == sorted(IDS.split())
-
-
-@EVERY
-def test_every_effect_says_what_it_looks_like_why_and_whence(effect: Effect[Any, Any]) -> None:
-    assert all(len(words) > 15 for words in (effect.looks_like, effect.why, effect.source))
-    assert all(unknown.note for unknown in effect.unknowns)
-    assert all(need.note and need.low is not None and need.high is not None for need in effect.needs)
 
 
 # Clearance
@@ -314,38 +292,3 @@ def test_friction_lags_behind(direction: float) -> None:
 
 
 # All
-
-
-@EVERY
-@pytest.mark.parametrize("shape", [0.1, 0.9])
-def test_an_effect_of_no_size_is_the_reducer_of_the_paper(effect: Effect[Any, Any], shape: float) -> None:
-    from truing.units import to_si
-
-    values = {
-        item.name: 0.0 if item.is_amplitude else float(to_si(item.low + shape * (item.high - item.low), item.unit))
-        for item in effect.unknowns
-    }
-    values |= {need.name: need.zero + 7.0 * (1 + place) for place, need in enumerate(effect.needs)}
-    assert shown(effect.name, "working_time=2500 h", **values) == shown("", "working_time=2500 h")
-
-
-@EVERY
-def test_a_gauge_reads_no_machine_worse(effect: Effect[Any, Any]) -> None:
-    """Effects of the reading do not act where machines are drawn; what changes the machine does."""
-    from truing.evaluate import evaluate
-
-    of_gauge = {"wind_up", "stiffening", "friction_hysteresis"}
-    assert (effect.place == "reading") == (effect.name in of_gauge)
-    setup = default_setup(RV_WEAR)
-    half = {item.name: _half(item) for item in effect.unknowns}
-    there = {need.name: need.zero + 0.3 * (1 + place) for place, need in enumerate(effect.needs)}
-    speeds = {"output_torque": 2000.0} if effect.name == "load_exponent" else {}
-    on = replace(setup, effects=(SwitchedOn(effect, half),), conditions={**setup.conditions, **there}).changed(speeds)
-    drawn = float(evaluate(on).backlash)
-    assert (drawn == float(evaluate(setup.changed(speeds)).backlash)) == (effect.name in of_gauge)
-
-
-def _half(item: Any) -> Float:
-    from truing.units import to_si
-
-    return float(to_si((item.low + item.high) / 2 if item.low >= 0 else 0.5 * item.high, item.unit))

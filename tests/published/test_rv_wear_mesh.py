@@ -166,7 +166,7 @@ def test_bounds_of_the_equidistant_modification() -> None:
     (low,), (high,) = discs.allowed_equidistant(PAPER)
     assert high * 1e3 == pytest.approx(0.0111, abs=5.01e-5)  # printed 0.011
     assert low * 1e3 == pytest.approx(-0.05375, abs=5.01e-6)  # printed -0.053
-    assert worn(PAPER).equidistant_low == pytest.approx(low, rel=ROUNDING)
+    assert worn(PAPER)["equidistant_low"] == pytest.approx(low, rel=ROUNDING)
     at_high, above = (plain_clearance(x, x - 4e-6, ANGLES).min() for x in (high, high + 1e-7))
     assert at_high > -1e-18
     assert above < -5e-11
@@ -186,7 +186,7 @@ def test_bounds_scale_with_the_radial_clearance(radial: float) -> None:
 def test_lower_bound_by_the_approach_is_its_own_approach() -> None:
     (low,), _ = discs.allowed_equidistant(PAPER, lower="approach")
     there = worn(replace(PAPER, equidistant_modification=low, shift_modification=low - 4e-6))
-    assert plain_clearance(low, low - 4e-6, ANGLES).max() == pytest.approx(there.approach, rel=1e-5)
+    assert plain_clearance(low, low - 4e-6, ANGLES).max() == pytest.approx(there["approach"], rel=1e-5)
     (narrow,), _ = discs.allowed_equidistant(replace(PAPER, disc_width=0.016), lower="approach")
     assert narrow * 1e3 == pytest.approx(-0.0537, abs=0.002)  # both readings agree for a width of about 16 mm
 
@@ -302,11 +302,11 @@ def test_forces_are_those_of_a_bisection(torque: float, hertz: bool) -> None:
 
 def test_forces_of_the_paper() -> None:
     new = worn(PAPER)
-    assert new.start_force == pytest.approx(2010, abs=0.501)
-    assert new.max_force == pytest.approx(3390, abs=5.01)
-    assert new.largest_force == pytest.approx(3390, abs=5.01)
-    assert new.max_pressure * 1e-6 == pytest.approx(1133, abs=0.501)
-    assert new.loaded_pins == 11
+    assert new["start_force"] == pytest.approx(2010, abs=0.501)
+    assert new["max_force"] == pytest.approx(3390, abs=5.01)
+    assert new["largest_force"] == pytest.approx(3390, abs=5.01)
+    assert new["max_pressure"] * 1e-6 == pytest.approx(1133, abs=0.501)
+    assert new["loaded_pins"] == 11
     _, loads = unworn(MESH)
     assert loads.approach.mean() * 1e6 == pytest.approx(5.97, abs=0.00501)
     assert set((loads.force > 0).sum(axis=0).ravel()) == {10, 11}
@@ -327,22 +327,6 @@ def test_rigorous_sharing_is_near_the_linear_one() -> None:
     assert np.all(np.abs(rigorous.force[0, near] / linear.force[0, near] - 1) < 0.22)
     middle = np.abs(np.degrees(linear.angle) - 60) < 10
     assert np.all(np.abs(rigorous.force[0, middle] / linear.force[0, middle] - 1) < 0.05)
-
-
-def test_friction_of_the_mesh_is_a_few_percent_of_the_power() -> None:
-    profile = discs.flank(PAPER)
-    speeds = geometry.sliding_speed(MESH, profile.angle)
-    lost = 2 * 0.05 * float((profile.force[0] * speeds).sum()) / 8 / 3136
-    assert lost == pytest.approx(0.057, abs=5.01e-4)
-
-
-def test_larger_modification_at_the_same_clearance_means_less_force_and_more_pins() -> None:
-    modification = np.linspace(-53e-6, 11e-6, 30)
-    reducer = replace(PAPER, equidistant_modification=modification, shift_modification=modification - 4e-6)
-    assert np.all(np.diff(worn(reducer).max_force) < 0)
-    loaded = (discs.flank(reducer).force > 0).mean(axis=1)
-    assert np.all(np.diff(loaded) >= 0)
-    assert loaded[-1] > loaded[0] + 0.2
 
 
 def test_each_of_many_meshes_is_solved_as_if_alone() -> None:
@@ -397,11 +381,11 @@ def test_impossible_geometry_is_refused_by_name(changes: dict[str, float], words
 )
 def test_what_is_only_unusual_is_calculated(changes: dict[str, float]) -> None:
     found = worn(replace(PAPER, **changes))
-    assert np.isfinite([found.depth, found.max_force, found.max_pressure]).all()
+    assert np.isfinite([found["max_wear"], found["max_force"], found["max_pressure"]]).all()
 
 
 def test_a_torque_too_small_loads_one_pin() -> None:
-    assert worn(replace(PAPER, output_torque=1e-6, phases=200)).loaded_pins == 1
+    assert worn(replace(PAPER, output_torque=1e-6, phases=200))["loaded_pins"] == 1
 
 
 @pytest.mark.parametrize(
@@ -423,4 +407,6 @@ def test_steps_that_would_decide_the_wear_are_refused(changes: dict[str, float],
 def test_a_step_is_not_too_deep_for_a_wear_that_never_reaches_it() -> None:
     """Within the first step wear grows evenly, whatever its size: new discs and short times are calculated."""
     new = worn(replace(PAPER, working_time=np.array([0.0, 36.0]), reconstruction_depth=5e-6))
-    assert new.depth == pytest.approx(worn(replace(PAPER, working_time=np.array([0.0, 36.0]))).depth, rel=1e-12)
+    assert new["max_wear"] == pytest.approx(
+        worn(replace(PAPER, working_time=np.array([0.0, 36.0])))["max_wear"], rel=1e-12
+    )

@@ -8,7 +8,7 @@ import pytest
 
 from rv_wear.discs import DiscValidity, Modifications
 from rv_wear.model import RV_WEAR
-from truing import Allocation, Require, Sweep, Vary
+from truing import Sweep
 from truing.calculation import Calculation, calculate
 from truing.errors import TruingError
 from truing.setup import default_setup
@@ -49,33 +49,6 @@ def test_every_input_stands_in_the_middle_of_its_zone() -> None:
         assert getattr(reducer, name) == pytest.approx(1e-6 * (low + high) / 2, abs=1e-15)
 
 
-def test_both_modifications_may_be_chosen_at_one_clearance() -> None:
-    varied = {item.input: item for item in RV_WEAR.objectives if isinstance(item, Vary)}
-    assert (varied["equidistant_modification"].low, varied["equidistant_modification"].high) == (
-        "-0.045 mm",
-        "0.004 mm",
-    )
-    assert varied["shift_modification"].by == "equidistant_modification - design_clearance"
-
-
-def test_the_backlash_is_asked_for_with_a_reliability_and_the_pressure_without() -> None:
-    limits = {item.result: item for item in RV_WEAR.objectives if isinstance(item, Require)}
-    assert (limits["backlash"].limit, limits["backlash"].reliability) == ("permitted_backlash", "required_reliability")
-    assert (limits["max_pressure"].limit, limits["max_pressure"].reliability) == ("permitted_pressure", None)
-
-
-@pytest.mark.parametrize("goal", ["0.95", "0.99", "0.999"])
-def test_a_higher_reliability_never_costs_less_at_the_same_wear(goal: str) -> None:
-    """Ground by -30 um all of these can be reached."""
-    at = {"equidistant_modification": "-30 um", "shift_modification": "-34 um"}
-    higher = {"0.95": "0.99", "0.99": "0.999", "0.999": "0.9999"}[goal]
-    plans = [run(study("allocation"), required_reliability=asked, **at) for asked in (goal, higher)]
-    cost, more = (found.answers["least_cost"] for found in plans)
-    assert cost <= more
-    assert more < plans[0].answers["tolerance_price"]
-    assert plans[0].answers["max_wear"] == plans[1].answers["max_wear"]
-
-
 def test_the_least_cost_lies_within_the_widths_and_reaches_its_goal() -> None:
     at = {"equidistant_modification": "-27 um", "shift_modification": "-31 um"}
     found = run(replace(study("allocation"), draws=20_000), **at)
@@ -107,17 +80,6 @@ def test_the_deepest_wear_lies_in_the_middle_of_the_contact() -> None:
     assert np.degrees(found.answers["wear_angle"]) == pytest.approx(58, abs=1.0)
 
 
-def test_discs_of_other_modifications_go_the_way_of_the_first_two_figures() -> None:
-    """Reference values of the wear after 100 h, um, at five equidistant modifications, um."""
-    reference = {-53: 0.105, -40: 0.098, -26: 0.088, -10: 0.077, 11: 0.060}
-    found = run(Modifications(points=26)).outcomes["modifications"]
-    ours = np.interp(list(reference), found.modifications * 1e6, found.wear * 1e6)
-    assert ours == pytest.approx(list(reference.values()), abs=6e-4)
-    assert (np.diff(found.force) < 0).all()
-    assert (np.diff(found.wear) < 0).all()
-    assert (np.diff(found.loaded) >= 0).all()
-
-
 @pytest.mark.parametrize("options", [{"points": 1}, {"points": 101}, {"hours": 0.0}])
 def test_impossible_options_are_refused(options: dict[str, Any]) -> None:
     with pytest.raises(TruingError, match="study 'modifications'"):
@@ -138,10 +100,3 @@ def test_the_example_file_states_every_input_or_names_it_as_neutral() -> None:
     text = RV_WEAR.example.read_text(encoding="utf-8")
     for name in [*RV_WEAR.input_fields, *RV_WEAR.tolerances, *RV_WEAR.effects, *RV_WEAR.conditions]:
         assert name in text, name
-
-
-def test_allocation_takes_the_bounds_of_the_paper() -> None:
-    """The initial zones are the lower bounds."""
-    declared = study("allocation")
-    assert isinstance(declared, Allocation)
-    assert (declared.tightest, declared.widest) == (1.0, 2.0)

@@ -1,6 +1,5 @@
 """The numbers on the theory page of the reducer are those that the calculation gives."""
 
-import re
 from pathlib import Path
 from typing import Any
 
@@ -129,8 +128,3 @@ def test_what_is_said_of_the_losses() -> None:
     power = new.force[0] * np.asarray(sliding_speed(mesh_of(PAPER), new.angle))
     lost = 2 * 0.05 * power.reshape(-1, PAPER.phases).sum(axis=0).mean() / PAPER.output_torque
     assert f"{100 * lost:.1f} % of the output power" in WORDS
-
-
-def test_every_effect_and_every_error_has_its_row() -> None:
-    named = set(re.findall(r"^\| `(\w+)` \|", PAGE, re.MULTILINE))
-    assert named == set(RV_WEAR.effects)

@@ -14,10 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from truing import Condition, Effect, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
-from truing.diagnosis.causes import Candidate, si_bounds
-from truing.diagnosis.chance import Law
-from truing.diagnosis.choice import Chosen, Rival, choose
-from truing.diagnosis.competition import Competition
+from truing.diagnosis.causes import Candidate
+from truing.diagnosis.choice import Chosen, Law, Rival, choose
+from truing.diagnosis.competition import Competition, beside, search
 from truing.diagnosis.curves import ResponseCurves
 from truing.diagnosis.engine import diagnose, laid_out
 from truing.diagnosis.exact import EXACTLY, nothing
@@ -27,9 +26,8 @@ from truing.diagnosis.learning import first_noise
 from truing.diagnosis.machine import Calibration, calibration_of
 from truing.diagnosis.reading import read_records
 from truing.diagnosis.records import Records
-from truing.diagnosis.result import DiagnosisResult
+from truing.diagnosis.result import DiagnosisResult, FittedUnknown
 from truing.diagnosis.sample import NoiseModel, sample_of
-from truing.diagnosis.search import search
 from truing.kernel import Offer, Origin
 from truing.setup import DiagnoseOptions, Setup, default_setup
 
@@ -103,30 +101,6 @@ def skewed(screw: Drive, base: Deflection, *, along: Float, across: Float) -> De
     return replace(base, deflection=base.deflection + along * screw.travel + across * 0 * screw.travel)
 
 
-@inputs
-class DriveInSi:
-    """The screw drive in N, m and rad."""
-
-    load: Float = given(0.0, "N", symbol="F", note="axial load")
-    travel: Float = given(0.0, "m", symbol="s", note="place of the nut")
-    rotation: Float = given(0.0, "rad", symbol="phi", note="angle of the screw")
-    contact: Float = given(CONTACT * UM, "m", symbol="c", note="approach of balls and track at 1 kN")
-    shaft: Float = given(SHAFT * UM / KN, "m/N", symbol="k", note="compliance of the shaft at the full stroke")
-    zero: Float = given(0.0, "m", note="zero of the length gauge as set")
-
-
-@results
-class DeflectionInSi:
-    """How far the nut gives way, in m."""
-
-    deflection: Float = found("m", symbol="g", note="axial deflection")
-
-
-def drive_in_si(screw: DriveInSi) -> DeflectionInSi:
-    """The same machine, declared otherwise."""
-    return DeflectionInSi(deflection=drive(screw).deflection)  # type: ignore[arg-type]
-
-
 TEMPERATURE = Condition("temperature", "degC", reference=20, low=10, high=60)
 TIME = Condition("time", "h", derived="since_start")
 EFFECTS: Mapping[str, Effect[Any, Any]] = {
@@ -153,34 +127,14 @@ SKEWED = Effect(
 """An effect that the drive does not declare: one of its unknowns no record can tell."""
 
 
-def _in_si(effect: Effect[Any, Any]) -> Effect[Any, Any]:
-    """The same effect with its unknowns and conditions declared in SI."""
-    units = {"um/K": "m/K", "um": "m", "h": "s", "um/h": "m/s", "um/mm": "", "": ""}
-    unknowns = [Unknown(one.name, *si_bounds(one), units[one.unit]) for one in effect.unknowns]
-    needs = [replace(need, unit="s") if need.name == "time" else need for need in effect.needs]
-
-    def acting(*held: Any, **known: Any) -> Any:
-        return effect.function(*held, **known)
-
-    place: dict[str, Any] = {f"on_{effect.place}": acting}
-    return Effect(effect.name, unknowns=unknowns, needs=needs, **place)
-
-
 TOLERANCES = {"contact": "3 %", "shaft": "3 %"}
 
 
-def drive_model(
-    effects: Sequence[str] = ALL_EFFECTS, tolerances: Mapping[str, str] = TOLERANCES, *, in_si: bool = False
-) -> Model[Any, Any]:
-    """The screw drive with some of its effects; ``tolerances`` holds standard deviations by input.
-
-    ``in_si`` declares the same model with every number in SI.
-    """
+def drive_model(effects: Sequence[str] = ALL_EFFECTS, tolerances: Mapping[str, str] = TOLERANCES) -> Model[Any, Any]:
+    """The screw drive with some of its effects; ``tolerances`` holds standard deviations by input."""
     spreads = [Tolerance(name, normal(sd=sd), why="drawing") for name, sd in tolerances.items()]
-    chosen = [EFFECTS[name] for name in effects]
-    errors: list[Any] = [*spreads, *(_in_si(effect) if in_si else effect for effect in chosen)]
-    function = drive_in_si if in_si else drive
-    return Model(name="drive", title="Deflection of a screw drive", function=function, errors=errors)
+    errors: list[Any] = [*spreads, *(EFFECTS[name] for name in effects)]
+    return Model(name="drive", title="Deflection of a screw drive", function=drive, errors=errors)
 
 
 def offer_of(model: Model[Any, Any]) -> Offer:
@@ -285,6 +239,21 @@ def name_sets(found: DiagnosisResult) -> list[set[str]]:
     return [{cause.effect, *cause.same_as} for cause in found.causes]
 
 
+def ends(unknown: FittedUnknown) -> tuple[float, float]:
+    """The ends of an interval that has both."""
+    assert unknown.low is not None
+    assert unknown.high is not None
+    return unknown.low, unknown.high
+
+
+def assert_sized(unknown: FittedUnknown, size: float, *, within: float) -> None:
+    """A size (SI) lies within three standard errors of what was fitted; these are known to a share of it."""
+    low, high = ends(unknown)
+    half = (high - low) / 2
+    assert abs(unknown.value - size) < 1.5 * half
+    assert half < within * abs(size)
+
+
 def decided(setup: Setup, records: Records) -> Chosen:
     """Search and choose, without the report: what a diagnosis does before it judges."""
     made = laid_out(calibration_of(setup, records))
@@ -319,7 +288,7 @@ def fit_of(made: Competition, *names: str) -> Fit:
     for name in names:
         assert found is not None
         cause = cause_of(made, name)
-        found = made.joined(found, cause, made.look(found, [cause])[cause.tag].starts)
+        *_, found = made.fit_each(beside(found, cause, made.look(found, [cause])[cause.tag].starts))
     assert found is not None
     made.again([found], EXACTLY)
     return made.known[found.key]

@@ -5,12 +5,12 @@ from __future__ import annotations
 from functools import partial
 
 from truing.formulas.layout import substituted, symbolic
-from truing.formulas.write_latex import LatexWriter
-from truing.formulas.write_mathml import MathMLWriter
+from truing.formulas.write_latex import LATEX, symbol_latex
+from truing.formulas.write_mathml import MATHML
 
-mathml, latex = partial(symbolic, MathMLWriter()), partial(symbolic, LatexWriter())
-substituted_mathml, substituted_latex = partial(substituted, MathMLWriter()), partial(substituted, LatexWriter())
-symbol_latex = LatexWriter().symbol
+__all__ = ["block_mathml", "latex", "mathml", "substituted_latex", "substituted_mathml", "symbol_latex"]
+mathml, latex = partial(symbolic, MATHML), partial(symbolic, LATEX)
+substituted_mathml, substituted_latex = partial(substituted, MATHML), partial(substituted, LATEX)
 
 
 def block_mathml(*inner: str) -> str:

@@ -1,13 +1,11 @@
 """Reads printed formulas back, as a person would: only what is visible counts, no hidden grouping.
 
-Two tokenizers (MathML, LaTeX) feed one parser. ``<mrow>`` and braces that only group are invisible and therefore
-ignored; an exponent belongs to the one thing it stands on; what a person could read in two ways is refused.
-The result is Python text for ``eval``.
+``<mrow>`` only groups, is invisible and therefore ignored; an exponent belongs to the one thing it stands on; what a
+person could read in two ways is refused. The result is Python text for ``eval``.
 """
 
 from __future__ import annotations
 
-import re
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -122,111 +120,6 @@ class Reader:
             return [("name", key + self.visible(exponent))]
         tokens = [("name", key)] if len(base) == 2 else self.element(base[0])
         return [*tokens, ("sup", self.element(exponent))]
-
-    def latex(self, text: str) -> str:
-        """Read LaTeX."""
-        return self.python(Latex(re.findall(r"\\[A-Za-z]+|\\.|\d+(?:\.\d+)?|\s+|.", text), self).tokens_until(None))
-
-
-COMMANDS = {r"\cdot": "⋅", r"\times": "×", r"\thinspace": "gap", r"\ne": "≠", r"\lt": "<", r"\gt": ">"}
-COMMANDS |= {r"\le": "≤", r"\ge": "≥"}
-LETTERS = {r"\theta": "θ", r"\xi": "ξ", r"\pi": "π", r"\Delta": "Δ", r"\alpha": "α"}
-
-
-@dataclass
-class Latex:
-    """Turns LaTeX into the same tokens."""
-
-    parts: list[str]
-    reader: Reader
-
-    def pop(self) -> str:
-        return self.parts.pop(0)
-
-    def group(self) -> list[Token]:
-        assert self.pop() == "{"
-        return self.tokens_until("}")
-
-    def raw(self) -> str:
-        assert self.pop() == "{"
-        depth, text = 1, ""
-        while depth:
-            part = self.pop()
-            depth += {"{": 1, "}": -1}.get(part, 0)
-            text += part if depth else ""
-        return re.sub(r"\\cdot", "·", text.replace(r"\ ", " ")).replace("{·}", "·")
-
-    def tokens_until(self, end: str | None) -> list[Token]:
-        tokens: list[Token] = []
-        while self.parts:
-            part = self.pop()
-            if part == end:
-                return tokens
-            if not part.isspace():
-                self.one(part, tokens)
-        assert end is None
-        return tokens
-
-    def one(self, part: str, tokens: list[Token]) -> None:
-        if part in (r"\left", r"\right"):
-            bracket = self.pop()
-            tokens.append(("open" if part == r"\left" else "close", "|" if bracket == r"\vert" else bracket))
-        elif part == r"\frac":
-            above, below = self.reader.python(self.group()), self.reader.python(self.group())
-            tokens.append(("block", f"(({above}) / ({below}))"))
-        elif part == r"\sqrt":
-            index = "".join(self.pop() for _ in range(3)) if self.parts[0] == "[" else ""
-            tokens.append(("block", f"{'cbrt' if index == '[3]' else 'sqrt'}({self.reader.python(self.group())})"))
-        elif part == r"\begin":
-            assert self.raw() == "cases"
-            tokens.append(("cases", self.rows()))
-        elif part == r"\mathrm":
-            tokens.append(self.reader.upright(self.raw()))
-        elif part == "^":
-            self.superscript(tokens)
-        elif part == "_":
-            self.subscript(tokens)
-        else:
-            self.plain(part, tokens)
-
-    def plain(self, part: str, tokens: list[Token]) -> None:
-        if part in COMMANDS or part in "+-=,":
-            tokens.append(("op", COMMANDS.get(part, part)))
-        elif part in LETTERS or part.isalpha():
-            tokens.append(("name", LETTERS.get(part, part)))
-        elif part[0].isdigit():
-            tokens.append(("number", part))
-        elif part in (r"\sum", r"\log") or part[1:] in FUNCTIONS:
-            tokens.append(("function", {r"\sum": "sum", r"\log": "log10"}.get(part) or FUNCTIONS[part[1:]]))
-        elif part != "\\ ":
-            raise MisprintError(f"{part!r} is not of our subset")
-
-    def superscript(self, tokens: list[Token]) -> None:
-        inner = self.group() if self.parts[1] != r"\prime" else self.raw()
-        if isinstance(inner, str):
-            tokens[-1] = ("name", tokens[-1][1] + "′" * inner.count(r"\prime"))
-        else:
-            tokens.append(("sup", inner))
-
-    def subscript(self, tokens: list[Token]) -> None:
-        text = re.sub(r"\\mathrm|[{} ]", "", self.raw())
-        kind, base = tokens[-1]
-        if kind == "function":
-            assert (base, text) == ("log10", "10")
-        else:
-            tokens[-1] = (kind, f"{base}_{text}")
-
-    def rows(self) -> list[list[list[Token]]]:
-        rows: list[list[list[Token]]] = [[[]]]
-        while (part := self.pop()) != r"\end":
-            if part == "&":
-                rows[-1].append([])
-            elif part == r"\cr":
-                rows.append([[]])
-            elif not part.isspace():
-                self.one(part, rows[-1][-1])
-        assert self.raw() == "cases"
-        return rows
 
 
 @dataclass

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping
 from dataclasses import replace
@@ -10,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pin_wear
 import pytest
 from jsonschema import Draft202012Validator
 from pin_wear import PIN_WEAR
@@ -28,7 +26,6 @@ from truing import (
     column,
     found,
     given,
-    hookimpl,
     inputs,
     part,
     plus_minus,
@@ -43,11 +40,8 @@ from truing.diagnosis.reading import read_records
 from truing.errors import InputError, UsageError
 from truing.evaluate import evaluate, evaluate_rows
 from truing.inputs_file import json_schema, setup_from_text
-from truing.kernel import Kernel, Offer, Origin
-from truing.packed import pack, unpack
-from truing.runs.documents import results_document
+from truing.kernel import Offer, Origin
 from truing.runs.inputs_written import complete_inputs, input_hash
-from truing.runs.provenance import provenance_of
 from truing.setup import Setup, SwitchedOn, default_setup, effect_column
 
 
@@ -313,11 +307,6 @@ def test_a_wave_of_order_one_to_three(order: int, degrees: float, added: float) 
     assert shown(BAR, wave, angle=math.radians(degrees))["force"] == pytest.approx(10 + added)
 
 
-def test_a_wave_may_have_one_half() -> None:
-    wave = {"periodic_order": {"height_left_sine": 5e-6, "height_left_order": 1.0}}
-    assert shown(SHAFT, wave, turn="90 deg")["height_left"] == pytest.approx(5e-6, abs=1e-12)
-
-
 @pytest.mark.parametrize(("hours", "force"), [(1.9, 10.0), (2.0, 13.0), (7.0, 13.0)])
 def test_a_step_stays(hours: float, force: float) -> None:
     step = {"step": {"force": 3.0, "force_after": 2 * 3600.0}}
@@ -579,25 +568,6 @@ def test_the_inputs_of_a_run_name_only_what_is_on() -> None:
     assert input_hash(again) == input_hash(setup)
 
 
-def test_without_them_nothing_is_written_of_them() -> None:
-    setup = read_text("")
-    assert dict(setup.conditions) == {}
-    assert "[conditions]" not in complete_inputs(setup)
-    assert dict(default_setup(SHAFT).conditions) == {}
-
-
-def test_workers_get_what_is_on() -> None:
-    setup = read_text('[effects.step]\nwarmth = "3 K"\nwarmth_after = "1 h"\n[conditions]\ntime = "2 h"\n')
-    again = unpack(pack(replace(setup, origin=Origin(__name__, "", "", "", f"module:{__name__}"))))
-    assert evaluate(again, reading=True).warmth == pytest.approx(346.15)
-
-
-@hookimpl
-def truing_models() -> list[Model[Shaft, Runout]]:
-    """Offer the shaft to workers."""
-    return [SHAFT]
-
-
 def test_the_schema_knows_them() -> None:
     judge = Draft202012Validator(json_schema(OFFER))
     effects = {"sensor_offset": {"warmth": "1 K"}, "step": {"warmth": "1 K", "warmth_after": "1 h"}}
@@ -616,16 +586,6 @@ def test_no_machine_fails_by_a_gauge() -> None:
     assert moved.answers["height_left"] == plain.answers["height_left"] == pytest.approx(2e-6)
     assert moved.warnings == plain.warnings
     assert evaluate(moved.setup, reading=True).left.height == pytest.approx(12e-6)
-
-
-def test_results_json_names_only_what_is_on() -> None:
-    setup = read_text('[effects.sensor_drift]\nwarmth = "2 K/h"\n')
-    document = json.loads(json.dumps(results_document(calculate(setup), provenance_of(setup))))
-    assert document["effects"] == {"sensor_drift": {"warmth": {"value": pytest.approx(2), "unit": "K/h"}}}
-    assert document["conditions"] == {"time": {"value": 0.0, "unit": "h"}}
-    assert document["warnings"] == ["effect 'sensor_drift' is on, but 'time' stays at its reference: it does nothing"]
-    plain = read_text("")
-    assert results_document(calculate(plain), provenance_of(plain))["conditions"] == {}
 
 
 def test_an_effect_of_a_plugin_that_has_parts_may_be_on_by_one_of_them() -> None:
@@ -652,11 +612,3 @@ def test_an_effect_without_parts_needs_every_unknown() -> None:
 
 def _any(bar: Bar, base: Pull, **unknowns: Float) -> Pull:
     return base
-
-
-def test_the_stranger_of_the_style_page_has_them() -> None:
-    effects = Kernel([pin_wear], strict=True).offer("pin_wear").model.known_effects
-    assert list(effects) == [
-        "running_in", "warm_probe", "sensor_offset", "sensor_gain", "sensor_drift", "thermal_drift", "periodic_order",
-        "step",
-    ]  # fmt: skip

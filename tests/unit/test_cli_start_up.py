@@ -12,6 +12,7 @@ import pytest
 import typer.main
 
 from truing.cli.app import app
+from truing.cli.console import out, out_json, say
 
 app_module = sys.modules["truing.cli.app"]
 
@@ -76,3 +77,23 @@ def test_the_table_of_verbs_hands_on_what_the_function_takes(verb: str) -> None:
 def test_a_verb_says_the_same_in_the_table_and_in_its_module(verb: str) -> None:
     work = getattr(import_module(f"truing.cli.{verb}"), verb)
     assert inspect.getdoc(getattr(app_module, verb)) == inspect.getdoc(work)
+
+
+# What is printed: a terminal shows it and obeys none of it.
+
+ORDERS = "\x1b[31mred\x1b[0m\x07 \x9b2J \u202egnp.exe\rover"
+SHOWN = "?[31mred?[0m? ?2J ?gnp.exe?over"
+
+
+@pytest.mark.parametrize("write", [out, say])
+def test_a_terminal_is_given_no_orders(write, capsys):
+    write(f"column '{ORDERS}'\nnext line\tµm")
+    printed = "".join(capsys.readouterr())
+    assert printed == f"column '{SHOWN}'\nnext line\tµm\n"
+
+
+def test_a_document_reads_back_as_it_was(capsys):
+    out_json({"name": ORDERS, "unit": "µm"})
+    printed = capsys.readouterr().out
+    assert json.loads(printed) == {"name": ORDERS, "unit": "µm"}
+    assert not set(printed) & set("\x1b\x07\x9b\u202e\r")

@@ -1,7 +1,7 @@
 """Declarations: what they say, what they refuse, and with which sentence."""
 
 import math
-from dataclasses import FrozenInstanceError, replace
+from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
@@ -11,7 +11,6 @@ from truing import (
     Condition,
     Effect,
     Float,
-    Maximise,
     Minimise,
     Model,
     Price,
@@ -34,13 +33,13 @@ from truing import (
     part,
     plus_minus,
     results,
-    rows,
     uniform,
     zone,
 )
 from truing.declare.fields import input_fields, result_fields
-from truing.declare.spreads import Target, read_spread
-from truing.errors import DeclarationError, UnitError, UsageError
+from truing.declare.spreads import Band, Spread, Target, read_spread, width_of, with_width
+from truing.errors import DeclarationError, TruingError, UnitError, UsageError
+from truing.fits import tolerance
 from truing.setup import default_setup
 
 
@@ -126,13 +125,6 @@ def test_defaults_become_si() -> None:
     assert bar.grain == (0.001, 0.0025)
 
 
-def test_inputs_are_frozen_and_by_keyword() -> None:
-    with pytest.raises(FrozenInstanceError):
-        Bar().force = 1.0  # type: ignore[misc]
-    with pytest.raises(TypeError):
-        Bar(1.0)  # type: ignore[misc]
-
-
 KINDS = [
     ("force", "float", True),
     ("holes", "whole", True),
@@ -148,12 +140,6 @@ KINDS = [
 def test_annotation_says_what_varies(name: str, kind: str, varies: bool) -> None:
     item = input_fields(Bar)[name]
     assert (item.kind, item.varies) == (kind, varies)
-
-
-def test_optional_and_choices_are_known() -> None:
-    fields = input_fields(Bar)
-    assert [name for name, item in fields.items() if item.is_optional] == ["factor"]
-    assert fields["reading"].choices == ("gross", "net")
 
 
 def test_parts_are_nested_in_python_and_flat_in_files() -> None:
@@ -356,28 +342,9 @@ def test_spreads_mean_what_they_say(spread: Any, sd: float, mean: float) -> None
     assert np.all(np.diff(mapped[np.argsort(standard)]) >= 0)
 
 
-def test_width_is_what_a_drawing_states() -> None:
-    assert plus_minus("0.05 mm").resolve(target()).width == pytest.approx(1e-4)
-    assert uniform("0.05 mm").resolve(target()).width == pytest.approx(1e-4)
-    assert normal(band="0.125 mm").resolve(target()).width == pytest.approx(125e-6)
-
-
-def test_percent_of_an_input_in_percent_is_the_same_percent() -> None:
-    assert normal(sd="2 %").resolve(target(0.5, "%")).sd == pytest.approx(0.02)
-
-
-def test_an_angle_from_a_length_across_a_radius() -> None:
-    spread = plus_minus("0.3 mm", at_radius="radius")
-    assert spread.resolve(target(1.0, "deg", radius=0.5)).sd == pytest.approx(1e-4 / 0.5)
-
-
 def test_grade_of_another_size() -> None:
     spread = grade("IT6", size="bore")
     assert spread.resolve(target(0.0, "mm", bore=0.02)).width == pytest.approx(13e-6)  # over 18 up to 30 mm
-
-
-def test_levels_of_temperature_scatter_by_kelvins() -> None:
-    assert normal(sd="2 K").resolve(target(293.15, "degC")).sd == pytest.approx(2.0)
 
 
 def test_by_choice_follows_the_choosing_input() -> None:
@@ -584,12 +551,6 @@ def test_require_takes_one_limit() -> None:
     assert (limit.kind, limit.limit, limit.reliability) == ("within", "1 MPa", "factor")
 
 
-def test_goals_may_name_inputs_and_results() -> None:
-    goals = [Minimise("stress"), Maximise("force"), Minimise("tolerance_price")]
-    model = bar_model(objectives=goals, errors=[PAID])
-    assert len(model.objectives) == 3
-
-
 # The model as a whole
 
 
@@ -714,17 +675,6 @@ def test_the_function_takes_one_class_and_returns_one(function: Any) -> None:
         Model(name="bar", title="", function=function)
 
 
-def test_a_table_is_an_axis_too() -> None:
-    @results
-    class Groups:
-        group: Float = rows("one row per group")
-        size: Float = found("mm", along="group")
-
-    fields = result_fields(Groups)
-    assert fields["group"].spec.is_table  # type: ignore[union-attr]
-    assert fields["size"].along == "group"
-
-
 def test_a_mean_that_is_chance_is_no_shift() -> None:
     """Draws about zero leave the nominal where it is; a real shift of a tenth of a standard deviation stays."""
 
@@ -737,3 +687,123 @@ def test_a_mean_that_is_chance_is_no_shift() -> None:
     target = Target("height", 0.01, "mm", {}.__getitem__)
     assert drawn(about_zero).resolve(target).mean == 0.01
     assert drawn(shifted).resolve(target).mean - 0.01 == pytest.approx(1e-7, rel=0.2)
+
+
+# A spread of another width keeps its words, its place and its shape, and stands in its text in full.
+
+OTHER = {"radius": 0.25, "kind": "rough"}
+LENGTH = Target("length", 0.08, "mm", OTHER.__getitem__)
+ANGLE = Target("angle", 0.3, "deg", OTHER.__getitem__)
+PURE = Target("share", -2.0, "", OTHER.__getitem__)
+PERCENT = Target("share", 0.12, "%", OTHER.__getitem__)
+WARMTH = Target("warmth", 300.0, "degC", OTHER.__getitem__)
+
+WIDTHS: list[tuple[Spread, Target, float]] = [
+    (normal(sd="0.01 mm"), LENGTH, 6e-5),
+    (normal(band="125 um"), LENGTH, 125e-6),
+    (normal(sd="3 %"), LENGTH, 6 * 0.03 * 0.08),
+    (normal(sd="3 %"), PURE, 6 * 0.03 * 2.0),
+    (normal(sd="3 %"), PERCENT, 0.18),
+    (plus_minus("0.05 mm"), LENGTH, 1e-4),
+    (plus_minus("0.05 mm", at_radius="radius"), ANGLE, 1e-4 / 0.25),
+    (uniform("0.05 mm"), LENGTH, 1e-4),
+    (lognormal(sd="6 %"), LENGTH, 6 * 0.06 * 0.08),
+    (read_spread("uniform sd 0.01 mm", off()), LENGTH, math.sqrt(12) * 1e-5),
+    (plus_minus("2 K"), WARMTH, 4.0),
+    (zone("0 um", "6.55 um", grows="up"), LENGTH, 6.55e-6),
+    (zone("-7 um", "0 um", grows="down"), LENGTH, 7e-6),
+    (zone("-3 um", "5 um"), LENGTH, 8e-6),
+    (by_choice("kind", fine=normal(band="1 um"), rough=normal(band="9 um")), LENGTH, 9e-6),
+    (grade("IT7"), LENGTH, 30e-6),  # ISO 286-1, table 1: 50 mm to 80 mm
+]
+
+
+@pytest.mark.parametrize(("spread", "target", "width"), WIDTHS)
+def test_the_width_is_the_full_band(spread: Spread, target: Target, width: float) -> None:
+    assert width_of(spread, target) == pytest.approx(width, rel=1e-14)
+
+
+@pytest.mark.parametrize("times", [1.0, 1.37, 2.0, 0.123456789012345])
+@pytest.mark.parametrize(("spread", "target", "width"), WIDTHS)
+def test_the_new_width_is_the_one_asked_for(spread: Spread, target: Target, width: float, times: float) -> None:
+    changed = with_width(spread, target, times * width)
+    assert width_of(changed, target) == pytest.approx(times * width, rel=4e-15)
+
+
+@pytest.mark.parametrize(("spread", "target", "width"), WIDTHS)
+def test_read_again_it_is_the_same_to_the_last_bit(spread: Spread, target: Target, width: float) -> None:
+    changed = with_width(spread, target, width * 1.2345678901234567)
+    again = read_spread(changed.text, changed)
+    assert again == changed
+    assert again.resolve(target) == changed.resolve(target)
+
+
+@pytest.mark.parametrize(("spread", "target", "width"), WIDTHS)
+def test_shape_and_words_stay(spread: Spread, target: Target, width: float) -> None:
+    before, after = spread.resolve(target), with_width(spread, target, 3 * width).resolve(target)
+    assert before is not None
+    assert after is not None
+    assert after.shape == before.shape
+    assert after.sd == pytest.approx(3 * before.sd, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("grows", "low", "high"),
+    [("up", -2e-6, 18e-6), ("down", -12e-6, 8e-6), ("both", -7e-6, 13e-6)],
+)
+def test_a_zone_grows_where_it_says(grows: str, low: float, high: float) -> None:
+    changed = with_width(zone("-2 um", "8 um", grows=grows), LENGTH, 20e-6)  # type: ignore[arg-type]
+    found = changed.resolve(LENGTH)
+    assert found is not None
+    assert found.mean - 0.08 == pytest.approx((low + high) / 2, abs=1e-16)
+    assert found.width == pytest.approx(20e-6, rel=1e-14)
+
+
+def test_a_band_keeps_what_it_says() -> None:
+    assert with_width(normal(sd="3 %"), LENGTH, 6 * 0.05 * 0.08).text.endswith(" %")
+    assert with_width(plus_minus("0.05 mm"), LENGTH, 2e-4).text == "±0.1 mm"
+    assert with_width(uniform("0.05 mm"), LENGTH, 2e-4).text == "uniform ±0.1 mm"
+    at_radius = with_width(plus_minus("0.05 mm", at_radius="radius"), ANGLE, 1e-3)
+    assert at_radius.text == "±0.125 mm"
+    assert read_spread("±0.125 mm", at_radius) == at_radius
+
+
+def test_a_share_is_of_the_nominal_of_its_target() -> None:
+    twice = Target("length", 0.16, "mm", OTHER.__getitem__)
+    changed = with_width(normal(sd="3 %"), twice, 6 * 0.03 * 0.08)
+    assert isinstance(changed, Band)
+    share, unit = changed.amount.split()
+    assert (float(share), unit) == (pytest.approx(1.5, rel=1e-14), "%")
+    with pytest.raises(UnitError, match="its nominal is 0"):
+        with_width(normal(sd="3 %"), Target("length", 0.0, "mm", OTHER.__getitem__), 1e-6)
+
+
+def test_a_grade_becomes_the_band_of_its_width() -> None:
+    changed = with_width(grade("IT7"), LENGTH, tolerance("IT8", 0.08))
+    assert changed.text == "band 0.046 mm"
+    assert changed.resolve(LENGTH) == grade("IT8").resolve(LENGTH)
+
+
+def pair(rng, rows):
+    """Draw one deviation."""
+    return {"length": rng.standard_normal(rows)}
+
+
+@pytest.mark.parametrize("spread", [off(), drawn(pair), by_choice("kind", fine=normal(sd="1 um"), rough=off())])
+def test_what_has_no_width_is_refused_by_name(spread: Spread) -> None:
+    for call in (lambda: with_width(spread, LENGTH, 1e-5), lambda: width_of(spread, LENGTH)):
+        with pytest.raises(UsageError, match=r"^the spread of 'length' is (off|drawn by pair): it has no width"):
+            call()
+
+
+@pytest.mark.parametrize("width", [0.0, -1e-6, math.nan, math.inf])
+def test_a_width_that_is_none_is_refused(width: float) -> None:
+    with pytest.raises(UsageError, match="the width of the tolerance of 'length' must lie above zero"):
+        with_width(normal(sd="1 um"), LENGTH, width)
+
+
+def test_a_width_of_another_kind_is_refused() -> None:
+    with pytest.raises(TruingError, match="IT7 is a grade for lengths"):
+        width_of(grade("IT7"), ANGLE)
+    with pytest.raises(UnitError, match="must lie above its start"):
+        width_of(zone("2 um", "1 um"), LENGTH)

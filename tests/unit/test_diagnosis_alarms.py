@@ -29,7 +29,7 @@ from numpy.testing import assert_allclose
 
 from truing.diagnosis.choice import Chosen
 from truing.diagnosis.engine import _answer
-from truing.diagnosis.halves import every_second, thinned_of
+from truing.diagnosis.gain import CONTRADICTING, FEWEST_PER_NUMBER, contradictions_of, every_second, thinned_of
 from truing.diagnosis.noise import SETTINGS, Autocorrelation
 from truing.diagnosis.result import Amount, Contradiction, DiagnosisResult, Thinned, Trade
 from truing.diagnosis.visibility import TRADED, trades_of
@@ -156,7 +156,7 @@ def test_every_second_row_says_something_else(tmp_path: Path, sign: Array, sound
 
 
 def test_noise_that_is_nearly_a_random_walk(tmp_path: Path) -> None:
-    """``test_diagnosis_verdict`` has the limit."""
+    """``test_diagnosis_sheet`` has the limit."""
     error = LEAD * BENCH.travel + wander(np.random.default_rng(53), ROWS, 0.97)
     found = asked().diagnosed(tmp_path, shown(error))
     assert is_told(found, "the noise of deflection was taken as nearly a random walk")
@@ -179,17 +179,6 @@ def test_noise_far_below_what_is_stated(tmp_path: Path, stated: str, sounds: boo
     columns = {**shown(LEAD * BENCH.travel + NOISE), "sigma_deflection": np.full(ROWS, float(stated))}
     found = one.diagnosed(tmp_path, columns)
     assert is_told(found, f"is far below the standard deviation stated for it, {stated} um") is sounds
-
-
-def test_half_of_the_rows_is_not_enough_for_all_causes_and_that_is_no_contradiction(tmp_path: Path) -> None:
-    """A cause in every second row only: without it the others say more, by nothing else."""
-    one = asked(["lead_error", "thermal_growth"])
-    made = plain_competition(
-        one, one.records(tmp_path, shown(LEAD * BENCH.travel + 0.3 * (SWAP > 0) * WARM + NOISE)), UM
-    )
-    fit_of(made, "lead_error")
-    assert thinned_of(chosen_as(made, fit_of(made, "lead_error", "thermal_growth"))) == ()
-    assert thinned_of(chosen_as(made, fit_of(made, "lead_error"))) == ()
 
 
 def test_few_rows_are_not_thinned(tmp_path: Path) -> None:
@@ -322,3 +311,89 @@ def test_alarms_are_data() -> None:
     stated = [item["stated_noise"] for item in document["wrong"].values()]
     assert stated == [{"value": pytest.approx(15.0), "unit": "um"}, None]
     assert len(document["warnings"]) == len(document["undecided"]) == 4
+
+
+# Whether the two halves of a record say the same: sizes of a cause in each, by least squares.
+
+HALVED = wide(ROWS, seed=41)
+HALVED_NOISE = np.random.default_rng(41).normal(0, 1, ROWS)
+IS_LATE = np.arange(ROWS) >= ROWS // 2
+
+
+def lead_of(error: Array, rows: Array) -> tuple[float, float]:
+    """The lead that some rows say by least squares, and its standard error."""
+    travel, own = HALVED.travel[rows], error[rows]
+    size = travel @ own / (travel @ travel)
+    return size, float(np.std(own - size * travel) / np.linalg.norm(travel))
+
+
+def changing(by: float) -> Array:
+    """An error whose lead differs between the halves, as they are measured, by so many standard errors."""
+    error = LEAD * HALVED.travel + HALVED_NOISE
+    (first, one), (second, two) = (lead_of(error, rows) for rows in (~IS_LATE, IS_LATE))
+    return np.asarray(error + np.where(IS_LATE, by * np.hypot(one, two) - (second - first), 0) * HALVED.travel)
+
+
+def lead_taken(folder: Path, error: Array, rows: Array | slice = slice(None)) -> Chosen:
+    """The lead as if it had been chosen."""
+    one = Asked(drive_model(["lead_error"], {}))
+    columns = HALVED.columns(gauge(HALVED.load, HALVED.travel) + error)
+    records = one.records(folder, {name: column[rows] for name, column in columns.items()})
+    made = plain_competition(one, records, UM)
+    return chosen_as(made, fit_of(made, "lead_error"))
+
+
+@pytest.mark.parametrize(
+    ("by", "is_apart"), [(0.0, False), (0.7 * CONTRADICTING, False), (1.4 * CONTRADICTING, True), (30.0, True)]
+)
+def test_halves_contradict_where_a_size_differs_by_more_than_four_standard_errors(
+    tmp_path: Path, by: float, is_apart: bool
+) -> None:
+    error = changing(by)
+    found = contradictions_of(lead_taken(tmp_path, error))
+    assert bool(found) is is_apart
+    for each in found:
+        assert (each.effect, each.unknown, each.first.unit) == ("lead_error", "lead", "um/mm")
+        by_hand = [lead_of(error, rows)[0] * 1e-3 for rows in (~IS_LATE, IS_LATE)]
+        assert_allclose([each.first.value, each.second.value], by_hand, rtol=1e-3)
+
+
+def test_halves_of_few_rows_say_nothing(tmp_path: Path) -> None:
+    """Ten rows for the one number in either half."""
+    error, middle = changing(60.0), ROWS // 2
+    for rows, is_told in ((2 * FEWEST_PER_NUMBER - 2, False), (2 * FEWEST_PER_NUMBER, True)):
+        around = slice(middle - rows // 2, middle + rows // 2)
+        assert bool(contradictions_of(lead_taken(tmp_path, error, around))) is is_told
+
+
+def test_rows_without_an_order_are_parted_at_random(tmp_path: Path) -> None:
+    """What changes from the first rows of a file to the last means nothing where rows have no order."""
+    chosen = lead_taken(tmp_path, changing(30.0))
+    machine = chosen.best.sample.machine
+    timeless = {name: item for name, item in machine.records.covariates.items() if item.role != "time"}
+    unordered = replace(machine, records=replace(machine.records, covariates=timeless))
+    best = replace(chosen.best, sample=replace(chosen.best.sample, machine=unordered))
+    assert contradictions_of(chosen)
+    assert contradictions_of(replace(chosen, best=best)) == ()
+
+
+def test_consistent_halves_leave_a_cause_its_name(tmp_path: Path) -> None:
+    one = Asked(drive_model(["lead_error", "clearance"], {}))
+    error = LEAD * HALVED.travel + HALVED_NOISE
+    found = one.diagnosed(tmp_path, HALVED.columns(gauge(HALVED.load, HALVED.travel) + error))
+    assert (name_sets(found), found.contradictions, found.verdict) == ([{"lead_error"}], (), "named")
+    (wrong,) = found.wrong  # of its mean square all but the noise can go
+    assert_allclose(wrong.reducible_share, 1 - (HALVED_NOISE @ HALVED_NOISE) / (error @ error), rtol=0, atol=0.002)
+
+
+def test_contradicting_halves_take_a_cause_its_name(tmp_path: Path) -> None:
+    one = Asked(drive_model(["lead_error", "clearance"], {}))
+    found = one.diagnosed(tmp_path, HALVED.columns(gauge(HALVED.load, HALVED.travel) + changing(5.0)))
+    assert name_sets(found) == [{"lead_error"}]
+    (said,) = found.contradictions
+    assert said.effect == "lead_error"
+    assert any("in one half of the rows" in warning for warning in found.warnings)
+    assert found.verdict != "named"
+    alone = replace(found, alternatives=())
+    assert alone.verdict == "undecided"
+    assert replace(alone, contradictions=()).verdict == "named"

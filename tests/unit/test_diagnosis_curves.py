@@ -22,34 +22,25 @@ from diagnosis_models import (
     drive_model,
     fit_of,
     gauge,
+    offer_of,
     plain_competition,
     wide,
+    write_csv,
 )
 from numpy.testing import assert_allclose
 
 from truing import Effect, Float, Unknown
-from truing.diagnosis.causes import Parameter
+from truing.diagnosis.causes import Candidate, Parameter, effects_of, inputs_of
 from truing.diagnosis.competition import Competition
-from truing.diagnosis.conditional import KEPT, ConditionalGain, compared, conditional_on, independent
-from truing.diagnosis.curves import Bundle
-from truing.diagnosis.points import FINEST, LEVELS, NEXT_TO, SPREAD, WAVES_PER_POINT, first_places, placed, spread
+from truing.diagnosis.conditional import Conditional, ConditionalGain, compared, conditional_on, independent
+from truing.diagnosis.curves import FINEST, LEVELS, NEXT_TO, WAVES_PER_POINT, Bundle, first_places, placed
+from truing.diagnosis.extended import Extended
+from truing.diagnosis.machine import Calibration, calibration_of
+from truing.diagnosis.reading import read_records
+from truing.diagnosis.records import Records
 from truing.diagnosis.sample import Sample
-from truing.diagnosis.sweeps import Conditional
-
-
-def rubbing(screw: Drive, base: Deflection, *, drag: Float) -> Deflection:
-    """Act otherwise upward than downward."""
-    return replace(base, deflection=base.deflection + np.maximum(drag, 0) * screw.travel + np.minimum(drag, 0) * 1e-3)
-
-
-def bowed(screw: Drive, base: Deflection, *, bow: Float) -> Deflection:
-    """Bend with the amplitude, but smoothly."""
-    return replace(base, deflection=base.deflection + bow * screw.travel + 30 * bow**2 * screw.travel)
-
-
-def fading(screw: Drive, base: Deflection, *, start: Float, width: Float) -> Deflection:
-    """Be largest at the beginning of the travel."""
-    return replace(base, deflection=base.deflection + start * np.exp(-screw.travel / width))
+from truing.diagnosis.unregistered import highest_order, shapes_of
+from truing.setup import DiagnoseOptions
 
 
 def bump(screw: Drive, base: Deflection, *, height: Float, centre: Float) -> Deflection:
@@ -57,15 +48,16 @@ def bump(screw: Drive, base: Deflection, *, height: Float, centre: Float) -> Def
     return replace(base, deflection=base.deflection + height * np.exp(-(((screw.travel - centre) / 5e-3) ** 2) / 2))
 
 
-START = Unknown("start", -9, 9, "um")
-MORE: Mapping[str, Effect[Drive, Deflection]] = {
-    "rubbing": Effect("rubbing", on_results=rubbing, unknowns=[Unknown("drag", -2, 4, "um/mm")]),
-    "bowed": Effect("bowed", on_results=bowed, unknowns=[Unknown("bow", -1, 1, "um/mm")]),
-    "skewed": SKEWED,
-    "fading": Effect("fading", on_results=fading, unknowns=[START, Unknown("width", 1, 300, "mm")]),
+def rubbing(screw: Drive, base: Deflection, *, drag: Float) -> Deflection:
+    """Act otherwise upward than downward."""
+    return replace(base, deflection=base.deflection + np.maximum(drag, 0) * screw.travel + np.minimum(drag, 0) * 1e-3)
+
+
+OWN = {
     "bump": Effect(
         "bump", on_results=bump, unknowns=[Unknown("height", -9, 9, "um"), Unknown("centre", 40, 300, "mm")]
     ),
+    "rubbing": Effect("rubbing", on_results=rubbing, unknowns=[Unknown("drag", -2, 4, "um/mm")]),
 }
 TOLERANCES = {"contact": "3 %", "shaft": "3 %"}
 
@@ -78,9 +70,9 @@ def made_of(
     error: Array | float = 0.0,
     tolerances: Mapping[str, str] | None = None,
 ) -> Competition:
-    """Lay out effects of the drive and of this file on a record with 1 um of noise, nothing searched."""
-    model = drive_model([name for name in effects if name not in MORE], tolerances or {})
-    errors = [*model.errors, *(MORE[name] for name in effects if name in MORE)]
+    """Lay out effects of the drive and the bump on a record with 1 um of noise, nothing searched."""
+    model = drive_model([name for name in effects if name not in OWN], tolerances or {})
+    errors = [*model.errors, *(OWN[name] for name in effects if name in OWN)]
     noise = np.random.default_rng(3).normal(0, 1, len(bench))
     asked = Asked(replace(model, errors=errors))
     records = asked.records(folder, bench.columns(gauge(bench.load, bench.travel) + error + noise))
@@ -108,37 +100,6 @@ def test_an_effect_with_a_kink_is_asked_for_on_both_sides_at_many_sizes(tmp_path
     assert_allclose(found.curves[:, 0], exact, rtol=1e-9, atol=1e-15)
 
 
-def test_an_effect_that_bends_is_asked_for_at_many_sizes(tmp_path: Path) -> None:
-    bench = wide(60)
-    found = alone(made_of(tmp_path, ["bowed"], bench=bench), "bowed")
-    assert not found.is_straight
-    bow = found.points
-    assert_allclose(found.curves[:, 0], (bow + 30 * bow**2) * bench.travel * 1e-3, rtol=1e-9, atol=1e-15)
-
-
-def test_an_effect_on_the_inputs_is_what_the_model_says_with_it(tmp_path: Path) -> None:
-    bench = wide(60)
-    found = alone(made_of(tmp_path, ["stiffness_loss"], bench=bench), "stiffness_loss")
-    assert not found.is_straight
-    exact = [gauge(bench.load * (1 + loss), bench.travel) for loss in found.points[:, 0]]
-    assert_allclose(found.curves[:, 0] / UM, np.array(exact) - gauge(bench.load, bench.travel), rtol=1e-9, atol=1e-9)
-
-
-def test_an_effect_in_proportion_is_one_curve_per_unit_of_its_amplitude(tmp_path: Path) -> None:
-    bench = wide(60)
-    found = alone(made_of(tmp_path, ["lead_error"], bench=bench), "lead_error")
-    assert found.is_straight
-    assert found.curves.shape == (1, 1, 60)
-    assert_allclose(found.curves[0, 0], bench.travel * 1e-3, rtol=1e-9)
-
-
-def test_an_input_is_its_slope_per_standard_deviation(tmp_path: Path) -> None:
-    bench = wide(60)
-    made = made_of(tmp_path, bench=bench, tolerances=TOLERANCES)
-    found = alone(made, "input:contact")
-    assert_allclose(found.curves[0, 0] / UM, 0.09 * np.sign(bench.load) * np.cbrt(bench.load) ** 2, rtol=1e-6)
-
-
 def test_a_curve_beside_an_effect_on_the_inputs_is_drawn_anew(tmp_path: Path) -> None:
     """A gain scales what the gauge shows: with a loss of stiffness that is the deflection under a larger load."""
     bench = wide(60)
@@ -160,17 +121,6 @@ def test_a_curve_beside_an_effect_on_the_inputs_is_drawn_anew(tmp_path: Path) ->
 
 def cosines(curves: Sequence[Array]) -> Array:
     return np.array([a @ b / np.sqrt((a @ a) * (b @ b)) for a, b in pairwise(curves)])
-
-
-def test_the_sweep_of_a_time_constant_leaves_no_gap_and_is_the_models(tmp_path: Path) -> None:
-    bench = wide(200)
-    found = alone(made_of(tmp_path, ["warm_up"], bench=bench), "warm_up")
-    constants = found.points[:, 1] / 3600
-    assert found.is_straight
-    assert_allclose(constants, np.geomspace(0.1, 20, 9))  # neighbours are alike already
-    exact = [1 - np.exp(-bench.time / constant) for constant in constants]
-    assert_allclose(found.curves[:, 0], exact, rtol=1e-9, atol=1e-12)
-    assert cosines(exact).min() > NEXT_TO
 
 
 def test_a_sweep_is_refined_where_neighbours_differ_too_much(tmp_path: Path) -> None:
@@ -200,20 +150,6 @@ def test_a_frequency_is_swept_in_quarters_of_a_wave_over_the_record() -> None:
     assert min(alike) > 0.89  # sin(pi / 4) / (pi / 4) is 0.90
 
 
-def test_points_over_several_numbers_lie_within_their_bounds_and_reach_all_sizes(tmp_path: Path) -> None:
-    made = made_of(tmp_path, ["skewed", "fading"], bench=wide(40))
-    for name in ("skewed", "fading"):
-        cause = cause_of(made, name)
-        points = spread(cause, 4 * SPREAD)
-        for values, number in zip(points.T, cause.numbers, strict=True):
-            assert number.low <= values.min() <= values.max() <= number.high
-            if number.is_amplitude:
-                sizes = np.abs(values) / number.high
-                assert sizes.min() < 2e-3
-                assert sizes.max() > 0.5
-                assert (np.sign([values.min(), values.max()]) == [-1, 1]).all()
-
-
 # What of it an explanation leaves
 
 
@@ -221,28 +157,6 @@ def prior_rows(sample: Sample, weight: Array) -> Array:
     """Directions of the inputs in units of what is left, and rows for their prior, from the slopes alone."""
     slopes = sample.machine.slopes["deflection"] @ sample.directions / UM
     return np.concatenate([slopes * weight, np.eye(slopes.shape[1])])
-
-
-def test_what_is_left_is_least_squares_with_rows_for_the_prior_of_the_inputs(tmp_path: Path) -> None:
-    """Null: r = measured minus nominal; u minimises |w (r - S u)|^2 + |u|^2 with w one over the rms of what is left."""
-    bench = wide(80)
-    error = gauge(bench.load, bench.travel, 3.2) - gauge(bench.load, bench.travel)
-    made = made_of(tmp_path, bench=bench, error=error, tolerances=TOLERANCES)
-    beside = conditional_on(made.null, made.extended)
-    r = (made.sample.channels[0].values / UM) - gauge(bench.load, bench.travel)
-    weight, rows = 1.0, np.zeros((0, 0))
-    for _ in range(40):
-        rows = prior_rows(made.sample, np.array(weight))
-        target = np.concatenate([weight * r, np.zeros(2)])
-        u = np.linalg.lstsq(rows, target)[0]
-        left = target - rows @ u
-        weight = weight / np.sqrt(np.mean(left[:80] ** 2))
-    assert_allclose(beside.left, left, atol=2e-3)
-    assert beside.sample.rows == 80
-    curve = np.random.default_rng(5).normal(size=(1, 1, 80)) * UM
-    weighed = beside.beyond(beside.drawn(curve))[0, 0]
-    padded = np.concatenate([weight * curve[0, 0] / UM, np.zeros(2)])
-    assert_allclose(weighed, padded - rows @ np.linalg.lstsq(rows, padded)[0], atol=1e-3)
 
 
 @pytest.mark.parametrize("name", ["lead_error", "warm_up"])
@@ -268,47 +182,6 @@ def test_a_promise_is_what_least_squares_with_the_inputs_free_give(tmp_path: Pat
     assert_allclose(values[0], solved[0], rtol=1e-4)
 
 
-def test_the_best_starts_come_first_and_draw_differently(tmp_path: Path) -> None:
-    bench = replace(wide(600), travel=np.linspace(0, 300, 600))
-    error = sum(size * np.exp(-(((bench.travel - at) / 5) ** 2) / 2) for at, size in ((60, 6), (150, 9), (230, 4)))
-    made = made_of(tmp_path, ["bump"], bench=bench, error=np.asarray(error))
-    found = looked(alone(made, "bump"), conditional_on(made.null, made.extended))
-    assert found is not None
-    centres = np.array([values[1] * 1e3 for _, values in found.starts])
-    assert len(centres) == KEPT
-    assert_allclose(centres[0], 150, atol=1)
-    apart = np.abs(centres[:, None] - centres)[np.triu_indices(KEPT, 1)]
-    assert (np.exp(-(apart**2) / (2 * 25)) < 0.98).all()  # squares of the cosines of bumps of 5 mm
-    promised = [gain for gain, _ in found.starts]
-    assert promised == sorted(promised, reverse=True)
-
-
-def test_bounds_cut_what_is_promised(tmp_path: Path) -> None:
-    """The gap is a clearance of one sign: a jump to the other side promises nothing."""
-    bench = wide(90)
-    gaps = []
-    for size in (-5, 5):
-        made = made_of(tmp_path, ["clearance"], bench=bench, error=size * np.sign(bench.load))
-        found = looked(alone(made, "clearance"), conditional_on(made.null, made.extended))
-        assert found is not None
-        gaps.append([float(values[0]) / UM for _, values in found.starts])
-    assert gaps[0] == []
-    assert_allclose(gaps[1], [5], rtol=0.1)
-
-
-def test_a_coefficient_that_nothing_excites_draws_nothing(tmp_path: Path) -> None:
-    bench = wide(60)
-    made = made_of(tmp_path, ["skewed"], bench=bench, error=0.1 * bench.travel)
-    found = looked(alone(made, "skewed"), conditional_on(made.null, made.extended))
-    assert found is not None
-    assert_allclose(np.linalg.norm(found.span.vectors(0), axis=-1), [1, 0], atol=1e-12)
-    along, across = found.starts[0][1]
-    assert_allclose(along, 1e-4, rtol=0.02)
-    assert across == 0
-    still = made_of(tmp_path, ["lead_error"], bench=replace(bench, travel=np.zeros(60)))
-    assert looked(alone(still, "lead_error"), conditional_on(still.null, still.extended)) is None
-
-
 def test_the_way_along_a_sweep_counts_its_curves() -> None:
     """A curve that turns by an angle a in fine steps makes 1 + a / 2 independent ones; one that stays makes one."""
     angles = np.linspace(0, 3, 2001)
@@ -325,3 +198,271 @@ def test_curves_over_several_numbers_count_by_the_spectrum_of_their_inner_produc
     assert_allclose(independent(basis, is_sweep=False), values.sum() ** 2 / (values**2).sum(), rtol=1e-9)
     assert_allclose(independent(np.eye(7)[:, None], is_sweep=False), 7)
     assert independent(basis[:1], is_sweep=False) == 1
+
+
+# Shapes that nobody registered: which there are, what they calculate, and what is said in their place.
+
+
+def machine(folder: Path, bench: Bench, effects: Sequence[str] = ()) -> Calibration:
+    one = Asked(drive_model(effects, {}))
+    return calibration_of(one.setup, one.records(folder, bench.columns(gauge(bench.load, bench.travel))))
+
+
+def of_kind(found: Sequence[Candidate], kind: str, *on: str) -> list[Candidate]:
+    """The shapes of one kind, over these covariates if any are named."""
+    return [
+        each for each in found if each.shape and each.shape.kind == kind and (not on or each.shape.depends_on == on)
+    ]
+
+
+@pytest.mark.parametrize(
+    ("degrees", "highest"),
+    [
+        (np.arange(0.0, 360, 30), 5),
+        (np.arange(0.0, 360, 36), 4),
+        (np.arange(0.0, 720, 8), 22),
+        (np.arange(-60.0, 61, 5), 35),
+        (np.array([0.0, 180]), 0),
+    ],
+)
+def test_orders_are_named_up_to_half_the_places_per_turn(degrees: Array, highest: int) -> None:
+    """An order k looks like n - k where a turn has n places: sampled at 30 degrees, 7 looks like 5."""
+    angle = np.radians(degrees)
+    assert highest_order(angle) == highest
+    if 0 < highest < 10:
+        places = round(2 * np.pi / np.diff(angle)[0])
+        assert_allclose(np.cos((places - highest) * angle), np.cos(highest * angle), atol=1e-9)
+
+
+def test_orders_above_the_sampling_are_not_looked_for(tmp_path: Path) -> None:
+    bench = replace(wide(96), rotation=np.tile(np.arange(0.0, 360, 30), 8))
+    ends = []
+    for each in (bench, wide(96)):
+        there = machine(tmp_path, each)
+        (order,) = of_kind(shapes_of(there.records, {"rotation": (1, 2, 3)}, has_steps=True), "order")
+        assert order.numbers[-1].whole
+        ends.append((order.numbers[-1].low, order.numbers[-1].high))
+    assert ends == [(4, 5), (4, 16)]
+
+
+def test_every_shape_over_what_moved_and_nothing_over_what_stood_still(tmp_path: Path) -> None:
+    bench = replace(wide(80), temperature=np.full(80, 23.0))
+    found = shapes_of(machine(tmp_path, bench).records, {}, has_steps=False)
+    kinds = {(each.shape.kind, each.shape.depends_on) for each in found if each.shape}
+    moved = {("load",), ("travel",), ("rotation",), ("time",)}
+    assert {depends for kind, depends in kinds if kind == "trend"} == moved
+    assert {depends for kind, depends in kinds if kind == "wave"} == moved - {("rotation",)}
+    assert len([1 for kind, _ in kinds if kind == "product"]) == 6
+    assert {("order", ("rotation",)), ("step", ("time",)), ("settling", ("time",))} <= kinds
+    assert {depends for kind, depends in kinds if kind in {"jump", "kink", "dead zone"}} == {("load",)}
+    assert not any("temperature" in depends for _, depends in kinds)
+    assert len({each.tag for each in found}) == len(found)
+    assert not of_kind(shapes_of(machine(tmp_path, bench).records, {}, has_steps=True), "step")
+
+
+def test_printed_terms_are_what_is_calculated(tmp_path: Path) -> None:
+    there = machine(tmp_path, wide(80))
+    covariates = there.records.covariates
+    values = {name: item.values for name, item in covariates.items()}
+    for each in shapes_of(there.records, {}, has_steps=False):
+        assert each.shape is not None
+        for share in (0.1, 0.7):
+            numbers = [each.numbers[place] for place in each.shapes]
+            at = [round(one.low + share * (one.high - one.low)) if one.whole else one.low + share * (one.high - one.low)
+                  for one in numbers]  # fmt: skip
+            terms = each.shape.terms(at, covariates)
+            assert len(terms) * len(each.shape.results) == len(each.amplitudes)
+            for term in terms:
+                assert_allclose(eval(term.expression, {"np": np, **values}) * np.ones(80), term.values, atol=1e-12)
+
+
+LOAD, TIME, ROTATION = wide(80).load, wide(80).time, np.radians(wide(80).rotation)
+
+
+@pytest.mark.parametrize(
+    ("kind", "on", "shape", "columns"),
+    [
+        ("wave", "time", [3e-4], [np.sin(2 * np.pi * 1.08 * TIME), np.cos(2 * np.pi * 1.08 * TIME)]),
+        ("order", "rotation", [4.0], [np.sin(4 * ROTATION), np.cos(4 * ROTATION)]),
+        ("step", "time", [18_000.0], [TIME >= 5]),
+        ("settling", "time", [7200.0], [np.ones(80), np.exp(-TIME / 2)]),
+        ("jump", "load", [], [np.sign(LOAD)]),
+        ("kink", "load", [], [np.abs(LOAD)]),
+        ("dead zone", "load", [4e3], [np.sign(LOAD) * np.maximum(np.abs(LOAD) - 4, 0)]),
+        ("trend", "load", [], [np.ones(80), LOAD, LOAD**2]),
+        ("product", "load travel", [], [np.ones(80), LOAD, wide(80).travel, LOAD * wide(80).travel]),
+    ],
+    ids=lambda value: value if isinstance(value, str) else "",
+)
+def test_a_shape_draws_what_its_kind_says(
+    tmp_path: Path, kind: str, on: str, shape: list[float], columns: list[Array]
+) -> None:
+    """The columns by hand, in kN, h and mm, span what the terms of the smallest shape of the kind do."""
+    there = machine(tmp_path, wide(80))
+    smallest = min(
+        of_kind(shapes_of(there.records, {}, has_steps=False), kind, *on.split()), key=lambda each: each.size
+    )
+    assert smallest.shape is not None
+    terms = np.column_stack([term.values for term in smallest.shape.terms(shape, there.records.covariates)])
+    by_hand = np.column_stack(columns).astype(float)
+    assert terms.shape == by_hand.shape
+    missed = by_hand - terms @ np.linalg.lstsq(terms, by_hand)[0]
+    assert np.abs(missed).max() < 1e-9 * np.abs(by_hand).max()
+
+
+# What competes in a diagnosis: effects and inputs with their numbers, and names for one curve.
+
+
+def lead_again(screw: Drive, base: Deflection, *, pitch: Float) -> Deflection:
+    """Follow the travel under another name."""
+    return replace(base, deflection=base.deflection + pitch * screw.travel)
+
+
+def eccentricity(screw: Drive, base: Deflection, *, sine: Float, cosine: Float) -> Deflection:
+    """Go round with the screw, once per turn."""
+    wave = sine * np.sin(screw.rotation) + cosine * np.cos(screw.rotation)
+    return replace(base, deflection=base.deflection + wave)
+
+
+MORE: Mapping[str, Effect[Drive, Deflection]] = {
+    "skewed": SKEWED,
+    "lead_again": Effect("lead_again", on_results=lead_again, unknowns=[Unknown("pitch", -1, 1, "um/mm")]),
+    "eccentricity": Effect(
+        "eccentricity",
+        on_results=eccentricity,
+        unknowns=[Unknown("sine", -50, 50, "um"), Unknown("cosine", -50, 50, "um")],
+    ),
+}
+
+
+def asked(effects: Sequence[str] = (), more: Sequence[str] = (), tolerances: Mapping[str, str] | None = None) -> Asked:
+    model = drive_model(effects, tolerances or {})
+    return Asked(replace(model, errors=[*model.errors, *(MORE[name] for name in more)]))
+
+
+def calibration(one: Asked, folder: Path, bench: Bench) -> Calibration:
+    return calibration_of(one.setup, one.records(folder, bench.columns(gauge(bench.load, bench.travel))))
+
+
+def effect_of(there: Calibration, name: str) -> Candidate:
+    (found,) = (cause for cause in effects_of(there) if cause.name == name)
+    return found
+
+
+def two_files(folder: Path, one: Asked) -> tuple[Records, Array]:
+    benches = [wide(40, seed=1), wide(30, seed=2)]
+    paths = [
+        write_csv(folder / f"day {number}.csv", bench.columns(gauge(bench.load, bench.travel)))
+        for number, bench in enumerate(benches)
+    ]
+    return read_records(paths, offer_of(one.model), one.setup), np.concatenate([bench.travel for bench in benches])
+
+
+# Numbers
+
+
+def test_a_cause_has_the_numbers_of_its_effect_in_si(tmp_path: Path) -> None:
+    rise, constant = effect_of(calibration(asked(["warm_up"]), tmp_path, wide(60)), "warm_up").numbers
+    assert_allclose([rise.low, rise.high, constant.low, constant.high], [-1e-3, 1e-3, 360, 72_000])
+    assert (rise.is_amplitude, rise.is_free, rise.is_log) == (True, True, False)
+    assert (constant.is_amplitude, constant.is_free, constant.is_log) == (False, True, True)
+
+
+@pytest.mark.parametrize("per_file", [("lead_error",), ("lead_error.lead",)])
+def test_an_unknown_of_every_file_is_a_number_for_each(tmp_path: Path, per_file: tuple[str, ...]) -> None:
+    one = asked(["lead_error"])
+    records, travel = two_files(tmp_path, one)
+    setup = replace(one.setup, diagnose=DiagnoseOptions(per_file=per_file))
+    there = calibration_of(setup, records)
+    split = effect_of(there, "lead_error")
+    assert [(number.name, number.file) for number in split.numbers] == [("lead", 0), ("lead", 1)]
+    alone, both = Extended(there).at([split], [([np.array(at)], np.zeros(0)) for at in ([2e-3, 0], [2e-3, 3e-3])])
+    off = [made["deflection"] - there.base["deflection"] for made in (alone, both)]
+    assert_allclose(off[0], np.where(records.file_of == 0, 2e-3 * travel * 1e-3, 0), rtol=1e-9, atol=1e-18)
+    assert_allclose(off[1], np.where(records.file_of == 0, 2e-3, 3e-3) * travel * 1e-3, rtol=1e-9)
+    shared = effect_of(calibration_of(one.setup, records), "lead_error")
+    assert [number.file for number in shared.numbers] == [-1]
+
+
+def test_an_input_of_every_file_is_a_machine_for_each(tmp_path: Path) -> None:
+    one = asked(tolerances={"contact": "3 %", "shaft": "3 %"})
+    records, _ = two_files(tmp_path, one)
+    setup = replace(one.setup, diagnose=DiagnoseOptions(per_file=("contact",)))
+    there = calibration_of(setup, records)
+    assert [(item.name, item.file) for item in there.inputs] == [("contact", 0), ("contact", 1), ("shaft", -1)]
+    slopes = there.slopes["deflection"]
+    assert not slopes[records.file_of == 1, 0].any()
+    assert not slopes[records.file_of == 0, 1].any()
+    causes = inputs_of(there)
+    assert [(cause.name, cause.tolerated) for cause in causes] == [
+        ("input:contact", 0), ("input:contact", 1), ("input:shaft", 2),
+    ]  # fmt: skip
+    assert len({cause.tag for cause in causes}) == 3
+    (made,) = Extended(there).at([causes[1]], [([np.array([2.0])], np.zeros(3))])
+    assert_allclose(made["deflection"] - there.base["deflection"], 2 * slopes[:, 1], rtol=1e-6, atol=1e-15)
+
+
+def test_the_prior_of_an_input_lies_at_its_nominal_with_its_deviation(tmp_path: Path) -> None:
+    bench = wide(50)
+    there = calibration(asked(tolerances={"contact": "3 %", "zero": "5 um"}), tmp_path, bench)
+    assert [(item.name, item.mean) for item in there.inputs] == [("contact", 0.0), ("zero", 0.0)]
+    assert_allclose([item.sd for item in there.inputs], [0.09 * UM, 5 * UM])
+    contact = np.sign(bench.load) * np.abs(bench.load) ** (2 / 3)
+    assert_allclose(there.slopes["deflection"] / UM, np.column_stack([0.09 * contact, np.full(50, 5.0)]), rtol=1e-6)
+    assert_allclose(there.shifts["deflection"], 0)
+
+
+def test_an_input_that_moves_nothing_is_no_cause(tmp_path: Path) -> None:
+    there = calibration(
+        asked(tolerances={"contact": "3 %", "zero": "5 um"}), tmp_path, replace(wide(30), load=np.zeros(30))
+    )
+    assert [cause.name for cause in inputs_of(there)] == ["input:zero"]
+
+
+# Which
+
+
+def test_causes_are_the_models_first_then_the_kernels_and_their_tags_differ(tmp_path: Path) -> None:
+    found = effects_of(calibration(asked(["wear", "lead_error"]), tmp_path, wide(60)))
+    assert [cause.name for cause in found][:2] == ["wear", "lead_error"]
+    assert [cause.is_kernel for cause in found] == [False, False, *[True] * (len(found) - 2)]
+    assert len({cause.tag for cause in found}) == len(found)
+    assert [cause.order for cause in found] == sorted(cause.order for cause in found)
+
+
+# Names of one curve
+
+
+def named(one: Asked, folder: Path, bench: Bench, error: Array) -> list[set[str]]:
+    """The causes that are named, each with what draws the same, of a record with 1 um of noise."""
+    noise = np.random.default_rng(3).normal(0, 1, len(bench))
+    found = one.diagnosed(folder, bench.columns(gauge(bench.load, bench.travel) + error + noise))
+    return [{f"first: {cause.effect}", *cause.same_as} for cause in found.causes]
+
+
+def test_of_two_of_the_model_the_first_declared_and_the_one_with_fewer_unknowns_goes_first(tmp_path: Path) -> None:
+    bench = wide(120)
+    error = 0.1 * bench.travel
+    several = asked(["lead_error"], more=["skewed", "lead_again"])
+    assert named(several, tmp_path, bench, error) == [{"first: lead_error", "lead_again", "skewed"}]
+    fewer = asked(more=["skewed", "lead_again"])  # declared later, but with one unknown instead of two
+    assert named(fewer, tmp_path, bench, error) == [{"first: lead_again", "skewed"}]
+
+
+def test_curves_that_differ_only_by_what_is_tolerated_are_one(tmp_path: Path) -> None:
+    bench = wide(120)
+    warmer = replace(bench, temperature=27 + 2.5 * bench.time)  # growth is a drift and an offset
+    error = 4 * (warmer.temperature - 20)
+    apart = named(asked(["thermal_growth"]), tmp_path, warmer, error)
+    assert apart == [{"first: thermal_drift", "thermal_growth"}]
+    alike = named(asked(["thermal_growth"], tolerances={"zero": "1 m"}), tmp_path, warmer, error)
+    assert alike == [{"first: sensor_drift", "thermal_growth", "thermal_drift"}]
+
+
+def test_the_first_order_of_a_gauge_goes_by_the_name_of_the_models_own(tmp_path: Path) -> None:
+    """Two numbers and no order claim less than an order that could have been another; orders 2 and 3 stay apart."""
+    bench, one = wide(150), asked(["lead_error"], more=["eccentricity"])
+    first = 8 * np.sin(np.radians(bench.rotation) + 0.7)
+    assert named(one, tmp_path, bench, first) == [{"first: eccentricity", "periodic_order_of_rotation"}]
+    second = 8 * np.sin(2 * np.radians(bench.rotation) + 0.7)
+    assert named(one, tmp_path, bench, second) == [{"first: periodic_order_of_rotation"}]

@@ -1,6 +1,6 @@
 """Where nothing is wrong nothing is found: false alarms over four kinds of noise, and with gross errors in the rows.
 
-A dozen fixed records, held against what their number allows: a search that names what is not there names it in most.
+A few fixed records, held against what their number allows: a search that names what is not there names it in most.
 The rates are measured on hundreds of records by ``tests/benchmarks/bench_diagnosis_false_alarms.py``.
 """
 
@@ -16,7 +16,7 @@ from scipy.stats import binom, kstest
 from truing.diagnosis.engine import diagnose
 from truing.diagnosis.result import explanations_of
 
-SEEDS = range(3)
+SEEDS = range(2)
 PERMITTED, NAMED_WITH_GROSS_ERRORS = 0.05, 0.10
 CHANCE = 0.01
 GROSS_SEEDS = range(4)
@@ -64,7 +64,7 @@ def test_gross_errors_on_one_side_are_listed_with_their_rows_and_rarely_taken_fo
     assert others <= 1
 
 
-@pytest.mark.parametrize("rows", [3, 7, 8, 14])
+@pytest.mark.parametrize("rows", [7, 14])
 def test_a_few_rows_name_nothing(tmp_path: Path, rows: int) -> None:
     """A polynomial with as many free numbers as there are rows follows them all; that is no finding."""
     alarms = 0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from math import log1p
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,8 @@ from diagnosis_models import (
     UM,
     Array,
     Asked,
+    Deflection,
+    Drive,
     Nothing,
     Reading,
     along_first,
@@ -27,20 +30,30 @@ from diagnosis_models import (
 )
 from numpy.testing import assert_allclose
 from scipy.linalg import toeplitz
-from scipy.optimize import brentq, least_squares, minimize
+from scipy.optimize import brentq, least_squares, minimize, minimize_scalar
 from scipy.stats import binom, f, t
+from scipy.stats import t as student
 
-from truing import Condition, Effect, Model, Tolerance, Unknown, normal
+from truing import Condition, Effect, Float, Model, Tolerance, Unknown, normal
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.engine import diagnose
 from truing.diagnosis.exact import EXACTLY, alone, fitting
+from truing.diagnosis.findings import input_values
 from truing.diagnosis.fitted import Fit
-from truing.diagnosis.intervals import Certainty, certainty_of, interval, may_be_zero, numbers_of, shape_interval
-from truing.diagnosis.machine import predict
-from truing.diagnosis.naming import input_values
+from truing.diagnosis.intervals import (
+    Certainty,
+    amplitude_interval,
+    certainty_of,
+    interval,
+    may_be_zero,
+    numbers_of,
+    place_interval,
+    shape_interval,
+    value_of,
+    whole_left,
+)
 from truing.diagnosis.noise import Autocorrelation, Tails
 from truing.diagnosis.sample import sample_of
-from truing.gauge import one_machine
 
 TWIST = dict.fromkeys(("first", "second", "reading"), "-")
 
@@ -176,14 +189,6 @@ def test_an_earlier_calibration_is_no_nominal_of_the_extended_model(tmp_path: Pa
     assert_allclose(done.extended.calibrated["contact"] / UM, 3.15, atol=0.06)
 
 
-def test_a_fit_of_an_effect_that_is_not_linear_is_exact(tmp_path: Path) -> None:
-    bench = wide(80, seed=21)
-    error = gauge(1.3 * bench.load, bench.travel) - gauge(bench.load, bench.travel)
-    _, best = drive_fit(tmp_path, error, ["stiffness_loss"], tolerances={})
-    assert_allclose(size_of(best, "loss"), 0.3, rtol=1e-6)
-    assert np.abs(best.left).max() < 1e-5
-
-
 def test_a_size_stays_inside_its_bounds(tmp_path: Path) -> None:
     """700 um lie above the 500 um that were declared; the sizes beside it are those of least squares with it held."""
     bench = wide(60, seed=21)
@@ -201,6 +206,15 @@ def test_a_size_stays_inside_its_bounds(tmp_path: Path) -> None:
     assert_allclose(size_of(best, "lead"), beside * UM / 1e-3, rtol=1e-5)
 
 
+def in_noise(made: Competition, found: Fit, **more: object) -> tuple[Fit, Certainty]:
+    """A fit and its certainty as if the noise had been another one."""
+    noise = {name: replace(own, **more) for name, own in made.sample.noise.items()}  # type: ignore[arg-type]
+    sample = sample_of(made.sample.machine, noise, made.sample.mask, made.sample.directions)
+    again = alone(made.extended, fitting(sample, made.extended, found.causes, found.values, found))
+    assert again is not None
+    return again, certainty_of(again, made.extended)
+
+
 def test_a_number_that_is_held_keeps_its_start(tmp_path: Path) -> None:
     bench = wide(60, seed=21)
     error = 3 * (1 - np.exp(-bench.time / 2)) + np.random.default_rng(30).normal(0, 0.1, 60)
@@ -212,15 +226,6 @@ def test_a_number_that_is_held_keeps_its_start(tmp_path: Path) -> None:
     column = 1 - np.exp(-bench.time / 5)
     assert size_of(best, "time_constant") == pytest.approx(5 * 3600, rel=1e-12)
     assert_allclose(size_of(best, "rise"), column @ error / (column @ column) * UM, rtol=1e-5)
-
-
-def in_noise(made: Competition, found: Fit, **more: object) -> tuple[Fit, Certainty]:
-    """A fit and its certainty as if the noise had been another one."""
-    noise = {name: replace(own, **more) for name, own in made.sample.noise.items()}  # type: ignore[arg-type]
-    sample = sample_of(made.sample.machine, noise, made.sample.mask, made.sample.directions)
-    again = alone(made.extended, fitting(sample, made.extended, found.causes, found.values, found))
-    assert again is not None
-    return again, certainty_of(again, made.extended)
 
 
 def test_the_interval_in_heavy_tails_is_that_of_the_likelihood(tmp_path: Path) -> None:
@@ -296,17 +301,94 @@ def test_intervals_cover_what_is_true_in_heavy_tails(tmp_path: Path) -> None:
     assert covered >= binom.ppf(0.01, records_made, 0.90)
 
 
-def test_the_extended_model_says_what_was_fitted(tmp_path: Path) -> None:
-    bench = wide(120, seed=28)
-    contact = np.sign(bench.load) * np.abs(bench.load) ** (2 / 3)
-    error = 0.08 * contact + 0.5 * bench.time * np.sign(bench.load) + 0.2 * (bench.temperature - 20)
-    columns = bench.columns(gauge(bench.load, bench.travel) + error + np.random.default_rng(28).normal(0, 1, 120))
-    asked = Asked(drive_model())
-    records = asked.records(tmp_path, columns)
-    found = diagnose(asked.setup, records)
-    assert {cause.effect for cause in found.causes} == {"wear", "thermal_drift"}
-    assert found.extended is not None
-    again = predict(one_machine(found.extended), records)["deflection"]
-    assert_allclose(again, found.curves[0].after, rtol=0, atol=1e-3 * UM)
-    left = found.curves[0].measured - found.curves[0].after
-    assert np.sqrt(np.mean(left**2)) < 1.2 * UM
+# Intervals of what is not an amplitude in proportion: places, whole numbers, and amplitudes beside a shape.
+
+ROWS = 90
+BENCH = wide(ROWS)
+HOURS = BENCH.time
+
+
+def waved(screw: Drive, base: Deflection, *, size: Float, order: Float) -> Deflection:
+    """Go up and down along a short stroke."""
+    return replace(base, deflection=base.deflection + size * np.cos(order * screw.travel / 0.3))
+
+
+WAVED = Effect("waved", on_results=waved, unknowns=[Unknown("size", -9, 9, "um"), Unknown("order", 1, 6, whole=True)])
+
+
+def fitted(folder: Path, name: str, error: np.ndarray, seed: int) -> tuple[Competition, Fit, Certainty, np.ndarray]:
+    """One effect as fitted to an error in noise of 1 um, how certain it is, and what is measured beyond the model."""
+    model = drive_model([name] if name == "warm_up" else [], {})
+    model = replace(model, errors=[*model.errors, WAVED])
+    beyond = error + np.random.default_rng(seed).normal(0, 1, ROWS)
+    asked = Asked(model)
+    records = asked.records(folder, BENCH.columns(gauge(BENCH.load, BENCH.travel) + beyond))
+    made = plain_competition(asked, records, UM)
+    best = fit_of(made, name)
+    return made, best, certainty_of(best, made.extended), beyond
+
+
+def squares(beyond: np.ndarray, column: np.ndarray) -> float:
+    """What a column leaves of what is measured beyond the model, by least squares."""
+    return float(beyond @ beyond - (column @ beyond) ** 2 / (column @ column))
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3, 4])
+def test_a_place_lies_between_the_rows_that_the_law_of_change_points_leaves(tmp_path: Path, seed: int) -> None:
+    """By n ln of the sums of squares: the gap at either end is within 7.35 of the best, the next one is not."""
+    made, best, _, beyond = fitted(tmp_path, "step", 1.5 * (HOURS >= 6.0), seed)
+    cause = cause_of(made, "step")
+    rows = np.sort(HOURS)
+    left = np.array([squares(beyond, (row < HOURS).astype(float)) for row in rows[:-1]])
+    own = int(np.searchsorted(rows, value_of(best, cause.shapes[0]) / 3600)) - 1
+    may_be = ROWS * np.log(left / left[own]) <= 7.35
+    ends = np.array(place_interval(best, made.extended, cause.shapes[0])) / 3600
+    low, high = np.searchsorted(rows, ends - 1e-9)
+    assert_allclose(rows[[low, high]], ends, rtol=1e-12)
+    assert low <= own < high
+    assert may_be[low]
+    assert may_be[high - 1]
+    assert low == 0 or not may_be[low - 1]
+    assert high == ROWS - 1 or not may_be[high]
+
+
+def test_whole_numbers_that_are_not_excluded_are_in_the_interval_and_their_amplitudes_too(tmp_path: Path) -> None:
+    """Every order is fitted by hand: within 6 of the best by n ln of the sum of squares it may be the true one."""
+    made, best, certainty, beyond = fitted(tmp_path, "waved", 1.1 * np.cos(2 * BENCH.travel / 300), 5)
+    cause = cause_of(made, "waved")
+    columns = {order: np.cos(order * BENCH.travel / 300) for order in range(1, 7)}
+    left = {order: squares(beyond, column) for order, column in columns.items()}
+    own = round(value_of(best, cause.shapes[0]))
+    assert left[own] == min(left.values())
+    others = {order for order in left if order != own and ROWS * np.log(left[order] / left[own]) < 6}
+    assert others
+    assert {
+        round(value_of(each, cause.shapes[0])) for each in whole_left(best, made.extended, cause.shapes[0])
+    } == others
+    low, high = amplitude_interval(best, made.extended, certainty, cause.amplitudes[0])
+    sizes = [float(columns[order] @ beyond / (columns[order] @ columns[order])) for order in (own, *others)]
+    assert (low or np.inf) < 1e-6 * min(sizes)
+    assert (high or 0.0) > 1e-6 * max(sizes)
+
+
+def test_an_amplitude_beside_a_free_shape_has_the_ends_of_its_profile(tmp_path: Path) -> None:
+    """There the least sum of squares is worth Student's t squared more; or it is the plain end."""
+    made, best, certainty, beyond = fitted(tmp_path, "warm_up", 5 * (1 - np.exp(-HOURS / 4.0)), 7)
+    cause = cause_of(made, "warm_up")
+
+    def least(rise: float) -> float:
+        def sum_of(log_constant: float) -> float:
+            return float(np.sum((beyond - rise * (1 - np.exp(-HOURS / np.exp(log_constant)))) ** 2))
+
+        return float(minimize_scalar(sum_of, bounds=(-3, 5), method="bounded", options={"xatol": 1e-8}).fun)
+
+    fair = squares(beyond, 1 - np.exp(-HOURS / (best.of(cause)[cause.shapes[0]] / 3600)))
+    allowed = ROWS * log1p(float(student.ppf(0.975, certainty.freedom)) ** 2 * certainty.variance / ROWS)
+    place = cause.amplitudes[0]
+    ends = amplitude_interval(best, made.extended, certainty, place)
+    for end, plain, farthest in zip(ends, interval(best, certainty, place), (min, max), strict=True):
+        assert end is not None
+        assert end == farthest(end, plain)
+        if end != plain:
+            assert_allclose(ROWS * np.log(least(end * 1e6) / fair), allowed, rtol=0.05)
+    assert ends != interval(best, certainty, place)

@@ -6,7 +6,7 @@ import os
 import re
 import subprocess
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -21,18 +21,23 @@ from diagnosis_models import (
     Drive,
     drive,
     drive_model,
+    ends,
     gauge,
     name_sets,
     wide,
 )
 from numpy.testing import assert_allclose
 
-from truing import Effect, Float, Model, Tolerance, Unknown, normal, trials
-from truing.diagnosis import long_records, machine, search
+from truing import Effect, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
+from truing.diagnosis import competition, engine, machine
+from truing.diagnosis import extended as under_test
+from truing.diagnosis.causes import Candidate, effects_of
 from truing.diagnosis.choice import choose
 from truing.diagnosis.engine import diagnose, laid_out
+from truing.diagnosis.exact import Asking, together
+from truing.diagnosis.extended import Extended, Request
 from truing.diagnosis.learning import first_noise
-from truing.diagnosis.machine import predict, times
+from truing.diagnosis.machine import calibration_of, times
 
 
 def test_many_rows_times_a_vector_are_summed_in_double_precision() -> None:
@@ -41,15 +46,6 @@ def test_many_rows_times_a_vector_are_summed_in_double_precision() -> None:
     vector = np.array([1.0, 1e-6, -1.0])
     made: Any = times(matrix, vector)  # type: ignore[arg-type]
     assert_allclose(made, matrix.astype(float) @ vector, rtol=1e-12)
-
-
-def test_rows_in_batches_are_predicted_as_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    asked, bench = Asked(drive_model()), wide(50)
-    records = asked.records(tmp_path, bench.columns(gauge(bench.load, bench.travel)), ["a"] * 30 + ["b"] * 20)
-    at_once = predict(asked.setup, records)["deflection"]
-    monkeypatch.setattr(trials, "AT_ONCE", 7)
-    assert_allclose(predict(asked.setup, records)["deflection"], at_once, rtol=1e-12, atol=1e-15)
-    assert_allclose(at_once, 1e-6 * gauge(bench.load, bench.travel), rtol=1e-12, atol=1e-15)
 
 
 def test_the_first_idea_of_the_noise_is_what_least_squares_leave(
@@ -72,56 +68,56 @@ def test_the_first_idea_of_the_noise_is_what_least_squares_leave(
 
 
 def test_a_search_looks_at_one_row_of_every_stretch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(long_records, "LONG", 40)
+    monkeypatch.setattr(engine, "LONG", 40)
     bench, asked = wide(130), Asked(drive_model(("lead_error",)))
     records = asked.records(tmp_path, bench.columns(0.0 * bench.time), ["a"] * 30 + ["b"] * 100)
-    few = long_records.searched(records, seed=1)
+    few = engine.searched(records, seed=1)
     taken = np.searchsorted(bench.time * 3600, few.covariates["time"].values - 1e-6)
     assert (np.floor((taken + 1) * 40 / 130 - 1e-9).astype(int) == np.arange(40)).all()  # stretches of 3.25 rows
     assert_allclose(few.covariates["travel"].values, bench.travel[taken] * 1e-3)
     assert [few.rows.runs[place] for place in (0, -1)] == [records.rows.runs[0], records.rows.runs[-1]]
     assert (few.lines == records.lines[taken]).all()
     assert len(np.unique(np.diff(taken))) > 3  # no regular step, which would fold a wave into another one
-    assert long_records.searched(few, seed=1) is few
+    assert engine.searched(few, seed=1) is few
 
 
 def test_a_record_along_an_axis_of_the_model_is_searched_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its rows are one path: of some of them the model would draw another one."""
     bench, asked = wide(130), Asked(drive_model(("lead_error",)))
     records = asked.records(tmp_path, bench.columns(0.0 * bench.time))
-    assert long_records.searched(records, seed=1) is records
-    monkeypatch.setattr(long_records, "LONG", 40)
-    assert len(long_records.searched(records, seed=1)) == 40
+    assert engine.searched(records, seed=1) is records
+    monkeypatch.setattr(engine, "LONG", 40)
+    assert len(engine.searched(records, seed=1)) == 40
     along = replace(records, rows=replace(records.rows, series=("travel",)))
-    assert long_records.searched(along, seed=1) is along
+    assert engine.searched(along, seed=1) is along
 
 
 def test_a_decision_on_some_rows_is_kept_and_its_rivals_are_fitted_to_all(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Growth and a drift of the gauge draw one curve: both, and what is ranked, are those of all rows."""
-    monkeypatch.setattr(long_records, "LONG", 100)
+    monkeypatch.setattr(engine, "LONG", 100)
     bench, asked = wide(400), Asked(drive_model(("lead_error", "thermal_growth"), {}))
     error = 0.3 * (bench.temperature - 20) + np.random.default_rng(9).normal(size=400)
     records = asked.records(tmp_path, bench.columns(gauge(bench.load, bench.travel) + error))
     whole = machine.calibration_of(asked.setup, records)
-    few = laid_out(machine.calibration_of(asked.setup, long_records.searched(records, seed=1)))
-    search.search(few)
+    few = laid_out(machine.calibration_of(asked.setup, engine.searched(records, seed=1)))
+    competition.search(few)
     chosen = choose(few, seed=1)
     assert few.sample.rows == 100
-    found = long_records.on_all_rows(chosen, whole)
+    found = engine.on_all_rows(chosen, whole)
     assert found.best.key == chosen.best.key
     assert found.competition.sample.rows == found.best.sample.rows == found.null.sample.rows == 400
     assert all(rival.fit.sample.rows == 400 and rival.behind >= 0 for rival in found.rivals)
     assert {rival.fit.key for rival in found.rivals} <= {rival.fit.key for rival in chosen.rivals}
-    wanted = {each.key for each in few.ranked()[: long_records.RANKED]}
+    wanted = {each.key for each in few.ranked()[: engine.RANKED]}
     assert wanted <= set(found.competition.known)
     assert found.law is chosen.law
-    assert long_records.on_all_rows(found, whole) is found
+    assert engine.on_all_rows(found, whole) is found
 
 
 def test_what_a_search_of_some_rows_came_to_is_fitted_to_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(long_records, "LONG", 80)
+    monkeypatch.setattr(engine, "LONG", 80)
     bench, asked = wide(300), Asked(drive_model(("lead_error",), {}))
     error = 0.03 * bench.travel + np.random.default_rng(9).normal(size=300)
     found = asked.diagnosed(tmp_path, bench.columns(gauge(bench.load, bench.travel) + error))
@@ -129,10 +125,9 @@ def test_what_a_search_of_some_rows_came_to_is_fitted_to_all(tmp_path: Path, mon
     exact = bench.travel @ error / (bench.travel @ bench.travel)  # by all rows
     (size,) = found.causes[0].unknowns
     assert_allclose(size.value, exact * 1e-3, rtol=1e-5)
-    assert size.low is not None
-    assert size.high is not None
+    low, high = ends(size)
     wide_apart = 2 * 1.97e-3 / np.sqrt(bench.travel @ bench.travel)  # of a slope through zero in noise of 1 um
-    assert_allclose(size.high - size.low, wide_apart, rtol=0.1)
+    assert_allclose(high - low, wide_apart, rtol=0.1)
 
 
 class Slow:
@@ -186,7 +181,7 @@ def test_effects_on_results_cost_no_call_of_a_slow_model_however_many_pairs_ther
     none, six = (calls_of(tmp_path, extra, {}) for extra in (0, 6))
     assert none == 1
     assert six <= 1 + 2 * 6
-    monkeypatch.setattr(search, "_pairs", lambda made: None)
+    monkeypatch.setattr(competition, "_pairs", lambda made: None)
     assert calls_of(tmp_path, 6, {}) == six
 
 
@@ -223,3 +218,136 @@ except Held as held:
     assert pools
     assert {threads for _, threads in pools} == {"1"}
     assert f" {len(pools)}\n" in said
+
+
+# Several fits that ask the model at one time: each is told what it would be told alone, in fewer calls.
+
+LOADS = np.linspace(-20, 20, 40)
+
+
+@inputs
+class Beam:
+    """A beam with a support that gives way."""
+
+    load: Float = given(0.0, "N")
+    stiffness: Float = given(4.0, "N/mm", above=0)
+    yielding: Float = given(0.0, "mm/N")
+
+
+@results
+class Sag:
+    """How far it sags."""
+
+    sag: Float = found("mm")
+
+
+def beam(given: Beam) -> Sag:
+    return Sag(sag=given.load / given.stiffness + given.yielding * given.load)
+
+
+def softening(before: Beam, *, share: Float) -> Beam:
+    return replace(before, stiffness=before.stiffness * (1 - share))
+
+
+def support(before: Beam, *, more: Float) -> Beam:
+    return replace(before, yielding=before.yielding + more)
+
+
+def replaced_support(before: Beam, *, amount: Float) -> Beam:
+    """It sets what the other support adds to: beside that one it undoes what it adds."""
+    return replace(before, yielding=amount)
+
+
+BEAM = Model(
+    name="together_beam", title="Beam", summary="A beam on a support.", function=beam, cites=["none"],
+    errors=[
+        Effect("softening", on_inputs=softening, looks_like="too soft", unknowns=[Unknown("share", 0, 1)]),
+        Effect("support", on_inputs=support, looks_like="gives way", unknowns=[Unknown("more", 0, 1, "mm/N")]),
+        Effect(
+            "replaced_support", on_inputs=replaced_support, looks_like="gives way",
+            unknowns=[Unknown("amount", 0, 1, "mm/N")],
+        ),
+    ],
+)  # fmt: skip
+
+
+@pytest.fixture
+def asked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Extended, dict[str, Candidate], list[int]]:
+    """The beam as a diagnosis asks it, its causes by name, and by call the number of points."""
+    one = Asked(BEAM, units={"load": "N", "sag": "mm"})
+    machine = calibration_of(one.setup, one.records(tmp_path, {"load": LOADS, "sag": LOADS / 4}))
+    calls: list[int] = []
+    ask = under_test.predict_each
+
+    def counted(setup, records, trials):  # type: ignore[no-untyped-def]
+        calls.append(len(trials))
+        return ask(setup, records, trials)
+
+    monkeypatch.setattr(under_test, "predict_each", counted)
+    return Extended(machine), {cause.name: cause for cause in effects_of(machine)}, calls
+
+
+def request(extended: Extended, causes: Sequence[Candidate], *points: Sequence[float]) -> Request:
+    still = np.zeros(len(extended.machine.inputs))
+    return causes, [([np.array([value]) for value in values], still) for values in points]
+
+
+Points = tuple[str, list[float]]
+
+
+@pytest.mark.parametrize(
+    ("points", "compliances", "offsets", "calls"),
+    [
+        (  # points of the same causes are one call, and what is known is not asked again
+            [("softening", [0.5]), ("softening", [0.2]), ("softening sensor_offset", [0.2, 1e-3]),
+             ("softening", [0.2]), ("softening", [0.75])],
+            [1 / 2e3, 1 / 3.2e3, 1 / 3.2e3, 1 / 3.2e3, 1 / 1e3], [0.0, 0.0, 1e-3, 0.0, 0.0], [3, 1],
+        ),
+        (  # effects act where they are asked for alone: one sets what another one adds to, and is declared later
+            [("support", [2e-4]), ("replaced_support support", [1e-4, 2e-4]), ("replaced_support", [1e-4])],
+            [1 / 4e3 + 2e-4, 1 / 4e3 + 1e-4, 1 / 4e3 + 1e-4], [0.0] * 3, [1, 1, 1],
+        ),
+        (  # causes that come in another order are not mistaken for one another
+            [("softening support", [0.5, 0.25]), ("support softening", [0.5, 0.25]),
+             ("support softening", [0.25, 0.5])],
+            [1 / 2e3 + 0.25, 1 / 3e3 + 0.5, 1 / 2e3 + 0.25], [0.0] * 3, [2],
+        ),
+        (  # a point at which the model has no answer leaves the others theirs
+            [("softening", [0.2]), ("softening", [1.0]), ("softening", [0.5])],
+            [1 / 3.2e3, np.nan, 1 / 2e3], [0.0] * 3, [3],
+        ),
+    ],
+    ids=["one call", "alone", "order", "no answer"],
+)  # fmt: skip
+def test_points_that_are_asked_at_one_time_are_answered_as_alone(
+    asked: tuple[Extended, dict[str, Candidate], list[int]],
+    points: list[Points], compliances: list[float], offsets: list[float], calls: list[int],
+) -> None:  # fmt: skip
+    extended, causes, counted = asked
+    answers = extended.at_each(
+        [request(extended, [causes[name] for name in names.split()], at) for names, at in points]
+    )
+    assert counted == calls
+    for (shown,), compliance, offset in zip(answers, compliances, offsets, strict=True):
+        expected = compliance * LOADS + offset
+        assert np.isnan(shown["sag"]).any() if np.isnan(compliance) else np.allclose(shown["sag"], expected, rtol=1e-12)
+
+
+def test_searches_that_end_at_different_times_each_return_their_own(
+    asked: tuple[Extended, dict[str, Candidate], list[int]],
+) -> None:
+    extended, causes, calls = asked
+    soft = causes["softening"]
+
+    def asking(share: float, rounds: int) -> Asking[list[float]]:
+        largest = []
+        for turn in range(rounds):
+            (shown,) = yield request(extended, [soft], [share * (turn + 1)])
+            largest.append(float(shown["sag"].max()))
+        return largest
+
+    made = together(extended, [asking(0.125, 3), asking(0.25, 0), asking(0.375, 1)])
+    expected = [[20 / 4e3 / (1 - share) for share in shares] for shares in ([0.125, 0.25, 0.375], [], [0.375])]
+    for own, right in zip(made, expected, strict=True):
+        np.testing.assert_allclose(own, right, rtol=1e-12)
+    assert calls == [2, 1], "the last point is known by then"

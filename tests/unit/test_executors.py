@@ -28,9 +28,8 @@ from truing.executors import (
 )
 from truing.executors.cluster import differences
 from truing.executors.kept import HEAD, MAGIC, answer_of, key_of, text_of
-from truing.kernel import kernel_for
 from truing.packed import pack, unpack
-from truing.setup import SwitchedOn, default_setup
+from truing.setup import SwitchedOn
 from truing.studies.sampling import Moments
 
 
@@ -130,15 +129,6 @@ def test_what_is_packed_is_plain_and_small():
     assert hash(packed) == hash(pack(setup_of(WEAR)))
 
 
-def test_a_plugin_in_one_file_reaches_the_workers(tmp_path):
-    file = tmp_path / "lone_file.py"
-    file.write_text(Path(__file__).with_name("study_models.py").read_text())
-    kernel = kernel_for(f"file:{file}")
-    offer = next(offer for offer in kernel.offers.values() if offer.model.name == "chain")
-    packed = pack(default_setup(offer.model, offer.origin, first="29 mm"))
-    assert unpack(packed).inputs.first == pytest.approx(0.029)
-
-
 def test_a_model_that_a_worker_cannot_find_is_named():
     packed = replace(pack(setup_of(CHAIN)), model="chian")
     with pytest.raises(PluginError, match="no model 'chian' in module:study_models"):
@@ -177,22 +167,6 @@ def test_short_jobs_travel_together_and_long_ones_alone():
     assert sum(short.together) == 400
     assert list(in_order(long, abs, range(100))) == list(range(100))
     assert set(long.together) == {1}
-
-
-def test_an_error_among_jobs_that_travel_together_comes_after_the_answers_before_it():
-    together = Travel(0.01)
-    answers = in_order(together, fail_at_77, range(400))
-    found = []
-    with pytest.raises(ValueError, match="77"):
-        found += [next(answers) for _ in range(78)]
-    assert found == [] or found == list(range(77))
-    assert list(zip(range(77), in_order(Travel(0.01), fail_at_77, range(400)), strict=False))[-1] == (76, 76)
-
-
-def fail_at_77(number: int) -> int:
-    if number == 77:
-        raise ValueError("77")
-    return number
 
 
 def test_any_other_executor_will_do():

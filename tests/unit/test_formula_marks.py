@@ -10,9 +10,11 @@ from formula_printed import block_mathml, latex, mathml, substituted_latex, subs
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from truing.formulas import parse, symbol_mathml, symbol_text
+from truing.errors import UnitError
+from truing.formulas import evaluate, evaluate_quantities, parse, symbol_mathml, symbol_text
 from truing.formulas.write_latex import number_latex
 from truing.formulas.write_mathml import number_mathml
+from truing.units import registry
 
 SYMBOLS = [
     ("F", "<mi>F</mi>", "F", "F"),
@@ -75,6 +77,16 @@ FEWEST = [
     ("max(a, b)", r"\mathrm{max} \left( a,\thinspace b \right)"),
     ("friction * a", r"\mathrm{friction} \cdot a"),
     ("contact_area", r"\mathrm{contact\ area}"),
+    ("sqrt(a) + cbrt(b)", r"\sqrt{a} + \sqrt[3]{b}"),
+    ("abs(a - b)", r"\left\vert a - b \right\vert"),
+    ("log10(a) * log(b) * exp(c)", r"\log_{10} a \thinspace \ln \left( b \right) \thinspace \exp \left( c \right)"),
+    ("atan(a) * sinh(b) * sum(c)", r"\arctan a \thinspace \sinh b \thinspace \sum c"),
+    ("max(a, -pi)", r"\mathrm{max} \left( a,\thinspace -\pi \right)"),
+    (
+        "cases(a, x > 1 and b <= 2, b, a != 0 or x == c, c)",
+        r"\begin{cases} a & \mathrm{if}\ x \gt 1\ \mathrm{and}\ b \le 2 \cr b & \mathrm{if}\ a \ne 0\ \mathrm{or}\ "
+        r"x = c \cr c & \mathrm{otherwise} \end{cases}",
+    ),
 ]
 
 
@@ -187,3 +199,26 @@ def test_markup_of_a_symbol_shows_its_characters() -> None:
     assert "".join(ElementTree.fromstring(symbol_mathml("<b>")).itertext()) == "<b>"
     assert symbol_latex("50%") == r"\mathrm{50\%}"
     assert symbol_latex("a|b") == r"\mathrm{a\vert{}b}"
+
+
+# The normal probability in formulas: values of the printed tables, printed form, dimension.
+
+TABLE = [(0.0, 0.5), (1.0, 0.8413), (1.645, 0.9500), (1.96, 0.9750), (2.576, 0.9950), (-1.0, 0.1587)]  # any handbook
+
+
+@pytest.mark.parametrize(("argument", "chance"), TABLE)
+def test_phi_is_that_of_the_tables(argument: float, chance: float) -> None:
+    assert evaluate(parse("Phi(x)"), {"x": argument}) == pytest.approx(chance, abs=5e-5)
+
+
+def test_phi_is_printed_upright_with_its_argument() -> None:
+    formula = parse("2 * Phi(limit / sd) - 1")
+    symbols = {"limit": "L", "sd": "sigma_S"}
+    assert r"\Phi \left( \frac{L}{\sigma_{S}} \right)" in latex(formula, symbols)
+    assert '<mi mathvariant="normal">Φ</mi>' in mathml(formula, symbols)
+
+
+def test_phi_needs_a_pure_number() -> None:
+    metre = registry().Quantity(1.0, "m")
+    with pytest.raises(UnitError, match="Phi needs a pure number"):
+        evaluate_quantities(parse("Phi(x)"), {"x": metre})

@@ -2,21 +2,41 @@
 
 from __future__ import annotations
 
+import math
+import time
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any, Literal
 
 import numpy as np
 import pytest
 from pin_wear import PIN_WEAR
 
-from truing import Condition, Effect, Float, Model, Unknown, axis, column, found, given, inputs, results
-from truing.errors import UsageError
-from truing.gauge import Shown, one_machine, read_by_gauge, shown_by_gauge
+from truing import (
+    Condition,
+    Effect,
+    Float,
+    Model,
+    Tolerance,
+    Unknown,
+    axis,
+    column,
+    drawn,
+    found,
+    given,
+    inputs,
+    loaded,
+    results,
+)
+from truing.errors import DeclarationError, InputError, UsageError
+from truing.gauge import Shown, one_machine, read_by_gauge, read_trials, shown_by_gauge
 from truing.inputs_file import setup_from_text
 from truing.kernel import Offer, Origin
 from truing.measurements import RowsFile, read_rows
-from truing.setup import Setup, SwitchedOn
+from truing.measurements.derived import derive
+from truing.setup import Setup, SwitchedOn, effect_column
+from truing.studies.sampling import scatter_of
 
 
 @inputs
@@ -104,30 +124,6 @@ def test_rows_replace_inputs_and_come_back_in_printed_units(gauge: Gauge) -> Non
     assert set(shown.values) == {"pressure", "distance", "depth"}
 
 
-def test_a_reading_acts_in_proportion_to_its_condition(gauge: Gauge) -> None:
-    text = '[effects.warm_probe]\nslope = "1.5 um/K"\n'
-    rows = "probe_temperature [degC]\n20\n30\n-10\n"
-    warm, plain = gauge(PIN_WEAR, rows, text), gauge(PIN_WEAR, rows)
-    np.testing.assert_allclose(warm.values["depth"] - plain.values["depth"], [0, 15, -45], atol=1e-9)
-    np.testing.assert_array_equal(warm.values["pressure"], plain.values["pressure"])
-
-
-def test_the_machine_is_calibrated(gauge: Gauge) -> None:
-    text = '[inputs]\nload = "100 N"\n[calibrated]\nload = "112 N"\n'
-    shown = gauge(PIN_WEAR, "time [h]\n1\n2\n", text)
-    np.testing.assert_allclose(shown.values["pressure"], [4.0, 4.0])
-    offer = Offer("pin_wear", PIN_WEAR, Origin("pin_wear", "", "", "", "module:pin_wear"))
-    setup = setup_from_text(text, offer, file="given.toml", folder=Path())
-    assert setup.inputs.load == pytest.approx(100)
-    assert one_machine(setup).inputs.load == pytest.approx(112)
-
-
-def test_an_impossible_row_is_missing_and_keeps_its_reason(gauge: Gauge) -> None:
-    shown = gauge(PIN_WEAR, "load [kN]\n0.1\n100\n0.2\n")
-    assert shown.reasons == {1: "the contact flows: load exceeds hardness times area"}
-    assert np.isnan(shown.values["depth"]).tolist() == [False, True, False]
-
-
 def test_results_along_an_axis_are_read_at_the_place_of_the_row(gauge: Gauge) -> None:
     rows = "depth [mm],flux [W/m^2]\n0,10\n50,10\n50,30\n100,10\n101,10\n"
     shown = gauge(WALL, rows, '[inputs]\npressing = ["1 N", "1 N", "1 N"]\n')
@@ -178,40 +174,6 @@ def rows_for(model: Model, path: Path, text: str) -> tuple[Setup, RowsFile]:
     return setup, read_rows(path, offer, setup)
 
 
-def test_wanted_results_in_si(tmp_path: Path) -> None:
-    setup, rows = rows_for(PIN_WEAR, tmp_path / "rows.csv", "load [N]\n28\n56\n")
-    found = read_by_gauge(setup, rows, ["pressure"])
-    assert list(found.results) == ["pressure"]
-    np.testing.assert_allclose(found.results["pressure"], [1e6, 2e6])
-
-
-def test_conditions_that_nobody_needs_are_not_looked_at(tmp_path: Path) -> None:
-    setup, rows = rows_for(PIN_WEAR, tmp_path / "rows.csv", "load [N]\n28\n56\n")
-    more = replace(rows, columns={**rows.columns, "of_another_effect": np.array([1.0, 2.0])})
-    np.testing.assert_allclose(read_by_gauge(setup, more, ["pressure"]).results["pressure"], [1e6, 2e6])
-
-
-def test_all_rows_are_one_call(tmp_path: Path) -> None:
-    calls = []
-
-    def counted(given_: Wall) -> Course:
-        calls.append(np.shape(given_.flux))
-        return wall(given_)
-
-    model = replace(WALL, function=counted)
-    setup, rows = rows_for(model, tmp_path / "rows.csv", "flux [W/m^2]\n10\n20\n30\n")
-    np.testing.assert_allclose(read_by_gauge(setup, rows, ["inside"]).results["inside"] - 293.15, [1, 2, 3])
-    assert calls == [(3,)]
-
-
-def test_axes_are_calculated_where_they_are_needed(tmp_path: Path) -> None:
-    text = "run,depth [mm],pressing [N]\na,0,1\na,50,2\na,100,3\n"
-    setup, rows = rows_for(WALL, tmp_path / "rows.csv", text)
-    found = read_by_gauge(setup, rows, ["work"])
-    assert list(found.results) == ["work"]
-    np.testing.assert_allclose(found.results["work"], [1, 2, 3])
-
-
 def warm(given_: Wall, base: Course, *, slope: Float, room: Float) -> Course:
     """The probe reads warmer with the room."""
     return replace(base, inside=base.inside + slope * (room - 293.15), temperature=base.temperature + slope)
@@ -233,3 +195,523 @@ def test_a_condition_may_change_within_a_record(tmp_path: Path) -> None:
     found = read_by_gauge(on, rows)
     np.testing.assert_allclose(found.results["inside"] - 273.15, [21, 22, 23])
     np.testing.assert_allclose(found.results["work"], [1, 2, 3])
+
+
+# Many changes of inputs and unknowns, asked of the model in one call: as one by one, with NaN where it fails.
+
+LOADS = "load [N],time [h]\n28,1\n56,2\n84,3\n"
+
+
+def counting() -> tuple[Callable[[Wall], Course], list[int]]:
+    """The calculation of the wall, and how many rows each call of it has had so far."""
+    calls: list[int] = []
+
+    def counted(given_: Wall) -> Course:
+        calls.append(np.size(given_.flux))
+        return wall(given_)
+
+    return counted, calls
+
+
+def test_each_trial_is_the_machine_with_that_input(tmp_path: Path) -> None:
+    """Pressure is load over 28 mm^2; a measured column is replaced row by row, another input for all rows."""
+    setup, rows = rows_for(PIN_WEAR, tmp_path / "rows.csv", LOADS)
+    changes = [{}, {"load": np.array([28.0, 28.0, 280.0])}, {"rate": 2e-8}, {"load": 14.0}]
+    answers = [dict(each) for each in read_trials(setup, rows, changes, ["pressure", "depth"])]
+    expected = [[1e6, 2e6, 3e6], [1e6, 1e6, 1e7], [1e6, 2e6, 3e6], [0.5e6] * 3]
+    np.testing.assert_allclose([each["pressure"] for each in answers], expected)
+    for change, answer in zip(changes, answers, strict=True):
+        columns = {name: np.broadcast_to(value, (3,)) for name, value in change.items()}
+        alone = read_by_gauge(setup, replace(rows, columns={**rows.columns, **columns}), ["pressure", "depth"])
+        np.testing.assert_allclose(answer["depth"], alone.results["depth"], rtol=1e-12)
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_a_model_may_change_its_columns_in_place(tmp_path: Path, count: int) -> None:
+    """A trial of one value for all rows may hold it once, as numpy repeats it: the model has a column of its own."""
+
+    def colder(given_: Wall) -> Course:
+        given_.flux[...] -= 1.0
+        return wall(given_)
+
+    setup, rows = rows_for(replace(WALL, function=colder), tmp_path / "rows.csv", "flux [W/m^2]\n10\n20\n30\n")
+    value = np.broadcast_to(11.0, (3,))
+    for answer in read_trials(setup, rows, [{"flux": value}] * count, ["inside"]):
+        np.testing.assert_allclose(answer["inside"] - 293.15, [1, 1, 1])
+    assert value[0] == 11.0
+
+
+def test_trials_are_one_call_and_not_too_many_rows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    counted, calls = counting()
+    setup, rows = rows_for(replace(WALL, function=counted), tmp_path / "rows.csv", "flux [W/m^2]\n10\n20\n30\n")
+    changes = [{"outside": 273.15 + place} for place in range(5)]
+    answers = list(read_trials(setup, rows, changes, ["inside"]))
+    assert calls == [15]
+    monkeypatch.setattr("truing.gauge.AT_ONCE", 7)
+    in_parts = list(read_trials(setup, rows, changes, ["inside"]))
+    assert calls[1:] == [6, 6, 3]
+    for place, (at_once, part) in enumerate(zip(answers, in_parts, strict=True)):
+        np.testing.assert_allclose(at_once["inside"] - 273.15, place + np.array([1, 2, 3]))
+        np.testing.assert_allclose(part["inside"], at_once["inside"])
+
+
+@pytest.mark.parametrize("text", ["depth [mm]\n0\n50\n100\n", "depth [mm],pressing [N]\n0,1\n50,2\n100,3\n"])
+def test_a_curve_is_calculated_once_for_all_rows_of_a_trial(tmp_path: Path, text: str) -> None:
+    """10 W/m^2 through 100 mm of 1 W/(m K) are one kelvin: half of it in the middle. The trials are one call."""
+    counted, calls = counting()
+    model = replace(WALL, function=counted)
+    setup, rows = rows_for(model, tmp_path / "rows.csv", text)
+    setup = setup.changed({"pressing": np.ones(3)})
+    answers = list(read_trials(setup, rows, [{"flux": 10.0}, {"flux": 20.0}], ["temperature"]))
+    np.testing.assert_allclose([each["temperature"] - 293.15 for each in answers], [[0, 0.5, 1], [0, 1, 2]], atol=1e-9)
+    assert calls == [2]
+
+
+def test_what_no_column_changes_is_calculated_once_a_trial(tmp_path: Path) -> None:
+    counted, calls = counting()
+    setup, rows = rows_for(replace(WALL, function=counted), tmp_path / "rows.csv", "flux [W/m^2]\n10\n20\n30\n")
+    rows = replace(rows, columns={"of_another_effect": np.arange(3.0)})
+    answers = list(read_trials(setup, rows, [{"flux": 10.0}, {"flux": 20.0}], ["inside"]))
+    np.testing.assert_allclose([each["inside"] - 293.15 for each in answers], [[1] * 3, [2] * 3])
+    assert calls == [2]
+
+
+def test_rows_that_are_alike_are_one_calculation_along_an_axis(tmp_path: Path) -> None:
+    """Of 10 and 20 W/m^2 two kelvins are one third: four rows are two calculations, each read at its own places."""
+    counted, calls = counting()
+    text = "depth [mm],flux [W/m^2]\n0,10\n50,20\n100,10\n100,20\n"
+    setup, rows = rows_for(replace(WALL, function=counted), tmp_path / "rows.csv", text)
+    setup = setup.changed({"pressing": np.ones(3)})
+    plain, warm = read_trials(setup, rows, [{"outside": 293.15}, {"outside": 303.15}], ["temperature"])
+    np.testing.assert_allclose(plain["temperature"] - 293.15, [0, 1, 1, 2], atol=1e-9)
+    np.testing.assert_allclose(warm["temperature"] - 293.15, [10, 11, 11, 12], atol=1e-9)
+    assert calls == [4]
+
+
+def test_an_effect_on_the_reading_asks_for_no_record_again(tmp_path: Path) -> None:
+    """What dirt adds at 40 sizes is added to one record."""
+    counted, calls = counting()
+    text = "run,depth [mm],pressing [N]\na,0,1\na,50,2\na,100,3\n"
+    setup, rows = rows_for(replace(WALL, function=counted), tmp_path / "rows.csv", text)
+    on = setup.with_effects([SwitchedOn(WALL.known_effects["dirt"], {"offset": 0.0})])
+    changes = [{effect_column("dirt", "offset"): np.full(3, float(size))} for size in range(40)]
+    found = [each["inside"] for each in read_trials(on, rows, changes, ["inside"])]
+    np.testing.assert_allclose([each - found[0] for each in found], np.repeat(np.arange(40.0)[:, None], 3, axis=1))
+    assert calls == [1]
+
+
+def test_a_trial_in_which_the_model_fails_leaves_the_others(tmp_path: Path) -> None:
+    def failing(given_: Wall) -> Course:
+        return replace(wall(given_), inside=given_.outside + given_.flux / (given_.flux - 20.0))
+
+    setup, rows = rows_for(replace(WALL, function=failing), tmp_path / "rows.csv", "flux [W/m^2]\n10\n20\n30\n")
+    plain, scaled = read_trials(setup, rows, [{}, {"flux": np.array([10.0, 40.0, 60.0])}], ["inside"])
+    np.testing.assert_allclose(plain["inside"] - 293.15, [-1, np.nan, 3])
+    np.testing.assert_allclose(scaled["inside"] - 293.15, [-1, 2, 1.5])
+
+
+# Conditions that are history: made once from the rows of a file, in time order; and the table that shows them.
+
+NAN = math.nan
+
+
+def history(derived: str, values: list[float], runs: list[int] | None = None, time: list[float] | None = None,
+            unit: str = "mm") -> list[float]:  # fmt: skip
+    """What an effect sees of these rows."""
+    condition = Condition("it", unit, derived=derived)
+    column = {condition.made_from: np.array(values)}
+    clock = None if time is None else np.array(time)
+    return derive(condition, column, None if runs is None else np.array(runs), clock).tolist()
+
+
+# Each kind, by hand
+
+KINDS: list[tuple[str, list[float], list[float]]] = [
+    ("since_start", [5, 7, 4, 9], [0, 2, -1, 4]),
+    ("running_maximum of x", [3, 1, 4, 1, 5], [3, 3, 4, 4, 5]),
+    ("running_maximum of x", [-3, -1, -4], [-3, -1, -1]),
+    ("cumulative of x", [0, 2, -1, -1, 4], [0, 2, 5, 5, 10]),
+    ("direction of x", [0, 1, 2, 1, 1, 3], [1, 1, 1, -1, -1, 1]),
+    ("direction of x", [2, 2, 2, 1], [-1, -1, -1, -1]),
+    ("direction of x", [2, 2, 2], [0, 0, 0]),
+    ("direction of x", [2], [0]),
+    ("last_reversal of x", [0, 1, 2, 1, 0, 3], [0, 0, 0, 2, 2, 0]),
+    ("last_reversal of x", [0, 1, 2, 2, 1], [0, 0, 0, 0, 2]),
+    ("last_reversal of x", [7, 7, 7], [7, 7, 7]),
+    ("last_reversal of x", [7], [7]),
+]
+
+
+@pytest.mark.parametrize(("derived", "values", "seen"), KINDS)
+def test_what_has_been(derived: str, values: list[float], seen: list[float]) -> None:
+    assert history(derived, values) == seen
+
+
+# In time order, run by run
+
+
+@pytest.mark.parametrize(("derived", "values", "seen"), KINDS)
+def test_rows_out_of_order_are_the_same_rows(derived: str, values: list[float], seen: list[float]) -> None:
+    order = np.random.default_rng(0).permutation(len(values))
+    shuffled = history(derived, [values[row] for row in order], time=[60.0 * row for row in order])
+    assert shuffled == [seen[row] for row in order]
+
+
+def test_history_begins_anew_with_every_run_but_the_start_is_that_of_the_file() -> None:
+    values, runs = [10.0, 1.0, 12.0, 3.0, 11.0, 2.0], [7, 3, 7, 3, 7, 3]
+    assert history("running_maximum of x", values, runs) == [10, 1, 12, 3, 12, 3]
+    assert history("cumulative of x", values, runs) == [0, 0, 2, 2, 3, 3]
+    assert history("direction of x", values, runs) == [1, 1, 1, 1, -1, -1]
+    assert history("last_reversal of x", values, runs) == [10, 1, 10, 1, 12, 3]
+    assert history("since_start", values, runs) == [0, -9, 2, -7, 1, -8]
+
+
+def test_the_earliest_row_of_the_file_is_the_start() -> None:
+    assert history("since_start", [30, 10, 20], [1, 2, 2], [8.0, 6.0, 7.0]) == [20, 0, 10]
+    assert history("since_start", [30, NAN, 20], time=[8.0, 6.0, 7.0])[::2] == [10, 0]
+    assert history("since_start", [6.0, 8.0], time=[NAN, NAN]) == [0, 2]
+
+
+def test_rows_without_a_time_come_last() -> None:
+    assert history("cumulative of x", [1, 9, 2], time=[0.0, NAN, 1.0]) == [0, 8, 1]
+
+
+# Missing values
+
+
+@pytest.mark.parametrize(
+    ("derived", "seen"),
+    [
+        ("since_start", [NAN, 0, NAN, 3, -1]),
+        ("running_maximum of x", [NAN, 1, 1, 4, 4]),
+        ("cumulative of x", [NAN, 0, 0, 3, 7]),
+        ("direction of x", [1, 1, 1, 1, -1]),
+        ("last_reversal of x", [NAN, 1, 1, 1, 4]),
+    ],
+)
+def test_what_is_missing_is_passed_over(derived: str, seen: list[float]) -> None:
+    np.testing.assert_array_equal(history(derived, [NAN, 1, NAN, 4, 0]), seen)
+
+
+@pytest.mark.parametrize("word", ["running_maximum", "cumulative", "direction", "last_reversal"])
+def test_where_nothing_is_measured_nothing_is_known(word: str) -> None:
+    assert np.isnan(history(f"{word} of x", [NAN, NAN, 1.0], [1, 1, 2])).tolist() == [True, True, False]
+    assert np.isnan(history("since_start", [NAN, NAN])).all()
+
+
+def test_a_column_that_is_not_there() -> None:
+    with pytest.raises(UsageError, match="condition 'way' is derived from 'travel', which is no column"):
+        derive(Condition("way", "", derived="direction of travel"), {}, None, None)
+
+
+def test_many_rows_are_quick() -> None:
+    travel = np.sin(np.linspace(0, 300, 200_000))
+    begin = time.perf_counter()
+    way = derive(Condition("way", "", derived="direction of travel"), {"travel": travel}, None, None)
+    assert time.perf_counter() - begin < 2
+    assert np.count_nonzero(np.diff(way)) == 95  # extrema at pi/2 + k pi, k = 0 to 94, below 300
+
+
+# Declarations
+
+
+@pytest.mark.parametrize(
+    "derived",
+    ["since start", "maximum of x", "direction", "direction of", "direction of x y", "since_start of x", "of x"],
+)
+def test_histories_that_nobody_knows(derived: str) -> None:
+    with pytest.raises(DeclarationError, match=f"condition 'it' is derived by '{derived}'; write 'since_start', "):
+        Condition("it", "", derived=derived)
+
+
+def test_nothing_is_made_from_itself() -> None:
+    with pytest.raises(DeclarationError, match="each of another column"):
+        Condition("load", "N", derived="running_maximum of load")
+
+
+@pytest.mark.parametrize("derived", ["since_start", "cumulative of oil"])
+def test_what_is_gained_is_no_level(derived: str) -> None:
+    with pytest.raises(DeclarationError, match="is in degC, a temperature level, but what is gained is a difference"):
+        Condition("warming", "degC", derived=derived)
+    assert Condition("warming", "K", derived=derived).made_from in {"warming", "oil"}
+    assert Condition("hottest", "degC", derived="running_maximum of oil").history == "running_maximum"
+
+
+def test_a_range_that_is_none() -> None:
+    with pytest.raises(DeclarationError, match="condition 'load': its range goes from 5 to 2; lower first"):
+        Condition("load", "N", low=5, high=2)
+
+
+# Rows of a file
+
+
+@inputs
+class Stage:
+    """A stage that is pushed to a place."""
+
+    place: Float = given(0.0, "mm", symbol="x")
+
+
+@results
+class Position:
+    """Where it is."""
+
+    position: Float = found("um", symbol="x_1")
+
+
+def stage(given_: Stage) -> Position:
+    """Just there."""
+    return Position(position=given_.place)
+
+
+def lost(given_: Stage, *, play: Float, way: Float) -> Stage:
+    """Half the play is lost against the way."""
+    return replace(given_, place=given_.place - play / 2 * way)
+
+
+def worn(given_: Stage, base: Position, *, wear: Float, strokes: Float) -> Position:
+    """So much per stroke."""
+    return replace(base, position=base.position + wear * strokes)
+
+
+def kneaded(given_: Stage, base: Position, *, yielding: Float, peak: Float) -> Position:
+    """So much per newton of the highest load so far."""
+    return replace(base, position=base.position + yielding * peak)
+
+
+STAGE = Model(
+    name="stage",
+    title="Stage",
+    function=stage,
+    errors=[
+        Effect("lost", on_inputs=lost, unknowns=[Unknown("play", -1, 1, "mm")],
+               needs=[Condition("way", "", derived="direction of place")]),
+        Effect("worn", on_results=worn, unknowns=[Unknown("wear", -9, 9, "um")],
+               needs=[Condition("strokes", "", derived="since_start")]),
+        Effect("kneaded", on_results=kneaded, unknowns=[Unknown("yielding", -9, 9, "um/N")],
+               needs=[Condition("peak", "N", derived="running_maximum of load")]),
+    ],
+)  # fmt: skip
+ALL = '[effects.lost]\nplay = "1 mm"\n[effects.worn]\nwear = "3 um"\n[effects.kneaded]\nyielding = "2 um/N"\n'
+Read = Callable[..., RowsFile]
+OFFER = Offer("stage", STAGE, Origin("stage", "", "", "", "module:stage"))
+
+
+@pytest.fixture
+def rows(tmp_path: Path) -> Read:
+    """Read rows for the stage."""
+
+    def read(text: str, stated: str = ALL) -> RowsFile:
+        (tmp_path / "rows.csv").write_text(text)
+        return read_rows(tmp_path / "rows.csv", OFFER, setup_from_text(stated, OFFER, file="a.toml", folder=tmp_path))
+
+    return read
+
+
+def test_the_rows_of_a_file_make_the_conditions(rows: Read) -> None:
+    read = rows("place [mm],strokes,load [kN]\n0,100,0.001\n1,101,0.004\n0.5,103,0.002\n")
+    np.testing.assert_allclose(read.columns["way"], [1, 1, -1])
+    np.testing.assert_allclose(read.columns["strokes"], [0, 1, 3])
+    np.testing.assert_allclose(read.columns["peak"], [1, 4, 4])
+    assert read.others == ()
+    setup = setup_from_text(ALL, OFFER, file="a.toml", folder=Path())
+    shown = shown_by_gauge(setup, read).values["position"]
+    np.testing.assert_allclose(shown, [0 - 500 + 0 + 2, 1000 - 500 + 3 + 8, 500 + 500 + 9 + 8])
+
+
+def test_time_and_runs_decide_what_came_before(rows: Read) -> None:
+    read = rows("time,run,place [mm]\n3,a,0.5\n1,b,7\n2,a,0.7\n2,b,9\n1,a,0.1\n")
+    np.testing.assert_allclose(read.columns["way"], [-1, 1, 1, 1, 1])
+    assert read.others == ()
+
+
+def test_a_column_of_its_own_is_taken_as_it_is(rows: Read) -> None:
+    read = rows("place [mm],way,peak [N]\n0,-1,7\n1,-1,3\n")
+    np.testing.assert_allclose(read.columns["way"], [-1, -1])
+    np.testing.assert_allclose(read.columns["peak"], [7, 3])
+
+
+def test_without_its_column_the_inputs_file_speaks(rows: Read) -> None:
+    read = rows("strokes,note\n5,a\n,b\n9,c\n", ALL + '[conditions]\nway = -1\nstrokes = 50\npeak = "2 N"\n')
+    assert "way" not in read.columns
+    assert "peak" not in read.columns
+    np.testing.assert_allclose(read.columns["strokes"], [0, 50, 4])
+
+
+def test_the_column_it_is_made_from_is_checked(rows: Read) -> None:
+    with pytest.raises(
+        InputError, match=r"column 'load' has no unit; it is a force: write 'load \[N\]' \('peak' is made"
+    ):
+        rows("load\n5\n")
+    with pytest.raises(InputError, match=r"rows.csv:3: load: 'much' is no number"):
+        rows("load [N]\n5\nmuch\n")
+
+
+def test_a_clock_that_is_none_leaves_the_rows_as_they_stand(rows: Read) -> None:
+    read = rows("time,place [mm]\nnoon,0\nevening,1\n")
+    np.testing.assert_allclose(read.columns["way"], [1, 1])
+
+
+def test_the_time_of_the_kernel_counts_from_the_first_row_where_an_effect_needs_it(rows: Read) -> None:
+    """2 um/h of drift; the file begins at 8 h. Without such an effect a column "time" may hold anything."""
+    drift = '[effects.sensor_drift]\nposition = "2 um/h"\n'
+    read = rows("time [h]\n8\n9\n8.5\n", drift)
+    np.testing.assert_allclose(read.columns["time"], [0, 3600, 1800])
+    setup = setup_from_text(drift, OFFER, file="a.toml", folder=Path())
+    np.testing.assert_allclose(shown_by_gauge(setup, read).values["position"], [0, 2, 1], atol=1e-12)
+    assert rows("time\n12:30\n12:31\n", "[inputs]\n").others == ("time",)
+    with pytest.raises(InputError, match="column 'time' has no unit"):
+        rows("time\n8\n", drift)
+
+
+# Inputs that mean something only together: a convention, the places of an axis, a draw that knows a record.
+
+
+def weight_in(path: Path) -> float:
+    """A file that holds one number."""
+    return float(path.read_text())
+
+
+@inputs
+class Beam:
+    """A beam that is measured at some places; its load was measured too, with a known scatter."""
+
+    load: Float = given(10.0, "N", symbol="F", stated_with="load_case")
+    load_case: Literal["middle", "end"] = given("middle")
+    slack: Float = given(0.0, "N", symbol="s")
+    places: Float = given((0.0, 1.0, 2.0), "m", along="place")
+    weighed: str = given("well", note="how the load was weighed")
+    record: float | None = loaded(weight_in, default=None, note="of the balance")
+
+
+@results
+class Bending:
+    """The moment along the beam."""
+
+    place: Float = axis("m", follows="places")
+    moment: Float = found("N*m", along="place")
+
+
+def beam(given_: Beam) -> Bending:
+    """Load times the square of the place: a straight line between far points would be wrong."""
+    return Bending(place=given_.places, moment=column(given_.load + given_.slack) * np.square(given_.places))
+
+
+def scale(rng: Any, count: int, *, weighed: str) -> dict[str, Any]:
+    """A bad balance scatters, a good one does not."""
+    return {"slack": rng.normal(0.0, 0.5, count)} if weighed == "badly" else {}
+
+
+BEAM = Model(
+    name="beam",
+    title="Beam",
+    function=beam,
+    errors=[Tolerance("balance", drawn(scale, of=["weighed"]), on=["slack"])],
+)
+BEAM_OFFER = Offer("beam", BEAM, Origin("beam", "1.0", "", "", "module:beam"))
+
+
+def beam_setup(text: str) -> Setup:
+    return setup_from_text(text, BEAM_OFFER, file="beam.toml", folder=Path())
+
+
+def test_an_input_whose_meaning_is_missing_is_refused_with_its_line() -> None:
+    with pytest.raises(InputError) as caught:
+        beam_setup('[inputs]\nload = "3 N"\nslack = "1 kg"\n')
+    first, second = str(caught.value).splitlines()
+    assert first == "beam.toml:2: load means nothing without load_case; state load_case (middle, end) beside it"
+    assert second.startswith("beam.toml:3: slack")
+
+
+@pytest.mark.parametrize("text", ["", '[inputs]\nload_case = "end"\n', '[inputs]\nload = "3 N"\nload_case = "end"\n'])
+def test_what_is_explained_or_not_stated_is_taken(text: str) -> None:
+    assert beam_setup(text).inputs.load_case in {"end", "middle"}
+
+
+def test_a_wrong_meaning_is_one_fault_and_not_two() -> None:
+    with pytest.raises(InputError) as caught:
+        beam_setup('[inputs]\nload = "3 N"\nload_case = "ende"\n')
+    assert len(str(caught.value).splitlines()) == 1
+
+
+@inputs
+class Misspelt:
+    """The companion is not there."""
+
+    load: Float = given(10.0, "N", stated_with="loadcase")
+    load_case: str = given("middle")
+
+
+@inputs
+class Alone:
+    """It explains itself."""
+
+    load: Float = given(10.0, "N", stated_with="load")
+
+
+@results
+class Lost:
+    """An axis of what is no series."""
+
+    place: Float = axis("m", follows="load")
+
+
+def of_misspelt(given_: Misspelt) -> Lost:
+    return Lost(place=np.zeros(1))
+
+
+def of_alone(given_: Alone) -> Lost:
+    return Lost(place=np.zeros(1))
+
+
+@pytest.mark.parametrize(
+    ("function", "sentence"),
+    [
+        (of_misspelt, "'load' is stated with 'loadcase', which is no other input"),
+        (of_alone, "'load' is stated with 'load', which is no other input"),
+        (of_alone, "the axis 'place' follows 'load', which is no input series"),
+    ],
+)
+def test_what_goes_together_must_be_there(function: Any, sentence: str) -> None:
+    with pytest.raises(DeclarationError, match=sentence):
+        Model(name="lost", title="Lost", function=function)
+
+
+def test_a_result_is_calculated_where_it_was_measured(tmp_path: Path) -> None:
+    (tmp_path / "rows.csv").write_text("place [m],load [N]\n0.3,10\n7.5,10\n0.3,20\n,10\n")
+    machine = one_machine(beam_setup(""))
+    shown = read_by_gauge(machine, read_rows(tmp_path / "rows.csv", BEAM_OFFER, machine)).results["moment"]
+    np.testing.assert_allclose(shown, [0.9, 562.5, 1.8, np.nan], rtol=1e-12)
+
+
+def test_a_draw_sees_the_inputs_it_asks_for() -> None:
+    assert scatter_of(beam_setup("")).causes == ()
+    badly = beam_setup('[inputs]\nweighed = "badly"\n')
+    assert badly.distributions()["balance"]["slack"].sd == pytest.approx(0.5, rel=0.02)
+    drawn_ = scatter_of(badly).draw(1, 0, 4000)["slack"]
+    assert np.std(drawn_) == pytest.approx(0.5, rel=0.05)
+    changed = replace(badly, inputs=replace(badly.inputs, weighed="well"))
+    assert scatter_of(changed).causes == ()
+
+
+def by_record(rng: Any, count: int, *, record: float | None) -> dict[str, Any]:
+    """A balance that wrote down how much it scatters."""
+    return {} if record is None else {"slack": rng.normal(0.0, record, count)}
+
+
+def test_a_draw_sees_a_file_and_that_there_is_none(tmp_path: Path) -> None:
+    (tmp_path / "balance.txt").write_text("0.25")
+    errors = [Tolerance("balance", drawn(by_record, of=["record"]), on=["slack"])]
+    offer = Offer("beam", Model(name="beam", title="Beam", function=beam, errors=errors), BEAM_OFFER.origin)
+    assert setup_from_text("", offer, file="beam.toml", folder=tmp_path).distributions() == {}
+    text = '[inputs]\nrecord = { file = "balance.txt" }\n'
+    with_file = setup_from_text(text, offer, file="beam.toml", folder=tmp_path)
+    assert with_file.distributions()["balance"]["slack"].sd == pytest.approx(0.25, rel=0.02)
+
+
+def test_a_draw_asks_for_inputs_that_exist() -> None:
+    with pytest.raises(DeclarationError, match="tolerance 'balance' names 'weight', which is no input"):
+        Model(
+            name="odd", title="Odd", function=beam,
+            errors=[Tolerance("balance", drawn(scale, of=["weight"]), on=["slack"])],
+        )  # fmt: skip

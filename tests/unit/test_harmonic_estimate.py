@@ -4,9 +4,20 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.optimize import least_squares
+from scipy.special import gammaln
 
-from harmonic_fractal.estimate import Estimate, Estimation, estimate_of
-from harmonic_fractal.generators import brownian_profiles
+from harmonic_fractal.estimate import (
+    Estimate,
+    Estimation,
+    block_weights,
+    estimate_of,
+    noise_fit,
+    roughness_length_of,
+    straight_fit,
+    window_sizes,
+)
+from harmonic_fractal.generators import brownian_profiles, brownian_surface
 from harmonic_fractal.surface import Lines
 
 SPACING = 0.4e-6
@@ -232,3 +243,242 @@ def test_each_line_fitted_alone() -> None:
     assert found.dimension == pytest.approx(np.mean(dimensions), rel=1e-12)
     assert np.log(found.roughness) == pytest.approx(np.mean([np.log(single.roughness) for single in singles]), rel=1e-9)
     assert found.line_scatter == pytest.approx(np.std(dimensions, ddof=1), rel=1e-9)
+
+
+# The fit of a power law with the noise of the instrument, against scipy's, and on surfaces with known noise.
+
+LAGS = 0.4e-6 * np.unique(np.round(np.geomspace(1, 50, 16)))
+
+
+def law(amplitude: float, slope: float, noise: float) -> np.ndarray:
+    """A lag^s + 2 sigma^2."""
+    return np.asarray(amplitude * (LAGS / LAGS[0]) ** slope + 2.0 * noise**2)
+
+
+@pytest.mark.parametrize("slope", [0.1, 0.6, 1.0, 1.4, 1.9])
+@pytest.mark.parametrize("noise", [0.0, 0.3, 1.0, 3.0])
+def test_an_exact_law_is_found_exactly(slope: float, noise: float) -> None:
+    """Exponent, level and noise."""
+    found = noise_fit(LAGS, law(1e-16, slope, noise * 1e-8))
+    assert float(found.slope) == pytest.approx(slope, abs=2e-4)
+    assert float(found.noise) == pytest.approx(noise * 1e-8, abs=2e-11)
+    assert float(found.intercept + found.slope * np.log(LAGS[0])) == pytest.approx(np.log(1e-16), abs=2e-3)
+    assert float(found.r_squared) == pytest.approx(1.0, abs=1e-6)
+
+
+def reference(values: np.ndarray) -> float:
+    """The least sum of squares that scipy finds, from many starts, with the same bounds."""
+    x, y = np.log(LAGS / LAGS[0]), np.log(values)
+
+    def left(p: np.ndarray) -> np.ndarray:
+        return np.asarray(p[0] + np.log(np.exp(p[1] * x) + p[2]) - y)
+
+    bounds = ([-np.inf, 0.02, 0.0], [np.inf, 1.98, np.inf])
+    starts = [(y[0], slope, share) for slope in (0.2, 0.8, 1.4) for share in (1e-3, 1.0, 10.0)]
+    return min(2.0 * least_squares(left, start, bounds=bounds, xtol=1e-15, ftol=1e-15).cost for start in starts)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_the_least_squares_are_those_of_scipy(seed: int) -> None:
+    """On scattered values: no other start finds a better fit."""
+    rng = np.random.default_rng(seed)
+    values = law(1e-16, rng.uniform(0.2, 1.8), rng.uniform(0.0, 2e-8)) * np.exp(0.1 * rng.standard_normal(LAGS.size))
+    found = noise_fit(LAGS, values)
+    model = np.exp(found.intercept) * LAGS**found.slope + 2.0 * found.noise**2
+    ours = float(np.sum(np.log(values / model) ** 2))
+    assert ours <= reference(values) * (1 + 1e-4) + 1e-12
+
+
+def test_a_straight_fit_is_that_of_a_polynomial_of_first_degree() -> None:
+    """numpy.polyfit, and R^2 by the correlation of both logarithms."""
+    values = law(1e-16, 0.9, 5e-9)
+    found, x, y = straight_fit(LAGS, values), np.log(LAGS), np.log(values)
+    np.testing.assert_allclose([found.slope, found.intercept], np.polyfit(x, y, 1), rtol=1e-9)
+    assert float(found.r_squared) == pytest.approx(np.corrcoef(x, y)[0, 1] ** 2, rel=1e-9)
+
+
+def test_a_noisy_fractal_is_accepted_with_its_noise_taken_off() -> None:
+    """The local slopes are those of S less the noise; the short lags, which tell the noise, stay in the fit."""
+    rng = np.random.default_rng(4)
+    heights = brownian_profiles(1.4, 1e-16, (100, 1000), rng) + 1.5e-8 * rng.standard_normal((100, 1000))
+    found = estimate_of(Lines(heights, 0.4e-6), "x", Estimation(resamples=50, noise_aware=True))
+    assert found.is_accepted
+    assert found.dimension == pytest.approx(1.4, abs=0.05)
+    assert found.lags[0] == pytest.approx(0.4e-6)
+    np.testing.assert_allclose(found.local_dimensions[:3], 1.4, atol=0.08)  # half of the noise left: 1.6 and more
+    assert found.resampled.shape == (50, 2)
+
+
+def test_white_noise_alone_is_refused_by_the_fit_with_noise_too() -> None:
+    """Nothing is left when the noise is taken off."""
+    heights = 1e-8 * np.random.default_rng(4).standard_normal((100, 500))
+    assert not estimate_of(Lines(heights, 0.4e-6), "x", Estimation(resamples=0, noise_aware=True)).is_accepted
+
+
+def test_the_share_of_noise_stands_beside_a_fit_without_it() -> None:
+    """Noise of a third of S at one spacing: 2 sigma^2 = S/2 makes the share 1/3; no noise, no share."""
+    rng = np.random.default_rng(4)
+    clean = brownian_profiles(1.4, 1e-16, (200, 1000), rng)
+    noisy = clean + 0.5e-8 * rng.standard_normal(clean.shape)
+    for heights, share in ((clean, 0.0), (noisy, 1.0 / 3.0)):
+        found = estimate_of(Lines(heights, 0.4e-6), "x", Estimation(resamples=0, fit="all"))
+        assert found.noise_share == pytest.approx(share, abs=0.05)
+        assert found.noise_dimension == pytest.approx(1.4, abs=0.03)
+
+
+def test_smooth_short_lags_are_no_noise() -> None:
+    """A filtered surface without noise: the fit with noise leaves its smooth lags out as the plain fit does."""
+    rng = np.random.default_rng(5)
+    kernel = np.array([0.25, 0.5, 0.25])
+    lines = brownian_profiles(1.5, 1e-16, (100, 1502), rng)
+    heights = np.stack([np.convolve(line, kernel, mode="valid") for line in lines])
+    plain, aware = (
+        estimate_of(Lines(heights, 0.4e-6), "x", Estimation(resamples=0, noise_aware=aware)) for aware in (False, True)
+    )
+    assert aware.lags[0] == plain.lags[0] > 0.4e-6
+    assert aware.dimension == pytest.approx(plain.dimension, abs=0.01)
+
+
+def test_a_plain_fit_of_a_noisy_surface_warns() -> None:
+    """With both dimensions; a fit with noise, and a surface without, have nothing to say."""
+    rng = np.random.default_rng(4)
+    clean = brownian_profiles(1.5, 1e-16, (100, 1000), rng)
+    noisy = clean + 1e-8 * rng.standard_normal(clean.shape)
+    plain, aware, quiet = (
+        estimate_of(Lines(heights, 0.4e-6), "x", Estimation(resamples=0, noise_aware=aware))
+        for heights, aware in ((noisy, False), (noisy, True), (clean, False))
+    )
+    assert plain.is_accepted
+    assert len(plain.warnings) == 1
+    assert f"dimension {plain.noise_dimension:.3f}, not {plain.dimension:.3f}" in plain.warnings[0]
+    assert aware.warnings == quiet.warnings == ()
+
+
+# The roughness-length method: windows and the roughness in them, and the dimension of lines of known truth.
+
+
+def test_windows_run_from_eight_points_to_a_tenth_of_the_line() -> None:
+    """None where a line is too short for one."""
+    sizes = window_sizes(500)
+    assert (sizes[0], sizes[-1], len(sizes)) == (8, 50, 12)
+    assert window_sizes(79).size == 0
+
+
+def test_roughness_in_a_window_is_that_about_its_own_line() -> None:
+    """Window by window with numpy.polyfit; those that hold a hole are left out."""
+    heights = brownian_profiles(1.5, 1.0, (3, 200), np.random.default_rng(1))
+    heights[1, 77] = np.nan
+    found = roughness_length_of(heights, 0.5)
+    for window, roughness in zip(found.windows, found.roughness, strict=True):
+        size = round(window / 0.5)
+        values = []
+        for line in heights:
+            for first in range(0, 200 - size + 1, size // 2):
+                piece, x = line[first : first + size], np.arange(size)
+                if np.isfinite(piece).all():
+                    left = piece - np.polyval(np.polyfit(x, piece, 1), x)
+                    values.append(np.sqrt(np.sum(left**2) / (size - 2)))
+        assert roughness == pytest.approx(np.mean(values), rel=1e-9)
+
+
+@pytest.mark.parametrize("dimension", [1.3, 1.5, 1.7])
+def test_dimension_of_long_lines(dimension: float) -> None:
+    """Within 0.04: windows of few points see too little of the long waves, so it comes out a little high."""
+    heights = brownian_profiles(dimension, 1.0, (50, 4000), np.random.default_rng(2))
+    assert roughness_length_of(heights, 1.0).dimension == pytest.approx(dimension, abs=0.04)
+
+
+def test_white_noise_is_nearly_as_rough_in_any_window() -> None:
+    """The mean standard deviation of w - 2 free values: sqrt(2/(w-2)) Gamma((w-1)/2)/Gamma((w-2)/2) of theirs."""
+    heights = np.random.default_rng(2).standard_normal((50, 4000))
+    found = roughness_length_of(heights, 1.0)
+    free = found.windows - 2.0
+    expected = np.sqrt(2.0 / free) * np.exp(gammaln((free + 1.0) / 2.0) - gammaln(free / 2.0))
+    np.testing.assert_allclose(found.roughness, expected, rtol=0.005)
+    assert found.dimension == pytest.approx(2.0, abs=0.02)
+
+
+def test_straight_lines_are_not_rough() -> None:
+    """Nothing is left in any window, and no dimension is told."""
+    found = roughness_length_of(np.zeros((2, 200)), 1.0)
+    assert np.isnan(found.dimension)
+
+
+# The scatter of D and G: resampled lines and pieces against many surfaces made independently.
+
+
+def resampled_of(heights: np.ndarray, **settings: object) -> Estimate:
+    """The estimate along x, over all lags whatever their local slopes."""
+    return estimate_of(Lines(heights, SPACING), "x", Estimation(fit="all", **settings))  # type: ignore[arg-type]
+
+
+def pair(found: Estimate) -> tuple[float, float]:
+    """D of the surface and ln G."""
+    return found.dimension + 1.0, float(np.log(found.roughness))
+
+
+def test_the_same_seed_draws_the_same() -> None:
+    """So a sheet is the same sheet when it is made again; another seed draws another sample."""
+    heights = brownian_profiles(1.5, STEP, (40, 300), np.random.default_rng(1))
+    first, again, other = (resampled_of(heights, seed=seed).resampled for seed in (1, 1, 2))
+    np.testing.assert_array_equal(first, again)
+    assert first.shape == (400, 2)
+    assert not np.array_equal(first, other)
+
+
+@pytest.mark.parametrize(("units", "block"), [(40, 1), (40, 10), (47, 10)])
+def test_blocks_hold_neighbours_and_every_line_alike(units: int, block: int) -> None:
+    """Every sample holds one block fewer than there are; every unit stands in as many samples as any other."""
+    weights = block_weights(units, block, 4000, 1)
+    assert set(weights.sum(axis=1)) == {float(block * (round(units / block) - 1))}
+    np.testing.assert_allclose(weights.mean(axis=0), weights.mean(), rtol=0.25)
+    joined = np.mean(weights[:, :-1] * weights[:, 1:]) - weights.mean() ** 2
+    assert joined / weights.var() == pytest.approx((block - 1) / block, abs=0.1)
+
+
+@pytest.mark.parametrize("method", ["pooled", "per_line"])
+def test_independent_lines_scatter_as_independent_surfaces_do(method: str) -> None:
+    """120 surfaces of 20 lines: each standard deviation is known to 6.5 %, and three times that is allowed."""
+    rng = np.random.default_rng(20221210)
+    surfaces = [
+        resampled_of(brownian_profiles(1.5, STEP, (20, 300), rng), resamples=100, method=method) for _ in range(120)
+    ]
+    true = np.std([pair(found) for found in surfaces], axis=0, ddof=1)
+    told = np.sqrt(np.mean([found.resampled.var(axis=0, ddof=1) for found in surfaces if found.is_accepted], axis=0))
+    np.testing.assert_allclose(told / true, 1.0, atol=0.2)
+
+
+@pytest.mark.parametrize("shape", [(5, 500), (100, 100)])
+def test_pieces_see_most_of_the_scatter(shape: tuple[int, int]) -> None:
+    """Five lines, a patch that is alike in both directions: 0.65 to 1.1 of the true standard deviation."""
+    rng = np.random.default_rng(20221210)
+    made = brownian_surface if shape[0] == 100 else brownian_profiles
+    surfaces = [resampled_of(made(1.6, STEP, shape, rng), resamples=100) for _ in range(80)]
+    true = np.std([pair(found) for found in surfaces], axis=0, ddof=1)
+    told = np.sqrt(np.mean([found.resampled.var(axis=0, ddof=1) for found in surfaces if found.is_accepted], axis=0))
+    assert (told / true > 0.65).all()
+    assert (told / true < 1.1).all()
+
+
+def test_lines_that_repeat_their_neighbours_say_nothing_more() -> None:
+    """Each line ten times over: ten times as many lines, but no smaller scatter."""
+    heights = brownian_profiles(1.5, STEP, (30, 500), np.random.default_rng(9))
+    single, repeated = resampled_of(heights), resampled_of(np.repeat(heights, 10, axis=0))
+    ratio = repeated.resampled.std(axis=0) / single.resampled.std(axis=0)
+    assert (ratio > 0.6).all()
+    assert (ratio < 1.7).all()
+
+
+def test_the_size_of_the_blocks_can_be_stated() -> None:
+    """Blocks of lines even where pieces would be drawn."""
+    heights = brownian_surface(1.5, STEP, (100, 200), np.random.default_rng(3))
+    narrow, chosen = resampled_of(heights, block=1).resampled, resampled_of(heights).resampled
+    assert chosen[:, 0].std() > 2.0 * narrow[:, 0].std()
+
+
+@pytest.mark.parametrize("method", ["pooled", "per_line"])
+def test_many_lines_are_taken_together_by_neighbours(method: str) -> None:
+    """6000 lines scatter as 1500 do, but half as far: within 20 %, three times the error of both."""
+    heights = brownian_profiles(1.5, STEP, (6000, 120), np.random.default_rng(6))
+    many, few = (resampled_of(part, method=method).resampled.std(axis=0) for part in (heights, heights[:1500]))
+    np.testing.assert_allclose(2.0 * many / few, 1.0, atol=0.2)

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from harmonic_fractal.estimate import Estimation, estimate_of
 from harmonic_fractal.figures import (
-    conventions,
     flanks,
     interface,
     map_figure,
@@ -106,13 +105,6 @@ def test_every_result_stands_in_one_section() -> None:
     named = [name for section in HARMONIC_FRACTAL.sheet for name in section.names]
     assert len(named) == len(set(named))
     assert set(HARMONIC_FRACTAL.result_fields) == set(named)
-
-
-def test_sections_are_in_the_order_of_the_calculation() -> None:
-    order = ["flanks", "D and G", "Stiffness of one pair", "Clearance", "Mesh", "Torsion"]
-    found = [section.title for section in HARMONIC_FRACTAL.sheet]
-    places = [next(place for place, title in enumerate(found) if word in title) for word in order]
-    assert places == sorted(places)
 
 
 # Flanks
@@ -254,18 +246,6 @@ def test_structure_figure_of_a_refused_surface_is_for_comparison(bad: Flank) -> 
 # D and G
 
 
-def test_conventions_of_one_surface() -> None:
-    """At D_s = 1.5 and a density of 1.5: the areal G is 3.87 times that of a profile, and 2 pi are missing usually."""
-    found = run(fractal_dimension=2.5, fractal_roughness="1e-9 m", convention="profile", reference_torque="1 N*m")
-    rows = conventions(found.record).rows
-    values = {str(row[0]).split(",")[0]: row[2] for row in rows[:1]} | {"profile": rows[2][2], "usual": rows[3][2]}
-    assert values["areal"] == pytest.approx(3.87e-9, rel=2e-3)
-    assert values["profile"] == pytest.approx(1e-9)
-    assert values["usual"] == pytest.approx(2 * np.pi * 1e-9)
-    assert rows[1][2] == pytest.approx(3.87e-9 * 2 / np.pi, rel=2e-3)  # q = 2/pi at 1.5
-    assert "without (2π)" in str(rows[3][0])
-
-
 def test_both_flanks_stand_beside_their_sum() -> None:
     found = run(mating_dimension=2.4, mating_roughness="1e-11 m")
     rows = table(interface(found.record), "Both flanks").rows
@@ -317,29 +297,6 @@ def test_single_contacts_are_spheres(stated: Calculation) -> None:
     assert rows["the largest"][1] == pytest.approx(2e9 * float(stated.answers["clearance"]))
 
 
-def test_table_over_the_load(stated: Calculation) -> None:
-    rows = table(stiffness(stated.record), "over its load").rows
-    known = {row[0]: row[1] for row in rows}
-    for load, expected in (
-        (0.1, 1.59e7),
-        (1.0, 1.19e8),
-        (5.0, 4.82e8),
-        (10.0, 8.80e8),
-        (25.0, 1.95e9),
-        (100.0, 6.50e9),
-    ):
-        assert known[load] == pytest.approx(expected, rel=3e-3)
-
-
-def test_below_resolution_is_a_warning_on_sheet_and_terminal(stated: Calculation) -> None:
-    assert "Extrapolated below resolution" in words(stiffness(stated.record), "warning")
-    assert any("extrapolated below resolution" in text for text in stated.warnings)
-    coarse = run(sampling="0.05 um")
-    assert float(coarse.answers["resolved_share"]) > 0.3
-    assert words(stiffness(coarse.record), "warning") == ""
-    assert not any("resolution" in text for text in coarse.warnings)
-
-
 def test_all_plastic_is_a_warning_on_sheet_and_terminal() -> None:
     found = run(pair_load="1e-5 N")
     assert "All contacts of the pair are plastic" in words(stiffness(found.record), "warning")
@@ -385,17 +342,6 @@ def test_torsion_figure_goes_through_the_results() -> None:
 def test_a_drive_that_turns_the_other_way_has_the_same_table(stated: Calculation) -> None:
     other = table(torsion(run(torque="-25 N*m").record), "torques of the catalogue")
     assert other.rows == table(torsion(stated.record), "torques of the catalogue").rows
-
-
-def test_a_sweep_shows_what_changes() -> None:
-    setup = default_setup(HARMONIC_FRACTAL)
-    (study,) = (study for study in setup.studies if study.name == "sweep")
-    found = calculate(replace(setup, studies=(replace(study, points=6),))).outcomes["sweep"].blocks()  # type: ignore[type-var]
-    extremes = table(found, "Extremes along the torque")
-    rows = {row[0]: row[2:] for row in extremes.rows}
-    assert rows["catalogue_torsion"] == pytest.approx((0.0, 0.0, 2019.6, 50.0), rel=1e-4)
-    assert not {"dimension", "stiffness", "clearance", "cup_moment"} & set(rows)
-    assert "other results do not change" in extremes.note
 
 
 def test_an_input_file_that_is_not_given_is_said_so() -> None:

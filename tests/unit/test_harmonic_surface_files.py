@@ -1,6 +1,6 @@
 """Surfaces from files: every layout of text, what a file says of itself, profilometer formats, and what is refused."""
 
-import builtins
+import pickle
 from pathlib import Path
 from typing import Any
 
@@ -8,8 +8,20 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from harmonic_fractal.flank import read_flank
-from harmonic_fractal.surface import Lines, Surface, pooled
+from harmonic_fractal import flank
+from harmonic_fractal.estimate import Estimate
+from harmonic_fractal.flank import Flank, read_flank
+from harmonic_fractal.surface import (
+    Direction,
+    Lines,
+    Surface,
+    cut,
+    pooled,
+    quantisation,
+    spikes_of,
+    without_form,
+    without_line,
+)
 from harmonic_fractal.surface_files import FileLayout, Reading, read_surface
 
 SURFACES = Path(__file__).parents[1] / "data" / "surfaces"
@@ -313,21 +325,6 @@ def test_text_exports_of_instruments() -> None:
 # The optional library
 
 
-def test_without_the_library_texts_work_and_other_files_say_what_to_do(monkeypatch: pytest.MonkeyPatch) -> None:
-    real = builtins.__import__
-
-    def without(name: str, *arguments: Any, **options: Any) -> Any:
-        if name.split(".")[0] == "SurfaceTopography":
-            raise ImportError(name)
-        return real(name, *arguments, **options)
-
-    monkeypatch.setattr(builtins, "__import__", without)
-    for file in ("metropro-1.dat", "al3d-1.al3d"):
-        with pytest.raises(ValueError, match=r"truing\[surfaces\].*as text"):
-            read_flank(SURFACES / file)
-    assert read_flank(SURFACES / "hfm-1.hfm").surface.heights.size == 9600
-
-
 @pytest.mark.parametrize(
     ("layout", "words"),
     [
@@ -414,3 +411,411 @@ def test_lines_along_x_along_y_and_both() -> None:
     assert np.isnan(both[3:, 3]).all()
     with pytest.raises(ValueError, match="cannot be pooled"):
         pooled(Lines(HEIGHTS, 1e-6), Lines(HEIGHTS, 1.02e-6))
+
+
+# Cleaning of a surface and the options of a flank: form, rectangle, lines, spikes, choice, and every refusal.
+
+Array = NDArray[np.float64]
+SHAPE = (70, 90)
+
+
+def noise(shape: tuple[int, int] = SHAPE, seed: int = 5) -> Array:
+    return np.random.default_rng(seed).standard_normal(shape)
+
+
+def holed(heights: Array, share: float, seed: int = 8) -> Array:
+    return np.where(np.random.default_rng(seed).random(heights.shape) < share, np.nan, heights)
+
+
+# Form
+
+
+def second_order(rows: int, points: int) -> Array:
+    x, y = np.arange(points)[None, :] * 1.0, np.arange(rows)[:, None] * 1.0
+    return 7.0 - 0.3 * x + 0.5 * y + 0.02 * x**2 - 0.013 * x * y + 0.04 * y**2
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3])
+def test_second_order_form_goes_entirely(share: float) -> None:
+    form = holed(second_order(*SHAPE), share)
+    assert np.nanmax(np.abs(without_form(form, "second_order"))) < 1e-10
+    assert np.array_equal(np.isnan(without_form(form, "second_order")), np.isnan(form))
+
+
+def test_plane_goes_entirely_and_none_leaves_all() -> None:
+    x, y = np.arange(90.0)[None, :], np.arange(70.0)[:, None]
+    assert np.abs(without_form(4.0 + 2.0 * x - 3.0 * y, "plane")).max() < 1e-10
+    assert np.array_equal(without_form(4.0 + 2.0 * x - 3.0 * y, "none"), 4.0 + 2.0 * x - 3.0 * y)
+    assert np.abs(without_form(4.0 + 2.0 * x - 3.0 * y + 0.01 * x * y, "plane")).max() > 1.0  # the cross term stays
+
+
+def test_the_form_of_one_line_is_a_parabola() -> None:
+    x = np.arange(200.0)[None, :]
+    assert np.abs(without_form(106.0 + 0.2 * x - 0.003 * x**2, "second_order")).max() < 1e-9
+    assert np.abs(without_form(106.0 + 0.2 * x, "plane")).max() < 1e-10
+    rest = without_form(x**3, "second_order")[0]
+    assert rest == pytest.approx(x[0] ** 3 - np.polyval(np.polyfit(x[0], x[0] ** 3, 2), x[0]), abs=1e-5)
+
+
+@pytest.mark.parametrize("form", ["plane", "second_order"])
+def test_what_is_left_is_the_rest_of_least_squares(form: Any) -> None:
+    heights = holed(noise(), 0.1)
+    known = np.isfinite(heights)
+    y, x = (place[known] / 50.0 for place in np.mgrid[0:70, 0:90])
+    terms = [np.ones_like(x), x, y] + ([x * x, x * y, y * y] if form == "second_order" else [])
+    design = np.stack(terms, axis=1)
+    expected = heights[known] - design @ np.linalg.lstsq(design, heights[known], rcond=None)[0]
+    assert without_form(heights, form)[known] == pytest.approx(expected, abs=1e-12)
+    assert np.array_equal(heights, holed(noise(), 0.1), equal_nan=True)  # the argument is left alone
+
+
+def test_form_of_a_high_part_keeps_the_digits_of_its_roughness() -> None:
+    rough = 1e-9 * noise()
+    lifted = 0.1066 + 1e-4 * second_order(*SHAPE) / 100.0 + rough
+    assert without_form(lifted, "second_order") == pytest.approx(without_form(rough, "second_order"), abs=1e-16 * 200)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.2])
+def test_each_line_loses_its_own_straight_line(share: float) -> None:
+    heights = holed(noise(), share) + np.outer(np.arange(70.0), np.arange(90.0)) + np.arange(70.0)[:, None]
+    found = without_line(heights)
+    for before, after in zip(heights, found, strict=True):
+        known = np.isfinite(before)
+        x = np.arange(90.0)[known]
+        assert after[known] == pytest.approx(before[known] - np.polyval(np.polyfit(x, before[known], 1), x), abs=1e-10)
+        assert np.isnan(after[~known]).all()
+
+
+def test_lines_of_one_point_or_of_none() -> None:
+    found = without_line(np.array([[np.nan, 3.0, np.nan], [np.nan, np.nan, np.nan], [1.0, np.nan, 5.0]]))
+    assert np.array_equal(np.isnan(found), [[1, 0, 1], [1, 1, 1], [0, 1, 0]])
+    assert found[[0, 2, 2], [1, 0, 2]] == pytest.approx(0.0, abs=1e-15)
+
+
+# Rectangle
+
+PATCH = Surface(np.arange(300.0 * 600.0).reshape(300, 600), 0.4e-6, 0.5e-6, "patch")
+
+
+def test_the_rectangle_of_the_patent_from_the_middle() -> None:
+    found = cut(PATCH, (200e-6, 100e-6))
+    assert found.heights.shape == (201, 501)
+    assert found.heights[0, 0] == 49 * 600 + 49
+    assert (found.spacing_x, found.spacing_y) == (0.4e-6, 0.5e-6)
+
+
+def test_a_rectangle_from_a_corner() -> None:
+    found = cut(PATCH, (40e-6, 20e-6), (10e-6, 5e-6))
+    assert found.heights.shape == (41, 101)
+    assert found.heights[0, 0] == 10 * 600 + 25
+
+
+def test_a_rectangle_that_is_the_whole() -> None:
+    assert cut(PATCH, (599 * 0.4e-6, 299 * 0.5e-6)).heights.shape == (300, 600)
+    assert cut(PATCH, (600 * 0.4e-6, 300 * 0.5e-6)).heights.shape == (300, 600)  # points are taken as wide as spacing
+    assert cut(Surface(np.arange(50.0)[None], 1e-6, np.nan, "line"), (9e-6,), (5e-6,)).heights[0, 0] == 5
+
+
+@pytest.mark.parametrize(
+    ("size", "corner", "words"),
+    [
+        ((300e-6, 100e-6), None, "leaves the surface along x: 300 um, and there are 239.6 um"),
+        ((200e-6, 200e-6), None, "leaves the surface along y"),
+        ((200e-6, 100e-6), (50e-6, 0.0), "along x: 200 um from 50 um"), ((200e-6,), None, "two lengths"),
+        ((200e-6, 100e-6), (0.0,), "two lengths"),
+    ],
+)  # fmt: skip
+def test_rectangles_that_are_refused(size: Any, corner: Any, words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        cut(PATCH, size, corner)
+
+
+# Spikes
+
+
+def hampel_by_loop(line: Array) -> list[bool]:
+    found = []
+    for place, value in enumerate(line):
+        window = line[max(0, place - 5) : place + 6]
+        window = window[np.isfinite(window)]
+        middle = np.median(window) if window.size >= 6 else np.nan
+        limit = 4.0 * 1.4826022185 * np.median(np.abs(window - middle)) if window.size >= 6 else np.nan
+        found.append(bool(abs(value - middle) > limit))
+    return found
+
+
+@pytest.mark.parametrize("share", [0.0, 0.15, 0.5])
+def test_spikes_are_those_of_the_loop_over_points(share: float) -> None:
+    heights = holed(noise() ** 3, share)
+    found = spikes_of(heights)
+    assert found.tolist() == [hampel_by_loop(line) for line in heights]
+    assert found.any()
+    assert not spikes_of(holed(noise() ** 3, 0.9)).any()
+
+
+def test_spikes_in_a_wide_map_of_many_blocks() -> None:
+    heights = np.cumsum(noise((3, 100_000)), axis=1)
+    heights[2, 99_990] += 100.0
+    assert spikes_of(heights)[2, 99_990]
+    assert np.array_equal(spikes_of(heights)[2], spikes_of(heights[2:])[0])
+
+
+def test_steps_of_the_instrument_are_no_spikes() -> None:
+    line = np.zeros((1, 100))
+    line[0, 40] = 2.0
+    line[0, 70] = 9.0
+    assert np.flatnonzero(spikes_of(line)).tolist() == [40, 70]
+    assert np.flatnonzero(spikes_of(line, 2.0)).tolist() == [70]
+
+
+def test_quantisation_is_the_least_step() -> None:
+    counts = np.round(noise() * 20.0)
+    assert quantisation(counts * 8.7e-12) == pytest.approx(8.7e-12, rel=1e-9)
+    assert quantisation(holed(counts * 8.7e-12 + 1e-9, 0.2)) == pytest.approx(8.7e-12, rel=1e-6)
+    assert quantisation(noise()) < 1e-4
+    assert quantisation(np.full((3, 3), 2.0)) == 0.0
+
+
+# A flank from a file
+
+
+def write(folder: Path, heights: Array, *lines: str, name: str = "flank.csv") -> Path:
+    head = lines or ("# spacing = 0.4 um", "# height_unit = um")
+    rows = [",".join("" if np.isnan(value) else repr(value) for value in row) for row in heights.tolist()]
+    file = folder / name
+    file.write_text("\n".join([*head, *rows]) + "\n", encoding="utf-8")
+    return file
+
+
+def rough(seed: int = 1, shape: tuple[int, int] = (150, 180)) -> Array:
+    """A surface of dimension 2.5 by its spectrum: power falls with the cube of the wave number."""
+    waves = np.hypot(np.fft.fftfreq(shape[0])[:, None], np.fft.fftfreq(shape[1])[None, :])
+    filtered = np.fft.fft2(noise(shape, seed)) * np.where(waves > 0, np.maximum(waves, 1e-9) ** -1.5, 0.0)
+    heights = np.real(np.fft.ifft2(filtered))
+    return np.asarray(heights / heights.std())
+
+
+@pytest.fixture(scope="module")
+def alike(tmp_path_factory: pytest.TempPathFactory) -> Flank:
+    """The rough surface as it is read without any option."""
+    return read_flank(write(tmp_path_factory.mktemp("alike"), rough()))
+
+
+def test_a_flank_alike_in_all_directions_is_pooled(alike: Flank) -> None:
+    assert alike.chosen == "both"
+    assert alike.reason == ""
+    assert [estimate.direction for estimate in alike.estimates] == ["x", "y", "both"]
+    used = alike.used
+    assert used is not None
+    assert used.dimension == pytest.approx(1.5, abs=0.08)
+    assert alike.resampled is used.resampled
+    assert len(alike.resampled) > 100
+    assert alike.height == pytest.approx(np.nanmax(alike.surface.heights) - np.nanmin(alike.surface.heights))
+
+
+def test_spacings_that_differ_cannot_be_pooled(tmp_path: Path) -> None:
+    file = write(tmp_path, rough(), "# spacing_x = 0.4 um", "# spacing_y = 0.5 um", "# height_unit = um")
+    found = read_flank(file)
+    assert found.chosen == "x"
+    assert "direction of sliding, x, is used" in found.warnings[-1]
+    assert read_flank(file, sliding="y").chosen == "y"
+    with pytest.raises(ValueError, match="cannot be pooled"):
+        read_flank(file, direction="both")
+
+
+def test_a_flank_that_is_rougher_along_one_direction_is_not_pooled(tmp_path: Path) -> None:
+    """Ridges, of a random walk, above a surface alike in all directions: the same dimension, but other heights."""
+    walk = np.cumsum(np.random.default_rng(3).normal(0.0, 0.6, 180))
+    ridges = walk + rough()
+    found = read_flank(write(tmp_path, ridges))
+    assert found.chosen == "x"
+    assert [estimate.dimension for estimate in found.estimates] == pytest.approx([1.5, 1.5], abs=0.15)
+    assert "its structure function along x is" in found.warnings[0]
+    assert read_flank(write(tmp_path, ridges.T), sliding="y").chosen == "y"
+
+
+def test_a_direction_without_relief_is_refused(tmp_path: Path) -> None:
+    """Ridges alone: along them there is nothing but the rounding of the numbers in the file."""
+    profile = rough(2, (3, 300))[0]
+    found = read_flank(write(tmp_path, np.broadcast_to(profile, (150, 300))), form="none")
+    assert [bool(estimate.reason) for estimate in found.estimates] == [False, True]
+    assert found.chosen == "x"
+    assert "along y" in " ".join(found.warnings)
+
+
+@pytest.mark.parametrize("direction", ["x", "y", "both"])
+def test_the_direction_that_is_asked_for(direction: str, tmp_path: Path) -> None:
+    found = read_flank(write(tmp_path, rough()), direction=direction)
+    assert found.chosen == direction
+
+
+def settled(direction: Direction, dimension: float, reason: str = "") -> Estimate:
+    nothing = np.empty(0)
+    return Estimate(
+        direction=direction, lags=nothing, values=nothing, local_lags=nothing, local_dimensions=nothing,
+        dimension=dimension, roughness=1e-11, r_squared=0.99, line_scatter=0.05, noise=0.0, range=(1e-6, 2e-5),
+        reason=reason, resampled=np.full((3, 2), dimension), spacing=4e-7,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "sliding", "chosen", "words"),
+    [
+        ((1.50, ""), (1.60, ""), "x", "both", ""), ((1.50, ""), (1.66, ""), "x", "x", "anisotropic"),
+        ((1.50, ""), (1.66, ""), "y", "y", "1.500 along x and 1.660 along y"),
+        ((1.50, "too smooth"), (1.60, ""), "x", "y", "y alone is used; along x: too smooth"),
+        ((1.50, ""), (1.60, "too rough"), "y", "x", "x alone is used; along y: too rough"),
+        ((1.50, "too smooth"), (1.60, "too rough"), "x", None, ""),
+    ],
+)  # fmt: skip
+def test_the_choice_of_direction(
+    x: Any, y: Any, sliding: str, chosen: str | None, words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    said = {"x": settled("x", *x), "y": settled("y", *y), "both": settled("both", 1.55)}
+
+    def estimate_of(lines: Lines, direction: Direction, settings: Any) -> Estimate:
+        assert np.nanmax(np.abs(np.nanmean(lines.heights, axis=1))) < 1e-15  # each line is level
+        return said[direction]
+
+    monkeypatch.setattr(flank, "estimate_of", estimate_of)
+    found = read_flank(write(tmp_path, rough()), sliding=sliding)
+    assert found.chosen == chosen
+    assert words in " ".join(found.warnings)
+    assert found.reason == ("along x: too smooth; along y: too rough" if chosen is None else "")
+
+
+def test_a_flank_travels_between_processes_and_cannot_be_changed(alike: Flank) -> None:
+    content = pickle.dumps(alike)
+    again = pickle.loads(content)
+    assert np.array_equal(again.surface.heights, alike.surface.heights, equal_nan=True)
+    assert again.used.dimension == alike.used.dimension  # type: ignore[union-attr]
+    assert len(content) < 2.5 * alike.raw.heights.nbytes
+    for surface in (alike.raw, alike.surface, again.surface):
+        with pytest.raises(ValueError, match="read-only"):
+            surface.heights[0, 0] = 1.0
+
+
+def test_shares_and_heights_of_the_rectangle(tmp_path: Path) -> None:
+    heights = holed(rough(1, (256, 320)), 0.03)
+    heights[:100] = np.nan  # outside of the rectangle
+    heights[200, 100:103] += 50.0
+    file = write(tmp_path, heights)
+    found = read_flank(file, rectangle=["100 um", "40 um"], corner=["0 um", "50 um"])
+    assert found.surface.heights.shape == (101, 251)
+    inside = heights[125:226, 0:251]
+    assert found.missing == pytest.approx(np.isnan(inside).mean())
+    assert 3 / inside.size <= found.spiked < 0.01
+    assert found.sq_raw == pytest.approx(np.nanstd(inside) * 1e-6)
+    assert found.sq_raw >= found.sq_plane >= found.sq_second_order > np.nanstd(found.surface.heights)
+    kept = read_flank(file, rectangle=["100 um", "40 um"], corner=["0 um", "50 um"], spikes="keep")
+    assert kept.spiked == found.spiked
+    assert kept.height > 40e-6 > found.height
+
+
+@pytest.mark.parametrize(("share", "words"), [(0.04, ""), (0.06, "points are missing, more than 5%")])
+def test_missing_points_are_said(share: float, words: str, tmp_path: Path) -> None:
+    said = " ".join(read_flank(write(tmp_path, holed(rough(), share))).warnings)
+    assert (words in said) if words else ("missing" not in said)
+
+
+def test_too_many_missing_points_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=r"2\d\.\d% of the points are missing, more than 20%"):
+        read_flank(write(tmp_path, holed(rough(), 0.21)))
+
+
+def test_many_spikes_are_said(alike: Flank, tmp_path: Path) -> None:
+    heights = rough()
+    heights += np.where(np.random.default_rng(4).random(heights.shape) < 0.03, 30.0 * heights.std(), 0.0)
+    file = write(tmp_path, heights)
+    assert "spikes, more than 2%; they were taken out" in " ".join(read_flank(file).warnings)
+    assert "they were kept" in " ".join(read_flank(file, spikes="keep").warnings)
+    assert not any("spikes" in words for words in alike.warnings)
+
+
+def test_coarse_numbers_are_said(tmp_path: Path) -> None:
+    heights = rough()
+    step = 2.0 * np.sqrt(np.mean(np.diff(heights, axis=1) ** 2))
+    said = read_flank(write(tmp_path, np.round(heights / step) * step)).warnings
+    assert any("heights come in steps of" in words and "along x" in words for words in said)
+    fine = read_flank(write(tmp_path, np.round(heights / step * 20) * step / 20)).warnings
+    assert not any("steps" in words for words in fine)
+
+
+def test_few_points(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="63 x 63 points"):
+        read_flank(write(tmp_path, rough(1, (63, 63))))
+    narrow = read_flank(write(tmp_path, rough()[:5]))
+    assert "5 points" in narrow.estimates[1].reason
+    assert narrow.chosen in {"x", None}
+    assert "64" in narrow.estimates[1].reason
+
+
+def test_a_profile_has_one_direction(tmp_path: Path) -> None:
+    line = np.cumsum(noise((1, 4000)), axis=1)
+    file = write(tmp_path, line)
+    found = read_flank(file)
+    assert [estimate.direction for estimate in found.estimates] == ["x"]
+    x = np.arange(4000.0)
+    form = np.polyval(np.polyfit(x, line[0], 2), x)
+    kept = read_flank(file, spikes="keep").surface.heights[0]
+    assert kept == pytest.approx((line[0] - form) * 1e-6, abs=1e-15)  # the parabola, and no line beside it
+    for options in ({"direction": "y"}, {"direction": "both"}, {"sliding": "y"}):
+        with pytest.raises(ValueError, match="one profile has the direction x alone"):
+            read_flank(file, **options)  # type: ignore[arg-type]
+    assert read_flank(file, rectangle=["0.8 mm"]).surface.heights.shape == (1, 2001)
+
+
+def test_options_reach_the_estimate(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    seen = []
+
+    def estimate_of(lines: Lines, direction: Direction, settings: Any) -> Estimate:
+        seen.append(settings)
+        return settled(direction, 1.5)
+
+    monkeypatch.setattr(flank, "estimate_of", estimate_of)
+    file = write(tmp_path, rough())
+    read_flank(file, method="per_line", noise_aware=True, fit="all", shortest_lag="0.8 um", longest_lag="10 um")
+    assert (seen[-1].method, seen[-1].noise_aware, seen[-1].fit) == ("per_line", True, "all")
+    assert (seen[-1].shortest_lag, seen[-1].longest_lag) == pytest.approx((0.8e-6, 10e-6))
+    read_flank(file, filter_width="0.5 um")
+    assert seen[-1].shortest_lag == pytest.approx(1.5e-6)
+    read_flank(file, filter_width="0.5 um", shortest_lag="1 um")
+    assert seen[-1].shortest_lag == pytest.approx(1e-6)
+    stated = write(tmp_path, rough(), "# spacing = 0.4 um", "# height_unit = um", "# filter_width = 1 um")
+    found = read_flank(stated)
+    assert seen[-1].shortest_lag == pytest.approx(3e-6)
+    assert "lateral filter of 1 um: lags below 3 um" in " ".join(found.warnings)
+    read_flank(stated, filter_width="0 um")
+    assert np.isnan(seen[-1].shortest_lag)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"form": "cubic"}, "form = 'cubic', but it is one of: second_order, plane, none"),
+        ({"spikes": True}, "spikes = true, but it is one of: remove, keep"), ({"direction": "z"}, "direction = 'z'"),
+        ({"sliding": "auto"}, "sliding = 'auto'"), ({"method": "wavelet"}, "method = 'wavelet'"),
+        ({"fit": "some"}, "fit = 'some'"), ({"form": ["plane"]}, "form = "), ({"noise_aware": "yes"}, "true or false"),
+        ({"spacing": 0.4}, 'spacing = "0.4 um"'), ({"spacing": "0.4"}, "spacing: '0.4' has no unit"),
+        ({"spacing": "0.4 kg"}, "spacing: "), ({"spacing": "-0.4 um"}, "spacing = '-0.4 um' must be above 0"),
+        ({"spacing": "1 um", "spacing_x": "1 um"}, "spacing is that of both directions"),
+        ({"height_unit": "rad"}, "the length of one count"), ({"height_unit": 3}, "is no unit"),
+        ({"height_unit": "counts"}, "the length of one count"), ({"skip_lines": -1}, "skip_lines = -1"),
+        ({"skip_lines": 1.5}, "skip_lines = 1.5"), ({"skip_lines": True}, "skip_lines = true"),
+        ({"columns": "x"}, "columns = 'x'"), ({"columns": [1]}, "columns = [1]"),
+        ({"rectangle": "0.2 mm"}, "rectangle = '0.2 mm', but it is a list"), ({"rectangle": 3}, "rectangle = 3"),
+        ({"rectangle": ["1 um"] * 3}, "list of lengths"), ({"rectangle": ["1", "1"]}, "rectangle: '1' has no unit"),
+        ({"rectangle": ["0 um", "1 um"]}, "rectangle = '0 um' must be above 0"),
+        ({"corner": ["1 um", "1 um"]}, "corner needs rectangle"),
+        ({"rectangle": ["9 um", "9 um"], "corner": ["-1 um", "1 um"]}, "corner = '-1 um'"),
+        ({"rectangle": ["9 um", "9 um"], "corner": ["500 um", "1 um"]}, "leaves the surface"),
+        ({"shortest_lag": "5 um", "longest_lag": "5 um"}, "longest_lag = 5 um must be above shortest_lag = 5 um"),
+        ({"filter_width": "5 um", "longest_lag": "10 um"}, "below 3 filter widths"),
+        ({"filter_width": "-5 um"}, "filter_width"), ({"shortest_lag": 3}, "shortest_lag = 3 needs its unit"),
+    ],
+)  # fmt: skip
+def test_options_that_are_refused(options: dict[str, Any], words: str, tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=r"\w") as error:
+        read_flank(write(tmp_path, rough()), **options)
+    assert words in str(error.value)
+    assert "\n" not in str(error.value)

@@ -104,7 +104,7 @@ def test_independent_error_bars_would_claim_ten_times_as_much(flanks: list[Flank
 def test_study_says_both(run: Calculation) -> None:
     found = run.outcomes["uncertainty"]
     assert isinstance(found, Propagated)
-    summary = found.summary("stiffness")
+    summary = found.summaries["stiffness"]
     assert 0.004 < summary.relative_sd < 0.012
     assert summary.independent_sd > 6.0 * summary.relative_sd
     assert summary.low < summary.median < summary.high

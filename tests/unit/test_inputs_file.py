@@ -3,19 +3,26 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import math
+import re
 import time
 from dataclasses import replace
 from pathlib import Path
 
+import jsonschema
 import numpy as np
 import pytest
-from sample_models import PIN_OFFER, PIN_WEAR, STAGE_OFFER, Census, faults, pin
+from jsonschema import Draft202012Validator
+from sample_models import PIN_OFFER, PIN_WEAR, RENAMED, STAGE_OFFER, Census, faults, pin
 
 from truing.declare.spreads import Band, Grade, Off, Zone
-from truing.errors import InputError
-from truing.inputs_file import read_setup, setup_from_text
-from truing.setup import Setup, default_setup
+from truing.errors import InfeasibleError, InputError, PluginError
+from truing.example_file import example_text
+from truing.inputs_file import json_schema, read_setup, setup_from_settings, setup_from_text
+from truing.inputs_file.sentences import located, told_by_line
+from truing.runs.inputs_written import complete_inputs
+from truing.setup import DiagnoseOptions, InputsSource, Setup, default_setup
 
 SURFACE = 'surface = { file = "flank.txt", spacing = "0.4 um" }'
 
@@ -373,3 +380,373 @@ def test_a_broken_line_does_not_hide_that_a_file_is_named(folder: Path) -> None:
 def test_a_bare_number_arrives_as_it_is(number: float) -> None:
     assert pin(f"[inputs]\nrate = {number!r}\n").inputs.rate == number
     assert pin(f'[inputs]\nrate = "{number!r}"\n').inputs.rate == number
+
+
+# What ``--set`` and the settings of published numbers put in the place of the file.
+
+SET_SURFACE = 'surface={ file = "flank.txt", spacing = "0.4 um" }'
+
+
+def test_overrides_replace_what_the_file_says(tmp_path: Path) -> None:
+    path = tmp_path / "wear.toml"
+    path.write_text('[inputs]\nload = "3 kN"\nspeed = "oops"\n[effects.warm_probe]\nslope = "1 um/K"\n')
+    overrides = [
+        "load=4 kN", "speed = 2 m/s", "inputs.rate=1e-8", "probe_temperature=30 degC", "tolerances.load=±0.1 kN",
+        "effects.warm_probe.slope=-1 um/K", "studies.census.draws=7", "studies.run=[\"census\"]", "seed=3",
+        "sheet.project=A=B", "units.depth=mm", "calibrated.hardness=2 GPa", "detail=short",
+        'tolerances.hardness={zone = ["0 GPa", "0.2 GPa"]}', 'studies.census.of=["pressure"]',
+    ]  # fmt: skip
+    setup = read_setup(path, PIN_OFFER, overrides=overrides)
+    assert (setup.inputs.load, setup.inputs.speed, setup.inputs.rate) == (4000.0, 2.0, 1e-8)
+    assert setup.conditions["probe_temperature"] == pytest.approx(303.15)
+    assert setup.spreads == {"load": Band("0.1 kN", "±"), "hardness": Zone("0 GPa", "0.2 GPa")}
+    assert setup.effects[0].values == {"slope": pytest.approx(-1e-6)}
+    assert setup.studies == (Census(draws=7, of=("pressure",)),)
+    assert (setup.seed, setup.sheet.detail, setup.sheet.head["project"]) == (3, "short", "A=B")
+    assert (setup.units, setup.calibrated) == ({"depth": "mm"}, {"hardness": 2e9})
+    assert setup.source.file == str(path)
+
+
+def test_an_effect_is_switched_off(tmp_path: Path) -> None:
+    path = tmp_path / "wear.toml"
+    path.write_text('[effects.warm_probe]\nslope = "1 um/K"\n')
+    assert len(read_setup(path, PIN_OFFER).effects) == 1
+    assert read_setup(path, PIN_OFFER, overrides=["effects.warm_probe=off"]).effects == ()
+
+
+def test_faults_of_overrides_come_after_those_of_the_file(tmp_path: Path) -> None:
+    path = tmp_path / "wear.toml"
+    path.write_text('[inputs]\nspeed = "1 m"\n')
+    with pytest.raises(InputError) as caught:
+        read_setup(path, PIN_OFFER, overrides=["laod=3 kN", "area=3 mm", "nonsense", "studies.census.draws=x"])
+    assert str(caught.value).splitlines() == [
+        f"{path}:2: speed: '1 m' is a length (m), expected a speed (m/s)",
+        "--set laod=3 kN: pin_wear has no input 'laod'. Did you mean 'load' (F, normal load on the pin, N)?",
+        "--set area=3 mm: area: '3 mm' is a length (mm), expected an area (mm²)",
+        "--set nonsense: write name=value, such as load='3 kN'",
+        "--set studies.census.draws=x: study 'census': draws = 'x' is no whole number",
+    ]
+
+
+def test_settings_of_published_numbers() -> None:
+    setup = setup_from_settings(PIN_OFFER, {"load": "3 kN", "tolerances.load": "sd 1 %"})
+    assert setup.inputs.load == 3000.0
+    assert setup.spreads["load"] == Band("1 %", "sd")
+    with pytest.raises(InputError, match=r"^settings area=1 N: area: '1 N' is a force"):
+        setup_from_settings(PIN_OFFER, {"area": "1 N"})
+
+
+@pytest.mark.parametrize(("text", "expected"), [("true", True), ("false", False)])
+def test_switches_counts_and_files_on_the_command_line(tmp_path: Path, text: str, expected: bool) -> None:
+    (tmp_path / "flank.txt").write_text("1\n2\n4\n")
+    path = tmp_path / "stage.toml"
+    path.write_text("[inputs]\n")
+    overrides = [f"is_hardened={text}", "planets=5", "reading=printed", SET_SURFACE, "orders=[4]"]
+    setup = read_setup(path, STAGE_OFFER, overrides=[*overrides, 'profile=["1 um"]'])
+    assert setup.inputs.is_hardened is expected
+    assert (setup.inputs.planets, setup.inputs.reading, setup.inputs.orders) == (5, "printed", (4,))
+    assert setup.inputs.surface.heights == (1.0, 2.0, 4.0)
+
+
+@pytest.mark.parametrize(
+    "stated", ['surface = { file = "flank.txt", spacing = "0.4 um" }', 'surface = "flank.txt"'], ids=["table", "file"]
+)
+def test_an_option_of_a_data_file_on_the_command_line(tmp_path: Path, stated: str) -> None:
+    (tmp_path / "flank.txt").write_text("1\n2\n4\n")
+    (tmp_path / "stage.toml").write_text(f"[inputs]\n{stated}\n")
+    setup = read_setup(tmp_path / "stage.toml", STAGE_OFFER, overrides=['surface.spacing="0.5 um"'])
+    assert setup.inputs.surface.spacing == "0.5 um"
+    assert setup.inputs.surface.heights == (1.0, 2.0, 4.0)
+
+
+@pytest.mark.parametrize(
+    ("option", "words"),
+    [
+        ("surface.spacng=1 um", "the reader takes no 'spacng'; beside file it takes: spacing, height_unit."),
+        ("surface.file=none.txt", "there is no file 'none.txt'"),
+    ],
+)
+def test_an_option_that_is_none_is_named_with_the_override(tmp_path: Path, option: str, words: str) -> None:
+    (tmp_path / "flank.txt").write_text("1\n2\n4\n")
+    (tmp_path / "stage.toml").write_text(f"[inputs]\n{SET_SURFACE.replace('=', ' = ', 1)}\n")
+    with pytest.raises(InputError) as caught:
+        read_setup(tmp_path / "stage.toml", STAGE_OFFER, overrides=[option])
+    (line,) = str(caught.value).splitlines()
+    assert line.startswith(f"--set {option}: surface: ")
+    assert words in line
+
+
+def test_an_option_without_its_file_asks_for_the_file(tmp_path: Path) -> None:
+    (tmp_path / "stage.toml").write_text("[inputs]\n")
+    with pytest.raises(InputError, match=r"--set surface\.spacing=1 um: surface is read from a data file"):
+        read_setup(tmp_path / "stage.toml", STAGE_OFFER, overrides=["surface.spacing=1 um"])
+
+
+# The JSON Schema by which editors complete an inputs file.
+
+
+def test_the_schema_is_valid_and_says_what_editors_need() -> None:
+    schema = json_schema(STAGE_OFFER)
+    Draft202012Validator.check_schema(schema)
+    assert schema["$schema"] == "https://json-schema.org/draft/2020-12/schema"
+    inputs = schema["$defs"]["Inputs"]
+    assert inputs["required"] == ["surface"]
+    assert inputs["properties"]["bore_sun"]["default"] == "30 mm"
+    assert inputs["properties"]["bore_sun"]["description"] == "d_1: bore; above 0 mm"
+    assert inputs["properties"]["reading"]["enum"] == ["printed", "complete"]
+    assert inputs["properties"]["teeth_sun"]["minimum"] == 5
+    assert inputs["properties"]["face_factor"]["description"] == "K_H: face load factor; at least 1; optional"
+    validator = Draft202012Validator(schema)
+    right = {"inputs": {"surface": {"file": "a"}, "teeth_sun": 7, "reading": "printed", "bore_sun": "3 mm"}}
+    assert list(validator.iter_errors(right)) == []
+    wrong = {"inputs": {"surface": 3, "teeth_sun": 4, "reading": "x", "bore_sun": 3, "planest": 3}, "nonsense": {}}
+    assert len(list(validator.iter_errors(wrong))) == 6
+
+
+def test_the_schema_of_studies_and_effects() -> None:
+    schema = json_schema(PIN_OFFER)
+    Draft202012Validator.check_schema(schema)
+    json.dumps(schema, allow_nan=False)
+    census = schema["$defs"]["Studies"]["properties"]["census"]["properties"]
+    assert census["draws"] == {"type": "integer", "default": 1000}
+    assert census["method"]["enum"] == ["plain", "quasi"]
+    assert schema["$defs"]["Effect_running_in"]["required"] == ["extra", "length"]
+    assert schema["$defs"]["Tolerances"]["properties"]["hardness"]["default"] == "lognormal sd 6 %"
+
+
+# Which line is blamed when what is stated describes something impossible.
+
+SENTENCE = "the contact flows: load exceeds hardness times area"
+
+
+def blamed(text: str, *overrides: str, sentence: str = SENTENCE) -> str:
+    """Return what is said of a file in which something impossible stands."""
+    setup = setup_from_text(text, PIN_OFFER, file="wear.toml", folder=Path(), overrides=overrides)
+    said = str(located(setup, sentence))
+    assert said.endswith(f": {sentence}")
+    return said.removesuffix(f": {sentence}")
+
+
+@pytest.mark.parametrize(
+    ("text", "overrides", "place"),
+    [
+        ('[inputs]\nload = "500 kN"\nspeed = "1 m/s"\n', (), "wear.toml:2"),  # the sentence names it
+        ('[inputs]\nspeed = "1 m/s"\nload = "120 N"\n', (), "wear.toml:2"),  # the load is as it always is
+        ('[inputs]\nload = "120 N"\nspeed = "0.5 m/s"\n', (), "wear.toml:2"),  # all as always: what is named
+        ('[inputs]\nload = "500 kN"\narea = "1 mm^2"\n', (), "wear.toml:3"),  # both: what came last
+        ('[inputs]\nload = "500 kN"\n', ("area=1 mm^2",), "--set area=1 mm^2"),
+        ('[inputs]\nload = "500 kN"\n', ("speed=1 m/s",), "wear.toml:2"),
+        ('[inputs]\n[effects.running_in]\nextra = "1 um"\nlength = "10 m"\n', (), "wear.toml:2"),
+        ('plugin = "pin_wear"\n\n[conditions]\nprobe_temperature = "400 degC"\n', (), "wear.toml:4"),
+        ('plugin = "pin_wear"\n\n[inputs]\n', (), "wear.toml:3"),
+        ("# nothing\n", (), "wear.toml:1"),
+    ],
+)
+def test_the_likeliest_line_is_blamed(text: str, overrides: tuple[str, ...], place: str) -> None:
+    assert blamed(text, *overrides) == place
+
+
+def test_without_a_file_there_is_no_place() -> None:
+    assert str(located(default_setup(PIN_WEAR), SENTENCE)) == SENTENCE
+
+
+def test_only_what_is_impossible_is_told_by_line() -> None:
+    setup = setup_from_text('[inputs]\nload = "500 kN"\n', PIN_OFFER, file="wear.toml", folder=Path())
+    with pytest.raises(InputError, match=r"^wear\.toml:2: the contact flows"), told_by_line(setup):
+        raise InfeasibleError(SENTENCE)
+    with pytest.raises(ZeroDivisionError), told_by_line(setup):
+        _ = 1 / 0
+
+
+# The commented inputs file that a newcomer starts from.
+
+COMMENTED_OUT = re.compile(r"^# (?=\[|[\w\"]+ = )", re.MULTILINE)
+
+
+def test_the_example_is_the_default_setup() -> None:
+    setup = setup_from_text(example_text(PIN_OFFER), PIN_OFFER, file="", folder=Path())
+    assert setup.source.stated == set(PIN_WEAR.input_fields)
+    assert replace(setup, source=InputsSource()) == default_setup(PIN_WEAR, PIN_OFFER.origin)
+
+
+def test_what_is_commented_out_states_the_defaults_too() -> None:
+    text = COMMENTED_OUT.sub("", example_text(PIN_OFFER))
+    setup = setup_from_text(text, PIN_OFFER, file="", folder=Path())
+    assert [on.effect.name for on in setup.effects] == ["running_in", "warm_probe"]
+    assert setup.units == {"pressure": "MPa", "distance": "km", "depth": "um"}
+    plain = replace(setup, source=InputsSource(), effects=(), units={})
+    assert plain == default_setup(PIN_WEAR, PIN_OFFER.origin)
+
+
+def test_an_example_with_a_data_file_runs_once_the_file_is_named(tmp_path: Path) -> None:
+    text = example_text(STAGE_OFFER)
+    (tmp_path / "surface.txt").write_text("1\n")
+    named = text.replace('"surface.txt" }', '"surface.txt", spacing = "1 um" }')
+    setup = setup_from_text(named, STAGE_OFFER, file="", folder=tmp_path)
+    assert setup.inputs.surface.heights == (1.0,)
+    assert (setup.inputs.planet.teeth, setup.inputs.planets, setup.inputs.reading) == (31, 3, "complete")
+    assert setup.inputs.orders == (1, 2)
+    assert 'oil = "±5 K"' in text
+    assert '"printed" or "complete"' in text
+    assert "# face_factor = " in text
+    everything = setup_from_text(COMMENTED_OUT.sub("", named), STAGE_OFFER, file="", folder=tmp_path)
+    assert everything.spreads["oil"] == Band("5 K", "±")
+
+
+def test_no_line_is_too_long_to_read() -> None:
+    assert max(len(line) for line in example_text(STAGE_OFFER).splitlines()) <= 100
+
+
+def test_old_names_are_not_offered() -> None:
+    assert not any(old in example_text(PIN_OFFER) for old in RENAMED)
+
+
+def test_a_shipped_example_is_handed_out_as_it_is(tmp_path: Path) -> None:
+    path = tmp_path / "example.toml"
+    path.write_bytes("# Ölprüfstand\n[inputs]\n".encode())
+    offer = replace(PIN_OFFER, model=replace(PIN_WEAR, example=path))
+    assert example_text(offer) == "# Ölprüfstand\n[inputs]\n"
+    path.unlink()
+    with pytest.raises(PluginError, match="the example of 'pin_wear' cannot be read"):
+        example_text(offer)
+
+
+# What is asked of a diagnosis in the inputs file: read, refused, written back, offered by the schema.
+
+TEXT = """[studies.diagnose]
+per_file = ["sensor_offset", "running_in.extra", "load"]
+hold_out = "record = validation"
+box = { probe_temperature = "15..40 degC", load = "0.05..0.2 kN", rate = "1e-8..5e-8", speed = "10 mm/s..2 m/s" }
+budget = 1500
+at_least = { depth = "outcome = runout" }
+at_most = { distance = "flag = 0" }
+clipped = { depth = "..1 mm", pressure = "0..80 MPa", distance = "1 km.." }
+lognormal = ["depth"]
+"""
+
+
+def setup_of(text: str, *overrides: str) -> Setup:
+    return setup_from_text(text, PIN_OFFER, file="given.toml", folder=Path(), overrides=overrides)
+
+
+def test_the_options_in_si() -> None:
+    options = setup_of(TEXT).diagnose
+    assert options.per_file == ("sensor_offset", "running_in.extra", "load")
+    assert options.held_out == ("record", "validation")
+    assert set(options.box) == {"probe_temperature", "load", "rate", "speed"}
+    assert options.box["probe_temperature"] == pytest.approx((288.15, 313.15))
+    assert options.box["load"] == pytest.approx((50, 200))
+    assert options.box["rate"] == pytest.approx((1e-8, 5e-8))
+    assert options.box["speed"] == pytest.approx((0.01, 2))
+    assert options.budget == 1500
+    assert (options.at_least, options.at_most) == ({"depth": "outcome = runout"}, {"distance": "flag = 0"})
+    assert options.flags == {"outcome", "flag"}
+    assert options.clipped == {"depth": (-math.inf, 1e-3), "pressure": (0, 80e6), "distance": (1e3, math.inf)}
+    assert options.lognormal == ("depth",)
+
+
+def test_nothing_is_asked_by_default() -> None:
+    assert setup_of("").diagnose == DiagnoseOptions()
+    assert DiagnoseOptions().held_out == ("", "")
+    assert "[studies.diagnose]" not in complete_inputs(setup_of(""))
+
+
+def test_they_are_written_back_as_they_are() -> None:
+    options = setup_of(TEXT).diagnose
+    again = setup_of(complete_inputs(setup_of(TEXT)))
+    assert again.diagnose == options
+
+
+def test_conditions_of_the_kernel_have_a_range_too() -> None:
+    text = '[studies.diagnose]\nbox = { angle = "-90..90 deg" }\n'
+    options = setup_of(text).diagnose
+    assert options.box["angle"] == pytest.approx((-math.pi / 2, math.pi / 2))
+    assert setup_of(complete_inputs(setup_of(text))).diagnose == options
+
+
+def test_they_can_be_set_on_the_command_line() -> None:
+    setup = setup_of("", 'studies.diagnose.per_file=["load"]', "studies.diagnose.hold_out=run = b")
+    assert setup.diagnose == DiagnoseOptions(per_file=("load",), hold_out="run = b")
+
+
+@pytest.mark.parametrize(
+    ("line", "expected"),
+    [
+        ("per_fil = []", "study 'diagnose' has no option 'per_fil'. Did you mean 'per_file'?"),
+        ('per_file = "load"', "study 'diagnose': per_file = 'load' is no list of names"),
+        ('per_file = ["runing_in"]', "per_file names 'runing_in', which is no effect, unknown or number"),
+        ('per_file = ["runing_in"]', "Did you mean 'running_in'?"),
+        ('per_file = ["running_in.extras"]', "Did you mean 'running_in.extra'?"),
+        ('per_file = ["load", "load"]', "per_file names 'load' twice"),
+        ("hold_out = 3", "hold_out = 3 is no text"),
+        ('hold_out = "validation"', "hold_out = 'validation' names no rows; write a column and the word"),
+        ('hold_out = "= validation"', "names no rows"),
+        ("box = 3", "box = 3 is no table"),
+        ("budget = -1", "budget = -1 is no number of calls; write budget = 1000"),
+        ('budget = "10 min"', "budget = '10 min' is no number of calls"),
+        ("budget = 1e3", "budget = 1000.0 is no number of calls"),
+        ("budget = true", "is no number of calls"),
+        ('box = { lod = "1..2 N" }', "box names 'lod', which is no condition and no number"),
+        ('box = { depth = "1..2 um" }', "box names 'depth', which is no condition and no number"),
+        ('box = { load = "1 N" }', "box: load = '1 N' is no range; write load = \"0..10 N\""),
+        ("box = { load = 5 }", "box: load = 5 is no range"),
+        ('box = { load = "1..2 mm" }', "expected a force"),
+        ('box = { load = "1..2" }', "load: '1' has no unit"),
+        ('box = { load = "a..2 N" }', "box: "),
+        ('box = { load = "2..1 N" }', "goes from its higher end; lower first"),
+        ('box = { load = "-5..1 N" }', "load is -5 N; it must be above 0 N"),
+        ("clipped = 3", 'clipped = 3 is no table; write clipped = { RESULT = "0..10 kN" }'),
+        ('clipped = { dept = "0..5 um" }', "clipped names 'dept', which is no result of pin_wear"),
+        ('clipped = { dept = "0..5 um" }', "Did you mean 'depth'?"),
+        ('clipped = { load = "0..5 N" }', "clipped names 'load', which is no result"),
+        ('clipped = { depth = "0..5" }', "depth: '0' has no unit"),
+        ('clipped = { depth = "..5" }', "depth: '5' has no unit"),
+        ('clipped = { depth = ".." }', "clipped: depth = '..' is no range; write depth = \"0..10 um\""),
+        ('clipped = { depth = "5 um" }', "is no range"),
+        ('clipped = { depth = "5..1 um" }', "goes from its higher end; lower first"),
+        ('clipped = { depth = "..5 N" }', "expected a length"),
+        ('at_least = "outcome = runout"', "at_least = 'outcome = runout' is no table; write at_least = { RESULT ="),
+        ('at_least = { depth = "runout" }', "at_least: depth = 'runout' marks no rows; write a column and the word"),
+        ("at_most = { depth = true }", "at_most: depth = true marks no rows"),
+        ('at_most = { life = "outcome = runout" }', "at_most names 'life', which is no result of pin_wear"),
+        ('lognormal = "depth"', "lognormal = 'depth' is no list of results"),
+        ('lognormal = ["load"]', "lognormal names 'load', which is no result"),
+    ],
+)
+def test_what_cannot_be_asked(line: str, expected: str) -> None:
+    with pytest.raises(InputError) as caught:
+        setup_of(f"[studies.diagnose]\n{line}\n")
+    (fault,) = caught.value.faults
+    assert expected in fault.message
+    assert fault.line == 2
+
+
+def test_all_faults_are_said_at_once() -> None:
+    with pytest.raises(InputError) as caught:
+        setup_of("[studies.diagnose]\nper_file = 1\nhold_out = 2\nbox = 3\nmore = 4\n[inputs]\nload = 5\n")
+    assert [fault.line for fault in caught.value.faults] == [2, 3, 4, 5, 7]
+
+
+def test_a_misspelt_section() -> None:
+    with pytest.raises(InputError, match=r"no study 'diagnos'\. Did you mean 'diagnose'\?"):
+        setup_of("[studies.diagnos]\n")
+
+
+@pytest.mark.parametrize(
+    ("asked", "fits"),
+    [
+        ({"per_file": ["load"], "hold_out": "a = b", "box": {"load": "1..2 N"}}, True),
+        ({}, True),
+        ({"per_file": "load"}, False),
+        ({"box": {"lod": "1..2 N"}}, False),
+        ({"budget": 1000}, True),
+        ({"budget": "10 min"}, False),
+        ({"at_least": {"depth": "a = b"}, "clipped": {"depth": "..1 um"}, "lognormal": ["depth"]}, True),
+        ({"at_most": {"load": "a = b"}}, False),
+        ({"lognormal": ["load"]}, False),
+        ({"more": 1}, False),
+    ],
+)
+def test_the_schema_offers_them(asked: dict[str, object], fits: bool) -> None:
+    validator = jsonschema.Draft202012Validator(json_schema(PIN_OFFER))
+    assert validator.is_valid({"studies": {"diagnose": asked}}) is fits

@@ -162,7 +162,7 @@ HOSTILE: dict[str, Callable[[int], str]] = {
     "sections": lambda n: "[[a]]\n" * (n // 6),
     "unknown sections": lambda n: "".join(f"[inputs.load{i}]\n" for i in range(n // 16)),
 }
-SIZE = 20_000
+SIZE = 10_000
 NAMES = "[inputs]\n" + "".join(f"load{i} = 1\n" for i in range(120_000))
 
 

@@ -7,11 +7,10 @@ from collections.abc import Callable
 from importlib import metadata
 from pathlib import Path
 from types import ModuleType
-from typing import Any
 
 import pytest
 
-from truing import Kernel, hookspecs
+from truing import Kernel
 from truing.errors import PluginError, UnknownPluginError
 from truing.kernel import Broken, Origin, entry_points, kernel_for
 
@@ -446,20 +445,6 @@ def test_modules_are_found_again_alone(write: Write) -> None:
 
 def test_broken_prints_without_a_line() -> None:
     assert str(Broken("p", "1.0", "p.py", None, "why")) == "p.py: plugin 'p' 1.0: why"
-
-
-def hooks_page() -> list[Any]:
-    return [value for name, value in vars(hookspecs).items() if name.startswith("truing_")]
-
-
-def test_the_page_of_hooks_says_when_and_what() -> None:
-    assert [hook.__name__ for hook in hooks_page()] == [
-        "truing_models",
-        "truing_error_sources",
-        "truing_objectives",
-        "truing_reports",
-    ]
-    assert all(hook.__doc__ and hook.__annotations__["return"] for hook in hooks_page())
 
 
 DECLARED = '''"""A bar under load."""; import truing

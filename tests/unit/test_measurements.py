@@ -429,7 +429,7 @@ CELLS = st.one_of(
 )
 
 
-@drawing(max_examples=300, deadline=2000)
+@drawing(max_examples=150, deadline=2000)
 @drawn(
     st.one_of(
         st.text(),

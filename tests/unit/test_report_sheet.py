@@ -11,24 +11,27 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from markdown_it import MarkdownIt
+from markdown_it.token import Token
 
 from press_linkage.model import PRESS_LINKAGE
 from truing import Section, Table
 from truing.calculation import Calculation, calculate
 from truing.cases import run_cases
 from truing.executors import open_executor
+from truing.formulas.symbols import printable
 from truing.inputs_file import read_setup, setup_from_text
 from truing.kernel import Kernel, Offer
 from truing.measurements import read_cases
 from truing.published import compare_published
 from truing.report.document import Document, ResultEntry, TableView
 from truing.report.html_printer import css_text, html_of, with_room
-from truing.report.markdown_printer import markdown_of
+from truing.report.markdown_printer import escaped, markdown_of
 from truing.report.sheet import logo_of, make_sheet
 from truing.runs.provenance import Provenance, provenance_of
 from truing.setup import InputsSource, Setup, SheetOptions, default_setup
-from truing.templating import template_folder
 
 DATA = Path(__file__).parents[1] / "data"
 HOSTILE = "<script>alert(1)</script> {{7*7}} $x$ | # `code` [link](https://evil.example) **bold** & \"' # next"
@@ -379,11 +382,6 @@ def test_the_same_run_gives_the_same_sheet(calculation: Calculation, provenance:
     assert first == again
 
 
-def test_the_templates_are_found() -> None:
-    names = {path.name for path in template_folder().iterdir()}
-    assert {"sheet.html.j2", "blocks.html.j2", "sheet.css"} <= names
-
-
 @pytest.mark.parametrize(
     ("head", "expected"),
     [
@@ -432,3 +430,73 @@ def test_inputs_not_given_or_at_0_are_named_in_one_sentence_unless_all_is_asked_
     assert ("Not given, or left at their default of 0 (inputs.toml names them)" in text) is is_named_only
     assert ("deviation: crank, A to B" in text) is not is_named_only
     assert "crank, A to B" in text
+
+
+# Markdown from hostile texts: read by another program, it must give the text back and nothing else.
+
+HOSTILE_MARKS = [
+    "<script>alert(1)</script>",
+    "{{7*7}} {% raw %}",
+    "$x$ and $$y$$",
+    "a | b",
+    "# heading",
+    "`code` ``more``",
+    "[text](https://evil.example) ![picture](x.png)",
+    "[text][1] [1]: https://evil.example",
+    "<https://evil.example> https://evil.example www.evil.example",
+    "**bold** __bold__ *i* _i_ ~~struck~~",
+    "- item",
+    "+ item",
+    "1. item",
+    "12) item",
+    "> quoted",
+    "=====",
+    "---",
+    "***",
+    "    indented",
+    "one\n\ntwo\n# three",
+    "\\* \\| \\",
+    "&lt;b&gt; &amp; &#36;",
+    "trailing backslash \\",
+    "```\nfence\n```",
+    "~~~",
+    "| a |\n| --- |",
+    "a\u202eb\x00c\x1b[31m",
+]
+ONLY = {"inline", "text", "text_special", "paragraph_open", "paragraph_close"}
+
+
+def read(markdown: str) -> list[Token]:
+    return MarkdownIt("commonmark", {"linkify": False}).enable(["table", "strikethrough"]).parse(markdown)
+
+
+def words(tokens: list[Token]) -> str:
+    return "".join(child.content for token in tokens for child in token.children or [])
+
+
+@pytest.mark.parametrize("text", HOSTILE_MARKS)
+def test_a_hostile_text_is_read_back_as_itself(text: str) -> None:
+    tokens = read(escaped(text))
+    kinds = {token.type for token in tokens} | {child.type for token in tokens for child in token.children or []}
+    assert kinds <= ONLY
+    assert words(tokens) == printable(text)
+
+
+@given(st.text())
+def test_any_text_is_read_back_as_itself(text: str) -> None:
+    tokens = read(escaped(text))
+    kinds = {token.type for token in tokens} | {child.type for token in tokens for child in token.children or []}
+    assert kinds <= ONLY
+    assert words(tokens) == printable(text)
+
+
+@pytest.mark.parametrize("text", HOSTILE_MARKS)
+def test_a_hostile_text_stays_in_its_cell(text: str) -> None:
+    tokens = read(f"| head | next |\n| --- | --- |\n| {escaped(text)} | end |")
+    cells = [tokens[place + 1] for place, token in enumerate(tokens) if token.type == "td_open"]
+    assert [words([cell]) for cell in cells] == [printable(text), "end"]
+
+
+@pytest.mark.parametrize("mark", ["<", ">", "$", "|", "{", "}", "https://", "mailto:", "www."])
+def test_marks_that_other_readers_obey_do_not_stand_in_the_source(mark: str) -> None:
+    assert mark not in escaped(f"a {mark} b {mark}c")

@@ -3,7 +3,7 @@
 import itertools
 import json
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -30,19 +30,27 @@ from truing import (
 from truing.calculation import Calculation, calculate
 from truing.errors import DeclarationError, InputError, UsageError
 from truing.evaluate import evaluate, evaluate_rows
-from truing.executors import BatchLog, KeptExecutor, SerialExecutor, WorkerPool
+from truing.executors import WorkerPool
 from truing.fits import GRADES, tolerance
 from truing.inputs_file import read_setup
 from truing.kernel import Offer, Origin
 from truing.prices import price_answers, total_price
 from truing.setup import Setup, default_setup
-from truing.studies.bench import Bench
 from truing.studies.chances import chance, straightened
 from truing.studies.checks import limits, margin_of, plain_checks
-from truing.studies.demands import demands, nominal_inputs, worst
-from truing.studies.optimise_problem import ROWS, Brief, Problem, answers_of, make_problem, open_space
-from truing.studies.optimise_search import REFERENCE, knee_of, non_dominated, spread_out, volume_of
-from truing.studies.sampling import Machines, Scatter, _gather, scatter_of
+from truing.studies.demands import demands, worst
+from truing.studies.optimise import (
+    REFERENCE,
+    Problem,
+    answers_of,
+    knee_of,
+    make_problem,
+    non_dominated,
+    open_space,
+    spread_out,
+    volume_of,
+)
+from truing.studies.sampling import Scatter, _gather, scatter_of
 
 SMALL = Optimise(population=20, generations=12, draws=600, verify=2000)
 
@@ -117,22 +125,6 @@ def test_the_least_cost_of_two_tolerances_for_every_limit() -> None:
     assert all(design.chances["length"] >= 0.95 for design in best.front)
 
 
-GOALS = (0.7, 0.9, 0.99)
-
-
-@pytest.mark.parametrize("method", ["first_order", "draws"])
-def test_a_tighter_reliability_never_lowers_the_least_cost(method: Any) -> None:
-    goal_named = Require("length", within="12 um", reliability="goal")
-    model = replace(PAIR, objectives=[Minimise("tolerance_price"), goal_named])
-    study = Optimise(tightest=0.25, widest=4.0, chance=method, population=40, generations=60, draws=4000, verify=10)
-    costs = [optimum(setup_of(model, goal=goal), study).front[0].objectives["tolerance_price"] for goal in GOALS]
-    assert costs == sorted(costs)
-    for goal, cost in zip(GOALS, costs, strict=True):
-        # 4000 machines know the chance, and by its slope the cost, to some percent only
-        accuracy = 1e-5 if method == "first_order" else 0.03
-        assert cost == pytest.approx(least_cost(goal, "reciprocal"), rel=accuracy)
-
-
 def test_grades_of_least_cost_against_trying_all() -> None:
     model = replace(PRICED, objectives=[*PRICED.objectives, Minimise("tolerance_price")])
     setup = default_setup(model)
@@ -199,8 +191,8 @@ def test_a_search_ends_when_every_design_was_tried() -> None:
 # One design at a time: what the arrays of the search must say too
 
 
-def problem_of(setup: Setup, **brief: Any) -> tuple[Problem, np.ndarray]:
-    problem = make_problem(setup, Brief("optimise", **brief))
+def problem_of(setup: Setup, **options: Any) -> tuple[Problem, np.ndarray]:
+    problem = make_problem(setup, Optimise(**options))
     places = np.random.default_rng(5).random((7, len(problem.space.variables)))
     return problem, problem.space.designs(places)
 
@@ -227,20 +219,18 @@ def share(setup: Setup, problem: Problem) -> list[float]:
     answers, scatter = answers_at(setup), scatter_of(setup)
     wanted = demands(setup, answers, with_goal=True)
     columns = columns_of(scatter, problem)
-    rows = evaluate_rows(setup, columns, problem.brief.draws)
-    nominal = nominal_inputs(setup, wanted)
+    rows = evaluate_rows(setup, columns, problem.study.draws)
     shares = []
     for demand in wanted:
-        response = demand.response(rows.results, columns, nominal)
+        response = demand.response(rows.results, columns)
         shares.append(worst(((response <= demand.high) & (response >= demand.low)).mean(axis=0)))
     return shares
 
 
 def straight(setup: Setup) -> list[float]:
     """First order, by the functions of the other studies."""
-    answers, machines = answers_at(setup), Machines(setup, scatter_of(setup))
-    wanted = demands(setup, answers, with_goal=True)
-    lines, _ = straightened(machines, wanted, nominal_inputs(setup, wanted))
+    wanted = demands(setup, answers_at(setup), with_goal=True)
+    lines, _ = straightened(scatter_of(setup), wanted)
     return [worst(chance(demand, lines[demand.name])) for demand in wanted]
 
 
@@ -308,7 +298,7 @@ def test_a_design_as_an_inputs_file_states_it() -> None:
 
 
 def test_widths_run_from_tightest_to_widest_and_grades_from_finest() -> None:
-    space = open_space(setup_of(PARTS), Brief("optimise", tightest=0.5, widest=3.0, finest="IT6"))
+    space = open_space(setup_of(PARTS), Optimise(tightest=0.5, widest=3.0, finest="IT6"))
     ends = {variable.key: (variable.low, variable.high) for variable in space.variables}
     assert ends["tolerances.clearance"] == pytest.approx((6e-6, 36e-6), rel=1e-14)
     # 50 mm: IT8 is 39 um, IT10 100 um, IT11 160 um (ISO 286-1, table 1); 3 times 39 um is 117 um
@@ -321,14 +311,14 @@ def test_widths_run_from_tightest_to_widest_and_grades_from_finest() -> None:
 def test_what_is_off_is_no_variable_and_costs_nothing() -> None:
     setup = setup_of(PARTS)
     setup = replace(setup, spreads={**setup.spreads, "clearance": off()})
-    space = open_space(setup, Brief("optimise"))
+    space = open_space(setup, Optimise())
     assert "tolerances.clearance" not in [variable.key for variable in space.variables]
 
 
 def test_vary_chooses_among_inputs_and_tolerances() -> None:
-    space = open_space(setup_of(PARTS), Brief("optimise", vary=("span", "both")))
+    space = open_space(setup_of(PARTS), Optimise(vary=("span", "both")))
     assert [variable.key for variable in space.variables] == ["span", "tolerances.both"]
-    whole = open_space(setup_of(PARTS), Brief("optimise", vary=("size",)))  # an input and a tolerance of one name
+    whole = open_space(setup_of(PARTS), Optimise(vary=("size",)))  # an input and a tolerance of one name
     assert [variable.key for variable in whole.variables] == ["size", "tolerances.size"]
 
 
@@ -356,41 +346,6 @@ def test_processes_give_the_same_bytes(chance_: Any, two_processes: WorkerPool) 
     setup = replace(setup_of(PAIR) if chance_ == "draws" else grown(), studies=(study,))
     apart = calculate(setup, executor=two_processes).outcomes["optimise"]
     assert written(apart) == written(calculate(setup).outcomes["optimise"])  # type: ignore[arg-type]
-
-
-def test_an_interrupted_search_takes_up_what_was_kept(tmp_path: Path) -> None:
-    setup = replace(setup_of(PAIR), studies=(replace(SMALL, tightest=0.25),))
-    wanted = written(calculate(setup).outcomes["optimise"])  # type: ignore[arg-type]
-    for resumed in (0, 13):  # twelve generations and the verification
-        log = BatchLog(tmp_path / "batches")
-        executor = KeptExecutor(SerialExecutor(), log)
-        assert written(calculate(setup, executor=executor).outcomes["optimise"]) == wanted  # type: ignore[arg-type]
-        assert executor.resumed == resumed
-        log.close()
-
-
-def test_it_prints_nothing(capfd: pytest.CaptureFixture[str]) -> None:
-    optimum(setup_of(PAIR), SMALL)
-    assert capfd.readouterr() == ("", "")
-
-
-def test_a_population_is_one_array(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Draws times designs in one call of the model, at most 2^16 rows at once."""
-    sizes: list[int] = []
-
-    def counted(setup: Setup, columns: Any, rows: int, **more: Any) -> Any:
-        sizes.append(rows)
-        return evaluate_rows(setup, columns, rows, **more)
-
-    monkeypatch.setattr("truing.studies.optimise_problem.evaluate_rows", counted)
-    optimum(setup_of(PAIR), replace(SMALL, population=40, generations=1, draws=4000))
-    drawn = [rows for rows in sizes if rows >= 4000]
-    assert sum(drawn) == 40 * 4000  # one of them twice in the first population, and the start
-    assert max(drawn) <= ROWS
-    assert len(drawn) == 4
-    sizes.clear()
-    optimum(setup_of(PAIR), replace(SMALL, population=40, generations=1, chance="first_order"))
-    assert sizes == [39, 39 * 5, 1, 5]  # the designs, two inputs up and down; the start
 
 
 # What the outcome says
@@ -490,16 +445,6 @@ def test_results_json_has_printed_units_and_no_nan() -> None:
     assert {"length within", "length within by chance", "course at least", "course within"} <= set(first.margins)
 
 
-def test_the_front_is_sorted_feasible_and_nobody_is_beaten() -> None:
-    best = optimum(grown(), SMALL)
-    signs = np.array([aim.sign for aim in best.aims])
-    points = values(best, *(aim.name for aim in best.aims)) * signs
-    assert list(points[:, 0]) == sorted(points[:, 0])
-    assert all(design.feasible and min(design.margins.values()) >= 0 for design in best.front)
-    for one, other in itertools.permutations(points, 2):
-        assert not ((one <= other).all() and (one < other).any())
-
-
 def test_the_sheet_shows_the_front_and_both_figures() -> None:
     for best in (optimum(grown(), SMALL), optimum(setup_of(PAIR), SMALL), optimum(setup_of(GEAR), SMALL)):
         for block in best.blocks():
@@ -561,55 +506,6 @@ def test_the_hypervolume_of_known_fronts() -> None:
 # Surrogate on request
 
 
-@dataclass(frozen=True)
-class Known:
-    """Answers for the stress, a thousand times too small so that it is seen."""
-
-    of: tuple[str, ...] = ("stress",)
-    asked: list[int] = field(default_factory=list)
-
-    def predict(self, columns: Any) -> dict[str, Any]:
-        force, size, other, count = (np.asarray(columns[name]) for name in ("force", "size", "other", "count"))
-        self.asked.append(int(force.size))
-        return {"stress": 1e-3 * force / (size * other) * (1 + 0.1 * count)}
-
-    def as_json(self) -> dict[str, Any]:
-        return {}
-
-    def blocks(self) -> list[Any]:
-        return []
-
-    def checks(self) -> list[Any]:
-        return []
-
-    def warnings(self) -> list[str]:
-        return []
-
-
-@dataclass(frozen=True, kw_only=True)
-class Learnt:
-    """A study whose outcome can predict."""
-
-    outcome: Known = field(default_factory=Known)
-    name: str = "surrogate"
-    gives: None = None
-
-    def run(self, bench: Bench) -> Known:
-        return self.outcome
-
-
-def test_the_surrogate_answers_what_it_knows_and_the_knee_is_run_on_the_model() -> None:
-    learnt = Learnt()
-    done = calculate(replace(setup_of(PARTS), studies=(learnt, replace(SMALL, surrogate=True))))
-    best = done.outcomes["optimise"]
-    assert isinstance(best, Optimum)
-    assert best.knee is not None
-    assert sum(learnt.outcome.asked) >= best.evaluations
-    assert best.exact["stress"] == pytest.approx(1e3 * best.knee.objectives["stress"], rel=1e-9)
-    assert json.loads(written(best))["surrogate"] is True
-    assert "The surrogate answered" in best.blocks()[0].text  # type: ignore[union-attr]
-
-
 def test_a_learnt_surrogate_finds_the_front_and_says_where_it_learnt_nothing() -> None:
     learnt = Surrogate(of=("first", "second"), over={"a": "0.1..1", "b": "0..1"}, design=60, held_out=20, compare=0)
     study = Optimise(vary=("a", "b"), population=40, generations=30, surrogate=True)
@@ -624,6 +520,8 @@ def test_a_learnt_surrogate_finds_the_front_and_says_where_it_learnt_nothing() -
     assert words in best.warnings()
     assert best.knee is not None
     assert best.exact["first"] == pytest.approx(best.knee.inputs["a"], rel=1e-12)
+    assert json.loads(written(best))["surrogate"] is True
+    assert "The surrogate answered" in best.blocks()[0].text  # type: ignore[union-attr]
 
 
 def test_a_surrogate_that_is_not_there_is_asked_for() -> None:

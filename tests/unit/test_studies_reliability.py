@@ -12,13 +12,11 @@ from study_models import (
     CHAIN,
     JOINT,
     LOGNORMAL,
-    PARABOLA,
     ROOT,
     SADDLE,
     STACK,
     STRENGTH,
     UNIFORMS,
-    WARMTH,
     WEAR,
     Sum,
     Two,
@@ -30,7 +28,6 @@ from truing.calculation import calculate
 from truing.declare.spreads import Off
 from truing.errors import UsageError
 from truing.setup import SwitchedOn
-from truing.studies.chances import FormResult
 from truing.studies.demands import normal_chance, wilson
 from truing.studies.sampling import Moments, joined, scatter_of
 
@@ -101,13 +98,6 @@ def test_the_interval_is_wilsons(hits, draws, low, high):
 def test_the_standard_error_is_that_of_a_share(of_chain):
     share = of_chain.probability["gap"]
     assert of_chain.as_json()["gap"]["standard_error"] == pytest.approx(sqrt(share * (1 - share) / 40_000), rel=1e-12)
-
-
-@pytest.mark.parametrize(("low", "high"), [(8.0, 9.0), (-9.0, -8.0)])
-def test_both_tails_keep_their_digits(low, high):
-    """Phi(-8) - Phi(-9): 6.2209605742718e-16 - 1.1285884059538e-19 (tables of the normal distribution)."""
-    expected = 6.2209605742718e-16 - 1.1285884059538e-19
-    assert normal_chance(0.0, 1.0, low, high) == pytest.approx(expected, rel=1e-10, abs=0.0)
 
 
 # ---- Monte Carlo --------------------------------------------------------------------------------------------------
@@ -273,10 +263,6 @@ def test_form_of_a_quadratic_limit():
     assert odds.form["total"].probability == pytest.approx(norm.cdf(2.5), rel=1e-9)
 
 
-def test_form_of_a_parabola():
-    assert odds_of(setup_of(PARABOLA)).form["total"].sides["low"].beta == pytest.approx(3, rel=1e-9)
-
-
 def cubic(two: Two) -> Sum:
     """A limit that bends ever more."""
     return Sum(total=3.0 - 0.6 * two.x - 0.6 * two.y - 0.1 * two.y**3)
@@ -322,23 +308,6 @@ def test_two_processes_give_the_same_bytes(model, two_processes):
     assert serial == json.dumps(odds_of(setup_of(model), study, two_processes).as_json())
 
 
-def test_overridden_spreads_effects_and_inputs_reach_the_workers(two_processes):
-    on = SwitchedOn(CHAIN.effects["grow"], {"strain": 1e-4}, {"strain": 4e-4}, ((1.6e-7,),))
-    setup = replace(
-        setup_of(CHAIN, first="31 mm", gap_limit="0.4 mm"),
-        effects=(on,), conditions={"warmth": 293.15 + 25}, spreads={**setup_of(CHAIN).spreads, "third": Off()}, seed=0,
-    )  # fmt: skip
-    study = Reliability(draws=3000, batch=1000)
-    serial = json.dumps(odds_of(setup, study).as_json())
-    assert serial == json.dumps(odds_of(setup, study, two_processes).as_json())
-
-
-def test_zero_is_a_seed():
-    zero, again, one = (odds_of(replace(setup_of(CHAIN), seed=seed)).mean for seed in (0, 0, 1))
-    assert zero == again
-    assert zero != one
-
-
 def test_a_further_tolerance_reshuffles_no_other():
     alone = scatter_of(setup_of(CHAIN)).draw(1, 3, 100)
     more = replace(CHAIN, errors=[Tolerance("room", normal(sd="1 K"), on=["warmth"]), *CHAIN.errors])
@@ -367,12 +336,6 @@ def test_moments_of_batches_join_to_those_of_the_whole():
     assert whole.mean == pytest.approx(np.mean(values), rel=1e-15)
     assert whole.sd == pytest.approx(np.std(values, ddof=1), rel=1e-9)
     assert (whole.smallest, whole.largest) == (values.min(), values.max())
-
-
-def test_the_batch_is_no_part_of_the_reduction_error():
-    odds = odds_of(setup_of(CHAIN), Reliability(draws=1))
-    assert odds.draws == 1
-    json.dumps(odds.as_json(), allow_nan=False)
 
 
 # ---- what is said -------------------------------------------------------------------------------------------------
@@ -438,20 +401,6 @@ def test_without_sampling_the_chance_is_first_order():
     assert [block.title for block in odds.blocks()] == ["Probability"]
 
 
-def test_results_json_holds_what_is_promised():
-    entry = odds_of(setup_of(CHAIN)).as_json()["gap"]
-    assert {"probability", "interval95", "standard_error", "draws", "method"} <= set(entry)
-    low, high = entry["interval95"]
-    assert low < entry["probability"] < high
-    assert entry["unit"] == "mm"
-    assert entry["sd"] == pytest.approx(0.13, rel=0.02)
-    assert entry["mean"] == pytest.approx(10, abs=0.01)
-
-
-def test_a_form_without_number_writes_none():
-    assert FormResult({}, None, "no convergence: because").as_json() == {"status": "no convergence: because"}
-
-
 def test_nothing_required_is_said():
     with pytest.raises(UsageError, match="requires nothing"):
         odds_of(setup_of(replace(CHAIN, objectives=[])))
@@ -476,10 +425,6 @@ def test_options_are_checked(options, sentence):
 def test_a_curve_needs_input_and_range(options):
     with pytest.raises(UsageError, match="over and at go together"):
         odds_of(setup_of(CHAIN), Reliability(**options))
-
-
-def test_the_condition_of_the_models_is_what_the_tests_think():
-    assert WARMTH.zero == pytest.approx(293.15)
 
 
 @pytest.mark.parametrize(("draws", "warned"), [(19, True), (20, False), (1000, False)])

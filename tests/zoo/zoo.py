@@ -1,8 +1,8 @@
 """A zoo of machines that nobody tuned to: what a rig gives, what noise does to it, and how an answer is judged.
 
-A family is a plugin in ``plugins/`` as a stranger would write it, and a machine in ``rigs/`` by physics of its own. A
-case is one record of one machine, registered or not, under one noise. ``families`` parts them in two by a fixed rule:
-one half may be looked at, the other is only measured.
+A family is a calculation in ``plugins/``, as a stranger would write it, and a machine in ``rigs/`` by physics of its
+own. A case is one record of one machine, registered or not, under one noise. ``families`` parts them in two by a fixed
+rule: one half may be looked at, the other is only measured.
 """
 
 from __future__ import annotations
@@ -18,9 +18,11 @@ from typing import Any, Literal, Protocol, TypeAlias, cast
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import brentq
 
-from truing import Kernel, Model
+from truing import Model
 from truing.diagnosis.result import UNKNOWN, DiagnosisResult, explanations_of
+from truing.measurements import table_text
 from truing.testing import Hidden, recorded
 
 Array: TypeAlias = NDArray[np.float64]
@@ -60,6 +62,17 @@ class Rig(Protocol):
 def drawn_size(generator: np.random.Generator) -> float:
     """Draw how large something hidden is, in standard deviations of the noise: even on a logarithmic scale."""
     return float(np.exp(generator.uniform(np.log(SMALLEST), np.log(LARGEST))))
+
+
+def sized(
+    shown: Callable[[float], Array], plain: Array, size: float, high: float, *, low: float = 0.0, rtol: float
+) -> float:
+    """Find the strength at which what is shown lies off what it is plainly by a size, at its largest place."""
+
+    def off(strength: float) -> float:
+        return float(np.max(np.abs(shown(strength) - plain))) - size
+
+    return float(brentq(off, low, high, rtol=rtol))
 
 
 # Noise
@@ -160,10 +173,9 @@ def rig_of(family: str) -> Rig:
 
 @cache
 def model_of(family: str, without: tuple[str, ...] = ()) -> Model[Any, Any]:
-    """The calculation of a family as the command line reads its file, without some of its effects."""
-    kernel = Kernel()
-    kernel.add_file(FOLDER / "plugins" / f"{family}.py")
-    model = kernel.offer(family).model
+    """The calculation of a family, without some of its effects."""
+    known = vars(import_module(f"zoo.plugins.{family}")).values()
+    model = next(one for one in known if isinstance(one, Model))
     return replace(model, errors=[item for item in model.errors if item.name not in without]) if without else model
 
 
@@ -188,9 +200,7 @@ def record_of(case: Case, rows: int = ROWS) -> str:
     shown = READINGS[case.noise](measured.columns[measured.result], measured.noise, generator)
     columns = {**measured.columns, measured.result: shown}
     kept = _kept(case.noise, rows, generator)
-    lines = [",".join(columns)]
-    lines += [",".join(repr(float(values[place])) for values in columns.values()) for place in kept]
-    return "\n".join(lines) + "\n"
+    return table_text(list(columns), [values[kept] for values in columns.values()])
 
 
 def hidden_of(case: Case, rows: int = ROWS) -> Hidden:

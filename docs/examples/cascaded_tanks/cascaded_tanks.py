@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg.lapack import dgtsv
+from scipy.linalg.lapack import dtbtrs
 
 from truing import (
     Effect,
@@ -42,6 +42,8 @@ RAMP = (*(0.12 * step for step in range(51)), *(6.0 - 0.12 * step for step in ra
 """A pump that is turned up to 6 V and down again, V."""
 RAMP_TIMES = tuple(8.0 * step for step in range(len(RAMP)))
 MOST_ROUNDS = 60
+COARSE, LONG_RECORD = 8, 1000
+"""Steps that are taken as one for levels to begin with, in records of so many steps."""
 SETTLED = 1e-6
 """V; the error is then about its square."""
 
@@ -119,54 +121,66 @@ class Tank:
             per_volt * np.where(level > FILM, self.exponent, 1)
         )
 
-    def over(self, level: Array, left: Array, more: Array) -> tuple[Array, Array]:
-        """What leaves over the rim, V/s, and how much more it is per volt of level, 1/s.
+    def over(self, level: Array, inflow: Array, outflow: Array, slope: Array) -> tuple[Array, Array]:
+        """What leaves over the rim, V/s, and how much more it is per volt of level, 1/s; all (n, m).
 
-        It is a share of the surplus: of what is ``left`` of the inflow, which is ``more`` per volt of level (negative).
+        It is a share of the surplus: of what ``outflow``, with its ``slope``, leaves of the inflow. Most levels are far
+        below the rim and are left out.
         """
-        height, surplus = 1 + (level - self.rim) / CREST, np.maximum(left, 0)
-        risen = np.clip(height, 0, 1)
-        slope = risen * more * (left > 0) + surplus / CREST * ((height > 0) & (height < 1))
-        return np.asarray(self.spill * risen * surplus), np.asarray(self.spill * slope)
+        over, more = np.zeros((2, *inflow.shape))
+        high = (level > self.rim - CREST) & (inflow > outflow)
+        rim, share = (np.broadcast_to(value, inflow.shape)[high] for value in (self.rim, self.spill))
+        height, surplus = 1 + (level[high] - rim) / CREST, inflow[high] - outflow[high]
+        over[high] = share * np.minimum(height, 1) * surplus
+        more[high] = share * (surplus / CREST * (height < 1) - np.minimum(height, 1) * slope[high])
+        return over, more
 
 
 @dataclass(frozen=True)
 class Flows:
-    """What leaves a tank at the beginning and at the end of each step, (n, m) in V/s, with its slopes in 1/s."""
+    """What leaves a tank: at each level, (n, m + 1), and over the rim in each step, (n, m), in V/s; slopes in 1/s."""
 
-    drained: Array
-    spilt: Array
+    out: Array
     seeped: Array
+    spilt: Array
     begin_slope: Array
     end_slope: Array
 
     @property
     def leaving(self) -> Array:
         """All that leaves, the mean of each step."""
-        return np.asarray(self.drained + self.spilt + self.seeped)
+        return np.asarray(mean(self.out + self.seeped) + self.spilt)
 
 
 def flows(tank: Tank, level: Array, inflow: Array) -> Flows:
     """What leaves a tank that stands at these levels while so much comes in."""
     out, slope = tank.outlet(level)
-    seeped = tank.leak * level
-    both, slopes = out + seeped, slope + tank.leak
-    spilt, more = np.zeros((2, *inflow.shape)), np.zeros((2, *inflow.shape))
+    seeped = np.asarray(tank.leak * level)
+    both, slopes, spilt = out + seeped, slope + tank.leak, np.zeros(inflow.shape)
+    begin, end = slopes[:, :-1], slopes[:, 1:]
     if np.any(tank.spill):
-        for side, ends in enumerate((np.s_[:, :-1], np.s_[:, 1:])):
-            spilt[side], more[side] = tank.over(level[ends], inflow - both[ends], -slopes[ends])
-    return Flows(
-        drained=mean(out),
-        spilt=(spilt[0] + spilt[1]) / 2,
-        seeped=mean(np.asarray(seeped)),
-        begin_slope=slopes[:, :-1] + more[0],
-        end_slope=slopes[:, 1:] + more[1],
-    )
+        first, more = tank.over(level[:, :-1], inflow, both[:, :-1], begin)
+        last, rise = tank.over(level[:, 1:], inflow, both[:, 1:], end)
+        spilt, begin, end = (first + last) / 2, begin + more, end + rise
+    return Flows(out=out, seeped=seeped, spilt=spilt, begin_slope=begin, end_slope=end)
 
 
 def mean(values: Array) -> Array:
     """Mean of each step, (n, m), of values at its two ends, (n, m + 1)."""
     return np.asarray((values[:, :-1] + values[:, 1:]) / 2)
+
+
+def roughly(tank: Tank, start: Array, inflow: Array, step: Array) -> Array:
+    """Levels to begin with, (n, m + 1): those of longer steps, with straight lines between; nothing passes the rim."""
+    level = np.repeat(start[:, None], len(step) + 1, axis=1)
+    if len(step) < LONG_RECORD:
+        return level
+    ends = np.arange(0, len(step), COARSE)
+    length = np.add.reduceat(step, ends)
+    coarse, _ = filled(replace(tank, spill=0.0), start, np.add.reduceat(inflow * step, ends, axis=1) / length, length)
+    rise = np.repeat(np.diff(coarse) / length, COARSE, axis=1)[:, : len(step)]
+    level[:, 1:] += np.cumsum(rise * step, axis=1)
+    return np.where(np.isfinite(level), np.where(tank.spill > 0, np.minimum(level, tank.rim), level), start[:, None])
 
 
 def filled(tank: Tank, start: Array, inflow: Array, step: Array) -> tuple[Array, Flows]:
@@ -175,15 +189,15 @@ def filled(tank: Tank, start: Array, inflow: Array, step: Array) -> tuple[Array,
     ``inflow`` (n, m) is the mean over each of the m steps, ``step`` (m,) their lengths in s. The trapezoidal rule: all
     steps of all rows are one bidiagonal system of equations, solved by Newton's method.
     """
-    level = np.repeat(start[:, None], len(step) + 1, axis=1)
+    level = roughly(tank, start, inflow, step)
     now, change = flows(tank, level, inflow), np.zeros(level.shape)
-    own, before, left = np.ones(level.shape), np.zeros(level.shape), np.zeros(level.shape)
+    table, left = np.zeros((*level.shape, 2)), np.zeros(level.shape)
+    table[:, 0, 0] = 1
     for _ in range(MOST_ROUNDS):
         left[:, 1:] = np.diff(level) + step * (now.leaving - inflow)
-        own[:, 1:] = 1 + step / 2 * now.end_slope
-        before[:, :-1] = step / 2 * now.begin_slope - 1
-        solved = dgtsv(before.ravel()[:-1], own.ravel(), np.zeros(level.size - 1), left.ravel())
-        change = solved[3].reshape(level.shape)
+        table[:, 1:, 0] = 1 + step / 2 * now.end_slope
+        table[:, :-1, 1] = step / 2 * now.begin_slope - 1
+        change = dtbtrs(table.reshape(-1, 2).T, left.reshape(-1, 1), uplo="L")[0].reshape(level.shape)
         level = level - change
         now = flows(tank, level, inflow)
         if not np.max(np.abs(change)) > SETTLED:
@@ -215,17 +229,17 @@ def cascaded_tanks(tanks: Tanks) -> Levels:
     above, upper = filled(uppermost(tanks), np.broadcast_to(tanks.upper_start, rows), pumped, step)
     caught = column(tanks.caught_share) * upper.spilt
     below, lower = filled(
-        lowermost(tanks), np.broadcast_to(tanks.lower_start, rows), ratio * (upper.drained + caught), step
+        lowermost(tanks), np.broadcast_to(tanks.lower_start, rows), ratio * (mean(upper.out) + caught), step
     )
     feasible(np.isfinite(below[:, -1]).reshape(size), "the levels cannot be calculated: a step comes to no end")
-    lost = upper.spilt - caught + upper.seeped + (lower.spilt + lower.seeped) / ratio
+    lost = upper.spilt - caught + mean(upper.seeped) + (lower.spilt + mean(lower.seeped)) / ratio
     return Levels(
         time=times,
         upper_level=above[:, ::parts].reshape(*size, len(times)),
         level=below[:, ::parts].reshape(*size, len(times)),
         highest=np.max(below[:, ::parts], axis=-1).reshape(size),
         pumped=(pumped @ step).reshape(size),
-        drained=(lower.drained / ratio @ step).reshape(size),
+        drained=(mean(lower.out) / ratio @ step).reshape(size),
         lost=(lost @ step).reshape(size),
     )
 

@@ -11,10 +11,10 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from manual.places import DOCS, SITE, place_in_site
-from truing.declare.checks import formula_scope
+from truing.declare.model import formula_scope
 from truing.describe import description
 from truing.formulas import parse, symbol_mathml
-from truing.formulas.write_mathml import MathMLWriter
+from truing.formulas.write_mathml import MATHML
 from truing.inputs_file import json_schema
 from truing.kernel import Kernel, Offer
 from truing.report import equations
@@ -103,7 +103,7 @@ def _formulas(offer: Offer) -> dict[str, Markup]:
         fields = {key: field for key, field in formula_scope(offer.model, item).items() if key in formula.names}
         symbols = {key: field.symbol for key, field in fields.items() if field.symbol}
         equation = Equation(formula, item.name, item.symbol, symbols, numbers=None, results=())
-        lines = equations.lines(MathMLWriter(), equation)
+        lines = equations.lines(MATHML, equation)
         found[name] = Markup("").join(Markup(f'<math displaystyle="true">{line.markup}</math>') for line in lines)
     return found
 

@@ -13,7 +13,7 @@ import numpy as np
 from truing.api.notebook import heading, html_table, joined, paragraphs
 from truing.api.tables import frame_of, frame_text
 from truing.declare.near_miss import near_miss
-from truing.diagnosis.data_file import DataRows, read_data_files
+from truing.diagnosis.data_rows import DataRows, read_data_files
 from truing.errors import UsageError
 from truing.kernel import Offer
 from truing.measurements import TableSource, read_table

@@ -11,9 +11,9 @@ from typing import Any
 import typer
 
 from truing.cli.candidates import OfferedWord
+from truing.declare.fields import Loaded
 from truing.declare.model import Model
-from truing.declare.specs import Loaded
-from truing.inputs_file.file_model import schemas
+from truing.inputs_file.entries import sections
 from truing.kernel import Kernel, Offer
 
 
@@ -34,7 +34,7 @@ def names_inside(context: typer.Context) -> Iterator[OfferedWord]:
 def changes(context: typer.Context, incomplete: str) -> Iterator[OfferedWord]:
     """Offer what ``--set`` takes for the plugin that is typed already: NAME=, section by section, and choices."""
     model = _typed_model(context)
-    known = schemas(model)
+    known = {name: section.schema["properties"] for name, section in sections(model).items()}
     direct: Mapping[str, Any] = {**known["inputs"], **known["conditions"], "seed": known["studies"]["seed"]}
     name, equals, _ = incomplete.partition("=")
     *above, last = name.split(".")
@@ -53,8 +53,8 @@ def changes(context: typer.Context, incomplete: str) -> Iterator[OfferedWord]:
     if not above:
         files = (key for key, field in model.input_fields.items() if field.kind == "file")
         yield from ((f"{key}.", "how the data file is read") for key in files)
-        sections = (key for key, entries in known.items() if entries and key not in {"inputs", "conditions"})
-        yield from ((f"{key}.", "a section of the inputs file") for key in sections)
+        titles = (key for key, entries in known.items() if entries and key not in {"inputs", "conditions"})
+        yield from ((f"{key}.", "a section of the inputs file") for key in titles)
 
 
 def _inside(names: Mapping[str, Any], name: str) -> Mapping[str, Any]:

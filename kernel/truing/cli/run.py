@@ -200,16 +200,13 @@ def _result_row(calculation: Calculation, name: str) -> tuple[str, ...]:
 
 def _checks(calculation: Calculation) -> list[str]:
     """Say every limit: what is compared, with what, and what is left."""
-    rows = list(check_rows(calculation))
     proposed = calculation.decided.proposal is not None
     head = ("check", "as stated" if proposed else "value", "", "limit", "margin", "", "as proposed" if proposed else "")
-    lines = [
-        (
-            one_line(row.compared), _written(row.value), row.relation, _written(row.limit), _written(row.margin),
-            SHORT[row.state], _written(row.proposed) if row.proposed is not None else one_line(row.remark),
-        )
-        for row in rows
-    ]  # fmt: skip
+    lines = []
+    for row in check_rows(calculation):
+        check, last = row.check, one_line(row.remark) if row.proposed is None else _written(row.proposed)
+        numbers = _written(row.value), check.relation, _written(row.limit), _written(row.margin)
+        lines.append((one_line(check.compared or check.name), *numbers, SHORT[check.state], last))
     return aligned([head, *lines], right=(1, 3, 4))
 
 

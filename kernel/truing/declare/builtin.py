@@ -22,15 +22,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Any, Literal, Protocol
 
 import numpy as np
 
 from truing.declare.batch import column
-from truing.declare.declared import Declared
-from truing.declare.fields import InputField, ResultField, read, with_values
-from truing.declare.sources import SINCE_START, Condition, Effect, Tolerance, Unknown
-from truing.declare.specs import Axis, Float
+from truing.declare.fields import Axis, Float, Given, InputField, ResultField, read, with_values
+from truing.declare.sources import SINCE_START, Condition, Effect, ErrorSource, Tolerance, Unknown
 from truing.units import difference_unit, same_dimension, to_si
 from truing.units.names import LEVELS, PURE
 
@@ -40,16 +38,38 @@ LONGEST = 1e6
 HIGHEST_ORDER = 3
 
 
+class Declared(Protocol):
+    """What is seen here of a model (see ``declare.model.Model``)."""
+
+    @property
+    def errors(self) -> Sequence[ErrorSource[Any, Any]]: ...  # noqa: D102
+    @property
+    def studies(self) -> Sequence[Any]: ...  # noqa: D102
+    @property
+    def input_fields(self) -> dict[str, InputField]: ...  # noqa: D102
+    @property
+    def own_result_fields(self) -> dict[str, ResultField]: ...  # noqa: D102
+    @property
+    def result_fields(self) -> dict[str, ResultField]: ...  # noqa: D102
+    @property
+    def measurable(self) -> list[str]: ...  # noqa: D102
+    @property
+    def effects(self) -> dict[str, Effect[Any, Any]]: ...  # noqa: D102
+    @property
+    def conditions(self) -> dict[str, Condition]: ...  # noqa: D102
+
+
 @dataclass(frozen=True)
 class _Kind:
     """One sort of effect: its unknowns of a result by role, and what they and what is seen add to a reading.
 
-    ``is_from_zero``: what is seen counts from where its effects vanish. Nothing is seen but the reading itself where
-    the effect is made for no time, temperature or angle.
+    In names and notes of ``unknowns`` {} is the result; units that begin with "difference" are its own. With
+    ``is_from_zero`` what is seen counts from where its effects vanish. Nothing is seen but the reading itself where the
+    effect is made for no time, temperature or angle.
     """
 
     name: str
-    unknowns: Callable[[ResultField], dict[str, Unknown]]
+    unknowns: Mapping[str, Unknown]
     added: Callable[[Mapping[str, Float], Float], Float]
     looks_like: str
     why: str
@@ -83,7 +103,7 @@ class BuiltinReading:
     def _sight(self, value: Float, result: ResultField, held: tuple[Any, Any, Mapping[str, Float]]) -> Float:
         """Return what the effect looks at, SI: time, temperature or angle, else the reading from its zero."""
         if self.seen is None:
-            zero = zero_of(result)
+            zero = to_si(0.0, result.unit)  # 273.15 K for degC, 0 for all that are no levels
             return value - zero if zero else value
         observed = self.seen.of(*held, result)
         return observed - self.seen.zero if self.kind.is_from_zero and self.seen.zero else observed
@@ -91,7 +111,7 @@ class BuiltinReading:
 
 def builtin_effects(model: Declared) -> dict[str, Effect[Any, Any]]:
     """Return the kernel's effects on the readings of this model, by name, without those whose name it has taken."""
-    results = tuple(_gauged(model))
+    results = [model.own_result_fields[name] for name in model.measurable]
     effects = [
         *_made(_OFFSET, results, [None]),
         *_made(_GAIN, results, [None]),
@@ -107,16 +127,6 @@ def may_stand(effect: Effect[Any, Any]) -> bool:
     """Whether an effect follows an input of which only a record can tell that it turns, or is a temperature."""
     reading = effect.function
     return isinstance(reading, BuiltinReading) and reading.seen is not None and reading.seen.may_stand
-
-
-def _gauged(model: Declared) -> Iterator[ResultField]:
-    """Give the results that a gauge can show: numbers and curves; no axes, and nothing of a table."""
-    fields = model.own_result_fields
-    for result in fields.values():
-        axis = fields.get(f"{result.along}_{result.scope}") or fields.get(result.along)
-        in_table = axis is not None and isinstance(axis.spec, Axis) and axis.spec.is_table
-        if not isinstance(result.spec, Axis) and not in_table:
-            yield result
 
 
 def _made(
@@ -150,7 +160,7 @@ def _named_apart(
     """
     taken = {seen.name} if seen is not None else set()
     for result in items:
-        own = kind.unknowns(result)
+        own = {role: _of_result(unknown, result) for role, unknown in kind.unknowns.items()}
         names = {unknown.name for unknown in own.values()}
         if not names & taken:
             yield result, own
@@ -161,55 +171,13 @@ def _met(value: Float, result: ResultField) -> Float:
     return column(value) if result.along else value
 
 
-def _amplitude(name: str, unit: str, note: str) -> Unknown:
-    return Unknown(name, -WIDE, WIDE, unit, note=note)
-
-
-def _difference(result: ResultField, per: str = "") -> str:
-    """Return the unit of a difference of this result, or of one per something."""
-    unit = difference_unit(result.unit)
-    return (f"1/{per}" if unit in PURE else f"{unit}/{per}") if per else unit
-
-
-def _offset_of(result: ResultField) -> dict[str, Unknown]:
-    return {"size": _amplitude(result.name, _difference(result), f"zero of the gauge of {result.name}")}
-
-
-def _gain_of(result: ResultField) -> dict[str, Unknown]:
-    return {"size": Unknown(result.name, -1, 1, "", note=f"of what the gauge of {result.name} shows, too much")}
-
-
-def _drift_of(result: ResultField) -> dict[str, Unknown]:
-    return {"size": _amplitude(result.name, _difference(result, "h"), f"drift of the gauge of {result.name}")}
-
-
-def _thermal_of(result: ResultField) -> dict[str, Unknown]:
-    return {
-        "size": _amplitude(
-            result.name, _difference(result, "K"), f"drift of the gauge of {result.name} with temperature"
-        )
-    }
-
-
-def _order_of(result: ResultField) -> dict[str, Unknown]:
-    unit, of = _difference(result), f"part of the wave on {result.name}"
-    return {
-        "sine": _amplitude(f"{result.name}_sine", unit, f"sine {of}"),
-        "cosine": _amplitude(f"{result.name}_cosine", unit, f"cosine {of}"),
-        "order": Unknown(f"{result.name}_order", 1, HIGHEST_ORDER, "", note="waves per turn", whole=True),
-    }
-
-
-def _step_of(result: ResultField) -> dict[str, Unknown]:
-    return {
-        "size": _amplitude(result.name, _difference(result), f"height of the step of {result.name}"),
-        "after": Unknown(f"{result.name}_after", 0, LONGEST, "h", note="when the step comes", along="time"),
-    }
-
-
-def zero_of(result: ResultField) -> float:
-    """Return the zero of the unit of a result in SI: 273.15 K for degC, 0 for all that are no levels."""
-    return float(to_si(0.0, result.unit))
+def _of_result(unknown: Unknown, result: ResultField) -> Unknown:
+    """Return an unknown of a kind as it is called, and in which unit, for this result."""
+    unit = unknown.unit
+    if unit.startswith("difference"):
+        own, per = difference_unit(result.unit), unit.removeprefix("difference")
+        unit = f"1{per}" if per and own in PURE else f"{own}{per}"
+    return replace(unknown, name=unknown.name.format(result.name), unit=unit, note=unknown.note.format(result.name))
 
 
 def _constant(own: Mapping[str, Float], observed: Float) -> Float:
@@ -229,30 +197,46 @@ def _jump(own: Mapping[str, Float], observed: Float) -> Float:
     return own.get("size", 0.0) * np.where(observed >= own["after"], 1.0, 0.0)
 
 
+def _size(unit: str, note: str, name: str = "{}") -> Unknown:
+    return Unknown(name, -WIDE, WIDE, unit, note=note)
+
+
 _SENSOR = "linear model of a gauge: gain, offset and drift"
 _OFFSET = _Kind(
-    "sensor_offset", _offset_of, _constant, "the same everywhere", "the zero of the gauge is off", _SENSOR,
+    "sensor_offset", {"size": _size("difference", "zero of the gauge of {}")}, _constant,
+    "the same everywhere", "the zero of the gauge is off", _SENSOR,
 )  # fmt: skip
 _GAIN = _Kind(
-    "sensor_gain", _gain_of, _in_proportion, "in proportion to what is measured", "the gauge is scaled wrongly",
-    _SENSOR,
+    "sensor_gain", {"size": Unknown("{}", -1, 1, note="of what the gauge of {} shows, too much")}, _in_proportion,
+    "in proportion to what is measured", "the gauge is scaled wrongly", _SENSOR,
 )  # fmt: skip
 _DRIFT = _Kind(
-    "sensor_drift", _drift_of, _in_proportion, "grows steadily with {seen}", "the zero of the gauge moves with time",
-    _SENSOR, is_from_zero=True,
+    "sensor_drift", {"size": _size("difference/h", "drift of the gauge of {}")}, _in_proportion,
+    "grows steadily with {seen}", "the zero of the gauge moves with time", _SENSOR, is_from_zero=True,
 )  # fmt: skip
 _THERMAL = _Kind(
-    "thermal_drift", _thermal_of, _in_proportion, "follows {seen}",
-    "the gauge, or what holds it, moves with temperature", "temperature coefficient of a zero, linear",
-    is_from_zero=True,
+    "thermal_drift", {"size": _size("difference/K", "drift of the gauge of {} with temperature")}, _in_proportion,
+    "follows {seen}", "the gauge, or what holds it, moves with temperature",
+    "temperature coefficient of a zero, linear", is_from_zero=True,
 )  # fmt: skip
 _ORDER = _Kind(
-    "periodic_order", _order_of, _wave, "a wave over {seen}, one to three times a turn",
+    "periodic_order",
+    {
+        "sine": _size("difference", "sine part of the wave on {}", "{}_sine"),
+        "cosine": _size("difference", "cosine part of the wave on {}", "{}_cosine"),
+        "order": Unknown("{}_order", 1, HIGHEST_ORDER, note="waves per turn", whole=True),
+    },
+    _wave, "a wave over {seen}, one to three times a turn",
     "something that turns is off its centre, bent or out of round", "Fourier orders of a rotation",
 )  # fmt: skip
 _STEP = _Kind(
-    "step", _step_of, _jump, "a jump at one moment of {seen}, steady before and after",
-    "something slipped or was touched", "a step in the mean of a record",
+    "step",
+    {
+        "size": _size("difference", "height of the step of {}"),
+        "after": Unknown("{}_after", 0, LONGEST, "h", note="when the step comes", along="time"),
+    },
+    _jump, "a jump at one moment of {seen}, steady before and after", "something slipped or was touched",
+    "a step in the mean of a record",
 )  # fmt: skip
 
 
@@ -355,15 +339,10 @@ def _inputs(model: Declared, unit: str) -> Iterator[Observed]:
     for name, field in model.input_fields.items():
         if field.is_optional or not _is_like(field.unit, unit):
             continue
-        if field.varies:
-            yield Observed(name, "input", field.path, zero=float(_default(field)))
+        if field.varies and isinstance(field.spec, Given):
+            yield Observed(name, "input", field.path, zero=float(field.spec.initial()))
         elif field.kind == "series":
             yield Observed(name, "series", field.path, axes=frozenset({name, field.spec.along} - {""}))
-
-
-def _default(field: InputField) -> Any:
-    initial = getattr(field.spec, "initial", None)
-    return initial() if initial is not None else 0.0
 
 
 def _result_axes(model: Declared, unit: str) -> Iterator[Observed]:

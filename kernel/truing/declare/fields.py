@@ -3,24 +3,122 @@
 from __future__ import annotations
 
 import dataclasses
-import sys
+import typing
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import MISSING, dataclass, field, replace
-from typing import Any, Literal, TypeVar, dataclass_transform, get_args, get_origin, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias, TypeVar, dataclass_transform
+
+import numpy as np
+from numpy.typing import NDArray
 
 from truing.declare.near_miss import near_miss
-from truing.declare.specs import KEY, Array, Axis, Float, Found, Given, InputKind, Loaded, Part, Spec, in_si
 from truing.errors import DeclarationError, UsageError
+from truing.units import read_quantity, to_si
+from truing.units.names import PURE
 
-__all__ = [
-    "KEY", "Array", "Axis", "Float", "Found", "Given", "InputField", "InputKind", "Loaded", "Part", "ResultField",
-    "Spec",
-    "axis",
-    "found", "given", "hints_of", "in_si", "input_fields", "inputs", "loaded", "make", "part", "read",
-    "result_fields", "results", "rows", "spec_of", "with_values",
-]  # fmt: skip
+Array: TypeAlias = NDArray[np.float64]
+if TYPE_CHECKING:
+    Float: TypeAlias = float | NDArray[np.float64]
+else:
+    Float = Annotated[float, "a number or an array: may vary inside a batch"]
 
+KEY = "truing"
+InputKind = Literal["float", "whole", "integer", "switch", "choice", "text", "series", "file"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Given:
+    """One input as declared; ``default`` and the bounds are in ``unit``."""
+
+    default: Any
+    unit: str | None
+    symbol: str = ""
+    note: str = ""
+    source: str = ""
+    above: float | None = None
+    below: float | None = None
+    at_least: float | None = None
+    at_most: float | None = None
+    whole: bool = False
+    along: str = ""
+    stated_with: str = ""
+    halving: float | None = None
+    halving_but: Mapping[str, str] = field(default_factory=dict)
+
+    def initial(self) -> Any:
+        """Return the default as the function sees it: SI, NaN where nothing is given."""
+        return in_si(self.default, self.unit, bool(self.along))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Loaded:
+    """An input that is read from a data file by ``reader(path, **options)``."""
+
+    reader: Callable[..., Any]
+    note: str = ""
+    source: str = ""
+    default: Any = MISSING
+    symbol: str = ""
+    unit: str | None = None
+    along: str = ""
+    stated_with: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Found:
+    """One result as declared; ``formula`` is what the sheet prints and a test evaluates, with so many ``digits``."""
+
+    unit: str
+    symbol: str = ""
+    note: str = ""
+    formula: str = ""
+    numeric: bool = False
+    along: str = ""
+    method: str = ""
+    source: str = ""
+    digits: int = 5
+
+
+@dataclass(frozen=True, kw_only=True)
+class Axis:
+    """A result that other results run along: shape (k,); ``follows`` names the input series that it repeats."""
+
+    unit: str
+    symbol: str = ""
+    note: str = ""
+    is_table: bool = False
+    follows: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Part:
+    """A nested group of fields: one gear, one side."""
+
+    of: type[Any]
+    index: str
+    suffix: str | None
+    defaults: Mapping[str, Any]
+
+
+Spec: TypeAlias = Given | Loaded | Found | Axis | Part
 T = TypeVar("T")
+
+
+def in_si(value: Any, unit: str | None, is_series: bool = False) -> Any:
+    """Turn a declared value, a text with a unit or None (not given: NaN) into what the function sees."""
+    if value is None:
+        return float("nan")
+    if unit is None or isinstance(value, bool):
+        return value
+    if is_series and not isinstance(value, str):
+        return np.array([in_si(member, unit) for member in value], dtype=float)
+    if isinstance(value, (tuple, list)):
+        return tuple(in_si(member, unit) for member in value)
+    if isinstance(value, str):
+        return read_quantity(value, unit)
+    if isinstance(value, int) and unit in PURE:
+        return value
+    return to_si(value, unit)
 
 
 def given(
@@ -287,7 +385,7 @@ def _indexed(symbol: str, index: str) -> str:
 def hints_of(annotated: Any) -> dict[str, Any]:
     """Return the annotations of a class or function; a name that is not found is a fault of the declaration."""
     try:
-        return get_type_hints(annotated, include_extras=True)
+        return typing.get_type_hints(annotated, include_extras=True)
     except NameError as error:
         name = getattr(annotated, "__qualname__", repr(annotated))
         raise DeclarationError(f"{name}: {error}; annotations must name what the module itself imports") from error
@@ -301,23 +399,17 @@ def _kind(visited: _Place) -> tuple[InputKind, tuple[str, ...]]:
         if isinstance(spec, Given) and spec.along:
             return "series", ()
         return ("whole" if isinstance(spec, Given) and spec.whole else "float"), ()
-    if get_origin(annotation) is Literal:
-        return "choice", tuple(str(choice) for choice in get_args(annotation))
+    if typing.get_origin(annotation) is Literal:
+        return "choice", tuple(str(choice) for choice in typing.get_args(annotation))
     kinds: dict[Any, InputKind] = {bool: "switch", int: "integer", str: "text"}
     if annotation in kinds:
         return kinds[annotation], ()
-    if (get_origin(annotation) or annotation) in {tuple, list, _array_type()}:
+    if (typing.get_origin(annotation) or annotation) in {tuple, list, np.ndarray}:
         return "series", ()
     raise DeclarationError(
         f"input '{visited.path[-1]}' is annotated {annotation}; "
         "write Float, int, bool, str, Literal[...], a tuple, or loaded(...) for a data file"
     )
-
-
-def _array_type() -> Any:
-    """Return numpy's array type if anybody has imported numpy; without it nothing can be annotated with it."""
-    numpy = sys.modules.get("numpy")
-    return numpy.ndarray if numpy is not None else None
 
 
 def input_fields(cls: type[Any]) -> dict[str, InputField]:

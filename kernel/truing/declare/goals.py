@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from typing import Any, Literal, TypeAlias
 
 from truing.errors import DeclarationError
@@ -87,7 +87,7 @@ class Maximise:
     result: str
 
 
-@dataclass(frozen=True, init=False)
+@dataclass(frozen=True)
 class Require:
     """A limit on a result; with ``reliability`` a limit on the chance of meeting it.
 
@@ -97,33 +97,34 @@ class Require:
     """
 
     result: str
-    kind: LimitKind
-    limit: str
-    reliability: float | str | None
-    is_flag: bool
+    _: KW_ONLY
+    at_most: str = ""
+    at_least: str = ""
+    within: str = ""
+    reliability: float | str | None = None
 
-    def __init__(
-        self,
-        result: str,
-        *,
-        at_most: str = "",
-        at_least: str = "",
-        within: str = "",
-        reliability: float | str | None = None,
-    ) -> None:
-        stated = [
-            (kind, text) for kind, text in (("at_most", at_most), ("at_least", at_least), ("within", within)) if text
-        ]
-        if len(stated) != 1:
-            raise DeclarationError(f"Require('{result}') takes one of at_most, at_least and within")
-        if isinstance(reliability, (int, float)) and not 0 < reliability < 1:
-            raise DeclarationError(f"Require('{result}'): the reliability {reliability} must lie between 0 and 1")
-        kind, text = stated[0]
-        is_flag = (kind, text) == ("at_least", YES)
-        limit = "1" if is_flag else text
-        values = {"result": result, "kind": kind, "limit": limit, "reliability": reliability, "is_flag": is_flag}
-        for key, value in values.items():
-            object.__setattr__(self, key, value)
+    def __post_init__(self) -> None:
+        if sum(map(bool, (self.at_most, self.at_least, self.within))) != 1:
+            raise DeclarationError(f"Require('{self.result}') takes one of at_most, at_least and within")
+        if isinstance(self.reliability, (int, float)) and not 0 < self.reliability < 1:
+            raise DeclarationError(
+                f"Require('{self.result}'): the reliability {self.reliability} must lie between 0 and 1"
+            )
+
+    @property
+    def kind(self) -> LimitKind:
+        """Which limit it is."""
+        return "at_most" if self.at_most else "at_least" if self.at_least else "within"
+
+    @property
+    def is_flag(self) -> bool:
+        """Whether it asks a result that is 1 for yes and 0 for no to be 1."""
+        return self.at_least == YES
+
+    @property
+    def limit(self) -> str:
+        """The limit as a quantity or a name."""
+        return "1" if self.is_flag else self.at_most or self.at_least or self.within
 
 
 Objective: TypeAlias = Vary | Minimise | Maximise | Require

@@ -8,12 +8,10 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from truing.declare.checks import TOTAL_PRICE
-from truing.declare.fields import InputField, ResultField
+from truing.declare.fields import Given, InputField, ResultField
 from truing.declare.goals import Require, Vary, prices_in
-from truing.declare.model import Model
+from truing.declare.model import TOTAL_PRICE, Model
 from truing.declare.near_miss import near_miss
-from truing.declare.specs import Given
 from truing.declare.spreads import Target
 from truing.errors import UnitError, UsageError
 from truing.units import check_unit, difference_unit, read_quantity, same_dimension

@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Concatenate, Generic, Literal, TypeAlias, TypeVar
 
@@ -31,37 +31,20 @@ HISTORIES = ("running_maximum", "cumulative", "direction", "last_reversal")
 MOST_UNKNOWNS = 3
 
 
-@dataclass(frozen=True, init=False)
+@dataclass(frozen=True)
 class Tolerance:
     """Inputs that scatter about their nominal: one band, one price, one independent draw per input it is ``on``."""
 
     name: str
     spread: Spread
-    on: tuple[str, ...]
-    why: str
-    price: Price | PriceByChoice | None
-    source: str
+    on: Sequence[str] = ()
+    _: KW_ONLY
+    why: str = ""
+    price: Price | PriceByChoice | None = None
+    source: str = ""
 
-    def __init__(
-        self,
-        name: str,
-        spread: Spread,
-        on: Sequence[str] | None = None,
-        *,
-        why: str = "",
-        price: Price | PriceByChoice | None = None,
-        source: str = "",
-    ) -> None:
-        values = {
-            "name": name,
-            "spread": spread,
-            "on": tuple(on or (name,)),
-            "why": why,
-            "price": price,
-            "source": source,
-        }
-        for key, value in values.items():
-            object.__setattr__(self, key, value)
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "on", tuple(self.on or (self.name,)))
 
 
 @dataclass(frozen=True)
@@ -160,14 +143,7 @@ def _check_condition(condition: Condition) -> None:
         )
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Actions(Generic[I, R]):
-    on_inputs: Callable[Concatenate[I, ...], I] | None = None
-    on_results: Callable[Concatenate[I, R, ...], R] | None = None
-    on_reading: Callable[Concatenate[I, R, ...], R] | None = None
-
-
-@dataclass(frozen=True, init=False)
+@dataclass(frozen=True)
 class Effect(Generic[I, R]):
     """Physics the model leaves out, with one to three unknowns, acting at one place.
 
@@ -182,53 +158,36 @@ class Effect(Generic[I, R]):
     """
 
     name: str
-    actions: _Actions[I, R]
-    unknowns: tuple[Unknown, ...]
-    needs: tuple[Condition, ...]
-    parts: tuple[tuple[str, ...], ...]
-    reads: tuple[str, ...]
-    acts_at_reference: bool
-    looks_like: str
-    why: str
-    source: str
+    _: KW_ONLY
+    unknowns: Sequence[Unknown]
+    on_inputs: Callable[Concatenate[I, ...], I] | None = None
+    on_results: Callable[Concatenate[I, R, ...], R] | None = None
+    on_reading: Callable[Concatenate[I, R, ...], R] | None = None
+    needs: Sequence[Condition] = ()
+    parts: Sequence[Sequence[str]] = ()
+    reads: Sequence[str] = ()
+    acts_at_reference: bool = False
+    looks_like: str = ""
+    why: str = ""
+    source: str = ""
 
-    def __init__(
-        self,
-        name: str,
-        *,
-        unknowns: Sequence[Unknown],
-        on_inputs: Callable[Concatenate[I, ...], I] | None = None,
-        on_results: Callable[Concatenate[I, R, ...], R] | None = None,
-        on_reading: Callable[Concatenate[I, R, ...], R] | None = None,
-        needs: Sequence[Condition] = (),
-        parts: Sequence[Sequence[str]] = (),
-        reads: Sequence[str] = (),
-        acts_at_reference: bool = False,
-        looks_like: str = "",
-        why: str = "",
-        source: str = "",
-    ) -> None:
-        actions = _Actions(on_inputs=on_inputs, on_results=on_results, on_reading=on_reading)
-        values = {
-            "name": name, "actions": actions, "unknowns": tuple(unknowns), "needs": tuple(needs),
-            "parts": tuple(tuple(part) for part in parts), "reads": tuple(reads),
-            "acts_at_reference": acts_at_reference, "looks_like": looks_like, "why": why, "source": source,
-        }  # fmt: skip
-        for key, value in values.items():
-            object.__setattr__(self, key, value)
+    def __post_init__(self) -> None:
+        for name in ("unknowns", "needs", "reads"):
+            object.__setattr__(self, name, tuple(getattr(self, name)))
+        object.__setattr__(self, "parts", tuple(tuple(part) for part in self.parts))
         _check_effect(self)
 
     @property
     def place(self) -> ActsOn:
         """Where the effect acts: on the inputs, on the results or on the reading."""
-        if self.actions.on_inputs is not None:
+        if self.on_inputs is not None:
             return "inputs"
-        return "results" if self.actions.on_results is not None else "reading"
+        return "results" if self.on_results is not None else "reading"
 
     @property
     def function(self) -> Callable[..., Any]:
         """The function of that place."""
-        given = (self.actions.on_inputs, self.actions.on_results, self.actions.on_reading)
+        given = (self.on_inputs, self.on_results, self.on_reading)
         return next(function for function in given if function is not None)
 
     @cached_property
@@ -240,13 +199,12 @@ class Effect(Generic[I, R]):
     def groups(self) -> tuple[tuple[Unknown, ...], ...]:
         """Return the unknowns by part, in the order declared; without parts all of them are one."""
         named = {unknown.name: unknown for unknown in self.unknowns}
-        return tuple(tuple(named[name] for name in part) for part in self.parts) or (self.unknowns,)
+        return tuple(tuple(named[name] for name in part) for part in self.parts) or (tuple(self.unknowns),)
 
 
 def _check_effect(effect: Effect[Any, Any]) -> None:
     """Refuse an effect whose function does not fit its unknowns and conditions."""
-    actions = effect.actions
-    if sum(function is not None for function in (actions.on_inputs, actions.on_results, actions.on_reading)) != 1:
+    if sum(function is not None for function in (effect.on_inputs, effect.on_results, effect.on_reading)) != 1:
         raise DeclarationError(f"effect '{effect.name}' acts at one place: give on_inputs, on_results or on_reading")
     _check_parts(effect)
     for part in effect.groups():

@@ -19,9 +19,9 @@ import numpy as np
 from truing.arrays import Matrix
 from truing.declare.builtin import BuiltinReading, may_stand
 from truing.declare.sources import Effect, Unknown
+from truing.diagnosis.data_rows import is_angle
 from truing.diagnosis.machine import Calibration
 from truing.diagnosis.records import Covariate
-from truing.diagnosis.tidying import is_angle
 from truing.errors import PluginError
 from truing.gauge import read_by_gauge
 from truing.setup import SwitchedOn

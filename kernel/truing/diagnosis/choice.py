@@ -1,5 +1,11 @@
 """The decision between exact fits: how many causes, which, and what this record does not exclude beside them.
 
+One cause more is believed where its gain is larger than noise alone would give the search, where noise with a memory is
+no better word for it, and where it carries over to rows left out. How much noise alone gives is simulated: the law of
+the largest gain over all curves. Noise has the memory and the innovations that the better explanation leaves, and the
+inputs are drawn from their tolerances, never taken from the fit, which has absorbed part of any effect like them. Every
+draw goes through the curves of all causes beside the simpler explanation, and pays what an explanation pays.
+
 Near the winner is what lies within ``CLOSE`` score units, or within ``SURE`` standard errors of the difference row by
 row (Q. H. Vuong, Likelihood ratio tests for model selection and non-nested hypotheses, Econometrica 57, 1989, 307).
 """
@@ -8,20 +14,47 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from math import sqrt
+from math import comb, log, sqrt
 
 import numpy as np
 
 from truing.arrays import Matrix
 from truing.diagnosis.causes import Candidate
-from truing.diagnosis.chance import Law, law_of
-from truing.diagnosis.competition import Competition
+from truing.diagnosis.competition import MARGIN, MOST_CAUSES, Competition, exchange
+from truing.diagnosis.conditional import ConditionalGain, Pass, conditional_on
 from truing.diagnosis.fitted import Fit, differ
-from truing.diagnosis.folds import carries_over, folds_of
+from truing.diagnosis.folds import Folds, carries_over, ends_of, folds_of
 from truing.diagnosis.intervals import certainty_of, may_be_zero, places_of
-from truing.diagnosis.search import exchange
-from truing.diagnosis.steps import CARRIED, Decision, draws_anything, is_sensible, shapes_in, shifts_inputs, steps_from
+from truing.diagnosis.noise import Autocorrelation, colour, shares, whiten
+from truing.diagnosis.records import FEWEST_READINGS
+from truing.diagnosis.result import OUTSIDE
 
+DRAWS, FIRST_DRAWS = 299, 99
+"""So many records of noise are searched for the law of the largest gain, and so many before it is looked whether
+the outcome is clear: 299 tell a chance of 0.01 with a standard error of 0.006."""
+HOPELESS = 12
+"""So many simulated gains above the measured one, of the first draws, settle that it is nothing."""
+LARGEST_RHO = 0.985
+"""Noise that remembers more is a random walk: of it no number of rows tells anything."""
+ANY_LEVEL, FURTHER_LEVEL = 0.015, 0.01
+"""Chance that noise alone gives as much, up to which a first cause is believed, and a further one."""
+LEAST_IN_PLACE = 12.0
+"""What a step must be better by that puts more numbers in the place of others: twice what counts as near."""
+WANDER = 6.0
+"""What a cause must be better by, in score, than noise with a memory of its own."""
+CERTAIN = 60.0
+"""A gain that needs no simulation."""
+CARRIED = 1.0
+"""Standard errors by which the error of rows left out must fall."""
+NEARLY_ALL = 0.98
+"""Share of the sum of squares that a shape takes away from which on what is registered stands in its place."""
+FURTHER = 6
+"""So many causes are fitted beside what stays."""
+MANY_CURVES = 20
+"""A cause with more independent curves is a wave of any period."""
+MENDED_SHARE, MENDED = 0.25, 45.0
+"""A registered cause beside a shape must gain such a share of what the shape gains, or so much: a shape is rough, and
+what mends it a little is no cause."""
 CLOSE = 6.0
 """Explanations less far behind in score are not excluded (a Bayes factor of about 20)."""
 SURE = sqrt(CLOSE) / 2
@@ -40,6 +73,245 @@ MOST_RIVALS, MOST_CHOICES = 24, 2
 """So many rivals are kept, and so often it is decided anew after causes were exchanged."""
 SURELY = 30.0
 """What a cause must be worth, in score, that is named although its interval holds zero."""
+
+
+@dataclass(frozen=True)
+class Law:
+    """Largest gains that a search makes of noise alone, simulated (draws,), and the chance of the measured one."""
+
+    gains: Matrix
+    p_value: float
+
+    def p_of(self, gain: float) -> float:
+        """Return the chance of any other gain of the same search."""
+        return float((1 + (self.gains >= gain).sum()) / (1 + len(self.gains)))
+
+
+def carried(rho: float, rows: int) -> float:
+    """Return the autocorrelation to simulate with: the fitted one, its bias and half a standard error more."""
+    rows = max(rows, 2)
+    return min(LARGEST_RHO, rho + (1 + 3 * rho) / rows + 0.5 * sqrt(max(1 - rho**2, 0.0) / rows)) if rho else 0.0
+
+
+def law_of(competition: Competition, at: Fit, more: Fit, *, seed: int) -> Law:
+    """Simulate how much the best explanation with as many causes as ``more`` gains where ``at`` is all there is.
+
+    Stops early where the answer is plain.
+    """
+    generator = np.random.Generator(np.random.SFC64(seed))
+    seen, conditional = competition.look(at), conditional_on(at, competition.extended)
+    gain, steps = competition.score(at) - competition.score(more), len(more.causes) - len(at.causes)
+    many, on = len(competition.causes), len(at.causes)
+    choice = 2 * (log(comb(many, on + steps)) - log(comb(many, on)))
+    gains = np.zeros(0)
+    while len(gains) < DRAWS and (gains >= gain).sum() < HOPELESS:
+        drawn = _drawn(at, more, DRAWS - len(gains) if len(gains) else FIRST_DRAWS, generator)
+        drawn -= conditional.taken @ (conditional.taken.T @ drawn)
+        gains = np.concatenate([gains, _largest(competition, seen, drawn, competition.sample.known, steps) - choice])
+    return Law(gains, float((1 + (gains >= gain).sum()) / (1 + len(gains))))
+
+
+def _drawn(at: Fit, more: Fit, count: int, generator: np.random.Generator) -> Matrix:
+    """Draw noise as the better explanation leaves it, and inputs within their tolerances, (rows + K, draws)."""
+    sample = at.sample
+    weighted = sample.roots(more.left) * more.left
+    parts = []
+    for part, channel in zip(sample.parts, sample.channels, strict=True):
+        memory = channel.memory
+        pool = weighted[part][channel.read]
+        pool = pool - pool.mean()
+        drawn = generator.choice(pool, size=(len(channel), count))
+        if memory.rho:  # the memory is known but for its error
+            filtered = Autocorrelation(carried(memory.rho, len(pool)), memory.theta)
+            drawn = whiten(colour(drawn, channel.starts, filtered), channel.starts, memory)
+        if channel.sides is not None:  # a censored row says as much as it follows the prediction
+            drawn = drawn * shares(channel.off(at.predicted[channel.name]), channel.sides)[:, None]
+        parts.append(drawn / sqrt(max(float(np.mean(pool**2)), 1e-300)))
+    return np.concatenate([*parts, generator.standard_normal((len(at.inputs), count))])
+
+
+def _largest(
+    competition: Competition, seen: Mapping[str, ConditionalGain], drawn: Matrix, known: float, steps: int
+) -> Matrix:
+    """Return by draw the largest gain of so many causes, one after another, each paid for, (draws,)."""
+    summed, drawn = np.zeros(drawn.shape[1]), np.array(drawn)
+    prices = {cause.tag: competition.price_of(cause) for cause in competition.causes}
+    for _ in range(steps):
+        whole = np.sum(drawn**2, axis=0)
+        best = np.full(drawn.shape[1], -np.inf)
+        chosen: dict[int, tuple[ConditionalGain, int, Matrix]] = {}
+        passed: dict[Pass, Matrix] = {}
+        for tag, gains in seen.items():
+            inner = gains.span.inner(drawn, passed)
+            squares = np.sum(inner**2, axis=1)
+            index = squares.argmax(axis=0)
+            lowered = np.take_along_axis(squares, index[None], 0)[0]
+            gain = -known * np.log(np.maximum(1 - lowered / np.maximum(whole, 1e-300), 1e-9)) - prices[tag]
+            better = np.flatnonzero(gain > best)
+            best[better] = gain[better]
+            for draw in better.tolist() if steps > 1 else ():
+                chosen[draw] = gains, int(index[draw]), inner[index[draw], :, draw]
+        summed += best
+        for draw, (each, point, size) in chosen.items():
+            drawn[:, draw] -= each.span.vectors(point).T @ size
+    return summed
+
+
+@dataclass(frozen=True)
+class Decision:
+    """How far the steps have come: the explanation, the law of the first step, the chance of the last further cause."""
+
+    at: Fit
+    law: Law
+    p_further: float | None = None
+
+
+@dataclass(frozen=True)
+class _Step:
+    """One step of the decision: where it leads, the law of its gains, and whether it was believed."""
+
+    more: Fit
+    law: Law
+    is_believed: bool
+
+
+def steps_from(competition: Competition, start: Decision, *, seed: int) -> Decision:
+    """Go from an explanation to more and more causes, as long as a step is believed; a step may be of two at once."""
+    now = start
+    is_short = min(competition.sample.known, competition.sample.machine.records.readings) < FEWEST_READINGS
+    folds = folds_of(competition.sample)
+    while len(now.at.causes) < MOST_CAUSES:
+        tried = list(_tried(competition, now.at, folds, seed))
+        first = now.law if now.at.causes or not tried else tried[0].law
+        taken = tried[-1] if tried and tried[-1].is_believed and not is_short else None
+        if taken is None:
+            return Decision(now.at, first, now.p_further)
+        now = Decision(taken.more, now.law, taken.law.p_value) if now.at.causes else Decision(taken.more, taken.law)
+    return now
+
+
+def _tried(competition: Competition, at: Fit, folds: Folds, seed: int) -> Iterator[_Step]:
+    """Give the steps that are judged, up to the first one that is believed."""
+    for steps in (1, 2):
+        for more in _candidates(competition, at, len(at.causes) + steps):
+            step = _step(competition, at, more, folds, seed=seed + 10 * len(at.causes) + steps)
+            yield step
+            if step.is_believed:
+                return
+
+
+def _candidates(competition: Competition, at: Fit, size: int) -> Iterator[Fit]:
+    """Give what may follow an explanation: the best of so many causes; before a shape, what is registered and near it.
+
+    A polynomial draws anything. What the model itself declares and draws nearly all of it is the better word, and a
+    shape is then what is left beside it.
+    """
+    if at.causes and competition.best(len(at.causes)) is not at:  # the search went on from another one
+        competition.forward(at, FURTHER)
+    best = _best(competition, at, size)
+    if best is None or not any(draws_anything(cause) and cause.tag not in at.key for cause in best.causes):
+        yield from [] if best is None else [best]
+        return
+    null = competition.null
+    least = NEARLY_ALL * (_squares(best, null) - _squares(best, best))
+    named = competition.ranked(
+        lambda fit: len(fit.causes) == size and _is_own(fit) and _squares(best, null) - _squares(best, fit) >= least
+    )
+    yield from named[:1]
+    if at.causes and _is_own(at) and _squares(best, null) - _squares(best, at) >= least:
+        competition.forward(at, FURTHER)
+        yield from competition.ranked(lambda fit: len(fit.causes) == size and fit.key > at.key)[:1]
+        return
+    yield best
+
+
+def _is_own(fit: Fit) -> bool:
+    """Whether an explanation is made of effects that the model itself declares."""
+    return all(cause.effect is not None and not cause.is_kernel for cause in fit.causes)
+
+
+def draws_anything(cause: Candidate) -> bool:
+    """Whether a cause is a polynomial of covariates that nobody registered."""
+    return cause.shape is not None and cause.shape.kind in {"trend", "product"}
+
+
+def _squares(judge: Fit, fit: Fit) -> float:
+    """Return the sum of squares that an explanation leaves, in the noise that another one leaves."""
+    return float(np.sum((judge.sample.roots(judge.left) * fit.left) ** 2))
+
+
+def _best(competition: Competition, at: Fit, size: int) -> Fit | None:
+    """Return the best explanation of so many causes, with one new shape at most, no input named without need.
+
+    Beside a cause with a name there is one shape in all: a second one takes from what the cause draws.
+    """
+
+    def allows(fit: Fit) -> bool:
+        many = shapes_in(fit)
+        return many <= (max(shapes_in(at), 1) if many < size else shapes_in(at) + 1)
+
+    sized = competition.ranked(lambda fit: len(fit.causes) == size and is_sensible(fit) and allows(fit))
+    if not sized:
+        return None
+    named = next((fit for fit in sized if not shifts_inputs(fit)), sized[0])
+    return named if competition.score(named) < competition.score(sized[0]) + MARGIN else sized[0]
+
+
+def shapes_in(fit: Fit) -> int:
+    """Return how many shapes that nobody registered an explanation has."""
+    return sum(cause.shape is not None for cause in fit.causes)
+
+
+def shifts_inputs(fit: Fit) -> bool:
+    """Whether an explanation names an input that lies outside of its band."""
+    return any(cause.tolerated >= 0 for cause in fit.causes)
+
+
+def is_sensible(fit: Fit) -> bool:
+    """Whether inputs that are named lie outside of their bands: what lies inside is calibrated, not named."""
+    pairs = zip(fit.causes, fit.values, strict=True)
+    return all(abs(float(values[0])) > OUTSIDE for cause, values in pairs if cause.tolerated >= 0)
+
+
+def _step(competition: Competition, at: Fit, more: Fit, folds: Folds, *, seed: int) -> _Step:
+    """Judge one step: chance, memory, rows left out; a registered cause that mends a rough shape is none."""
+    gain = competition.score(at) - competition.score(more)
+    if gain <= 0:
+        law = Law(np.zeros(0), 1.0) if at.causes else law_of(competition, at, more, seed=seed)
+        return _Step(more, law, False)
+    is_certain = bool(at.causes) and gain > CERTAIN
+    law = Law(np.zeros(0), 1 / 300) if is_certain else law_of(competition, at, more, seed=seed)
+    level, is_more = FURTHER_LEVEL if at.causes else ANY_LEVEL, more.size > at.size
+    added = len(more.causes) - len(at.causes) if is_more or at.key < more.key else 0
+    is_believed = (
+        law.p_value <= level
+        and gain >= (LEAST_IN_PLACE if is_more and not at.key < more.key else 0.0)
+        and competition.own_score(at) - competition.own_score(more) >= (WANDER if at.causes else 0.0)
+        and not _mends(competition, at, more, gain)
+        and carries_over(at, more, competition.extended, folds) >= CARRIED * added
+        and not _beats(competition, at, more)
+    )
+    return _Step(more, law, is_believed)
+
+
+def _beats(competition: Competition, at: Fit, more: Fit) -> bool:
+    """Whether a further wave only beats with one that is there: then it does not carry over to the ends."""
+    before, after = (
+        sum(competition.tries.get(cause.tag, 1.0) > MANY_CURVES for cause in each.causes) for each in (at, more)
+    )
+    return (
+        after > before > 0 and carries_over(at, more, competition.extended, ends_of(competition.sample)) < 2 * CARRIED
+    )
+
+
+def _mends(competition: Competition, at: Fit, more: Fit, gain: float) -> bool:
+    """Whether what is added only mends what a shape that nobody registered leaves."""
+    shapes = [index for index, cause in enumerate(more.causes) if cause.shape is not None]
+    if not shapes or not at.key < more.key or not at.causes:
+        return False
+    rest = [competition.without(more, index) for index in shapes]
+    worth = max((competition.score(each) - competition.score(more) for each in rest if each is not None), default=0.0)
+    return gain < min(MENDED_SHARE * worth, MENDED)
 
 
 @dataclass(frozen=True)

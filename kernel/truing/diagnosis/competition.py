@@ -1,10 +1,17 @@
-"""What competes: everything that was fitted so far, its score, and the noise that the fairest of it leaves."""
+"""What competes: everything that was fitted so far, its score, the noise that the fairest of it leaves; and the search.
+
+Explanations of up to five causes, each fitted exactly, compete for what the readings say. The search goes forward, with
+what is on so far on: the best single causes; all pairs of the best of them, because two can mask one another; every
+other cause beside the best singles, with its curves as they are there; then one more and one more beside the best so
+far, and what is no longer needed goes. At the end every cause of the best is exchanged for every other, the others held
+where they are and refitted: one of the two alone may end in another basin.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import chain, compress
+from itertools import chain, combinations, compress
 from math import lgamma, log, log1p
 from typing import NamedTuple
 
@@ -14,11 +21,12 @@ from truing.arrays import Matrix
 from truing.diagnosis.causes import Candidate, are_exclusive
 from truing.diagnosis.conditional import ConditionalGain, look
 from truing.diagnosis.curves import ResponseCurves
-from truing.diagnosis.exact import EXACTLY, ROUGHLY, fitting, nothing, refitting, together
+from truing.diagnosis.exact import CLOSELY, EXACTLY, ROUGHLY, fitting, held_without, nothing, refitting, together
 from truing.diagnosis.extended import Extended, shape_added
-from truing.diagnosis.fitted import Fit, signs_of_wrong
+from truing.diagnosis.fitted import Fit, differ, signs_of_wrong
 from truing.diagnosis.learning import as_noise, learnt
 from truing.diagnosis.sample import Sample, sample_of
+from truing.studies.bench import StepProgress, unheard
 
 MOST_CAUSES = 5
 """So many causes are named at most; what another one would explain stays in the remainder."""
@@ -40,6 +48,16 @@ AT_ONCE, ROWS_AT_ONCE = 8, 20_000
 """So many fits ask the model together, of records of no more than so many rows among all."""
 AGAIN, TO_THE_END = "fits in the noise that was learnt", "fits to the end"
 """What a budget that has ended leaves out, in words."""
+SINGLES = 12
+"""So many of the most promising causes are fitted alone, and all registered ones that promise anything."""
+BEAM = 8
+"""Of so many of the best singles all pairs are fitted."""
+FIRSTS = 4
+"""Beside so many of the best singles all other causes are looked at."""
+JOINED = 6
+"""So many of the most promising causes are fitted beside an explanation."""
+STARTS = 2
+"""So many of the best explanations of one size get one more cause."""
 
 
 class Start(NamedTuple):
@@ -171,16 +189,6 @@ class Competition:
         self.begun.add(_begins(start.causes, start.values))
         return True
 
-    def fitted(self, causes: Sequence[Candidate], values: Sequence[Matrix], near: Fit | None) -> Fit | None:
-        """Fit an explanation from a start and keep it."""
-        (fit,) = self.fit_each([Start(causes, values, near)])
-        return fit
-
-    def joined(self, at: Fit, cause: Candidate, starts: Iterable[tuple[float, Matrix]]) -> Fit | None:
-        """Fit an explanation with one more cause, from each of its starts."""
-        fits = [fit for fit in self.fit_each(beside(at, cause, starts)) if fit is not None]
-        return fits[-1] if fits else None
-
     def look(self, at: Fit, causes: Sequence[Candidate] | None = None) -> Mapping[str, ConditionalGain]:
         """Compare the curves of causes with what an explanation leaves, and count their independent curves."""
         wanted = [cause for cause in (self.causes if causes is None else causes) if cause.tag not in at.key]
@@ -219,14 +227,11 @@ class Competition:
 
     def without(self, fit: Fit, index: int) -> Fit | None:
         """Fit an explanation without one of its causes."""
-        causes, values = (
-            fit.causes[:index] + fit.causes[index + 1 :],
-            fit.values[:index] + fit.values[index + 1 :],
-        )
+        causes, values = fit.less(index)
         begin = _begins(causes, values)
         if begin[0] in self.fresh and (not begin[1] or begin in self.begun):
             return self.known[begin[0]]
-        return self.fitted(causes, values, fit)
+        return self.fit_each([Start(causes, values, fit)])[0]
 
     def backward(self, fit: Fit) -> Fit:
         """Leave out what is no longer needed."""
@@ -302,3 +307,121 @@ def competition_of(extended: Extended, causes: Sequence[Candidate], sample: Samp
     made = Competition(extended, tuple(causes), sample, ResponseCurves(extended))
     made.keep(nothing(sample, extended))
     return made
+
+
+def search(competition: Competition, done: StepProgress = unheard) -> None:
+    """Fit everything that may explain the record; ``done`` hears of the stages."""
+    stages = (
+        (_singles, 0.6, "causes alone"),
+        (_pairs, 0.7, "pairs of the best causes"),
+        (_beside_firsts, 0.75, "looks beside one of the best causes"),
+        (_more, 0.8, "looks for one cause more"),
+        (_exchanged, 0.85, "exchanges"),
+        (_exactly, 0.95, TO_THE_END),
+    )  # of the budget of calls every stage may spend so much, all before it included
+    for count, (stage, share, competition.stage) in enumerate(stages):
+        done(count, len(stages))
+        competition.extended.budget.share = share
+        stage(competition)
+        if count < len(stages) - 1:
+            competition.renew()
+            competition.refresh()
+    competition.stage, competition.extended.budget.share = "trials of the decision", 1.0
+
+
+def _singles(competition: Competition) -> None:
+    seen = competition.look(competition.null)
+    order = competition.promising(seen)
+    chosen = [*order[:SINGLES], *(cause for cause in order[SINGLES:] if cause.is_registered)]
+    competition.fit_each(
+        [start for cause in chosen for start in beside(competition.null, cause, seen[cause.tag].starts)]
+    )
+
+
+def _distinct(
+    competition: Competition, size: int, count: int, accept: Callable[[Fit], bool] = lambda _: True
+) -> list[Fit]:
+    """Return the best accepted explanations of one size that do not draw the same."""
+    kept: list[Fit] = []
+    for fit in competition.ranked(lambda each: len(each.causes) == size and accept(each)):
+        if all(differ(fit, other) > 1.0 for other in kept):
+            kept.append(fit)
+        if len(kept) == count:
+            break
+    return kept
+
+
+def _pairs(competition: Competition) -> None:
+    several = {fit.key: fit for fit in (*_distinct(competition, 1, BEAM), *_registered(competition, BEAM))}
+    placed = {cause for fit in several.values() for cause in fit.causes if cause.kept}
+    for at in list(several.values())[:BEAM]:
+        competition.forward(at, JOINED, placed.__contains__)
+    pairs = sorted(combinations(several.values(), 2), key=lambda pair: sum(map(competition.score, pair)))
+    competition.fit_each(
+        [
+            Start(one.causes + other.causes, one.values + other.values, one)
+            for one, other in pairs
+            if one.causes[0].is_registered or other.causes[0].is_registered  # two shapes: no second name is needed
+        ]
+    )
+
+
+def _registered(competition: Competition, count: int) -> list[Fit]:
+    """Return the best single causes that somebody registered and that do not draw the same."""
+    return _distinct(competition, 1, count, accept=lambda fit: fit.causes[0].is_registered)
+
+
+def _beside_firsts(competition: Competition) -> None:
+    firsts = {fit.key: fit for fit in (*_distinct(competition, 1, FIRSTS), *_registered(competition, FIRSTS // 2))}
+    for at in firsts.values():
+        competition.forward(at, JOINED, _is_quick)
+
+
+def _is_quick(cause: Candidate) -> bool:
+    """Whether a cause has few curves: waves of any period are looked for beside the best explanation only."""
+    return all(number.name != "frequency" for number in cause.numbers)
+
+
+def _more(competition: Competition) -> None:
+    now = competition.ranked()[0]
+    while 1 <= len(now.causes) < MOST_CAUSES:
+        for at in _distinct(competition, len(now.causes), STARTS):
+            competition.forward(at, JOINED)
+        best = competition.best(len(now.causes) + 1)
+        if best is None or competition.score(best) >= competition.score(now):
+            return
+        competition.backward(best)
+        competition.renew()
+        competition.refresh()
+        now = competition.ranked()[0]
+
+
+def _exchanged(competition: Competition) -> None:
+    for _ in range(2):
+        now = competition.ranked()[0]
+        for index in range(len(now.causes)):
+            exchange(competition, now, index)
+        if competition.ranked()[0].key == now.key:
+            return
+
+
+def exchange(competition: Competition, now: Fit, index: int) -> None:
+    """Fit an explanation with one of its causes exchanged for others, the rest refitted without it and held; once."""
+    if (now.key, now.causes[index].tag) in competition.exchanged:
+        return
+    competition.exchanged.add((now.key, now.causes[index].tag))
+    rest = competition.without(now, index)
+    if rest is not None:
+        competition.forward(rest, JOINED, lambda cause: _is_quick(cause) and cause.tag not in now.key)
+    if len(now.causes) > 1:
+        held = held_without(now, index, competition.sample, competition.extended)
+        if np.isfinite(held.left).all():
+            competition.forward(held, JOINED, lambda cause: _is_quick(cause) and cause.tag not in now.key)
+
+
+def _exactly(competition: Competition) -> None:
+    """Fit to the end what lies near, the best of every size, and single causes: a rough fit may stop far from it."""
+    top = competition.score(competition.ranked()[0])
+    near = [fit for fit in competition.ranked()[:RENEWED] if competition.score(fit) < top + 4 * MARGIN]
+    sized = [best for size in range(1, MOST_CAUSES) if (best := competition.best(size)) is not None]
+    competition.again([competition.null, *near, *sized, *_registered(competition, BEAM)], CLOSELY)

@@ -1,34 +1,52 @@
-"""The next measurement: settings that separate explanations which this data cannot tell apart.
+"""The next measurement: settings, or further results, that separate explanations which this data cannot tell apart.
 
 Every explanation is believed in turn while its rival refits to everything so far; a setting is worth what the rival
 then still gets wrong (greedy T-optimal design). The raw distance of two predictions would be the wrong criterion. The
 rival refits by its derivatives at its own exact fit.
+
+Two causes may draw one curve on everything measured and still differ in a result that nobody measured. What the rivals
+say of it at the rows there are, each as it is fitted, is held against what machines within their tolerances differ in
+it: no gauge is known for it, so this is the only noise.
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import permutations
+from itertools import combinations, permutations
+from math import pi, sqrt
+from typing import Any
 
 import numpy as np
 
 from truing.arrays import Matrix
+from truing.declare.fields import Axis
+from truing.declare.goals import Maximise, Minimise, Require
 from truing.diagnosis.causes import Candidate
 from truing.diagnosis.choice import Chosen
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.conditional import look
-from truing.diagnosis.exact import alone, fitting, slopes_at, unit_of
-from truing.diagnosis.extended import Extended, elsewhere, parts_of
-from truing.diagnosis.fitted import STEP, WIDE, Fit, moved_by
+from truing.diagnosis.curves import evenly
+from truing.diagnosis.data_rows import is_angle
+from truing.diagnosis.exact import alone, fitting, held_without, slopes_at, unit_of
+from truing.diagnosis.extended import Extended, elsewhere, parts_of, switched_on
+from truing.diagnosis.findings import in_unit
+from truing.diagnosis.fitted import STEP, WIDE, Fit, input_value, moved_by
 from truing.diagnosis.intervals import numbers_of
-from truing.diagnosis.result import APART, Amount, NextPoint, readable_unit
+from truing.diagnosis.machine import Calibration, Predicted, calibration_of, predict
+from truing.diagnosis.records import Covariate
+from truing.diagnosis.result import APART, Amount, Fact, NextPoint, Tie, readable_unit
 from truing.diagnosis.sample import Sample
-from truing.diagnosis.settings import FEW, TRIED, machine_there, settings_of
-from truing.diagnosis.shape_words import in_unit
+from truing.measurements import RowsFile
 from truing.numbers import format_number
-from truing.units import from_si
+from truing.units import from_si, read_quantity, to_si
+from truing.units.names import PURE
 
+TRIED, FEW = 512, 32
+"""So many points inside of the box are tried, and so many corners; few where calls of the model are dear."""
+FEW_VALUES = 3
+"""A column of so few values has no values between them: it is set to one of these."""
 POINTS = 4
 """So many next measurements are proposed."""
 MOST_POINTS = 100
@@ -37,6 +55,74 @@ MOST_DUELLING = 4
 """So many of the nearest rivals are to be told apart: their pairs are compared at every setting."""
 UNSEEN = 1e-9
 """Share of its own precision, or of one over its range squared, that is added to that of every number."""
+ROWS = 40
+"""So many rows of the record are asked what the rivals differ in."""
+CLEAR = sqrt(APART)
+"""Beyond this many standard deviations of machines within their tolerances a difference tells explanations apart."""
+NEARLY = 0.95
+"""Of several rows that tell as clearly the one is told in which the difference is largest."""
+LEAST_SHARE = 1e-3
+"""Of the result itself: no gauge is trusted with less."""
+
+
+def settings_of(machine: Calibration, tried: int = TRIED) -> dict[str, Matrix]:
+    """Return the settings that are tried, by input or condition, SI: so many corners of the box and points in it."""
+    covariates = machine.records.covariates
+    ranges = ((name, _box(machine, name, covariate)) for name, covariate in covariates.items())
+    boxes = {name: box for name, box in ranges if box is not None and box[1] > box[0]}
+    if not boxes:
+        return {}
+    unit = evenly(len(boxes), tried)
+    edges = np.random.Generator(np.random.SFC64(0)).integers(0, 3, size=(tried, len(boxes))) / 2
+    every = np.concatenate([unit, edges])
+    settings = {}
+    for column, (name, (low, high)) in enumerate(boxes.items()):
+        values = low + (high - low) * every[:, column]
+        measured = covariates[name].values
+        if len(np.unique(measured[np.isfinite(measured)])) <= FEW_VALUES:
+            values = np.where(every[:, column] < 0.5, low, high)
+        settings[name] = values
+    return settings
+
+
+def _box(machine: Calibration, name: str, covariate: Covariate) -> tuple[float, float] | None:
+    """Return the range in which something can be set: asked for, declared, or half as wide again as measured."""
+    start = machine.start
+    if name in start.diagnose.box:
+        return start.diagnose.box[name]
+    condition, field = start.model.known_conditions.get(name), start.model.input_fields.get(name)
+    if condition is not None:
+        low = np.nanmin(covariate.values) if condition.low is None else to_si(condition.low, condition.unit)
+        high = np.nanmax(covariate.values) if condition.high is None else to_si(condition.high, condition.unit)
+        return float(low), float(high)
+    if field is None or not field.varies:
+        return None
+    low, high = float(np.nanmin(covariate.values)), float(np.nanmax(covariate.values))
+    declared = [getattr(field.spec, key, None) for key in ("at_least", "above", "at_most", "below")]
+    lows = [float(to_si(value, field.unit)) for value in declared[:2] if isinstance(value, (int, float))]
+    highs = [float(to_si(value, field.unit)) for value in declared[2:] if isinstance(value, (int, float))]
+    if is_angle(field.unit) and not lows and not highs:
+        return min(low, -pi), max(high, pi)
+    reach = (high - low) / 2
+    lows += [min(low, 0.0)] if covariate.role == "time" else []
+    return max([low - reach, *lows]), min([high + reach, *highs])
+
+
+def machine_there(machine: Calibration, settings: Mapping[str, Matrix]) -> Calibration:
+    """Return the machine at the settings that are tried; what is not set has the middle of what was measured."""
+    count = len(next(iter(settings.values())))
+    columns = {
+        name: np.full(count, np.nanmedian(values))
+        for name, values in machine.records.rows.columns.items()
+        if isinstance(values, np.ndarray) and values.dtype.kind == "f"
+    }
+    known = machine.records.covariates
+    records = replace(
+        machine.records.part(np.zeros(count, dtype=np.intp)),
+        rows=RowsFile("", columns | dict(settings), {}, {}, tuple(range(count))),
+        covariates={name: replace(known[name], values=values) for name, values in settings.items()},
+    )
+    return replace(machine, records=records, base={}, slopes={})
 
 
 @dataclass
@@ -159,11 +245,8 @@ def _renamed(chosen: Chosen) -> Iterator[Fit]:
 
 def _exchanged(competition: Competition, best: Fit, index: int, other: Candidate) -> Iterator[Fit]:
     """Give exact fits of an explanation with one cause exchanged for another, from where its curves say."""
-    causes, values = list(best.causes), list(best.values)
-    del causes[index], values[index]
-    (predicted,) = competition.extended.at(causes, [(values, best.moved)])
-    held = replace(best, causes=tuple(causes), values=tuple(values), predicted=predicted, slopes={})
-    held = held.in_sample(competition.sample)
+    held = held_without(best, index, competition.sample, competition.extended)
+    causes, values = held.causes, held.values
     seen = look(competition.curves, held, [other]).get(other.tag) if np.isfinite(held.left).all() else None
     for _, start in seen.starts if seen is not None else ():
         several, begun = (*causes[:index], other, *causes[index:]), (*values[:index], start, *values[index:])
@@ -308,3 +391,140 @@ def _why(chosen: Chosen, settings: Mapping[str, Matrix], index: int, duel: _Duel
             begin = format_number(float(from_si(low, covariate.unit)), 3)
             beyond, reach = f"; {key} was only {begin} to {in_unit(high, covariate.unit, 3)} so far", out
     return words + beyond
+
+
+@dataclass(frozen=True)
+class _Gap:
+    """What two explanations differ in a result that was not measured: where it is clearest, by one value, SI."""
+
+    result: str
+    names: tuple[str, str]
+    size: float
+    scatter: float
+    clearness: float
+    """The difference over the scatter of machines; a result that does not scatter is as clear as can be."""
+
+
+def with_results(chosen: Chosen, proposal: NextPoints) -> tuple[list[NextPoint], list[Tie]]:
+    """Return the next points with the result that separates the rivals, and what neither of them tells apart.
+
+    The result comes first where settings leave something open that it does not.
+    """
+    machine = chosen.competition.sample.machine
+    explanations = rival_fits(chosen) if is_physical(chosen.best) else []
+    asked, apart = _result_to_measure(machine, explanations)
+    tied = [pair for pair in proposal.tied if frozenset(pair) not in apart]
+    ties = [_tie(names, explanations) for names in _joined(tied)]
+    points = list(proposal.points)
+    if asked is not None:
+        suffices = points and points[-1].needed <= len(points) and not proposal.tied
+        points = [*points, asked] if suffices else [asked, *points]
+    return points, ties
+
+
+def _joined(pairs: Sequence[tuple[str, str]]) -> list[tuple[str, ...]]:
+    """Join pairs that share an explanation to groups."""
+    groups: list[tuple[str, ...]] = []
+    for pair in pairs:
+        own = [group for group in groups if set(group) & set(pair)]
+        groups = [group for group in groups if group not in own]
+        groups.append(tuple(dict.fromkeys(name for group in (*own, pair) for name in group)))
+    return groups
+
+
+def _tie(names: Sequence[str], explanations: Sequence[Fit]) -> Tie:
+    """Return explanations that cannot be told apart, with what would have to be so for each of them alone."""
+    tied = [each for each in explanations if name_of(each) in names]
+    facts = [fact for each in tied for fact in _facts(each)]
+    stated = Counter(fact.quantity for fact in facts)
+    return Tie(tuple(names), tuple(fact for fact in facts if len(tied) < 2 or stated[fact.quantity] < len(tied)))
+
+
+def _facts(fit: Fit) -> Iterator[Fact]:
+    """Give the quantities that an explanation states: unknowns that are not zero, and inputs outside of their band."""
+    start = fit.sample.machine.start
+    for on in switched_on(fit.causes, fit.values, fit.sample.machine):
+        for unknown in on.effect.unknowns:
+            if value := on.values.get(unknown.name, 0.0):
+                quantity = f"{on.effect.name}.{unknown.name}"
+                yield Fact(name_of(fit), quantity, Amount(float(value), unknown.unit), unknown.note)
+    for name, value in _shifted(fit).items():
+        declared, known = start.model.input_fields.get(name), start.model.known_conditions
+        note = known[name].note if declared is None else declared.spec.note
+        yield Fact(name_of(fit), f"input:{name}", Amount(value, start.unit_of(name)), note)
+
+
+def _shifted(fit: Fit) -> dict[str, float]:
+    """Return the inputs that an explanation has outside of their band, SI; of files the first one's."""
+    made: dict[str, float] = {}
+    for cause in fit.causes:
+        if cause.tolerated >= 0:
+            made.setdefault(fit.sample.machine.inputs[cause.tolerated].name, input_value(fit, cause.tolerated))
+    return made
+
+
+def _result_to_measure(
+    machine: Calibration, explanations: Sequence[Fit]
+) -> tuple[NextPoint | None, set[frozenset[str]]]:
+    """Return the result that separates most explanations from the first one, and the pairs that it tells apart.
+
+    None where no result tells any two apart. A result with a unit or a goal comes before a pure number, for which there
+    is no gauge; then the one that parts most explanations from the first, the one that a goal names, the one that
+    separates most pairs, the clearest.
+    """
+    start, measured = machine.start, machine.records.measured
+    fields = start.model.own_result_fields
+    alone = [name for name, field in fields.items() if not field.along and not isinstance(field.spec, Axis)]
+    names = [name for name in alone if name not in measured]
+    if not names or machine.records.rows.series or len(explanations) < 2:
+        return None, set()
+    few = machine.records.part(np.arange(0, len(machine.records), max(1, len(machine.records) // ROWS)))
+    there = calibration_of(start, replace(few, measured={name: np.zeros(len(few)) for name in names}, sigma={}))
+    predictions: list[tuple[str, Predicted]] = []
+    for explanation in explanations:
+        setup = start.with_effects(switched_on(explanation.causes, explanation.values, machine)).changed(
+            _shifted(explanation)
+        )
+        predictions.append((name_of(explanation), predict(setup, there.records)))
+    goals = {goal.result for goal in start.model.objectives if isinstance(goal, (Require, Minimise, Maximise))}
+    ranked: list[tuple[tuple[Any, ...], list[_Gap]]] = []
+    for index, name in enumerate(names):
+        pairs = (
+            _gap(there, name, (a, b), one[name] - other[name]) for (a, one), (b, other) in combinations(predictions, 2)
+        )
+        gaps = sorted((gap for gap in pairs if gap is not None), key=lambda gap: gap.clearness)
+        if gaps:
+            parted = sum(predictions[0][0] in gap.names for gap in gaps)
+            is_goal, clearness = name in goals, float(f"{gaps[0].clearness:.2g}")
+            has_gauge = is_goal or fields[name].unit not in PURE
+            ranked.append(((has_gauge, parted, is_goal, len(gaps), clearness, -index), gaps))
+    if not ranked:
+        return None, set()
+    _, gaps = max(ranked, key=lambda each: each[0])
+    return _point(start, gaps[0]), {frozenset(gap.names) for gap in gaps}
+
+
+def _gap(there: Calibration, name: str, names: tuple[str, str], apart: Matrix) -> _Gap | None:
+    """Return where two explanations are clearest apart in a result; None where they hardly are."""
+    apart = np.abs(apart)
+    slopes = there.slopes[name] if there.together is None else there.slopes[name] @ there.together
+    scatter = np.sqrt(np.sum(slopes**2, axis=1))
+    largest, model = float(np.nanmax(np.abs(there.base[name]), initial=0.0)), there.start.model
+    jumps = [getattr(field.spec, "halving_but", {}).get(name) for field in model.input_fields.values()]
+    resolutions = [read_quantity(most, model.own_result_fields[name].unit) for most in jumps if most]
+    least = max(LEAST_SHARE * largest, *resolutions, 0.0)  # a numerical step alone moves a result that jumps
+    seen = np.isfinite(apart + there.base[name]) & (apart > least) & (apart > CLEAR * scatter)
+    if not seen.any():
+        return None
+    worth = np.where(seen, apart, 0.0) / np.maximum(scatter, np.where(seen, 1e-6 * apart, 1e-300))
+    index = int(np.argmax(np.where(worth > NEARLY * worth.max(), apart, -1.0)))
+    size, alone = float(apart[index]), float(scatter[index])
+    return _Gap(name, names, size, alone, size / alone if alone > 0 else 1e6)
+
+
+def _point(start: Any, gap: _Gap) -> NextPoint:
+    unit = readable_unit(start.print_unit(gap.result), gap.size)
+    words = f"measure {gap.result}, too: {gap.names[0]} and {gap.names[1]} differ by {in_unit(gap.size, unit)} in it"
+    if gap.scatter > 0:
+        words += f", machines within their tolerances by {in_unit(gap.scatter, unit)}"
+    return NextPoint({}, gap.names, words, gap.clearness**2, (gap.result,))

@@ -1,4 +1,10 @@
-"""The diagnosis from records to answer: machine, what competes, search, decision, gain, next measurement."""
+"""The diagnosis from records to answer: machine, what competes, search, decision, gain, next measurement.
+
+Of a long record the search looks at some thousand rows, drawn evenly over it: one of every stretch of equal length, so
+that no wave of the record is folded into another one by a regular step. The decision is that of these rows, and so is
+what is said of sizes that would be visible and of how far apart two explanations lie, as if every row stood for as many
+as it was drawn from; estimates, intervals and gains are those of all rows.
+"""
 
 from __future__ import annotations
 
@@ -11,35 +17,78 @@ from truing.arrays import one_thread
 from truing.declare.near_miss import near_miss
 from truing.diagnosis.causes import effects_of, followed_by, inputs_of
 from truing.diagnosis.choice import Chosen, Rival, choose
-from truing.diagnosis.competition import Competition, competition_of
-from truing.diagnosis.design import next_points
-from truing.diagnosis.extended import Extended
-from truing.diagnosis.findings import wrong_of
-from truing.diagnosis.gain import gains_of, nested
-from truing.diagnosis.halves import contradictions_of, thinned_of
+from truing.diagnosis.competition import Competition, Start, competition_of, search
+from truing.diagnosis.design import next_points, with_results
+from truing.diagnosis.extended import Extended, probe
+from truing.diagnosis.findings import (
+    alternative_of,
+    by_share,
+    calibrated_of,
+    causes_of,
+    extended_setup,
+    in_unit,
+    remainder_of,
+    wrong_of,
+)
+from truing.diagnosis.gain import contradictions_of, gains_of, nested, thinned_of
 from truing.diagnosis.learning import first_noise
-from truing.diagnosis.long_records import RANKED, on_all_rows, searched
 from truing.diagnosis.machine import Calibration, calibration_of
-from truing.diagnosis.naming import alternative_of, by_share, calibrated_of, causes_of, extended_setup, remainder_of
-from truing.diagnosis.probing import probe
 from truing.diagnosis.records import FEWEST_READINGS, Records
 from truing.diagnosis.result import Alternative, DiagnosisResult, ResultCurves, readable_unit
 from truing.diagnosis.sample import sample_of
-from truing.diagnosis.search import search
-from truing.diagnosis.shape_words import in_unit
-from truing.diagnosis.unmeasured import with_results
 from truing.diagnosis.unregistered import shapes_of
 from truing.diagnosis.visibility import inseparable, smallest_visible, trades_of
 from truing.errors import UsageError
 from truing.setup import Setup
 from truing.studies.bench import FINE, Progress, part_of, silent
 
+LONG = 2500
+"""A record of more readings is searched on about so many of them."""
+RANKED = 8
+"""So many of the best explanations are fitted to all rows beside the chosen one and its rivals."""
 TOO_ROUGH = 6**0.5
 """A step so many times what is left of the readings is half of it: its mean square is a twelfth of its own."""
 SIZED = 4
 """Of so many alternatives it is told what their own fit says."""
 STAGE_ENDS = {"columns": 0.05, "search": 0.75, "significance": 0.85, "gain": 1.0}
 """What share of the time has passed when each stage ends, for whoever waits."""
+
+
+def searched(records: Records, *, seed: int) -> Records:
+    """Return the rows that a search looks at: all of a record that is not long."""
+    readings = sum(int(np.isfinite(values).sum()) for values in records.measured.values())
+    if readings <= LONG or records.rows.series:
+        return records
+    rows = len(records) * LONG // readings
+    edges = np.linspace(0, len(records), rows + 1).astype(np.intp)
+    generator = np.random.Generator(np.random.SFC64(seed))
+    return records.part(edges[:-1] + (generator.random(rows) * np.diff(edges)).astype(np.intp))
+
+
+def on_all_rows(chosen: Chosen, machine: Calibration) -> Chosen:
+    """Return what a search of some rows came to, fitted to all rows of a machine."""
+    few = chosen.competition
+    if len(few.sample.machine.records) == len(machine.records):
+        return chosen
+    sample = sample_of(machine, first_noise(machine), ~machine.records.held_out)
+    competition = competition_of(Extended(machine), few.causes, sample)
+    competition.stage, competition.extended.grain = "fits to all rows", few.extended.grain
+    competition.extended.budget = few.extended.budget.of_rows(len(machine.records) / len(few.sample.machine.records))
+    competition.tries = dict(few.tries)
+    few.gains_seen = {}  # much, and needed no more
+    rivals_there = [few.known[rival.fit.key] for rival in chosen.rivals]
+    wanted = [few.known[chosen.best.key], *rivals_there, *few.ranked()[:RANKED]]
+    competition.fit_each([Start(fit.causes, fit.values, None) for fit in {fit.key: fit for fit in wanted}.values()])
+    competition.renew()
+    competition.refresh()
+    best = competition.known.get(chosen.best.key, competition.null)
+    ends = [
+        competition.exact(competition.known[rival.fit.key])
+        for rival in chosen.rivals
+        if rival.fit.key in competition.known
+    ]
+    rivals = tuple(Rival(fit, max(0.0, competition.score(fit) - competition.score(best))) for fit in ends)
+    return replace(chosen, competition=competition, best=competition.exact(best), rivals=rivals, of_some_rows=chosen)
 
 
 def diagnose(setup: Setup, records: Records, *, progress: Progress | None = None) -> DiagnosisResult:
@@ -55,7 +104,7 @@ def diagnose(setup: Setup, records: Records, *, progress: Progress | None = None
         told("columns", round(FINE * STAGE_ENDS["columns"]), FINE)
         few = searched(records, seed=setup.seed)
         competition = laid_out(machine if few is records else calibration_of(setup, few))
-        probe(competition)
+        probe(competition.extended, competition.causes)
         search(competition, part_of(told, "diagnosis", STAGE_ENDS["columns"], STAGE_ENDS["search"]))
         told("search", round(FINE * STAGE_ENDS["search"]), FINE)
         chosen = on_all_rows(choose(competition, seed=setup.seed), machine)

@@ -10,6 +10,7 @@ of its mean square is what a fit makes small.
 from __future__ import annotations
 
 from collections.abc import Generator, Sequence
+from dataclasses import replace
 from math import inf
 from typing import Any, TypeVar
 
@@ -101,6 +102,13 @@ def fitting(
 def refitting(fit: Fit, sample: Sample, extended: Extended, *, until: float = ROUGHLY) -> Asking[Fit | None]:
     """Fit an explanation again from where it is: in other noise, or to other rows."""
     return fitting(sample, extended, fit.causes, fit.values, fit, until=until)
+
+
+def held_without(fit: Fit, index: int, sample: Sample, extended: Extended) -> Fit:
+    """Return an explanation without one of its causes, all else held where it is."""
+    causes, values = fit.less(index)
+    (predicted,) = extended.at(causes, [(values, fit.moved)])
+    return replace(fit, causes=causes, values=values, predicted=predicted, slopes={}).in_sample(sample)
 
 
 class Fitting:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections import Counter, deque
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import accumulate, islice
-from math import inf
+from itertools import accumulate
+from math import inf, log10
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -16,9 +17,10 @@ from truing.declare.sources import Effect
 from truing.diagnosis.causes import Candidate, at_rest
 from truing.diagnosis.machine import Calibration, Tolerated, predict_each
 from truing.errors import PluginError
+from truing.gauge import Trial
 from truing.repeated import REMEMBERED as REPEATED
+from truing.repeated import forget
 from truing.setup import Setup, SwitchedOn, effect_column
-from truing.trials import Trial
 
 REMEMBERED = 64
 """So many setups with moved inputs are kept, and what the model showed at so many points."""
@@ -28,6 +30,25 @@ LEAST_PER_EFFECT = 40
 """Calls for every effect on the inputs that are given however long they take: fewer show none of them as it is."""
 MORE = 4
 """So many times the budget is proposed where it ended first."""
+QUICK_CALL = 0.03
+"""Seconds of a call below which a search needs no budget: it makes a few thousand calls."""
+MINUTES = 300.0
+"""Seconds that the calls of a search may take where no budget is stated."""
+CURVES = 0.25
+"""Share of the calls in which all curves are to be made."""
+FEWEST_POINTS = 6
+"""At so many points at least an effect is looked at: fewer say nothing about how it bends."""
+PROBE = 1.23456789
+"""Standard deviations, or tenths of a range, by which something is moved to see what the model is like there.
+
+It is no round number, so that answers are multiples of a step only where the model makes them so.
+"""
+FINE, COARSE = 1e-9, 1e-6
+"""Shares of the largest answer: what lies nearer to a multiple is one, and no step is smaller."""
+FEWEST_DISTINCT = 6
+"""So many answers that differ must be multiples of one step."""
+ROUNDING = 1e-12
+"""Share of the largest answer by which two calls may differ: how libraries round depends on where an array lies."""
 Key = tuple[tuple[str, ...], bytes]
 Point = tuple[Sequence[Matrix], Matrix]
 """The numbers of every cause, SI, and how far each tolerated input is moved, in standard deviations from its mean."""
@@ -44,16 +65,6 @@ class _Asked:
     causes: list[Candidate]
     points: list[Point]
     keys: list[Key]
-
-    @property
-    def acts_on_inputs(self) -> bool:
-        """Whether the model runs again at every point."""
-        return any(cause.acts_on_inputs for cause in self.causes)
-
-    @property
-    def effects(self) -> tuple[str, ...]:
-        """The effects of the plugin that are on."""
-        return tuple(cause.tag for cause in self.causes if cause.effect is not None and not cause.is_kernel)
 
 
 @dataclass
@@ -122,7 +133,7 @@ class Extended:
         return shown
 
     def at_each(self, requests: Sequence[Request]) -> list[Predictions]:
-        """Return the same for several requests; what has to be calculated is one call of the model where it can be."""
+        """Return the same for several requests; those of the same causes are one call of the model."""
         every = [_asked(*request) for request in requests]
         new, waiting = [], set(self._shown)
         for asked in every:
@@ -131,8 +142,10 @@ class Extended:
             if rest:
                 new.append(_Asked(asked.causes, list(rest.values()), list(rest)))
         for group in _grouped(new):
-            for asked, answers in zip(group, self._answered(group), strict=True):
-                self._shown.update(zip(asked.keys, answers, strict=True))
+            for asked in group:
+                self._count(asked.causes, asked.points)
+            answers = self._called(group[0].causes, [point for asked in group for point in asked.points])
+            self._shown.update(zip((key for asked in group for key in asked.keys), answers, strict=True))
         shown = [[self._shown[key] for key in asked.keys] for asked in every]
         for old in list(self._shown)[: -self._most_shown]:  # a fit goes on from the last
             del self._shown[old]
@@ -140,33 +153,6 @@ class Extended:
             [self._with_shapes(base, causes, values) for base, (values, _) in zip(own, points, strict=True)]
             for own, (causes, points) in zip(shown, requests, strict=True)
         ]
-
-    def _answered(self, group: Sequence[_Asked]) -> Iterator[list[Mapping[str, Matrix]]]:
-        """Give the answers of every request of a group: of one call, with the causes of the others on at rest.
-
-        A request whose answers have gaps is asked once more for itself: another one's cause may not bear these rows.
-        """
-        for asked in group:
-            self._count(asked.causes, asked.points)
-        if len(group) == 1:
-            yield self._called(group[0].causes, group[0].points)
-            return
-        causes = list({cause.tag: cause for asked in group for cause in asked.causes}.values())
-        points = [(self._resting(causes, asked.causes, values), m) for asked in group for values, m in asked.points]
-        answers = iter(self._called(causes, points))
-        for asked in group:
-            own = list(islice(answers, len(asked.points)))
-            is_whole = all(np.isfinite(values).all() for shown in own for values in shown.values())
-            yield own if is_whole else self._called(asked.causes, asked.points)
-
-    def _resting(self, causes: Sequence[Candidate], own: Sequence[Candidate], values: Sequence[Matrix]) -> list[Matrix]:
-        """Return numbers of causes of which some have their own; the others are where they do nothing."""
-        known = {cause.tag: value for cause, value in zip(own, values, strict=True)}
-        return [known[cause.tag] if cause.tag in known else self._rest_of(cause) for cause in causes]
-
-    def _rest_of(self, cause: Candidate) -> Matrix:
-        rest = at_rest(cause, self.machine)
-        return np.array([rest.get(number.name, 0.0) for number in cause.numbers])
 
     @property
     def _most_shown(self) -> int:
@@ -289,31 +275,16 @@ def _asked(causes: Sequence[Candidate], points: Sequence[Point]) -> _Asked:
 
 
 def _grouped(several: Sequence[_Asked]) -> list[list[_Asked]]:
-    """Part requests into those that may be one call.
+    """Put requests of the same causes together, which may be one call.
 
-    They have the same effects of the plugin on, since one at rest may still set what another one acts on; readings and
-    inputs of the kernel add nothing at rest. Where nothing acts on the inputs the model is called for one point alone,
-    so that all of these must have the same.
+    Where nothing acts on the inputs the model is called for one point alone, so that all of these must have the same.
     """
-    groups: list[list[_Asked]] = []
+    groups: dict[tuple[tuple[str, ...], bytes], list[_Asked]] = {}
     for asked in several:
-        for group in groups:
-            if _go_together([*group, asked]):
-                group.append(asked)
-                break
-        else:
-            groups.append([asked])
-    return groups
-
-
-def _go_together(group: Sequence[_Asked]) -> bool:
-    if len({(asked.acts_on_inputs, asked.effects) for asked in group}) > 1:
-        return False
-    if not group[0].acts_on_inputs and len({moved.tobytes() for asked in group for _, moved in asked.points}) > 1:
-        return False
-    causes = {cause.tag: cause for asked in group for cause in asked.causes}.values()
-    unknowns = Counter((cause.name, name) for cause in causes for name in {number.name for number in cause.numbers})
-    return max(unknowns.values(), default=1) == 1
+        is_called = any(cause.acts_on_inputs for cause in asked.causes)
+        tags, _ = asked.keys[0]
+        groups.setdefault((tags, b"" if is_called else asked.points[0][1].tobytes()), []).append(asked)
+    return list(groups.values())
 
 
 def _unknowns(machine: Calibration, causes: Sequence[Candidate], values: Sequence[Matrix]) -> dict[str, Any]:
@@ -383,3 +354,71 @@ def switched_on(causes: Sequence[Candidate], values: Sequence[Matrix], machine: 
         others = {} if effect.parts and effect.takes_any else rest
         stated = {key: sum(every) / len(every) for key, every in known.items()}
         yield SwitchedOn(effect, {**others, **machine.on.get(name, {}), **stated})
+
+
+# What the model is like to call, before the search: how long a call takes, and how rough its answers are
+
+
+def probe(extended: Extended, competing: Sequence[Candidate]) -> None:
+    """Give a search its budget of calls, and say how rough the model is.
+
+    The number of calls is stated with ``[studies.diagnose] budget``. Where it is not, a model that answers at once has
+    none, and a slow one gets what takes some minutes: the time of one call to a power of ten, so that two machines
+    mostly agree. A model whose answers come in steps, or scatter by themselves, has no derivatives by small
+    differences. Where nothing that competes moves the model itself it is called for nothing more: it needs neither.
+    """
+    machine = extended.machine
+    costly = [cause for cause in competing if extended.costs(cause)]
+    tried: list[Candidate] = [] if machine.inputs else costly[:1]
+    if not machine.inputs and not costly:
+        return
+    values = [
+        np.array([number.low + 0.1 * PROBE * (number.high - number.low) for number in cause.numbers]) for cause in tried
+    ]
+    point = values, np.full(len(machine.inputs), PROBE)
+    extended.budget = budget_of(machine.start.diagnose.budget, len(costly), lambda: extended.at(tried, [point]))
+    if extended.budget.is_dear:
+        extended.budget.points = max(FEWEST_POINTS, int(CURVES * extended.budget.calls / max(len(costly), 1)))
+    extended.grain = _grain_of(extended, tried, point)
+
+
+def budget_of(stated: int, effects: int, call: Callable[[], object]) -> CallBudget:
+    """Return the stated budget; else, by how long one ``call`` takes, none or one of some minutes."""
+    if stated:
+        return CallBudget(stated)
+    begin = perf_counter()
+    call()
+    seconds = perf_counter() - begin
+    if seconds < QUICK_CALL:
+        return CallBudget()
+    takes = 10.0 ** round(log10(seconds))
+    return CallBudget(max(round(MINUTES / takes), LEAST_PER_EFFECT * max(effects, 1)), takes)
+
+
+def _grain_of(extended: Extended, causes: list[Candidate], point: Point) -> dict[str, float]:
+    """Return by result how much its answers jump or scatter, SI; results that do neither are left out."""
+    (first,) = extended.at(causes, [point])
+    forget()
+    (again,) = Extended(extended.machine).at(causes, [point])
+    made = {}
+    for name, shown in first.items():
+        known = np.isfinite(shown) & np.isfinite(again[name])
+        scatter = float(np.abs(shown - again[name])[known].max(initial=0.0))
+        scatter = scatter if scatter > ROUNDING * float(np.abs(shown)[known].max(initial=0.0)) else 0.0
+        base = extended.machine.base[name]
+        step = 0.0 if np.array_equal(shown, base, equal_nan=True) else step_of(shown[known])
+        if scatter > 0 or (step > 0 and abs(step_of(base[np.isfinite(base)]) / step - 1) < COARSE):
+            made[name] = max(scatter, step)
+    return made
+
+
+def step_of(values: Matrix) -> float:
+    """Return the step of which all values are multiples, by Euclid's algorithm; 0 where there is none."""
+    distinct = np.unique(np.abs(values[values != 0]))
+    if len(distinct) < FEWEST_DISTINCT:
+        return 0.0
+    step, least = float(distinct[0]), FINE * float(distinct[-1])
+    for value in distinct.tolist():
+        while (rest := abs(value - step * round(value / step))) > least:
+            value, step = step, rest
+    return step if step > COARSE * float(distinct[-1]) else 0.0

@@ -62,6 +62,10 @@ class Fit:
         """Return the numbers of one of its causes, SI."""
         return self.values[[each.tag for each in self.causes].index(cause.tag)]
 
+    def less(self, index: int) -> tuple[tuple[Candidate, ...], tuple[Matrix, ...]]:
+        """Return its causes, and their numbers, but for one."""
+        return self.causes[:index] + self.causes[index + 1 :], self.values[:index] + self.values[index + 1 :]
+
     def in_sample(self, sample: Sample) -> Fit:
         """Return the same numbers judged in other noise or on other rows."""
         left = sample.left(self.predicted)

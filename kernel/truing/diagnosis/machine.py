@@ -17,10 +17,9 @@ import numpy as np
 
 from truing.arrays import Indices, Matrix
 from truing.diagnosis.records import Records
-from truing.gauge import one_machine
+from truing.gauge import Trial, one_machine, read_trials
 from truing.setup import Setup
 from truing.studies.sampling import root_of, scatter_of
-from truing.trials import Trial, read_trials
 
 Predicted = Mapping[str, Matrix]
 INPUT_STEP = 0.5

@@ -15,13 +15,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from truing.arrays import Indices, Matrix
-from truing.diagnosis.data_file import DataRows, declared_units
-from truing.diagnosis.joining import rows_of
+from truing.diagnosis.data_rows import DataRows, declared_units, is_angle, keeps_bounds, rows_of
 from truing.diagnosis.records import SuspectedUnit
-from truing.diagnosis.tidying import is_angle, keeps_bounds
-from truing.gauge import one_machine, read_by_gauge
+from truing.gauge import one_machine, read_by_gauge, read_trials
 from truing.setup import Setup
-from truing.trials import read_trials
 from truing.units import difference_unit, from_si, same_dimension, to_si
 from truing.units.grammar import shown
 from truing.units.names import LEVELS, PURE

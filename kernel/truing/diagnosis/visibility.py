@@ -14,12 +14,13 @@ from scipy.special import ndtri
 from truing.arrays import Matrix
 from truing.diagnosis.causes import Candidate, Parameter, failure_of, idle_of
 from truing.diagnosis.choice import Chosen
+from truing.diagnosis.conditional import Conditional
+from truing.diagnosis.curves import LEVELS
 from truing.diagnosis.exact import slopes_at, unit_of
 from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit, inward
 from truing.diagnosis.intervals import Certainty, certainty_of, numbers_of, places_of, value_of
 from truing.diagnosis.machine import Calibration
-from truing.diagnosis.points import LEVELS
 from truing.diagnosis.result import APART, Amount, Trade, Visibility, VisibleSize
 
 POWER, LEVEL = 0.9, 0.05
@@ -52,30 +53,16 @@ def needed(explanations: int) -> float:
     return float((ndtri(1 - LEVEL / (2 * max(explanations, 1))) + ndtri(POWER)) ** 2)
 
 
-class _Eye:
-    """What a curve is on the rows that were searched: in units of the noise, and without what inputs can draw.
+def _eye(chosen: Chosen) -> Conditional:
+    """Return what curves are seen with on the rows that were searched, once the inputs have taken their part.
 
     The noise is that which the answer leaves; a row counts as many times as the record has rows for it.
-    ``roots`` has shape (rows,); ``taken`` (rows + K, K) is an orthonormal basis of the inputs beside their prior.
     """
-
-    def __init__(self, chosen: Chosen) -> None:
-        best = chosen.searched.best
-        self.sample = best.sample
-        self.roots = self.sample.roots(best.left) * sqrt(chosen.rows_searched)
-        drawn = self.sample.drawn * self.roots[:, None]
-        self.taken = np.linalg.qr(np.concatenate([drawn, np.eye(drawn.shape[1])]))[0]
-
-    def raw(self, curve: Matrix) -> Matrix:
-        """Return a curve over all readings of the records, SI, as if nothing were tolerated, (rows,)."""
-        measured = list(self.sample.machine.records.measured)
-        parts = dict(zip(measured, np.split(curve, len(measured)), strict=True))
-        return self.roots * self.sample.curve(parts)
-
-    def without_inputs(self, raw: Matrix) -> Matrix:
-        """Return what only the cause can draw, (rows + K,)."""
-        made = np.concatenate([raw, np.zeros(len(self.taken) - len(raw))])
-        return np.asarray(made - self.taken @ (self.taken.T @ made))
+    best = chosen.searched.best
+    roots = best.sample.roots(best.left) * sqrt(chosen.rows_searched)
+    drawn = best.sample.drawn * roots[:, None]
+    taken = np.linalg.qr(np.concatenate([drawn, np.eye(drawn.shape[1])]))[0]
+    return Conditional(best.sample, roots, best.left, taken)
 
 
 @dataclass(frozen=True)
@@ -93,7 +80,7 @@ class _Look:
 
 def smallest_visible(chosen: Chosen) -> list[VisibleSize]:
     """Return for every effect how small it may be, whether the tolerances hide it, whether it was excited."""
-    machine, eye = chosen.competition.extended.machine, _Eye(chosen)
+    machine, eye = chosen.competition.extended.machine, _eye(chosen)
     effects = [cause for cause in chosen.competition.causes if cause.effect is not None]
     known, unseen = chosen.searched.competition.known, chosen.searched.competition.extended.budget.unseen
     unfitted = [cause for cause in effects if frozenset({cause.tag}) not in known]
@@ -126,7 +113,7 @@ def _seen(name: str, cause: Candidate, number: Parameter, look: _Look | None) ->
     return VisibleSize(name, Amount(look.size, unit), sight)
 
 
-def _look(chosen: Chosen, eye: _Eye, cause: Candidate, index: int, limit: float) -> _Look | None:
+def _look(chosen: Chosen, eye: Conditional, cause: Candidate, index: int, limit: float) -> _Look | None:
     """Return how an amplitude of a cause is seen best; None where nothing moves with it.
 
     A curve that bends stands for sizes from its own down and up to the next level.
@@ -135,8 +122,8 @@ def _look(chosen: Chosen, eye: _Eye, cause: Candidate, index: int, limit: float)
     for amplitude, curve in _curves(chosen, cause, index):
         end = abs(number.high if amplitude > 0 else number.low) if amplitude else max(abs(number.low), abs(number.high))
         own = abs(amplitude) or 1.0
-        raw = eye.raw(curve)
-        square, rest = float(raw @ raw), eye.without_inputs(raw)
+        raw = eye.drawn(curve)
+        square, rest = float(raw @ raw), eye.beyond(raw)
         if square * (end / own) ** 2 <= FAINT:
             continue
         seen = float(rest @ rest)
@@ -188,7 +175,7 @@ def inseparable(chosen: Chosen) -> list[str]:
 
 def _alike(chosen: Chosen) -> Iterator[str]:
     """Say which causes without a shape of their own draw nearly the same."""
-    eye, angles = _Eye(chosen), dict[tuple[str, str], float]()
+    eye, angles = _eye(chosen), dict[tuple[str, str], float]()
     effects = [cause for cause in chosen.competition.causes if cause.effect is not None]
     plain = [cause for cause in effects if len(cause.amplitudes) == 1 and not cause.shapes]
     looks = [(cause.name, _look(chosen, eye, cause, 0, needed(1))) for cause in plain]
@@ -217,16 +204,10 @@ def _moved_alike(machine: Calibration) -> Iterator[str]:
                 "what follows the other"
             )
     for name, condition in machine.start.model.known_conditions.items():
-        covariate = machine.records.covariates.get(name)
-        if (
-            covariate is None
-            or condition.low is None
-            or condition.high is None
-            or not condition.low < 0 < condition.high
-        ):
+        covariate, low, high = machine.records.covariates.get(name), condition.low, condition.high
+        if covariate is None or low is None or high is None or not low < 0 < high:
             continue
-        low, high = np.nanmin(covariate.values), np.nanmax(covariate.values)
-        if low >= 0 or high <= 0:
+        if np.nanmin(covariate.values) >= 0 or np.nanmax(covariate.values) <= 0:
             yield f"{name} never changed its sign: what jumps with the sign looks like a constant here"
 
 

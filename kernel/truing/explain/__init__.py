@@ -1,5 +1,5 @@
 """One name explained: what a result is made of and what moves it, what an input or an error source does."""
 
-from truing.explain.told import SECTIONS, Topic, kind_of, known_names, told
+from truing.explain.told import SECTIONS, told
 
-__all__ = ["SECTIONS", "Topic", "kind_of", "known_names", "told"]
+__all__ = ["SECTIONS", "told"]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ast
+import itertools
 import math
 import time
 from collections.abc import Iterator, Mapping, Sequence
@@ -10,14 +12,13 @@ from typing import Any
 
 import numpy as np
 
-from truing.declare.checks import formula_scope
 from truing.declare.fields import Found
-from truing.declare.model import Model
+from truing.declare.model import Model, formula_scope
 from truing.declare.sources import Condition, Effect, Unknown
 from truing.errors import InfeasibleError, TruingError
 from truing.evaluate import acting_inputs, evaluate
 from truing.formulas import parse
-from truing.formulas.tree import Name, walk
+from truing.formulas.tree import walk
 from truing.setup import Setup, SwitchedOn
 from truing.studies.bench import Progress, silent
 from truing.studies.differences import exact_slopes, nominal_of, slopes
@@ -111,23 +112,15 @@ def _slopes(
 
 def _influence(setup: Setup, scatter: Scatter, name: str, slope: Any, *, size: float, share: float) -> Influence:
     value = nominal_of(setup, name)
-    is_level = name in _levels(setup)
+    is_known = name in setup.model.input_fields or name in setup.model.known_conditions
+    unit = setup.unit_of(name) if is_known else ""
     steepness = _size(slope) * (-1.0 if getattr(slope, "ndim", 0) == 0 and slope < 0 else 1.0)
-    own = 1.0 if is_level else 0.01 * abs(value)
+    own = 1.0 if unit in LEVELS else 0.01 * abs(value)
     step = steepness * own if own and steepness == steepness else None
     relative = step / size if step is not None and size else None
-    widest = max(abs(value), scatter.sd_of(name), 0.0 if value else unit_factor(_unit(setup, name)))
+    widest = max(abs(value), scatter.sd_of(name), 0.0 if value else unit_factor(difference_unit(unit)))
     moves = steepness == steepness and abs(steepness) * widest > NOTHING * size
     return Influence(name, step, relative, share, moves)
-
-
-def _unit(setup: Setup, name: str) -> str:
-    known = name in setup.model.input_fields or name in setup.model.known_conditions
-    return difference_unit(setup.unit_of(name)) if known else ""
-
-
-def _levels(setup: Setup) -> set[str]:
-    return {name for name in (*setup.model.input_fields, *setup.conditions) if setup.unit_of(name) in LEVELS}
 
 
 def _size(value: Any) -> float:
@@ -139,16 +132,6 @@ def _mean(value: Any) -> float:
     if not getattr(value, "ndim", 0):
         return float(value)
     return float(value.mean()) if value.size else math.nan
-
-
-def by_share(sources: Sequence[Influence]) -> list[Influence]:
-    """Return what scatters, the largest share of the scatter first."""
-    return sorted((one for one in sources if one.share), key=lambda one: -abs(one.share))
-
-
-def by_slope(sources: Sequence[Influence]) -> list[Influence]:
-    """Return what moves the result, the steepest first."""
-    return sorted((one for one in sources if one.moves and one.step), key=lambda one: -abs(one.step or 0.0))
 
 
 # What an effect changes: the model is run with it, at a size it may have, beside the model without
@@ -176,8 +159,11 @@ class Touched:
 
 def touched(setup: Setup, effect: Effect[Any, Any]) -> Touched:
     """Try one effect alone, as it is where it is on, else at sizes within its bounds, its conditions off reference."""
-    for values, conditions in _trials(setup, effect):
-        bare = replace(setup, effects=(), conditions={**setup.conditions, **conditions})
+    conditions = {need.name: _off_reference(setup, need) for need in effect.needs}
+    bare = replace(setup, effects=(), conditions={**setup.conditions, **conditions})
+    held = (dict(active.values) for active in setup.effects if active.effect.name == effect.name)
+    tried = ({unknown.name: _tried(setup, unknown, size) for unknown in effect.unknowns} for size in SIZES)
+    for values in itertools.chain(held, tried):
         acting = replace(bare, effects=(SwitchedOn(effect, values),))
         try:
             without, with_it = evaluate(bare, reading=True), evaluate(acting, reading=True)
@@ -188,15 +174,6 @@ def touched(setup: Setup, effect: Effect[Any, Any]) -> Touched:
         inputs = dict(_moved(bare, acting)) if effect.place == "inputs" else {}
         return Touched({**values, **conditions}, changed, inputs)
     return Touched({}, {}, {})
-
-
-def _trials(setup: Setup, effect: Effect[Any, Any]) -> Iterator[tuple[dict[str, float], dict[str, float]]]:
-    on = next((active for active in setup.effects if active.effect.name == effect.name), None)
-    if on is not None:
-        yield dict(on.values), {need.name: _off_reference(setup, need) for need in effect.needs}
-    for size in SIZES:
-        values = {unknown.name: _tried(setup, unknown, size) for unknown in effect.unknowns}
-        yield values, {need.name: _off_reference(setup, need) for need in effect.needs}
 
 
 def _tried(setup: Setup, unknown: Unknown, size: float) -> float:
@@ -242,18 +219,6 @@ def _moved(bare: Setup, acting: Setup) -> Iterator[tuple[str, tuple[float, float
             yield name, (float(before[name]), float(after[name]))
 
 
-def all_touched(setup: Setup) -> dict[str, Touched]:
-    """Try every effect of the model itself, one by one."""
-    return {name: touched(setup, effect) for name, effect in setup.model.effects.items()}
-
-
-def effects_on(by_effect: Mapping[str, Touched], names: Sequence[str]) -> dict[str, float]:
-    """Return the effects that change any of these results, the largest relative change first."""
-    sizes = {effect: max((abs(one.results[name]) for name in names if name in one.results), default=0.0)
-             for effect, one in by_effect.items()}  # fmt: skip
-    return dict(sorted(((effect, size) for effect, size in sizes.items() if size), key=lambda pair: -pair[1]))
-
-
 # Which result is made from what, as the declared formulas say, and which results follow from a name
 
 
@@ -266,7 +231,7 @@ def made_from(model: Model[Any, Any]) -> Mapping[str, tuple[str, ...]]:
         formula = parse(field.spec.formula)
         scope = formula_scope(model, field)
         sides = [side for side in (formula.left, formula.right) if side is not None]
-        written = [node.name for side in sides for node in walk(side) if isinstance(node, Name)]
+        written = [node.id for side in sides for node in walk(side) if isinstance(node, ast.Name)]
         names = dict.fromkeys(scope[word].name for word in written if word in scope)
         links[name] = tuple(other for other in names if other != name)
     return links
@@ -274,16 +239,11 @@ def made_from(model: Model[Any, Any]) -> Mapping[str, tuple[str, ...]]:
 
 def following(links: Mapping[str, tuple[str, ...]], name: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Return the results whose formulas name this one, and those that follow further down."""
-    direct = tuple(result for result, sources in links.items() if name in sources)
-    further: dict[str, None] = {}
-    front = list(direct)
-    while front:
-        last = front.pop(0)
-        for result, sources in links.items():
-            if last in sources and result not in direct and result not in further and result != name:
-                further[result] = None
-                front.append(result)
-    return direct, tuple(further)
+    direct = [result for result, sources in links.items() if name in sources]
+    found = list(direct)
+    for last in found:  # which grows
+        found += [result for result, sources in links.items() if last in sources and result not in {name, *found}]
+    return tuple(direct), tuple(found[len(direct) :])
 
 
 def chain(links: Mapping[str, tuple[str, ...]], name: str) -> Iterator[tuple[int, str, bool]]:

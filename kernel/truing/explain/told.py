@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, Literal, TypeAlias
 
@@ -17,15 +17,9 @@ from truing.declare.sources import Effect, Tolerance
 from truing.errors import UsageError
 from truing.evaluate import evaluate
 from truing.explain.influence import (
-    Influence,
-    Influences,
     Touched,
-    all_touched,
-    by_share,
-    by_slope,
     chain,
     differentiable,
-    effects_on,
     following,
     influences,
     made_from,
@@ -33,12 +27,13 @@ from truing.explain.influence import (
 )
 from truing.formulas import symbol_text
 from truing.formulas.layout import substituted, symbolic
-from truing.formulas.write_text import TextWriter
+from truing.formulas.write_text import TEXT
 from truing.inputs_file import setup_from_settings
 from truing.inputs_file.values import bounds_in_words
 from truing.kernel import Offer
 from truing.numbers import ABSENT, format_difference, format_ends, format_value, pretty, with_unit
 from truing.published import compare_one, same_run
+from truing.report.document import Value, plain_text
 from truing.report.equations import equation_of
 from truing.report.sheet import input_value
 from truing.runs.documents import clean
@@ -60,14 +55,9 @@ def told(setup: Setup, offer: Offer, name: str, *, progress: Progress = silent) 
     head = {"model": offer.name, "title": model.title, "name": name, "kind": kind}
     if kind == "result":
         return {**head, **of_result(setup, offer, name, progress)}
-    if kind == "study":
-        return {**head, **of_study(setup, name)}
     tell = {
-        "input": of_input,
-        "effect": of_effect,
-        "tolerance": of_tolerance,
-        "condition": of_condition,
-    }[kind]
+        "input": of_input, "effect": of_effect, "tolerance": of_tolerance, "condition": of_condition, "study": of_study,
+    }[kind]  # fmt: skip
     return {**head, **tell(setup, name)}
 
 
@@ -84,24 +74,20 @@ SECTIONS: Mapping[str, Topic] = {
 """Words in front of a name that say which thing is meant, where one name has several."""
 
 
-def known_names(model: Model[Any, Any]) -> Mapping[str, Topic]:
-    """Return every name that can be explained and what it means; of two meanings the first in this order."""
+def known_names(model: Model[Any, Any], section: str = "") -> Mapping[str, Topic]:
+    """Return every name that can be explained and what it means; of two meanings the first in this order.
+
+    With a ``section`` only its names.
+    """
+    of: tuple[Iterable[str], ...] = (
+        model.result_fields, model.input_fields, model.known_effects, model.tolerances, model.known_conditions,
+        [study.name for study in model.studies],
+    )  # fmt: skip
     topics: dict[str, Topic] = {}
-    for kind, names in _by_kind(model).items():
-        for name in names:
-            topics.setdefault(name, kind)
+    for (word, topic), names in zip(SECTIONS.items(), of, strict=True):
+        if section in {"", word}:
+            topics |= {name: topic for name in names if name not in topics}
     return topics
-
-
-def _by_kind(model: Model[Any, Any]) -> dict[Topic, list[str]]:
-    return {
-        "result": list(model.result_fields),
-        "input": list(model.input_fields),
-        "effect": list(model.known_effects),
-        "tolerance": list(model.tolerances),
-        "condition": list(model.known_conditions),
-        "study": [study.name for study in model.studies],
-    }
 
 
 def kind_of(model: Model[Any, Any], name: str) -> Topic:
@@ -110,29 +96,23 @@ def kind_of(model: Model[Any, Any], name: str) -> Topic:
     Raises UsageError, with what was probably meant, where nothing has it.
     """
     section, _, last = name.rpartition(".")
-    if section in SECTIONS and last in _by_kind(model)[SECTIONS[section]]:
+    if section in SECTIONS and last in known_names(model, section):
         return SECTIONS[section]
     known = known_names(model)
     if name in known:
         return known[name]
     if section in SECTIONS:
-        name, known = last, dict.fromkeys(_by_kind(model)[SECTIONS[section]], SECTIONS[section])
+        name, known = last, known_names(model, section)
     plain = name.strip().lower().replace(" ", "_").replace("-", "_")
-    if plain in known:
-        meant: str | None = plain
-    else:
-        words = near_miss(plain[:80], known)
-        meant = words.split("'")[1] if words else None
-    hint = f" Did you mean '{meant}' ({_described(model, meant, known[meant])})?" if meant else ""
-    listed = "" if meant else f" `calc describe {model.name}` lists what there is."
+    words = "" if plain in known else near_miss(plain[:80], known)
+    meant = plain if plain in known else words.split("'")[1] if words else ""
+    hint = f" `calc describe {model.name}` lists what there is."
+    if meant:
+        field: Any = model.result_fields.get(meant) or model.input_fields.get(meant)
+        note = field.spec.note if known[meant] in {"result", "input"} and field is not None else ""
+        hint = f" Did you mean '{meant}' ({', '.join(filter(None, (known[meant], note)))})?"
     what = SECTIONS.get(section, "result, input, effect or tolerance")
-    raise UsageError(f"{model.name} has no {what} '{name[:80]}'.{hint}{listed}")
-
-
-def _described(model: Model[Any, Any], name: str, kind: Topic) -> str:
-    field: Any = model.result_fields.get(name) or model.input_fields.get(name)
-    note = field.spec.note if kind in {"result", "input"} and field is not None else ""
-    return ", ".join(part for part in (kind, note) if part)
+    raise UsageError(f"{model.name} has no {what} '{name[:80]}'.{hint}")
 
 
 # Inputs, tolerances, effects, conditions and studies explained: what they are, and which results they move
@@ -144,9 +124,10 @@ def of_input(setup: Setup, name: str) -> dict[str, Any]:
     field = model.input_fields[name]
     direct, further = following(made_from(model), name)
     scattering = [tolerance for tolerance in model.tolerances.values() if name in tolerance.on]
-    changed = [effect for effect, change in all_touched(setup).items() if name in change.inputs]
+    changed = [effect for effect in model.effects.values() if name in touched(setup, effect).inputs]
     moves = _moves(setup, [name]) if field.kind == "float" and _is_given(setup, name) else None
     moved = {*direct, *further, *(row["name"] for row in moves or ())}
+    namesake = model.tolerances.get(name)
     return {
         "symbol": symbol_text(field.symbol) if field.symbol else "",
         "note": field.spec.note,
@@ -160,21 +141,17 @@ def of_input(setup: Setup, name: str) -> dict[str, Any]:
         "moves": moves,
         "limits": [require_words(require, "") for require in _requires(setup) if require.result in moved],
         "tolerances": [_tolerance(setup, tolerance) for tolerance in scattering],
-        "namesake": list(model.tolerances[name].on) if name in model.tolerances and not _is_on(setup, name) else [],
+        "namesake": [] if namesake is None or name in namesake.on else list(namesake.on),
         "limit_of": [
             require_words(require, "") for require in _requires(setup) if name in {require.limit, require.reliability}
         ],
         "varied": [
-            _vary_words(objective)
-            for objective in model.objectives
-            if isinstance(objective, Vary) and objective.input == name
+            f"follows {vary.by}" if vary.by else f"may be chosen from {vary.low} to {vary.high}"
+            for vary in model.objectives
+            if isinstance(vary, Vary) and vary.input == name
         ],
-        "effects": [_effect_row(setup, model.effects[effect]) for effect in changed],
+        "effects": [_effect_row(setup, effect) for effect in changed],
     }
-
-
-def _is_on(setup: Setup, name: str) -> bool:
-    return name in setup.model.tolerances[name].on
 
 
 def _is_given(setup: Setup, name: str) -> bool:
@@ -186,35 +163,26 @@ def _requires(setup: Setup) -> list[Require]:
     return [objective for objective in setup.model.objectives if isinstance(objective, Require)]
 
 
-def _vary_words(vary: Vary) -> str:
-    return f"follows {vary.by}" if vary.by else f"may be chosen from {vary.low} to {vary.high}"
-
-
 def _moves(setup: Setup, sources: Sequence[str]) -> list[dict[str, Any]]:
     """Say of each result of the function what one per cent of the sources, and their scatter, do to it."""
     answers = setup.model.read_results(evaluate(setup))
-    results = [name for name, field in setup.model.own_result_fields.items() if not _is_table(field)]
+    results = [
+        name for name, field in setup.model.own_result_fields.items() if not getattr(field.spec, "is_table", False)
+    ]
     moved_by = influences(setup, {name: answers[name] for name in results}, sources)
-    rows = [row for result in results if (row := _row(setup, moved_by, result, sources)) is not None]
+    rows = []
+    for result in results:
+        of = [influence for influence in moved_by.of[result] if influence.source in sources and influence.moves]
+        alone = of[0] if of and len(sources) == 1 else None
+        row = {
+            "name": result,
+            "note": setup.model.own_result_fields[result].spec.note,
+            "change": "" if alone is None else step_text(setup, result, alone.step),
+            "percent": None if alone is None else _percent(alone.relative),
+            "share": sum(influence.share for influence in of),
+        }
+        rows += [row] if of else []
     return sorted(rows, key=lambda row: (-row["share"], -abs(row["percent"] or 0.0)))
-
-
-def _is_table(field: Any) -> bool:
-    return bool(getattr(field.spec, "is_table", False))
-
-
-def _row(setup: Setup, moved_by: Influences, result: str, sources: Sequence[str]) -> dict[str, Any] | None:
-    of = [influence for influence in moved_by.of[result] if influence.source in sources and influence.moves]
-    if not of:
-        return None
-    alone = of[0] if len(sources) == 1 else None
-    return {
-        "name": result,
-        "note": setup.model.own_result_fields[result].spec.note,
-        "change": step_text(setup, result, alone.step) if alone is not None else "",
-        "percent": 100 * alone.relative if alone is not None and alone.relative is not None else None,
-        "share": sum(influence.share for influence in of),
-    }
 
 
 def of_tolerance(setup: Setup, name: str) -> dict[str, Any]:
@@ -248,26 +216,27 @@ def of_effect(setup: Setup, name: str) -> dict[str, Any]:
     effect = model.known_effects[name]
     built_in = name not in model.effects
     tried = Touched({}, {}, {}) if built_in else touched(setup, effect)
-    ranked = sorted(tried.results.items(), key=lambda pair: -abs(pair[1]))
+    units = {need.name: need.unit for need in effect.needs} | {each.name: each.unit for each in effect.unknowns}
+    notes = {key: field.spec.note for key, field in model.own_result_fields.items()}
     return {
         **_effect_row(setup, effect),
         "why": effect.why,
         "source": effect.source,
         "built_in": built_in,
         "unknowns": [] if built_in else list(_unknowns(setup, effect)),
-        "needs": [_need(setup, need.name) for need in effect.needs],
-        "tried_at": [{"name": key, "text": _tried(setup, effect, key, value)} for key, value in tried.at.items()],
-        "moves": [_touched_row(setup, key, size) for key, size in ranked],
+        "needs": [
+            {"name": need.name, "note": need.note, "reference": _in(need.zero, need.unit)} for need in effect.needs
+        ],
+        "tried_at": [{"name": key, "text": _in(value, units[key])} for key, value in tried.at.items()],
+        "moves": [
+            {"name": key, "note": notes[key], "percent": _percent(size)}
+            for key, size in sorted(tried.results.items(), key=lambda pair: -abs(pair[1]))
+        ],
         "inputs": [
             {"name": key, "before": text_of(setup, key, before), "after": text_of(setup, key, after)}
             for key, (before, after) in tried.inputs.items()
         ],
     }
-
-
-def _touched_row(setup: Setup, name: str, size: float) -> dict[str, Any]:
-    note = setup.model.own_result_fields[name].spec.note
-    return {"name": name, "note": note, "percent": 100 * size if abs(size) < float("inf") else None}
 
 
 def _effect_row(setup: Setup, effect: Effect[Any, Any]) -> dict[str, Any]:
@@ -287,18 +256,7 @@ def _unknowns(setup: Setup, effect: Effect[Any, Any]) -> Iterator[dict[str, Any]
 
 
 def _in(value: float, unit: str) -> str:
-    number, word = format_value(value, unit)
-    return with_unit(pretty(number), word)
-
-
-def _tried(setup: Setup, effect: Effect[Any, Any], name: str, value: float) -> str:
-    unknown = next((unknown for unknown in effect.unknowns if unknown.name == name), None)
-    return _in(value, unknown.unit if unknown is not None else setup.model.known_conditions[name].unit)
-
-
-def _need(setup: Setup, name: str) -> dict[str, Any]:
-    condition = setup.model.known_conditions[name]
-    return {"name": name, "note": condition.note, "reference": _in(condition.zero, condition.unit)}
+    return plain_text(Value(*format_value(value, unit)))
 
 
 def of_condition(setup: Setup, name: str) -> dict[str, Any]:
@@ -334,37 +292,29 @@ def of_study(setup: Setup, name: str) -> dict[str, Any]:
 def amount(setup: Setup, name: str, value: Any) -> dict[str, Any]:
     """Return the value (SI) of an input, a condition or a result as data, with the text that is printed of it."""
     unit = setup.print_unit(name)
-    shown = text_of(setup, name, value)
-    if isinstance(value, (bool, str)) or value is None or not _is_number(value):
-        return {"value": clean(value) if isinstance(value, (bool, str)) else None, "unit": unit, "text": shown}
-    return {"value": clean(from_si(value, unit)), "unit": unit, "text": shown}
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, (int, float)) or hasattr(value, "dtype")
+    is_number = isinstance(value, (int, float)) or hasattr(value, "dtype")
+    data = value if isinstance(value, (bool, str)) else from_si(value, unit) if is_number else None
+    return {"value": clean(data), "unit": unit, "text": text_of(setup, name, value)}
 
 
 def text_of(setup: Setup, name: str, value: Any) -> str:
     """Write a value with its unit: a number, the range of a series, a choice, a file."""
     field = setup.model.input_fields.get(name)
     if field is not None:
-        shown = input_value(setup, field, value)
-        return with_unit(pretty(shown.text), shown.unit)
+        return plain_text(input_value(setup, field, value))
     unit = setup.print_unit(name)
     if getattr(value, "ndim", 0):
         low, high, word = format_ends(value, unit)
         return f"{with_unit(f'{pretty(low)} .. {pretty(high)}', word)} ({np.size(value)} values)" if low else ABSENT
     result = setup.model.result_fields.get(name)
-    number, word = format_value(value, unit, result.digits if result is not None else 10)
-    return with_unit(pretty(number), word)
+    return plain_text(Value(*format_value(value, unit, result.digits if result is not None else 10)))
 
 
 def step_text(setup: Setup, name: str, step: float | None, digits: int = 3) -> str:
     """Write a difference (SI) of a result or an input, with its unit."""
     if step is None:
         return ABSENT
-    number, unit = format_difference(step, setup.print_unit(name), digits)
-    return with_unit(pretty(number), unit)
+    return plain_text(Value(*format_difference(step, setup.print_unit(name), digits)))
 
 
 def item_of(setup: Setup, name: str, value: Any) -> dict[str, Any]:
@@ -390,7 +340,11 @@ def of_result(setup: Setup, offer: Offer, name: str, progress: Progress) -> dict
     direct, further = following(links, name)
     known = {**model.read_inputs(setup.inputs), **answers}
     return {
-        **_declared(field),
+        "symbol": symbol_text(field.symbol) if field.symbol else "",
+        "note": field.spec.note,
+        "along": "" if isinstance(field.spec, Axis) else field.along,
+        "method": getattr(field.spec, "method", ""),
+        "source": getattr(field.spec, "source", ""),
         **amount(setup, name, answers.get(name)),
         "study": study,
         "formula": formula_of(setup, answers, field),
@@ -404,7 +358,7 @@ def of_result(setup: Setup, offer: Offer, name: str, progress: Progress) -> dict
         **_moved_by(setup, field, answers.get(name), progress),
         "limits": list(_limits(setup, name, calculation, {*direct, *further})),
         "published": list(_published(setup, offer, name, calculation)),
-        "effects": _effects(setup, name, study, links),
+        "effects": _effects(setup, name, links),
         "sections": [section.title for section in model.sheet if name in section.names],
     }
 
@@ -420,90 +374,67 @@ def _needed(setup: Setup, study: str) -> tuple[Study, ...]:
     return tuple(setup.studies[: names.index(study) + 1]) if study in names else ()
 
 
-def _declared(field: ResultField) -> dict[str, Any]:
-    return {
-        "symbol": symbol_text(field.symbol) if field.symbol else "",
-        "note": field.spec.note,
-        "along": "" if isinstance(field.spec, Axis) else field.along,
-        "method": getattr(field.spec, "method", ""),
-        "source": getattr(field.spec, "source", ""),
-    }
-
-
 def formula_of(setup: Setup, answers: Mapping[str, Any], field: ResultField) -> dict[str, Any] | None:
     """Return the formula of a result as text: in symbols, with numbers, and the result; None where it has none."""
     equation = equation_of(setup, answers, field)
     if equation is None:
         return None
-    writer, formula = TextWriter(), equation.formula
-    symbols = dict(equation.symbols)
+    formula = equation.formula
     numbers = ""
     if equation.numbers is not None and formula.names and formula.left is None:
-        numbers = substituted(writer, formula, equation.numbers)
-    shown = [with_unit(pretty(value.text), value.unit) for value in equation.results if value.text != ABSENT]
+        numbers = substituted(TEXT, formula, equation.numbers)
     return {
         "text": formula.text,
-        "left": "" if formula.left is not None else writer.symbol(field.symbol) if field.symbol else field.name,
-        "symbols": symbolic(writer, formula, symbols),
+        "left": "" if formula.left is not None else symbol_text(field.symbol) if field.symbol else field.name,
+        "symbols": symbolic(TEXT, formula, equation.symbols),
         "numbers": numbers,
-        "results": shown,
+        "results": [plain_text(value) for value in equation.results if value.text != ABSENT],
         "departs": equation.departs,
     }
 
 
 def _moved_by(setup: Setup, field: ResultField, answer: Any, progress: Progress) -> dict[str, Any]:
-    """Say what moves the result: its scatter by source, and the change per one per cent of each input."""
+    """Say what moves the result: its scatter by source, the largest share first, and by how much one per cent does."""
     name = field.name
     if name not in setup.model.own_result_fields:
         return {"scatter": None, "slopes": [], "remarks": []}
     moved_by = influences(setup, {name: answer}, differentiable(setup), progress=progress)
     of = moved_by.of[name]
-    scatter = None
-    if moved_by.sd[name] > 0:
-        scatter = {
-            "sd": step_text(setup, name, moved_by.sd[name]),
-            "shares": [
-                {"name": influence.source, "share": influence.share, **_because(setup, influence.source)}
-                for influence in by_share(of)
-            ],
-        }
+    shares = []
+    for one in sorted((one for one in of if one.share), key=lambda one: -abs(one.share)):
+        names = [tolerance for tolerance, inner in setup.distributions().items() if one.source in inner]
+        spread = ", ".join(setup.spread_of(tolerance).text for tolerance in names)
+        shares.append({"name": one.source, "share": one.share, "tolerances": names, "spread": spread})
+    steepest = sorted((one for one in of if one.moves and one.step), key=lambda one: -abs(one.step or 0.0))
     return {
-        "scatter": scatter,
-        "slopes": [slope_row(setup, name, influence) for influence in by_slope(of)],
+        "scatter": {"sd": step_text(setup, name, moved_by.sd[name]), "shares": shares}
+        if moved_by.sd[name] > 0
+        else None,
+        "slopes": [
+            {"name": one.source, "change": step_text(setup, name, one.step), "percent": _percent(one.relative)}
+            for one in steepest
+        ],
         "remarks": list(moved_by.warnings),
     }
 
 
-def _because(setup: Setup, source: str) -> dict[str, Any]:
-    """Name the tolerance that lets a source scatter, and its spread."""
-    names = [name for name, inner in setup.distributions().items() if source in inner]
-    return {"tolerances": names, "spread": ", ".join(setup.spread_of(name).text for name in names)}
-
-
-def slope_row(setup: Setup, result: str, one: Influence) -> dict[str, Any]:
-    """Say what one per cent of a source (one kelvin of a temperature) does to a result."""
-    return {
-        "name": one.source,
-        "change": step_text(setup, result, one.step),
-        "percent": None if one.relative is None else 100 * one.relative,
-    }
+def _percent(share: float | None) -> float | None:
+    return None if share is None or not abs(share) < float("inf") else 100 * share
 
 
 def _limits(setup: Setup, name: str, calculation: Calculation, below: set[str]) -> Iterator[dict[str, Any]]:
     """Say the limits and goals on a result and on those ``below`` it, and those that it sets for others."""
-    requires = [objective for objective in setup.model.objectives if isinstance(objective, Require)]
+    requires = _requires(setup)
     checks = {check.name: check for check in calculation.checks}
     for objective in sorted(setup.model.objectives, key=lambda objective: getattr(objective, "result", "") != name):
         if isinstance(objective, (Minimise, Maximise)) and objective.result == name:
-            yield {
-                "says": "should be small" if isinstance(objective, Minimise) else "should be large",
-                "check": None,
-            }
+            yield {"says": f"should be {'small' if isinstance(objective, Minimise) else 'large'}", "check": None}
         if isinstance(objective, Require) and (
             name in {objective.result, objective.limit, objective.reliability} or objective.result in below
         ):
             check = checks.get(check_name(objective, requires))
-            yield {"says": require_words(objective, name), "check": None if check is None else check_data(check)}
+            data = None if check is None else {key: clean(getattr(check, key)) for key in CHECK}
+            yield {"says": require_words(objective, name), "check": data}
 
 
 def require_words(require: Require, name: str) -> str:
@@ -513,10 +444,8 @@ def require_words(require: Require, name: str) -> str:
     return f"{subject}{require.kind.replace('_', ' ')} {require.limit}{goal}"
 
 
-def check_data(check: Any) -> dict[str, Any]:
-    """Return value, limit, margin and verdict of a check."""
-    named = ("value", "limit", "unit", "margin", "compared", "relation", "state", "passed", "undecided")
-    return {key: clean(getattr(check, key)) for key in named}
+CHECK = ("value", "limit", "unit", "margin", "compared", "relation", "state", "passed", "undecided")
+"""What is said of a check."""
 
 
 def _published(setup: Setup, offer: Offer, name: str, calculation: Calculation) -> Iterator[dict[str, Any]]:
@@ -541,13 +470,14 @@ def _published(setup: Setup, offer: Offer, name: str, calculation: Calculation) 
         }  # fmt: skip
 
 
-def _effects(setup: Setup, name: str, study: str, links: Mapping[str, Sequence[str]]) -> list[dict[str, Any]]:
+def _effects(setup: Setup, name: str, links: Mapping[str, Sequence[str]]) -> list[dict[str, Any]]:
     """Name the model's own effects that change a result (of a study: a result that it names), the largest first."""
     model = setup.model
-    names = (
-        [name]
-        if name in model.own_result_fields
-        else [one for one in links.get(name, ()) if one in model.own_result_fields]
-    )
-    by_effect = all_touched(setup) if names else {}
-    return [_effect_row(setup, model.effects[effect]) for effect in effects_on(by_effect, names)]
+    own = model.own_result_fields
+    names = [name] if name in own else [one for one in links.get(name, ()) if one in own]
+    sizes: dict[str, float] = {}
+    for effect in model.effects.values() if names else ():
+        changed = touched(setup, effect).results
+        sizes[effect.name] = max(abs(changed.get(one, 0.0)) for one in names)
+    largest = sorted(filter(sizes.__getitem__, sizes), key=lambda effect: -sizes[effect])
+    return [_effect_row(setup, model.effects[effect]) for effect in largest]

@@ -2,31 +2,21 @@
 
 from __future__ import annotations
 
+import ast
 import operator
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
-from functools import cache
+from functools import reduce
 from typing import Any, NoReturn
 
 import numpy as np
 import pint
+from pint.util import UnitsContainer
 from scipy.special import ndtr
 
 from truing.errors import DeclarationError, UnitError
-from truing.formulas.tree import (
-    CONSTANTS,
-    Binary,
-    Call,
-    Comparison,
-    Constant,
-    Formula,
-    Logic,
-    Name,
-    Negative,
-    Node,
-    NumberNode,
-    source,
-)
+from truing.formulas.tree import CONSTANTS, SIGNS, Formula, Node, source
 from truing.units import human_dimension
 from truing.units import registry as shared_registry
 
@@ -67,80 +57,52 @@ def _as_number(formula: Formula, name: str, values: Mapping[str, Any]) -> Any:
 def value_of(node: Node, values: Mapping[str, Any]) -> Any:
     """Compute one node from arrays; ``evaluate`` is the door for callers."""
     match node:
-        case NumberNode(_, value):
-            return np.float64(value)
-        case Constant(name):
-            return np.float64(CONSTANTS[name])
-        case Name(name):
-            return values[name]
-        case Negative(operand):
+        case ast.Constant(float() as number):
+            return np.float64(number)
+        case ast.Name(name):
+            return np.float64(CONSTANTS[name]) if name in CONSTANTS else values[name]
+        case ast.UnaryOp(_, operand):
             return -value_of(operand, values)
-        case Binary(operator, left, right):
-            return _operators()[operator](value_of(left, values), value_of(right, values))
-        case Call("cases", arguments):
-            return _cases(arguments, values)
-        case Call(function, arguments):
-            return _functions()[function](*(value_of(argument, values) for argument in arguments))
-        case Comparison(operators, operands):
-            sides = [value_of(operand, values) for operand in operands]
-            links = [_operators()[sign](sides[i], sides[i + 1]) for i, sign in enumerate(operators)]
+        case ast.BinOp(left, sign, right):
+            return OPERATORS[SIGNS[type(sign)]](value_of(left, values), value_of(right, values))
+        case ast.Call(ast.Name("cases"), arguments):
+            result = value_of(arguments[-1], values)
+            for case, condition in reversed(list(zip(arguments[:-1:2], arguments[1::2], strict=True))):
+                result = np.where(value_of(condition, values), value_of(case, values), result)
+            return result
+        case ast.Call(ast.Name(function), arguments):
+            return FUNCTIONS[function](*(value_of(argument, values) for argument in arguments))
+        case ast.Compare(first, signs, others):
+            sides = [value_of(operand, values) for operand in (first, *others)]
+            links = [OPERATORS[SIGNS[type(sign)]](sides[i], sides[i + 1]) for i, sign in enumerate(signs)]
             return np.logical_and.reduce(np.broadcast_arrays(*links))
-        case Logic(word, operands):
+        case ast.BoolOp(joint, operands):
             parts = np.broadcast_arrays(*(value_of(operand, values) for operand in operands))
-            return (np.logical_and if word == "and" else np.logical_or).reduce(parts)
+            return (np.logical_and if isinstance(joint, ast.And) else np.logical_or).reduce(parts)
+    raise AssertionError("parsing lets nothing else through")
 
 
-def _cases(arguments: tuple[Node, ...], values: Mapping[str, Any]) -> Any:
-    result = value_of(arguments[-1], values)
-    for index in range(len(arguments) - 3, -1, -2):
-        condition = value_of(arguments[index + 1], values)
-        result = np.where(condition, value_of(arguments[index], values), result)
-    return result
-
-
-@cache
-def _operators() -> dict[str, Callable[..., Any]]:
-    return {
-        "+": np.add,
-        "-": np.subtract,
-        "*": np.multiply,
-        "/": np.divide,
-        "**": np.power,
-        "<": operator.lt,
-        "<=": operator.le,
-        ">": operator.gt,
-        ">=": operator.ge,
-        "==": operator.eq,
-        "!=": operator.ne,
-    }
-
-
-@cache
-def _functions() -> dict[str, Callable[..., Any]]:
-    return {
-        **{name: getattr(np, name) for name in ("sqrt", "cbrt", "exp", "log", "log10", "abs", "sign", "sin", "cos")},
-        **{name: getattr(np, name) for name in ("tan", "sinh", "cosh", "tanh")},
-        "cot": lambda x: 1 / np.tan(x),
-        "asin": np.arcsin,
-        "acos": np.arccos,
-        "atan": np.arctan,
-        "atan2": np.arctan2,
-        "inv": lambda x: np.tan(x) - x,
-        "hypot": lambda *sides: _pairwise(np.hypot, sides),
-        "min": lambda *given: _pairwise(np.minimum, given) if len(given) > 1 else _over_last_axis(np.min, given[0]),
-        "max": lambda *given: _pairwise(np.maximum, given) if len(given) > 1 else _over_last_axis(np.max, given[0]),
-        "Phi": ndtr,
-        "sum": lambda x: _over_last_axis(np.sum, x),
-        "mean": lambda x: _over_last_axis(np.mean, x),
-        "either": lambda first, second: np.where(np.isnan(first), second, first),
-    }
-
-
-def _pairwise(function: Callable[[Any, Any], Any], given: tuple[Any, ...]) -> Any:
-    result = given[0]
-    for other in given[1:]:
-        result = function(result, other)
-    return result
+OPERATORS: Mapping[str, Callable[..., Any]] = {
+    "+": np.add, "-": np.subtract, "*": np.multiply, "/": np.divide, "**": np.power,
+    "<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge, "==": operator.eq, "!=": operator.ne,
+}  # fmt: skip
+FUNCTIONS: Mapping[str, Callable[..., Any]] = {
+    **{name: getattr(np, name) for name in ("sqrt", "cbrt", "exp", "log", "log10", "abs", "sign", "sin", "cos")},
+    **{name: getattr(np, name) for name in ("tan", "sinh", "cosh", "tanh")},
+    "cot": lambda x: 1 / np.tan(x),
+    "asin": np.arcsin,
+    "acos": np.arccos,
+    "atan": np.arctan,
+    "atan2": np.arctan2,
+    "inv": lambda x: np.tan(x) - x,
+    "hypot": lambda *sides: reduce(np.hypot, sides),
+    "min": lambda *given: reduce(np.minimum, given) if len(given) > 1 else _over_last_axis(np.min, given[0]),
+    "max": lambda *given: reduce(np.maximum, given) if len(given) > 1 else _over_last_axis(np.max, given[0]),
+    "Phi": ndtr,
+    "sum": lambda x: _over_last_axis(np.sum, x),
+    "mean": lambda x: _over_last_axis(np.mean, x),
+    "either": lambda first, second: np.where(np.isnan(first), second, first),
+}
 
 
 def _over_last_axis(function: Callable[..., Any], values: Any) -> Any:
@@ -153,9 +115,6 @@ def _over_last_axis(function: Callable[..., Any], values: Any) -> Any:
 KEEPS_DIMENSION = frozenset({"abs", "sum", "mean"})
 OF_LIKES = frozenset({"min", "max", "hypot", "either"})
 OF_ANGLE = frozenset({"sin", "cos", "tan", "cot", "inv"})
-
-FormulaDimension = tuple[tuple[str, Fraction], ...]
-"""Base units and their exponents, sorted, without radians and counts; None where a literal zero fits any dimension."""
 
 
 def evaluate_quantities(formula: Formula, values: Mapping[str, pint.Quantity[Any]]) -> pint.Quantity[Any]:
@@ -170,9 +129,10 @@ def evaluate_quantities(formula: Formula, values: Mapping[str, pint.Quantity[Any
             number got something else; the sentence names the part of the formula.
         DeclarationError: a name of the formula has no value.
     """
-    registry = _registry_of(values)
+    registries = (getattr(value, "_REGISTRY", None) for value in values.values())
+    registry: Any = next(filter(None, registries), None) or shared_registry()
     magnitudes: dict[str, Any] = {}
-    dimensions: dict[str, FormulaDimension] = {}
+    dimensions: dict[str, UnitsContainer] = {}
     for name in formula.names & values.keys():
         quantity = registry.Quantity(values[name]).to_base_units()
         magnitudes[name] = np.asarray(quantity.magnitude, dtype=float)
@@ -182,154 +142,130 @@ def evaluate_quantities(formula: Formula, values: Mapping[str, pint.Quantity[Any
     dimension = proof.of(formula.right)
     if formula.left is not None:
         dimension = proof.alike((formula.left, formula.right), "the two sides of the equation")
-    units = registry.UnitsContainer({unit: _plain(exponent) for unit, exponent in dimension or ()})
-    result: pint.Quantity[Any] = registry.Quantity(magnitude, registry.Unit(units))
+    exponents = {unit: _exact(power) for unit, power in (dimension or {}).items()}
+    units = {unit: int(power) if power.denominator == 1 else float(power) for unit, power in exponents.items()}
+    result: pint.Quantity[Any] = registry.Quantity(magnitude, registry.UnitsContainer(units))
     return result
 
 
-def _registry_of(values: Mapping[str, Any]) -> Any:
-    for value in values.values():
-        if (registry := getattr(value, "_REGISTRY", None)) is not None:
-            return registry
-    return shared_registry()
-
-
-def _dimension_of(quantity: Any, registry: Any) -> FormulaDimension:
-    items = [(unit, _exact(exponent)) for unit, exponent in quantity.unit_items()]
-    return _sorted({unit: exponent for unit, exponent in items if not registry.Unit(unit).dimensionless})
+def _dimension_of(quantity: Any, registry: Any) -> UnitsContainer:
+    """Return base units and their exponents, without radians and counts."""
+    exponents = {unit: power for unit, power in quantity.unit_items() if not registry.Unit(unit).dimensionless}
+    return UnitsContainer({unit: _exact(power) for unit, power in exponents.items()}, non_int_type=Fraction)
 
 
 def _exact(exponent: Any) -> Fraction:
     return Fraction(exponent).limit_denominator(10**6)
 
 
-def _plain(exponent: Fraction) -> int | float:
-    return int(exponent) if exponent.denominator == 1 else float(exponent)
+def _power(base: UnitsContainer, exponent: Fraction) -> UnitsContainer:
+    return base**exponent if exponent else PURE_NUMBER
 
 
-def _sorted(units: Mapping[str, Fraction]) -> FormulaDimension:
-    return tuple(sorted((unit, exponent) for unit, exponent in units.items() if exponent))
-
-
-def _product(first: FormulaDimension, second: FormulaDimension, *, sign: int = 1) -> FormulaDimension:
-    total = dict(first)
-    for unit, exponent in second:
-        total[unit] = total.get(unit, Fraction(0)) + sign * exponent
-    return _sorted(total)
-
-
-def _power(base: FormulaDimension, exponent: Fraction) -> FormulaDimension:
-    return _sorted({unit: old * exponent for unit, old in base})
-
-
+PURE_NUMBER = UnitsContainer({}, non_int_type=Fraction)
 _SHORT = {"meter": "m", "kilogram": "kg", "second": "s", "ampere": "A", "kelvin": "K", "mole": "mol", "candela": "cd"}
 
 
-def _spoken(dimension: FormulaDimension | None) -> str:
+def _spoken(dimension: UnitsContainer | None) -> str:
     """Say a dimension in the engineer's words: "a force", "a pure number"."""
     if not dimension:
         return "a pure number"
-    unit = "*".join(f"{_SHORT.get(unit, unit)}^{_written(exponent)}" for unit, exponent in dimension)
+    exponents = {_SHORT.get(unit, unit): _exact(power) for unit, power in sorted(dimension.items())}
+    unit = "*".join(f"{unit}^{n if n.denominator == 1 else f'({n})'}" for unit, n in exponents.items())
     try:
         return human_dimension(unit)
     except UnitError:
         return unit
 
 
-def _written(exponent: Fraction) -> str:
-    return str(exponent) if exponent.denominator == 1 else f"({exponent})"
-
-
+@dataclass(frozen=True)
 class _Proof:
-    """Walks a formula and finds the dimension of each part, or the sentence why there is none."""
+    """Walks a formula and finds the dimension of each part (None: a literal 0), or the sentence why there is none."""
 
-    def __init__(
-        self, formula: Formula, dimensions: Mapping[str, FormulaDimension], magnitudes: Mapping[str, Any]
-    ) -> None:
-        self.formula = formula
-        self.dimensions = dimensions
-        self.magnitudes = magnitudes
+    formula: Formula
+    dimensions: Mapping[str, UnitsContainer]
+    magnitudes: Mapping[str, Any]
 
-    def of(self, node: Node) -> FormulaDimension | None:
+    def of(self, node: Node) -> UnitsContainer | None:
         match node:
-            case NumberNode(_, 0.0):
+            case ast.Constant(0.0):
                 return None
-            case Name(name):
+            case ast.Name(name) if name not in CONSTANTS:
                 return self.dimensions[name]
-            case Negative(operand):
+            case ast.UnaryOp(_, operand):
                 return self.of(operand)
-            case Binary(("+" | "-") as operator, left, right):
-                verb = "added" if operator == "+" else "subtracted"
-                return self.alike((left, right), f"'{source(node)}': what is {verb}")
-            case Binary("**", base, exponent):
+            case ast.BinOp(left, (ast.Add() | ast.Sub()) as sign, right):
+                verb = "added" if isinstance(sign, ast.Add) else "subtracted"
+                return self.alike((left, right), f"'{self.quoted(node)}': what is {verb}")
+            case ast.BinOp(base, ast.Pow(), exponent):
                 return self.power(node, base, exponent)
-            case Binary(operator, left, right):
+            case ast.BinOp(left, sign, right):
                 above, below = self.of(left), self.of(right)
                 if above is None:
                     return None
-                return _product(above, below or (), sign=1 if operator == "*" else -1)
-            case Call(function, arguments):
+                power = Fraction(1 if isinstance(sign, ast.Mult) else -1)
+                product: UnitsContainer = above * _power(below or PURE_NUMBER, power)
+                return product
+            case ast.Call(ast.Name(function), arguments):
                 return self.call(node, function, arguments)
-            case Comparison(_, operands):
-                self.alike(operands, f"'{source(node)}': what is compared")
-            case Logic(_, operands):
+            case ast.Compare(first, _, others):
+                self.alike((first, *others), f"'{self.quoted(node)}': what is compared")
+            case ast.BoolOp(_, operands):
                 for operand in operands:
                     self.of(operand)
-        return ()
+        return PURE_NUMBER
 
-    def call(self, node: Node, function: str, arguments: tuple[Node, ...]) -> FormulaDimension | None:
-        where = f"'{source(node)}'"
+    def call(self, node: Node, function: str, arguments: Sequence[Node]) -> UnitsContainer | None:
+        where = f"'{self.quoted(node)}'"
         if function == "cases":
             for condition in arguments[1::2]:
                 self.of(condition)
             return self.alike((*arguments[:-1:2], arguments[-1]), f"{where}: what is chosen from")
         if function in OF_LIKES:
             return self.alike(arguments, f"{where}: what {function} takes")
-        if function == "atan2":
-            self.alike(arguments, f"{where}: what atan2 takes")
-            return ()
         if function in KEEPS_DIMENSION:
             return self.of(arguments[0])
         if function in ("sqrt", "cbrt"):
             base = self.of(arguments[0])
-            return base and _power(base, Fraction(1, 2 if function == "sqrt" else 3))
-        if function != "sign":
+            return None if base is None else _power(base, Fraction(1, 2 if function == "sqrt" else 3))
+        if function == "atan2":
+            self.alike(arguments, f"{where}: what atan2 takes")
+        elif function == "sign":
+            self.of(arguments[0])
+        else:
             wanted = "an angle or a pure number" if function in OF_ANGLE else "a pure number"
             self.pure(arguments[0], f"{where}: {function} needs {wanted}")
-        else:
-            self.of(arguments[0])
-        return ()
+        return PURE_NUMBER
+
+    def quoted(self, node: Node) -> str:
+        return source(self.formula, node)
 
     def pure(self, node: Node, sentence: str) -> None:
         if dimension := self.of(node):
-            self.fail(f"{sentence}, not {_spoken(dimension)} ('{source(node)}')")
+            self.fail(f"{sentence}, not {_spoken(dimension)} ('{self.quoted(node)}')")
 
-    def power(self, node: Node, base: Node, exponent: Node) -> FormulaDimension | None:
-        self.pure(exponent, f"'{source(node)}': an exponent must be a pure number")
+    def power(self, node: Node, base: Node, exponent: Node) -> UnitsContainer | None:
+        self.pure(exponent, f"'{self.quoted(node)}': an exponent must be a pure number")
         dimension = self.of(base)
         if not dimension:
             return dimension
         with np.errstate(all="ignore"):
             value = np.unique(np.asarray(value_of(exponent, self.magnitudes)))
         if value.size != 1 or not np.isfinite(value[0]):
-            self.fail(f"'{source(node)}': {_spoken(dimension)} is raised to a power that is not one finite number")
+            self.fail(f"'{self.quoted(node)}': {_spoken(dimension)} is raised to a power that is not one finite number")
         return _power(dimension, _exact(float(value[0])))
 
-    def alike(self, nodes: Sequence[Node], sentence: str) -> FormulaDimension | None:
+    def alike(self, nodes: Sequence[Node], sentence: str) -> UnitsContainer | None:
         """Return the dimension all nodes share; a literal zero shares any."""
-        first: tuple[Node, FormulaDimension] | None = None
-        for node in nodes:
-            dimension = self.of(node)
-            if dimension is None:
-                continue
-            if first is None:
-                first = (node, dimension)
-            elif dimension != first[1]:
+        known = ((node, dimension) for node in nodes if (dimension := self.of(node)) is not None)
+        first, shared = next(known, (None, None))
+        for node, dimension in known:
+            if first is not None and dimension != shared:
                 self.fail(
-                    f"{sentence} must have one dimension, but '{source(first[0])}' is {_spoken(first[1])} "
-                    f"and '{source(node)}' is {_spoken(dimension)}"
+                    f"{sentence} must have one dimension, but '{self.quoted(first)}' is {_spoken(shared)} "
+                    f"and '{self.quoted(node)}' is {_spoken(dimension)}"
                 )
-        return None if first is None else first[1]
+        return shared
 
     def fail(self, sentence: str) -> NoReturn:
         raise UnitError(f"formula {self.formula.text!r}: {sentence}")

@@ -2,79 +2,47 @@
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from enum import Enum, IntEnum
-from functools import reduce
 from itertools import pairwise
-from typing import Final, Protocol
+from typing import Final
 
 from truing.formulas.symbols import read_number, read_symbol
-from truing.formulas.tree import (
-    Binary,
-    Call,
-    Comparison,
-    Constant,
-    Formula,
-    Logic,
-    Name,
-    Negative,
-    Node,
-    NumberNode,
-    simplified,
-)
+from truing.formulas.tree import CONSTANTS, SIGNS, Formula, Node, simplified
 
 
-class Writer(Protocol):
-    """The marks of one output language; every argument except names, texts and signs is finished markup."""
+@dataclass(frozen=True, kw_only=True)
+class Writer:
+    """The marks of one output language; what they are given is finished markup, but for names, texts and signs.
 
-    def symbol(self, text: str, exponent: str | None = None) -> str:
-        """Write a declared symbol, with an exponent beside its subscript if there is one."""
+    ``symbol`` writes a declared symbol, with an exponent beside its subscript if there is one; ``quantity`` a number
+    and its unit ("" for a pure number); ``infix`` joins two sides by a sign: + - dot gap , == != < <= > >= and or.
+    ``function`` takes a printed name and an exponent directly on it (sin squared); ``applied`` joins function and
+    argument, ``applied_bare`` one without parentheses; ``table`` sets rows of value and condition behind a brace.
+    """
 
-    def word(self, name: str) -> str:
-        """Write the name of a quantity that has no symbol."""
-
-    def quantity(self, number: str, unit: str) -> str:
-        """Write a number with its unit; the unit is empty for a pure number."""
-
-    def constant(self, name: str) -> str:
-        """Write pi."""
-
-    def minus(self, operand: str) -> str:
-        """Write minus the operand."""
-
-    def infix(self, left: str, sign: str, right: str) -> str:
-        """Join two sides by a sign: + - dot gap , == != < <= > >= and or."""
-
-    def parenthesised(self, inner: str) -> str:
-        """Put round parentheses, as tall as what they hold."""
-
-    def bars(self, inner: str) -> str:
-        """Put the bars of an absolute value."""
-
-    def fraction(self, above: str, below: str) -> str:
-        """Write a fraction."""
-
-    def power(self, base: str, exponent: str) -> str:
-        """Write a power."""
-
-    def root(self, inner: str, index: str) -> str:
-        """Write a root; the index is empty for the square root."""
-
-    def function(self, name: str, exponent: str | None = None) -> str:
-        """Write the printed name of a function, with an exponent directly on it (sin squared)."""
-
-    def applied(self, function: str, argument: str, *, bare: bool) -> str:
-        """Join a function and its argument; a bare argument has no parentheses and needs a gap."""
-
-    def table(self, rows: Sequence[tuple[str, str]]) -> str:
-        """Write alternatives behind a left brace: value and condition per row."""
-
-    def condition(self, inner: str) -> str:
-        """Write "if" before a condition."""
-
-    def prose(self, text: str) -> str:
-        """Write a few plain words."""
+    opening: str = ""
+    """What stands before a sign at the beginning of a line, so that it is set as a sign between two sides."""
+    symbol: Callable[[str, str | None], str]
+    word: Callable[[str], str]
+    quantity: Callable[[str, str], str]
+    pi: str
+    minus: Callable[[str], str]
+    infix: Callable[[str, str, str], str]
+    parenthesised: Callable[[str], str]
+    bars: Callable[[str], str]
+    fraction: Callable[[str, str], str]
+    power: Callable[[str, str], str]
+    sqrt: Callable[[str], str]
+    cbrt: Callable[[str], str]
+    function: Callable[[str, str | None], str]
+    applied: Callable[[str, str], str]
+    applied_bare: Callable[[str, str], str]
+    table: Callable[[Sequence[tuple[str, str]]], str]
+    condition: Callable[[str], str]
+    prose: Callable[[str], str]
 
 
 class Binding(IntEnum):
@@ -109,9 +77,6 @@ class Markup:
     ends: Edge = Edge.OTHER
 
 
-Leaf = Callable[[str], Markup]
-"""Turns the name of a quantity into a piece: its symbol, or its number."""
-
 PRINTED: Final = {
     "log": "ln", "asin": "arcsin", "acos": "arccos", "atan": "arctan", "sign": "sgn", "sum": "∑", "Phi": "Φ",
 }  # fmt: skip
@@ -123,17 +88,14 @@ MAY_BE_BARE: Final = SQUARED_ON_NAME | {"asin", "acos", "atan", "log", "log10", 
 
 @dataclass(frozen=True)
 class Layout:
-    """Sets formulas with one writer; ``leaf`` says what stands for a name.
+    """Sets formulas with one writer: in ``symbols``, or where ``numbers`` are given with these in their place.
 
-    ``symbols`` holds the declared symbols whose exponents stand beside their subscript. ``dots`` puts a dot between
-    all factors. ``is_given`` tells ``either`` whether a name has a number (None: not known, both are shown).
+    Both are by name; a number comes with its unit. What has neither is a word. Numbers have dots between all factors.
     """
 
     writer: Writer
-    leaf: Leaf
-    symbols: Mapping[str, str] = field(default_factory=dict)
-    dots: bool = False
-    is_given: Callable[[str], bool | None] = lambda name: None
+    symbols: Mapping[str, str]
+    numbers: Mapping[str, tuple[str, str]] | None = None
 
     def formula(self, formula: Formula) -> str:
         """Set an expression, or both sides of an equation."""
@@ -145,29 +107,42 @@ class Layout:
     def piece(self, node: Node, *, bare: bool = True) -> Markup:
         """Set one node; ``bare`` lets a function stand without parentheses (``sin x``)."""
         match node:
-            case NumberNode(text, _):
+            case ast.Constant(_, str() as text):
                 return number_piece(text, self.writer.quantity(text, ""))
-            case Constant(name):
-                return Markup(self.writer.constant(name), Binding.ATOM)
-            case Name(name):
-                return self.leaf(name)
-            case Negative(operand):
+            case ast.Name(name):
+                return Markup(self.writer.pi, Binding.ATOM) if name in CONSTANTS else self.leaf(name)
+            case ast.UnaryOp(_, operand):
                 inner = self.at_least(operand, Binding.PRODUCT, signed=False)
                 return Markup(self.writer.minus(inner.markup), Binding.PRODUCT, negative=True)
-            case Binary(("+" | "-") as sign, left, right):
-                return self.sum(sign, left, right)
-            case Binary("*", _, _):
+            case ast.BinOp(left, (ast.Add() | ast.Sub()) as sign, right):
+                return self.sum(SIGNS[type(sign)], left, right)
+            case ast.BinOp(_, ast.Mult(), _):
                 return self.product(node)
-            case Binary("/", above, below):
+            case ast.BinOp(above, ast.Div(), below):
                 return Markup(self.writer.fraction(self.piece(above).markup, self.piece(below).markup), Binding.TIGHT)
-            case Binary(_, base, exponent):
+            case ast.BinOp(base, _, exponent):
                 return self.power(base, exponent, bare=bare)
-            case Call(function, arguments):
+            case ast.Call(ast.Name(function), arguments):
                 return self.call(function, arguments, bare=bare)
-            case Comparison(signs, operands):
-                return self.comparison(signs, operands)
-            case Logic(word, operands):
-                return self.logic(word, operands)
+            case ast.Compare(first, signs, others):
+                operands = [self.at_least(operand, Binding.SUM) for operand in (first, *others)]
+                return Markup(self.chained(operands, [SIGNS[type(sign)] for sign in signs]), Binding.COMPARISON)
+            case ast.BoolOp(joint, conditions):
+                level = Binding.AND if isinstance(joint, ast.And) else Binding.OR
+                operands = [self.at_least(condition, level) for condition in conditions]
+                return Markup(self.chained(operands, [SIGNS[type(joint)]] * (len(operands) - 1)), level)
+        raise AssertionError("parsing lets nothing else through")
+
+    def leaf(self, name: str) -> Markup:
+        """Set what stands for a quantity: its number, its symbol, else its name as a word."""
+        if self.numbers is not None and name in self.numbers:
+            number, unit = self.numbers[name]
+            return number_piece(number, self.writer.quantity(number, unit), unit=unit)
+        if self.numbers is None and (symbol := self.symbols.get(name)):
+            is_plain = read_symbol(symbol).is_plain
+            return Markup(self.writer.symbol(symbol, None), Binding.ATOM if is_plain else Binding.TIGHT)
+        level = Binding.ATOM if "_" not in name else Binding.TIGHT
+        return Markup(self.writer.word(name), level, begins=Edge.WORD, ends=Edge.WORD)
 
     def at_least(self, node: Node, level: Binding, *, signed: bool = True, bare: bool = True) -> Markup:
         """Set a node, in parentheses if it is looser than ``level`` or begins with a minus where none may stand."""
@@ -189,40 +164,41 @@ class Layout:
         for index, factor in enumerate(row):
             bare = index == len(row) - 1 or begins_with_function(row[index + 1])
             pieces.append(self.at_least(factor, Binding.PRODUCT, signed=index == 0, bare=bare))
-        markup = pieces[0].markup
-        for before, after in pairwise(pieces):
-            dot = self.dots or after.begins is not Edge.OTHER or before.ends is Edge.WORD
-            markup = self.writer.infix(markup, "dot" if dot else "gap", after.markup)
+        dots = (
+            self.numbers is not None or after.begins is not Edge.OTHER or before.ends is Edge.WORD
+            for before, after in pairwise(pieces)
+        )  # fmt: skip
+        markup = self.chained(pieces, ["dot" if dot else "gap" for dot in dots])
         return Markup(markup, Binding.PRODUCT, pieces[0].negative, begins=pieces[0].begins, ends=pieces[-1].ends)
 
     def power(self, base: Node, exponent: Node, *, bare: bool) -> Markup:
         """Set a power: on the name of sin and its like, beside a subscript, or on a base in parentheses."""
         raised = self.piece(exponent).markup
-        if isinstance(base, Call) and base.function in SQUARED_ON_NAME and is_small_count(exponent):
-            return self.applied(self.function(base.function, raised), base.arguments[0], may_be_bare=bare)
-        if isinstance(base, Name) and (symbol := self.symbols.get(base.name)) and read_symbol(symbol).is_plain:
+        match base:
+            case ast.Call(ast.Name(function), arguments) if function in SQUARED_ON_NAME and is_small_count(exponent):
+                return self.applied(self.function(function, raised), arguments[0], may_be_bare=bare)
+        symbol = self.symbols.get(base.id) if isinstance(base, ast.Name) and self.numbers is None else None
+        if symbol and read_symbol(symbol).is_plain:
             return Markup(self.writer.symbol(symbol, raised), Binding.TIGHT)
         below = self.at_least(base, Binding.ATOM, signed=False)
         return Markup(self.writer.power(below.markup, raised), Binding.TIGHT, begins=below.begins)
 
-    def call(self, function: str, arguments: tuple[Node, ...], *, bare: bool) -> Markup:
+    def call(self, function: str, arguments: Sequence[Node], *, bare: bool) -> Markup:
         """Set a function, a root, absolute bars, or alternatives."""
         if function == "cases":
             return self.cases(arguments)
         if function == "either":
             return self.either(*arguments)
         if function in ("sqrt", "cbrt"):
-            inner = self.piece(arguments[0]).markup
-            return Markup(self.writer.root(inner, "" if function == "sqrt" else "3"), Binding.TIGHT)
+            root = self.writer.sqrt if function == "sqrt" else self.writer.cbrt
+            return Markup(root(self.piece(arguments[0]).markup), Binding.TIGHT)
         if function == "abs":
             return Markup(self.writer.bars(self.piece(arguments[0]).markup), Binding.ATOM)
         head = self.function(function)
         if len(arguments) == 1:
             return self.applied(head, arguments[0], may_be_bare=bare and function in MAY_BE_BARE)
-        inner = self.at_least(arguments[0], Binding.SUM).markup
-        for argument in arguments[1:]:
-            inner = self.writer.infix(inner, ",", self.at_least(argument, Binding.SUM).markup)
-        return Markup(self.writer.applied(head, self.writer.parenthesised(inner), bare=False), Binding.TIGHT)
+        inner = self.chained([self.at_least(each, Binding.SUM) for each in arguments], [","] * (len(arguments) - 1))
+        return Markup(self.writer.applied(head, self.writer.parenthesised(inner)), Binding.TIGHT)
 
     def function(self, name: str, exponent: str | None = None) -> str:
         """Set the name of a function."""
@@ -232,47 +208,37 @@ class Layout:
         """Set a function of one argument."""
         piece = self.piece(argument)
         if may_be_bare and piece.level is Binding.ATOM and piece.ends is not Edge.WORD:
-            return Markup(self.writer.applied(head, piece.markup, bare=True), Binding.TIGHT)
-        return Markup(self.writer.applied(head, self.writer.parenthesised(piece.markup), bare=False), Binding.TIGHT)
+            return Markup(self.writer.applied_bare(head, piece.markup), Binding.TIGHT)
+        return Markup(self.writer.applied(head, self.writer.parenthesised(piece.markup)), Binding.TIGHT)
 
-    def comparison(self, signs: tuple[str, ...], operands: tuple[Node, ...]) -> Markup:
-        """Set a condition: a comparison or a chain of them."""
-        markup = self.at_least(operands[0], Binding.SUM).markup
+    def chained(self, operands: Sequence[Markup], signs: Sequence[str]) -> str:
+        """Join operands by the signs between them."""
+        markup = operands[0].markup
         for sign, operand in zip(signs, operands[1:], strict=True):
-            markup = self.writer.infix(markup, sign, self.at_least(operand, Binding.SUM).markup)
-        return Markup(markup, Binding.COMPARISON)
+            markup = self.writer.infix(markup, sign, operand.markup)
+        return markup
 
-    def logic(self, word: str, operands: tuple[Node, ...]) -> Markup:
-        """Set conditions joined by and/or."""
-        level = Binding.AND if word == "and" else Binding.OR
-        markups = [self.at_least(operand, level).markup for operand in operands]
-        return Markup(reduce(lambda left, right: self.writer.infix(left, word, right), markups), level)
-
-    def cases(self, arguments: tuple[Node, ...]) -> Markup:
+    def cases(self, arguments: Sequence[Node]) -> Markup:
         """Set alternatives behind a brace."""
-        rows = [
-            (self.piece(value).markup, self.writer.condition(self.piece(condition).markup))
-            for value, condition in zip(arguments[:-1:2], arguments[1::2], strict=True)
-        ]
-        rows.append((self.piece(arguments[-1]).markup, self.writer.prose("otherwise")))
-        return Markup(self.writer.table(rows), Binding.CASES)
+        conditions = [self.writer.condition(self.piece(condition).markup) for condition in arguments[1::2]]
+        return self.alternatives(arguments[::2], [*conditions, self.writer.prose("otherwise")])
 
     def either(self, first: Node, second: Node) -> Markup:
         """Set "the first if it is given, otherwise the second"; with numbers at hand only the one that counts."""
-        given = self.is_given(first.name) if isinstance(first, Name) else None
-        if given is not None:
-            return self.piece(first if given else second)
-        rows = [
-            (self.piece(first).markup, self.writer.prose("if given")),
-            (self.piece(second).markup, self.writer.prose("otherwise")),
-        ]
-        return Markup(self.writer.table(rows), Binding.CASES)
+        if self.numbers is not None and isinstance(first, ast.Name) and first.id in self.numbers:
+            return self.piece(first if read_number(self.numbers[first.id][0]) is not None else second)
+        return self.alternatives((first, second), [self.writer.prose("if given"), self.writer.prose("otherwise")])
+
+    def alternatives(self, values: Sequence[Node], conditions: Sequence[str]) -> Markup:
+        """Set values behind a brace, each with what is said of it."""
+        markups = [self.piece(value).markup for value in values]
+        return Markup(self.writer.table(list(zip(markups, conditions, strict=True))), Binding.CASES)
 
 
 def factors(node: Node) -> list[Node]:
     """Return what a product multiplies, in order."""
     match node:
-        case Binary("*", left, right):
+        case ast.BinOp(left, ast.Mult(), right):
             return factors(left) + factors(right)
     return [node]
 
@@ -280,16 +246,16 @@ def factors(node: Node) -> list[Node]:
 def begins_with_function(node: Node) -> bool:
     """Tell whether a factor begins with the name of a function, so that ``sin x cos y`` cannot be misread."""
     match node:
-        case Call(function, _):
+        case ast.Call(ast.Name(function), _):
             return function in MAY_BE_BARE
-        case Binary("**", Call(function, _), exponent):
+        case ast.BinOp(ast.Call(ast.Name(function), _), ast.Pow(), exponent):
             return function in SQUARED_ON_NAME and is_small_count(exponent)
     return False
 
 
 def is_small_count(exponent: Node) -> bool:
     """Tell whether an exponent may stand on a function's name: a whole number (-1 would be an inverse)."""
-    return isinstance(exponent, NumberNode) and exponent.text.isdigit()
+    return isinstance(exponent, ast.Constant) and (exponent.kind or "").isdigit()
 
 
 def number_piece(text: str, markup: str, *, unit: str = "") -> Markup:
@@ -302,45 +268,11 @@ def number_piece(text: str, markup: str, *, unit: str = "") -> Markup:
     return Markup(markup, level, number.negative, begins=Edge.DIGIT)
 
 
-def symbol_leaf(writer: Writer, symbols: Mapping[str, str]) -> Leaf:
-    """Return the leaf that prints symbols, and words where there is no symbol."""
-
-    def leaf(name: str) -> Markup:
-        symbol = symbols.get(name)
-        if not symbol:
-            return word_piece(writer, name)
-        return Markup(writer.symbol(symbol), Binding.ATOM if read_symbol(symbol).is_plain else Binding.TIGHT)
-
-    return leaf
-
-
-def number_leaf(writer: Writer, numbers: Mapping[str, tuple[str, str]]) -> Leaf:
-    """Return the leaf that prints numbers with their units, and words where there is no number."""
-
-    def leaf(name: str) -> Markup:
-        if name not in numbers:
-            return word_piece(writer, name)
-        number, unit = numbers[name]
-        return number_piece(number, writer.quantity(number, unit), unit=unit)
-
-    return leaf
-
-
-def word_piece(writer: Writer, name: str) -> Markup:
-    """Set a name as a word."""
-    level = Binding.ATOM if "_" not in name else Binding.TIGHT
-    return Markup(writer.word(name), level, begins=Edge.WORD, ends=Edge.WORD)
-
-
 def symbolic(writer: Writer, formula: Formula, symbols: Mapping[str, str]) -> str:
     """Set a formula in symbols."""
-    return Layout(writer, symbol_leaf(writer, symbols), symbols).formula(formula)
+    return Layout(writer, symbols).formula(formula)
 
 
 def substituted(writer: Writer, formula: Formula, numbers: Mapping[str, tuple[str, str]]) -> str:
     """Set a formula with the numbers in place of the symbols."""
-
-    def is_given(name: str) -> bool | None:
-        return read_number(numbers[name][0]) is not None if name in numbers else None
-
-    return Layout(writer, number_leaf(writer, numbers), dots=True, is_given=is_given).formula(formula)
+    return Layout(writer, {}, numbers).formula(formula)

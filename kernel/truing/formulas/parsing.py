@@ -11,41 +11,11 @@ from functools import lru_cache
 from typing import Final, NoReturn
 
 from truing.errors import DeclarationError
-from truing.formulas.tree import (
-    ANY_NUMBER,
-    ARGUMENTS,
-    CONSTANTS,
-    Binary,
-    Call,
-    Comparison,
-    Constant,
-    Formula,
-    Logic,
-    Name,
-    Negative,
-    Node,
-    NumberNode,
-    walk,
-)
+from truing.formulas.tree import ANY_NUMBER, ARGUMENTS, CONSTANTS, SIGNS, Formula, Node, one_spaced, walk
 
 LONGEST: Final = 2000
 DEEPEST: Final = 50
 
-OPERATORS: Final[dict[type[ast.operator], str]] = {
-    ast.Add: "+",
-    ast.Sub: "-",
-    ast.Mult: "*",
-    ast.Div: "/",
-    ast.Pow: "**",
-}
-COMPARISONS: Final[dict[type[ast.cmpop], str]] = {
-    ast.Lt: "<",
-    ast.LtE: "<=",
-    ast.Gt: ">",
-    ast.GtE: ">=",
-    ast.Eq: "==",
-    ast.NotEq: "!=",
-}
 WORDS: Final[dict[type[ast.AST], str]] = {
     ast.Attribute: "a dot between names",
     ast.Subscript: "an index in brackets",
@@ -86,15 +56,15 @@ def parse(text: str) -> Formula:
 
 
 def _read(text: str) -> Formula:
-    body = _expression(text)
+    right: Node = _expression(text)
     left: Node | None = None
-    if isinstance(body, ast.Compare) and [type(operator) for operator in body.ops] == [ast.Eq]:
-        left, right = _value(body.left), _value(body.comparators[0])
-    else:
-        right = _value(body)
+    if isinstance(right, ast.Compare) and [type(sign) for sign in right.ops] == [ast.Eq]:
+        left, right = right.left, right.comparators[0]
     sides = (right,) if left is None else (left, right)
-    names = frozenset(node.name for side in sides for node in walk(side) if isinstance(node, Name))
-    return Formula(text=text, left=left, right=right, names=names)
+    for side in sides:
+        _check(side)
+    names = {node.id for side in sides for node in walk(side) if isinstance(node, ast.Name)}
+    return Formula(text=text, left=left, right=right, names=frozenset(names - CONSTANTS.keys()))
 
 
 def _expression(text: str) -> ast.expr:
@@ -102,7 +72,7 @@ def _expression(text: str) -> ast.expr:
         raise _RefusalError(
             f"it has {len(text)} characters, at most {LONGEST} are allowed; split it into named results"
         )
-    stripped = re.sub(r"[ \t\r\n]+", " ", text).strip()
+    stripped = one_spaced(text)
     if not stripped:
         raise _RefusalError("it is empty; leave the formula out where there is none")
     if forbidden := FORBIDDEN.search(stripped):
@@ -112,17 +82,14 @@ def _expression(text: str) -> ast.expr:
             warnings.simplefilter("ignore")
             body = ast.parse(stripped, mode="eval").body
     except SyntaxError as error:
-        raise _RefusalError(f"it cannot be read: {error.msg}{_place(error)}") from None
+        place = f" (near character {error.offset})" if error.offset else ""
+        raise _RefusalError(f"it cannot be read: {error.msg}{place}") from None
     except (ValueError, RecursionError, MemoryError, OverflowError):
         raise _RefusalError("it cannot be read: nested too deeply, or a number too long") from None
     _keep_number_texts(body, stripped)
     if _levels(body) > DEEPEST:
         raise _RefusalError(f"it is nested deeper than {DEEPEST} levels; split it into named results")
     return body
-
-
-def _place(error: SyntaxError) -> str:
-    return f" (near character {error.offset})" if error.offset else ""
 
 
 def _keep_number_texts(body: ast.expr, text: str) -> None:
@@ -142,22 +109,25 @@ def _levels(body: ast.AST) -> int:
     return level
 
 
-def _value(node: ast.expr) -> Node:
+def _check(node: Node) -> None:
+    """Refuse what may not stand in a formula."""
     match node:
         case ast.Constant():
-            return _number(node)
-        case ast.Name(id=name):
-            return Constant(name) if name in CONSTANTS else Name(name)
-        case ast.UnaryOp(op=ast.USub(), operand=operand):
-            return Negative(_value(operand))
-        case ast.BinOp(left=left, op=operator, right=right) if type(operator) in OPERATORS:
-            return Binary(OPERATORS[type(operator)], _value(left), _value(right))
+            _check_number(node)
+        case ast.Name():
+            pass
+        case ast.UnaryOp(ast.USub(), operand):
+            _check(operand)
+        case ast.BinOp(left, sign, right) if type(sign) in SIGNS:
+            _check(left)
+            _check(right)
         case ast.Call():
-            return _call(node)
-    return _refuse(node)
+            _check_call(node)
+        case _:
+            _refuse(node)
 
 
-def _number(node: ast.Constant) -> NumberNode:
+def _check_number(node: ast.Constant) -> None:
     value = node.value
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise _RefusalError(f"{value!r} is not a real number")
@@ -167,13 +137,12 @@ def _number(node: ast.Constant) -> NumberNode:
         number = math.inf
     if not math.isfinite(number):
         raise _RefusalError("a number in it is not finite (larger than about 1.8e308)")
-    written = node.kind or ""
-    return NumberNode(written if PLAIN_NUMBER.fullmatch(written) else repr(value), number)
+    node.value, node.kind = number, node.kind if node.kind and PLAIN_NUMBER.fullmatch(node.kind) else repr(value)
 
 
-def _call(node: ast.Call) -> Call:
+def _check_call(node: ast.Call) -> None:
     if not isinstance(node.func, ast.Name):
-        return _refuse(node.func)
+        _refuse(node.func)
     function = node.func.id
     if function not in ARGUMENTS:
         near = difflib.get_close_matches(function, ARGUMENTS, n=1)
@@ -182,9 +151,9 @@ def _call(node: ast.Call) -> Call:
     if node.keywords:
         raise _RefusalError(f"{function} is called with a keyword; arguments go by their place")
     _count_arguments(function, len(node.args))
-    if function == "cases":
-        return Call(function, tuple(_case_part(index, node.args) for index in range(len(node.args))))
-    return Call(function, tuple(_value(argument) for argument in node.args))
+    checks = [_check, _check_condition if function == "cases" else _check]
+    for index, argument in enumerate(node.args):
+        checks[index % 2](argument)
 
 
 def _count_arguments(function: str, count: int) -> None:
@@ -198,23 +167,18 @@ def _count_arguments(function: str, count: int) -> None:
         raise _RefusalError(f"{function} takes {wanted} argument{'' if wanted == '1' else 's'}, here it has {count}")
 
 
-def _case_part(index: int, arguments: list[ast.expr]) -> Node:
-    is_condition = index % 2 == 1
-    return _condition(arguments[index]) if is_condition else _value(arguments[index])
-
-
-def _condition(node: ast.expr) -> Node:
+def _check_condition(node: Node) -> None:
     match node:
-        case ast.Compare(left=left, ops=operators, comparators=others):
-            for operator in operators:
-                if type(operator) not in COMPARISONS:
-                    raise _RefusalError("a condition compares with <, <=, >, >=, == or !=, nothing else")
-            operands = tuple(_value(operand) for operand in (left, *others))
-            return Comparison(tuple(COMPARISONS[type(operator)] for operator in operators), operands)
-        case ast.BoolOp(op=joint, values=values):
-            word = "and" if isinstance(joint, ast.And) else "or"
-            return Logic(word, tuple(_condition(value) for value in values))
-    raise _RefusalError(f"'{ast.unparse(node)}' stands where cases needs a condition, such as x > 1")
+        case ast.Compare(first, signs, others):
+            if not SIGNS.keys() >= {type(sign) for sign in signs}:
+                raise _RefusalError("a condition compares with <, <=, >, >=, == or !=, nothing else")
+            for operand in (first, *others):
+                _check(operand)
+        case ast.BoolOp(_, conditions):
+            for condition in conditions:
+                _check_condition(condition)
+        case _:
+            raise _RefusalError(f"'{ast.unparse(node)}' stands where cases needs a condition, such as x > 1")
 
 
 def _refuse(node: ast.expr) -> NoReturn:

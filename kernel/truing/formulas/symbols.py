@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from enum import Enum
 from typing import Final
 
 # fmt: off
@@ -24,29 +23,21 @@ GREEK: Final = {
 PRIMES: Final = "'’′"
 
 
-class Style(Enum):
-    """How a piece of a symbol is set."""
-
-    ITALIC = "italic"
-    UPRIGHT = "upright"
-    DIGITS = "digits"
-
-
-@dataclass(frozen=True, slots=True)
-class LetterRun:
-    """One run of letters in one style."""
-
-    text: str
-    style: Style
-
-
 @dataclass(frozen=True, slots=True)
 class Symbol:
-    """A declared symbol: ``Delta z_2'`` has the base Δ z, the subscript 2 and one prime."""
+    """A declared symbol in runs of letters: ``Delta z_2'`` has the base Δ z, the subscript 2 and one prime.
 
-    base: tuple[LetterRun, ...]
-    subscript: tuple[LetterRun, ...]
+    A single letter is set in italics, but for the Δ or δ before another letter (``is_difference``).
+    """
+
+    base: tuple[str, ...]
+    subscript: tuple[str, ...]
     primes: int
+
+    @property
+    def is_difference(self) -> bool:
+        """Whether the first run of the base is the sign of a difference."""
+        return len(self.base) > 1 and self.base[0] in {"Δ", "δ"}
 
     @property
     def is_plain(self) -> bool:
@@ -69,14 +60,10 @@ def read_symbol(symbol: str) -> Symbol:
     subscript, subscript_primes = _without_primes(subscript)
     if not base:
         base, subscript, subscript_primes, base_primes = printable(symbol) or "?", "", 0, 0
-    bases = [_piece(word) for word in base.split()]
-    if len(bases) > 1 and bases[0].text in ("Δ", "δ"):
-        bases[0] = LetterRun(bases[0].text, Style.UPRIGHT)
-    pieces: list[LetterRun] = []
+    pieces: list[str] = []
     for word in (word for word in re.split(r"[_,]", subscript) if word.strip()):
-        pieces += [LetterRun(",", Style.UPRIGHT)] if pieces else []
-        pieces += [_piece(part) for part in word.split()]
-    return Symbol(tuple(bases), tuple(pieces), base_primes + subscript_primes)
+        pieces += [*([","] if pieces else []), *(GREEK.get(part, part) for part in word.split())]
+    return Symbol(tuple(GREEK.get(word, word) for word in base.split()), tuple(pieces), base_primes + subscript_primes)
 
 
 def _without_primes(text: str) -> tuple[str, int]:
@@ -84,22 +71,11 @@ def _without_primes(text: str) -> tuple[str, int]:
     return bare, sum(character in PRIMES for character in text[len(bare) :])
 
 
-def _piece(word: str) -> LetterRun:
-    if word in GREEK:
-        return LetterRun(GREEK[word], Style.ITALIC)
-    if word.isascii() and word.isdigit():
-        return LetterRun(word, Style.DIGITS)
-    if len(word) == 1 and word.isalpha():
-        return LetterRun(word, Style.ITALIC)
-    return LetterRun(word, Style.UPRIGHT)
-
-
 def symbol_text(symbol: str) -> str:
     """Write a declared symbol in plain characters, for a terminal: ``theta_11`` as ``θ_11``."""
     parts = read_symbol(symbol)
-    base = "".join(piece.text for piece in parts.base)
-    subscript = "".join(piece.text for piece in parts.subscript)
-    return base + (f"_{subscript}" if subscript else "") + "′" * parts.primes
+    subscript = f"_{''.join(parts.subscript)}" if parts.subscript else ""
+    return "".join(parts.base) + subscript + "′" * parts.primes
 
 
 def word_text(name: str) -> str:

@@ -1,76 +1,17 @@
-"""What a formula is made of: a small tree of frozen nodes, and the functions it may call."""
+"""What a formula is made of: Python's own syntax tree as far as ``parsing`` lets it through, and what it may call."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+import ast
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from functools import reduce
 from typing import Final, TypeAlias
 
-
-@dataclass(frozen=True, slots=True)
-class NumberNode:
-    """A number written in the formula; the text is kept as its author wrote it."""
-
-    text: str
-    value: float
-
-
-@dataclass(frozen=True, slots=True)
-class Name:
-    """A quantity, called by its name."""
-
-    name: str
-
-
-@dataclass(frozen=True, slots=True)
-class Constant:
-    """A number that has a name of its own: pi."""
-
-    name: str
-
-
-@dataclass(frozen=True, slots=True)
-class Negative:
-    """Minus the operand."""
-
-    operand: Node
-
-
-@dataclass(frozen=True, slots=True)
-class Binary:
-    """Two operands joined by ``+``, ``-``, ``*``, ``/`` or ``**``."""
-
-    operator: str
-    left: Node
-    right: Node
-
-
-@dataclass(frozen=True, slots=True)
-class Call:
-    """A known function and its arguments."""
-
-    function: str
-    arguments: tuple[Node, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Comparison:
-    """``a < b``, or a chain ``a < b <= c``; stands only as a condition of ``cases``."""
-
-    operators: tuple[str, ...]
-    operands: tuple[Node, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Logic:
-    """Conditions joined by ``and`` or ``or``; stands only as a condition of ``cases``."""
-
-    operator: str
-    operands: tuple[Node, ...]
-
-
-Node: TypeAlias = NumberNode | Name | Constant | Negative | Binary | Call | Comparison | Logic
+Node: TypeAlias = ast.expr
+"""A number (``ast.Constant`` of a float, its ``kind`` the text as written), a name, a minus, two operands, a call; in
+conditions of ``cases`` also comparisons and what joins them."""
 
 
 @dataclass(frozen=True)
@@ -87,6 +28,11 @@ class Formula:
 
 
 CONSTANTS: Final = {"pi": 3.141592653589793}
+SIGNS: Final[Mapping[type[ast.AST], str]] = {
+    ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**", ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">",
+    ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!=", ast.And: "and", ast.Or: "or",
+}  # fmt: skip
+"""What joins operands, comparands and conditions."""
 
 ANY_NUMBER: Final = 10**6
 ARGUMENTS: Final[dict[str, tuple[int, int]]] = {
@@ -101,18 +47,11 @@ ARGUMENTS: Final[dict[str, tuple[int, int]]] = {
 """How many arguments each function takes, at least and at most."""
 
 
-def children(node: Node) -> tuple[Node, ...]:
-    """Return the nodes directly below one."""
-    match node:
-        case Negative(operand):
-            return (operand,)
-        case Binary(_, left, right):
-            return (left, right)
-        case Call(_, arguments):
-            return arguments
-        case Comparison(_, operands) | Logic(_, operands):
-            return operands
-    return ()
+def children(node: Node) -> list[Node]:
+    """Return the nodes directly below one, in the order of the text; the name of a function is none."""
+    if isinstance(node, ast.Call):
+        return node.args
+    return [child for child in ast.iter_child_nodes(node) if isinstance(child, ast.expr)]
 
 
 def walk(node: Node) -> Iterator[Node]:
@@ -122,52 +61,14 @@ def walk(node: Node) -> Iterator[Node]:
         yield from walk(child)
 
 
-def depth(node: Node) -> int:
-    """Return how many levels a tree has; only for trees already known to be shallow."""
-    return 1 + max((depth(child) for child in children(node)), default=0)
+def source(formula: Formula, node: Node) -> str:
+    """Return a part of a formula as its author wrote it: what sentences to the user quote."""
+    return ast.get_source_segment(one_spaced(formula.text), node) or formula.text
 
 
-BINDING: Final = {"or": 1, "and": 2, "compare": 3, "+": 4, "-": 4, "*": 5, "/": 5, "negative": 6, "**": 7}
-_ATOM: Final = 8
-
-
-def source(node: Node) -> str:
-    """Write a node as a declaration would: the text that sentences to the user quote."""
-    return _source(node)[0]
-
-
-def _source(node: Node) -> tuple[str, int]:
-    match node:
-        case NumberNode(text, _):
-            return text, _ATOM
-        case Name(name) | Constant(name):
-            return name, _ATOM
-        case Negative(operand):
-            return f"-{_bound(operand, BINDING['negative'])}", BINDING["negative"]
-        case Binary(operator, left, right):
-            return _binary_source(operator, left, right)
-        case Call(function, arguments):
-            return f"{function}({', '.join(source(argument) for argument in arguments)})", _ATOM
-        case Comparison(operators, operands):
-            parts = [_bound(operands[0], BINDING["+"])]
-            for operator, operand in zip(operators, operands[1:], strict=True):
-                parts += [operator, _bound(operand, BINDING["+"])]
-            return " ".join(parts), BINDING["compare"]
-        case Logic(operator, operands):
-            level = BINDING[operator]
-            return f" {operator} ".join(_bound(operand, level + 1) for operand in operands), level
-
-
-def _binary_source(operator: str, left: Node, right: Node) -> tuple[str, int]:
-    level = BINDING[operator]
-    if operator == "**":
-        return f"{_bound(left, _ATOM)}**{_bound(right, BINDING['negative'])}", level
-    return f"{_bound(left, level)} {operator} {_bound(right, level + 1)}", level
-
-
-def _bound(node: Node, at_least: int) -> str:
-    text, level = _source(node)
-    return text if level >= at_least else f"({text})"
+def one_spaced(text: str) -> str:
+    """Return a formula on one line with single spaces: the text that the places of its nodes count in."""
+    return re.sub(r"[ \t\r\n]+", " ", text).strip()
 
 
 def simplified(node: Node) -> Node:
@@ -177,26 +78,31 @@ def simplified(node: Node) -> Node:
     a fraction goes before the whole.
     """
     match node:
-        case Negative(operand):
-            return Negative(simplified(operand))
-        case Binary("*" | "/" as operator, left, right):
-            return _simplified_product(operator, simplified(left), simplified(right))
-        case Binary(operator, left, right):
-            return Binary(operator, simplified(left), simplified(right))
-        case Call("hypot", arguments):
-            squares = (Binary("**", simplified(argument), NumberNode("2", 2.0)) for argument in arguments)
-            return Call("sqrt", (reduce(lambda total, square: Binary("+", total, square), squares),))
-        case Call(function, arguments):
-            return Call(function, tuple(simplified(argument) for argument in arguments))
-        case Comparison(_, operands) | Logic(_, operands):
-            return replace(node, operands=tuple(simplified(operand) for operand in operands))
+        case ast.UnaryOp(sign, operand):
+            return ast.UnaryOp(sign, simplified(operand))
+        case ast.BinOp(left, (ast.Mult() | ast.Div()) as sign, right):
+            return _simplified_product(sign, simplified(left), simplified(right))
+        case ast.BinOp(left, sign, right):
+            return ast.BinOp(simplified(left), sign, simplified(right))
+        case ast.Call(ast.Name("hypot"), arguments):
+            two = ast.Constant(2.0, "2")
+            squares: list[Node] = [ast.BinOp(simplified(argument), ast.Pow(), two) for argument in arguments]
+            return ast.Call(
+                ast.Name("sqrt"), [reduce(lambda one, other: ast.BinOp(one, ast.Add(), other), squares)], []
+            )
+        case ast.Call(function, arguments):
+            return ast.Call(function, list(map(simplified, arguments)), [])
+        case ast.Compare(first, signs, others):
+            return ast.Compare(simplified(first), signs, list(map(simplified, others)))
+        case ast.BoolOp(joint, operands):
+            return ast.BoolOp(joint, list(map(simplified, operands)))
     return node
 
 
-def _simplified_product(operator: str, left: Node, right: Node) -> Node:
-    match operator, left:
-        case _, Negative(operand):
-            return Negative(_simplified_product(operator, operand, right))
-        case "/", Binary("/", above, below):
-            return Binary("/", above, _simplified_product("*", below, right))
-    return Binary(operator, left, right)
+def _simplified_product(sign: ast.operator, left: Node, right: Node) -> Node:
+    match sign, left:
+        case _, ast.UnaryOp(minus, operand):
+            return ast.UnaryOp(minus, _simplified_product(sign, operand, right))
+        case ast.Div(), ast.BinOp(above, ast.Div(), below):
+            return ast.BinOp(above, sign, _simplified_product(ast.Mult(), below, right))
+    return ast.BinOp(left, sign, right)

@@ -6,23 +6,14 @@ import re
 from collections.abc import Sequence
 from typing import Final
 
-from truing.formulas.symbols import GREEK, LetterRun, Style, printable, read_number, read_symbol, word_text
+from truing.formulas.layout import Writer
+from truing.formulas.symbols import GREEK, printable, read_number, read_symbol, word_text
 
 SIGNS: Final = {
-    "+": " + ",
-    "-": " - ",
-    "dot": r" \cdot ",
-    "gap": r" \thinspace ",
-    ",": r",\thinspace ",
-    "==": " = ",
-    "!=": r" \ne ",
-    "<": r" \lt ",
-    "<=": r" \le ",
-    ">": r" \gt ",
-    ">=": r" \ge ",
-    "and": r"\ \mathrm{and}\ ",
+    "+": " + ", "-": " - ", "dot": r" \cdot ", "gap": r" \thinspace ", ",": r",\thinspace ", "==": " = ",
+    "!=": r" \ne ", "<": r" \lt ", "<=": r" \le ", ">": r" \gt ", ">=": r" \ge ", "and": r"\ \mathrm{and}\ ",
     "or": r"\ \mathrm{or}\ ",
-}
+}  # fmt: skip
 _LOOK_LATIN: Final = "οΑΒΕΖΗΙΚΜΝΟΡΤΧ"
 LETTERS: Final = {
     **{letter: f"\\{name}" for name, letter in GREEK.items()},
@@ -32,32 +23,19 @@ LETTERS: Final = {
 }
 """Greek letters; those that look Latin have no command of their own."""
 SUPERSCRIPTS: Final = dict(zip("⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺", "0123456789-+", strict=True))
+_NAMED: Final = {
+    "{": "lbrace", "}": "rbrace", "[": "lbrack", "]": "rbrack", "|": "vert", "<": "lt", ">": "gt", "µ": "mu",
+}  # fmt: skip
+_GROUPED: Final = {
+    "\\": r"\backslash", "^": r"\wedge", "~": r"\sim", "*": r"\ast", "`": "'", "'": "'", "′": "'", '"': "''", "″": "''",
+    "·": r"\cdot", "⋅": r"\cdot", "×": r"\times", "±": r"\pm", "°": r"^{\circ}",
+}  # fmt: skip
 ESCAPES: Final = {
-    "\\": r"{\backslash}",
-    "{": r"\lbrace{}",
-    "}": r"\rbrace{}",
-    "[": r"\lbrack{}",
-    "]": r"\rbrack{}",
-    "|": r"\vert{}",
-    "<": r"\lt{}",
-    ">": r"\gt{}",
-    "^": r"{\wedge}",
-    "~": r"{\sim}",
-    "*": r"{\ast}",
-    "`": "{'}",
-    "'": "{'}",
-    "′": "{'}",
-    '"': "{''}",
-    "″": "{''}",
+    **{character: rf"\{name}{{}}" for character, name in _NAMED.items()},
+    **{character: f"{{{marks}}}" for character, marks in _GROUPED.items()},
     " ": r"\ ",
-    "·": r"{\cdot}",
-    "⋅": r"{\cdot}",
-    "×": r"{\times}",
-    "±": r"{\pm}",
-    "°": r"{^{\circ}}",
     "−": "-",
     "–": r"\text{–}",
-    "µ": r"\mu{}",
     **{character: f"\\{character}" for character in "$#%&_"},
     **{letter: f"{command}{{}}" for letter, command in LETTERS.items()},
 }
@@ -104,102 +82,86 @@ def number_latex(text: str) -> str:
     return f"{'-' if number.negative else ''}{digits}{power}"
 
 
-def _piece(piece: LetterRun) -> str:
-    if piece.style is Style.DIGITS or piece.text == ",":
-        return piece.text
-    if piece.text in LETTERS:
-        letter = LETTERS[piece.text]
+def _piece(run: str) -> str:
+    """Write digits, a comma, a letter in italics, or upright letters."""
+    if run == "," or (run.isascii() and run.isdigit()):
+        return run
+    if run in LETTERS:
+        letter = LETTERS[run]
         return letter if letter.startswith("\\") else rf"\mathrm{{{letter}}}"
-    if piece.style is Style.ITALIC:
-        return ESCAPES.get(piece.text, piece.text)
-    return upright(piece.text)
+    if len(run) == 1 and run.isalpha():
+        return ESCAPES.get(run, run)
+    return upright(run)
 
 
-def _grouped(pieces: Sequence[LetterRun]) -> str:
-    return " ".join(_piece(piece) for piece in pieces).replace(" , ", ",")
+def _grouped(runs: Sequence[str]) -> str:
+    return " ".join(map(_piece, runs)).replace(" , ", ",")
 
 
-class LatexWriter:
-    """The marks of LaTeX; see ``layout.Writer``.
+def symbol_latex(text: str, exponent: str | None = None) -> str:
+    """Write a declared symbol as LaTeX: base, subscript, primes and exponent."""
+    symbol = read_symbol(text)
+    subscript = f"_{{{_grouped(symbol.subscript)}}}" if symbol.subscript else ""
+    raised = exponent or r"\prime " * symbol.primes
+    superscript = f"^{{{raised.strip()}}}" if raised else ""
+    return " ".join(map(_piece, symbol.base)) + subscript + superscript
 
-    No command made of one punctuation mark stands in it (except in escapes): Markdown takes their backslash away.
-    """
 
-    def symbol(self, text: str, exponent: str | None = None) -> str:
-        """Write base, subscript, primes and exponent."""
-        symbol = read_symbol(text)
-        subscript = f"_{{{_grouped(symbol.subscript)}}}" if symbol.subscript else ""
-        raised = exponent or r"\prime " * symbol.primes
-        superscript = f"^{{{raised.strip()}}}" if raised else ""
-        return " ".join(map(_piece, symbol.base)) + subscript + superscript
+def _word(name: str) -> str:
+    return upright(word_text(name))
 
-    def word(self, name: str) -> str:
-        """Write a name as an upright word."""
-        return upright(word_text(name))
 
-    def quantity(self, number: str, unit: str) -> str:
-        """Write a number, a thin space and an upright unit."""
-        unit = printable(unit)
-        if not unit:
-            return number_latex(number)
-        gap = r" \times " if unit[0].isdigit() else "" if unit in WITHOUT_SPACE else r"\thinspace "
-        return f"{number_latex(number)}{gap}{upright_unit(unit)}"
+def _quantity(number: str, unit: str) -> str:
+    """Write a number, a thin space and an upright unit."""
+    unit = printable(unit)
+    if not unit:
+        return number_latex(number)
+    gap = r" \times " if unit[0].isdigit() else "" if unit in WITHOUT_SPACE else r"\thinspace "
+    return f"{number_latex(number)}{gap}{upright_unit(unit)}"
 
-    def constant(self, name: str) -> str:
-        """Write pi."""
-        return r"\pi"
 
-    def minus(self, operand: str) -> str:
-        """Write minus the operand."""
-        return f"-{operand}"
+def _infix(left: str, sign: str, right: str) -> str:
+    return f"{left}{SIGNS[sign]}{right}"
 
-    def infix(self, left: str, sign: str, right: str) -> str:
-        """Join two sides by a sign."""
-        return f"{left}{SIGNS[sign]}{right}"
 
-    def parenthesised(self, inner: str) -> str:
-        """Put parentheses that grow."""
-        return rf"\left( {inner} \right)"
+def _function(name: str, exponent: str | None) -> str:
+    if name in ("∑", "Φ"):
+        return r"\sum" if name == "∑" else r"\Phi"
+    if name == "log10":
+        return r"\log_{10}"
+    head = FUNCTIONS.get(name, rf"\mathrm{{{name}}}")
+    return head if exponent is None else f"{head}^{{{exponent}}}"
 
-    def bars(self, inner: str) -> str:
-        """Put bars that grow."""
-        return rf"\left\vert {inner} \right\vert"
 
-    def fraction(self, above: str, below: str) -> str:
-        """Write a fraction."""
-        return rf"\frac{{{above}}}{{{below}}}"
+def _applied_bare(function: str, argument: str) -> str:
+    gap = r"\thinspace " if function.startswith(r"\mathrm") else " "
+    return f"{function}{gap}{argument}"
 
-    def power(self, base: str, exponent: str) -> str:
-        """Write a power."""
-        return f"{base}^{{{exponent}}}"
 
-    def root(self, inner: str, index: str) -> str:
-        """Write a root."""
-        return rf"\sqrt[{index}]{{{inner}}}" if index else rf"\sqrt{{{inner}}}"
+def _table(rows: Sequence[tuple[str, str]]) -> str:
+    body = r" \cr ".join(f"{value} & {condition}" for value, condition in rows)
+    return rf"\begin{{cases}} {body} \end{{cases}}"
 
-    def function(self, name: str, exponent: str | None = None) -> str:
-        """Write the upright name of a function."""
-        if name in ("∑", "Φ"):
-            return r"\sum" if name == "∑" else r"\Phi"
-        if name == "log10":
-            return r"\log_{10}"
-        head = FUNCTIONS.get(name, rf"\mathrm{{{name}}}")
-        return head if exponent is None else f"{head}^{{{exponent}}}"
 
-    def applied(self, function: str, argument: str, *, bare: bool) -> str:
-        """Join a function and its argument."""
-        gap = r"\thinspace " if bare and function.startswith(r"\mathrm") else " "
-        return f"{function}{gap}{argument}"
-
-    def table(self, rows: Sequence[tuple[str, str]]) -> str:
-        """Write alternatives behind a brace."""
-        body = r" \cr ".join(f"{value} & {condition}" for value, condition in rows)
-        return rf"\begin{{cases}} {body} \end{{cases}}"
-
-    def condition(self, inner: str) -> str:
-        """Write "if" before a condition."""
-        return rf"\mathrm{{if}}\ {inner}"
-
-    def prose(self, text: str) -> str:
-        """Write plain words."""
-        return upright(text)
+LATEX: Final = Writer(
+    opening="{}",
+    symbol=symbol_latex,
+    word=_word,
+    quantity=_quantity,
+    pi=r"\pi",
+    minus="-{}".format,
+    infix=_infix,
+    parenthesised=r"\left( {} \right)".format,
+    bars=r"\left\vert {} \right\vert".format,
+    fraction=r"\frac{{{}}}{{{}}}".format,
+    power="{}^{{{}}}".format,
+    sqrt=r"\sqrt{{{}}}".format,
+    cbrt=r"\sqrt[3]{{{}}}".format,
+    function=_function,
+    applied="{} {}".format,
+    applied_bare=_applied_bare,
+    table=_table,
+    condition=r"\mathrm{{if}}\ {}".format,
+    prose=upright,
+)
+"""No command made of one punctuation mark stands in it (except in escapes): Markdown takes their backslash away."""

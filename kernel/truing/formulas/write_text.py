@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Final
 
+from truing.formulas.layout import Writer
 from truing.formulas.symbols import printable, read_number, symbol_text
 
 SIGNS: Final = {
@@ -35,85 +36,56 @@ def _is_one(text: str) -> bool:
     return not any(mark in open_text(text) for mark in (" ", HOLD, "/"))
 
 
-class TextWriter:
-    """The marks of plain text; see ``layout.Writer``. What a fraction bar groups gets parentheses here."""
-
-    def symbol(self, text: str, exponent: str | None = None) -> str:
-        """Write a symbol; an exponent stands behind the subscript."""
-        return symbol_text(text) + ("" if exponent is None else _power(exponent))
-
-    def word(self, name: str) -> str:
-        """Write the name of a quantity without a symbol as it is declared: one word."""
-        return printable(name)
-
-    def quantity(self, number: str, unit: str) -> str:
-        """Write a number with its unit."""
-        plain, unit = _number(number), printable(unit)
-        return f"{plain}{'' if not unit or unit in CLOSE else HOLD}{unit}"
-
-    def constant(self, name: str) -> str:
-        """Write pi."""
-        return "π"
-
-    def minus(self, operand: str) -> str:
-        """Write minus the operand."""
-        return f"−{operand}"
-
-    def infix(self, left: str, sign: str, right: str) -> str:
-        """Join two sides by a sign; a fraction in a product is set in parentheses."""
-        if sign in {"dot", "gap"}:
-            left, right = (f"({side})" if " / " in open_text(side) else side for side in (left, right))
-        return f"{left}{SIGNS[sign]}{right}"
-
-    def parenthesised(self, inner: str) -> str:
-        """Put round parentheses, once."""
-        return inner if _is_closed(inner) else f"({inner})"
-
-    def bars(self, inner: str) -> str:
-        """Put the bars of an absolute value; around others nobody could tell which is which."""
-        return f"abs({inner})" if "|" in inner else f"|{inner}|"
-
-    def fraction(self, above: str, below: str) -> str:
-        """Write a fraction with a slash."""
-        outside = open_text(above)
-        grouped = any(mark in outside for mark in (" + ", " − ", " / ", "/"))
-        return f"{f'({above})' if grouped else above} / {below if _is_one(below) else f'({below})'}"
-
-    def power(self, base: str, exponent: str) -> str:
-        """Write a power: a raised number, or a caret."""
-        return (base if _is_one(base) else f"({base})") + _power(exponent)
-
-    def root(self, inner: str, index: str) -> str:
-        """Write a root."""
-        return f"{'∛' if index == '3' else '√'}({inner})"
-
-    def function(self, name: str, exponent: str | None = None) -> str:
-        """Write the name of a function."""
-        return name + ("" if exponent is None else _power(exponent))
-
-    def applied(self, function: str, argument: str, *, bare: bool) -> str:
-        """Join a function and its argument, which stands in parentheses always."""
-        return f"{function}({argument})" if bare else f"{function}{argument}"
-
-    def table(self, rows: Sequence[tuple[str, str]]) -> str:
-        """Write alternatives in braces, one behind the other."""
-        return f"{{ {'; '.join(f'{value} {condition}' for value, condition in rows)} }}"
-
-    def condition(self, inner: str) -> str:
-        """Write "if" before a condition."""
-        return f"if {inner}"
-
-    def prose(self, text: str) -> str:
-        """Write plain words."""
-        return text
+def _symbol(text: str, exponent: str | None) -> str:
+    """Write a symbol; an exponent stands behind the subscript."""
+    return symbol_text(text) + ("" if exponent is None else _raised(exponent))
 
 
-def _is_closed(text: str) -> bool:
-    """Tell whether one pair of parentheses holds the whole text."""
-    return text.startswith("(") and text.endswith(")") and not open_text(text)
+def _quantity(number: str, unit: str) -> str:
+    plain, unit = _number(number), printable(unit)
+    return f"{plain}{'' if not unit or unit in CLOSE else HOLD}{unit}"
 
 
-def _power(exponent: str) -> str:
+def _infix(left: str, sign: str, right: str) -> str:
+    """Join two sides by a sign; a fraction in a product is set in parentheses."""
+    if sign in {"dot", "gap"}:
+        left, right = (f"({side})" if " / " in open_text(side) else side for side in (left, right))
+    return f"{left}{SIGNS[sign]}{right}"
+
+
+def _parenthesised(inner: str) -> str:
+    """Put round parentheses, but not around one pair that holds the whole text."""
+    is_closed = inner.startswith("(") and inner.endswith(")") and not open_text(inner)
+    return inner if is_closed else f"({inner})"
+
+
+def _bars(inner: str) -> str:
+    """Put the bars of an absolute value; around others nobody could tell which is which."""
+    return f"abs({inner})" if "|" in inner else f"|{inner}|"
+
+
+def _fraction(above: str, below: str) -> str:
+    """Write a fraction with a slash; what its bar would group gets parentheses."""
+    outside = open_text(above)
+    grouped = any(mark in outside for mark in (" + ", " − ", " / ", "/"))
+    return f"{f'({above})' if grouped else above} / {below if _is_one(below) else f'({below})'}"
+
+
+def _power(base: str, exponent: str) -> str:
+    return (base if _is_one(base) else f"({base})") + _raised(exponent)
+
+
+def _function(name: str, exponent: str | None) -> str:
+    return name + ("" if exponent is None else _raised(exponent))
+
+
+def _table(rows: Sequence[tuple[str, str]]) -> str:
+    """Write alternatives in braces, one behind the other."""
+    return f"{{ {'; '.join(f'{value} {condition}' for value, condition in rows)} }}"
+
+
+def _raised(exponent: str) -> str:
+    """Write an exponent: a raised number, or a caret."""
     if exponent.lstrip("−-").isdecimal() and exponent.isprintable():
         return exponent.translate(RAISED)
     alone = _is_one(exponent) and "^" not in open_text(exponent) and exponent[:1] != "−"
@@ -127,6 +99,28 @@ def _number(text: str) -> str:
         return printable(text)
     power = f"·10{number.exponent.translate(RAISED)}" if number.exponent else ""
     return f"{'−' if number.negative else ''}{number.digits}{power}"
+
+
+TEXT: Final = Writer(
+    symbol=_symbol,
+    word=printable,
+    quantity=_quantity,
+    pi="π",
+    minus="−{}".format,
+    infix=_infix,
+    parenthesised=_parenthesised,
+    bars=_bars,
+    fraction=_fraction,
+    power=_power,
+    sqrt="√({})".format,
+    cbrt="∛({})".format,
+    function=_function,
+    applied="{}{}".format,
+    applied_bare="{}({})".format,
+    table=_table,
+    condition="if {}".format,
+    prose="{}".format,
+)
 
 
 def folded(text: str, width: int) -> Iterator[str]:

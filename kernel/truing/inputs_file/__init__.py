@@ -6,16 +6,14 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError
-
 from truing.errors import InputError
 from truing.inputs_file import assemble
 from truing.inputs_file.assemble import names_stated, part_faults
-from truing.inputs_file.document import UNREADABLE, InputsDocument, apply_overrides, read_document
-from truing.inputs_file.file_model import file_model
+from truing.inputs_file.document import InputsDocument, apply_overrides, read_document
+from truing.inputs_file.entries import whole_file
 from truing.inputs_file.files import read_text
-from truing.inputs_file.sentences import each, faults_of, in_order
-from truing.inputs_file.values import InputsRead
+from truing.inputs_file.sentences import in_order, read_entries
+from truing.inputs_file.values import Entry, InputsRead, Section
 from truing.kernel import Offer
 from truing.setup import Setup
 from truing.units.grammar import shown
@@ -54,58 +52,50 @@ def setup_from_settings(offer: Offer, settings: Mapping[str, str]) -> Setup:
 
 def json_schema(offer: Offer) -> dict[str, Any]:
     """Return the JSON Schema (draft 2020-12) of this calculation's inputs files, for editors that complete TOML."""
-    schema = file_model(offer.model).model_json_schema(by_alias=True)
-    head = {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": f"{offer.name}: {offer.model.title}"}
-    return {**head, **{key: value for key, value in schema.items() if key != "title"}}
+    known: dict[str, Any] = {}
+    whole = whole_file(offer.model)
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": f"{offer.name}: {offer.model.title}",
+        "description": whole.words,
+        "type": "object",
+        "properties": {name: _schema(name, entry, known) for name, entry in whole.entries.items()},
+        "additionalProperties": False,
+        "$defs": known,
+    }
+
+
+def _schema(name: str, entry: Entry | Section, known: dict[str, Any]) -> dict[str, Any]:
+    """Return the schema of an entry; sections are put into ``known`` by their title and referred to."""
+    if isinstance(entry, Entry) or not entry.title:
+        return {**entry.schema, "title": name}
+    title = entry.title.replace(" ", "_")
+    properties = {inner: _schema(inner, each, known) for inner, each in entry.entries.items()}
+    required = [inner for inner, each in entry.entries.items() if isinstance(each, Entry) and each.is_required]
+    table = {"type": "object", "title": entry.title, "properties": properties, "additionalProperties": False}
+    known[title] = {**table, "required": required} if required else table
+    return {"$ref": f"#/$defs/{title}", "description": entry.words, "title": name}
 
 
 def _setup(document: InputsDocument, offer: Offer, folder: Path) -> Setup:
-    reading = InputsRead(folder)
-    faults, more = document.faults, 0
-    unreadable = _prune(document.data, ())
-    _switch_off(document.data)
-    reading.stated.update(names_stated(document.data, unreadable))
+    reading = InputsRead(folder, stated=names_stated(document.data))
     document.data.setdefault("inputs", {})
-    try:
-        file_model(offer.model).model_validate(document.data, context=reading)
-    except ValidationError as error:
-        listed, more = faults_of(error, document, offer.model, unreadable)
-        faults += listed
+    listed, more = read_entries(document, offer.model, reading)
     late = [
-        *reading.faults,
         *part_faults(offer.model, reading.stated),
         *_of_plugin(offer, reading),
         *assemble.take_old_names(offer, reading),
         *assemble.unexplained(offer.model, document),
     ]
-    studies = assemble.studies_of(offer.model, reading.values, late)
-    faults += [*each(late, document), *assemble.spread_faults(offer.model, document, reading.values)]
+    studies = assemble.studies_of(offer.model, reading.values, document, late)
+    listed += [document.fault(path, sentence) for path, sentence in late]
+    faults = [*document.faults, *listed, *assemble.spread_faults(offer.model, document, reading.values)]
     if faults:
         raise InputError(in_order(faults, document, more))
     return assemble.make_setup(offer, reading, studies, document)
 
 
-def _prune(table: dict[str, Any], path: tuple[str, ...]) -> set[tuple[str, ...]]:
-    """Take out what was named as a fault while the text was read, and return where it stood."""
-    taken: set[tuple[str, ...]] = set()
-    for name, value in list(table.items()):
-        if value is UNREADABLE:
-            del table[name]
-            taken.add((*path, name))
-        elif isinstance(value, dict) and len(path) < 3:
-            taken |= _prune(value, (*path, name))
-    return taken
-
-
-def _switch_off(data: dict[str, Any]) -> None:
-    """Take out effects that a file or ``--set effects.NAME=off`` switches off."""
-    effects = data.get("effects")
-    if isinstance(effects, dict):
-        for name in [name for name, value in effects.items() if value == "off"]:
-            del effects[name]
-
-
-def _of_plugin(offer: Offer, reading: Any) -> list[tuple[tuple[str, ...], str]]:
+def _of_plugin(offer: Offer, reading: InputsRead) -> list[tuple[tuple[str, ...], str]]:
     """Say that a file is for another calculation."""
     named = reading.values.get(("plugin",), offer.name)
     if named in {offer.name, offer.model.name, offer.origin.name}:

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import sys
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any
 
-from truing.declare.fields import InputField, make
+from truing.declare.fields import Given, InputField, make
 from truing.declare.model import Model, Study
 from truing.declare.sources import Effect, Unknown
-from truing.declare.specs import Given
 from truing.declare.spreads import ByChoice, Drawn, Off, Spread, Target
 from truing.errors import Fault, TruingError
-from truing.inputs_file.checks import renamed
 from truing.inputs_file.document import InputsDocument
 from truing.inputs_file.study_options import diagnose_options
 from truing.inputs_file.values import InputsRead, StatedValues, plain
@@ -36,12 +35,18 @@ def nominals_of(model: Model[Any, Any], values: StatedValues) -> dict[str, Any]:
     return nominals
 
 
+def renamed(model: Model[Any, Any]) -> Mapping[str, str]:
+    """Return old input names that keep answering: ``RENAMED = {"k_wear": "rate"}`` beside the model's function."""
+    old_names = getattr(sys.modules.get(model.function.__module__), "RENAMED", {})
+    return old_names if isinstance(old_names, dict) else {}
+
+
 def take_old_names(offer: Offer, reading: InputsRead) -> Iterator[tuple[tuple[str, ...], str]]:
     """Move values under old names to the new ones; a name that is given both ways is a fault."""
     for old, new in renamed(offer.model).items():
-        if ("old names", old) not in reading.values:
+        if ("inputs", old) not in reading.values or old in offer.model.input_fields:
             continue
-        value = reading.values.pop(("old names", old))
+        value = reading.values.pop(("inputs", old))
         if ("inputs", new) in reading.values:
             yield ("inputs", old), f"'{old}' is the old name of '{new}', which is given too; leave '{old}' out"
         reading.values.setdefault(("inputs", new), value)
@@ -115,12 +120,13 @@ def _is_nan(value: Any) -> bool:
 
 
 def studies_of(
-    model: Model[Any, Any], values: StatedValues, faults: list[tuple[tuple[str, ...], str]]
+    model: Model[Any, Any], values: StatedValues, document: InputsDocument, faults: list[tuple[tuple[str, ...], str]]
 ) -> tuple[Study, ...]:
     """Return the studies that run, in order, with the options the file sets."""
     studies: dict[str, Study] = {}
     for study in model.studies:
-        options = {path[2]: value for path, value in values.items() if path[:2] == ("studies", study.name)}
+        paths = (path for path in document.places if path[:2] == ("studies", study.name) and path in values)
+        options = {path[2]: values[path] for path in paths}
         studies[study.name], wrong = _with_options(study, options)
         named = f"study '{study.name}': "  # once, whether the study says it too or not
         for name, words in wrong.items():
@@ -270,15 +276,11 @@ def _quoted(text: str) -> str:
 MOST_NAMED = 4
 
 
-def names_stated(data: Mapping[str, Any], unreadable: Collection[tuple[str, ...]] = ()) -> dict[str, frozenset[str]]:
+def names_stated(data: Mapping[str, Any]) -> dict[str, frozenset[str]]:
     """Return what stands under each [effects.NAME], readable or not."""
     effects = data.get("effects")
     tables = effects if isinstance(effects, dict) else {}
-    stated = {name: set(table) for name, table in tables.items() if isinstance(table, dict)}
-    for path in unreadable:
-        if len(path) == 3 and path[0] == "effects" and path[1] in stated:
-            stated[path[1]].add(path[2])
-    return {name: frozenset(names) for name, names in stated.items()}
+    return {name: frozenset(table) for name, table in tables.items() if isinstance(table, dict)}
 
 
 def part_faults(model: Model[Any, Any], stated: Mapping[str, frozenset[str]]) -> Iterator[tuple[tuple[str, ...], str]]:
@@ -322,15 +324,12 @@ def effects_of(model: Model[Any, Any], values: StatedValues) -> tuple[SwitchedOn
     on = []
     for name, effect in model.known_effects.items():
         keys = {unknown.name: ("effects", name, unknown.name) for unknown in effect.unknowns}
-        stated = {unknown: float(values[key]) for unknown, key in keys.items() if key in values}
+        read = {unknown: values[key] for unknown, key in keys.items() if key in values}
+        stated = {unknown: value for unknown, (value, _) in read.items()}
         if not stated or (len(stated) < len(keys) and not effect.parts):
             continue
         covariance = values.get(("effects", name, "covariance"), ()) if "covariance" not in keys else ()
-        sds = {
-            unknown: values[("effects", name, unknown, "sd")]
-            for unknown in stated
-            if ("effects", name, unknown, "sd") in values
-        }
+        sds = {unknown: sd for unknown, (_, sd) in read.items() if sd is not None}
         if covariance:
             sds = {unknown: math.sqrt(covariance[index][index]) for index, unknown in enumerate(stated)} | sds
         on.append(SwitchedOn(effect, stated, sds, covariance))

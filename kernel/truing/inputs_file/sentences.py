@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from math import isclose
 from typing import Any
@@ -11,8 +11,10 @@ from typing import Any
 from truing.declare.model import Model
 from truing.declare.near_miss import near_miss
 from truing.errors import Fault, InfeasibleError, InputError
-from truing.inputs_file.document import SECTIONS, InputsDocument
-from truing.inputs_file.file_model import HEAD
+from truing.inputs_file.assemble import renamed
+from truing.inputs_file.document import SECTIONS, UNREADABLE, InputsDocument
+from truing.inputs_file.entries import sections, whole_file
+from truing.inputs_file.values import Entry, InputsRead, Section
 from truing.setup import Setup
 from truing.units.grammar import shown
 
@@ -20,22 +22,17 @@ MOST_FAULTS = 200
 _MOST_NEAR_MISSES = 50
 
 
-def faults_of(
-    error: Any, document: InputsDocument, model: Model[Any, Any], unreadable: Collection[tuple[str, ...]]
-) -> tuple[list[Fault], int]:
-    """Turn a pydantic ValidationError into faults with places; what was named as unreadable is not missing too.
+def read_entries(document: InputsDocument, model: Model[Any, Any], reading: InputsRead) -> tuple[list[Fault], int]:
+    """Read every entry of a file into ``reading``; return what is wrong, and how many faults of that are left out.
 
     Sentences are made for the first two hundred in the order of the file; the others are only counted.
     """
-    errors = [
-        (tuple(map(str, detail["loc"])), detail) for detail in error.errors(include_url=False, include_input=False)
-    ]
-    kept = [(path, detail) for path, detail in errors if detail["type"] != "missing" or path not in unreadable]
-    if len(kept) > MOST_FAULTS:
-        kept.sort(key=lambda fault: _order(document, document.place(fault[0])))
     words = _Words(document, model)
-    faults = [document.fault(path, words.sentence(path, detail)) for path, detail in kept[:MOST_FAULTS]]
-    return faults, len(kept) - len(faults)
+    wrong = list(words.read(document.data, whole_file(model), (), reading))
+    if len(wrong) > MOST_FAULTS:
+        wrong.sort(key=lambda fault: _order(document, document.place(fault[0])))
+    faults = [document.fault(path, sentence or words.unknown(path)) for path, sentence in wrong[:MOST_FAULTS]]
+    return faults, len(wrong) - len(faults)
 
 
 def _order(document: InputsDocument, source_line: tuple[str, int | None]) -> tuple[int, int]:
@@ -47,79 +44,89 @@ def _order(document: InputsDocument, source_line: tuple[str, int | None]) -> tup
     )
 
 
+_CALLED = {
+    "inputs": "input", "tolerances": "tolerance", "conditions": "condition", "effects": "effect",
+    "calibrated": "input to calibrate called", "studies": "study", "units": "result or input", "sheet": "entry",
+}  # fmt: skip
+"""What the entries of a section are called."""
+
+
 class _Words:
-    """Says one fault; near misses are looked for only for the first fifty unknown names."""
+    """Says what is wrong; near misses are looked for only for the first fifty unknown names."""
 
     def __init__(self, document: InputsDocument, model: Model[Any, Any]) -> None:
         self.document = document
         self.model = model
         self.near_misses = 0
 
-    def sentence(self, path: tuple[str, ...], detail: Mapping[str, Any]) -> str:
-        """Return the sentence for one of pydantic's errors."""
-        kind = detail["type"]
-        if kind == "extra_forbidden":
-            return self.unknown(path)
-        if kind == "missing":
-            return self.missing(path)
-        if kind in {"model_type", "model_attributes_type", "dict_type"}:
-            heading = f"[{'.'.join(path)}]"
-            return f"{shown(path[-1])} is a section; write {heading} and its entries below it"
-        stated = detail.get("ctx", {}).get("error")
-        return str(stated) if stated is not None else str(detail["msg"])
+    def read(
+        self, table: Mapping[str, Any], section: Section, path: tuple[str, ...], reading: InputsRead
+    ) -> Iterator[tuple[tuple[str, ...], str]]:
+        """Read a table into ``reading``; give what is wrong by path, without a sentence where a name is unknown.
+
+        Nothing more is said of what was a fault of its spelling, and an effect may be "off".
+        """
+        passed_over = [UNREADABLE, "off"] if path == ("effects",) else [UNREADABLE]
+        for name, entry in section.entries.items():
+            here = (*path, name)
+            if name not in table:
+                if isinstance(entry, Entry) and entry.is_required:
+                    yield here, self.missing(here)
+            elif table[name] in passed_over:
+                continue
+            elif isinstance(entry, Entry):
+                yield from _read_entry(here, entry, table[name], reading)
+            elif isinstance(table[name], dict):
+                yield from self.read(table[name], entry, here, reading)
+            elif path == ("studies",):
+                yield here, f"[studies.{name}] is a section; write its options below it"
+            else:
+                yield here, f"{shown(name)} is a section; write [{'.'.join(here)}] and its entries below it"
+        strange = [name for name in table if name not in section.entries and table[name] not in passed_over]
+        yield from (((*path, name), "") for name in strange)
 
     def unknown(self, path: tuple[str, ...]) -> str:
         """Say that a name is unknown, and what was probably meant."""
         name = path[-1]
         self.near_misses += 1
-        if len(path) == 1:
-            return self.unknown_section(name)
-        if path[0] == "effects" and len(path) == 3:
-            effect = self.model.known_effects[path[1]]
-            unknowns = {unknown.name: unknown for unknown in effect.unknowns}
-            many = len(unknowns) > 12
-            known = f"`calc describe {self.model.name}` lists them" if many else f"unknowns: {', '.join(unknowns)}"
-            return f"effect '{effect.name}' has no unknown {shown(name)}.{self.near(name, unknowns)} ({known})"
-        what, known_names = self.known(path[0])
-        elsewhere = self.elsewhere(name, path[0])
+        if len(path) == 3:
+            return self.unknown_inside(path)
+        section = path[0] if len(path) == 2 else ""
+        elsewhere = self.elsewhere(name, section)
         if elsewhere:
             return f"{shown(name)} is {elsewhere}"
-        meant = self.near(name, known_names)
-        hint = "" if meant else self.listed(known_names)
-        owner = "the sheet" if path[0] == "sheet" else self.model.name
-        return f"{owner} has no {what} {shown(name)}.{meant}{hint}"
+        if not section:
+            meant = self.near(name, ["plugin", *SECTIONS])
+            return f"{shown(name)} is no section of an inputs file.{meant} (sections: {', '.join(SECTIONS)})"
+        known = self.known(section)
+        meant = self.near(name, known)
+        hint = "" if meant else self.listed(known)
+        owner = "the sheet" if section == "sheet" else self.model.name
+        return f"{owner} has no {_CALLED[section]} {shown(name)}.{meant}{hint}"
 
-    def unknown_section(self, name: str) -> str:
-        elsewhere = self.elsewhere(name, "")
-        if elsewhere:
-            return f"{shown(name)} is {elsewhere}"
-        meant = self.near(name, ["plugin", *SECTIONS])
-        return f"{shown(name)} is no section of an inputs file.{meant} (sections: {', '.join(SECTIONS)})"
+    def unknown_inside(self, path: tuple[str, ...]) -> str:
+        """Say that an effect has no such unknown, or a study no such option."""
+        section, owner, name = path
+        if section == "studies":
+            known = list(sections(self.model)["studies"].schema["properties"][owner]["properties"])
+            meant = near_miss(name[:80], known)
+            return f"study '{owner}' has no option {shown(name)}.{meant} (options: {', '.join(known) or 'none'})"
+        unknowns = [unknown.name for unknown in self.model.known_effects[owner].unknowns]
+        many = len(unknowns) > 12
+        listed = f"`calc describe {self.model.name}` lists them" if many else f"unknowns: {', '.join(unknowns)}"
+        return f"effect '{owner}' has no unknown {shown(name)}.{self.near(name, unknowns)} ({listed})"
 
-    def known(self, section: str) -> tuple[str, Sequence[str]]:
-        """Return what the entries of a section are called and which there are."""
-        model = self.model
-        studies = ["run", "seed", *(study.name for study in model.studies), "diagnose"]
-        return {
-            "inputs": ("input", list(model.input_fields)),
-            "tolerances": ("tolerance", list(model.tolerances)),
-            "conditions": ("condition", list(model.known_conditions)),
-            "effects": ("effect", list(model.known_effects)),
-            "calibrated": ("input to calibrate called", [n for n, field in model.input_fields.items() if field.varies]),
-            "studies": ("study", studies),
-            "units": ("result or input", [*model.result_fields, *model.input_fields]),
-            "sheet": ("entry", [*HEAD, "detail"]),
-        }[section]
+    def known(self, section: str) -> list[str]:
+        """Return the entries of a section; not those under an old name."""
+        entries = sections(self.model)[section].entries
+        old = renamed(self.model) if section == "inputs" else {}
+        return [name for name in entries if name not in old or name in self.model.input_fields]
 
     def elsewhere(self, name: str, section: str) -> str:
         """Say where a name belongs that stands in the wrong section."""
         words = {"inputs": "an input", "conditions": "a condition", "effects": "an effect"}
         for other, what in words.items():
-            if (
-                other != section
-                and name in self.known(other)[1]
-                and section not in {"tolerances", "units", "calibrated"}
-            ):
+            if other != section and section not in {"tolerances", "units", "calibrated"} and name in self.known(other):
                 heading = f"[effects.{name}]" if other == "effects" else f"[{other}]"
                 return f"{what}; write it under {heading}"
         if section in {"", "inputs", "conditions"} and name in self.model.result_fields:
@@ -161,17 +168,23 @@ class _Words:
         )
 
 
+def _read_entry(
+    path: tuple[str, ...], entry: Entry, raw: Any, reading: InputsRead
+) -> Iterator[tuple[tuple[str, ...], str]]:
+    if isinstance(raw, dict) and UNREADABLE in raw.values():
+        return
+    try:
+        reading.values[path] = entry.read(raw, reading)
+    except ValueError as error:
+        owner = f"study '{path[1]}': " if path[0] == "studies" and len(path) == 3 else ""
+        yield path, f"{owner}{error}"
+
+
 def in_order(faults: Sequence[Fault], document: InputsDocument, more: int = 0) -> list[Fault]:
     """Sort faults by line, those of overrides behind them as given; beyond 200 they are counted, with ``more``."""
     unique = list(dict.fromkeys(sorted(faults, key=lambda fault: _order(document, (fault.file, fault.line)))))
     more += max(len(unique) - MOST_FAULTS, 0)
     return [*unique[:MOST_FAULTS], *([Fault(f"and {more} faults more", document.file)] if more else [])]
-
-
-def each(faults: Sequence[tuple[tuple[str, ...], str]], document: InputsDocument) -> Iterator[Fault]:
-    """Give faults that are known by the path of their name."""
-    for path, sentence in faults:
-        yield document.fault(path, sentence)
 
 
 # Which line is to blame when inputs that are well formed describe something impossible?

@@ -12,9 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from truing.declare.fields import InputField
+from truing.declare.fields import Given, InputField, Loaded
 from truing.declare.near_miss import near_miss
-from truing.declare.specs import Given, Loaded
 from truing.errors import TruingError, UnitError
 from truing.units import from_si, human_dimension, read_quantity, to_si
 from truing.units.grammar import shown
@@ -40,12 +39,31 @@ class InputsRead:
     values: dict[tuple[str, ...], Any] = field(default_factory=dict)
     files: dict[str, str] = field(default_factory=dict)
     tables: dict[str, dict[str, Any]] = field(default_factory=dict)
-    faults: list[tuple[tuple[str, ...], str]] = field(default_factory=list)
     stated: dict[str, frozenset[str]] = field(default_factory=dict)
 
 
-ValueCheck = Callable[[Any, InputsRead], Any]
-"""Checks one value of an inputs file and returns it as it is used, or raises with a sentence."""
+@dataclass(frozen=True)
+class Entry:
+    """One name of a section: what reads its value, or raises ValueError with one sentence, and its JSON Schema."""
+
+    read: Callable[[Any, InputsRead], Any]
+    schema: Mapping[str, Any]
+    is_required: bool = False
+
+
+@dataclass(frozen=True)
+class Section:
+    """A table of an inputs file: what it holds, in words and by name; ``title`` names it in the JSON Schema."""
+
+    title: str
+    words: str
+    entries: Mapping[str, Entry | Section]
+
+    @property
+    def schema(self) -> dict[str, Any]:
+        """The JSON Schema of the table."""
+        properties = {name: entry.schema for name, entry in self.entries.items()}
+        return {"type": "object", "properties": properties, "additionalProperties": False, "description": self.words}
 
 
 def read_input(input_field: InputField, raw: Any, reading: InputsRead) -> Any:
@@ -213,7 +231,7 @@ def _series(input_field: InputField, raw: Any) -> Any:
     unit = input_field.unit if input_field.spec.unit is not None else None
     given = raw
     if isinstance(raw, dict) and set(raw) == {"values", "unit"} and isinstance(raw["values"], list):
-        given = [f"{plain(v)} {raw['unit']}" if _is_number(v) else v for v in raw["values"]]
+        given = [f"{plain(v)} {raw['unit']}" if is_number(v) else v for v in raw["values"]]
     if not isinstance(given, list) or not given:
         raise SentenceError(
             f'{input_field.name} is a series; write {input_field.name} = ["1 {unit}", ...]'
@@ -234,7 +252,8 @@ def _list_like(input_field: InputField) -> str:
     return f"{input_field.name} is a series; write {input_field.name} = [...]"
 
 
-def _is_number(value: Any) -> bool:
+def is_number(value: Any) -> bool:
+    """Whether a value of a file is a number."""
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
@@ -242,7 +261,7 @@ def _plain_series(input_field: InputField, given: list[Any]) -> tuple[Any, ...]:
     """Read a list without units: every item of the kind that the default's items have."""
     default = getattr(input_field.spec, "default", None)
     kind = type(default[0]) if isinstance(default, (tuple, list)) and default else type(given[0])
-    if kind is float and all(_is_number(value) for value in given):
+    if kind is float and all(is_number(value) for value in given):
         return tuple(
             read_number(f"{input_field.name}[{index}]", value, "") for index, value in enumerate(given, start=1)
         )

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from hashlib import sha256
 from io import StringIO
-from itertools import chain
+from itertools import chain, islice
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -39,10 +39,6 @@ _NOT_CLOSED = "opens a quotation mark that this line does not close; a cell ends
 _GOES_ON = "goes on behind its closing quotation mark; write a quotation mark inside of a quoted cell twice"
 
 
-class RowError(ValueError):
-    """A sentence about a line that is no row."""
-
-
 @dataclass(frozen=True)
 class Header:
     """One cell of the header: a name, its unit (None where none is written), and the text of both."""
@@ -50,14 +46,6 @@ class Header:
     name: str
     unit: str | None
     text: str
-
-
-@dataclass(frozen=True)
-class Chunk:
-    """Some rows as columns of text, and the file line of each row."""
-
-    cells: list[tuple[str, ...]]
-    lines: tuple[int, ...]
 
 
 @dataclass
@@ -143,29 +131,18 @@ class CsvFile:
         left = tuple(LeftOut(reason, tuple(lines)) for reason, lines in self.left_out.items())
         return RowCount(self.faults.file, self.rows + sum(len(left_out.lines) for left_out in left), left)
 
-    def chunks(self) -> Iterator[Chunk]:
-        """Give the rows as columns of text, some thousands at a time; lines that are no rows are faults."""
-        rows: list[list[str]] = []
-        lines: list[int] = []
+    def chunks(self) -> Iterator[tuple[list[tuple[str, ...]], tuple[int, ...]]]:
+        """Give columns of text with the line of each row, thousands at a time; lines that are no rows are faults."""
         behind = 0
-        for text, line in self._lines:
-            behind += 1
-            row = self._row(text, line)
-            if row is None:
-                continue
-            rows.append(row)
-            lines.append(line)
-            if len(rows) == ROWS_AT_ONCE:
-                yield self._chunk(rows, lines)
-                rows, lines = [], []
-        if rows:
-            yield self._chunk(rows, lines)
+        while part := list(islice(self._lines, ROWS_AT_ONCE)):
+            behind += len(part)
+            numbered = [(row, line) for text, line in part if (row := self._row(text, line)) is not None]
+            self.rows += len(numbered)
+            if numbered:
+                rows, lines = zip(*numbered, strict=True)
+                yield list(zip(*rows, strict=True)), lines
         if behind == sum(map(len, self.left_out.values())):
             self.faults.add("holds a header but no rows", self.header_line)
-
-    def _chunk(self, rows: list[list[str]], lines: list[int]) -> Chunk:
-        self.rows += len(rows)
-        return Chunk(list(zip(*rows, strict=True)), tuple(lines))
 
     def _row(self, text: str, line: int) -> list[str] | None:
         """Return the cells of a line, as many as the header has; None where it is a fault or left out."""
@@ -173,14 +150,17 @@ class CsvFile:
         is_comment = text.lstrip().startswith("#")
         try:
             row = _cells(text, self.delimiter)
-        except RowError as error:
+        except ValueError as error:
             if not is_comment:
                 self.faults.add(str(error), line)
                 return None
             row = []
         if is_comment:
             if len(row) == width > 1:
-                self.faults.add(_like_a_row(row), line)
+                what = f"this line begins with '#' and holds {width} cells as a row does"
+                first = shown(row[0].strip().replace('"', ""))
+                way = f"put {first} in quotation marks where it is one, and a remark above the header"
+                self.faults.add(f"{what}; {way}", line)
             self.left_out.setdefault(COMMENT, []).append(line)
             return None
         if not any(cell.strip() for cell in row):
@@ -188,7 +168,7 @@ class CsvFile:
             return None
         if len(row) != width and not self._fits(row, line):
             return None
-        return all_unguarded(row[:width]) if self.is_guarded else row[:width]
+        return unguarded(row[:width]) if self.is_guarded else row[:width]
 
     def _fits(self, row: list[str], line: int) -> bool:
         """Say that a row is ragged, unless what is too much is empty cells at its end."""
@@ -199,12 +179,6 @@ class CsvFile:
         hint = "" if self.decimal_comma else hint
         self.faults.add(f"this row has {counted(len(row), 'cell')}, expected {width} as in the header{hint}", line)
         return False
-
-
-def _like_a_row(row: list[str]) -> str:
-    first = shown(row[0].strip().replace('"', ""))
-    what = f"this line begins with '#' and holds {len(row)} cells as a row does"
-    return f"{what}; put {first} in quotation marks where it is one, and a remark above the header"
 
 
 @dataclass(frozen=True)
@@ -262,13 +236,14 @@ def _table(path: TableSource, stream: TextIO, instead: str) -> CsvFile:
     if not header:
         faults.raise_any()
         raise InputError([Fault(f"is empty; {instead}", str(path), 1)])
-    delimiter = _delimiter(header)
+    outside = re.sub(r'"[^"]*"|\[[^\[\]]*\]', "", header)
+    delimiter = next((mark for mark in (";", "\t") if mark in outside), ",")
     is_guarded = delimiter == ";" and beginning.startswith(MARK)
     try:
         cells = _cells(header, delimiter)
-    except RowError as error:
+    except ValueError as error:
         raise InputError([Fault(str(error), str(path), line)]) from None
-    headers = _headers(all_unguarded(cells) if is_guarded else cells, line, faults)
+    headers = _headers(unguarded(cells) if is_guarded else cells, line, faults)
     return CsvFile(faults, headers, line, delimiter, DecimalMarks(delimiter != ","), lines, is_guarded)
 
 
@@ -281,13 +256,8 @@ def _lines(stream: Iterable[str], faults: Faults) -> Iterator[tuple[str, int]]:
             yield text.rstrip("\r\n"), line
 
 
-def _delimiter(header: str) -> str:
-    outside = re.sub(r'"[^"]*"|\[[^\[\]]*\]', "", header)
-    return next((mark for mark in (";", "\t") if mark in outside), ",")
-
-
 def _cells(text: str, delimiter: str) -> list[str]:
-    """Take a line apart. Raises RowError where a quotation mark is not closed, or a cell goes on behind its own."""
+    """Take a line apart. Raises ValueError where a quotation mark is not closed, or a cell goes on behind its own."""
     if '"' not in text:
         return [cell.lstrip(" ") for cell in text.split(delimiter)] if " " in text else text.split(delimiter)
     pattern = _cell_pattern(delimiter)
@@ -297,7 +267,7 @@ def _cells(text: str, delimiter: str) -> list[str]:
         cell = pattern.match(text, position)
         if cell is None:
             is_open = _OPEN.fullmatch(text, position)
-            raise RowError(f"cell {len(cells) + 1} {_NOT_CLOSED if is_open else _GOES_ON}")
+            raise ValueError(f"cell {len(cells) + 1} {_NOT_CLOSED if is_open else _GOES_ON}")
         cells.append(cell["plain"] if cell["quoted"] is None else cell["quoted"].replace('""', '"'))
         position = cell.end()
         if not cell["more"]:
@@ -404,14 +374,9 @@ def guarded(cell: str) -> str:
     return f"'{cell}" if _may_be_formula(cell) else cell
 
 
-def unguarded(cell: str) -> str:
-    """Return a cell as it was before it was guarded."""
-    return cell[1:] if cell.startswith("'") and _may_be_formula(cell[1:]) else cell
-
-
-def all_unguarded(row: Sequence[str]) -> list[str]:
+def unguarded(row: Sequence[str]) -> list[str]:
     """Return the cells of a row as they were before they were guarded."""
-    return [unguarded(cell) for cell in row]
+    return [cell[1:] if cell.startswith("'") and _may_be_formula(cell[1:]) else cell for cell in row]
 
 
 def _may_be_formula(cell: str) -> bool:

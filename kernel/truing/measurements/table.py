@@ -102,17 +102,17 @@ def read_table(
         for fault in (column.fault for column in columns if column.fault):
             file.faults.add(fault, file.header_line)
         texts: dict[str, list[str]] = {header.text: [] for header in file.headers}
-        for chunk in file.chunks():
-            lines.extend(chunk.lines)
-            for column, cells in zip(columns, chunk.cells, strict=True):
-                column.take(cells, chunk.lines, file)
+        for cells_of, lines_of in file.chunks():
+            lines.extend(lines_of)
+            for column, cells in zip(columns, cells_of, strict=True):
+                column.take(cells, lines_of, file)
                 texts[column.header.text].extend(() if is_measured else cells)
-    made = {column.header.name: column.made(lines, file) for column in columns if column.header.name}
+    usable = [column for column in columns if column.header.name and not column.fault]
+    made = {column.header.name: column.made(lines, file) for column in usable}
     file.marks.judge(file.faults)
-    columns_made = {name: values for name, values in made.items() if values is not None}
     units = {header.name: header.unit or "" for header in file.headers}
     written = {text: _with_points(cells, file) for text, cells in texts.items()}
-    table = DataTable(str(path), columns_made, units, tuple(lines), file.header_line, file.count(), written)
+    table = DataTable(str(path), made, units, tuple(lines), file.header_line, file.count(), written)
     return table, file.faults
 
 
@@ -178,9 +178,9 @@ class _Column:
     def take(self, cells: Sequence[str], lines: Sequence[int], file: CsvFile) -> None:
         """Take the cells of the next rows; what is wrong with one is a fault with its line."""
 
-    def made(self, lines: Sequence[int], file: CsvFile) -> NDArray[Any] | tuple[str, ...] | None:
-        """Return the whole column, None where its header is a fault."""
-        return None
+    def made(self, lines: Sequence[int], file: CsvFile) -> NDArray[Any] | tuple[str, ...]:
+        """Return the whole column."""
+        return ()
 
 
 @dataclass
@@ -221,9 +221,9 @@ class _Numbers(_Column):
                 faults.add(f"{self.header.name}: {shown(written)} {fault}", lines[row])
         return converted
 
-    def made(self, lines: Sequence[int], file: CsvFile) -> NDArray[np.float64] | None:
+    def made(self, lines: Sequence[int], file: CsvFile) -> NDArray[np.float64]:
         """Return the column in SI, NaN where a cell is empty."""
-        return None if self.fault else np.concatenate([np.empty(0), *self.parts])
+        return np.concatenate([np.empty(0), *self.parts])
 
 
 def _keep_bounds(input_field: InputField, values: NDArray[np.float64], lines: Sequence[int], faults: Faults) -> None:
@@ -261,9 +261,9 @@ class _Words(_Column):
                 file.faults.add(str(error) if is_named else f"{self.header.name}: {error}", line)
                 self.values.append(None)
 
-    def made(self, lines: Sequence[int], file: CsvFile) -> NDArray[Any] | None:
+    def made(self, lines: Sequence[int], file: CsvFile) -> NDArray[Any]:
         """Return the values as objects, None where a cell is empty."""
-        return None if self.fault else np.fromiter(self.values, dtype=object)
+        return np.fromiter(self.values, dtype=object)
 
 
 @dataclass
@@ -277,10 +277,8 @@ class _Texts(_Column):
         """Take cells, whatever they hold."""
         self.cells.extend(cells)
 
-    def made(self, lines: Sequence[int], file: CsvFile) -> NDArray[np.float64] | tuple[str, ...] | None:
+    def made(self, lines: Sequence[int], file: CsvFile) -> NDArray[np.float64] | tuple[str, ...]:
         """Return numbers or words; the decimal marks of numbers must be those of the file."""
-        if self.fault:
-            return None
         is_number = not self.is_words and any(cell.strip() for cell in self.cells)
         values = _numbers(self.cells, file) if is_number else None
         if values is None:

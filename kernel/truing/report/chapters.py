@@ -11,35 +11,37 @@ import numpy as np
 
 from truing.calculation import Calculation
 from truing.declare.blocks import Block, Drawing, Table, Words
-from truing.declare.fields import Axis, Found, ResultField
+from truing.declare.fields import Axis, Found
 from truing.declare.model import Section
-from truing.errors import PluginError, UnitError
+from truing.errors import PluginError
 from truing.kernel.blame import spoken_place
-from truing.numbers import format_ends, format_value, pretty
+from truing.numbers import RESULT_DIGITS, format_ends, format_number, format_value, pretty
 from truing.report.document import (
-    Aside,
     BlockView,
     Chapter,
     Column,
     FigureView,
+    Marked,
     Paragraph,
     ResultEntry,
-    Strong,
-    SymbolText,
     TableView,
     Text,
     Value,
     label_of,
+    unit_as_said,
     with_source,
 )
-from truing.report.equations import equation_of, value_text
+from truing.report.equations import equation_of
 from truing.report.figures import draw
 from truing.setup import Setup
-from truing.studies.bench import Outcome
-from truing.units import unit_text
 
 RANK = {"short": 0, "normal": 1, "full": 2}
 LONGEST_TABLE = {"short": 20, "normal": 60, "full": 1000}
+DEPARTURES = {
+    True: "in the calculation, with the effects on the results that are on",
+    False: "in the calculation: the printed formula gives another number",
+}
+"""Why a calculation has another number than the printed formula, with and without an effect on the results."""
 AXIS_ROWS = {"short": 0, "normal": 12, "full": 25}
 
 
@@ -106,11 +108,9 @@ def _of_section(writing: Writing, section: Section) -> Chapter:
     record = writing.calculation.record
     blocks: list[BlockView] = [*([Paragraph(section.text)] if section.text else []), *_results(writing, names)]
     if section.figure is not None:
-        figure = section.figure
-        blocks.append(writing.figures.view(section.title, lambda: figure(record), section.caption))
+        blocks.append(writing.figures.view(section.title, partial(section.figure, record), section.caption))
     if section.blocks is not None:
-        made = section.blocks
-        blocks += _guarded(writing, section.title, lambda: views(writing, made(record)))
+        blocks += _guarded(writing, section.title, partial(section.blocks, record))
     return Chapter(section.title, tuple(blocks))
 
 
@@ -128,13 +128,9 @@ def _main_results(writing: Writing) -> Iterator[Chapter]:
 
 def _studies(writing: Writing) -> Iterator[Chapter]:
     for name, outcome in writing.calculation.outcomes.items():
-        blocks = _guarded(writing, f"study {name}", partial(_said, writing, outcome))
+        blocks = _guarded(writing, f"study {name}", outcome.blocks)
         if blocks:
             yield Chapter(f"Study: {name.replace('_', ' ')}", tuple(blocks))
-
-
-def _said(writing: Writing, outcome: Outcome) -> list[BlockView]:
-    return views(writing, outcome.blocks())
 
 
 def _is_scalar(value: Any) -> bool:
@@ -156,39 +152,31 @@ def _entry(writing: Writing, name: str, *, with_formula: bool) -> ResultEntry:
     absent = writing.calculation.absent.get(name, "")
     is_scalar = _is_scalar(answers[name])
     equation = equation_of(writing.setup, answers, result) if with_formula and not (absent and is_scalar) else None
-    symbol = (SymbolText(result.symbol), " ") if result.symbol else ()
+    symbol = (Marked("symbol", result.symbol), " ") if result.symbol else ()
     value: Text = ""
     if absent:
-        value = (*symbol, *(("has ",) if symbol else ()), Strong("no value"), ": ", Aside(absent))
+        value = (*symbol, *(("has ",) if symbol else ()), Marked("strong", "no value"), ": ", Marked("aside", absent))
     elif not is_scalar:
-        extent, words = _range(writing, result)
-        value = (*symbol, *(("is ",) if symbol else ()), Strong(extent), " ", Aside(f"({words})"))
+        along = result.along if isinstance(result.spec, Found) else ""
+        words = f"{np.size(answers[name])} values" + (f" along {along}" if along and along != name else "")
+        low, high, unit = format_ends(answers[name], writing.setup.print_unit(name))
+        extent = Value(f"{pretty(low)} … {pretty(high)}", unit) if low else Value("no finite value")
+        value = (*symbol, *(("is ",) if symbol else ()), Marked("strong", extent), " ", Marked("aside", f"({words})"))
     elif equation is None or equation.departs:
         printed = Value(*format_value(answers[name], writing.setup.print_unit(name), result.digits))
-        value = (*symbol, *(("= ",) if symbol else ()), Strong(printed))
-        value += (" ", Aside(_departure(writing.setup))) if equation is not None else ()
+        value = (*symbol, *(("= ",) if symbol else ()), Marked("strong", printed))
+        if equation is not None:
+            on_results = any(active.effect.place == "results" for active in writing.setup.effects)
+            value += (" ", Marked("aside", DEPARTURES[on_results]))
     method = with_source(getattr(result.spec, "method", ""), getattr(result.spec, "source", ""))
     return ResultEntry(name, label_of(result.spec.note, name), equation, value, method)
 
 
-def _departure(setup: Setup) -> str:
-    """Say why the calculation has another number than the printed formula."""
-    if any(active.effect.place == "results" for active in setup.effects):
-        return "in the calculation, with the effects on the results that are on"
-    return "in the calculation: the printed formula gives another number"
-
-
-def _range(writing: Writing, result: ResultField) -> tuple[Value, str]:
-    """Say a result along an axis by its ends, and how many values it has."""
-    values = writing.calculation.answers[result.name]
-    along = result.along if isinstance(result.spec, Found) else ""
-    words = f"{np.size(values)} values" + (f" along {along}" if along and along != result.name else "")
-    low, high, unit = format_ends(values, writing.setup.print_unit(result.name))
-    return Value(f"{pretty(low)} … {pretty(high)}", unit) if low else Value("no finite value"), words
-
-
 def _axis_tables(writing: Writing, names: Sequence[str]) -> Iterator[TableView]:
-    """Write what runs along an axis as a table where it is short enough or the sheet is a full one."""
+    """Write what runs along an axis as a table where it is short enough or the sheet is a full one.
+
+    Where there are too many rows they are evenly thinned.
+    """
     fields, answers = writing.setup.model.result_fields, writing.calculation.answers
     by_axis: dict[str, list[str]] = {}
     for name in names:
@@ -198,39 +186,26 @@ def _axis_tables(writing: Writing, names: Sequence[str]) -> Iterator[TableView]:
     for axis, columns in by_axis.items():
         axis_field = fields.get(axis)
         is_table = axis_field is not None and isinstance(axis_field.spec, Axis) and axis_field.spec.is_table
-        if axis in answers:
-            columns = [axis, *columns]
+        units = {name: writing.setup.print_unit(name) for name in (*([axis] if axis in answers else []), *columns)}
         length = len(answers[columns[-1]])
         most = LONGEST_TABLE[writing.detail] if is_table else AXIS_ROWS[writing.detail]
         if length <= most or writing.detail == "full" or is_table:
-            yield _columns_table(writing, f"Along {axis}" if axis else "Series", columns, most)
+            places = sorted({round(one) for one in np.linspace(0, length - 1, min(length, most))}) if length else []
+            rows = (tuple(format_value(float(answers[n][at]), unit)[0] for n, unit in units.items()) for at in places)
+            heads = (
+                Column(fields[n].spec.note or n, format_value(0.0, unit)[1], "number") for n, unit in units.items()
+            )
+            note = f"{len(places)} of {length} rows" if length > most else ""
+            yield TableView(f"Along {axis}" if axis else "Series", tuple(heads), tuple(rows), note)
 
 
-def _columns_table(writing: Writing, title: str, names: Sequence[str], most: int) -> TableView:
-    """Write equally long results as columns, evenly thinned where there are too many rows."""
-    answers, setup = writing.calculation.answers, writing.setup
-    length = len(answers[names[-1]])
-    places = sorted({round(one) for one in np.linspace(0, length - 1, min(length, most))}) if length else []
-    units = {name: setup.print_unit(name) for name in names}
-    rows = tuple(tuple(format_value(float(answers[n][index]), units[n])[0] for n in names) for index in places)
-    note = f"{len(places)} of {length} rows" if length > most else ""
-    fields = setup.model.result_fields
-    columns = (Column(fields[n].spec.note or n, format_value(0.0, unit)[1], "number") for n, unit in units.items())
-    return TableView(title, tuple(columns), rows, note)
-
-
-def _guarded(writing: Writing, title: str, make: Callable[[], list[BlockView]]) -> list[BlockView]:
-    """Make the blocks of a guest; where its code fails that is said in their place, and the sheet goes on."""
+def _guarded(writing: Writing, title: str, make: Callable[[], Iterable[Block]]) -> list[BlockView]:
+    """Write the blocks of a guest; where its code fails that is said in their place, and the sheet goes on."""
     try:
-        return make()
+        return [_view(writing, block) for block in make()]
     except Exception as error:
         writing.figures.failures.append(f"{spoken_place(error)}'{title}' failed: {type(error).__name__}: {error}")
         return [Paragraph(f"What '{title}' says could not be written.", "warning")]
-
-
-def views(writing: Writing, blocks: Sequence[Block]) -> list[BlockView]:
-    """Turn the blocks of a study or a section into what is printed."""
-    return [_view(writing, block) for block in blocks]
 
 
 def _view(writing: Writing, block: Block) -> BlockView:
@@ -246,31 +221,27 @@ def table_view(table: Table, most: int) -> TableView:
     """Write the cells of a plugin's table; what is left out is said."""
     shown = table.rows[:most]
     width = len(table.columns)
-    rows = tuple(tuple([*map(value_text, row), *[""] * width][:width]) for row in shown)
-    units = [_known_unit(unit) for unit in (*table.units, *[""] * width)]
+    rows = tuple(tuple([*map(_cell_text, row), *[""] * width][:width]) for row in shown)
+    units = [unit_as_said(unit) for unit in (*table.units, *[""] * width)]
+    cells = ([row[index] for row in shown if index < len(row)] for index in range(width))
     columns = tuple(
-        Column(title, unit, "number" if shown and all(map(_is_numeric, cells)) else "")
-        for title, unit, cells in zip(table.columns, units, _columns(shown, width), strict=False)
+        Column(title, unit, "number" if shown and all(map(_is_numeric, column)) else "")
+        for title, unit, column in zip(table.columns, units, cells, strict=False)
     )
     left = len(table.rows) - len(shown)
     note = " ".join(filter(None, [table.note, f"{left} further rows are not printed." if left else ""]))
     return TableView(table.title, columns, rows, note)
 
 
-def _columns(rows: Sequence[Sequence[Any]], width: int) -> list[list[Any]]:
-    return [[row[index] for row in rows if index < len(row)] for index in range(width)]
+def _cell_text(cell: Any) -> str:
+    """Write a number, a text, yes or no, or nothing."""
+    if isinstance(cell, bool) or type(cell).__name__ == "bool":
+        return "yes" if cell else "no"
+    return format_number(cell, RESULT_DIGITS) if _is_numeric(cell) else str(cell)
 
 
 def _is_numeric(cell: Any) -> bool:
     return cell is None or (isinstance(cell, (int, float)) and not isinstance(cell, bool)) or hasattr(cell, "dtype")
-
-
-def _known_unit(unit: str) -> str:
-    """Write a unit for print; a heading that is no unit stays as it is."""
-    try:
-        return unit_text(unit) if unit else ""
-    except UnitError:
-        return unit
 
 
 def numbered(chapters: Iterable[Chapter]) -> tuple[Chapter, ...]:

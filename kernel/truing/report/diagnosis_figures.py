@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from truing.arrays import Matrix
 from truing.diagnosis.records import Covariate
-from truing.diagnosis.result import Alternative, DiagnosisResult, Gain, ResultCurves
+from truing.diagnosis.result import Alternative, DiagnosisResult, ResultCurves
 from truing.report.diagnosis_words import amount_text, explanation, spoken, wrong_results
 from truing.units import from_si, unit_factor, unit_text
 
@@ -29,17 +28,6 @@ ENLARGED = 4.0
 MOST_BARS = 8
 MOST_STEPS = 7
 """Steps between the ticks of a panel that takes half of the width: more only cost time, with fewer some have two."""
-
-
-@dataclass(frozen=True)
-class _Residuals:
-    """What a figure shows of one result: residuals in the unit for differences, and the noise floor in it."""
-
-    result: str
-    unit: str
-    before: NDArray[np.float64]
-    after: NDArray[np.float64]
-    floor: float
 
 
 def main_covariates(diagnosis: DiagnosisResult) -> list[Covariate]:
@@ -85,15 +73,12 @@ def has_changed(curves: ResultCurves) -> bool:
     return not np.array_equal(curves.before, curves.after, equal_nan=True)
 
 
-def residuals_of(diagnosis: DiagnosisResult, curves: ResultCurves) -> _Residuals:
-    """Return the residuals of one result in the unit for its differences."""
+def _residuals(diagnosis: DiagnosisResult, curves: ResultCurves) -> tuple[str, Matrix, Matrix, float]:
+    """Return the unit for differences of a result, and in it its residuals before and after and its noise floor."""
     unit = diagnosis.units.get(curves.result) or diagnosis.setup.print_unit(curves.result)
-    factor = unit_factor(unit)
     floor = next((wrong.noise_floor.value for wrong in diagnosis.wrong if wrong.result == curves.result), 0.0)
-    return _Residuals(
-        curves.result, unit, (curves.measured - curves.before) / factor, (curves.measured - curves.after) / factor,
-        floor / factor,
-    )  # fmt: skip
+    before, after = curves.measured - curves.before, curves.measured - curves.after
+    return unit, before / unit_factor(unit), after / unit_factor(unit), floor / unit_factor(unit)
 
 
 def thinned(rows: int) -> slice:
@@ -128,54 +113,50 @@ def _label(name: str, unit: str) -> str:
 
 def over_covariate(diagnosis: DiagnosisResult, curves: ResultCurves, covariate: Covariate) -> Figure:
     """Draw the residuals of one result over a covariate, before and after, with the noise floor as a band."""
-    shown = residuals_of(diagnosis, curves)
-    kept = thinned(len(shown.before))
+    unit, before, after, floor = _residuals(diagnosis, curves)
+    kept = thinned(len(before))
     place = from_si(covariate.values, covariate.unit)[kept]
-    panels = [(shown.before, BEFORE, "before"), (shown.after, AFTER, "after")]
+    panels = [(before, BEFORE, "before"), (after, AFTER, "after")]
     if not has_changed(curves):
-        panels = [(shown.before, NEUTRAL, "")]
+        panels = [(before, NEUTRAL, "")]
     figure = Figure(figsize=(6.4, 3.0), layout="constrained")
-    enlarged = has_changed(curves) and _span(shown.before) > ENLARGED * _span(shown.after)
+    spans = [high - low for low, high in (_extent([values]) for values, *_ in panels)]
+    enlarged = spans[0] > ENLARGED * spans[-1]
     if enlarged:
-        panels[1] = (shown.after, AFTER, "after, enlarged")
+        panels[1] = (after, AFTER, "after, enlarged")
     places = figure.subplots(1, len(panels), sharey=not enlarged, squeeze=False)[0]
     for axes, (values, colour, when) in zip(places, panels, strict=True):
-        axes.axhspan(-shown.floor, shown.floor, color="#e4e7ea", linewidth=0)
+        axes.axhspan(-floor, floor, color="#e4e7ea", linewidth=0)
         axes.axhline(0.0, color=NEUTRAL, linewidth=0.7)
         axes.plot(place, values[kept], ".", color=colour, markersize=3.5)
-        _mark_censored(diagnosis, shown.result, axes, places=place, values=values[kept], colour=colour)
+        _mark_censored(diagnosis, curves.result, axes, places=place, values=values[kept], colour=colour)
         axes.locator_params(nbins=MOST_STEPS)
         axes.set_title(when, loc="left")
         axes.set_xlabel(_label(covariate.name, covariate.unit))
-    places[0].set_ylabel(_label(shown.result, shown.unit) + "\nmeasured − simulated")
+    places[0].set_ylabel(_label(curves.result, unit) + "\nmeasured − simulated")
     return figure
-
-
-def _span(values: NDArray[np.float64]) -> float:
-    low, high = _extent([values])
-    return high - low
 
 
 def against_simulated(diagnosis: DiagnosisResult, curves: ResultCurves) -> Figure:
     """Draw measured against simulated, and beside it their difference, where the error can be seen."""
-    shown = residuals_of(diagnosis, curves)
+    difference_unit, wrong_before, wrong_after, _ = _residuals(diagnosis, curves)
     unit = diagnosis.setup.print_unit(curves.result)
-    kept = thinned(len(shown.before))
+    kept = thinned(len(curves.measured))
     measured, before, after = (from_si(one, unit)[kept] for one in (curves.measured, curves.before, curves.after))
     figure = Figure(figsize=(6.4, 3.0), layout="constrained")
     left, right = figure.subplots(1, 2)
     circle: Any = {"marker": "o", "linestyle": "", "markersize": 4.5, "fillstyle": "none", "markeredgewidth": 0.6}
     point: Any = {"marker": ".", "linestyle": "", "markersize": 3.5}
     right.axhline(0.0, color=NEUTRAL, linewidth=0.7)
-    for axes, one, other in ((left, measured, measured), (right, shown.before[kept], shown.after[kept])):
+    for axes, one, other in ((left, measured, measured), (right, wrong_before[kept], wrong_after[kept])):
         if has_changed(curves):
             axes.plot(before, one, color=BEFORE, label="before", **circle)
         axes.plot(after, other, color=AFTER if has_changed(curves) else NEUTRAL, label="after", **point)
-        _mark_censored(diagnosis, shown.result, axes, places=after, values=other, colour=AFTER)
+        _mark_censored(diagnosis, curves.result, axes, places=after, values=other, colour=AFTER)
     low, high = _extent([measured, before, after])
     left.plot([low, high], [low, high], color=NEUTRAL, linewidth=0.7)
     left.set_ylabel(f"measured {_label(curves.result, unit)}")
-    right.set_ylabel(f"measured − simulated [{_unit(shown.unit)}]")
+    right.set_ylabel(f"measured − simulated [{unit_text(difference_unit) or '1'}]")
     if has_changed(curves):
         right.legend(loc="best", frameon=True, framealpha=0.8, edgecolor="none", handletextpad=0.2)
     for axes in (left, right):
@@ -184,11 +165,7 @@ def against_simulated(diagnosis: DiagnosisResult, curves: ResultCurves) -> Figur
     return figure
 
 
-def _unit(unit: str) -> str:
-    return unit_text(unit) or "1"
-
-
-def _extent(values: Sequence[NDArray[np.float64]]) -> tuple[float, float]:
+def _extent(values: Sequence[Matrix]) -> tuple[float, float]:
     joined = np.concatenate([one[np.isfinite(one)] for one in values])
     return (float(joined.min()), float(joined.max())) if joined.size else (0.0, 1.0)
 
@@ -237,7 +214,8 @@ def gain_bars(diagnosis: DiagnosisResult) -> Figure:
     figure = Figure(figsize=(6.4, 0.7 + 0.75 * len(gains)), layout="constrained")
     axes = figure.subplots()
     for index, item in enumerate(gains):
-        for offset, (name, colour, value) in enumerate(_bars(item)):
+        bars = {"before": item.rmse_before, "after": item.rmse_after, "noise floor": item.noise_floor}
+        for offset, ((name, value), colour) in enumerate(zip(bars.items(), (BEFORE, AFTER, QUIET), strict=True)):
             share = 100 * value.value / item.rmse_before.value if item.rmse_before.value else 0.0
             height = index + 0.26 * (offset - 1)
             axes.barh(height, share, height=0.24, color=colour, label=name if not index else None)
@@ -247,15 +225,5 @@ def gain_bars(diagnosis: DiagnosisResult) -> Figure:
     axes.set_xlim(0, 1.16 * max(axes.get_xlim()[1], 100.0))
     axes.set_xlabel("root mean square error on rows that were not fitted, % of that before")
     axes.tick_params(axis="y", length=0)
-    _legend_above(axes)
-    return figure
-
-
-def _bars(item: Gain) -> Iterator[tuple[str, str, Any]]:
-    yield "before", BEFORE, item.rmse_before
-    yield "after", AFTER, item.rmse_after
-    yield "noise floor", QUIET, item.noise_floor
-
-
-def _legend_above(axes: Axes) -> None:
     axes.legend(loc="lower left", bbox_to_anchor=(0, 1.0), ncols=3, borderaxespad=0.2, handlelength=1.2)
+    return figure

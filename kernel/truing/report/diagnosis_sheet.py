@@ -17,9 +17,7 @@ from truing.diagnosis.result import (
     Amount,
     DiagnosisResult,
     FittedUnknown,
-    NextPoint,
     NoiseSummary,
-    VisibleSize,
     explanations_of,
 )
 from truing.numbers import ABSENT, STATED_DIGITS, format_number, pretty
@@ -70,13 +68,15 @@ def make_diagnosis_sheet(diagnosis: DiagnosisResult, *, provenance: Provenance) 
     chapters = list(diagnosis_chapters(diagnosis, drawn))
     warnings = tuple(filter(None, [logo_of(diagnosis.setup)[1], *drawn.failures]))
     head = head_of(diagnosis.setup, provenance)
+    named = "found" if diagnosis.remainder is None else "open"
+    mood = {"none": "calm", "named": named}.get(diagnosis.verdict, "open")
     return Document(
         kind=DIAGNOSIS,
         title=f"{DIAGNOSIS}: {head.title}",
         head=replace(head, footer=" · ".join(part for part in (DIAGNOSIS, head.footer) if part)),
         detail=diagnosis.setup.sheet.detail,
         summary=data_words(diagnosis),
-        banner=Banner(_mood(diagnosis), verdict_word(diagnosis), tuple(headline(diagnosis))),
+        banner=Banner(mood, verdict_word(diagnosis), tuple(headline(diagnosis))),
         alarms=tuple(unit_error.text for unit_error in diagnosis.records.unit_errors),
         chapters=numbered([*chapters, *end_chapters(warnings, provenance)]),
         warnings=warnings,
@@ -103,12 +103,6 @@ def data_line(diagnosis: DiagnosisResult) -> str:
     return (
         f"{data_words(diagnosis)}{lasting}; {model.name}: {model.title}, {len(diagnosis.calibrated)} inputs calibrated"
     )
-
-
-def _mood(diagnosis: DiagnosisResult) -> str:
-    if diagnosis.verdict == "none":
-        return "calm"
-    return "found" if diagnosis.verdict == "named" and diagnosis.remainder is None else "open"
 
 
 def data_words(diagnosis: DiagnosisResult) -> str:
@@ -138,18 +132,18 @@ HEADS = ("Cause", "Unknown", "Value", "95 % interval", "Unit")
 
 def diagnosis_chapters(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[Chapter]:
     """Write the chapters in the order in which they are asked for."""
-    yield _chapter("wrong", "What is wrong", _wrong(diagnosis, drawn))
-    yield _chapter("cause", "Cause", _cause(diagnosis, drawn))
-    yield _chapter("model", "Extended model", _model(diagnosis))
-    yield _chapter("gain", "Gain", _gain(diagnosis, drawn))
-    yield _chapter("next", "Next measurement", _next(diagnosis))
-    yield _chapter("data", "Data", _data(diagnosis))
-
-
-def _chapter(ident: str, title: str, parts: ChapterParts) -> Chapter:
-    said = list(parts)
-    lines = tuple(part for part in said if isinstance(part, str))
-    return Chapter(title, tuple(part for part in said if not isinstance(part, str)), ident, lines=lines)
+    chapters: dict[str, tuple[str, ChapterParts]] = {
+        "wrong": ("What is wrong", _wrong(diagnosis, drawn)),
+        "cause": ("Cause", _cause(diagnosis, drawn)),
+        "model": ("Extended model", _model(diagnosis)),
+        "gain": ("Gain", _gain(diagnosis, drawn)),
+        "next": ("Next measurement", _next(diagnosis)),
+        "data": ("Data", _data(diagnosis)),
+    }
+    for ident, (title, parts) in chapters.items():
+        said = list(parts)
+        lines = tuple(part for part in said if isinstance(part, str))
+        yield Chapter(title, tuple(part for part in said if not isinstance(part, str)), ident, lines=lines)
 
 
 # What is wrong
@@ -232,7 +226,7 @@ def _cause(diagnosis: DiagnosisResult, drawn: Figures) -> ChapterParts:
 
 def _verdict_line(diagnosis: DiagnosisResult) -> str:
     if not explanations_of(diagnosis):
-        said = "none" if diagnosis.verdict == "none" else f"undecided: {listed(list(reasons(diagnosis)))}"
+        said = "none" if diagnosis.verdict == "none" else f"undecided: {reasons(diagnosis)}"
         return f"{said} ({p_text(diagnosis.p_any)})"
     parts = [spoken(cause.effect) for cause in diagnosis.causes]
     if diagnosis.remainder is not None:
@@ -266,35 +260,28 @@ def _named(diagnosis: DiagnosisResult) -> ChapterParts:
 
 
 def _near(diagnosis: DiagnosisResult) -> Iterator[str]:
-    """Say which explanations are not excluded, and which is the next behind them."""
-    for alternative in diagnosis.alternatives:
-        yield f"not excluded: {explanation(alternative)}{_distance(alternative)}"
-    rivals = _rivals(diagnosis)
-    if rivals and explanations_of(diagnosis):
-        yield f"next best: {explanation(rivals[0])}{_distance(rivals[0])}"
-
-
-def _rivals(diagnosis: DiagnosisResult) -> list[Alternative]:
-    """Return the explanations behind those that are not excluded, without those that only add to the named one."""
+    """Say which explanations are not excluded, and which is the next behind them: none that adds to the named one."""
     named = {cause.effect for cause in diagnosis.causes}
     said = [alternative.causes for alternative in diagnosis.alternatives]
-    rivals = [
+    behind = [
         alternative
         for alternative in diagnosis.ranking
         if alternative.causes and alternative.behind > 0 and alternative.causes not in said
+        if alternative.separation >= WEAK and not (named and named <= set(alternative.causes))
     ]
-    return [rival for rival in rivals if rival.separation >= WEAK and not (named and named <= set(rival.causes))]
-
-
-def _distance(alternative: Alternative) -> str:
-    return f", {alternative.behind:.1f} score units behind, λ {score_text(alternative.separation)}"
+    rivals = [("not excluded", alternative) for alternative in diagnosis.alternatives]
+    if explanations_of(diagnosis):
+        rivals += [("next best", alternative) for alternative in behind[:1]]
+    for word, rival in rivals:
+        distance = f"{rival.behind:.1f} score units behind, λ {score_text(rival.separation)}"
+        yield f"{word}: {explanation(rival)}, {distance}"
 
 
 def _significance(diagnosis: DiagnosisResult) -> Iterator[str]:
     if not explanations_of(diagnosis):
         yield f"Nothing is named: the best of all explanations may be chance ({p_text(diagnosis.p_any)})."
         if diagnosis.verdict == "undecided":
-            yield f"It is undecided whether anything is wrong: {listed(list(reasons(diagnosis)))}."
+            yield f"It is undecided whether anything is wrong: {reasons(diagnosis)}."
         return
     yield f"That anything is wrong is {certainty(diagnosis.p_any)}, every explanation that was tried paid for."
     if diagnosis.p_second is not None:
@@ -308,7 +295,7 @@ def _significance(diagnosis: DiagnosisResult) -> Iterator[str]:
             f"{listed([spoken(name) for name in remainder.results])} ({p_text(remainder.p_value)})."
         )
     if diagnosis.verdict == "undecided":
-        yield f"The verdict is undecided: {'; '.join([listed(list(reasons(diagnosis))), *shared_words(diagnosis)])}."
+        yield f"The verdict is undecided: {'; '.join([reasons(diagnosis), *shared_words(diagnosis)])}."
     if diagnosis.verdict == "named":
         yield "The verdict is unique: no other explanation is near."
     if diagnosis.verdict == "one_of":
@@ -319,15 +306,9 @@ def _significance(diagnosis: DiagnosisResult) -> Iterator[str]:
 
 def ranking_table(diagnosis: DiagnosisResult) -> TableView:
     """Say the explanations that were compared, and what this data makes of each."""
-    items = figures.shown_ranking(diagnosis)
     rows = [
-        (
-            explanation(alternative),
-            pretty(f"{alternative.behind:.1f}"),
-            score_text(alternative.separation),
-            _judged(alternative, diagnosis),
-        )
-        for alternative in items
+        (explanation(each), pretty(f"{each.behind:.1f}"), score_text(each.separation), _judged(each, diagnosis))
+        for each in figures.shown_ranking(diagnosis)
     ]
     note = (
         "Behind is the distance in score units (6 is a Bayes factor of about 20). λ is the loss of fit to expect if "
@@ -360,54 +341,34 @@ def _residuals(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[BlockView
 def _sight(diagnosis: DiagnosisResult) -> ChapterParts:
     """Say what this data could show: how small each effect may be, what is hidden, what was not excited or measured."""
     lacking = [(spoken(effect), listed(list(needs))) for effect, needs in diagnosis.not_measured.items()]
-    yield from _seen(diagnosis)
+    named = {cause.effect for cause in diagnosis.causes}
+    blind: dict[str, list[str]] = {"not excited": [], "cannot be fitted": [], "hidden in the tolerances": []}
+    visible: dict[str, str] = {}
+    rows = []
+    for size in diagnosis.seen:
+        name, smallest, effect = spoken(size.name), amount_text(readable(size.smallest)), size.name.partition(".")[0]
+        rows.append((name, smallest, str(size.sight), size.text))
+        if effect in named:
+            continue
+        if size.sight in blind:
+            is_hidden = size.sight == "hidden in the tolerances" and size.smallest is not None
+            remark = size.text or (f"visible from {smallest}" if is_hidden else "")
+            blind[size.sight].append(f"{name} ({remark})" if remark else name)
+        elif size.smallest is not None:
+            visible.setdefault(effect, f"{name} {smallest}")
+    yield from (f"{sight}: {_some(names)}" for sight, names in blind.items() if names)
     if lacking:
         yield f"not measured: {'; '.join(f'{effect} ({needs})' for effect, needs in lacking)}"
-    yield from _visible(diagnosis)
-    rows = [
-        (spoken(visible.name), amount_text(readable(visible.smallest)), str(visible.sight), visible.text)
-        for visible in diagnosis.seen
-    ]
+    if visible:
+        yield f"would have been seen from: {_some(list(visible.values()))}"
     rows += [(effect, ABSENT, "not measured", f"no column gives {needs}") for effect, needs in lacking]
     if rows:
         note = "Smallest visible: with a chance of 90 % this size is found, every explanation that is tried paid for."
         yield table_of("What this data can show", ("Effect", "Smallest visible", "Sight", "Remark"), rows, (1,), note)
 
 
-def _others(diagnosis: DiagnosisResult) -> list[VisibleSize]:
-    """Return the sizes of effects that are not named."""
-    named = {cause.effect for cause in diagnosis.causes}
-    return [visible for visible in diagnosis.seen if visible.name.partition(".")[0] not in named]
-
-
-def _seen(diagnosis: DiagnosisResult) -> Iterator[str]:
-    for sight in ("not excited", "cannot be fitted", "hidden in the tolerances"):
-        blind = [_blind(visible) for visible in _others(diagnosis) if visible.sight == sight]
-        if blind:
-            yield f"{sight}: {_some(blind)}"
-
-
-def _visible(diagnosis: DiagnosisResult) -> Iterator[str]:
-    visible: dict[str, str] = {}
-    for visible_size in _others(diagnosis):
-        if visible_size.sight == "visible" and visible_size.smallest is not None:
-            said = f"{spoken(visible_size.name)} {amount_text(readable(visible_size.smallest))}"
-            visible.setdefault(visible_size.name.partition(".")[0], said)
-    if visible:
-        yield f"would have been seen from: {_some(list(visible.values()))}"
-
-
 def _some(texts: Sequence[str]) -> str:
     return "; ".join(texts[:MOST_SEEN]) + ("; the sheet lists all" if len(texts) > MOST_SEEN else "")
-
-
-def _blind(visible_size: VisibleSize) -> str:
-    """Say what could not be seen, and from what size it would be."""
-    visible = (
-        f"visible from {amount_text(readable(visible_size.smallest))}" if visible_size.smallest is not None else ""
-    )
-    remark = visible_size.text or (visible if visible_size.sight == "hidden in the tolerances" else "")
-    return f"{spoken(visible_size.name)} ({remark})" if remark else spoken(visible_size.name)
 
 
 # Extended model
@@ -420,16 +381,11 @@ def _model(diagnosis: DiagnosisResult) -> ChapterParts:
         yield fitted
     else:
         yield Paragraph("Nothing was named, so no effect is switched on.")
-    others = [
-        row
-        for alternative in diagnosis.alternatives
-        for effect, unknowns in alternative.unknowns.items()
-        for unknown in unknowns
-        for row in _fitted(
-            f"{explanation(alternative)}: {spoken(effect)}" if len(alternative.causes) > 1 else spoken(effect), unknown
-        )
-        if effect != UNKNOWN
-    ]
+    others = []
+    for alternative in diagnosis.alternatives:
+        for effect, unknowns in alternative.unknowns.items():
+            name = f"{explanation(alternative)}: " * (len(alternative.causes) > 1) + spoken(effect)
+            others += [row for unknown in unknowns for row in _fitted(name, unknown) if effect != UNKNOWN]
     if others:
         yield table_of("The same for the explanations that are not excluded", ("Instead", *HEADS[1:]), others, (2, 3))
     if diagnosis.calibrated:
@@ -441,7 +397,12 @@ def _model(diagnosis: DiagnosisResult) -> ChapterParts:
     if diagnosis.causes or diagnosis.calibrated:
         name = diagnosis.setup.model.name
         yield Paragraph(f"{EVERYTHING} holds all of it; every verb accepts it: calc run {name} --inputs {EVERYTHING}.")
-    yield from _remainder(diagnosis)
+    remainder = diagnosis.remainder
+    if remainder is not None:
+        yield Paragraph(
+            f"The remainder ({prose(remainder.shape)}) is in no inputs file. new_effect.py holds its fitted shape as "
+            "an effect, ready to be made physical. It must not be extrapolated beyond the measured range."
+        )
 
 
 def _sizes(diagnosis: DiagnosisResult) -> Iterator[str]:
@@ -461,12 +422,8 @@ def _sizes(diagnosis: DiagnosisResult) -> Iterator[str]:
 
 def fitted_table(diagnosis: DiagnosisResult) -> TableView:
     """Say the size of every cause that is named, with its interval."""
-    rows = [
-        row
-        for cause in diagnosis.causes
-        for unknown in cause.unknowns
-        for row in _fitted(spoken(cause.effect), unknown)
-    ]
+    fitted = [(spoken(cause.effect), unknown) for cause in diagnosis.causes for unknown in cause.unknowns]
+    rows = [row for name, unknown in fitted for row in _fitted(name, unknown)]
     return table_of("Unknowns as fitted", HEADS, rows, (2, 3), "Intervals hold if the named cause is the true one.")
 
 
@@ -480,24 +437,11 @@ def _fitted(cause: str, unknown: FittedUnknown) -> Iterator[tuple[str, ...]]:
 
 
 def _calibrated(diagnosis: DiagnosisResult) -> Iterator[tuple[str, ...]]:
-    setup = diagnosis.setup
     for calibrated in diagnosis.calibrated:
-        nominal = float(setup.nominal(calibrated.name))
-        fitted = amount_text(Amount(calibrated.value, calibrated.unit), FITTED_DIGITS)
-        if not nominal:
-            fitted = amount_text(readable(Amount(calibrated.value, calibrated.unit)))
+        nominal, size = float(diagnosis.setup.nominal(calibrated.name)), Amount(calibrated.value, calibrated.unit)
+        fitted = amount_text(size, FITTED_DIGITS) if nominal else amount_text(readable(size))
         stated = amount_text(Amount(nominal, calibrated.unit), STATED_DIGITS)
         yield spoken(calibrated.name), stated, fitted, score_text(calibrated.of_its_sd)
-
-
-def _remainder(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
-    remainder = diagnosis.remainder
-    if remainder is None:
-        return
-    yield Paragraph(
-        f"The remainder ({prose(remainder.shape)}) is in no inputs file. new_effect.py holds its fitted shape as an "
-        "effect, ready to be made physical. It must not be extrapolated beyond the measured range."
-    )
 
 
 # Gain
@@ -566,7 +510,11 @@ def _points(diagnosis: DiagnosisResult) -> ChapterParts:
         yield f"{index}. {settings_text(point)}: {pair_text(point)} (λ then {score_text(point.separation)})"
     yield from (f"   {reason}" for reason in reasons)
     names = list(dict.fromkeys(name for point in diagnosis.next for name in (*point.measure, *point.settings)))
-    rows = [_point(index, point, names) for index, point in enumerate(diagnosis.next, start=1)]
+    rows = []
+    for index, point in enumerate(diagnosis.next, start=1):
+        settings = ["measure" if name in point.measure else amount_text(point.settings.get(name), 4) for name in names]
+        pair = " / ".join(together([name]) for name in point.separates)
+        rows.append((str(index), *settings, pair, score_text(point.separation)))
     heads = ("Point", *(spoken(name).capitalize() for name in names), "Separates", "λ then")
     note = (
         "λ then is the separation to expect once all points up to this one are measured; from "
@@ -594,12 +542,6 @@ def _ties(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
             yield table_of("Facts that decide", heads, facts, (3,))
 
 
-def _point(index: int, point: NextPoint, names: Sequence[str]) -> tuple[str, ...]:
-    settings = ["measure" if name in point.measure else amount_text(point.settings.get(name), 4) for name in names]
-    pair = " / ".join(together([name]) for name in point.separates)
-    return str(index), *settings, pair, score_text(point.separation)
-
-
 # Data
 
 
@@ -616,16 +558,14 @@ def _data(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
     for label, count in zip(file_labels(records.files), records.counts, strict=True):
         if count.unused:
             yield Paragraph(f"{label}: {count.sentence()}.")
-    yield table_of("Covariates", ("Name", "From", "To", "Role", "Remark"), list(_covariates(diagnosis)), (1, 2))
+    covariates = []
+    for covariate in records.covariates.values():
+        finite = covariate.values[np.isfinite(covariate.values)]
+        ends = (float(finite.min()), float(finite.max())) if finite.size else ()
+        low, high = (amount_text(Amount(end, covariate.unit), 4) for end in ends) if ends else (ABSENT, ABSENT)
+        missing = len(covariate.values) - finite.size
+        remarks = ["never changes"] * covariate.is_constant + [f"{missing} missing"] * (missing > 0)
+        covariates.append((spoken(covariate.name), low, high, covariate.role, ", ".join(remarks) or ABSENT))
+    yield table_of("Covariates", ("Name", "From", "To", "Role", "Remark"), covariates, (1, 2))
     for sentence in records.notes:
         yield Paragraph(sentence.rstrip(".") + ".")
-
-
-def _covariates(diagnosis: DiagnosisResult) -> Iterator[tuple[str, ...]]:
-    for covariate in diagnosis.records.covariates.values():
-        finite = covariate.values[np.isfinite(covariate.values)]
-        ends = (float(finite.min()), float(finite.max())) if finite.size else (None, None)
-        low, high = (ABSENT if end is None else amount_text(Amount(end, covariate.unit), 4) for end in ends)
-        missing = len(covariate.values) - finite.size
-        remarks = [*(["never changes"] if covariate.is_constant else []), *([f"{missing} missing"] if missing else [])]
-        yield spoken(covariate.name), low, high, covariate.role, ", ".join(remarks) or ABSENT

@@ -14,7 +14,6 @@ from truing.diagnosis.result import (
     Amount,
     Cause,
     DiagnosisResult,
-    Fact,
     FittedUnknown,
     Gain,
     NextPoint,
@@ -119,15 +118,11 @@ def number_texts(unknown: FittedUnknown, fitted: tuple[float, float | None, floa
     size = readable(Amount(unknown.value, unknown.unit))
     unit = unknown.unit if size is None else size.unit
     numbers = [None if one is None else float(from_si(one, unit)) for one in fitted]
-    spread = _half_width(numbers)
-    value, low, high = (_as_wide(one, spread) for one in numbers)
-    return value, low, high, unit_text(unit)
-
-
-def _half_width(numbers: Sequence[float | None]) -> float:
-    value, low, high = numbers
-    ends = [abs(end - value) for end in (low, high) if end is not None and value is not None]
-    return max((end for end in ends if math.isfinite(end)), default=0.0)
+    value, *ends = numbers
+    widths = [abs(end - value) for end in ends if end is not None and value is not None]
+    spread = max(filter(math.isfinite, widths), default=0.0)
+    printed, low, high = (_as_wide(one, spread) for one in numbers)
+    return printed, low, high, unit_text(unit)
 
 
 def _as_wide(number: float | None, spread: float) -> str:
@@ -186,10 +181,8 @@ def shared_words(diagnosis: DiagnosisResult) -> Iterator[str]:
 
 def headline(diagnosis: DiagnosisResult) -> list[str]:
     """Say what an engineer would tell a colleague: what is wrong, why, how much, what it is worth, what to do next."""
-    if diagnosis.verdict == "none":
-        return list(_nothing(diagnosis))
-    if diagnosis.verdict == "undecided" and not diagnosis.causes:
-        return list(_undecided(diagnosis))
+    if diagnosis.verdict == "none" or (diagnosis.verdict == "undecided" and not diagnosis.causes):
+        return list(_unnamed(diagnosis))
     said = [
         *_cause_sentences(diagnosis), *(f"{prose(warning)}." for warning in diagnosis.warnings),
         *_gain_sentences(diagnosis), *_next_sentences(diagnosis),
@@ -197,37 +190,29 @@ def headline(diagnosis: DiagnosisResult) -> list[str]:
     return [sentence[:1].upper() + sentence[1:] for sentence in said]
 
 
-def _nothing(diagnosis: DiagnosisResult) -> Iterator[str]:
-    yield f"Within its tolerances the model meets the measurement: {_met(diagnosis)}."
-    yield "What is left is noise; no effect, registered or not, is needed."
-    yield from _blind(diagnosis)
-
-
-def _undecided(diagnosis: DiagnosisResult) -> Iterator[str]:
-    yield f"No cause is named, but that nothing is wrong cannot be said either: {listed(list(reasons(diagnosis)))}."
-    yield f"The model as it is: {_met(diagnosis)}."
-    yield from _blind(diagnosis)
-    yield "More readings, of a wider range and in a changed order, would decide."
-
-
-def reasons(diagnosis: DiagnosisResult) -> Iterator[str]:
-    """Give the reasons for which a diagnosis is undecided, in print."""
-    yield from map(prose, doubts(diagnosis))
-
-
-def _met(diagnosis: DiagnosisResult) -> str:
-    return listed(
+def _unnamed(diagnosis: DiagnosisResult) -> Iterator[str]:
+    met = listed(
         [
             f"{spoken(wrong.result)} to {amount_text(wrong.rmse)} (noise floor {amount_text(wrong.noise_floor)})"
             for wrong in diagnosis.wrong
         ]
     )
-
-
-def _blind(diagnosis: DiagnosisResult) -> Iterator[str]:
+    if diagnosis.verdict == "none":
+        yield f"Within its tolerances the model meets the measurement: {met}."
+        yield "What is left is noise; no effect, registered or not, is needed."
+    else:
+        yield f"No cause is named, but that nothing is wrong cannot be said either: {reasons(diagnosis)}."
+        yield f"The model as it is: {met}."
     blind = [spoken(visible.name) for visible in diagnosis.seen if visible.sight == "not excited"]
     if blind:
         yield f"That says nothing of {listed(blind)}: this data does not excite {'it' if len(blind) == 1 else 'them'}."
+    if diagnosis.verdict == "undecided":
+        yield "More readings, of a wider range and in a changed order, would decide."
+
+
+def reasons(diagnosis: DiagnosisResult) -> str:
+    """Give the reasons for which a diagnosis is undecided, in print."""
+    return listed([prose(doubt) for doubt in doubts(diagnosis)])
 
 
 def wrong_results(diagnosis: DiagnosisResult) -> list[str]:
@@ -242,11 +227,6 @@ def wrong_results(diagnosis: DiagnosisResult) -> list[str]:
 def is_gain(gain: Gain) -> bool:
     """Tell whether a gain is more than chance."""
     return gain.p_value <= LIKELY and gain.rmse_after.value < gain.rmse_before.value
-
-
-def is_perhaps_gain(gain: Gain) -> bool:
-    """Tell whether an error falls by much, but in too few independent blocks to be more than chance."""
-    return not is_gain(gain) and gain.reducible_removed >= MUCH and gain.p_value < FEW_BLOCKS
 
 
 def _cause_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
@@ -278,37 +258,29 @@ def _cause_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
 
 def _gain_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
     gains = [gain for gain in diagnosis.gain if is_gain(gain)]
-    perhaps = [gain for gain in diagnosis.gain if is_perhaps_gain(gain)]
-    for gain in gains:
-        yield (
-            f"on rows that were not fitted {_falls(gain)} (noise floor "
-            f"{amount_text(gain.noise_floor)}): {percent(gain.reducible_removed)} of what can be removed is gone."
-        )
-    for gain in perhaps:
-        yield (
-            f"on rows that were not fitted {_falls(gain)}; "
-            f"in so few independent blocks that may be chance ({p_text(gain.p_value)})."
-        )
+    perhaps = [  # their error falls by much, but in too few independent blocks to be more than chance
+        gain
+        for gain in diagnosis.gain
+        if gain not in gains and gain.reducible_removed >= MUCH and gain.p_value < FEW_BLOCKS
+    ]
+    for gain in (*gains, *perhaps):
+        before, after = amount_text(gain.rmse_before), amount_text(gain.rmse_after)
+        falls = f"on rows that were not fitted the error of {spoken(gain.result)} falls from {before} to {after}"
+        if gain in gains:
+            removed = percent(gain.reducible_removed)
+            yield f"{falls} (noise floor {amount_text(gain.noise_floor)}): {removed} of what can be removed is gone."
+        else:
+            yield f"{falls}; in so few independent blocks that may be chance ({p_text(gain.p_value)})."
     if diagnosis.gain and not gains and not perhaps:
         yield "on rows that were not fitted there is no gain that could not be chance."
-    yield from _held_out_sentences(diagnosis)
-
-
-def _falls(gain: Gain) -> str:
-    before, after = amount_text(gain.rmse_before), amount_text(gain.rmse_after)
-    return f"the error of {spoken(gain.result)} falls from {before} to {after}"
-
-
-def _held_out_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
-    """Say what became of the error on rows that were held out on request: the strongest test there is."""
     for gain in diagnosis.gain:
         if gain.held_out is not None:
             before, after = (amount_text(replace(gain.rmse_before, value=row)) for row in gain.held_out)
-            how = "falls" if gain.held_out[1] < gain.held_out[0] else "GROWS"
-            if how == "GROWS" and diagnosis.causes:
-                continue  # an alarm says so
-            end = "." if how == "falls" else ": the extension does not carry over to them."
-            yield f"on the rows held out the error of {spoken(gain.result)} {how} from {before} to {after}{end}"
+            if gain.held_out[1] < gain.held_out[0]:
+                yield f"on the rows held out the error of {spoken(gain.result)} falls from {before} to {after}."
+            elif not diagnosis.causes:  # with causes an alarm says so
+                grows = f"on the rows held out the error of {spoken(gain.result)} GROWS from {before} to {after}"
+                yield f"{grows}: the extension does not carry over to them."
 
 
 def _next_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
@@ -351,15 +323,13 @@ def tie_text(tie: Tie) -> str:
     names = listed([together([name]) for name in tie.explanations])
     if not tie.facts:
         return f"no measurement proposed here tells {names} apart; only a fact from elsewhere does."
-    facts = listed([fact_text(fact) for fact in tie.facts], "or")
-    return f"no measurement proposed here tells {names} apart; a fact from elsewhere does: {facts}."
-
-
-def fact_text(fact: Fact) -> str:
-    """Say a quantity that may be known from elsewhere, and what it is if an explanation is right."""
-    what = spoken(fact.quantity.removeprefix("input:"))
-    note = f" ({fact.note})" if fact.note else ""
-    return f"whether {what}{note} is {amount_text(readable(fact.value))}"
+    facts = []
+    for fact in tie.facts:
+        note = f" ({fact.note})" if fact.note else ""
+        facts.append(
+            f"whether {spoken(fact.quantity.removeprefix('input:'))}{note} is {amount_text(readable(fact.value))}"
+        )
+    return f"no measurement proposed here tells {names} apart; a fact from elsewhere does: {listed(facts, 'or')}."
 
 
 def settings_text(point: NextPoint) -> str:

@@ -9,17 +9,21 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Literal, TypeAlias
 
+from truing.errors import UnitError
 from truing.formulas import Formula, symbol_text
 from truing.numbers import pretty, with_unit
 from truing.runs.provenance import Provenance
-from truing.studies.checks import SHORT, State
+from truing.studies.checks import SHORT
+from truing.units import unit_text
 
 MARKS = {
     "passes": "✓", "proposed": "!", "undecided": "?", "fails": "✗", "none": "○", "calm": "✓", "found": "●", "open": "?",
 }  # fmt: skip
 """The sign before a verdict: of a limit or a run, and of a diagnosis (calm, found, open)."""
+STATES = {str(state): (MARKS[state], word) for state, word in SHORT.items()}
+"""The sign and the word for the state of a limit."""
 
 
 # Pieces of a text
@@ -34,63 +38,27 @@ class Value:
 
 
 @dataclass(frozen=True)
-class SymbolText:
-    """The symbol of a quantity, as declared: h_0."""
+class Marked:
+    """A text that is set in a way of its own.
 
-    text: str
+    ``kind``: symbol (of a quantity, as declared: h_0), code (a name as it stands in files; bracketed where it stands
+    behind words that say the same), strong (what is to be seen first), aside (what is less important than the words
+    before it), source (literature), break (the end of a line; on a single line its text stands there),
+    state (of a limit: a sign and a word).
+    """
 
-
-@dataclass(frozen=True)
-class Code:
-    """A name as it stands in files; ``bracketed`` where it stands behind words that say the same."""
-
-    name: str
-    bracketed: bool = False
-
-
-@dataclass(frozen=True)
-class Strong:
-    """What is to be seen first."""
-
+    kind: Literal["symbol", "code", "bracketed code", "strong", "aside", "source", "break", "state"]
     text: str | Value
 
 
-@dataclass(frozen=True)
-class Aside:
-    """What is less important than the words before it."""
-
-    text: str
-
-
-@dataclass(frozen=True)
-class SourceText:
-    """The literature that something is taken from."""
-
-    text: str
-
-
-@dataclass(frozen=True)
-class Break:
-    """The end of a line; where a text has one line only, what stands between its parts."""
-
-    instead: str = ", "
-
-
-@dataclass(frozen=True)
-class Judgement:
-    """What became of a limit: its state in a sign and a word."""
-
-    state: State
-
-
-Piece: TypeAlias = str | Value | SymbolText | Code | Strong | Aside | SourceText | Break | Judgement
+Piece: TypeAlias = str | Value | Marked
 Text: TypeAlias = Piece | tuple[Piece, ...]
 
 
 def label_of(note: str, name: str, symbol: str = "") -> tuple[Piece, ...]:
     """Say what a quantity is, and its name in files."""
-    shown = (" ", SymbolText(symbol)) if symbol else ()
-    return (note or name.replace("_", " "), *shown, " ", Code(name, bracketed=True))
+    shown = (" ", Marked("symbol", symbol)) if symbol else ()
+    return (note or name.replace("_", " "), *shown, " ", Marked("bracketed code", name))
 
 
 def joined(parts: Iterable[Text], between: Piece = ", ") -> tuple[Piece, ...]:
@@ -112,23 +80,29 @@ def _plain(piece: Piece) -> str:
             return pretty(piece)
         case Value(number, unit):
             return with_unit(pretty(number), unit)
-        case SymbolText(symbol):
-            return symbol_text(symbol)
-        case Code(name, bracketed):
-            return f"({name})" if bracketed else name
-        case SourceText(source):
-            return f"({source})"
-        case Break(instead):
-            return instead
-        case Judgement(state):
-            return f"{MARKS[state]} {SHORT[state]}"
-        case Strong(inner) | Aside(inner):
+        case Marked("symbol", symbol):
+            return symbol_text(str(symbol))
+        case Marked("bracketed code" | "source", name):
+            return f"({name})"
+        case Marked("break" | "code", text):
+            return str(text)
+        case Marked("state", state):
+            return " ".join(STATES[str(state)])
+        case Marked(_, inner):
             return _plain(inner)
+
+
+def unit_as_said(unit: str) -> str:
+    """Write a unit for print; a heading that is no unit stays as it is."""
+    try:
+        return unit_text(unit) if unit else ""
+    except UnitError:
+        return unit
 
 
 def with_source(words: str, source: str) -> Text:
     """Return words with the literature behind them."""
-    return joined(filter(None, (words, SourceText(source) if source else "")), " ")
+    return joined(filter(None, (words, Marked("source", source) if source else "")), " ")
 
 
 # Blocks

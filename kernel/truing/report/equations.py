@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from truing.declare.checks import formula_scope
 from truing.declare.fields import Found, InputField, ResultField
+from truing.declare.model import formula_scope
 from truing.errors import DeclarationError
 from truing.evaluate import acting_inputs
 from truing.formulas import Formula, evaluate, parse, symbol_text
-from truing.formulas.layout import Binding, Layout, Writer, number_leaf, symbol_leaf, symbolic
-from truing.formulas.tree import Binary, Call, Constant, Name, Node, NumberNode, children, simplified
-from truing.numbers import ABSENT, RESULT_DIGITS, format_number, format_value
+from truing.formulas.layout import Binding, Layout, Writer, symbolic
+from truing.formulas.tree import CONSTANTS, SIGNS, Node, children, simplified
+from truing.numbers import ABSENT, format_value
 from truing.report.document import Equation, Value
 from truing.setup import Setup
 from truing.units import difference_unit, from_si, to_si
@@ -110,21 +111,17 @@ def _results(setup: Setup, result: ResultField, value: Any, *, numeric: bool) ->
 def lines(writer: Writer, equation: Equation, *, limit: float = LINE) -> list[EquationLine]:
     """Set an equation: on one line if it fits, otherwise a line each for expression, numbers and result."""
     formula = equation.formula
-    name = EquationLine(_left_hand(writer, equation), _width(Name(equation.name), {equation.name: equation.symbol}))
+    left = writer.symbol(equation.symbol, None) if equation.symbol else writer.word(equation.name)
+    name = EquationLine(left, _name_width(equation.symbol or equation.name))
     if formula.left is not None:
         return _solved(writer, equation, name)
     said = _broken(writer, formula, equation, None, limit - name.width)
-    steps = [_after(writer, "", said[0]), *said[1:]]
-    steps[0] = EquationLine(writer.infix(name.markup, "==", said[0].markup), name.width + said[0].width + 1.2)
+    first = EquationLine(writer.infix(name.markup, "==", said[0].markup), name.width + said[0].width + 1.2)
     rest = [_after(writer, "==", EquationLine(*_quantity(writer, value))) for value in equation.results]
     if equation.numbers is not None and formula.names:
         numbers = _broken(writer, formula, equation, equation.numbers, limit)
         rest = [_after(writer, "==", numbers[0]), *numbers[1:], *rest]
-    return _packed([*steps, *rest], limit)
-
-
-def _left_hand(writer: Writer, equation: Equation) -> str:
-    return writer.symbol(equation.symbol) if equation.symbol else writer.word(equation.name)
+    return _packed([first, *said[1:], *rest], limit)
 
 
 def _solved(writer: Writer, equation: Equation, name: EquationLine) -> list[EquationLine]:
@@ -147,13 +144,7 @@ def _quantity(writer: Writer, value: Value) -> tuple[str, float]:
 
 def _after(writer: Writer, sign: str, line: EquationLine) -> EquationLine:
     """Begin a line with a sign, as the continuation of the line above."""
-    if not sign:
-        return line
-    return EquationLine(writer.infix(EMPTY[type(writer).__name__], sign, line.markup), line.width + 1.2)
-
-
-EMPTY = {"MathMLWriter": "<mrow></mrow>", "LatexWriter": "{}"}
-"""What stands before a sign at the beginning of a line, so that it is set as a sign between two sides."""
+    return EquationLine(writer.infix(writer.opening, sign, line.markup), line.width + 1.2)
 
 
 def _packed(steps: list[EquationLine], limit: float) -> list[EquationLine]:
@@ -173,7 +164,7 @@ def _broken(
 ) -> list[EquationLine]:
     """Set one side, in one line or, if it is a sum too wide for that, in lines that begin with plus or minus."""
     texts = equation.symbols if numbers is None else {name: " ".join(pair) for name, pair in numbers.items()}
-    layout = _layout(writer, equation, numbers)
+    layout = Layout(writer, equation.symbols, numbers)
     width = _width(formula.right, texts)
     (_, first), *others = _terms(formula.right)
     if width <= limit or not others:
@@ -185,43 +176,32 @@ def _broken(
     return _packed(written, limit)
 
 
-def _layout(writer: Writer, equation: Equation, numbers: Mapping[str, tuple[str, str]] | None) -> Layout:
-    if numbers is None:
-        return Layout(writer, symbol_leaf(writer, equation.symbols), equation.symbols)
-
-    def is_given(name: str) -> bool | None:
-        return numbers[name][0] != ABSENT if name in numbers else None
-
-    return Layout(writer, number_leaf(writer, numbers), dots=True, is_given=is_given)
-
-
 def _terms(node: Node) -> list[tuple[str, Node]]:
     """Take a sum apart into signs and terms."""
-    if isinstance(node, Binary) and node.operator in {"+", "-"}:
-        return [*_terms(node.left), (node.operator, node.right)]
+    match node:
+        case ast.BinOp(left, (ast.Add() | ast.Sub()) as sign, right):
+            return [*_terms(left), (SIGNS[type(sign)], right)]
     return [("", node)]
 
 
 def _width(node: Node, texts: Mapping[str, str]) -> float:
     """Estimate the width of a node in em."""
     match node:
-        case NumberNode(text, _):
+        case ast.Constant(_, str() as text):
             return 0.55 * len(text)
-        case Constant():
-            return 0.6
-        case Name(name):
-            return _name_width(texts.get(name) or name)
-        case Binary("/", above, below):
+        case ast.Name(name):
+            return 0.6 if name in CONSTANTS else _name_width(texts.get(name) or name)
+        case ast.BinOp(above, ast.Div(), below):
             return max(_width(above, texts), _width(below, texts)) + 0.3
-        case Binary("**", base, exponent):
+        case ast.BinOp(base, ast.Pow(), exponent):
             return _width(base, texts) + 0.7 * _width(exponent, texts)
-        case Binary(_, left, right):
-            return _width(left, texts) + _width(right, texts) + (0.6 if node.operator == "*" else 1.2)
-        case Call(("cases" | "either"), arguments):
+        case ast.BinOp(left, sign, right):
+            return _width(left, texts) + _width(right, texts) + (0.6 if isinstance(sign, ast.Mult) else 1.2)
+        case ast.Call(ast.Name("cases" | "either"), arguments):
             values, conditions = arguments[::2], arguments[1::2]
             widest = max(_width(value, texts) for value in values)
             return widest + max((_width(condition, texts) for condition in conditions), default=4.0) + 3
-        case Call(function, arguments):
+        case ast.Call(ast.Name(function), arguments):
             inner = sum(_width(argument, texts) for argument in arguments)
             return inner + (1.0 if function == "sqrt" else 0.5 * len(function) + 0.8)
     return sum(_width(child, texts) for child in children(node)) + 1.2
@@ -233,12 +213,3 @@ def _name_width(text: str) -> float:
         return 0.58 * len(text) + 0.2
     base, _, subscript = symbol_text(text).partition("_")
     return 0.6 * len(base) + 0.42 * len(subscript)
-
-
-def value_text(value: Any, digits: int = RESULT_DIGITS) -> str:
-    """Write a cell of a plugin's table: a number, a text, yes or no, or nothing."""
-    if isinstance(value, bool) or type(value).__name__ == "bool":
-        return "yes" if value else "no"
-    if value is None or isinstance(value, (int, float)) or hasattr(value, "dtype"):
-        return format_number(value, digits)
-    return str(value)

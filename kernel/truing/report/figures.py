@@ -27,15 +27,12 @@ from truing.kernel.blame import spoken_place
 from truing.report.figure_layout import arranged
 
 STYLE = {
-    "svg.fonttype": "path",
     "svg.hashsalt": "truing",
     "font.family": "DejaVu Sans",
     "font.size": 9.0,
     "axes.titlesize": 10.0,
-    "axes.labelsize": 9.0,
     "axes.linewidth": 0.7,
     "axes.edgecolor": "#333333",
-    "axes.grid": False,
     "axes.spines.top": False,
     "axes.spines.right": False,
     "grid.color": "#d5d8dc",
@@ -48,10 +45,9 @@ STYLE = {
     "legend.frameon": False,
     "legend.fontsize": 8.0,
     "figure.figsize": (6.4, 3.6),
-    "figure.facecolor": "white",
     "savefig.facecolor": "white",
 }
-"""The look of every figure; a plugin may say otherwise for its own."""
+"""The look of every figure where it is not matplotlib's own; a plugin may say otherwise for its own."""
 
 POINTS_PER_INCH = 72
 EDGE = 4.3
@@ -98,11 +94,15 @@ def _saved(figure: Any) -> str:
     try:
         return _svg(figure)
     except ValueError:
-        broken = _broken_formulas(figure)
-        if not broken:
+        parser: Any = MathTextParser("path")
+        texts = [text for text in figure.findobj(Text) if text.get_parse_math() and "$" in text.get_text()]
+        for text in texts:
+            try:
+                parser.parse(text.get_text())
+            except ValueError:
+                text.set_parse_math(False)
+        if all(text.get_parse_math() for text in texts):
             raise
-    for text in broken:
-        text.set_parse_math(False)
     return _svg(figure)
 
 
@@ -142,19 +142,6 @@ def _svg(figure: Any) -> str:
     renderer.finalize()
     view = " ".join(f"{number:.6g}" for number in (box.x0, height - box.y1, box.width, box.height))
     return _VIEW_BOX.sub(f'viewBox="{view}"', stream.getvalue(), count=1)
-
-
-def _broken_formulas(figure: Any) -> list[Any]:
-    """Return the texts of a figure that matplotlib takes for formulas and cannot read."""
-    parser: Any = MathTextParser("path")
-    broken = []
-    for text in figure.findobj(Text):
-        try:
-            if text.get_parse_math() and "$" in text.get_text():
-                parser.parse(text.get_text())
-        except ValueError:
-            broken.append(text)
-    return broken
 
 
 def inlined(svg: str, *, title: str, ident: str) -> str:

@@ -13,27 +13,10 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup, escape
 
 from truing.formulas.symbols import printable
-from truing.formulas.write_mathml import MathMLWriter
+from truing.formulas.write_mathml import MATHML, symbol_mathml
 from truing.numbers import pretty, with_unit
 from truing.report import equations
-from truing.report.document import (
-    MARKS,
-    Aside,
-    BlockView,
-    Break,
-    Code,
-    Document,
-    Equation,
-    Judgement,
-    Piece,
-    ResultEntry,
-    SourceText,
-    Strong,
-    SymbolText,
-    Text,
-    Value,
-)
-from truing.studies.checks import SHORT
+from truing.report.document import MARKS, STATES, BlockView, Document, Equation, Marked, Piece, ResultEntry, Text, Value
 from truing.templating import template_folder
 
 COLUMN = equations.LINE
@@ -49,20 +32,15 @@ UNBROKEN = 30
 def html_of(document: Document) -> str:
     """Write a document as a page."""
     has_contents = document.detail != "short" and len(document.chapters) > LONG
-    return page("sheet.html.j2", document, has_contents=has_contents)
+    return page("sheet.html.j2", document.head.footer, sheet=document, has_contents=has_contents)
 
 
-def page(template: str, sheet: Any, *, styles: Sequence[str] = ("sheet.css",), **more: Any) -> str:
-    """Write a page from its template; ``sheet`` has a ``head``, whose footer stands in the margin of every page."""
+def page(template: str, footer: str, *, styles: Sequence[str] = ("sheet.css",), **said: Any) -> str:
+    """Write a page from its template; the footer stands in the margin of every page but the first."""
     style = "".join((template_folder() / name).read_text(encoding="utf-8") for name in styles)
-    style = _markup(style + page_style(sheet.head.footer))
-    return with_room(_environment().get_template(template).render(sheet=sheet, style=style, **more)) + "\n"
-
-
-def page_style(footer: str) -> str:
-    """Write what only this sheet's pages say: its title in the margin, from the second page on."""
-    title = f'@page {{ @top-left {{ content: "{css_text(footer)}"; }} }}'
-    return f"\n{title}\n@page :first {{ @top-left {{ content: none; }} }}\n"
+    style += f'\n@page {{ @top-left {{ content: "{css_text(footer)}"; }} }}'
+    style += "\n@page :first { @top-left { content: none; } }\n"
+    return with_room(_environment().get_template(template).render(style=_markup(style), **said)) + "\n"
 
 
 def css_text(text: str) -> str:
@@ -116,20 +94,21 @@ def _piece(piece: Piece) -> str:
         case Value(text, unit):
             number = _one_line(with_unit(pretty(text), unit))
             return escape(number.replace(" ", "\u00a0") if len(number) < UNBROKEN else number)
-        case SymbolText(text):
-            return f"<math>{MathMLWriter().symbol(text)}</math>"
-        case Code(name):
-            return f"<code>{_breakable(name)}</code>"
-        case Strong(text):
+        case Marked("symbol", text):
+            return f"<math>{symbol_mathml(str(text))}</math>"
+        case Marked("code" | "bracketed code", name):
+            return f"<code>{_breakable(str(name))}</code>"
+        case Marked("strong", text):
             return f"<strong>{_piece(text)}</strong>"
-        case Aside(text):
+        case Marked("aside", text):
             return f'<span class="aside">{_piece(text)}</span>'
-        case SourceText(text):
+        case Marked("source", text):
             return f'<span class="aside">[{_piece(text)}]</span>'
-        case Break():
+        case Marked("state", state):
+            sign, word = STATES[str(state)]
+            return f'<span aria-hidden="true">{sign}</span> {word}'
+        case Marked():
             return "<br>"
-        case Judgement(state):
-            return f'<span aria-hidden="true">{MARKS[state]}</span> {SHORT[state]}'
 
 
 def _breakable(name: str) -> Any:
@@ -148,7 +127,7 @@ def _is_wide(entry: ResultEntry) -> bool:
 
 
 def _lines(equation: Equation) -> list[equations.EquationLine]:
-    return equations.lines(MathMLWriter(), equation)
+    return equations.lines(MATHML, equation)
 
 
 def _equation(equation: Equation) -> Any:

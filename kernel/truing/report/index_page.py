@@ -5,73 +5,36 @@ from __future__ import annotations
 import base64
 import hashlib
 import os
-from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
 from truing.atomic import write_files
-from truing.errors import OutputError, UnitError
+from truing.errors import OutputError
 from truing.numbers import ABSENT, counted, format_number, pretty, with_unit
-from truing.report.document import Head
+from truing.report.document import unit_as_said
 from truing.report.html_printer import page
-from truing.runs.index import FolderEntry, ListedNumber, Listing, Other
-from truing.studies.checks import State
+from truing.runs.index import FolderEntry, ListedNumber, Listing
 from truing.templating import template_folder
-from truing.units import unit_text
 
 MARK = '<meta name="generator" content="calc index">'
 """What an index of ours holds, and no other page."""
 SHOWN = 3
 
 
-@dataclass(frozen=True)
-class FindingView:
-    """A finding as printed: its name, its number, its limit where it has one, and the state of that."""
-
-    name: str
-    value: str
-    limit: str
-    state: State | None
-
-
-@dataclass(frozen=True)
-class IndexRow:
-    """One row of the table: the entry, where its sheet is, and what is printed of its numbers."""
-
-    entry: FolderEntry
-    link: str
-    state: str
-    margin: str
-    shown: tuple[FindingView, ...]
-    more: int
-
-
-@dataclass(frozen=True)
-class IndexView:
-    """Everything on the page."""
-
-    head: Head
-    summary: str
-    rows: tuple[IndexRow, ...]
-    others: tuple[Other, ...]
-
-
 def index_html(listing: Listing, target: Path) -> str:
     """Write the page that will stand at ``target``; its links lead to the sheets from there."""
     script = (template_folder() / "index.js").read_text(encoding="utf-8")
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    folder = Path(listing.folder)
+    title = f"Runs and diagnoses in {folder.name or folder.absolute().name}"
     return page(
-        "index.html.j2", _view(listing, target), styles=("sheet.css", "index.css"), script=script, digest=digest
-    )
-
-
-def _view(listing: Listing, target: Path) -> IndexView:
-    title = f"Runs and diagnoses in {Path(listing.folder).name or Path(listing.folder).absolute().name}"
-    head = Head(title=title, model="", fields=(), signatures=(), footer=title)
-    rows = tuple(_row(entry, Path(listing.folder), target) for entry in listing.entries)
-    return IndexView(head, summary_of(listing), rows, listing.others)
+        "index.html.j2", title, styles=("sheet.css", "index.css"), title=title, summary=summary_of(listing),
+        listing=listing, most=SHOWN, link=partial(_link, folder.absolute(), target), margin=_margin, number=_number,
+        script=script, digest=digest,
+    )  # fmt: skip
 
 
 def summary_of(listing: Listing) -> str:
@@ -87,23 +50,12 @@ def summary_of(listing: Listing) -> str:
     return ", ".join(parts)
 
 
-def _row(entry: FolderEntry, folder: Path, target: Path) -> IndexRow:
-    return IndexRow(
-        entry=entry,
-        link=_link(folder.absolute() / entry.sheet, target) if entry.sheet else "",
-        state="found" if entry.kind == "diagnosis" else entry.state or "none",
-        margin=_margin(entry),
-        shown=tuple(_findings(entry)),
-        more=max(len(entry.findings) - SHOWN, 0) if entry.kind == "diagnosis" or entry.checks else 0,
-    )
-
-
-def _link(sheet: Path, target: Path) -> str:
+def _link(folder: Path, target: Path, sheet: str) -> str:
     """Return the address of a sheet as seen from the page; from another drive the whole of it."""
     try:
-        return quote(os.path.relpath(sheet, target.absolute().parent).replace(os.sep, "/"))
+        return quote(os.path.relpath(folder / sheet, target.absolute().parent).replace(os.sep, "/"))
     except ValueError:
-        return sheet.as_uri()
+        return (folder / sheet).as_uri()
 
 
 def _margin(entry: FolderEntry) -> str:
@@ -114,18 +66,8 @@ def _margin(entry: FolderEntry) -> str:
     return f"{pretty(format_number(share, 3))}{chr(0x202F) + '%' if least.limit else ''}"
 
 
-def _findings(entry: FolderEntry) -> Iterator[FindingView]:
-    for one in entry.findings[:SHOWN]:
-        limit = _number(one, one.limit) if one.limit is not None else ""
-        yield FindingView(one.name, _number(one, one.value), f"{one.relation} {limit}" if limit else "", one.state)
-
-
 def _number(one: ListedNumber, value: float | None) -> str:
-    try:
-        unit = unit_text(one.unit) if one.unit else ""
-    except UnitError:
-        unit = one.unit
-    return with_unit(pretty(format_number(value, 4)), unit)
+    return with_unit(pretty(format_number(value, 4)), unit_as_said(one.unit))
 
 
 def listing_document(listing: Listing) -> dict[str, Any]:

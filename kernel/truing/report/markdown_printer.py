@@ -8,32 +8,25 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Final
 
 from truing.formulas.symbols import printable
-from truing.formulas.write_latex import LatexWriter
+from truing.formulas.write_latex import LATEX, symbol_latex
 from truing.numbers import pretty
 from truing.report import equations
 from truing.report.document import (
-    MARKS,
-    Aside,
+    STATES,
     BlockView,
-    Break,
-    Code,
     Document,
     Equation,
     FigureView,
     Items,
-    Judgement,
+    Marked,
     Paragraph,
     Piece,
     ResultEntry,
-    SourceText,
-    Strong,
-    SymbolText,
     TableView,
     Text,
     Value,
     plain_text,
 )
-from truing.studies.checks import SHORT
 
 LINE = 60.0
 """How wide a line of a formula may be, in em as estimated."""
@@ -139,19 +132,19 @@ def _piece(piece: Piece, *, begins: bool = True) -> str:
     match piece:
         case str():
             return _words(piece, begins=begins)
-        case Value() | Code() | SourceText():
+        case Value() | Marked("code" | "bracketed code" | "source", _):
             return escaped(plain_text(piece))
-        case SymbolText(text):
-            return f"${LatexWriter().symbol(text)}$"
-        case Strong(text):
+        case Marked("symbol", text):
+            return f"${symbol_latex(str(text))}$"
+        case Marked("strong", text):
             return _piece(text)
-        case Aside(text):
+        case Marked("aside", text):
             return escaped(text)
-        case Break(instead):
-            return instead
-        case Judgement(state):
-            word = SHORT[state]
-            return f"{MARKS[state]} {word if state == 'passes' else f'**{word}**'}"
+        case Marked("state", state):
+            sign, word = STATES[str(state)]
+            return f"{sign} {word if state == 'passes' else f'**{word}**'}"
+        case Marked(_, instead):
+            return str(instead)
 
 
 def _words(text: str, *, begins: bool) -> str:
@@ -162,7 +155,7 @@ def _words(text: str, *, begins: bool) -> str:
 
 
 def _equation(equation: Equation) -> str:
-    lines = [line.markup for line in equations.lines(LatexWriter(), equation, limit=LINE)]
+    lines = [line.markup for line in equations.lines(LATEX, equation, limit=LINE)]
     if len(lines) == 1:
         return f"$$\n{lines[0]}\n$$"
     body = " \\cr\n& ".join(lines)

@@ -27,15 +27,9 @@ MAC = (
     "/Applications/Microsoft Edge.app/Contents/MacOS/Microsoft Edge",
 )
 QUIET = (
-    "--headless",
-    "--disable-gpu",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--disable-extensions",
-    "--no-first-run",
-    "--no-default-browser-check",
-)
+    "--headless", "--disable-gpu", "--disable-background-networking", "--disable-component-update", "--disable-sync",
+    "--disable-extensions", "--no-first-run", "--no-default-browser-check", "--no-pdf-header-footer",
+)  # fmt: skip
 HOW_TO_PRINT = "open sheet.html in any browser and print it to PDF (Ctrl+P), with background graphics on"
 PATIENCE = 120.0
 
@@ -68,16 +62,11 @@ def sandbox_arguments() -> list[str]:
     return ["--no-sandbox"] if is_root else []
 
 
-def print_pdf(html: Path, pdf: Path, browser: Path | None = None, *, paper: str = "A4") -> None:
-    """Print a sheet to PDF on "A4" or "letter" paper.
+def pdf_bytes(html: str, browser: Path | None = None, *, paper: str = "A4") -> bytes:
+    """Print the text of a sheet on "A4" or "letter" paper and return the PDF.
 
     Raises OutputError with one sentence: no browser (and how to print without), or what went wrong.
     """
-    pdf.write_bytes(pdf_bytes(html.read_text(encoding="utf-8"), browser, paper=paper))
-
-
-def pdf_bytes(html: str, browser: Path | None = None, *, paper: str = "A4") -> bytes:
-    """Print the text of a sheet and return the PDF; raises OutputError as ``print_pdf`` does."""
     browser = browser or find_browser()
     if browser is None:
         raise OutputError(f"no Chromium, Chrome or Edge was found for the PDF (CHROME_PATH names one); {HOW_TO_PRINT}")
@@ -90,7 +79,7 @@ def pdf_bytes(html: str, browser: Path | None = None, *, paper: str = "A4") -> b
 
 def _run(browser: Path, arguments: list[str], made: Path) -> None:
     """Run the browser once, unseen, with an empty profile and no word to the network."""
-    command = [str(browser), *QUIET, *sandbox_arguments(), "--no-pdf-header-footer", *arguments]
+    command = [str(browser), *QUIET, *sandbox_arguments(), *arguments]
     try:
         done = subprocess.run(command, capture_output=True, timeout=PATIENCE, check=False)
     except subprocess.TimeoutExpired:

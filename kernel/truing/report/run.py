@@ -83,9 +83,6 @@ def write_sheet(path: str | Path, make: Callable[[], Document]) -> Path:
     if ending not in {".html", ".htm", ".md", ".pdf"}:
         raise OutputError(f"{file}: a sheet ends in .html, .md or .pdf")
     sheet = make()
-    if ending == ".md":
-        write_files({file: markdown_of(sheet)})
-    else:
-        page = html_of(sheet)
-        write_files({file: pdf_bytes(page) if ending == ".pdf" else page})
+    text = markdown_of(sheet) if ending == ".md" else html_of(sheet)
+    write_files({file: pdf_bytes(text) if ending == ".pdf" else text})
     return file

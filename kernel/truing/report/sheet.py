@@ -13,7 +13,6 @@ from truing.cases import CaseResult, CasesTable
 from truing.declare.fields import Given, InputField
 from truing.declare.goals import Require
 from truing.declare.published import rules_of
-from truing.declare.spreads import Distribution
 from truing.evaluate import acting_inputs
 from truing.inputs_file.values import halving_in_words
 from truing.numbers import (
@@ -29,21 +28,16 @@ from truing.numbers import (
 from truing.published import ComparedRow, parted
 from truing.report.chapters import LONGEST_TABLE, Figures, Writing, numbered, result_chapters
 from truing.report.document import (
-    Aside,
     Banner,
     BlockView,
-    Break,
     Chapter,
-    Code,
     Column,
     Document,
     Head,
     Items,
-    Judgement,
+    Marked,
     Paragraph,
     Piece,
-    Strong,
-    SymbolText,
     TableView,
     Text,
     Value,
@@ -53,19 +47,14 @@ from truing.report.document import (
 )
 from truing.runs.provenance import Provenance
 from truing.setup import Setup, SwitchedOn
-from truing.studies.checks import HEADLINES, SHORT, Check, Proposal, State, check_name, requirements
+from truing.studies.checks import HEADLINES, SHORT, Check, check_name, requirements
 from truing.studies.verdicts import NO_RESULT, NO_STUDY, sentence_of
 from truing.units import unit_text
 
-HEAD_FIELDS = {
-    "project": "Project",
-    "drawing": "Drawing",
-    "revision": "Revision",
-    "company": "Company",
-    "customer": "Customer",
-    "date": "Date",
-}
-SIGNATURES = {"prepared": "Prepared", "checked": "Checked", "approved": "Approved"}
+HEAD_FIELDS = ("project", "drawing", "revision", "company", "customer", "date")
+ALWAYS = {"project", "drawing", "revision", "date"}
+"""Fields of the title block that are there to be filled in by hand, too."""
+SIGNATURES = ("prepared", "checked", "approved")
 PICTURES = {".svg": "image/svg+xml", ".png": "image/png", ".jpg": "image/jpeg", ".jpeg": "image/jpeg"}
 LARGEST_LOGO = 500_000
 NOT_SHOWN = {"title", "logo"}
@@ -88,7 +77,11 @@ def make_sheet(
     warnings = tuple(_warnings(calculation, cases, figures.failures))
     front = _front(calculation, cases, detail)
     back = () if detail == "short" else _back(setup, verified)
-    end = end_chapters(warnings, provenance, references(calculation, detail))
+    cites = [
+        *setup.model.cites,
+        *(text for each in calculation.outcomes.values() for text in getattr(each, "cites", ())),
+    ]
+    end = end_chapters(warnings, provenance, () if detail == "short" else tuple(dict.fromkeys(cites)))
     head = head_of(setup, provenance)
     return Document(
         kind=SHEET,
@@ -106,27 +99,18 @@ def make_sheet(
 def head_of(setup: Setup, provenance: Provenance) -> Head:
     """Fill the title block; what the inputs file leaves open has room to be written by hand."""
     given = {name: str(text) for name, text in setup.sheet.head.items() if str(text).strip()}
-    fields = [
-        (label, given.get(name, provenance.date if name == "date" else "")) for name, label in HEAD_FIELDS.items()
-    ]
-    shown = [(label, text) for label, text in fields if text or label in {"Project", "Drawing", "Revision", "Date"}]
-    signing = {key for name in SIGNATURES for key in (name, f"{name}_by")}
-    others = [
-        (name.replace("_", " ").capitalize(), text)
-        for name, text in given.items()
-        if name not in {*HEAD_FIELDS, *NOT_SHOWN, *signing}
-    ]
-    signatures = [(label, given.get(f"{name}_by", given.get(name, ""))) for name, label in SIGNATURES.items()]
+    texts = {name: given.get(name, provenance.date if name == "date" else "") for name in HEAD_FIELDS}
+    texts = {name: text for name, text in texts.items() if text or name in ALWAYS}
+    elsewhere = {*HEAD_FIELDS, *NOT_SHOWN, *SIGNATURES, *(f"{name}_by" for name in SIGNATURES)}
+    texts |= {name: text for name, text in given.items() if name not in elsewhere}
     title = given.get("title", setup.model.title)
-    logo, _ = logo_of(setup)
-    parts = [title, given.get("project", ""), given.get("drawing", ""), given.get("revision", "")]
     return Head(
         title=title,
         model=setup.model.title if title != setup.model.title else "",
-        fields=(*shown, *others),
-        signatures=tuple(signatures),
-        footer=" · ".join(part for part in parts if part),
-        logo=logo,
+        fields=tuple((name.replace("_", " ").capitalize(), text) for name, text in texts.items()),
+        signatures=tuple((name.capitalize(), given.get(f"{name}_by", given.get(name, ""))) for name in SIGNATURES),
+        footer=" · ".join(filter(None, [title, *(given.get(name) for name in ("project", "drawing", "revision"))])),
+        logo=logo_of(setup)[0],
     )
 
 
@@ -152,27 +136,23 @@ def logo_of(setup: Setup) -> tuple[str, str]:
 
 
 def banner_of(calculation: Calculation, cases: CasesTable | None) -> Banner:
-    """Say the verdict, of all cases where there are some, and what the design that is proposed instead changes."""
+    """Say the verdict, of all cases where there are some, and what the design that is proposed instead changes.
+
+    Of cases that is the design of the first which needs one.
+    """
     state = calculation.verdict if cases is None else cases.verdict
     text = sentence_of(calculation.decided) if cases is None else sentence_of_cases(cases)
     if not calculation.checks and state == "passes":
         return Banner("none", NO_LIMITS, (text,))
-    proposal = _proposal(calculation, cases)
+    needing = (case.decided.proposal for case in (cases.cases if cases else ()) if case.verdict == "proposed")
+    proposal = next(needing, calculation.decided.proposal)
     if state != "proposed" or proposal is None:
         return Banner(state, HEADLINES[state], (text,))
     changes = joined(
-        (Value(f"{name.replace('_', ' ')} {stated} → "), Strong(proposed))
+        (Value(f"{name.replace('_', ' ')} {stated} → "), Marked("strong", proposed))
         for name, stated, proposed in proposal.changes
     )
     return Banner(state, HEADLINES[state], (text, ("Changed: ", *changes, ".")))
-
-
-def _proposal(calculation: Calculation, cases: CasesTable | None) -> Proposal | None:
-    """Return the design that is proposed instead: of cases that of the first which needs one."""
-    needing = (
-        case.decided.proposal for case in (cases.cases if cases is not None else ()) if case.verdict == "proposed"
-    )
-    return next(needing, calculation.decided.proposal)
 
 
 def sentence_of_cases(cases: CasesTable) -> str:
@@ -202,13 +182,6 @@ def _warnings(calculation: Calculation, cases: CasesTable | None, failures: Sequ
     if len(calculation.failed) > len(shown) and cases is None:
         yield f"{len(calculation.failed) - len(shown)} further rows failed"
     yield from failures
-
-
-def references(calculation: Calculation, detail: str) -> tuple[str, ...]:
-    """Name the literature of the model, then that of the studies that ran; a short sheet has none."""
-    outcomes = calculation.outcomes.values()
-    texts = [*calculation.setup.model.cites, *(text for outcome in outcomes for text in getattr(outcome, "cites", ()))]
-    return () if detail == "short" else tuple(dict.fromkeys(texts))
 
 
 def _front(calculation: Calculation, cases: CasesTable | None, detail: str) -> Iterator[Chapter]:
@@ -249,7 +222,10 @@ def cases_table(calculation: Calculation, cases: CasesTable, most: int) -> Table
     setup = calculation.setup
     checks = list(dict.fromkeys(check.name for case in cases.cases for check in case.checks))
     numbers = [(name.replace("_", " "), format_value(0.0, setup.unit_of(name))[1]) for name in cases.varied]
-    numbers += [(name.replace("_", " "), _check_unit(cases, name)) for name in checks]
+    firsts = {check.name: check for case in reversed(cases.cases) for check in case.checks}
+    numbers += [
+        (name.replace("_", " "), "%" if firsts[name].chance else unit_text(firsts[name].unit)) for name in checks
+    ]
     columns = (
         Column("Case"), *(Column(title, unit, "number") for title, unit in numbers),
         Column("Smallest margin", kind="number"), Column("Verdict"),
@@ -266,13 +242,12 @@ def cases_table(calculation: Calculation, cases: CasesTable, most: int) -> Table
     return TableView("All cases", columns, tuple(rows), note, states)
 
 
-def _check_unit(cases: CasesTable, name: str) -> str:
-    check = next(check for case in cases.cases for check in case.checks if check.name == name)
-    return "%" if check.chance else unit_text(check.unit)
-
-
 def _case_row(setup: Setup, case: CaseResult, varied: Sequence[str], checks: Sequence[str]) -> tuple[str, ...]:
-    values = [_case_value(setup, case.values, name) for name in varied]
+    values = []
+    for name in varied:
+        value = case.values.get(name, setup.nominal(name))
+        is_word = isinstance(value, (str, bool))
+        values.append(str(value) if is_word else format_value(value, setup.unit_of(name), STATED_DIGITS)[0])
     if case.reason is not None:
         return (case_name(case), *values, *("–" for _ in checks), "–", f"cannot be calculated: {case.reason}")
     texts = {check.name: check_value(check, check.value).text for check in case.checks}
@@ -288,13 +263,6 @@ def _case_row(setup: Setup, case: CaseResult, varied: Sequence[str], checks: Seq
     )
 
 
-def _case_value(setup: Setup, values: Mapping[str, Any], name: str) -> str:
-    value = values.get(name, setup.nominal(name))
-    if isinstance(value, (str, bool)):
-        return str(value)
-    return format_value(value, setup.unit_of(name), STATED_DIGITS)[0]
-
-
 # What the sheet says of what was asked, of limits, of published numbers, and of where the numbers come from
 
 
@@ -307,24 +275,20 @@ FEW = 6
 
 @dataclass(frozen=True)
 class CheckRow:
-    """A limit and how far it is kept.
+    """A limit and how far it is kept: the check, symbol and note of what it is on, and its numbers as printed.
 
-    ``compared`` is what the value is; ``proposed`` the value of the design that a study proposes, ``remark`` says
-    which study would decide the limit, or what its bound is called; ``method`` how a probability was found.
+    ``proposed`` is the value of the design that a study proposes, ``remark`` says which study would decide the limit,
+    or what its bound is called.
     """
 
-    name: str
+    check: Check
     symbol: str
     note: str
-    compared: str
-    relation: str
     value: Value
     limit: Value
     margin: Value
-    state: State
-    proposed: Value | None = None
-    remark: str = ""
-    method: str = ""
+    proposed: Value | None
+    remark: str
 
 
 def input_blocks(setup: Setup, detail: str) -> Iterator[BlockView]:
@@ -333,7 +297,11 @@ def input_blocks(setup: Setup, detail: str) -> Iterator[BlockView]:
     values = {
         name: input_value(setup, fields[name], value) for name, value in setup.model.read_inputs(setup.inputs).items()
     }
-    idle = [name for name, value in values.items() if _is_idle(setup, name, value)]
+    idle = [
+        name
+        for name, value in values.items()
+        if name not in setup.source.stated and value.text in {"0", NOT_GIVEN} and not fields[name].spec.source
+    ]
     if detail == "full" or len(idle) <= FEW:
         idle = []
     shown = {name: value for name, value in values.items() if name not in idle}
@@ -347,14 +315,11 @@ def input_blocks(setup: Setup, detail: str) -> Iterator[BlockView]:
     title = "What the calculation starts from; 'stated' stands in the inputs file, 'default' is the model's own value"
     yield TableView(title, columns, rows, kind="inputs")
     if idle:
-        called = joined(SymbolText(fields[name].symbol) if fields[name].symbol else Code(name) for name in idle)
+        called = joined(
+            Marked("symbol", fields[name].symbol) if fields[name].symbol else Marked("code", name) for name in idle
+        )
         words = "Not given, or left at their default of 0 (inputs.toml names them): "
         yield Paragraph((words, *called, "."), "aside")
-
-
-def _is_idle(setup: Setup, name: str, value: Value) -> bool:
-    has_source = setup.model.input_fields[name].spec.source
-    return name not in setup.source.stated and value.text in {"0", NOT_GIVEN} and not has_source
 
 
 def _input_row(setup: Setup, name: str, value: Value, *, calibrated: bool) -> tuple[Text, ...]:
@@ -363,13 +328,13 @@ def _input_row(setup: Setup, name: str, value: Value, *, calibrated: bool) -> tu
     fitted = setup.calibrated.get(name)
     own = "" if fitted is None else format_value(fitted, setup.print_unit(name), STATED_DIGITS)[0]
     return (
-        SymbolText(field.symbol) if field.symbol else "", label_of(note, name), value.text, value.unit,
+        Marked("symbol", field.symbol) if field.symbol else "", label_of(note, name), value.text, value.unit,
         *((own,) if calibrated else ()), "stated" if name in setup.source.stated else "default", field.spec.source,
     )  # fmt: skip
 
 
 def input_value(setup: Setup, field: InputField, value: Any) -> Value:
-    """Write one input: a number in its printed unit, a choice, a switch, a file."""
+    """Write one input: a number in its printed unit, a choice, a switch, a file, a series (a long one by its ends)."""
     if field.kind == "file":
         if field.name in setup.source.tables:
             return Value(PurePath(setup.source.tables[field.name]["file"]).name)
@@ -380,24 +345,18 @@ def input_value(setup: Setup, field: InputField, value: Any) -> Value:
         return Value(str(value))
     unit = setup.print_unit(field.name)
     if field.kind == "series":
-        return series_value(value, unit)
+        texts = [format_value(float(number), unit) for number in value] or [(ABSENT, "")]
+        (first, shown_unit), (last, _) = texts[0], texts[-1]
+        if len(texts) <= LONGEST_SERIES:
+            return Value(", ".join(text for text, _ in texts), shown_unit)
+        return Value(f"{first} … {last} ({len(texts)} values)", shown_unit)
     if value != value:
         return Value(NOT_GIVEN)
     return Value(*format_value(value, unit, STATED_DIGITS))
 
 
-def series_value(value: Any, unit: str) -> Value:
-    """Write a series: all of it if it is short, otherwise its ends and its length."""
-    texts = [format_value(float(number), unit) for number in value]
-    if not texts:
-        return Value(ABSENT)
-    if len(texts) <= LONGEST_SERIES:
-        return Value(", ".join(text for text, _ in texts), texts[0][1])
-    return Value(f"{texts[0][0]} … {texts[-1][0]} ({len(texts)} values)", texts[0][1])
-
-
 def tolerance_table(setup: Setup) -> TableView:
-    """Say every tolerance that scatters, with the standard deviation of what it is on."""
+    """Say every tolerance that scatters: the standard deviation of what it is on, and how far the mean lies off."""
     columns = (
         Column("Tolerance", kind="name"), Column("On"), Column("Spread"), Column("Standard deviation", kind="number"),
         Column("Why"),
@@ -405,26 +364,20 @@ def tolerance_table(setup: Setup) -> TableView:
     rows = []
     for name, distributions in setup.distributions().items():
         tolerance = setup.model.tolerances[name]
-        sds = [
-            Value(*format_difference(distribution.sd, setup.print_unit(on), 4))
-            for on, distribution in distributions.items()
-        ]
+        sds, shifts = [], []
+        for on, distribution in distributions.items():
+            unit, shift = setup.print_unit(on), distribution.mean - float(setup.nominal(on))
+            sds.append(Value(*format_difference(distribution.sd, unit, 4)))
+            if abs(shift) > 1e-12 * max(abs(float(setup.nominal(on))), distribution.sd):
+                number, printed = format_difference(shift, unit, 4)
+                shifts.append(Value(number if number.startswith("-") else f"+{number}", printed))
         scatter: list[Piece] = [*joined(dict.fromkeys(sds))]
-        for shift in dict.fromkeys(_shifts(setup, distributions)):
-            scatter += [Break(), "mean ", shift]
+        for mean in dict.fromkeys(shifts):
+            scatter += [Marked("break", ", "), "mean ", mean]
         targets = ", ".join(on.replace("_", " ") for on in distributions)
         why = with_source(tolerance.why, tolerance.source)
         rows.append((name.replace("_", " "), targets, setup.spread_of(name).text, tuple(scatter), why))
     return TableView("How the inputs scatter about their nominal values", columns, tuple(rows), kind="tolerances")
-
-
-def _shifts(setup: Setup, distributions: Mapping[str, Distribution]) -> Iterator[Value]:
-    """Say how far the mean lies from the nominal, where it does."""
-    for name, distribution in distributions.items():
-        nominal = float(setup.nominal(name))
-        if abs(distribution.mean - nominal) > 1e-12 * max(abs(nominal), distribution.sd):
-            number, unit = format_difference(distribution.mean - nominal, setup.print_unit(name), 4)
-            yield Value(number if number.startswith("-") else f"+{number}", unit)
 
 
 def effect_blocks(setup: Setup) -> Iterator[BlockView]:
@@ -432,7 +385,12 @@ def effect_blocks(setup: Setup) -> Iterator[BlockView]:
     if setup.conditions:
         title = "Conditions, and the references at which their effects vanish"
         columns = (Column("Condition", kind="name"), Column("Value", kind="number"), Column("Reference", kind="number"))
-        yield TableView(title, columns, tuple(_condition_row(setup, name) for name in setup.conditions))
+        rows: list[tuple[Text, ...]] = []
+        for name, value in setup.conditions.items():
+            condition, unit = setup.model.known_conditions[name], setup.print_unit(name)
+            values = (Value(*format_value(number, unit, STATED_DIGITS)) for number in (value, condition.zero))
+            rows.append((label_of(condition.note, name), *values))
+        yield TableView(title, columns, tuple(rows))
     if not setup.effects:
         yield Paragraph("No effect is on.")
         return
@@ -443,22 +401,16 @@ def effect_blocks(setup: Setup) -> Iterator[BlockView]:
         yield Paragraph(("With them the calculation runs with ", *joined(changed, "; "), "."), "aside")
 
 
-def _condition_row(setup: Setup, name: str) -> tuple[Text, ...]:
-    condition, unit = setup.model.known_conditions[name], setup.print_unit(name)
-    values = (Value(*format_value(number, unit, STATED_DIGITS)) for number in (setup.conditions[name], condition.zero))
-    return (label_of(condition.note, name), *values)
-
-
 def _effect_row(active: SwitchedOn) -> tuple[Text, ...]:
     effect = active.effect
     unknowns: list[Text] = []
     for unknown in active.unknowns:
         value = Value(*format_value(active.values[unknown.name], unknown.unit, RESULT_DIGITS))
         sd = active.sds.get(unknown.name)
-        scatter = (" ± ", Value(*format_difference(sd, unknown.unit, 3)), " ", Aside("(sd)")) if sd else ()
+        scatter = (" ± ", Value(*format_difference(sd, unknown.unit, 3)), " ", Marked("aside", "(sd)")) if sd else ()
         unknowns.append((unknown.name.replace("_", " ") + " = ", value, *scatter))
     why = with_source(effect.why or effect.looks_like, effect.source)
-    return (effect.name.replace("_", " "), PLACES[effect.place], joined(unknowns, Break()), why)
+    return (effect.name.replace("_", " "), PLACES[effect.place], joined(unknowns, Marked("break", ", ")), why)
 
 
 def _changed_inputs(setup: Setup) -> Iterator[Text]:
@@ -471,7 +423,8 @@ def _changed_inputs(setup: Setup) -> Iterator[Text]:
         if field.varies and before != after and not (before != before and after != after):
             unit = setup.print_unit(name)
             old, new = (Value(*format_value(value, unit, digits)) for value, digits in ((before, 10), (after, 7)))
-            yield SymbolText(field.symbol) if field.symbol else name.replace("_", " "), " = ", new, " instead of ", old
+            what = Marked("symbol", field.symbol) if field.symbol else name.replace("_", " ")
+            yield what, " = ", new, " instead of ", old
 
 
 def check_table(calculation: Calculation) -> TableView:
@@ -482,18 +435,19 @@ def check_table(calculation: Calculation) -> TableView:
         *((Column("As proposed", kind="number"),) if has_proposal else ()), Column("must be", kind="relation"),
         Column("Limit", kind="number"), Column("Margin", kind="number"), Column("Verdict", kind="verdict-cell"),
     )  # fmt: skip
-    checks = list(check_rows(calculation))
-    rows = []
-    for check in checks:
-        remark = "; ".join(filter(None, (check.remark, check.method)))
-        label = label_of(check.note, check.name, check.symbol)[:-1]
-        about = (*label, Code(check.compared, bracketed=True), *((Break(), Aside(remark)) if remark else ()))
-        proposed = (check.proposed or "",) if has_proposal else ()
-        rows.append((
-            about, check.value, *proposed, check.relation, check.limit, check.margin, Judgement(check.state)
-        ))  # fmt: skip
-    title = f"Limits, and what is left of them. A margin is {margins_words(calculation.checks)}; above zero is safe"
-    return TableView(title, columns, tuple(rows), states=tuple(check.state for check in checks), kind="checks")
+    rows: list[tuple[Text, ...]] = []
+    for row in check_rows(calculation):
+        check = row.check
+        remark = "; ".join(filter(None, (row.remark, check.method)))
+        label = label_of(row.note, check.name, row.symbol)[:-1]
+        about = (*label, Marked("bracketed code", check.compared or check.name))
+        about += (Marked("break", ", "), Marked("aside", remark)) if remark else ()
+        proposed = (row.proposed or "",) if has_proposal else ()
+        rows.append((about, row.value, *proposed, check.relation, row.limit, row.margin, Marked("state", check.state)))
+    margin = "in per cent of the limit" if relative_margins(calculation.checks) else "the distance to the limit"
+    title = f"Limits, and what is left of them. A margin is {margin}; above zero is safe"
+    states = tuple(check.state for check in calculation.checks)
+    return TableView(title, columns, tuple(rows), states=states, kind="checks")
 
 
 def check_rows(calculation: Calculation) -> Iterator[CheckRow]:
@@ -508,18 +462,14 @@ def check_rows(calculation: Calculation) -> Iterator[CheckRow]:
         field = fields.get(check.name if require is None else require.result)
         calculated = require is not None and not check.chance and require.limit in fields
         yield CheckRow(
-            name=check.name,
+            check=check,
             symbol=field.symbol if field is not None and field.name == check.compared else "",
             note=field.spec.note if field is not None else check.note,
-            compared=check.compared or check.name,
-            relation=check.relation,
             value=check_value(check, check.value),
             limit=check_value(check, check.limit, RESULT_DIGITS if calculated else STATED_DIGITS),
             margin=margin_value(check, relative=relative),
-            state=check.state,
             proposed=None if check.proposed is None else check_value(check, check.proposed.value),
             remark=_remark(check, require, setup),
-            method=check.method,
         )
 
 
@@ -537,11 +487,6 @@ def check_value(check: Check, number: float, digits: int = RESULT_DIGITS) -> Val
 def relative_margins(checks: Iterable[Check]) -> bool:
     """Tell whether the margins of a sheet are shares of their limits: where no limit is 0, else all are distances."""
     return all(check.limit for check in checks if not check.flag)
-
-
-def margins_words(checks: Iterable[Check]) -> str:
-    """Say what the margins of a sheet are."""
-    return "in per cent of the limit" if relative_margins(checks) else "the distance to the limit"
 
 
 def margin_value(check: Check, *, relative: bool) -> Value:
@@ -605,25 +550,25 @@ def _compared(title: str, compared: Sequence[ComparedRow], *, with_settings: boo
     before: Mapping[str, str] | None = None
     for row in compared:
         printed = row.published
-        calibrated = (" ", Aside("(calibrated)")) if printed.obtained == "calibrated" else ()
-        name = (printed.name, *calibrated, *((Break(": "), Aside(printed.why)) if printed.why else ()))
+        calibrated = (" ", Marked("aside", "(calibrated)")) if printed.obtained == "calibrated" else ()
+        name = (
+            printed.name,
+            *calibrated,
+            *((Marked("break", ": "), Marked("aside", printed.why)) if printed.why else ()),
+        )
         ratio = f"{row.ratio:.4f}" if row.ratio is not None else ABSENT
         verdict = ("matches" if row.matches else "differs") + ("" if row.as_stated else ", not as stated")
         settings = ", ".join(f"{name.replace('_', ' ')} = {text}" for name, text in printed.settings.items())
         said = "as above" if printed.settings == before else settings or "defaults"
         unit = unit_text(printed.unit) if printed.unit else ""
-        cells = (name, printed.where, *_digits(row), unit, ratio, verdict)
+        paper = format_number(printed.value, 10)
+        digits = len(paper.partition("e")[0].replace(".", "").replace("-", "").lstrip("0"))
+        ours = format_number(row.value, max(digits + 1, 4))  # with one digit more than the paper prints
+        cells = (name, printed.where, paper, ours, unit, ratio, verdict)
         rows.append((*cells, said) if with_settings else cells)
         before = printed.settings
     states = tuple("agrees" if row.matches else "differs" for row in compared)
     return TableView(title, columns, tuple(rows), states=states, kind="published")
-
-
-def _digits(row: ComparedRow) -> tuple[str, str]:
-    """Write the paper's number as it prints it and ours with as many digits, at least four."""
-    paper = format_number(row.published.value, 10)
-    digits = len(paper.partition("e")[0].replace(".", "").replace("-", "").lstrip("0"))
-    return paper, format_number(row.value, max(digits + 1, 4))
 
 
 def provenance_items(origin: Provenance) -> Items:
@@ -633,8 +578,8 @@ def provenance_items(origin: Provenance) -> Items:
         ("Calculation", f"{origin.plugin} {origin.plugin_version}"),
         ("Kernel", f"truing {origin.kernel}, Python {origin.python}"),
         ("Packages", packages),
-        ("Inputs", Code(origin.input_hash)),
-        *(("File", (f"{name} ", Code(digest))) for name, digest in origin.files.items()),
+        ("Inputs", Marked("code", origin.input_hash)),
+        *(("File", (f"{name} ", Marked("code", digest))) for name, digest in origin.files.items()),
         *(("Added", f"{what} by {plugin} {version}") for what, plugin, version in origin.added),
         *(("Known exception", f"{promise}: {reason}") for promise, reason in origin.exceptions.items()),
         ("Seed", str(origin.seed)),

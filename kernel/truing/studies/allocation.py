@@ -3,41 +3,35 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import exp, inf
 from typing import Any, Literal
 
 import numpy as np
 from scipy.optimize import Bounds, LinearConstraint, brentq, milp, minimize, nnls
-from scipy.special import ndtr, ndtri
+from scipy.special import ndtri
 
 from truing.arrays import Matrix, one_thread
 from truing.declare.blocks import Block, Drawing, Table, Words
+from truing.declare.goals import Price
 from truing.declare.near_miss import near_miss
-from truing.errors import UsageError
+from truing.declare.sources import Tolerance
+from truing.declare.spreads import Band, Grade, Zone, shift_per_width
+from truing.errors import TruingError, UsageError
 from truing.evaluate import acting_inputs
 from truing.fits import GRADES
-from truing.prices import price_answers
+from truing.prices import price_answers, price_of
 from truing.setup import Setup
 from truing.studies.bench import Bench
-from truing.studies.chances import straightened
-from truing.studies.checks import Check, Proposal, chance_check, plain_checks
-from truing.studies.demands import Demand, as_number, demands, nominal_inputs, normal_chance, wilson
+from truing.studies.chances import Straight, straightened
+from truing.studies.checks import Check, Proposal, plain_checks
+from truing.studies.demands import Demand, as_number, demands, normal_chance
 from truing.studies.differences import slopes
 from truing.studies.drawings import lines
-from truing.studies.grades import (
-    AllocationProblem,
-    ToleranceVariable,
-    open_problem,
-    priced_widths,
-    prices_at,
-    with_grades,
-    with_widths,
-)
-from truing.studies.reading import printed_step, spoken
-from truing.studies.sampling import Machines, SampleBudget, Tally, sample, scatter_of
-from truing.units import from_si, unit_text
+from truing.studies.reading import printed, printed_step, spoken
+from truing.studies.sampling import Scatter, Tally, goal_checks, sample, scatter_of, with_tolerances
+from truing.units import unit_text
 
 BALANCED_TO = 1e-4
 
@@ -84,16 +78,15 @@ class Allocation:
         """Allocate by the rule and by least cost, and verify both. Raises UsageError without a grade or a goal."""
         setup = bench.setup
         wanted = _goals(setup, bench.answers, self.name)
-        machines = Machines(setup, scatter_of(setup))
-        straight, derivatives = straightened(machines, wanted, nominal_inputs(setup, wanted))
-        problem = open_problem(
-            setup, wanted, straight, self.finest, loosen=self.loosen, span=(self.tightest, self.widest)
-        )
-        order = coefficients(problem, self._slopes(machines, wanted, problem), self.weights) if problem.parts else {}
+        scatter = scatter_of(setup)
+        straight, derivatives = straightened(scatter, wanted)
+        problem = open_problem(setup, wanted, straight, self)
+        order = coefficients(problem, self._slopes(scatter, wanted, problem), self.weights) if problem.parts else {}
         steps, ruled = by_rule(problem, order, self.finest) if problem.parts else ([], as_it_stands(problem))
         rule = bought(problem, ruled)
         least = _least(problem, ruled, rule)
-        designs = {"start": as_it_stands(problem), "rule": rule, "least": least}
+        plans = {"start": as_it_stands(problem), "rule": rule, "least": least}
+        setups = {key: with_tolerances(setup, plan.chosen) for key, plan in plans.items()}
         return Allotted(
             name=self.name,
             finest=self.finest,
@@ -102,44 +95,41 @@ class Allocation:
             rule=rule,
             least=least,
             coefficients=order,
-            sampled=self._verified(bench, wanted, designs),
-            texts={key: _texts(setup, problem, plan) for key, plan in designs.items()},
-            priced={key: _price_checks(setup, plan) for key, plan in designs.items()},
+            sampled=self._verified(bench, wanted, plans),
+            texts={key: {name: own.spread_of(name).text for name in problem.tolerances} for key, own in setups.items()},
+            priced={key: tuple(plain_checks(own, price_answers(own))) for key, own in setups.items()},
             remarks=(*derivatives.warnings, *_left_alone(setup, problem)),
             inputs=acting_inputs(setup),
         )
 
-    def _slopes(self, machines: Machines, wanted: Sequence[Demand], problem: AllocationProblem) -> dict[str, float]:
+    def _slopes(self, scatter: Scatter, wanted: Sequence[Demand], problem: AllocationProblem) -> dict[str, float]:
         """Return by part the sum of the absolute derivatives of the ordering result."""
         of = self.of or wanted[0].result
-        known = machines.setup.model.own_result_fields
+        known = scatter.setup.model.own_result_fields
         if of not in known:
             raise UsageError(f"study '{self.name}': there is no result '{of}'.{near_miss(of, known)}")
-        tolerances = machines.setup.model.tolerances
+        tolerances = scatter.setup.model.tolerances
         columns = tuple(dict.fromkeys(column for name in problem.parts for column in tolerances[name].on))
-        derivatives = slopes(machines.setup, (of,), columns, machines.scatter).of[of]
+        derivatives = slopes(scatter.setup, (of,), columns, scatter).of[of]
         return {name: sum(abs(float(derivatives[column])) for column in tolerances[name].on) for name in problem.parts}
 
     def _verified(
-        self, bench: Bench, wanted: Sequence[Demand], designs: Mapping[str, AllocationPlan]
+        self, bench: Bench, wanted: Sequence[Demand], plans: Mapping[str, AllocationPlan]
     ) -> dict[str, Tally]:
         """Draw the same machines for every design; equal designs are drawn once."""
         tallies: dict[str, Tally] = {}
-        for stage, (key, plan) in enumerate(designs.items()):
-            twin = next((other for other in tallies if designs[other].same_as(plan)), None)
+        for stage, (key, plan) in enumerate(plans.items()):
+            twin = next((other for other in tallies if plans[other].chosen == plan.chosen), None)
             if twin is not None:
                 tallies[key] = tallies[twin]
                 continue
-            setup = with_plan(bench.setup, plan)
-            done = bench.part(self.name, stage / len(designs), (stage + 1) / len(designs))
-            budget = SampleBudget(self.draws, self.batch, bench.executor, done)
-            tallies[key] = sample(Machines(setup, scatter_of(setup)), wanted, bench.answers, budget)
+            setup = with_tolerances(bench.setup, plan.chosen)
+            done = bench.part(self.name, stage / len(plans), (stage + 1) / len(plans))
+            tallies[key] = sample(
+                scatter_of(setup), wanted, bench.answers,
+                draws=self.draws, batch=self.batch, executor=bench.executor, done=done,
+            )  # fmt: skip
         return tallies
-
-
-def with_plan(setup: Setup, plan: AllocationPlan) -> Setup:
-    """Return the setup with the grades and widths of a plan."""
-    return with_widths(with_grades(setup, plan.grades), plan.widths)
 
 
 def _least(problem: AllocationProblem, ruled: AllocationPlan, rule: AllocationPlan) -> AllocationPlan:
@@ -152,18 +142,6 @@ def _least(problem: AllocationProblem, ruled: AllocationPlan, rule: AllocationPl
     if ruled.grades != problem.start:
         plans.append(bought(problem, as_it_stands(problem)))
     return min((bettered(problem, plan) for plan in plans), key=lambda plan: (not plan.reached, plan.cost))
-
-
-def _texts(setup: Setup, problem: AllocationProblem, plan: AllocationPlan) -> dict[str, str]:
-    """Return by tolerance what an inputs file would say of this design."""
-    chosen = with_plan(setup, plan)
-    return {name: chosen.spread_of(name).text for name in (*problem.parts, *problem.variables)}
-
-
-def _price_checks(setup: Setup, plan: AllocationPlan) -> tuple[Check, ...]:
-    """Return the limits on the price of all tolerances, with those of a plan."""
-    chosen = with_plan(setup, plan)
-    return tuple(plain_checks(chosen, price_answers(chosen)))
 
 
 def _left_alone(setup: Setup, problem: AllocationProblem) -> list[str]:
@@ -203,11 +181,11 @@ class Allotted:
     rule: AllocationPlan
     least: AllocationPlan
     coefficients: Mapping[str, float]
-    sampled: Mapping[str, Tally] = field(default_factory=dict)
-    texts: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
-    priced: Mapping[str, tuple[Check, ...]] = field(default_factory=dict)
-    remarks: tuple[str, ...] = ()
-    inputs: Any = None
+    sampled: Mapping[str, Tally]
+    texts: Mapping[str, Mapping[str, str]]
+    priced: Mapping[str, tuple[Check, ...]]
+    remarks: tuple[str, ...]
+    inputs: Any
 
     @property
     def reached(self) -> bool:
@@ -222,7 +200,7 @@ class Allotted:
     @property
     def start(self) -> dict[str, float]:
         """The first-order probabilities before the first step."""
-        return self.problem.chances(self.problem.start)
+        return self.problem.chances({})
 
     @property
     def final(self) -> Mapping[str, float]:
@@ -232,11 +210,11 @@ class Allotted:
     @property
     def tolerances(self) -> Mapping[str, str]:
         """The grades that the rule ends with, and the widths bought, as an inputs file states them."""
-        return self.texts.get("rule", self.rule.grades)
+        return self.texts["rule"]
 
     @property
     def cost(self) -> float:
-        """The cost of these tolerances, in ``shop.unit``."""
+        """The cost of these tolerances, in ``problem.unit``."""
         return self.rule.cost
 
     @property
@@ -253,10 +231,7 @@ class Allotted:
     @property
     def monte_carlo(self) -> dict[str, dict[str, float]]:
         """The probabilities on the exact model, by design and check."""
-        return {
-            key: {name: float(hits / tally.draws) for name, hits in tally.hits.items()}
-            for key, tally in self.sampled.items()
-        }
+        return {key: tally.shares for key, tally in self.sampled.items()}
 
     @property
     def spoken(self) -> dict[str, tuple[str, AllocationPlan]]:
@@ -275,7 +250,11 @@ class Allotted:
                     "tolerance": step.tolerance,
                     "from": step.before,
                     "to": step.after,
-                    "width": {"from": _mm(step.width_before), "to": _mm(step.width_after), "unit": "mm"},
+                    "width": {
+                        "from": printed(step.width_before, "mm"),
+                        "to": printed(step.width_after, "mm"),
+                        "unit": "mm",
+                    },
                     "probabilities": dict(step.chances),
                 }
                 for step in self.steps
@@ -307,72 +286,47 @@ class Allotted:
 
     def checks(self) -> Sequence[Check]:
         """Compare the probability of the tolerances in force with each goal."""
-        return self._kept("start", self.start)
+        return goal_checks(self.problem.demands, self.monte_carlo["start"], self.sampled["start"])
 
     def proposals(self) -> Sequence[Proposal]:
         """Propose the rule's tolerances and those of least cost, where they are others than those in force."""
         stated = self.texts["start"]
         proposals = []
-        for key, (what, plan) in self.spoken.items():
+        for key, (what, _) in self.spoken.items():
             texts = self.texts[key]
             changes = tuple((name, stated[name], text) for name, text in texts.items() if text != stated[name])
             if changes:
-                proposals.append(
-                    Proposal(self.name, what, changes, (*self._kept(key, plan.chances), *self.priced[key]))
-                )
+                kept = goal_checks(self.problem.demands, self.monte_carlo[key], self.sampled[key])
+                proposals.append(Proposal(self.name, what, changes, (*kept, *self.priced[key])))
         return proposals
-
-    def _kept(self, key: str, first_order: Mapping[str, float]) -> tuple[Check, ...]:
-        """Return the check of every goal for one design: on the exact model where its machines were drawn."""
-        tally = self.sampled.get(key)
-        drawn = self.monte_carlo.get(key, first_order)
-        method = "first order" if tally is None else f"Monte Carlo, {tally.draws} machines"
-        return tuple(
-            chance_check(demand.name, drawn[demand.name], demand.goal, method=method)
-            for demand in self.problem.demands
-            if demand.goal is not None
-        )
 
     def warnings(self) -> Sequence[str]:
         """Say what cannot be reached, and where the exact model contradicts first order."""
-        words = [f"study '{self.name}': {remark}" for remark in self.remarks]
+        return [f"study '{self.name}': {text}" for text in (*self.remarks, *self._doubts())]
+
+    def _doubts(self) -> Iterator[str]:
         if not self.reached:
-            missed = [demand for demand in self.problem.demands if self.final[demand.name] < (demand.goal or 0.0)]
             far = ", ".join(
-                f"'{demand.name}' comes to {self.final[demand.name]:.4f} of {demand.goal:g}" for demand in missed
+                f"'{demand.name}' comes to {self.final[demand.name]:.4f} of {demand.goal:g}"
+                for demand in self.problem.goals
+                if self.final[demand.name] < (demand.goal or 0.0)
             )
-            words.append(f"study '{self.name}': the goal is {self.rule.status}; {far}")
+            yield f"the goal is {self.rule.status}; {far}"
         for key, (what, plan) in self.spoken.items():
             if plan.residual is not None and plan.residual > BALANCED_TO:
-                words.append(f"study '{self.name}': {_not_a_minimum(what, plan)}")
+                yield f"{what} are no proven minimum of the cost: {plan.residual:.2g} of its gradient is not balanced"
             tally = self.sampled.get(key)
-            if tally is not None and tally.failed:
-                words.append(f"study '{self.name}': {_without_answer(tally, what)}")
-            if tally is not None and plan.reached:
-                words += [f"study '{self.name}': {text}" for text in _contradicted(tally, self.problem.demands, what)]
-        return words
-
-
-def _not_a_minimum(what: str, plan: AllocationPlan) -> str:
-    return f"{what} are no proven minimum of the cost: {plan.residual:.2g} of its gradient is not balanced"
-
-
-def _without_answer(tally: Tally, what: str) -> str:
-    """Say how many machines of a design failed."""
-    reason = next(iter(tally.reasons), "no reason was given")
-    return f"with {what} {tally.failed} of {tally.draws} machines have no answer and count as missed ({reason})"
-
-
-def _contradicted(tally: Tally, wanted: Sequence[Demand], what: str) -> list[str]:
-    """Name the goals that first order reaches and the exact model misses beyond its sampling error."""
-    words = []
-    for demand in wanted:
-        low, high = wilson(tally.hits[demand.name], tally.draws)
-        if demand.goal is not None and high < demand.goal:
-            words.append(
-                f"with {what} the exact model gives '{demand.name}' only {low:.4f} to {high:.4f} of {demand.goal:g}"
-            )
-    return words
+            if tally is None:
+                continue
+            if tally.failed:
+                yield f"with {what} {tally.lost}"
+            for demand in self.problem.goals if plan.reached else ():
+                low, high = tally.intervals[demand.name]
+                if demand.goal is not None and high < demand.goal:
+                    yield (
+                        f"with {what} the exact model gives '{demand.name}' only {low:.4f} to {high:.4f} of "
+                        f"{demand.goal:g}"
+                    )
 
 
 # How the outcome of an allocation is written: results.json and the sheet
@@ -380,7 +334,7 @@ def _contradicted(tally: Tally, wanted: Sequence[Demand], what: str) -> list[str
 
 def _design(allotted: Allotted, plan: AllocationPlan, key: str) -> dict[str, Any]:
     entry: dict[str, Any] = {
-        "tolerances": dict(allotted.texts.get(key, plan.grades)),
+        "tolerances": dict(allotted.texts[key]),
         "cost": {"value": plan.cost, "unit": allotted.problem.unit},
         "reached": plan.reached,
         "probabilities": dict(plan.chances),
@@ -389,35 +343,19 @@ def _design(allotted: Allotted, plan: AllocationPlan, key: str) -> dict[str, Any
         entry["status"] = plan.status
     if allotted.problem.variables:
         entry["widths"] = {variable.name: _width(variable, plan) for variable in allotted.problem.variables.values()}
-    if key in allotted.sampled:
-        entry["monte_carlo"] = _sampled(allotted.sampled[key])
+    tally = allotted.sampled[key]
+    counted = {"draws": tally.draws, "failed": tally.failed}
+    entry["monte_carlo"] = {
+        name: {"probability": share, "interval95": list(tally.intervals[name]), **counted}
+        for name, share in tally.shares.items()
+    }
     return entry
 
 
 def _width(variable: ToleranceVariable, plan: AllocationPlan) -> dict[str, Any]:
-    width = plan.widths.get(variable.name, variable.start)
-    return {
-        "from": printed_step(variable.start, variable.unit),
-        "to": printed_step(width, variable.unit),
-        "unit": variable.unit,
-        "price": {"from": variable.cost(variable.start), "to": variable.cost(width), "unit": variable.price.unit},
-    }
-
-
-def _sampled(tally: Tally) -> dict[str, Any]:
-    return {
-        name: {
-            "probability": float(hits / tally.draws),
-            "interval95": list(wilson(hits, tally.draws)),
-            "draws": tally.draws,
-            "failed": tally.failed,
-        }
-        for name, hits in tally.hits.items()
-    }
-
-
-def _mm(width: float) -> float:
-    return float(from_si(width, "mm"))
+    start, width, unit = variable.start, plan.widths.get(variable.name, variable.start), variable.price.width
+    price = {"from": variable.cost(start), "to": variable.cost(width), "unit": variable.price.unit}
+    return {"from": printed_step(start, unit), "to": printed_step(width, unit), "unit": unit, "price": price}
 
 
 def _steps(allotted: Allotted) -> Table:
@@ -425,7 +363,7 @@ def _steps(allotted: Allotted) -> Table:
     rows: list[list[Any]] = [[0, "start", None, None, None, *(100 * value for value in allotted.start.values())]]
     for step in allotted.steps:
         grades = f"{step.before} to {step.after}"
-        widths = (_mm(step.width_before), _mm(step.width_after))
+        widths = (printed(step.width_before, "mm"), printed(step.width_after, "mm"))
         rows.append([step.number, step.tolerance, grades, *widths, *(100 * step.chances[name] for name in names)])
     columns = ("step", "tolerance", "grade", "width before", "width after", *names)
     units = ("", "", "", "mm", "mm", *("%" for _ in names))
@@ -435,16 +373,19 @@ def _steps(allotted: Allotted) -> Table:
 def _comparison(allotted: Allotted) -> Table:
     names = list(allotted.start)
     problem = allotted.problem
-    designs: Mapping[str, tuple[AllocationPlan, str, int]] = {
-        "start": (as_it_stands(problem), "start", 0),
-        **({"rule": (allotted.rule, "rule", allotted.adjustments)} if problem.parts else {}),
-        "least cost": (allotted.least, "least", allotted.least_steps),
-    }
+    designs = [
+        ("start", "start", as_it_stands(problem), 0),
+        ("rule", "rule", allotted.rule, allotted.adjustments),
+        ("least", "least cost", allotted.least, allotted.least_steps),
+    ]
     rows: list[list[Any]] = []
-    for title, (plan, key, steps) in designs.items():
-        sampled = allotted.monte_carlo.get(key, {})
-        chances = [value for name in names for value in (100 * plan.chances[name], _percent(sampled.get(name)))]
-        rows.append([title, *([steps] if problem.parts else []), plan.cost, *chances, plan.reached])
+    for key, title, plan, steps in designs:
+        sampled = allotted.monte_carlo[key]
+        chances = [100 * chance for name in names for chance in (plan.chances[name], sampled[name])]
+        if problem.parts:
+            rows.append([title, steps, plan.cost, *chances, plan.reached])
+        elif key != "rule":
+            rows.append([title, plan.cost, *chances, plan.reached])
     pairs = [column for name in names for column in (name, "Monte Carlo")]
     unit = problem.unit
     note = (
@@ -452,7 +393,12 @@ def _comparison(allotted: Allotted) -> Table:
         if problem.priced
         else "Cost: the sum of 1/width over the tolerances, the reciprocal law; not every one has a price."
     )
-    note += f" First order beside {_drawn_words(allotted)}" if allotted.sampled else ""
+    tallies = allotted.sampled.values()
+    half = max((high - low) / 2 for tally in tallies for low, high in tally.intervals.values())
+    note += (
+        f" First order beside {max(tally.draws for tally in tallies)} machines of each design on the exact model, 95 % "
+        f"intervals within ±{100 * half:.2g} percentage points."
+    )
     counted = ("grades",) if problem.parts else ()
     columns = ("design", *counted, "cost", *pairs, "reached")
     units = ("", *("" for _ in counted), unit, *("%" for _ in pairs), "")
@@ -460,32 +406,11 @@ def _comparison(allotted: Allotted) -> Table:
     return Table(title, columns, rows, units, note)
 
 
-def _drawn_words(allotted: Allotted) -> str:
-    """Say how many machines of each design were drawn, and how far their shares may be off."""
-    half = max(
-        (high - low) / 2
-        for tally in allotted.sampled.values()
-        for low, high in (wilson(hits, tally.draws) for hits in tally.hits.values())
-    )
-    draws = max(tally.draws for tally in allotted.sampled.values())
-    within = f"95 % intervals within ±{100 * half:.2g} percentage points"
-    return f"{draws} machines of each design on the exact model, {within}."
-
-
-def _percent(value: float | None) -> float | None:
-    return None if value is None else 100 * value
-
-
 def _grades(allotted: Allotted) -> Table:
+    start, rule, least = allotted.problem.start, allotted.rule.grades, allotted.least.grades
     rows = [
-        [
-            name,
-            as_number(allotted.coefficients[name]),
-            part.start,
-            allotted.rule.grades[name],
-            allotted.least.grades[name],
-        ]
-        for name, part in sorted(allotted.problem.parts.items(), key=lambda pair: allotted.coefficients[pair[0]])
+        [name, as_number(coefficient), start[name], rule[name], least[name]]
+        for name, coefficient in sorted(allotted.coefficients.items(), key=lambda pair: pair[1])
     ]
     return Table("Grades", ("tolerance", "coefficient", "start", "rule", "least cost"), rows)
 
@@ -497,9 +422,9 @@ def _widths(allotted: Allotted, what: str, plan: AllocationPlan) -> Table:
         width = plan.widths.get(variable.name, variable.start)
         ends = {variable.low: "tightest", variable.high: "widest"}
         at_end = next((word for end, word in ends.items() if abs(width / end - 1) < 1e-6), "")
-        pair = [printed_step(one, variable.unit) for one in (variable.start, width)]
+        pair = [printed_step(size, variable.price.width) for size in (variable.start, width)]
         prices = [variable.cost(variable.start), variable.cost(width)]
-        rows.append([variable.name, unit_text(variable.unit), *pair, width / variable.start, *prices, at_end])
+        rows.append([variable.name, unit_text(variable.price.width), *pair, width / variable.start, *prices, at_end])
     unit = allotted.problem.unit
     columns = ("tolerance", "unit", "in force", "bought", "times", "price in force", "price", "at the end")
     note = "Full widths. Those at an end would go further if tightest and widest allowed it."
@@ -511,6 +436,227 @@ def _drawn(allotted: Allotted) -> Any:
     series = {name: [allotted.start[name], *(step.chances[name] for step in allotted.steps)] for name in names}
     goals = {demand.name: demand.goal for demand in allotted.problem.demands if demand.goal is not None}
     return lines(range(len(allotted.steps) + 1), series, ("step", "probability"), goals)
+
+
+# What may be chosen: what each grade, or any width, of each tolerance does to scatter and mean, and what it costs
+
+
+RECIPROCAL = "1/mm"
+COMPLEX_STEP = 1e-30
+Choice = Mapping[str, str | float]
+"""Tolerances by name: a grade, or a full width in SI. What is not named is as in force."""
+
+
+@dataclass(frozen=True)
+class GradeChoice:
+    """One grade of one part: its full width (m), its cost, and its first-order variance by demand (SI)."""
+
+    grade: str
+    width: float
+    cost: float
+    variances: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class GradedTolerance:
+    """A tolerance that is a grade: the grade it starts at, and every grade it may take, finest first."""
+
+    start: str
+    choices: Mapping[str, GradeChoice]
+
+    def cost(self, grade: str) -> float:
+        """Return what a grade costs."""
+        return self.choices[grade].cost
+
+    def added(self, demand: str, grade: str) -> float:
+        """Return what a grade adds to the fixed variance of a demand's response."""
+        return self.choices[grade].variances[demand]
+
+
+@dataclass(frozen=True)
+class ToleranceVariable:
+    """A priced tolerance with a full width in SI that may be chosen from ``low`` to ``high``; ``start`` is in force.
+
+    By demand: ``variances`` at the start, and ``pulls``, by how much the mean moves with the width.
+    """
+
+    name: str
+    start: float
+    low: float
+    high: float
+    price: Price
+    variances: Mapping[str, float]
+    pulls: Mapping[str, float]
+
+    def cost(self, width: float) -> float:
+        """Return what a full width costs."""
+        return self.price.at(width)
+
+    def variance(self, demand: str, width: float) -> float:
+        """Return the first-order variance that a width gives to a demand's response."""
+        return self.variances[demand] * (width / self.start) ** 2
+
+    def added(self, demand: str, width: float) -> float:
+        """Return what a width adds to the variance with the width in force."""
+        return self.variance(demand, width) - self.variances[demand]
+
+
+@dataclass(frozen=True)
+class AllocationProblem:
+    """All parts whose grade may be chosen, tolerances whose width may be, what stays as it is, and the goals to reach.
+
+    ``fixed`` is the variance that no grade makes, with the widths in force. ``span`` is that of the widths over those.
+    """
+
+    parts: Mapping[str, GradedTolerance]
+    variables: Mapping[str, ToleranceVariable]
+    demands: tuple[Demand, ...]
+    means: Mapping[str, float]
+    fixed: Mapping[str, float]
+    unit: str
+    priced: bool
+    span: tuple[float, float]
+
+    @property
+    def tolerances(self) -> dict[str, Any]:
+        """All tolerances that may be chosen, grades first."""
+        return {**self.parts, **self.variables}
+
+    @property
+    def goals(self) -> tuple[Demand, ...]:
+        """The demands with a probability to reach."""
+        return tuple(demand for demand in self.demands if demand.goal is not None)
+
+    @property
+    def start(self) -> dict[str, str]:
+        """The grades before anything is adjusted."""
+        return {name: part.start for name, part in self.parts.items()}
+
+    def variance(self, name: str, chosen: Choice) -> float:
+        """Return the first-order variance of a demand's response with these tolerances."""
+        added: float = sum(own.added(name, chosen.get(key, own.start)) for key, own in self.tolerances.items())
+        return max(0.0, self.fixed[name] + added)
+
+    def mean(self, name: str, chosen: Choice) -> float:
+        """Return the first-order mean of a demand's response with these tolerances."""
+        moved = ((own, chosen.get(key, own.start)) for key, own in self.variables.items())
+        return self.means[name] + sum(own.pulls[name] * (float(width) - own.start) for own, width in moved)
+
+    def chances(self, chosen: Choice) -> dict[str, float]:
+        """Return the first-order probability of every demand with these tolerances."""
+        chances = {}
+        for demand in self.demands:
+            mean, variance = self.mean(demand.name, chosen), self.variance(demand.name, chosen)
+            chances[demand.name] = normal_chance(mean, variance**0.5, demand.low, demand.high)
+        return chances
+
+    def cost(self, chosen: Choice) -> float:
+        """Return the sum of what these tolerances cost."""
+        cost: float = sum(own.cost(chosen.get(key, own.start)) for key, own in self.tolerances.items())
+        return cost
+
+    def reached(self, chosen: Choice) -> bool:
+        """Say whether every goal is met to first order."""
+        chances = self.chances(chosen)
+        return all(chances[demand.name] >= demand.goal for demand in self.goals if demand.goal is not None)
+
+
+def open_problem(
+    setup: Setup, wanted: Sequence[Demand], straight: Mapping[str, Straight], study: Allocation
+) -> AllocationProblem:
+    """Collect parts, grades, widths and costs. Raises UsageError where no tolerance in force is a grade or has a price.
+
+    Widths can be bought only where every grade has a price too; otherwise they stay.
+    """
+    tolerances = setup.model.tolerances.values()
+    graded = [tolerance for tolerance in tolerances if isinstance(setup.spread_of(tolerance.name), Grade)]
+    prices = [price_of(setup, tolerance) for tolerance in graded]
+    priced = bool(prices) and None not in prices
+    span = (study.tightest, study.widest)
+    buyable = priced_widths(setup) if priced or not graded else ()
+    variables = {tolerance.name: _variable(setup, tolerance, straight, span) for tolerance in buyable}
+    if not graded and not variables:
+        raise UsageError(
+            f'{setup.model.name} has no tolerance that is a grade, such as grade("IT7"), and none with a price whose '
+            "width could be chosen: nothing to allocate"
+        )
+    parts = {tolerance.name: _graded(setup, tolerance, straight, study, priced=priced) for tolerance in graded}
+    fixed, means = {}, {}
+    for name, line in straight.items():
+        of_parts = sum(part.added(name, part.start) for part in parts.values())
+        fixed[name], means[name] = max(0.0, float(line.variance) - of_parts), float(line.mean)
+    units = [price.unit for price in (*prices, *(own.price for own in variables.values())) if price is not None]
+    known = priced or bool(variables)
+    unit = units[0] if known else RECIPROCAL
+    return AllocationProblem(parts, variables, tuple(wanted), means, fixed, unit, known, span)
+
+
+def _graded(
+    setup: Setup, tolerance: Tolerance, straight: Mapping[str, Straight], study: Allocation, *, priced: bool
+) -> GradedTolerance:
+    """Return what every grade of a part does; ISO 286 does not have all of them for every size.
+
+    Without prices a full width costs its reciprocal, in 1/mm. Source of the law: K. W. Chase, A. R. Parkinson, survey
+    of cost-tolerance models, Res. Eng. Des. 3 (1991) 23.
+    """
+    spread, price = setup.spread_of(tolerance.name), price_of(setup, tolerance) if priced else None
+    assert isinstance(spread, Grade)  # open_problem has chosen these
+    start = GRADES.index(spread.grade)
+    choices: dict[str, GradeChoice] = {}
+    for grade in GRADES[min(GRADES.index(study.finest), start) : len(GRADES) if study.loosen else start + 1]:
+        own = replace(spread, grade=grade)
+        try:
+            width = own.width(setup.target(tolerance.on[0]))
+            sds = {column: own.resolve(setup.target(column)).sd for column in tolerance.on}
+        except TruingError:
+            if own == spread:
+                raise
+            continue
+        cost = 1e-3 / width if price is None else price.at(width)
+        choices[grade] = GradeChoice(grade, width, cost, _variances(straight, sds))
+    return GradedTolerance(spread.grade, choices)
+
+
+def _variances(straight: Mapping[str, Straight], sds: Mapping[str, float]) -> dict[str, float]:
+    return {
+        name: sum((float(line.slopes[column]) * sd) ** 2 for column, sd in sds.items())
+        for name, line in straight.items()
+    }
+
+
+def priced_widths(setup: Setup) -> Iterator[Tolerance]:
+    """Yield the tolerances in force with a price that are no grades and whose width can be chosen."""
+    in_force = setup.distributions()
+    for tolerance in setup.model.tolerances.values():
+        inner = in_force.get(tolerance.name)
+        chosen = isinstance(setup.spread_of(tolerance.name), (Band, Zone)) and price_of(setup, tolerance) is not None
+        if chosen and inner is not None and all(target.sd > 0 for target in inner.values()):
+            yield tolerance
+
+
+def _variable(
+    setup: Setup, tolerance: Tolerance, straight: Mapping[str, Straight], span: tuple[float, float]
+) -> ToleranceVariable:
+    price, inner = price_of(setup, tolerance), setup.distributions()[tolerance.name]
+    width, pull = next(iter(inner.values())).width, shift_per_width(setup.spread_of(tolerance.name))
+    assert price is not None  # priced_widths has chosen these
+    variances = _variances(straight, {column: distribution.sd for column, distribution in inner.items()})
+    pulls = {name: pull * sum(float(line.slopes[column]) for column in inner) for name, line in straight.items()}
+    return ToleranceVariable(tolerance.name, width, span[0] * width, span[1] * width, price, variances, pulls)
+
+
+def prices_at(variables: Sequence[ToleranceVariable], widths: Matrix) -> tuple[Matrix, Matrix]:
+    """Return what these full widths (n,) in SI cost, and the exact derivatives: the formulas with an imaginary step.
+
+    Every formula is computed once, for all widths that it prices.
+    Source: W. Squire, G. Trapp, Using complex variables to estimate derivatives, SIAM Rev. 40 (1998) 110.
+    """
+    paid = np.empty(len(variables), dtype=complex)
+    prices = [variable.price for variable in variables]
+    for price in set(prices):
+        own = [index for index, other in enumerate(prices) if other == price]
+        paid[own] = price.evaluated(widths[own] * (1 + 1j * COMPLEX_STEP))
+    return paid.real, paid.imag / (COMPLEX_STEP * widths)
 
 
 # Which grades? The paper's rule, one grade at a time, and the least cost there is, by mixed-integer programming
@@ -531,22 +677,28 @@ class Step:
 
 @dataclass(frozen=True)
 class AllocationPlan:
-    """Grades and full widths (SI) by tolerance, what they cost, first-order chances, and whether all goals are reached.
+    """A choice of tolerances, what they cost, first-order chances, and whether all goals are reached.
 
-    ``residual`` says how far the widths are from a minimum of the cost: 0 is one; None where none were found.
+    ``chosen`` holds grades and the full widths (SI) that were bought, by tolerance. ``residual`` says how far the
+    widths are from a minimum of the cost: 0 is one; None where none were found.
     """
 
-    grades: Mapping[str, str]
+    chosen: Choice
     cost: float
     chances: Mapping[str, float]
     reached: bool
-    status: str = ""
-    widths: Mapping[str, float] = field(default_factory=dict)
-    residual: float | None = 0.0
+    status: str
+    residual: float | None
 
-    def same_as(self, other: AllocationPlan) -> bool:
-        """Say whether two plans are one design."""
-        return self.grades == other.grades and self.widths == other.widths
+    @property
+    def grades(self) -> dict[str, str]:
+        """The grades by tolerance."""
+        return {name: choice for name, choice in self.chosen.items() if isinstance(choice, str)}
+
+    @property
+    def widths(self) -> dict[str, float]:
+        """The full widths (SI) that were bought."""
+        return {name: choice for name, choice in self.chosen.items() if not isinstance(choice, str)}
 
 
 def coefficients(
@@ -562,7 +714,7 @@ def coefficients(
     weighed: dict[str, float] = {}
     for name, part in problem.parts.items():
         ratio = slopes[reference] / slopes[name] if slopes[name] else float("inf")
-        cost = part.first.cost / problem.parts[reference].first.cost
+        cost = part.cost(part.start) / problem.parts[reference].cost(problem.parts[reference].start)
         weighed[name] = (first * ratio + second * cost) / (first + second) if first else cost
     return weighed
 
@@ -591,12 +743,12 @@ def as_it_stands(problem: AllocationProblem) -> AllocationPlan:
     return _plan(problem, problem.start, "nothing is adjusted")
 
 
-def _plan(problem: AllocationProblem, grades: Mapping[str, str], shortfall: str) -> AllocationPlan:
-    chances = problem.chances(grades)
-    reached = problem.reached(grades)
-    return AllocationPlan(
-        grades, problem.cost(grades), chances, reached, "reached" if reached else f"not reachable: {shortfall}"
-    )
+def _plan(
+    problem: AllocationProblem, chosen: Choice, shortfall: str, *, residual: float | None = 0.0
+) -> AllocationPlan:
+    reached = problem.reached(chosen)
+    status = "reached" if reached else f"not reachable: {shortfall}"
+    return AllocationPlan(chosen, problem.cost(chosen), problem.chances(chosen), reached, status, residual)
 
 
 def largest_variance(demand: Demand, mean: float) -> float | None:
@@ -624,9 +776,7 @@ def largest_variance(demand: Demand, mean: float) -> float | None:
 def least_cost(problem: AllocationProblem) -> AllocationPlan:
     """Choose one grade for every part so that all goals are met to first order at the least cost there is."""
     bounds: dict[str, float] = {}
-    for demand in problem.demands:
-        if demand.goal is None:
-            continue
+    for demand in problem.goals:
         bound = largest_variance(demand, problem.means[demand.name])
         if bound is None:
             return _finest(problem, f"'{demand.name}' misses {demand.goal:g} however small the scatter")
@@ -690,12 +840,17 @@ class AllocationSearch:
     problem: AllocationProblem
     grades: Mapping[str, str]
 
-    def widths(self, x: Matrix) -> dict[str, float]:
-        """Return the full widths (SI)."""
-        return {
-            variable.name: float(variable.start * np.exp(value))
-            for variable, value in zip(self.problem.variables.values(), x, strict=True)
-        }
+    def chosen(self, x: Matrix) -> dict[str, Any]:
+        """Return the grades and the full widths (SI)."""
+        variables = zip(self.problem.variables.items(), x, strict=True)
+        return {**self.grades, **{name: float(variable.start * np.exp(log)) for (name, variable), log in variables}}
+
+    def plan(self, x: Matrix, residual: float | None) -> AllocationPlan:
+        """Return the design of a point, with how far it is from a minimum."""
+        low, high = self.problem.span
+        shortfall = f"no widths from {low:g} to {high:g} times those in force meet it"
+        shortfall += ", and every grade is at its finest" if self.grades else ""
+        return _plan(self.problem, self.chosen(x), shortfall, residual=residual)
 
     def ends(self) -> tuple[Matrix, Matrix]:
         """Return the smallest and the largest logarithms."""
@@ -705,8 +860,8 @@ class AllocationSearch:
 
     def cost(self, x: Matrix) -> tuple[float, Matrix]:
         """Return the price of the widths and its gradient, both over the price of those in force."""
-        variables = tuple(self.problem.variables.values())
-        widths = np.array(list(self.widths(x).values()))
+        chosen, variables = self.chosen(x), tuple(self.problem.variables.values())
+        widths = np.array([chosen[variable.name] for variable in variables])
         prices, slopes = prices_at(variables, widths)
         return float(prices.sum()) / self._whole, slopes * widths / self._whole
 
@@ -722,12 +877,12 @@ class AllocationSearch:
 
     def _slack(self, demand: Demand, x: Matrix) -> tuple[float, Matrix]:
         problem, name = self.problem, demand.name
-        widths = self.widths(x)
-        sd = max(problem.variance(name, self.grades, widths), 1e-300) ** 0.5
-        by_mean = np.array([variable.pulls[name] * widths[key] for key, variable in problem.variables.items()])
-        by_sd = np.array([variable.variance(name, widths[key]) / sd for key, variable in problem.variables.items()])
-        room, of_mean, of_sd = _room(demand, problem.mean(name, widths), sd)
-        scale = problem.variance(name, problem.start) ** 0.5 or 1.0
+        chosen = self.chosen(x)
+        sd = max(problem.variance(name, chosen), 1e-300) ** 0.5
+        by_mean = np.array([variable.pulls[name] * chosen[key] for key, variable in problem.variables.items()])
+        by_sd = np.array([variable.variance(name, chosen[key]) / sd for key, variable in problem.variables.items()])
+        room, of_mean, of_sd = _room(demand, problem.mean(name, chosen), sd)
+        scale = problem.variance(name, {}) ** 0.5 or 1.0
         return room / scale, (of_mean * by_mean + of_sd * by_sd) / scale
 
 
@@ -742,28 +897,10 @@ def _room(demand: Demand, mean: float, sd: float) -> tuple[float, float, float]:
     if not demand.low < mean < demand.high:
         beyond = mean - demand.high if mean >= demand.high else demand.low - mean
         return -beyond - sd, -1.0 if mean >= demand.high else 1.0, -1.0
-    largest, slope = _largest_sd(demand, mean)
-    return largest - sd, slope, -1.0
-
-
-def _largest_sd(demand: Demand, mean: float) -> tuple[float, float]:
-    """Return the standard deviation up to which a goal between two limits is met, and its derivative by the mean."""
-    goal = demand.goal or 0.0
-    reach = min(demand.high - mean, mean - demand.low)
-    if goal <= 0.5:
-        sd = (largest_variance(demand, mean) or 0.0) ** 0.5
-    else:  # both limits as near as the nearer one, or that one alone: the truth lies between
-        ends = (reach / float(ndtri(0.5 + goal / 2)), reach / float(ndtri(goal)))
-        sd = brentq(
-            lambda sd: float(ndtr((demand.high - mean) / sd) - ndtr((demand.low - mean) / sd)) - goal,
-            0.999 * ends[0],
-            1.001 * ends[1],
-            xtol=1e-16 * ends[0],
-            rtol=1e-14,
-        )
-    above, below = (demand.high - mean) / sd, (demand.low - mean) / sd
+    largest = (largest_variance(demand, mean) or 0.0) ** 0.5
+    above, below = (demand.high - mean) / largest, (demand.low - mean) / largest
     at_high, at_low = exp(-(above**2) / 2), exp(-(below**2) / 2)
-    return sd, -(at_high - at_low) / (above * at_high - below * at_low)
+    return largest - sd, -(at_high - at_low) / (above * at_high - below * at_low), -1.0
 
 
 def bought(problem: AllocationProblem, plan: AllocationPlan) -> AllocationPlan:
@@ -777,9 +914,7 @@ def bought(problem: AllocationProblem, plan: AllocationPlan) -> AllocationPlan:
         if optimum is None:
             nearest = _nearest(search, starts)
             optimum = _cheapest(search, [nearest])
-    if optimum is None:
-        return _with(problem, plan, search.widths(nearest), residual=None)
-    return _with(problem, plan, search.widths(optimum), residual=_residual(search, optimum))
+    return search.plan(nearest, None) if optimum is None else search.plan(optimum, _residual(search, optimum))
 
 
 def bettered(problem: AllocationProblem, plan: AllocationPlan) -> AllocationPlan:
@@ -799,28 +934,12 @@ def _steps_from(problem: AllocationProblem, plan: AllocationPlan) -> Iterator[Al
         offered = list(part.choices)
         index = offered.index(plan.grades[name])
         for grade in offered[max(index - 1, 0) : index] + offered[index + 1 : index + 2]:
-            other = replace(plan, grades={**plan.grades, name: grade})
-            search = AllocationSearch(problem, other.grades)
+            search = AllocationSearch(problem, {**plan.grades, name: grade})
             held = [np.log(plan.widths[key] / variable.start) for key, variable in problem.variables.items()]
             low, high = search.ends()
             optimum = _cheapest(search, [np.clip(held, low, high), low])
             if optimum is not None:
-                yield _with(problem, other, search.widths(optimum), residual=_residual(search, optimum))
-
-
-def _with(
-    problem: AllocationProblem, plan: AllocationPlan, widths: Mapping[str, float], *, residual: float | None
-) -> AllocationPlan:
-    reached = problem.reached(plan.grades, widths)
-    status = "reached"
-    if not reached:
-        status = (
-            f"not reachable: no widths from {problem.span[0]:g} to {problem.span[1]:g} times those in force meet it"
-        )
-        status += ", and every grade is at its finest" if plan.grades else ""
-    chances = problem.chances(plan.grades, widths)
-    cost = problem.cost(plan.grades, widths)
-    return replace(plan, cost=cost, chances=chances, reached=reached, status=status, widths=widths, residual=residual)
+                yield search.plan(optimum, _residual(search, optimum))
 
 
 def _starts(search: AllocationSearch) -> Iterator[Matrix]:
@@ -840,7 +959,7 @@ def _cheapest(search: AllocationSearch, starts: Sequence[Matrix]) -> Matrix | No
         if not ends:
             return None
         best = _exact(search, min(ends, key=lambda x: search.cost(x)[0]))
-        if search.problem.reached(search.grades, search.widths(best)):
+        if search.problem.reached(search.chosen(best)):
             return best
     return None
 
@@ -848,7 +967,7 @@ def _cheapest(search: AllocationSearch, starts: Sequence[Matrix]) -> Matrix | No
 def _exact(search: AllocationSearch, x: Matrix) -> Matrix:
     """Take the last rounding out of the goals that are just missed, by the shortest way."""
     for _ in range(4):
-        if search.problem.reached(search.grades, search.widths(x)):
+        if search.problem.reached(search.chosen(x)):
             break
         slack, rows = search.slack(x)
         short = slack < ROUNDING

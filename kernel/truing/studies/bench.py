@@ -12,8 +12,7 @@ from truing.evaluate import acting_inputs, answered, evaluate_rows
 from truing.prices import price_answers
 from truing.setup import Setup
 from truing.studies.checks import Check, Proposal
-from truing.studies.grades import with_widths
-from truing.studies.sampling import scatter_of
+from truing.studies.sampling import scatter_of, with_tolerances
 
 Progress = Callable[[str, int, int], None]
 
@@ -90,7 +89,7 @@ class Bench:
 
         Results and price are those of the new design; nobody hears of its progress. Raises InfeasibleError.
         """
-        setup = with_widths(self.setup.changed(values), dict(widths or {}))
+        setup = with_tolerances(self.setup.changed(values), widths or {})
         first = answered(setup)
         answers = {**setup.model.read_results(first.results), **price_answers(setup)}
         return replace(self, setup=setup, results=first.results, answers=answers, absent=first.absent, progress=silent)

@@ -12,12 +12,12 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ndtr
 
+from truing.arrays import Matrix
 from truing.studies.demands import Demand, normal_chance, results_needed
 from truing.studies.differences import Slopes, slopes
-from truing.studies.sampling import Machines, standard_rows
+from truing.studies.sampling import Scatter, standard_rows
 
 
 @dataclass(frozen=True)
@@ -40,22 +40,16 @@ class Straight:
         return np.sqrt(np.maximum(self.variance, 0.0))
 
 
-def straightened(
-    machines: Machines, wanted: Sequence[Demand], nominal: Mapping[str, float]
-) -> tuple[dict[str, Straight], Slopes]:
+def straightened(scatter: Scatter, wanted: Sequence[Demand]) -> tuple[dict[str, Straight], Slopes]:
     """Linearise the responses of these demands; one batch of the model."""
-    columns = machines.scatter.columns
-    needed = results_needed(machines.setup, wanted)
-    derivatives = slopes(machines.setup, needed, columns, machines.scatter)
-    return {demand.name: _straight(demand, derivatives, machines, nominal) for demand in wanted}, derivatives
-
-
-def _straight(demand: Demand, derivatives: Slopes, machines: Machines, nominal: Mapping[str, float]) -> Straight:
-    columns = machines.scatter.columns
-    slope = demand.slopes(derivatives.of, columns)
-    value = demand.response(derivatives.nominal, {}, nominal)
-    mean = value + sum((slope[column] * shift for column, shift in machines.scatter.shifts().items()), 0.0)
-    return Straight(value, mean, slope, machines.scatter.variances(slope))
+    derivatives = slopes(scatter.setup, results_needed(scatter.setup, wanted), scatter.columns, scatter)
+    lines = {}
+    for demand in wanted:
+        slope = demand.slopes(derivatives.of, scatter.columns)
+        value = demand.response(derivatives.nominal, {})
+        mean = value + sum((slope[column] * shift for column, shift in scatter.shifts().items()), 0.0)
+        lines[demand.name] = Straight(value, mean, slope, scatter.variances(slope))
+    return lines, derivatives
 
 
 def chance(demand: Demand, straight: Straight) -> Any:
@@ -66,7 +60,7 @@ def chance(demand: Demand, straight: Straight) -> Any:
 # First-order reliability method: the most probable machine that just misses a limit, and the chance beyond it
 
 
-LimitState = Callable[[NDArray[np.float64]], NDArray[np.float64]]
+LimitState = Callable[[Matrix], Matrix]
 
 STEP = 1e-3
 ITERATIONS = 60
@@ -106,16 +100,16 @@ class FormResult:
         return {"status": self.status, "probability": self.probability, "beta": beta}
 
 
-def form(machines: Machines, demand: Demand, nominal: Mapping[str, float]) -> FormResult:
+def form(scatter: Scatter, demand: Demand) -> FormResult:
     """Find the reliability index of each side of a demand on a number."""
-    if machines.setup.model.own_result_fields[demand.result].along:
+    if scatter.setup.model.own_result_fields[demand.result].along:
         return FormResult({}, None, "not done: the result runs along an axis")
-    if not machines.scatter.dimension:
+    if not scatter.dimension:
         return FormResult({}, None, "not done: nothing scatters")
     sides: dict[str, Side] = {}
     for name, bound, sign in (("low", demand.low, 1.0), ("high", demand.high, -1.0)):
         if np.isfinite(bound):
-            sides[name] = _search(_limit_state(machines, demand, nominal, (sign, bound)), machines)
+            sides[name] = _search(_limit_state(scatter, demand, sign, bound), scatter)
     failed = [f"{name} limit: {side.status}" for name, side in sides.items() if not side.converged]
     if failed:
         return FormResult(sides, None, "; ".join(failed))
@@ -123,22 +117,18 @@ def form(machines: Machines, demand: Demand, nominal: Mapping[str, float]) -> Fo
     return FormResult(sides, max(0.0, 1.0 - missed), "converged")
 
 
-def _limit_state(
-    machines: Machines, demand: Demand, nominal: Mapping[str, float], side: tuple[float, float]
-) -> LimitState:
+def _limit_state(scatter: Scatter, demand: Demand, sign: float, bound: float) -> LimitState:
     """Return the distance from a limit in standard normal space: positive where it is kept, (d, n) -> (n,)."""
-    sign, bound = side
-    results = [name for name in machines.setup.model.own_result_fields if name in demand.wanted]
 
-    def distance(standard: NDArray[np.float64]) -> NDArray[np.float64]:
-        rows, columns = standard_rows(machines, standard, results)
-        answer: NDArray[np.float64] = sign * (demand.response(rows.results, columns, nominal) - bound)
+    def distance(standard: Matrix) -> Matrix:
+        rows, columns = standard_rows(scatter, standard, results_needed(scatter.setup, [demand]))
+        answer: Matrix = sign * (demand.response(rows.results, columns) - bound)
         return answer
 
     return distance
 
 
-def _with_gradient(distance: LimitState, point: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
+def _with_gradient(distance: LimitState, point: Matrix) -> tuple[float, Matrix]:
     moves = STEP * np.eye(len(point))
     batch = np.hstack([point[:, None], point[:, None] + moves, point[:, None] - moves])
     values = distance(batch)
@@ -146,9 +136,9 @@ def _with_gradient(distance: LimitState, point: NDArray[np.float64]) -> tuple[fl
     return float(values[0]), (up - down) / (2 * STEP)
 
 
-def _search(distance: LimitState, machines: Machines) -> Side:
+def _search(distance: LimitState, scatter: Scatter) -> Side:
     """Walk to the point of the limit nearest to the origin."""
-    point = np.zeros(machines.scatter.dimension)
+    point = np.zeros(scatter.dimension)
     scale = 0.0
     for iteration in range(1, ITERATIONS + 1):
         value, gradient = _with_gradient(distance, point)
@@ -165,15 +155,13 @@ def _search(distance: LimitState, machines: Machines) -> Side:
         target = ahead * normal
         if abs(value) <= CLOSE * steepness and np.abs(target - point).max() <= 1e-4 * max(1.0, abs(ahead)):
             beta = float(normal @ point) + value / steepness
-            columns = machines.scatter.from_standard(point[:, None])
+            columns = scatter.from_standard(point[:, None])
             return Side("converged", beta, {name: float(values[0]) for name, values in columns.items()}, iteration)
         point = point + _length(distance, point, target - point, (value, steepness)) * (target - point)
     return Side(f"no convergence within {ITERATIONS} iterations")
 
 
-def _length(
-    distance: LimitState, point: NDArray[np.float64], direction: NDArray[np.float64], here: tuple[float, float]
-) -> float:
+def _length(distance: LimitState, point: Matrix, direction: Matrix, here: tuple[float, float]) -> float:
     """Choose the longest step of 1, 1/2, 1/4 ... that lowers the merit function; all are tried in one batch."""
     value, steepness = here
     target = point + direction

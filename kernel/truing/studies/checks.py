@@ -86,7 +86,7 @@ class Limit:
     result: str
     low: Any
     high: Any
-    goal: float | None
+    goal: Any
     require: Require
 
 
@@ -99,7 +99,34 @@ def margin_of(value: float, limit: float, *, at_least: bool = False) -> float:
 def limits(setup: Setup, answers: dict[str, Any]) -> list[Limit]:
     """Return every requirement of the model in numbers whose results are known; ``answers`` holds them in SI."""
     requires = requirements(setup)
-    return [_limit(require, requires, setup, answers) for require in requires if is_known(require, setup, answers)]
+    known = [require for require in requires if is_known(require, setup, answers)]
+    centres = {
+        require.result: of_design(setup, require.result, answers) for require in known if require.kind == "within"
+    }
+    return [limit_of(check_name(require, requires), require, setup, answers, centres) for require in known]
+
+
+def limit_of(name: str, require: Require, setup: Setup, values: Mapping[str, Any], centres: Mapping[str, Any]) -> Limit:
+    """Return a requirement in numbers; ``centres`` are the results from which ``within`` is measured.
+
+    ``values`` holds results in SI, and inputs that are not those of the setup: numbers, or arrays (m,) of m designs.
+    """
+    amount = limit_amount(require, setup, values)
+    low, high = -float("inf"), float("inf")
+    if require.kind == "at_most":
+        high = amount
+    elif require.kind == "at_least":
+        low = amount
+    else:
+        centre = centres[require.result]
+        low, high = centre - beside(amount, centre), centre + beside(amount, centre)
+    return Limit(name, require.result, low, high, goal_of(require, setup, values), require)
+
+
+def beside(limit: Any, values: Any) -> Any:
+    """Make one limit per row meet values along an axis."""
+    deeper = np.ndim(values) - np.ndim(limit)
+    return limit if deeper <= 0 or np.ndim(limit) == 0 else np.expand_dims(limit, tuple(range(-deeper, 0)))
 
 
 def is_known(require: Require, setup: Setup, answers: Mapping[str, Any]) -> bool:
@@ -117,23 +144,12 @@ def requirements(setup: Setup) -> list[Require]:
     ]
 
 
-def _limit(require: Require, others: list[Require], setup: Setup, answers: dict[str, Any]) -> Limit:
-    amount = limit_amount(require, setup, answers)
-    low, high = -float("inf"), float("inf")
-    if require.kind == "at_most":
-        high = amount
-    elif require.kind == "at_least":
-        low = amount
-    else:
-        centre = of_design(setup, require.result, answers)
-        low, high = centre - amount, centre + amount
-    return Limit(check_name(require, others), require.result, low, high, goal_of(require, setup), require)
-
-
-def goal_of(require: Require, setup: Setup) -> float | None:
-    """Return the probability that a requirement asks for, None where it must simply hold."""
+def goal_of(require: Require, setup: Setup, values: Mapping[str, Any] | None = None) -> Any:
+    """Return the probability that a requirement asks for, None where it must simply hold; ``values`` as of limits."""
     goal = require.reliability
-    return float(setup.nominal(goal)) if isinstance(goal, str) else goal
+    if not isinstance(goal, str):
+        return goal
+    return values[goal] if values and goal in values else float(setup.nominal(goal))
 
 
 def of_design(setup: Setup, result: str, answers: dict[str, Any]) -> Any:
@@ -157,12 +173,12 @@ def sockets_of(setup: Setup) -> list[str]:
     return [name for name in sorted(names) if getattr(fields[name].spec, "default", None) == 0]
 
 
-def limit_amount(require: Require, setup: Setup, answers: dict[str, Any]) -> Any:
+def limit_amount(require: Require, setup: Setup, values: Mapping[str, Any]) -> Any:
     """Return the stated limit in SI: an input, a result or a quantity in the unit of the result."""
+    if require.limit in values:
+        return values[require.limit]
     if require.limit in setup.model.input_fields:
         return float(setup.nominal(require.limit))
-    if require.limit in answers:
-        return answers[require.limit]
     return float(in_si(require.limit, setup.model.result_fields[require.result].unit))
 
 
@@ -219,7 +235,7 @@ def _bound_words(require: Require, setup: Setup, answers: Mapping[str, Any]) -> 
         return require.limit
     unit = setup.print_unit(require.result)
     unit = difference_unit(unit) if require.kind == "within" else unit
-    return with_unit(*format_value(limit_amount(require, setup, dict(answers)), unit, STATED_DIGITS))
+    return with_unit(*format_value(limit_amount(require, setup, answers), unit, STATED_DIGITS))
 
 
 # The four verdicts and their words, apart from what calculates: the command line knows them before it loads that

@@ -7,12 +7,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ndtr
 
-from truing.declare.fields import Given
 from truing.setup import Setup
-from truing.studies.checks import Limit, limits
+from truing.studies.checks import Limit, beside, limits
 
 Z95 = 1.959963984540054  # standard normal quantile of 97.5 %
 
@@ -22,6 +20,7 @@ class Demand:
     """``low <= result - moving <= high`` in SI, for every machine; numbers, or arrays along the result's axis.
 
     ``moving`` is empty or the result or input that a one-sided limit names: then strength meets load in each machine.
+    ``still`` is the nominal value of such an input.
     """
 
     name: str
@@ -30,13 +29,14 @@ class Demand:
     high: Any
     goal: float | None
     moving: str = ""
+    still: float | None = None
 
-    def response(self, results: Mapping[str, Any], columns: Mapping[str, Any], nominal: Mapping[str, float]) -> Any:
-        """Return what the limits hold for: the result, less a limit that moves (from ``nominal`` where it stays)."""
+    def response(self, results: Mapping[str, Any], columns: Mapping[str, Any]) -> Any:
+        """Return what the limits hold for: the result, less a limit that moves."""
         values = results[self.result]
         if not self.moving:
             return values
-        limit = results[self.moving] if self.moving in results else columns.get(self.moving, nominal.get(self.moving))
+        limit = results[self.moving] if self.moving in results else columns.get(self.moving, self.still)
         return values - beside(limit, values)
 
     def slopes(self, of: Mapping[str, Mapping[str, Any]], columns: Sequence[str]) -> dict[str, Any]:
@@ -54,19 +54,13 @@ class Demand:
         return (self.result, self.moving) if self.moving else (self.result,)
 
 
-def beside(limit: Any, values: Any) -> Any:
-    """Make one limit per row meet values along an axis."""
-    deeper = np.ndim(values) - np.ndim(limit)
-    return limit if deeper <= 0 or np.ndim(limit) == 0 else np.expand_dims(limit, tuple(range(-deeper, 0)))
-
-
 def demands(setup: Setup, answers: Mapping[str, Any], *, with_goal: bool | None = None) -> list[Demand]:
     """Return the limits on results of the function: those with a probability to reach, or all where none has one.
 
     ``with_goal=True`` returns only those with one. A limit on a result that does not exist (NaN) is left out.
     """
     own = setup.model.own_result_fields
-    limited = [_demand(limit, setup) for limit in limits(setup, dict(answers)) if limit.result in own]
+    limited = [demand_of(limit, setup) for limit in limits(setup, dict(answers)) if limit.result in own]
     goals = [demand for demand in limited if demand.goal is not None]
     chosen = goals if goals or with_goal else limited
     return [demand for demand in chosen if all(exists(answers.get(name, 0.0)) for name in demand.wanted)]
@@ -77,23 +71,15 @@ def exists(answer: Any) -> bool:
     return not np.isnan(answer).any()
 
 
-def _demand(limit: Limit, setup: Setup) -> Demand:
-    named = limit.require.limit
-    moves = named in setup.model.own_result_fields or named in setup.model.input_fields
-    if limit.require.kind == "within" or not moves:
+def demand_of(limit: Limit, setup: Setup) -> Demand:
+    """Return a limit as it is demanded of every machine."""
+    named, fields = limit.require.limit, setup.model.input_fields
+    if limit.require.kind == "within" or not (named in setup.model.own_result_fields or named in fields):
         return Demand(limit.name, limit.result, limit.low, limit.high, limit.goal)
     infinity = float("inf")
     low, high = (0.0, infinity) if limit.require.kind == "at_least" else (-infinity, 0.0)
-    return Demand(limit.name, limit.result, low, high, limit.goal, named)
-
-
-def nominal_inputs(setup: Setup, wanted: Sequence[Demand]) -> dict[str, float]:
-    """Return the nominal values of inputs that serve as moving limits."""
-    fields = setup.model.input_fields
-    names = {
-        demand.moving for demand in wanted if demand.moving in fields and isinstance(fields[demand.moving].spec, Given)
-    }
-    return {name: float(setup.nominal(name)) for name in sorted(names)}
+    still = float(setup.nominal(named)) if named in fields else None
+    return Demand(limit.name, limit.result, low, high, limit.goal, named, still)
 
 
 def results_needed(setup: Setup, wanted: Sequence[Demand]) -> tuple[str, ...]:
@@ -137,8 +123,3 @@ def as_number(value: Any) -> Any:
     if array.ndim == 0:
         return float(array) if np.isfinite(array) else None
     return [as_number(member) for member in array]
-
-
-def along(array: NDArray[Any]) -> bool:
-    """Say whether values run along an axis."""
-    return bool(array.ndim)

@@ -3,51 +3,79 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import Any, Literal
+from concurrent.futures import Executor
+from dataclasses import dataclass, field, fields, replace
+from functools import cached_property, lru_cache
+from math import ceil, floor, isnan
+from typing import Any, Literal, Protocol, runtime_checkable
 
 import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
+from scipy.special import ndtr, ndtri
 
+from truing.arrays import Matrix
 from truing.declare.blocks import Block, Cell, Drawing, Table, Words
-from truing.errors import InfeasibleError, UsageError
-from truing.evaluate import acting_inputs, evaluate
+from truing.declare.fields import InputField
+from truing.declare.goals import Maximise, Minimise, Require, Vary
+from truing.declare.model import TOTAL_PRICE
+from truing.declare.near_miss import near_miss
+from truing.declare.sources import Tolerance
+from truing.declare.spreads import (
+    SIGMAS_IN_BAND,
+    Band,
+    Distribution,
+    DistributionShape,
+    Grade,
+    Spread,
+    Target,
+    Zone,
+    shift_per_width,
+)
+from truing.errors import InfeasibleError, TruingError, UnitError, UsageError
+from truing.evaluate import acting_inputs, evaluate, evaluate_rows
+from truing.executors import SerialExecutor, in_order, keepable
 from truing.fits import GRADES
-from truing.prices import price_answers
+from truing.formulas import Formula, parse
+from truing.formulas import evaluate as evaluate_formula
+from truing.heavy import (
+    pymoo_config,
+    pymoo_evaluator,
+    pymoo_hypervolume,
+    pymoo_mutation,
+    pymoo_nsga2,
+    pymoo_problem,
+    pymoo_repair,
+    pymoo_static,
+)
+from truing.inputs_file.values import broken_bound
+from truing.packed import Packed, pack, unpack
+from truing.prices import price_answers, price_of, prices_at
 from truing.setup import Setup
 from truing.studies.bench import Bench, Outcome
-from truing.studies.demands import Demand, as_number, demands, wilson, worst
+from truing.studies.checks import Limit, beside, check_name, goal_of, limit_of, requirements, sockets_of
+from truing.studies.demands import (
+    Demand,
+    as_number,
+    demand_of,
+    demands,
+    normal_chance,
+    results_needed,
+    worst,
+)
+from truing.studies.differences import nominal_of
 from truing.studies.drawings import BLUE, GREY, ORANGE, WIDTH, labelled
-from truing.studies.optimise_problem import (
-    Aim,
-    Answers,
-    Bound,
-    Brief,
-    ModelSubstitute,
-    Problem,
-    Variable,
-    answered,
-    answers_of,
-    constants,
-    left_out,
-    make_problem,
-)
-from truing.studies.optimise_search import (
-    REFERENCE,
-    SETTLED,
-    SearchPlan,
-    Trail,
-    Volume,
-    knee_of,
-    search,
-    small,
-    violation,
-    volume_of,
-)
 from truing.studies.reading import printed, spoken
-from truing.studies.sampling import Machines, SampleBudget, Tally, sample, scatter_of
-from truing.units import unit_text
+from truing.studies.sampling import (
+    Scatter,
+    ScatterSource,
+    Tally,
+    generator,
+    sample,
+    scatter_of,
+    with_tolerances,
+)
+from truing.units import read_quantity, to_si, unit_text
 
 ALGORITHMS = ("nsga2",)
 CHANCES = ("draws", "first_order")
@@ -101,27 +129,13 @@ class Optimise:
     def run(self, bench: Bench) -> Optimum:
         """Search, and verify the knee. Raises UsageError without a variable or an objective."""
         setup = bench.setup
-        problem = make_problem(setup, self._brief(bench))
+        problem = make_problem(setup, self, constants(setup, bench.answers))
         if self.surrogate:
             problem = replace(problem, stand_in=_stand_in(bench, self.name))
-        plan = SearchPlan(self.population, self.generations, setup.seed)
         done = bench.part(self.name, 0.0, self.generations / (self.generations + 1))
-        trail = search(problem, plan, lambda designs: answered(problem, designs, bench.executor), done)
-        optimum = _optimum(self, problem, trail)
+        trail = search(problem, bench.executor, done)
+        optimum = _optimum(problem, trail)
         return optimum if optimum.knee_place is None else self._verified(bench, problem, optimum, trail)
-
-    def _brief(self, bench: Bench) -> Brief:
-        return Brief(
-            study=self.name,
-            vary=tuple(self.vary),
-            tightest=self.tightest,
-            widest=self.widest,
-            finest=self.finest,
-            chance=self.chance,
-            draws=self.draws,
-            parts=self.parts,
-            known=constants(bench.setup, bench.answers),
-        )
 
     def _verified(self, bench: Bench, problem: Problem, optimum: Optimum, trail: Trail) -> Optimum:
         """Run the knee as an inputs file would state it, and draw machines of it."""
@@ -129,17 +143,19 @@ class Optimise:
         assert knee is not None  # run has asked
         setup = problem.space.setup_of(_sorted(problem, trail)[0][knee])
         try:
-            answers = {**dict(problem.brief.known), **setup.model.read_results(evaluate(setup)), **price_answers(setup)}
+            answers = {**dict(problem.known), **setup.model.read_results(evaluate(setup)), **price_answers(setup)}
         except InfeasibleError as error:
             remark = f"the model itself has no answer at the knee ({error})"
             return replace(optimum, remarks=(*optimum.remarks, remark))
-        exact = {aim.name: float(answers.get(aim.name, _input(setup, aim.name))) for aim in problem.aims}
+        exact = {aim.name: float(answers.get(aim.name, _nominal(setup, aim.name))) for aim in problem.aims}
         wanted = demands(setup, answers, with_goal=True)
         tally = None
         if wanted:
             done = bench.part(self.name, self.generations / (self.generations + 1), 1.0)
-            budget = SampleBudget(self.verify, self.batch, bench.executor, done)
-            tally = sample(Machines(setup, scatter_of(setup)), wanted, answers, budget)
+            tally = sample(
+                scatter_of(setup), wanted, answers,
+                draws=self.verify, batch=self.batch, executor=bench.executor, done=done,
+            )  # fmt: skip
         return replace(optimum, exact=exact, demands=tuple(wanted), tally=tally)
 
 
@@ -151,31 +167,30 @@ def _stand_in(bench: Bench, study: str) -> ModelSubstitute:
     raise UsageError(f"study '{study}': surrogate = true, but no Surrogate ran before it; list it first in run = [...]")
 
 
-def _input(setup: Setup, name: str) -> float:
-    return float(setup.nominal(name)) if name in setup.model.input_fields else float("nan")
-
-
-def _sorted(problem: Problem, trail: Trail) -> tuple[NDArray[np.float64], Answers]:
+def _sorted(problem: Problem, trail: Trail) -> tuple[Matrix, Answers]:
     """Return designs and answers in the order of the first objective, then of the others."""
     values = trail.answers.objectives * np.array([aim.sign for aim in problem.aims])
     order = np.lexsort(values.T[::-1])
     return trail.designs[order], trail.answers[order]
 
 
-def _optimum(study: Optimise, problem: Problem, trail: Trail) -> Optimum:
+def _nominal(setup: Setup, name: str) -> float:
+    return float(setup.nominal(name)) if name in setup.model.input_fields else float("nan")
+
+
+def _optimum(problem: Problem, trail: Trail) -> Optimum:
     designs, answers = _sorted(problem, trail)
     feasible = bool(answers.feasible.all())
     start = problem.space.start[None, :]
     knee, distance = knee_of(small(problem, answers)) if feasible else (None, 0.0)
     return Optimum(
-        study=study,
         problem=problem,
         front=tuple(_designs(problem, designs, answers)) if feasible else (),
         start=_designs(problem, start, answers_of(problem, start, as_stated=True), as_stated=True)[0],
         knee_place=knee,
         distance=distance,
         status=FOUND if feasible else _nothing(problem, trail),
-        volume=volume_of(trail.fronts, exhausted=len(trail.fronts) < study.generations) if feasible else None,
+        volume=volume_of(trail.fronts, exhausted=len(trail.fronts) < problem.study.generations) if feasible else None,
         evaluations=trail.evaluations,
         failed=trail.failed,
         remarks=(*left_out(problem.setup), *_too_few(problem), *_beyond(problem, designs)),
@@ -200,14 +215,13 @@ def _too_few(problem: Problem) -> tuple[str, ...]:
         return ()
     words = []
     for bound in problem.by_chance:
-        goal = bound.require.reliability
-        goal = float(problem.setup.nominal(goal)) if isinstance(goal, str) else goal
+        goal = goal_of(bound.require, problem.setup)
         if goal is not None and problem.cloud.draws * (1 - goal) < 1:
             words.append(f"{problem.cloud.draws} machines cannot tell {goal:g} of '{bound.name}' from certainty")
     return tuple(words)
 
 
-def _beyond(problem: Problem, designs: NDArray[np.float64]) -> tuple[str, ...]:
+def _beyond(problem: Problem, designs: Matrix) -> tuple[str, ...]:
     """Say how many designs of the front lie where the surrogate learnt nothing."""
     outside = getattr(problem.stand_in, "extrapolated", None)
     count = int(np.sum(outside(problem.space.columns(designs)))) if outside is not None else 0
@@ -229,9 +243,7 @@ class DesignPoint:
     feasible: bool
 
 
-def _designs(
-    problem: Problem, designs: NDArray[np.float64], answers: Answers, *, as_stated: bool = False
-) -> list[DesignPoint]:
+def _designs(problem: Problem, designs: Matrix, answers: Answers, *, as_stated: bool = False) -> list[DesignPoint]:
     """Return the designs (m, v) by name."""
     columns = problem.space.columns(designs, as_stated=as_stated)
     choices = problem.space.choices(designs)
@@ -261,7 +273,6 @@ class Optimum(Outcome):
     machines of it that meet each goal, ``volume`` the hypervolume of every generation. ``inputs`` are the run's.
     """
 
-    study: Optimise
     problem: Problem = field(repr=False)
     front: tuple[DesignPoint, ...]
     start: DesignPoint
@@ -276,6 +287,11 @@ class Optimum(Outcome):
     tally: Tally | None = None
     remarks: tuple[str, ...] = ()
     inputs: Any = None
+
+    @property
+    def study(self) -> Optimise:
+        """The study that found it."""
+        return self.problem.study
 
     @property
     def name(self) -> str:
@@ -305,14 +321,15 @@ class Optimum(Outcome):
     @property
     def verified(self) -> dict[str, float]:
         """The share of drawn machines of the knee that meets each goal."""
-        tally = self.tally
-        return {} if tally is None else {name: worst(hits) / tally.draws for name, hits in tally.hits.items()}
+        return {} if self.tally is None else {name: worst(share) for name, share in self.tally.shares.items()}
 
     @property
     def interval(self) -> dict[str, tuple[float, float]]:
         """Wilson's 95 % interval of each of these shares."""
         tally = self.tally
-        return {} if tally is None else {name: wilson(worst(hits), tally.draws) for name, hits in tally.hits.items()}
+        return (
+            {} if tally is None else {name: (worst(low), worst(high)) for name, (low, high) in tally.intervals.items()}
+        )
 
     def as_json(self) -> dict[str, Any]:
         """Return front, knee, start, hypervolume and status in printed units."""
@@ -352,12 +369,16 @@ class Optimum(Outcome):
         blocks: list[Block] = [Words(_summary(self)), _comparison(self), *_undecided(self)]
         if len(self.front) > 1:
             blocks += [*fit_for_paper(_front(self)), Drawing("Front, start and knee", _drawn_front(self))]
-        blocks.append(Drawing("Hypervolume over the generations", _drawn_history(self), _history_words(self)))
+        words = (
+            "Of every generation's front, in the box of the last one (each objective 0 to 1), against the reference "
+            f"point {REFERENCE:g} in each objective."
+        )
+        blocks.append(Drawing("Hypervolume over the generations", _drawn_history(self), words))
         return blocks
 
     def warnings(self) -> Sequence[str]:
         """Say what was not found, what the exact model contradicts, and whether the search had settled."""
-        return [f"study '{self.name}': {text}" for text in optimum_warnings(self)]
+        return [f"study '{self.name}': {text}" for text in _doubts(self)]
 
 
 # How an optimum is written: results.json, the sheet, and what must be said of it
@@ -454,13 +475,15 @@ def _comparison(optimum: Optimum) -> Table:
     rows: list[list[Cell]] = []
     for name in start.inputs:
         unit = _input_unit(optimum, name)
-        rows.append([name, "input", _text(unit), *(printed(design.inputs[name], unit) for design in designs)])
+        rows.append([name, "input", unit_text(unit), *(printed(design.inputs[name], unit) for design in designs)])
     for name, width in start.tolerances.items():
         unit, kind = ("", "grade") if isinstance(width, str) else (_width_unit(optimum, name), "full width")
-        rows.append([name, kind, _text(unit), *(_width(optimum, name, design.tolerances[name]) for design in designs)])
+        rows.append(
+            [name, kind, unit_text(unit), *(_width(optimum, name, design.tolerances[name]) for design in designs)]
+        )
     for aim in optimum.aims:
         values = [printed(design.objectives[aim.name], aim.unit) for design in designs]
-        rows.append([aim.name, aim.sense, _text(aim.unit), *values])
+        rows.append([aim.name, aim.sense, unit_text(aim.unit), *values])
     rows += [_limit_row(bound, designs) for bound in optimum.bounds]
     rows += _verified_rows(optimum)
     rows.append(["every limit is kept", "", "", *(design.feasible for design in designs)])
@@ -470,7 +493,7 @@ def _comparison(optimum: Optimum) -> Table:
 
 def _limit_row(bound: Any, designs: Sequence[DesignPoint]) -> list[Cell]:
     if bound.by_chance:
-        return [bound.name, "chance", "%", *(_percent(design.chances[bound.name]) for design in designs)]
+        return [bound.name, "chance", "%", *(as_number(100 * design.chances[bound.name]) for design in designs)]
     return [bound.name, "margin", "", *(as_number(design.margins[bound.name]) for design in designs)]
 
 
@@ -493,14 +516,6 @@ def _comparison_note(optimum: Optimum) -> str:
     return f"The knee lies farthest from the {plane} of the front, each objective brought to 0 to 1."
 
 
-def _percent(value: float) -> Any:
-    return as_number(100 * value)
-
-
-def _text(unit: str) -> str:
-    return unit_text(unit)
-
-
 def _front(optimum: Optimum) -> Table:
     """List the front, thinned evenly; its ends and the knee stay."""
     places = _thinned(len(optimum.front), optimum.knee_place or 0)
@@ -512,7 +527,7 @@ def _front(optimum: Optimum) -> Table:
         design = optimum.front[index]
         row: list[Cell] = [f"{index + 1} knee" if index == optimum.knee_place else str(index + 1)]
         row += [printed(design.objectives[aim.name], aim.unit) for aim in optimum.aims]
-        row += [_percent(design.chances[name]) for name in chances]
+        row += [as_number(100 * design.chances[name]) for name in chances]
         row += [printed(design.inputs[name], _input_unit(optimum, name)) for name in inputs]
         row += [_width(optimum, name, value) for name, value in design.tolerances.items()]
         rows.append(row)
@@ -557,8 +572,8 @@ def _drawn_front(optimum: Optimum) -> Callable[[], Figure]:
         panels = figure.subplots(len(others), 1, squeeze=False)[:, 0]
         for panel, other in zip(panels, others, strict=True):
             _panel(panel, optimum, (first, other))
-            panel.set_xlabel(labelled(first.name, _text(first.unit)))
-            panel.set_ylabel(labelled(other.name, _text(other.unit)))
+            panel.set_xlabel(labelled(first.name, unit_text(first.unit)))
+            panel.set_ylabel(labelled(other.name, unit_text(other.unit)))
         panels[0].legend(frameon=False)
         return figure
 
@@ -598,14 +613,7 @@ def _drawn_history(optimum: Optimum) -> Callable[[], Figure]:
     return draw
 
 
-def _history_words(optimum: Optimum) -> str:
-    return (
-        f"Of every generation's front, in the box of the last one (each objective 0 to 1), against the reference point "
-        f"{REFERENCE:g} in each objective."
-    )
-
-
-def optimum_warnings(optimum: Optimum) -> Iterator[str]:
+def _doubts(optimum: Optimum) -> Iterator[str]:
     """Say what was not found, what the exact model contradicts, and whether the search had settled."""
     yield from optimum.remarks
     if optimum.knee is None:
@@ -616,11 +624,6 @@ def optimum_warnings(optimum: Optimum) -> Iterator[str]:
             f"the hypervolume still grew by more than {100 * SETTLED:g} % in the last {optimum.volume.last} "
             "generations; ask for more generations"
         )
-    yield from _contradicted(optimum)
-
-
-def _contradicted(optimum: Optimum) -> Iterator[str]:
-    """Name the goals that the knee misses when it is verified."""
     for name, goal, (low, high) in _goals(optimum):
         if high < goal:
             yield (
@@ -643,3 +646,1152 @@ def _goals(optimum: Optimum) -> Iterator[tuple[str, float, tuple[float, float]]]
     for demand in optimum.demands:
         if demand.goal is not None:
             yield demand.name, demand.goal, optimum.interval[demand.name]
+
+
+# The search: NSGA-II over places in the unit cube; a population is one array, and only the seed decides chance.
+# Source: K. Deb, A. Pratap, S. Agarwal, T. Meyarivan, IEEE Trans. Evol. Comput. 6 (2002) 182. Whole variables sit at
+# their steps; beside polynomial mutation they jump to any other step now and then.
+
+
+FAILED = 1e6
+"""How far a design without an answer is counted beyond every limit: finite, and worse than any that has one."""
+
+ROOM = 4
+"""How many times its population a search remembers of what it has found on the way."""
+
+LED = 2
+"""Every second offspring is a differential step."""
+REACH, MOVED = (0.2, 1.0), 0.9
+"""How long these steps are, and in what share of the variables."""
+
+TRIFLE, DEAR = 1e-3, 2e-2
+
+
+@dataclass(frozen=True)
+class Trail:
+    """What the search left: the designs (m, v) it ended with, their answers, and every generation's best objectives.
+
+    ``fronts`` hold what should be small (objectives, those to be large negated), of feasible designs no other beats.
+    """
+
+    designs: Matrix
+    answers: Answers
+    fronts: tuple[Matrix, ...]
+    evaluations: int
+    failed: int
+
+
+def search(problem: Problem, executor: Executor, done: Callable[[int, int], None]) -> Trail:
+    """Look for the designs that no other beats; each generation is answered at once."""
+    algorithm, shell = _algorithm(problem)
+    population, generations = problem.study.population, problem.study.generations
+    rng = np.random.default_rng([problem.setup.seed, LED])
+    kept: tuple[Matrix, Answers] | None = None
+    fronts: list[Matrix] = []
+    evaluations = failed = 0
+    for generation in range(generations):
+        asked = algorithm.ask()
+        if asked is None or not len(asked):
+            break
+        if kept is not None:
+            asked.set("X", _led(problem, (asked.get("X"), algorithm.pop.get("X")), kept[0], rng))
+        designs = problem.space.designs(asked.get("X"))
+        generation_answers = answered(problem, designs, executor)
+        evaluations, failed = evaluations + len(designs), failed + int(generation_answers.failed.sum())
+        _tell(algorithm, shell, asked, problem, generation_answers)
+        kept = _best(problem, kept, (designs, generation_answers), ROOM * population)
+        fronts.append(small(problem, kept[1]))
+        done(generation + 1, generations)
+    assert kept is not None  # the first generation is never empty
+    designs, answers = _best(problem, None, kept, population)
+    return Trail(designs, answers, tuple(fronts), evaluations, failed)
+
+
+def _led(
+    problem: Problem,
+    places: tuple[Matrix, Matrix],
+    best: Matrix,
+    rng: np.random.Generator,
+) -> Matrix:
+    """Put differential steps in the place of every second offspring, and return all offspring as places.
+
+    A step is a part of the way between two designs of the population, away from one of the best: so it follows the
+    front whatever its direction (R. Storn, K. Price, J. Glob. Optim. 11 (1997) 341). ``places`` are those of the
+    offspring and of the population.
+    """
+    offspring, population = places
+    changed = offspring.copy()
+    count = len(changed[1::LED])
+    start = problem.space.units(best[rng.integers(len(best), size=count)])
+    ahead, behind = (population[rng.integers(len(population), size=count)] for _ in range(2))
+    reach = rng.uniform(*REACH, (count, 1))
+    moved = rng.random(start.shape) < MOVED
+    led = start + np.where(moved, reach * (ahead - behind), 0.0)
+    changed[1::LED] = problem.space.units(problem.space.designs(np.clip(led, 0.0, 1.0)))
+    return changed
+
+
+def small(problem: Problem, answers: Answers) -> Matrix:
+    """Return the objectives of feasible designs as numbers that should be small."""
+    return np.asarray(answers.objectives[answers.feasible] * np.array([aim.sign for aim in problem.aims]))
+
+
+def _best(
+    problem: Problem,
+    kept: tuple[Matrix, Answers] | None,
+    new: tuple[Matrix, Answers],
+    most: int,
+) -> tuple[Matrix, Answers]:
+    """Keep the feasible designs that no other beats, or while there is none the one that misses least.
+
+    At most ``most`` of them, chosen so that they spread along the front; the ends always stay.
+    """
+    designs, answers = new if kept is None else (np.vstack([kept[0], new[0]]), joined([kept[1], new[1]]))
+    if not answers.feasible.any():
+        least = int(np.argmin(violation(answers)))
+        return designs[[least]], answers[[least]]
+    rows = np.flatnonzero(answers.feasible)
+    values = small(problem, answers)
+    front = non_dominated(values)
+    chosen = rows[spread_out(values, front[worth_it(values[front])], most)]
+    return designs[chosen], answers[chosen]
+
+
+def violation(answers: Answers) -> Matrix:
+    """Return how far every design misses its limits together; finite where it has no answer."""
+    missed = np.where(np.isfinite(answers.margins), np.maximum(-answers.margins, 0.0), FAILED).sum(axis=1)
+    return np.asarray(np.where(answers.failed, FAILED * (1 + answers.margins.shape[1]), missed))
+
+
+def non_dominated(values: Matrix) -> NDArray[np.intp]:
+    """Return the rows (of values that should be small) that no other row beats; of equal rows the first."""
+    order = np.lexsort(values.T[::-1])
+    if values.shape[1] <= 2:  # sorted by the first, a row stays where the last falls below all before it
+        last = values[order, -1]
+        lowest = np.minimum.accumulate(np.concatenate([[np.inf], last[:-1]]))
+        return np.asarray(order[last < lowest])
+    front = []
+    while len(order):
+        first, rest = order[0], order[1:]
+        front.append(first)
+        order = rest[(values[rest] < values[first]).any(axis=1)]
+    return np.array(front, dtype=np.intp)
+
+
+def worth_it(front: Matrix) -> NDArray[np.bool_]:
+    """Say which designs of a front buy something for their price.
+
+    One that is better than another by less than ``TRIFLE`` of the front's extent, in what it is better in, and worse
+    by more than ``DEAR`` in anything, is no trade: the ends of a front would hang on to such designs for ever.
+    """
+    span = np.ptp(front, axis=0)
+    scaled = front / np.where(span > 0, span, 1.0)
+    apart: Matrix = scaled[:, None, :] - scaled[None, :, :]  # how much worse the first is than the second
+    beaten = (apart.min(axis=2) > -TRIFLE) & (apart.max(axis=2) > DEAR)
+    return np.asarray(~beaten.any(axis=1))
+
+
+def spread_out(values: Matrix, front: NDArray[np.intp], most: int) -> NDArray[np.intp]:
+    """Thin a front to ``most`` rows by leaving out, one by one, the most crowded; ends have no neighbour and stay."""
+    while len(front) > most:
+        objectives = values[front]
+        span = np.ptp(objectives, axis=0)
+        scaled = (objectives - objectives.min(axis=0)) / np.where(span > 0, span, 1.0)
+        room = np.zeros(len(front))
+        for column in scaled.T:
+            order = np.argsort(column, kind="stable")
+            room[order[1:-1]] += column[order[2:]] - column[order[:-2]]
+            room[order[[0, -1]]] = np.inf
+        front = np.delete(front, int(np.argmin(room)))
+    return front
+
+
+def _tell(algorithm: Any, shell: Any, asked: Any, problem: Problem, answers: Answers) -> None:
+    """Hand the answers back; a design without one is finite and worse than any other."""
+    signs = np.array([aim.sign for aim in problem.aims])
+    objectives = np.where(answers.failed[:, None], FAILED, answers.objectives * signs)
+    missing = np.where(answers.failed, FAILED, -1.0)
+    limits = np.where(answers.failed[:, None], FAILED, -answers.margins)
+    pymoo_evaluator.Evaluator().eval(
+        pymoo_static.StaticProblem(shell, F=objectives, G=np.column_stack([limits, missing])), asked
+    )
+    algorithm.tell(infills=asked)
+
+
+def _algorithm(problem: Problem) -> tuple[Any, Any]:
+    """Set up the algorithm of the literature with the first population."""
+    pymoo_config.Config.warnings["not_compiled"] = False
+    count = len(problem.space.variables)
+    shell = pymoo_problem.Problem(
+        n_var=count,
+        n_obj=len(problem.aims),
+        n_ieq_constr=len(problem.bounds) + 1,
+        xl=np.zeros(count),
+        xu=np.ones(count),
+    )
+    mutation, repair = _operators(problem)
+    algorithm = pymoo_nsga2.NSGA2(
+        pop_size=problem.study.population, sampling=_first(problem), mutation=mutation, repair=repair
+    )
+    termination = ("n_gen", problem.study.generations)
+    algorithm.setup(shell, termination=termination, seed=problem.setup.seed, verbose=False)
+    return algorithm, shell
+
+
+def _first(problem: Problem) -> Matrix:
+    """Return the first population: the stated design, it with every width at its ends, and a Latin hypercube."""
+    space, population = problem.space, problem.study.population
+    start = space.units(space.start[None, :])[0]
+    widths = np.array([not variable.is_input for variable in space.variables])
+    ends = [start, np.where(widths, 0.0, start), np.where(widths, 1.0, start)] if widths.any() else [start]
+    ends = ends[:population]
+    rest = population - len(ends)
+    rng = np.random.default_rng([problem.setup.seed, rest])
+    strata = np.array([rng.permutation(rest) for _ in space.variables]).reshape(len(start), rest).T
+    return np.vstack([*ends, (strata + rng.random((rest, len(start)))) / max(rest, 1)])
+
+
+def _operators(problem: Problem) -> tuple[Any, Any]:
+    """Return the mutation and the repair that know whole variables."""
+    space = problem.space
+    discrete = np.flatnonzero([variable.discrete for variable in space.variables])
+
+    class Mutation(pymoo_mutation.PM):  # type: ignore[misc]  # pymoo has no types
+        def _do(self, shell: Any, places: Any, *args: Any, random_state: Any = None, **kwargs: Any) -> Any:
+            changed = super()._do(shell, places, *args, random_state=random_state, **kwargs)
+            if len(discrete):
+                jumps = random_state.random((len(changed), len(discrete))) < 1 / len(space.variables)
+                anywhere = random_state.random(jumps.shape)
+                changed[:, discrete] = np.where(jumps, anywhere, changed[:, discrete])
+            return changed
+
+    class ToSteps(pymoo_repair.Repair):  # type: ignore[misc]
+        def _do(self, shell: Any, places: Any, **kwargs: Any) -> Any:
+            return space.units(space.designs(np.asarray(places, dtype=float)))
+
+    return Mutation(eta=20), ToSteps()
+
+
+# What a front is worth: its knee, its hypervolume, and whether the search has settled
+
+
+REFERENCE = 1.1
+"""The reference point of the hypervolume, in every objective: the box of the final front is 0 to 1."""
+SETTLED = 1e-3
+LAST = 0.1
+
+
+@dataclass(frozen=True)
+class Volume:
+    """The hypervolume of every generation's front in one box: ``ideal`` is 0, ``nadir`` 1 in each objective."""
+
+    ideal: tuple[float, ...]
+    nadir: tuple[float, ...]
+    history: tuple[float, ...]
+    exhausted: bool = False
+    """Whether the search ended because it found no design that it had not tried."""
+
+    @property
+    def last(self) -> int:
+        """How many generations at the end are looked at."""
+        return max(1, round(LAST * len(self.history)))
+
+    @property
+    def gain(self) -> float:
+        """By what share it grew in these last generations."""
+        before = self.history[max(0, len(self.history) - 1 - self.last)]
+        return (self.history[-1] - before) / self.history[-1] if self.history[-1] > 0 else 0.0
+
+    @property
+    def settled(self) -> bool:
+        """Whether it grew by no more than one part in a thousand, or nothing was left to try."""
+        return self.exhausted or (len(self.history) > self.last and self.gain <= SETTLED)
+
+
+def volume_of(fronts: Sequence[Matrix], *, exhausted: bool = False) -> Volume:
+    """Measure every generation's front (values that should be small) in the box of the last one.
+
+    In one objective it is the way from the reference to the best. An objective in which the last front has no extent
+    takes that of all fronts. Source: E. Zitzler, L. Thiele, IEEE Trans. Evol. Comput. 3 (1999) 257.
+    """
+    filled = [front for front in fronts if len(front)]
+    last, whole = filled[-1], np.vstack(filled)
+    ideal, nadir = last.min(axis=0), last.max(axis=0)
+    nadir = np.where(nadir > ideal, nadir, whole.max(axis=0))
+    span = np.where(nadir > ideal, nadir - ideal, 1.0)
+    history = tuple(_hypervolume((front - ideal) / span) if len(front) else 0.0 for front in fronts)
+    return Volume(tuple(ideal.tolist()), tuple((ideal + span).tolist()), history, exhausted)
+
+
+def _hypervolume(values: Matrix) -> float:
+    inside = values[(values < REFERENCE).all(axis=1)]
+    if not len(inside):
+        return 0.0
+    if values.shape[1] == 1:
+        return float(REFERENCE - inside.min())
+    if values.shape[1] > 2:
+        return float(pymoo_hypervolume.HV(ref_point=np.full(values.shape[1], REFERENCE))(inside))
+    order = inside[np.lexsort(inside.T[::-1])]
+    below = np.minimum.accumulate(np.concatenate([[REFERENCE], order[:, 1]]))
+    return float(((REFERENCE - order[:, 0]) * (below[:-1] - below[1:])).sum())
+
+
+def knee_of(front: Matrix) -> tuple[int, float]:
+    """Return the design farthest from the chord of the normalised front, towards small values, and how far it is.
+
+    The chord (with more objectives the plane) goes through the ends of the front, each objective from 0 to 1. With one
+    objective it is the best design. Source: I. Das, Structural Optimization 18 (1999) 107.
+    """
+    if front.shape[1] == 1:
+        return int(np.argmin(front[:, 0])), 0.0
+    span = np.ptp(front, axis=0)
+    scaled = (front - front.min(axis=0)) / np.where(span > 0, span, 1.0)
+    distance = (1.0 - scaled.sum(axis=1)) / np.sqrt(front.shape[1])
+    knee = int(np.argmax(distance))
+    return knee, float(distance[knee]) if (span > 0).all() else 0.0
+
+
+# Many designs answered at once: objectives, margins and chances; here, or by a worker that makes the problem again
+
+
+ROWS = 2**16  # of one call of the model, so that memory stays flat
+
+
+@runtime_checkable
+class ModelSubstitute(Protocol):
+    """What may answer in place of the model: the outcome of a surrogate study."""
+
+    @property
+    def of(self) -> tuple[str, ...]:
+        """The results it knows."""
+
+    def predict(self, columns: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Return these results (n,) in SI from columns (n,) or numbers in SI."""
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """What is chosen, what for, and the machines by which every design is judged."""
+
+    space: Space
+    study: Optimise
+    known: Known
+    aims: tuple[Aim, ...]
+    bounds: tuple[Bound, ...]
+    scatter: Scatter
+    cloud: Cloud | None
+    stand_in: ModelSubstitute | None = None
+
+    @property
+    def setup(self) -> Setup:
+        """The setup of the design that the inputs file states."""
+        return self.space.setup
+
+    @property
+    def by_chance(self) -> tuple[Bound, ...]:
+        """The limits with a probability; they are the last ones."""
+        return tuple(bound for bound in self.bounds if bound.by_chance)
+
+    def answer(self, columns: Mapping[str, Any], rows: int, wanted: Sequence[str]) -> dict[str, Any]:
+        """Run a batch: the surrogate for what it knows, the model for the rest; NaN where a row failed."""
+        own = [name for name in self.setup.model.own_result_fields if name in wanted]
+        covered = [name for name in own if self.stand_in is not None and name in self.stand_in.of]
+        values: dict[str, Any] = {}
+        if self.stand_in is not None and covered:
+            predicted = self.stand_in.predict(columns)
+            values = {name: np.broadcast_to(np.asarray(predicted[name], dtype=float), (rows,)) for name in covered}
+        rest = [name for name in own if name not in covered]
+        if rest or not own:
+            values.update(evaluate_rows(self.setup, columns, rows, wanted=rest).results)
+        return {name: values[name] for name in own}
+
+
+@keepable
+@dataclass(frozen=True)
+class Answers:
+    """What m designs are worth: objectives (m, a) in SI, margins of every limit (m, b), chances (m, c) and their goals.
+
+    ``failed`` designs have no answer: NaN everywhere.
+    """
+
+    objectives: Matrix
+    margins: Matrix
+    chances: Matrix
+    goals: Matrix
+    failed: NDArray[np.bool_]
+
+    @property
+    def feasible(self) -> NDArray[np.bool_]:
+        """Whether a design has an answer and keeps every limit."""
+        return ~self.failed & (self.margins >= 0).all(axis=1)
+
+    def __getitem__(self, rows: Any) -> Answers:
+        """Return some of the designs."""
+        return Answers(**{field.name: getattr(self, field.name)[rows] for field in fields(self)})
+
+
+def joined(parts: Sequence[Answers]) -> Answers:
+    """Put the answers of several batches together, in their order."""
+    return Answers(
+        **{field.name: np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Answers)}
+    )
+
+
+def make_problem(setup: Setup, study: Optimise, known: Known = ()) -> Problem:
+    """Collect variables, objectives and limits, and draw the machines. Raises UsageError where one is missing."""
+    aims, space, bounds = aims_of(setup, study.name), open_space(setup, study), bounds_of(setup)
+    scatter = scatter_of(setup)
+    drawn = study.chance == "draws" and any(bound.by_chance for bound in bounds)
+    cloud = cloud_of(scatter, setup.seed, study) if drawn else None
+    return Problem(space, study, known, aims, bounds, scatter, cloud)
+
+
+def answers_of(problem: Problem, designs: Matrix, *, as_stated: bool = False) -> Answers:
+    """Answer designs (m, v) in one go; ``as_stated`` leaves inputs that follow as the inputs file states them."""
+    count, world = len(designs), _world(problem, designs, as_stated=as_stated)
+    objectives = np.column_stack([np.broadcast_to(world.value(aim.name), (count,)) for aim in problem.aims])
+    plain = [margins(limit, world) for limit in world.limits if limit.goal is None]
+    goals = [np.broadcast_to(limit.goal, (count,)) for limit in world.limits if limit.goal is not None]
+    asked = np.array(goals, dtype=float).reshape(-1, count).T
+    chances = np.zeros((count, 0))
+    if goals:
+        chances = (by_first_order if problem.cloud is None else by_draws)(problem, world)
+    kept = np.column_stack([np.zeros((count, 0)), *plain, (chances - asked) / np.where(asked > 0, asked, 1.0)])
+    failed = ~(np.isfinite(objectives).all(axis=1) & np.isfinite(kept).all(axis=1))
+    for inner in world.spreads.values():  # no width: a grade that does not exist for this size
+        for distribution in inner.values():
+            failed |= ~np.isfinite(distribution.sd)
+    for values in world.results.values():
+        failed |= ~np.isfinite(values.reshape(count, -1)).all(axis=1)
+    objectives, kept, chances = (np.where(failed[:, None], np.nan, part) for part in (objectives, kept, chances))
+    return Answers(objectives, kept, chances, asked, failed)
+
+
+@dataclass(frozen=True)
+class Designs:
+    """Designs (m,) without scatter, and how their inputs scatter.
+
+    ``columns`` are nominal inputs that differ, ``values`` these, results, prices and what earlier studies gave.
+    """
+
+    setup: Setup
+    rows: int
+    columns: Mapping[str, Any]
+    results: Mapping[str, Matrix]
+    values: Mapping[str, Any]
+    spreads: Mapping[str, Mapping[str, Scattered]]
+    limits: tuple[Limit, ...]
+
+    def value(self, name: str) -> Any:
+        """Return a result, an input or the sum of the prices: a number for all designs or an array (m, ...)."""
+        return self.values[name] if name in self.values else float(self.setup.nominal(name))
+
+    def nominal(self, column: str) -> Any:
+        """Return the nominal values (m,) of a column."""
+        return self.columns[column] if column in self.columns else np.full(self.rows, nominal_of(self.setup, column))
+
+    @property
+    def by_chance(self) -> list[Demand]:
+        """The limits with a probability, as they are demanded of every machine."""
+        return [demand_of(limit, self.setup) for limit in self.limits if limit.goal is not None]
+
+
+def _world(problem: Problem, designs: Matrix, *, as_stated: bool) -> Designs:
+    """Run the designs without scatter, and once more without effects where ``within`` is measured from there."""
+    count, setup = len(designs), problem.setup
+    columns = problem.space.columns(designs, as_stated=as_stated)
+    spreads = scattered(problem.space, designs, columns)
+    named = {aim.name for aim in problem.aims}
+    named |= {name for bound in problem.bounds for name in (bound.require.result, bound.require.limit)}
+    results = problem.answer(columns, count, [name for name in setup.model.own_result_fields if name in named])
+    values = {**dict(problem.known), **columns, **results}
+    if TOTAL_PRICE in setup.model.result_fields:
+        values[TOTAL_PRICE] = total_prices(setup, spreads, count)
+    centres = {**values, **_own_results(problem, columns, count)}
+    limits = tuple(limit_of(bound.name, bound.require, setup, values, centres) for bound in problem.bounds)
+    return Designs(setup, count, columns, results, values, spreads, limits)
+
+
+def _own_results(problem: Problem, columns: Mapping[str, Any], count: int) -> Mapping[str, Matrix]:
+    """Return the results from which ``within`` is measured, where they are not the nominal ones: see ``of_design``."""
+    setup, sockets = problem.setup, sockets_of(problem.setup)
+    within = {bound.require.result for bound in problem.bounds if bound.require.kind == "within"}
+    acts = any(active.effect.place != "reading" for active in setup.effects)
+    deviates = any(name in columns or setup.nominal(name) != 0 for name in sockets)
+    if not within or not (acts or deviates):
+        return {}
+    neutral = {**columns, **{name: np.zeros(count) for name in sockets}}
+    return evaluate_rows(replace(setup, effects=()), neutral, count, wanted=within - {TOTAL_PRICE}).results
+
+
+@dataclass(frozen=True)
+class DesignBatch:
+    """Some designs, as they go to a worker: plain data, except in this process."""
+
+    problem: Problem | tuple[Packed, Optimise, Known]
+    designs: Matrix
+
+
+def run_job(job: DesignBatch) -> Answers:
+    """Answer the designs of one job."""
+    return answers_of(job.problem if isinstance(job.problem, Problem) else _unpacked(*job.problem), job.designs)
+
+
+@lru_cache(maxsize=4)
+def _unpacked(packed: Packed, study: Optimise, known: Known) -> Problem:
+    return make_problem(unpack(packed), study, known)
+
+
+def answered(problem: Problem, designs: Matrix, executor: Executor) -> Answers:
+    """Answer designs (m, v), cut into jobs in a way that does not depend on who computes them."""
+    rows = 1
+    if problem.cloud is not None:
+        rows = problem.cloud.draws
+    elif problem.by_chance:
+        rows = 1 + 2 * len(problem.scatter.columns)
+    size = max(1, min(ROWS // rows, -(-len(designs) // problem.study.parts)))
+    parts = [designs[start : start + size] for start in range(0, len(designs), size)]
+    if isinstance(executor, SerialExecutor) or problem.stand_in is not None:
+        return joined([answers_of(problem, part) for part in parts])
+    study = replace(problem.study, vary=tuple(problem.study.vary), gives=None)
+    carried = (pack(problem.setup), study, problem.known)
+    return joined(list(in_order(executor, run_job, (DesignBatch(carried, part) for part in parts))))
+
+
+# What an optimisation is for: objectives and limits of many designs at once
+
+
+@dataclass(frozen=True)
+class Aim:
+    """A number that should be small or large: a result of the function, an input, or the sum of the prices."""
+
+    name: str
+    maximise: bool
+    unit: str
+
+    @property
+    def sign(self) -> float:
+        """What turns it into something that should be small."""
+        return -1.0 if self.maximise else 1.0
+
+    @property
+    def sense(self) -> str:
+        """The word for it."""
+        return "maximise" if self.maximise else "minimise"
+
+
+@dataclass(frozen=True)
+class Bound:
+    """A limit that a design must keep: itself, or with a probability."""
+
+    name: str
+    require: Require
+
+    @property
+    def by_chance(self) -> bool:
+        """Whether a probability is asked for."""
+        return self.require.reliability is not None
+
+
+def aims_of(setup: Setup, study: str) -> tuple[Aim, ...]:
+    """Return the objectives. Raises UsageError where there is none, or one that is no single number."""
+    own = setup.model.own_result_fields
+    aims = []
+    for objective in setup.model.objectives:
+        if not isinstance(objective, (Minimise, Maximise)) or (name := objective.result) in given_by_studies(setup):
+            continue
+        if name in own and own[name].along:
+            raise UsageError(f"study '{study}': the objective '{name}' runs along an axis; it must be one number")
+        aims.append(Aim(name, isinstance(objective, Maximise), setup.print_unit(name)))
+    if not aims:
+        raise UsageError(
+            f"study '{study}': {setup.model.name} says of no result of its function and of no price that it should be "
+            "small or large; add Minimise(result) or Maximise(result) to its objectives"
+        )
+    return tuple(aims)
+
+
+def given_by_studies(setup: Setup) -> set[str]:
+    """Return the results that only studies give: no design has them while it is searched."""
+    return {name for fields in setup.model.study_result_fields.values() for name in fields}
+
+
+def bounds_of(setup: Setup) -> tuple[Bound, ...]:
+    """Return the limits on results of the function and on the sum of the prices, those by chance last."""
+    requires = requirements(setup)
+    known = {*setup.model.own_result_fields, TOTAL_PRICE}
+    bounds: list[Bound] = []
+    for require in sorted(
+        (require for require in requires if require.result in known),
+        key=lambda require: require.reliability is not None,
+    ):
+        name = check_name(require, requires)
+        if require.reliability is not None and any(bound.name == name for bound in bounds):
+            name = f"{name} by chance"
+        bounds.append(Bound(name, require))
+    return tuple(bounds)
+
+
+def left_out(setup: Setup) -> tuple[str, ...]:
+    """Say which objectives and limits the search cannot see."""
+    theirs = given_by_studies(setup)
+    goals = [objective for objective in setup.model.objectives if isinstance(objective, (Minimise, Maximise))]
+    named = [require.result for require in (*goals, *requirements(setup))]
+    return tuple(
+        f"'{name}' is given by a study once per run, so the search does not follow it"
+        for name in dict.fromkeys(named)
+        if name in theirs
+    )
+
+
+def constants(setup: Setup, answers: Mapping[str, Any]) -> Known:
+    """Return the limits that are results of earlier studies: they stay what they are."""
+    limits = {require.limit for require in requirements(setup)}
+    theirs = limits & given_by_studies(setup) & set(answers)
+    return tuple((name, float(answers[name])) for name in sorted(theirs) if np.ndim(answers[name]) == 0)
+
+
+def margins(limit: Limit, world: Designs) -> Matrix:
+    """Return how far every design (m,) keeps a limit on itself; along an axis the smallest margin."""
+    values = np.asarray(world.value(limit.result), dtype=float)
+    low, high = limit.low, limit.high
+    if limit.require.kind == "within":
+        half = (high - low) / 2
+        above, scale = half - np.abs(values - (low + high) / 2), half
+    elif limit.require.kind == "at_least":
+        scale = beside(low, values)
+        above = values - scale
+    else:
+        scale = beside(high, values)
+        above = scale - values
+    size = np.broadcast_to(np.abs(np.asarray(scale, dtype=float)), values.shape)
+    margin = np.where(size > 0, above / np.where(size > 0, size, 1.0), above)
+    return np.broadcast_to(margin.min(axis=tuple(range(1, margin.ndim))) if margin.ndim > 1 else margin, (world.rows,))
+
+
+# What an optimisation may choose: inputs between bounds, inputs that follow a formula, the widths of what is priced
+
+
+VariableKind = Literal["number", "whole", "width", "grade"]
+SLACK = 1e-9
+Known = tuple[tuple[str, float], ...]
+"""Results of earlier studies that are limits, by name in SI."""
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One thing that may be chosen, between ``low`` and ``high`` (SI, or places of grades), and where it starts."""
+
+    name: str
+    kind: VariableKind
+    low: float
+    high: float
+    unit: str
+    start: float
+
+    @property
+    def discrete(self) -> bool:
+        """Whether it takes whole numbers only."""
+        return self.kind in {"whole", "grade"}
+
+    @property
+    def is_input(self) -> bool:
+        """Whether it is an input; else it is a tolerance."""
+        return self.kind in {"number", "whole"}
+
+    @property
+    def key(self) -> str:
+        """Its name beside all others: that of the input, or ``tolerances.NAME``."""
+        return self.name if self.is_input else f"tolerances.{self.name}"
+
+
+@dataclass(frozen=True)
+class Follower:
+    """An input that a formula makes follow, in SI."""
+
+    name: str
+    formula: Formula
+    unit: str
+
+
+@dataclass(frozen=True, eq=False)
+class Space:
+    """All variables of one setup, and the inputs that follow, each behind what it follows."""
+
+    setup: Setup
+    variables: tuple[Variable, ...]
+    followers: tuple[Follower, ...]
+
+    @cached_property
+    def scatter(self) -> dict[str, dict[str, Distribution]]:
+        """What scatters in the design that the inputs file states, by tolerance and input."""
+        return self.setup.distributions()
+
+    @property
+    def moved(self) -> frozenset[str]:
+        """The inputs that differ between designs."""
+        return frozenset(variable.name for variable in self.variables if variable.is_input) | {
+            follower.name for follower in self.followers
+        }
+
+    @property
+    def start(self) -> Matrix:
+        """The design that the inputs file states, as a row."""
+        return np.array([variable.start for variable in self.variables])
+
+    def designs(self, units: Matrix) -> Matrix:
+        """Return designs (m, v) from places in the unit cube; whole variables are at their steps."""
+        low, high, discrete = self._ends()
+        values = low + units * (high - low)
+        return np.where(discrete, np.rint(values), np.clip(values, low, high))
+
+    def units(self, designs: Matrix) -> Matrix:
+        """Return the places of designs in the unit cube, where they lie outside of it those nearest to them."""
+        low, high, _ = self._ends()
+        return np.clip((designs - low) / (high - low), 0.0, 1.0)
+
+    def _ends(self) -> tuple[Matrix, Matrix, NDArray[np.bool_]]:
+        low = np.array([variable.low for variable in self.variables])
+        high = np.array([variable.high for variable in self.variables])
+        return low, high, np.array([variable.discrete for variable in self.variables])
+
+    def columns(self, designs: Matrix, *, as_stated: bool = False) -> dict[str, Any]:
+        """Return the nominal inputs (m,) that differ; ``as_stated`` leaves followers as the file states them."""
+        fields = self.setup.model.input_fields
+        columns: dict[str, Any] = {
+            variable.name: designs[:, index] for index, variable in enumerate(self.variables) if variable.is_input
+        }
+        for follower in self.followers:
+            held = {name: self.setup.nominal(name) for name in follower.formula.names}
+            stated = self.setup.nominal(follower.name)
+            value = stated if as_stated else evaluate_formula(follower.formula, {**held, **columns})
+            columns[follower.name] = np.broadcast_to(np.asarray(value, dtype=float), (len(designs),))
+        return {
+            name: np.rint(values).astype(np.int64) if fields[name].kind == "integer" else values
+            for name, values in columns.items()
+        }
+
+    def choices(self, designs: Matrix) -> dict[str, tuple[Variable, Matrix]]:
+        """Return the tolerances that differ, by name: the variable and its values (m,)."""
+        return {
+            variable.name: (variable, designs[:, index])
+            for index, variable in enumerate(self.variables)
+            if not variable.is_input
+        }
+
+    def setup_of(self, design: Matrix) -> Setup:
+        """Return the setup of one design, as an inputs file would state it."""
+        columns = {name: values[0].item() for name, values in self.columns(design[None, :]).items()}
+        chosen = {
+            name: GRADES[round(values[0])] if variable.kind == "grade" else float(values[0])
+            for name, (variable, values) in self.choices(design[None, :]).items()
+        }
+        return with_tolerances(self.setup.changed(columns), chosen)
+
+
+def open_space(setup: Setup, study: Optimise) -> Space:
+    """Collect what may be chosen. Raises UsageError where there is nothing, or a name or range makes no sense."""
+    stated = [objective for objective in setup.model.objectives if isinstance(objective, Vary)]
+    inputs = [vary for vary in stated if not vary.by]
+    tolerances = [tolerance for tolerance in setup.model.tolerances.values() if price_of(setup, tolerance) is not None]
+    _demand_known(setup, study, {*(vary.input for vary in inputs), *(tolerance.name for tolerance in tolerances)})
+
+    def kept(name: str) -> bool:
+        return not study.vary or name in study.vary
+
+    variables = [_of_input(setup, vary, study) for vary in inputs if kept(vary.input)]
+    widths = (_of_tolerance(setup, tolerance, study) for tolerance in tolerances if kept(tolerance.name))
+    variables += [variable for variable in widths if variable is not None]
+    if not variables:
+        raise UsageError(
+            f"study '{study.name}': {setup.model.name} has nothing to choose; add Vary(input, low, high) to its "
+            "objectives or a price to a tolerance that is not off"
+        )
+    return Space(setup, tuple(variables), tuple(_followers(setup, stated, study)))
+
+
+def _demand_known(setup: Setup, study: Optimise, known: set[str]) -> None:
+    for name in study.vary:
+        if name not in known:
+            raise UsageError(
+                f"study '{study.name}': vary names '{name}', which {setup.model.name} may not choose."
+                f"{near_miss(name, sorted(known))}"
+            )
+
+
+def _of_input(setup: Setup, vary: Vary, study: Optimise) -> Variable:
+    input_field = setup.model.input_fields[vary.input]
+    what = f"study '{study.name}': Vary('{vary.input}')"
+    low, high = (_end(input_field, text, what) for text in (vary.low, vary.high))
+    whole = input_field.kind in {"whole", "integer"}
+    if whole:
+        low, high = float(ceil(low)), float(floor(high))
+    if not low < high:
+        raise UsageError(f"{what} runs from {vary.low} to {vary.high}, which leaves nothing to choose")
+    start = float(setup.nominal(vary.input))
+    if isnan(start):
+        raise UsageError(f"{what} has no value to start from; give '{vary.input}' in the inputs")
+    return Variable(vary.input, "whole" if whole else "number", low, high, setup.print_unit(vary.input), start)
+
+
+def _end(input_field: InputField, text: str, what: str) -> float:
+    """Read one end of a range in SI. Raises UsageError for a text that is none, or beyond the bounds of the input."""
+    try:
+        value = read_quantity(text, input_field.unit)
+    except UnitError as error:
+        raise UsageError(f"{what}: {error}") from None
+    broken = "" if input_field.kind == "whole" else broken_bound(input_field, value)
+    if broken:
+        raise UsageError(f"{what}: {broken}")
+    return value
+
+
+def _of_tolerance(setup: Setup, tolerance: Tolerance, study: Optimise) -> Variable | None:
+    """Return a tolerance as a variable; None where it is off, drawn by a function, or has a single grade to take."""
+    spread, price = setup.spread_of(tolerance.name), price_of(setup, tolerance)
+    scattering = setup.distributions().get(tolerance.name, {})
+    assert price is not None  # open_space has chosen these
+    if not scattering or not isinstance(spread, (Band, Grade, Zone)):
+        return None
+    width = next(iter(scattering.values())).width
+    if isinstance(spread, Grade):
+        return _of_grade(setup, tolerance, spread, study, width)
+    return Variable(tolerance.name, "width", study.tightest * width, study.widest * width, price.width, width)
+
+
+def _of_grade(setup: Setup, tolerance: Tolerance, spread: Grade, study: Optimise, width: float) -> Variable | None:
+    """Return a tolerance whose grade is chosen: from the finest allowed to the coarsest that is not too wide."""
+    target, start = setup.target(tolerance.on[0]), GRADES.index(spread.grade)
+    places = []
+    for index, name in enumerate(GRADES):
+        try:
+            size = replace(spread, grade=name).width(target)
+        except TruingError:  # ISO 286 has no such grade for the size
+            continue
+        if index == start or (index >= GRADES.index(study.finest) and size <= study.widest * width * (1 + SLACK)):
+            places.append(index)
+    if len(places) < 2:
+        return None
+    return Variable(tolerance.name, "grade", float(min(places)), float(max(places)), "", float(start))
+
+
+def _followers(setup: Setup, stated: list[Vary], study: Optimise) -> Iterator[Follower]:
+    """Yield the inputs that follow, each behind those it follows itself. Raises UsageError for a circle."""
+    formulas = {vary.input: parse(vary.by) for vary in stated if vary.by}
+    done: set[str] = set()
+    while len(done) < len(formulas):
+        ready = [
+            name
+            for name, formula in formulas.items()
+            if name not in done and not (set(formula.names) & set(formulas)) - done
+        ]
+        if not ready:
+            circle = " and ".join(f"'{name}'" for name in formulas if name not in done)
+            raise UsageError(f"study '{study.name}': {circle} follow each other by their formulas in a circle")
+        for name in ready:
+            done.add(name)
+            yield Follower(name, formulas[name], setup.print_unit(name))
+
+
+# How much every input scatters in every design: means and standard deviations of many designs at once
+
+
+@dataclass(frozen=True)
+class Scattered:
+    """The scatter of one input in m designs, SI: mean (m,), standard deviation (m,), shape; NaN where there is none."""
+
+    mean: Matrix
+    sd: Matrix
+    shape: DistributionShape
+
+    @property
+    def width(self) -> Matrix:
+        """The full band (m,)."""
+        return self.sd * (12**0.5 if self.shape == "uniform" else SIGMAS_IN_BAND)
+
+    def values(self, standard: Matrix) -> Matrix:
+        """Map standard normal values (n,) to every design (m, n), as ``Distribution.from_standard`` does for one."""
+        mean, sd = self.mean[:, None], self.sd[:, None]
+        if self.shape == "lognormal":
+            log_variance = np.log1p((sd / mean) ** 2)
+            return np.asarray(np.exp(np.log(mean) - log_variance / 2 + np.sqrt(log_variance) * standard))
+        if self.shape == "uniform":
+            return np.asarray(mean + self.width[:, None] * (ndtr(standard) - 0.5))
+        return np.asarray(standard * sd + mean)
+
+
+def scattered(space: Space, designs: Matrix, columns: Mapping[str, Any]) -> dict[str, dict[str, Scattered]]:
+    """Return by tolerance and input how much it scatters in every design; ``columns`` are the nominal inputs there."""
+    choices = space.choices(designs)
+    scatter: dict[str, dict[str, Scattered]] = {}
+    for name, inner in space.scatter.items():
+        tolerance = space.setup.model.tolerances[name]
+        variable, values = choices.get(name, (None, None))
+        spread = space.setup.spread_of(name)
+        grades = values if variable is not None and variable.kind == "grade" else None
+        by_column = {
+            column: _resolved(space, spread, column, (base, columns, grades, len(designs)))
+            for column, base in inner.items()
+        }
+        scatter[name] = _widened(tolerance, spread, by_column, values) if _is_width(variable) else by_column
+    return scatter
+
+
+def _is_width(variable: Variable | None) -> bool:
+    return variable is not None and variable.kind == "width"
+
+
+def _widened(
+    tolerance: Tolerance, spread: Spread, by_column: Mapping[str, Scattered], widths: Any
+) -> dict[str, Scattered]:
+    """Bring a band to its chosen width (that of its first input); a zone grows where it says."""
+    first = next(iter(by_column.values())).width
+    with np.errstate(all="ignore"):
+        factor = widths / first
+    shift = shift_per_width(spread)
+    return {
+        column: replace(
+            distribution,
+            mean=distribution.mean + shift * (factor - 1) * distribution.width,
+            sd=distribution.sd * factor,
+        )
+        for column, distribution in by_column.items()
+    }
+
+
+def _resolved(
+    space: Space,
+    spread: Spread,
+    column: str,
+    given: tuple[Distribution, Mapping[str, Any], Matrix | None, int],
+) -> Scattered:
+    """Resolve one spread in every design, once for all of them where nothing it reads differs."""
+    base, columns, grades, rows = given
+    reads = sorted(_reads(spread, column) & space.moved)
+    if not reads and grades is None:
+        mean = np.full(rows, base.mean)
+        if column in columns:
+            mean = columns[column] + (base.mean - float(space.setup.nominal(column)))
+        return Scattered(mean, np.full(rows, base.sd), base.shape)
+    places = np.full(rows, -1.0) if grades is None else grades
+    nominal = columns.get(column, np.full(rows, float(space.setup.nominal(column))))
+    keys = np.column_stack([places, *(columns[name] for name in reads)])
+    unique, where = np.unique(keys, axis=0, return_inverse=True)
+    resolved = [
+        _of_design(space.setup, spread, column, dict(zip(reads, key[1:], strict=True)), key[0]) for key in unique
+    ]
+    shift, sd = (np.array(part)[where.reshape(-1)] for part in zip(*resolved, strict=True))
+    return Scattered(nominal + shift, sd, base.shape)
+
+
+def _of_design(
+    setup: Setup, spread: Spread, column: str, values: Mapping[str, float], grade_index: float
+) -> tuple[float, float]:
+    """Return how far the mean lies from the nominal, and the standard deviation; NaN for no such grade."""
+
+    def value_of(name: str) -> Any:
+        return values.get(name, setup.nominal(name))
+
+    if grade_index >= 0 and isinstance(spread, Grade):
+        spread = replace(spread, grade=GRADES[round(grade_index)])
+    target = Target(column, float(value_of(column)), setup.unit_of(column), value_of)
+    try:
+        distribution = spread.resolve(target)
+    except TruingError:
+        distribution = None
+    if distribution is None:
+        return float("nan"), float("nan")
+    return distribution.mean - target.nominal, distribution.sd
+
+
+def _reads(spread: Spread, column: str) -> frozenset[str]:
+    """Return the inputs on which the width of a spread depends."""
+    if isinstance(spread, Grade):
+        return frozenset({spread.size or column})
+    if isinstance(spread, Band):
+        if spread.at_radius:
+            return frozenset({spread.at_radius})
+        return (
+            frozenset({column}) if spread.amount.rstrip().endswith("%") or spread.shape == "lognormal" else frozenset()
+        )
+    return frozenset()
+
+
+def total_prices(setup: Setup, spreads: Mapping[str, Mapping[str, Scattered]], rows: int) -> Matrix:
+    """Return what the tolerances of every design cost together (m,), in SI of the currency."""
+    total = np.zeros(rows)
+    for name, inner in spreads.items():
+        price = price_of(setup, setup.model.tolerances[name])
+        if price is not None:
+            total = total + prices_at(price, next(iter(inner.values())).width)
+    return np.asarray(to_si(total, setup.model.result_fields[TOTAL_PRICE].unit))
+
+
+# With what probability do machines of many designs keep a limit? The same standard normal draws for every design
+
+
+STEP = 0.1  # of a standard deviation, for central differences
+
+
+@dataclass(frozen=True, eq=False)
+class Cloud:
+    """The causes of scatter, and by name standard normal values (k, n), or deviations where a function draws them."""
+
+    causes: tuple[ScatterSource, ...]
+    standard: Mapping[str, Matrix]
+    draws: int
+
+
+def cloud_of(scatter: Scatter, seed: int, study: Optimise) -> Cloud:
+    """Draw the machines once, for all designs; other random numbers than those of any verification."""
+    draws = study.draws
+    standard: dict[str, Matrix] = {}
+    for cause in scatter.causes:
+        rng = generator(seed, 0, f"{study.name}: {cause.name}")
+        if cause.function is not None:
+            deviations = cause.function(rng, draws)
+            standard[cause.name] = np.array([np.asarray(deviations[column], dtype=float) for column in cause.columns])
+        else:
+            standard[cause.name] = np.array([_stratified(rng, draws) for _ in cause.columns])
+    return Cloud(scatter.causes, standard, draws)
+
+
+def _stratified(rng: np.random.Generator, draws: int) -> Matrix:
+    return np.asarray(ndtri((rng.permutation(draws) + rng.random(draws)) / draws))
+
+
+def by_draws(problem: Problem, designs: Designs) -> Matrix:
+    """Return the share of machines (m, limits) that keep each limit; a machine without an answer keeps none."""
+    cloud, wanted = problem.cloud, designs.by_chance
+    assert cloud is not None  # else it is done to first order
+    shape = (designs.rows, cloud.draws)
+    columns = _machines(cloud, designs)
+    flat = {name: np.ascontiguousarray(values).reshape(-1) for name, values in columns.items()}
+    results = problem.answer(flat, designs.rows * cloud.draws, results_needed(designs.setup, wanted))
+    each = {name: np.asarray(values).reshape(*shape, *np.shape(values)[1:]) for name, values in results.items()}
+    shares = []
+    for demand in wanted:
+        response = demand.response(each, columns)
+        with np.errstate(invalid="ignore"):
+            inside = (response <= _per_design(demand.high, response)) & (response >= _per_design(demand.low, response))
+        shares.append(_worst(inside.mean(axis=1)))
+    return np.column_stack(shares)
+
+
+def _per_design(limit: Any, values: Any) -> Any:
+    """Bring a limit, a number or (m, ...), beside values (m, n, ...)."""
+    if np.ndim(limit) == 0:
+        return limit
+    return beside(np.expand_dims(np.asarray(limit), 1), values)
+
+
+def _worst(chances: Any) -> Any:
+    """Return the smallest chance of every design where a result runs along an axis."""
+    return chances.min(axis=tuple(range(1, chances.ndim))) if chances.ndim > 1 else chances
+
+
+def _machines(cloud: Cloud, designs: Designs) -> dict[str, Any]:
+    """Return the columns of all machines of all designs (m, n); two tolerances on one input add their deviations."""
+    shape = (designs.rows, cloud.draws)
+    columns: dict[str, Any] = {}
+    for cause in cloud.causes:
+        for column, values in _of_cause(cause, cloud.standard[cause.name], designs):
+            if column in columns:
+                values = columns[column] + (values - designs.nominal(column)[:, None])
+            columns[column] = np.broadcast_to(values, shape)
+    for column, nominal in designs.columns.items():
+        if column not in columns:
+            columns[column] = np.broadcast_to(nominal[:, None], shape)
+    return columns
+
+
+def _of_cause(cause: ScatterSource, standard: Matrix, designs: Designs) -> list[tuple[str, Any]]:
+    if cause.function is not None:
+        return [(name, designs.nominal(name)[:, None] + standard[i]) for i, name in enumerate(cause.columns)]
+    if cause.mixing is not None or cause.name not in designs.spreads:
+        return [(column, values[None, :]) for column, _, values in cause.from_standard(standard)]
+    own = designs.spreads[cause.name]
+    return [(column, own[column].values(standard[index])) for index, column in enumerate(cause.columns)]
+
+
+def by_first_order(problem: Problem, designs: Designs) -> Matrix:
+    """Return the normal probability (m, limits) of the model made straight at every design; 0 where there is none."""
+    wanted = designs.by_chance
+    steps, variances, shifts = _moments(problem.scatter, designs)
+    values = _beside_the_designs(problem, designs, steps, results_needed(designs.setup, wanted))
+    chances = []
+    for demand in wanted:
+        mean, slopes = _line(demand.response(values, values), steps)
+        variance = variances(slopes)
+        for column, shift in shifts.items():
+            mean = mean + slopes[column] * beside(shift, slopes[column])
+        sd = np.sqrt(np.maximum(variance, 0.0))
+        chance = _worst(np.asarray(normal_chance(mean, sd, beside(demand.low, mean), beside(demand.high, mean))))
+        chances.append(np.where(np.isfinite(chance), chance, 0.0))
+    return np.column_stack(chances)
+
+
+def _moments(scatter: Scatter, designs: Designs) -> tuple[dict[str, Any], Any, dict[str, Any]]:
+    """Return by column the step (m,), then how variances follow from slopes, and how far means lie from nominals."""
+    squares: dict[str, Any] = {}
+    shifts: dict[str, Any] = {}
+    for cause in scatter.causes:
+        own = designs.spreads.get(cause.name) if cause.mixing is None else None
+        for index, column in enumerate(cause.columns):
+            stated = cause.distributions[index]
+            sd = np.full(designs.rows, stated.sd) if own is None else own[column].sd
+            shift = stated.mean - cause.nominals[index] if own is None else own[column].mean - designs.nominal(column)
+            squares[column] = squares.get(column, 0.0) + sd**2
+            shifts[column] = shifts.get(column, 0.0) + shift * np.ones(designs.rows)
+    steps = {column: STEP * np.sqrt(square) for column, square in squares.items()}
+
+    def variances(slopes: Mapping[str, Any]) -> Any:
+        total: Any = 0.0
+        for cause in scatter.causes:
+            own = designs.spreads.get(cause.name) if cause.mixing is None else None
+            if own is not None:
+                for column in cause.columns:
+                    total = total + (slopes[column] * beside(own[column].sd, slopes[column])) ** 2
+                continue
+            matrix = cause.covariance()
+            for i, one in enumerate(cause.columns):
+                for j, other in enumerate(cause.columns):
+                    total = total + slopes[one] * slopes[other] * matrix[i, j]
+        return total
+
+    return steps, variances, {column: shift for column, shift in shifts.items() if np.any(shift != 0)}
+
+
+def _beside_the_designs(
+    problem: Problem, designs: Designs, steps: Mapping[str, Any], wanted: Sequence[str]
+) -> dict[str, Any]:
+    """Run every design, and every design with one column a step up and a step down: results (m, 1 + 2 k, ...)."""
+    width, columns = 1 + 2 * len(steps), list(steps)
+    batch: dict[str, Any] = {}
+    for name in dict.fromkeys([*designs.columns, *columns]):
+        values = np.repeat(designs.nominal(name)[:, None], width, axis=1)
+        if name in steps:
+            column = 1 + 2 * columns.index(name)
+            values[:, column] += steps[name]
+            values[:, column + 1] -= steps[name]
+        batch[name] = values.reshape(-1)
+    results = problem.answer(batch, designs.rows * width, wanted)
+    inputs = {name: values.reshape(designs.rows, width) for name, values in batch.items()}
+    shaped = {
+        name: np.asarray(values).reshape(designs.rows, width, *np.shape(values)[1:]) for name, values in results.items()
+    }
+    return {**inputs, **shaped}
+
+
+def _line(response: Any, steps: Mapping[str, Any]) -> tuple[Any, dict[str, Any]]:
+    """Return the response at every design and its slopes by column; from one side where the other has no answer."""
+    centre = response[:, 0]
+    slopes: dict[str, Any] = {}
+    for index, (column, size) in enumerate(steps.items()):
+        step = beside(size, centre)
+        up, down = response[:, 1 + 2 * index], response[:, 2 + 2 * index]
+        with np.errstate(all="ignore"):
+            slope = (up - down) / (2 * step)
+            slope = np.where(np.isfinite(slope), slope, np.where(np.isfinite(up), up - centre, centre - down) / step)
+        slopes[column] = np.where(step > 0, slope, 0.0)
+    return centre, slopes

@@ -8,19 +8,19 @@ from math import ceil
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from truing.arrays import Matrix
 from truing.declare.blocks import Block, Drawing, Table, Words
 from truing.errors import InfeasibleError, UsageError
 from truing.evaluate import acting_inputs, answered
 from truing.setup import Setup
 from truing.studies.bench import Bench
 from truing.studies.chances import FormResult, chance, form, straightened
-from truing.studies.checks import Check, chance_check, requirements
-from truing.studies.demands import Z95, Demand, as_number, demands, nominal_inputs, wilson, worst
+from truing.studies.checks import Check, requirements
+from truing.studies.demands import Z95, Demand, as_number, demands, worst
 from truing.studies.drawings import labelled, lines
 from truing.studies.reading import printed, printed_step, read_range, scattering_name, spoken
-from truing.studies.sampling import Machines, Moments, SampleBudget, Tally, sample, scatter_of
+from truing.studies.sampling import Moments, Tally, goal_checks, sample, scatter_of
 from truing.units import difference_unit, from_si, unit_text
 
 METHODS = ("first_order", "monte_carlo", "form")
@@ -70,41 +70,30 @@ class Reliability:
             raise UsageError(
                 f"study '{self.name}': {setup.model.name} requires nothing; add Require(result, ...) to it"
             )
-        machines = Machines(setup, scatter_of(setup))
-        nominal = nominal_inputs(setup, wanted)
-        straight, derivatives = straightened(machines, wanted, nominal)
-        analytic = {demand.name: chance(demand, straight[demand.name]) for demand in wanted}
-        tally = self._sampled(bench, machines, wanted, (answers, stage))
+        scatter = scatter_of(setup)
+        straight, derivatives = straightened(scatter, wanted)
+        tally = None
+        if "monte_carlo" in self.method:
+            stages = 1 + (self.points if self.over else 0)
+            done = bench.part(self.name, stage / stages, (stage + 1) / stages)
+            tally = sample(
+                scatter, wanted, answers,
+                draws=self.draws, batch=self.batch, executor=bench.executor, done=done,
+            )  # fmt: skip
+        still = () if scatter.causes else ("nothing scatters: every tolerance is off, so each probability is 0 or 1",)
         return Odds(
             name=self.name,
             demands=tuple(wanted),
             units={demand.result: setup.print_unit(demand.result) for demand in wanted},
-            analytic=analytic,
+            analytic={demand.name: chance(demand, straight[demand.name]) for demand in wanted},
             first_mean={demand.name: straight[demand.name].mean for demand in wanted},
             first_sd={demand.name: straight[demand.name].sd for demand in wanted},
-            form=self._form(machines, wanted, nominal),
+            form={demand.name: form(scatter, demand) for demand in wanted} if "form" in self.method else {},
             tally=tally,
-            remarks=(*_lacking(bench), *derivatives.warnings, *_still(machines), *_few_draws(self, wanted)),
+            remarks=(*_lacking(bench), *derivatives.warnings, *still, *_few_draws(self, wanted)),
             inputs=acting_inputs(setup),
             nominal={demand.result: answers[demand.result] for demand in wanted},
         )
-
-    def _sampled(
-        self, bench: Bench, machines: Machines, wanted: Sequence[Demand], at: tuple[Mapping[str, Any], int]
-    ) -> Tally | None:
-        if "monte_carlo" not in self.method:
-            return None
-        answers, stage = at
-        stages = 1 + (self.points if self.over else 0)
-        done = bench.part(self.name, stage / stages, (stage + 1) / stages)
-        return sample(machines, wanted, answers, SampleBudget(self.draws, self.batch, bench.executor, done))
-
-    def _form(
-        self, machines: Machines, wanted: Sequence[Demand], nominal: Mapping[str, float]
-    ) -> dict[str, FormResult]:
-        if "form" not in self.method:
-            return {}
-        return {demand.name: form(machines, demand, nominal) for demand in wanted}
 
     def _curve(self, bench: Bench) -> Curve:
         """Answer at every point of the range, with the same random numbers."""
@@ -160,31 +149,25 @@ def _few_draws(study: Reliability, wanted: Sequence[Demand]) -> tuple[str, ...]:
     return tuple(words)
 
 
-def _still(machines: Machines) -> tuple[str, ...]:
-    if machines.scatter.causes:
-        return ()
-    return ("nothing scatters: every tolerance is off, so each probability is 0 or 1",)
-
-
 @dataclass(frozen=True, kw_only=True)
 class Curve:
     """Probabilities along an input: ``axis`` (n,) in SI, the others (n, ...) by check; NaN where there is no answer."""
 
     over: str
     unit: str
-    axis: NDArray[np.float64]
-    probability: Mapping[str, NDArray[np.float64]]
-    at_least: Mapping[str, NDArray[np.float64]]
-    analytic: Mapping[str, NDArray[np.float64]]
+    axis: Matrix
+    probability: Mapping[str, Matrix]
+    at_least: Mapping[str, Matrix]
+    analytic: Mapping[str, Matrix]
     failed: tuple[tuple[int, str], ...] = ()
 
     @classmethod
-    def of(cls, over: str, unit: str, axis: NDArray[np.float64], answers: Sequence[Odds | str]) -> Curve:
+    def of(cls, over: str, unit: str, axis: Matrix, answers: Sequence[Odds | str]) -> Curve:
         """Put the answers at all points together."""
         good = [odds for odds in answers if not isinstance(odds, str)]
         names = [name for name in good[0].probability if all(name in odds.probability for odds in good)] if good else []
 
-        def along(read: Callable[[Odds], Mapping[str, Any]]) -> dict[str, NDArray[np.float64]]:
+        def along(read: Callable[[Odds], Mapping[str, Any]]) -> dict[str, Matrix]:
             gap = {name: np.full(np.shape(read(good[0])[name]), np.nan) for name in names}
             return {
                 name: np.array([gap[name] if isinstance(odds, str) else read(odds)[name] for odds in answers])
@@ -237,19 +220,14 @@ class Odds:
     @property
     def probability(self) -> dict[str, Any]:
         """The share of machines that meets each limit, or first order where none was drawn."""
-        tally = self.tally
-        if tally is None:
-            return dict(self.analytic)
-        shares = {demand.name: tally.hits[demand.name] / tally.draws for demand in self.demands}
-        return {name: share if getattr(share, "ndim", 0) else float(share) for name, share in shares.items()}
+        return dict(self.analytic) if self.tally is None else self.tally.shares
 
     @property
     def interval(self) -> dict[str, tuple[Any, Any]]:
         """Wilson's 95 % interval of each probability; of no width where none was drawn."""
-        tally = self.tally
-        if tally is None:
+        if self.tally is None:
             return {name: (value, value) for name, value in self.analytic.items()}
-        return {demand.name: wilson(tally.hits[demand.name], tally.draws) for demand in self.demands}
+        return self.tally.intervals
 
     @property
     def at_least(self) -> dict[str, Any]:
@@ -306,25 +284,18 @@ class Odds:
 
     def checks(self) -> Sequence[Check]:
         """Compare each probability with its goal; along an axis the worst one."""
-        chances = self.probability
-        method = f"Monte Carlo, {self.draws} machines" if self.sampled else "first order"
-        return [
-            chance_check(demand.name, worst(chances[demand.name]), demand.goal, method=method)
-            for demand in self.demands
-            if demand.goal is not None
-        ]
+        return goal_checks(self.demands, self.probability, self.tally)
 
     def warnings(self) -> Sequence[str]:
         """Say what failed, and where the sampling is too small to decide."""
         words = list(self.remarks)
-        if self.tally and self.failed:
-            reason = next(iter(self.tally.reasons), "no reason was given")
-            words.append(f"{self.failed} of {self.draws} machines have no answer and count as missed ({reason})")
+        if self.tally is not None and self.tally.failed:
+            words.append(self.tally.lost)
         chances, errors = self.probability, self.standard_error
         for demand in self.demands:
             if demand.goal is None or not self.sampled:
                 continue
-            apart, noise = abs(worst(chances[demand.name]) - demand.goal), Z95 * float(max_of(errors[demand.name]))
+            apart, noise = abs(worst(chances[demand.name]) - demand.goal), Z95 * float(np.max(errors[demand.name]))
             if apart < noise:
                 words.append(
                     f"whether '{demand.name}' reaches {demand.goal:g} lies within the sampling error of {noise:.2g}; "
@@ -334,11 +305,6 @@ class Odds:
             reason = self.curve.failed[0][1]
             words.append(f"{len(self.curve.failed)} points along '{self.curve.over}' have no answer ({reason})")
         return [f"study '{self.name}': {text}" for text in words]
-
-
-def max_of(value: Any) -> float:
-    """Return the largest of a curve, or the number itself."""
-    return float(np.max(value))
 
 
 # How the outcome of a reliability study is written: results.json and the sheet

@@ -8,51 +8,38 @@ from __future__ import annotations
 
 import hashlib
 import math
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from truing.declare.spreads import FIXED_DRAWS, Distribution, Drawn
+from truing.arrays import Matrix
+from truing.declare.spreads import FIXED_DRAWS, Distribution, Drawn, Grade, Spread, with_width
 from truing.errors import UsageError
 from truing.evaluate import Rows, evaluate_rows
 from truing.executors import SerialExecutor, in_order, keepable
 from truing.packed import Packed, pack, unpack
 from truing.setup import Setup, SwitchedOn, effect_column
-from truing.studies.demands import Demand, nominal_inputs, results_needed
+from truing.studies.checks import Check, chance_check
+from truing.studies.demands import Demand, results_needed, wilson, worst
 
 KEPT_REASONS = 8
 
 
 @dataclass(frozen=True)
-class Machines:
-    """Machines of one design: the setup, and what scatters in it."""
-
-    setup: Setup
-    scatter: Scatter
-
-
-@dataclass(frozen=True)
-class SamplingPlan:
-    """What every batch is asked: which demands, about which centres the moments are summed."""
-
-    demands: tuple[Demand, ...]
-    wanted: tuple[str, ...]
-    centres: Mapping[str, Any]
-    nominal: Mapping[str, float]
-
-
-@dataclass(frozen=True)
 class SampleBatch:
-    """One batch, as it goes to a worker: plain data, except in this process."""
+    """One batch, as it goes to a worker: plain data, except in this process.
 
-    machines: Machines | Packed
-    plan: SamplingPlan
-    seed: int
+    ``centres`` are the nominal results (SI), about which the moments are summed.
+    """
+
+    scatter: Scatter | Packed
+    demands: tuple[Demand, ...]
+    centres: Mapping[str, Any]
     batch: int
     rows: int
 
@@ -85,50 +72,62 @@ class Tally:
     failed: int
     reasons: Mapping[str, int]
 
+    @property
+    def shares(self) -> dict[str, Any]:
+        """The share of machines that meets each demand, along an axis at every place."""
+        shares = {name: hits / self.draws for name, hits in self.hits.items()}
+        return {name: share if np.ndim(share) else float(share) for name, share in shares.items()}
+
+    @property
+    def intervals(self) -> dict[str, tuple[Any, Any]]:
+        """Wilson's 95 % interval of each share."""
+        return {name: wilson(hits, self.draws) for name, hits in self.hits.items()}
+
+    @property
+    def lost(self) -> str:
+        """How many machines have no answer, in words, with the first reason."""
+        reason = next(iter(self.reasons), "no reason was given")
+        return f"{self.failed} of {self.draws} machines have no answer and count as missed ({reason})"
+
+
+def goal_checks(wanted: Sequence[Demand], chances: Mapping[str, Any], tally: Tally | None) -> list[Check]:
+    """Compare each probability, of drawn machines or to first order, with its goal; along an axis the worst one."""
+    method = "first order" if tally is None else f"Monte Carlo, {tally.draws} machines"
+    return [
+        chance_check(demand.name, worst(chances[demand.name]), demand.goal, method=method)
+        for demand in wanted
+        if demand.goal is not None
+    ]
+
 
 def sample(
-    machines: Machines,
+    scatter: Scatter,
     wanted: Sequence[Demand],
     answers: Mapping[str, Any],
-    budget: SampleBudget,
+    *,
+    draws: int,
+    batch: int,
+    executor: Executor,
+    done: Callable[[int, int], None],
 ) -> Tally:
-    """Draw the machines that the budget allows and count which of them meet each demand."""
-    plan = plan_of(machines.setup, wanted, answers)
+    """Draw machines in batches and count which of them meet each demand; ``answers`` are the nominal results in SI."""
+    carried: Scatter | Packed = scatter if isinstance(executor, SerialExecutor) else pack(scatter.setup)
+    centres = {name: answers[name] for name in results_needed(scatter.setup, wanted)}
+    jobs = (
+        SampleBatch(carried, tuple(wanted), centres, number, min(batch, draws - start))
+        for number, start in enumerate(range(0, draws, batch))
+    )
     total: Tally | None = None
-    for tally in in_order(budget.executor, run_batch, _jobs(machines, plan, budget)):
+    for tally in in_order(executor, run_batch, jobs):
         total = tally if total is None else merged(total, tally)
-        budget.done(total.draws, budget.draws)
-    assert total is not None  # a budget has at least one draw
+        done(total.draws, draws)
+    assert total is not None  # there is at least one draw
     return total
 
 
-@dataclass(frozen=True)
-class SampleBudget:
-    """How many machines are drawn, in which batches, where, and who hears of it."""
-
-    draws: int
-    batch: int
-    executor: Executor
-    done: Callable[[int, int], None]
-
-
-def plan_of(setup: Setup, wanted: Sequence[Demand], answers: Mapping[str, Any]) -> SamplingPlan:
-    """Say what every batch is asked; ``answers`` holds the nominal results in SI."""
-    needed = results_needed(setup, wanted)
-    centres = {name: answers[name] for name in needed}
-    return SamplingPlan(tuple(wanted), needed, centres, nominal_inputs(setup, wanted))
-
-
-def _jobs(machines: Machines, plan: SamplingPlan, budget: SampleBudget) -> Iterator[SampleBatch]:
-    carried: Machines | Packed = machines if isinstance(budget.executor, SerialExecutor) else pack(machines.setup)
-    for batch, start in enumerate(range(0, budget.draws, budget.batch)):
-        yield SampleBatch(carried, plan, machines.setup.seed, batch, min(budget.batch, budget.draws - start))
-
-
 @lru_cache(maxsize=4)
-def _unpacked(packed: Packed) -> Machines:
-    setup = unpack(packed)
-    return Machines(setup, scatter_of(setup))
+def _unpacked(packed: Packed) -> Scatter:
+    return scatter_of(unpack(packed))
 
 
 @lru_cache(maxsize=1)
@@ -144,21 +143,21 @@ def _keep_freed_memory() -> None:
 def run_batch(job: SampleBatch) -> Tally:
     """Draw one batch, run the model on it, and return counts and moments."""
     _keep_freed_memory()
-    machines = _unpacked(job.machines) if isinstance(job.machines, Packed) else job.machines
-    columns = machines.scatter.draw(job.seed, job.batch, job.rows)
-    rows = evaluate_rows(machines.setup, columns, job.rows, wanted=job.plan.wanted).complete()
+    scatter = _unpacked(job.scatter) if isinstance(job.scatter, Packed) else job.scatter
+    columns = scatter.draw(scatter.setup.seed, job.batch, job.rows)
+    rows = evaluate_rows(scatter.setup, columns, job.rows, wanted=tuple(job.centres)).complete()
     return Tally(
         draws=job.rows,
-        hits={demand.name: _hits(demand, rows, columns, job.plan) for demand in job.plan.demands},
-        moments={name: _moments(rows, name, job.plan.centres[name]) for name in job.plan.wanted},
+        hits={demand.name: _hits(demand, rows, columns) for demand in job.demands},
+        moments={name: _moments(rows, name, centre) for name, centre in job.centres.items()},
         failed=int(rows.failed.sum()),
-        reasons=_counted(rows),
+        reasons=dict(Counter(rows.reasons.values())),
     )
 
 
-def _hits(demand: Demand, rows: Rows, columns: Mapping[str, Any], plan: SamplingPlan) -> Any:
+def _hits(demand: Demand, rows: Rows, columns: Mapping[str, Any]) -> Any:
     """Count the rows within the limits; NaN, as in failed rows, lies in none."""
-    response = demand.response(rows.results, columns, plan.nominal)
+    response = demand.response(rows.results, columns)
     inside = response <= demand.high
     if np.any(demand.low > -np.inf):
         inside &= response >= demand.low
@@ -179,13 +178,6 @@ def _moments(rows: Rows, name: str, centre: Any) -> Moments:
     deviations -= mean
     deviations *= deviations
     return Moments(count, centre + mean, deviations.sum(axis=0), centre + smallest, centre + largest)
-
-
-def _counted(rows: Rows) -> dict[str, int]:
-    counts: dict[str, int] = {}
-    for reason in rows.reasons.values():
-        counts[reason] = counts.get(reason, 0) + 1
-    return counts
 
 
 def merged(first: Tally, second: Tally) -> Tally:
@@ -215,12 +207,10 @@ def joined(first: Moments, second: Moments) -> Moments:
     return Moments(count, mean, squares, smallest, np.maximum(first.largest, second.largest))
 
 
-def standard_rows(
-    machines: Machines, standard: NDArray[np.float64], wanted: Sequence[str]
-) -> tuple[Rows, dict[str, Any]]:
+def standard_rows(scatter: Scatter, standard: Matrix, wanted: Sequence[str]) -> tuple[Rows, dict[str, Any]]:
     """Run machines given by standard normal values (dimension, n); return rows and their columns."""
-    columns: dict[str, Any] = dict(machines.scatter.from_standard(standard))
-    return evaluate_rows(machines.setup, columns, standard.shape[1], wanted=wanted).complete(), columns
+    columns: dict[str, Any] = dict(scatter.from_standard(standard))
+    return evaluate_rows(scatter.setup, columns, standard.shape[1], wanted=wanted).complete(), columns
 
 
 # What scatters, and how it is drawn: every tolerance in force, conditions with one, effects with their uncertainty
@@ -237,10 +227,10 @@ class ScatterSource:
     columns: tuple[str, ...]
     nominals: tuple[float, ...]
     distributions: tuple[Distribution, ...]
-    mixing: NDArray[np.float64] | None = None
+    mixing: Matrix | None = None
     function: Callable[[Any, int], Mapping[str, Any]] | None = None
 
-    def draw(self, rng: np.random.Generator, rows: int) -> Iterator[tuple[str, float, NDArray[np.float64]]]:
+    def draw(self, rng: np.random.Generator, rows: int) -> Iterator[tuple[str, float, Matrix]]:
         """Yield column, nominal value and ``rows`` values, in the order of the columns."""
         if self.function is not None:
             deviations = self.function(rng, rows)
@@ -253,14 +243,14 @@ class ScatterSource:
         for column, nominal, distribution in zip(self.columns, self.nominals, self.distributions, strict=True):
             yield column, nominal, distribution.draw(rng, rows)
 
-    def from_standard(self, standard: NDArray[np.float64]) -> Iterator[tuple[str, float, NDArray[np.float64]]]:
+    def from_standard(self, standard: Matrix) -> Iterator[tuple[str, float, Matrix]]:
         """Map independent standard normal values (k, n) to the columns."""
         mixed = None if self.mixing is None else self.mixing @ standard
         for index, distribution in enumerate(self.distributions):
             values = distribution.from_standard(standard[index]) if mixed is None else distribution.mean + mixed[index]
             yield self.columns[index], self.nominals[index], values
 
-    def covariance(self) -> NDArray[np.float64]:
+    def covariance(self) -> Matrix:
         """Return the covariance of the columns (k, k), SI."""
         if self.mixing is not None:
             return np.asarray(self.mixing @ self.mixing.T)
@@ -269,8 +259,9 @@ class ScatterSource:
 
 @dataclass(frozen=True, eq=False)
 class Scatter:
-    """All causes of scatter of one setup."""
+    """A setup with all its causes of scatter: the machines of one design."""
 
+    setup: Setup
     causes: tuple[ScatterSource, ...]
 
     @property
@@ -283,16 +274,16 @@ class Scatter:
         """How many independent standard normal values make one machine."""
         return sum(len(cause.columns) for cause in self.causes)
 
-    def draw(self, seed: int, batch: int, rows: int) -> dict[str, NDArray[np.float64]]:
+    def draw(self, seed: int, batch: int, rows: int) -> dict[str, Matrix]:
         """Draw the machines of one batch: SI values (rows,) by column."""
-        columns: dict[str, NDArray[np.float64]] = {}
+        columns: dict[str, Matrix] = {}
         for cause in self.causes:
             _gather(columns, cause.draw(generator(seed, batch, cause.name), rows))
         return columns
 
-    def from_standard(self, standard: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+    def from_standard(self, standard: Matrix) -> dict[str, Matrix]:
         """Map independent standard normal values (dimension, n) to columns; joint draws by their normal stand-in."""
-        columns: dict[str, NDArray[np.float64]] = {}
+        columns: dict[str, Matrix] = {}
         start = 0
         for cause in self.causes:
             end = start + len(cause.columns)
@@ -329,7 +320,7 @@ class Scatter:
         return math.sqrt(variance)
 
 
-def _gather(columns: dict[str, NDArray[np.float64]], drawn: Iterator[tuple[str, float, NDArray[np.float64]]]) -> None:
+def _gather(columns: dict[str, Matrix], drawn: Iterator[tuple[str, float, Matrix]]) -> None:
     """Put what was drawn into the batch; two tolerances on one input add their deviations."""
     for column, nominal, values in drawn:
         columns[column] = columns[column] + (values - nominal) if column in columns else values
@@ -354,7 +345,7 @@ def scatter_of(setup: Setup) -> Scatter:
     """Collect what scatters in this setup. Raises UsageError for a tolerance on an input that is not given."""
     causes = [_of_tolerance(setup, name, inner) for name, inner in setup.distributions().items()]
     causes += [cause for active in setup.effects if (cause := _of_effect(active)) is not None]
-    return Scatter(tuple(causes))
+    return Scatter(setup, tuple(causes))
 
 
 def _of_tolerance(setup: Setup, name: str, inner: Mapping[str, Distribution]) -> ScatterSource:
@@ -371,7 +362,7 @@ def _of_tolerance(setup: Setup, name: str, inner: Mapping[str, Distribution]) ->
     return ScatterSource(name, columns, nominals, tuple(inner.values()), _stand_in(spread, columns), spread.function)
 
 
-def _stand_in(spread: Drawn, columns: tuple[str, ...]) -> NDArray[np.float64]:
+def _stand_in(spread: Drawn, columns: tuple[str, ...]) -> Matrix:
     """Return the mixing matrix of the normal stand-in of a joint draw, from the fixed draws of its distributions."""
     deviations = spread.function(np.random.default_rng(0), FIXED_DRAWS)
     joint = np.array([np.asarray(deviations[column], dtype=float) for column in columns])
@@ -395,7 +386,20 @@ def _of_effect(active: SwitchedOn) -> ScatterSource | None:
     return ScatterSource(f"effects.{active.effect.name}", columns, values, distributions, mixing)
 
 
-def root_of(covariance: NDArray[np.float64]) -> NDArray[np.float64]:
+def with_tolerances(setup: Setup, chosen: Mapping[str, str | float]) -> Setup:
+    """Return the setup with these tolerances at these grades or full widths (SI), each that of its first input."""
+    changed: dict[str, Spread] = {}
+    for name, choice in chosen.items():
+        spread = setup.spread_of(name)
+        if isinstance(choice, str):
+            assert isinstance(spread, Grade)  # others have no grade to choose
+            changed[name] = replace(spread, grade=choice)
+        else:
+            changed[name] = with_width(spread, setup.target(next(iter(setup.distributions()[name]))), choice)
+    return replace(setup, spreads={**setup.spreads, **changed})
+
+
+def root_of(covariance: Matrix) -> Matrix:
     """Return a matrix whose product with its transpose is the covariance, also where that is singular."""
     scale = np.sqrt(np.diag(covariance))
     safe = np.where(scale > 0, scale, 1.0)

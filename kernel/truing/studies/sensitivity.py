@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ndtri
 
+from truing.arrays import Matrix
 from truing.declare.blocks import Block, Drawing, Table
 from truing.declare.goals import Vary
 from truing.declare.near_miss import near_miss
@@ -21,7 +21,7 @@ from truing.studies.bench import Bench, Outcome, StepProgress
 from truing.studies.differences import exact_slopes, nominal_of, slopes
 from truing.studies.drawings import MOST_BARS, bars
 from truing.studies.reading import per, printed_step, scalar_results, single_numbers, spoken
-from truing.studies.sampling import Machines, Scatter, scatter_of, standard_rows
+from truing.studies.sampling import Scatter, scatter_of, standard_rows
 from truing.units import difference_unit, unit_factor, unit_text
 
 AGREES_TO = 1e-6
@@ -85,7 +85,7 @@ class Sensitivity:
     def _indices(self, bench: Bench, scatter: Scatter, results: Sequence[str]) -> tuple[_Indices, _Indices, list[str]]:
         if not self.sobol or not scatter.causes:
             return {}, {}, []
-        return sobol_indices(Machines(bench.setup, scatter), results, self.sobol, bench.part(self.name, 0.0, 1.0))
+        return sobol_indices(scatter, results, self.sobol, bench.part(self.name, 0.0, 1.0))
 
 
 _Indices = dict[str, dict[str, float]]
@@ -279,60 +279,45 @@ class _Standard:
         return ndtri(np.clip(share, tiny, 1 - 2.0**-53))
 
 
-@dataclass
-class _Sampled:
-    """Runs the model in batches; remembers whether a machine failed."""
-
-    machines: Machines
-    results: Sequence[str]
-    done: Callable[[int], None]
-    failed: int = 0
-    reason: str = ""
-    run: int = 0
-
-    def __call__(self, standard: NDArray[np.float64]) -> NDArray[np.float64]:
-        count = standard.shape[1]
-        standard = standard[: self.machines.scatter.dimension]
-        answers = np.empty((len(self.results), count))
-        for start in range(0, count, ROWS):
-            part = np.ascontiguousarray(standard[:, start : start + ROWS])
-            rows, _ = standard_rows(self.machines, part, self.results)
-            for index, result in enumerate(self.results):
-                answers[index, start : start + ROWS] = rows.results[result]
-            self.failed += int(rows.failed.sum())
-            self.reason = self.reason or next(iter(rows.reasons.values()), "")
-            self.run += part.shape[1]
-            self.done(self.run)
-        return answers
-
-
 def sobol_indices(
-    machines: Machines, results: Sequence[str], samples: int, progress: StepProgress = lambda step, steps: None
-) -> tuple[dict[str, dict[str, float]], dict[str, dict[str, float]], list[str]]:
+    scatter: Scatter, results: Sequence[str], samples: int, progress: StepProgress
+) -> tuple[_Indices, _Indices, list[str]]:
     """Return first-order and total indices by result and source, and what is to be said of them.
 
     There are none, and a sentence says so, where sources scatter together or machines fail.
     """
-    causes = machines.scatter.causes
-    joint = [cause.name for cause in causes if cause.mixing is not None]
+    joint = [cause.name for cause in scatter.causes if cause.mixing is not None]
     if joint:
         return {}, {}, [f"no Sobol indices: they need independent sources, and those of {' and '.join(joint)} are not"]
-    sources = [column for cause in causes for column in cause.columns]
+    sources = [column for cause in scatter.causes for column in cause.columns]
     dimensions = max(len(sources), 2)  # scipy wants two; one that nothing depends on does no harm
-    model = _Sampled(machines, results, lambda run: progress(run, samples * (dimensions + 2)))
-    rng = np.random.default_rng(np.random.SeedSequence(machines.setup.seed, spawn_key=(0x50B01,)))
+    reasons: dict[int, str] = {}
+    run = 0
+
+    def model(standard: Matrix) -> Matrix:
+        """Run the machines in batches, and remember those that failed."""
+        nonlocal run
+        answers = np.empty((len(results), standard.shape[1]))
+        for start in range(0, standard.shape[1], ROWS):
+            part = np.ascontiguousarray(standard[: scatter.dimension, start : start + ROWS])
+            rows, _ = standard_rows(scatter, part, results)
+            answers[:, start : start + ROWS] = [rows.results[result] for result in results]
+            reasons.update({run + row: text for row, text in rows.reasons.items()})
+            run += part.shape[1]
+            progress(run, samples * (dimensions + 2))
+        return answers
+
+    rng = np.random.default_rng(np.random.SeedSequence(scatter.setup.seed, spawn_key=(0x50B01,)))
     dists = [_Standard()] * dimensions
     indices = stats.sobol_indices(func=model, n=samples, dists=dists, rng=rng)
-    if model.failed:
-        return {}, {}, [f"no Sobol indices: {model.failed} machines failed, the first because {model.reason}"]
-    first = np.reshape(indices.first_order, (len(results), len(dists)))
-    total = np.reshape(indices.total_order, (len(results), len(dists)))
+    if reasons:
+        first_reason = next(iter(reasons.values()))
+        return {}, {}, [f"no Sobol indices: {len(reasons)} machines failed, the first because {first_reason}"]
+    first, total = (np.reshape(of, (len(results), dimensions)) for of in (indices.first_order, indices.total_order))
     return _by_name(results, sources, first), _by_name(results, sources, total), []
 
 
-def _by_name(
-    results: Sequence[str], sources: Sequence[str], values: NDArray[np.float64]
-) -> dict[str, dict[str, float]]:
+def _by_name(results: Sequence[str], sources: Sequence[str], values: Matrix) -> dict[str, dict[str, float]]:
     """Return indices by result and source; an input with two tolerances has the sum of both."""
     by_result: dict[str, dict[str, float]] = {}
     for index, result in enumerate(results):

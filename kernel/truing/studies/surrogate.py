@@ -11,7 +11,7 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import lru_cache, partial
 from itertools import count, pairwise
 from time import perf_counter
 from typing import Any
@@ -91,26 +91,24 @@ class Surrogate:
         along = self._along(box)
         sampling, judging, learning, timing = (bench.part(self.name, *ends) for ends in pairwise(SHARES))
         learnt, judge = (
-            ran(setup, designed(setup, box, stage, points, self.name), names, Work(self.batch, bench.executor, done))
+            self._ran(bench, box, names, stage, points, done)
             for stage, (points, done) in enumerate(((self.design, sampling), (self.held_out, judging)))
         )
-        emulators, seconds = self._learnt(setup, box, learnt, names=names, done=learning)
+        emulators, seconds = self._learnt(setup, box, learnt, learning)
         stand_in = StandIn(box, emulators)
-        judged = self._judged(stand_in, judge)
-        course = self._course(setup, stand_in, along)
-        speed = self._speed(setup, stand_in, learnt.seconds, seconds, done=timing)
+        units = {part.name: setup.print_unit(part.name) if part.is_plain else part.unit for part in box.features}
         return Emulated(
             name=self.name,
             of=names,
             stand_in=stand_in,
-            judged=judged,
-            course=course,
-            sample=_counted(learnt, names, self.log_result),
-            judges=_counted(judge, names, self.log_result),
+            judged=self._judged(stand_in, judge),
+            course=_course(setup, stand_in, along),
+            sample=learnt,
+            judges=judge,
             own={name: float(bench.answers[name]) for name in names},
-            units={name: setup.print_unit(name) for name in names} | _printed_units(setup, box),
+            units={name: setup.print_unit(name) for name in names} | units,
             inputs=acting_inputs(setup),
-            speed=speed,
+            speed=self._speed(setup, stand_in, (learnt.seconds, seconds), timing),
         )
 
     def _along(self, box: Box) -> str:
@@ -122,10 +120,10 @@ class Surrogate:
         return self.along or next(iter(plain), "")
 
     def _learnt(
-        self, setup: Setup, box: Box, learnt: Ran, *, names: tuple[str, ...], done: StepProgress
+        self, setup: Setup, box: Box, learnt: DesignedSample, done: StepProgress
     ) -> tuple[dict[str, Emulator], float]:
         """Fit every result; the clock does not count the import of scikit-learn."""
-        kept = usable(learnt.rows, names, logarithmic=self.log_result)
+        kept = learnt.kept
         if kept.sum() < 2 * (len(box.features) + 1):
             reason = next(iter(learnt.rows.reasons.values()), "no result there is above zero")
             raise UsageError(
@@ -134,72 +132,88 @@ class Surrogate:
             )
         assert gaussian_process.GaussianProcessRegressor  # imported before the clock starts
         start = perf_counter()
-        places = box.places(taken(learnt.columns, kept))
-        fits = count(1)
+        places, fits, results = box.places(learnt.usable), count(1), learnt.rows.results
         emulators = {
             name: fitted(
                 places,
-                learnt.rows.results[name][kept],
+                values[kept],
                 logarithmic=self.log_result,
                 restarts=self.restarts,
                 seed=setup.seed,
-                done=lambda: done(next(fits), len(names) * (self.restarts + 1)),
+                done=lambda: done(next(fits), len(results) * (self.restarts + 1)),
             )
-            for name in names
+            for name, values in results.items()
         }
         return emulators, perf_counter() - start
 
-    def _judged(self, stand_in: StandIn, judge: Ran) -> dict[str, HeldOutComparison]:
+    def _judged(self, stand_in: StandIn, judge: DesignedSample) -> dict[str, HeldOutComparison]:
         """Compare the surrogate with the model at points it never saw."""
-        kept = usable(judge.rows, tuple(stand_in.emulators), logarithmic=self.log_result)
-        bands = stand_in.bands(taken(judge.columns, kept)) if kept.any() else {}
+        bands = stand_in.bands(judge.usable) if judge.kept.any() else {}
         return {
-            name: HeldOutComparison(judge.rows.results[name][kept], *band, is_share=self.log_result)
+            name: HeldOutComparison(judge.rows.results[name][judge.kept], *band, is_share=self.log_result)
             for name, band in bands.items()
         }
 
-    def _course(self, setup: Setup, stand_in: StandIn, along: str) -> Course | None:
-        """Follow one input through the box, everything else as in the run."""
-        feature = next((feature for feature in stand_in.box.features if feature.name == along), None)
-        if feature is None:
-            return None
-        axis = feature.value(np.linspace(0.0, 1.0, FINE))
-        if feature.logarithmic:
-            axis = np.linspace(feature.low, feature.high, FINE)
-        coarse = axis[::COARSE]
-        rows = evaluate_rows(setup, {along: coarse}, len(coarse), wanted=tuple(stand_in.emulators))
-        return Course(along, axis, coarse, rows.results, stand_in.bands({along: axis}), COARSE)
+    def _ran(
+        self, bench: Bench, box: Box, names: tuple[str, ...], stage: int, points: int, done: StepProgress
+    ) -> DesignedSample:
+        """Run the model at designed points; those can be used that have every result, above 0 for a logarithm."""
+        columns = designed(bench.setup, box, stage, points, self.name)
+        rows, seconds = ran(bench.setup, columns, names, batch=self.batch, executor=bench.executor, done=done)
+        kept = ~rows.failed
+        for values in rows.results.values():
+            kept &= np.isfinite(values) & ((values > 0) if self.log_result else True)
+        return DesignedSample(columns, rows, kept, seconds)
 
-    def _speed(self, setup: Setup, stand_in: StandIn, sample: float, fit: float, *, done: StepProgress) -> Speed | None:
+    def _speed(self, setup: Setup, stand_in: StandIn, making: tuple[float, float], done: StepProgress) -> Speed | None:
         if not self.compare:
             return None
         columns = designed(setup, stand_in.box, 2, self.compare, self.name)
-        names = tuple(stand_in.emulators)
-        predictions, model, measured = clocked(setup, columns, stand_in.predict, names, batch=self.batch, done=done)
-        return Speed(self.compare, sample, fit, predictions, model, measured)
+        predictions, model, measured = clocked(setup, columns, stand_in, batch=self.batch, done=done)
+        return Speed(self.compare, *making, predictions, model, measured)
 
 
-def _counted(points: Ran, names: tuple[str, ...], logarithmic: bool) -> Counted:
-    """Count the points that were left out, with the first reason."""
-    kept = usable(points.rows, names, logarithmic=logarithmic)
-    missing = int((~kept).sum())
-    reason = next(iter(points.rows.reasons.values()), "a result is not above zero") if missing else ""
-    return Counted(len(kept), missing, reason)
+def _course(setup: Setup, stand_in: StandIn, along: str) -> Course | None:
+    """Follow one input through the box, everything else as in the run."""
+    feature = next((feature for feature in stand_in.box.features if feature.name == along), None)
+    if feature is None:
+        return None
+    axis = feature.value(np.linspace(0.0, 1.0, FINE))
+    if feature.logarithmic:
+        axis = np.linspace(feature.low, feature.high, FINE)
+    coarse = axis[::COARSE]
+    rows = evaluate_rows(setup, {along: coarse}, len(coarse), wanted=tuple(stand_in.emulators))
+    return Course(along, axis, coarse, rows.results, stand_in.bands({along: axis}))
 
 
-def _printed_units(setup: Setup, box: Box) -> dict[str, str]:
-    return {
-        feature.name: setup.print_unit(feature.name) if feature.is_plain else feature.unit for feature in box.features
-    }
+@dataclass(frozen=True, eq=False)
+class DesignedSample:
+    """Designed points (n,) by input, what the model answered, which can be used, and the seconds the model worked."""
 
+    columns: Mapping[str, Any]
+    rows: Rows
+    kept: NDArray[np.bool_]
+    seconds: float
 
-@dataclass(frozen=True)
-class Counted:
-    """Points of a designed sample, how many were left out because they have no answer, and why the first was."""
+    @property
+    def usable(self) -> dict[str, Any]:
+        """The points that can be used."""
+        return {name: values[self.kept] for name, values in self.columns.items()}
 
-    points: int
-    left_out: int
-    reason: str = ""
+    @property
+    def points(self) -> int:
+        """How many points were designed."""
+        return len(self.kept)
+
+    @property
+    def left_out(self) -> int:
+        """How many of them were left out because they have no answer."""
+        return int((~self.kept).sum())
+
+    @property
+    def reason(self) -> str:
+        """Why the first of these was."""
+        return next(iter(self.rows.reasons.values()), "a result is not above zero")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -216,8 +230,8 @@ class Emulated(Outcome):
     stand_in: StandIn
     judged: Mapping[str, HeldOutComparison]
     course: Course | None
-    sample: Counted
-    judges: Counted
+    sample: DesignedSample
+    judges: DesignedSample
     own: Mapping[str, float]
     units: Mapping[str, str]
     inputs: Any = None
@@ -237,23 +251,26 @@ class Emulated(Outcome):
 
     def extrapolated(self, columns: Mapping[str, Any]) -> Any:
         """Say per calculation (n,) whether it lies outside the box: nothing was learnt there."""
-        return self.stand_in.box.outside(columns)
+        return ~self.stand_in.box.inside(columns).all(axis=1)
 
     @property
     def passed(self) -> tuple[str, ...]:
         """The directions in which the run itself lies outside the box."""
-        return self.stand_in.box.passed()
+        box = self.stand_in.box
+        return tuple(
+            feature.name for feature, inside in zip(box.features, box.inside({})[0], strict=True) if not inside
+        )
 
     def as_json(self) -> dict[str, Any]:
         """Return box, points, accuracy and course in printed units; no times."""
         return {
             "of": list(self.of),
             "box": _box(self),
-            "design": _points(self.sample),
-            "held_out": _points(self.judges),
+            "design": {"points": self.sample.points, "left_out": self.sample.left_out},
+            "held_out": {"points": self.judges.points, "left_out": self.judges.left_out},
             "results": {name: _result(self, name) for name in self.of},
             "extrapolated": list(self.passed),
-            "course": _course(self),
+            "course": _course_json(self),
         }
 
     def blocks(self) -> Sequence[Block]:
@@ -269,10 +286,10 @@ class Emulated(Outcome):
         names = list(self.judged)[:MOST_PANELS]
         if names:
             caption = "Points that were held out; beside it how far each is off, with its 95 % band."
-            blocks.append(Drawing("Surrogate over model", _agreement(self, names), caption))
+            blocks.append(Drawing("Surrogate over model", partial(_agreement, self, names), caption))
         if self.course is not None:
             title = f"Surrogate along the {spoken(self.course.over)}"
-            blocks.append(Drawing(title, _along(self, list(self.of)[:MOST_PANELS]), _said_of_course(self)))
+            blocks.append(Drawing(title, partial(_along, self, self.course), _said_of_course(self, self.course)))
         return blocks
 
     def warnings(self) -> Sequence[str]:
@@ -311,10 +328,6 @@ def _box(emulated: Emulated) -> dict[str, Any]:
     return ranges
 
 
-def _points(counted: Counted) -> dict[str, int]:
-    return {"points": counted.points, "left_out": counted.left_out}
-
-
 def _result(emulated: Emulated, name: str) -> dict[str, Any]:
     unit = emulated.units[name]
     emulator = emulated.stand_in.emulators[name]
@@ -346,14 +359,14 @@ def _accuracy(judged: HeldOutComparison, unit: str) -> dict[str, Any]:
     }
 
 
-def _course(emulated: Emulated) -> dict[str, Any] | None:
+def _course_json(emulated: Emulated) -> dict[str, Any] | None:
     course = emulated.course
     if course is None:
         return None
     results = {}
     for name in emulated.of:
         unit = emulated.units[name]
-        mean, low, high = (printed(values[:: course.every], unit) for values in course.bands[name])
+        mean, low, high = (printed(values[::COARSE], unit) for values in course.bands[name])
         model = printed(course.simulated[name], unit)
         results[name] = {"unit": unit, "model": model, "predicted": mean, "low": low, "high": high}
     unit = emulated.units[course.over]
@@ -362,7 +375,7 @@ def _course(emulated: Emulated) -> dict[str, Any] | None:
 
 def _verdict(emulated: Emulated, speed: Speed) -> str:
     """Say which way was faster, and what the faster one loses."""
-    model, whole = _seconds(speed.model), _seconds(speed.making + speed.predictions)
+    model, whole = f"{speed.model:.3g} s", f"{speed.making + speed.predictions:.3g} s"
     lost = ", ".join(
         f"{spoken(name)} by {100 * float(np.median(judged.shares)):.2g} % (median) and "
         f"{100 * float(judged.shares.max()):.2g} % (largest) of its {'value' if judged.is_share else 'range'}"
@@ -376,19 +389,15 @@ def _verdict(emulated: Emulated, speed: Speed) -> str:
     )
 
 
-def _seconds(value: float) -> str:
-    return f"{value:.3g} s"
-
-
 def _accuracy_table(emulated: Emulated) -> Table:
     rows: list[list[Any]] = []
     for name, judged in emulated.judged.items():
         unit = emulated.units[name]
         accuracy = _accuracy(judged, unit)
-        shares = [
-            100 * accuracy[key] if accuracy[key] is not None else None for key in ("median_share", "largest_share")
-        ]
-        errors = [accuracy["median_error"], shares[0], accuracy["largest_error"], shares[1]]
+        errors = []
+        for size in ("median", "largest"):
+            share = accuracy[f"{size}_share"]
+            errors += [accuracy[f"{size}_error"], None if share is None else 100 * share]
         rows.append([name, unit_text(unit), judged.points, 100 * judged.coverage, *errors])
     whole = "value" if next(iter(emulated.judged.values())).is_share else "range of all values"
     columns = ("result", "unit", "points", "in the 95 % band", "median error", "share", "largest error", "share")
@@ -403,15 +412,12 @@ def _speed_table(emulated: Emulated, speed: Speed) -> Table:
         [f"{speed.rows} answers of the surrogate", speed.predictions],
         [f"{speed.rows} answers of the model", speed.model],
     ]
-    never = "The surrogate never pays: the model answers faster than it does."
-    even = (
-        never
-        if speed.break_even == float("inf")
-        else f"It pays from about {float(f'{speed.break_even:.2g}'):.0f} calculations on."
-    )
-    part = (
-        f" {speed.measured} of the model's were run, the rest is in proportion." if speed.measured < speed.rows else ""
-    )
+    even = "The surrogate never pays: the model answers faster than it does."
+    if speed.break_even < float("inf"):
+        even = f"It pays from about {float(f'{speed.break_even:.2g}'):.0f} calculations on."
+    part = ""
+    if speed.measured < speed.rows:
+        part = f" {speed.measured} of the model's were run, the rest is in proportion."
     note = f"On this machine, in one process. {even}{part}"
     return Table("Surrogate or model: which is faster?", ("work", "time"), rows, ("", "s"), note)
 
@@ -431,21 +437,24 @@ def _box_table(emulated: Emulated) -> Table:
     return Table("Box of the surrogate", columns, rows, (), note)
 
 
-def _agreement(emulated: Emulated, names: Sequence[str]) -> Callable[[], Figure]:
+def _agreement(emulated: Emulated, names: Sequence[str]) -> Figure:
     """Draw predicted over simulated results, and beside it how far each is off with its band."""
+    figure = Figure(figsize=(WIDTH, 3.0 * len(names)), layout="constrained")
+    panels = figure.subplots(len(names), 2, squeeze=False)
+    for pair, name in zip(panels, names, strict=True):
+        judged, unit = emulated.judged[name], emulated.units[name]
+        _draw_values(pair[0], judged, unit)
+        _draw_errors(pair[1], judged, unit)
+        for panel in pair:
+            if judged.is_share:
+                panel.set_xscale("log")
+            panel.set_xlabel(labelled(f"{name} by the model", unit_text(unit)))
+            panel.grid(alpha=0.3)
+        pair[0].legend(frameon=False)
+    return figure
 
-    def draw() -> Figure:
-        figure = Figure(figsize=(WIDTH, 3.0 * len(names)), layout="constrained")
-        panels = figure.subplots(len(names), 2, squeeze=False)
-        for (left, right), name in zip(panels, names, strict=True):
-            _draw_values(left, emulated.judged[name], name, emulated.units[name])
-            _draw_errors(right, emulated.judged[name], name, emulated.units[name])
-        return figure
 
-    return draw
-
-
-def _draw_values(panel: Any, judged: HeldOutComparison, name: str, unit: str) -> None:
+def _draw_values(panel: Any, judged: HeldOutComparison, unit: str) -> None:
     model, mean = from_si(judged.simulated, unit), from_si(judged.predicted, unit)
     panel.plot(model, mean, "o", color=BLUE, markersize=3, label="surrogate")
     ends = [float(model.min()), float(model.max())]
@@ -453,11 +462,9 @@ def _draw_values(panel: Any, judged: HeldOutComparison, name: str, unit: str) ->
     panel.set_ylabel(labelled("by the surrogate", unit_text(unit)))
     if judged.is_share:
         panel.set_yscale("log")
-    _finish(panel, judged, labelled(f"{name} by the model", unit_text(unit)))
-    panel.legend(frameon=False)
 
 
-def _draw_errors(panel: Any, judged: HeldOutComparison, name: str, unit: str) -> None:
+def _draw_errors(panel: Any, judged: HeldOutComparison, unit: str) -> None:
     """Draw errors in percent of the value, or of the range of all values."""
     ends = (judged.predicted, judged.low, judged.high)
     off, low, high = (100 * (values - judged.simulated) / judged.whole for values in ends)
@@ -467,46 +474,30 @@ def _draw_errors(panel: Any, judged: HeldOutComparison, name: str, unit: str) ->
     )
     panel.axhline(0.0, color=ORANGE, linewidth=0.9)
     panel.set_ylabel("off by, %")
-    _finish(panel, judged, labelled(f"{name} by the model", unit_text(unit)))
 
 
-def _finish(panel: Any, judged: HeldOutComparison, label: str) -> None:
-    if judged.is_share:
-        panel.set_xscale("log")
-    panel.set_xlabel(label)
-    panel.grid(alpha=0.3)
-
-
-def _along(emulated: Emulated, names: Sequence[str]) -> Callable[[], Figure]:
+def _along(emulated: Emulated, course: Course) -> Figure:
     """Draw the surrogate with its band along one input, and the model's own points."""
-
-    def draw() -> Figure:
-        course = emulated.course
-        assert course is not None  # drawn only where there is one
-        over = emulated.units[course.over]
-        figure = Figure(figsize=(WIDTH, 0.8 + 2.4 * len(names)), layout="constrained")
-        panels = figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0]
-        for panel, name in zip(panels, names, strict=True):
-            unit = emulated.units[name]
-            mean, low, high = (from_si(values, unit) for values in course.bands[name])
-            axis = from_si(course.axis, over)
-            panel.fill_between(axis, low, high, color=BLUE, alpha=0.2, linewidth=0, label="95 % band")
-            panel.plot(axis, mean, color=BLUE, label="surrogate")
-            simulated = from_si(course.simulated[name], unit)
-            panel.plot(from_si(course.coarse, over), simulated, "o", color=ORANGE, markersize=4, label="model")
-            panel.set_ylabel(labelled(name, unit_text(unit)))
-            panel.legend(frameon=False)
-            panel.grid(alpha=0.3)
-        panels[-1].set_xlabel(labelled(course.over, unit_text(over)))
-        return figure
-
-    return draw
+    names, over = emulated.of[:MOST_PANELS], emulated.units[course.over]
+    figure = Figure(figsize=(WIDTH, 0.8 + 2.4 * len(names)), layout="constrained")
+    panels = figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0]
+    for panel, name in zip(panels, names, strict=True):
+        unit = emulated.units[name]
+        mean, low, high = (from_si(values, unit) for values in course.bands[name])
+        axis = from_si(course.axis, over)
+        panel.fill_between(axis, low, high, color=BLUE, alpha=0.2, linewidth=0, label="95 % band")
+        panel.plot(axis, mean, color=BLUE, label="surrogate")
+        simulated = from_si(course.simulated[name], unit)
+        panel.plot(from_si(course.coarse, over), simulated, "o", color=ORANGE, markersize=4, label="model")
+        panel.set_ylabel(labelled(name, unit_text(unit)))
+        panel.legend(frameon=False)
+        panel.grid(alpha=0.3)
+    panels[-1].set_xlabel(labelled(course.over, unit_text(over)))
+    return figure
 
 
-def _said_of_course(emulated: Emulated) -> str:
-    course = emulated.course
-    assert course is not None  # drawn only where there is one
-    counts: Mapping[str, tuple[int, int]] = {name: course.inside(name) for name in emulated.of}
+def _said_of_course(emulated: Emulated, course: Course) -> str:
+    counts = {name: course.inside(name) for name in emulated.of}
     held = ", ".join(f"{inside} of {points} of {spoken(name)}" for name, (inside, points) in counts.items())
     others = [f"'{name}'" for name in emulated.passed if name != course.over]
     beyond = f" Outside the box in {' and '.join(others)}: extrapolated." if others else ""
@@ -533,23 +524,13 @@ class SurrogateBatch:
     wanted: tuple[str, ...]
 
 
-@dataclass(frozen=True)
-class Ran:
-    """Designed points (n,) by input, what the model answered, and the seconds it worked."""
+def designed(setup: Setup, box: Box, stage: int, points: int, study: str) -> dict[str, Matrix]:
+    """Return a Latin hypercube: every side of the box in as many layers as there are points.
 
-    columns: Mapping[str, Any]
-    rows: Rows
-    seconds: float
-
-
-def latin(box: Box, points: int, rng: np.random.Generator) -> dict[str, NDArray[np.float64]]:
-    """Return the columns of a Latin hypercube: every side of the box in as many layers as there are points."""
+    Stage 0 is learnt from, 1 is held out, 2 is for the clock.
+    """
+    rng = generator(setup.seed, stage, study)
     return box.sampled(stats.qmc.LatinHypercube(len(box.features), seed=rng).random(points))
-
-
-def designed(setup: Setup, box: Box, stage: int, points: int, study: str) -> dict[str, NDArray[np.float64]]:
-    """Return the columns of one stage of a study: 0 is learnt from, 1 is held out, 2 is for the clock."""
-    return latin(box, points, generator(setup.seed, stage, study))
 
 
 def run_points(job: SurrogateBatch) -> tuple[Rows, float]:
@@ -565,29 +546,28 @@ def _unpacked(packed: Packed) -> Setup:
     return unpack(packed)
 
 
-@dataclass(frozen=True)
-class Work:
-    """How points are run: so many in one call, where, and who hears how far it has come."""
-
-    batch: int
-    executor: Executor
-    done: StepProgress
-
-
-def ran(setup: Setup, columns: Mapping[str, Any], wanted: tuple[str, ...], work: Work) -> Ran:
-    """Run the model at all points."""
-    carried: Setup | Packed = setup if isinstance(work.executor, SerialExecutor) else pack(setup)
+def ran(
+    setup: Setup,
+    columns: Mapping[str, Any],
+    wanted: tuple[str, ...],
+    *,
+    batch: int,
+    executor: Executor,
+    done: StepProgress,
+) -> tuple[Rows, float]:
+    """Run the model at all points, so many in one call; return the seconds that it worked, too."""
+    carried: Setup | Packed = setup if isinstance(executor, SerialExecutor) else pack(setup)
     points = len(next(iter(columns.values())))
-    jobs = (SurrogateBatch(carried, part, rows, wanted) for part, rows in _parts(columns, points, work.batch))
+    jobs = (SurrogateBatch(carried, part, rows, wanted) for part, rows in _parts(columns, points, batch))
     answers = []
-    for answer in in_order(work.executor, run_points, jobs):
+    for answer in in_order(executor, run_points, jobs):
         answers.append(answer)
-        work.done(min(len(answers) * work.batch, points), points)
+        done(min(len(answers) * batch, points), points)
     parts = [rows for rows, _ in answers]
-    reasons = {index * work.batch + row: text for index, rows in enumerate(parts) for row, text in rows.reasons.items()}
+    reasons = {index * batch + row: text for index, rows in enumerate(parts) for row, text in rows.reasons.items()}
     results = {name: np.concatenate([rows.results[name] for rows in parts]) for name in wanted}
-    joined = Rows(results, np.concatenate([rows.failed for rows in parts]), reasons)
-    return Ran(columns, joined, sum(seconds for _, seconds in answers))
+    failed = np.concatenate([rows.failed for rows in parts])
+    return Rows(results, failed, reasons), sum(seconds for _, seconds in answers)
 
 
 def _parts(columns: Mapping[str, Any], points: int, batch: int) -> Iterator[tuple[dict[str, Any], int]]:
@@ -628,21 +608,15 @@ class Speed:
 
 
 def clocked(
-    setup: Setup,
-    columns: Mapping[str, Any],
-    predict: Callable[[Mapping[str, Any]], Any],
-    wanted: tuple[str, ...],
-    *,
-    batch: int,
-    done: StepProgress = lambda step, steps: None,
+    setup: Setup, columns: Mapping[str, Any], stand_in: StandIn, *, batch: int, done: StepProgress
 ) -> tuple[float, float, int]:
     """Return the seconds for all predictions, those for all runs of the model, and how many were really run."""
     points = len(next(iter(columns.values())))
     start = perf_counter()
     for part, _ in _parts(columns, points, batch):
-        predict(part)
+        stand_in.predict(part)
     predictions = perf_counter() - start
-    spent, run = 0.0, 0
+    spent, run, wanted = 0.0, 0, tuple(stand_in.emulators)
     for part, rows in _parts(columns, points, batch):
         spent += run_points(SurrogateBatch(setup, part, rows, wanted))[1]
         run += rows
@@ -669,16 +643,16 @@ class Emulator:
     process: Any
     logarithmic: bool
 
-    def mean(self, places: NDArray[np.float64]) -> NDArray[np.float64]:
+    def mean(self, places: Matrix) -> Matrix:
         """Return the expected result (SI), of a logarithm its median; NaN where a place is NaN."""
         return self._result(_in_parts(lambda part: self.process.predict(part)[None], places)[0])
 
-    def band(self, places: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    def band(self, places: Matrix) -> tuple[Matrix, Matrix, Matrix]:
         """Return the expected result and the two ends of its 95 % band, noise included."""
         mean, sd = _in_parts(lambda part: np.array(self.process.predict(part, return_std=True)), places, 2)
         return self._result(mean), self._result(mean - Z95 * sd), self._result(mean + Z95 * sd)
 
-    def _result(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _result(self, values: Matrix) -> Matrix:
         return np.exp(values) if self.logarithmic else values
 
     @property
@@ -692,7 +666,7 @@ class Emulator:
         return math.sqrt(self.process.kernel_.k2.noise_level)
 
 
-def _in_parts(predict: Any, places: NDArray[np.float64], answers: int = 1) -> NDArray[np.float64]:
+def _in_parts(predict: Any, places: Matrix, answers: int = 1) -> Matrix:
     """Predict a part at a time, so that memory stays flat; rows that are not finite stay NaN."""
     predictions = np.full((answers, len(places)), np.nan)
     usable = np.flatnonzero(np.isfinite(places).all(axis=1))
@@ -704,8 +678,8 @@ def _in_parts(predict: Any, places: NDArray[np.float64], answers: int = 1) -> ND
 
 
 def fitted(
-    places: NDArray[np.float64],
-    values: NDArray[np.float64],
+    places: Matrix,
+    values: Matrix,
     *,
     logarithmic: bool,
     restarts: int,
@@ -733,20 +707,6 @@ def fitted(
         process.fit(places, np.log(values) if logarithmic else values)
     process.set_params(optimizer=None)  # it is fitted, and travels to workers
     return Emulator(process, logarithmic)
-
-
-def usable(rows: Rows, names: tuple[str, ...], *, logarithmic: bool) -> NDArray[np.bool_]:
-    """Say which rows have every result, and above zero where the logarithm is learnt."""
-    kept = ~rows.failed
-    for name in names:
-        values = rows.results[name]
-        kept &= np.isfinite(values) & ((values > 0) if logarithmic else True)
-    return kept
-
-
-def taken(columns: Mapping[str, Any], kept: NDArray[np.bool_]) -> dict[str, Any]:
-    """Return the rows of a batch that are kept."""
-    return {name: values[kept] for name, values in columns.items()}
 
 
 # The box of a surrogate: over what it was made, how it is sampled, and what lies outside
@@ -795,14 +755,14 @@ class Box:
     features: tuple[Feature, ...]
     held: Mapping[str, float]
 
-    def sampled(self, shares: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+    def sampled(self, shares: Matrix) -> dict[str, Matrix]:
         """Return the columns (n,) of a batch from places (n, d), 0 to 1. Raises UsageError for a bent formula."""
         columns: dict[str, Any] = {}
         for index, feature in sorted(enumerate(self.features), key=lambda numbered: not numbered[1].is_plain):
             columns[feature.sets] = self._solved(feature, feature.value(shares[:, index]), columns)
         return columns
 
-    def places(self, columns: Mapping[str, Any]) -> NDArray[np.float64]:
+    def places(self, columns: Mapping[str, Any]) -> Matrix:
         """Return the places (n, d) of calculations; what no column holds is as in the run.
 
         Columns are numbers or arrays (n,) in SI. Raises UsageError for one that the surrogate does not follow.
@@ -813,17 +773,10 @@ class Box:
         places = [feature.place(evaluate(feature.formula, values)) for feature in self.features]
         return np.column_stack([np.broadcast_to(position, (rows,)) for position in places])
 
-    def outside(self, columns: Mapping[str, Any]) -> NDArray[np.bool_]:
-        """Say per calculation (n,) whether it lies outside the box, where nothing was learnt."""
+    def inside(self, columns: Mapping[str, Any]) -> NDArray[np.bool_]:
+        """Say per calculation and direction (n, d) whether it lies in the box; outside nothing was learnt."""
         places = self.places(columns)
-        within = (places >= -STRAIGHT_TO) & (places <= 1 + STRAIGHT_TO)
-        return np.asarray(~within.all(axis=1))
-
-    def passed(self) -> tuple[str, ...]:
-        """Name the features in which the run itself lies outside the box."""
-        places = self.places({})[0]
-        inside = (places >= -STRAIGHT_TO) & (places <= 1 + STRAIGHT_TO)
-        return tuple(feature.name for feature, is_inside in zip(self.features, inside, strict=True) if not is_inside)
+        return np.asarray((places >= -STRAIGHT_TO) & (places <= 1 + STRAIGHT_TO))
 
     def _demand_known(self, columns: Mapping[str, Any]) -> None:
         followed = {name for feature in self.features for name in feature.formula.names}
@@ -871,14 +824,9 @@ def open_box(setup: Setup, over: Mapping[str, str], logarithmic: Sequence[str], 
         low, high, unit = _range(setup, formula, over[text], study)
         if text in logarithmic and low <= 0:
             raise UsageError(f"study '{study}': '{text}' is logarithmic, so its range {over[text]} must lie above 0")
-        step = abs(held[sets]) or setup_step(setup, sets)
+        step = abs(held[sets]) or unit_factor(setup.unit_of(sets))  # one unit where 0 says nothing of its size
         features.append(Feature(text, formula, sets, low, high, unit, step, text in logarithmic))
     return Box(tuple(features), held)
-
-
-def setup_step(setup: Setup, name: str) -> float:
-    """Return one unit of an input or condition in SI, where its value says nothing about its size."""
-    return unit_factor(setup.unit_of(name))
 
 
 def _held(setup: Setup) -> dict[str, float]:
@@ -994,8 +942,7 @@ class HeldOutComparison:
     @property
     def interval(self) -> tuple[float, float]:
         """The 95 % interval of that share."""
-        low, high = wilson(self.inside, self.points)
-        return low, high
+        return wilson(self.inside, self.points)
 
     @property
     def errors(self) -> Matrix:
@@ -1023,10 +970,9 @@ class Course:
     coarse: Matrix
     simulated: Mapping[str, Matrix]
     bands: Mapping[str, tuple[Matrix, Matrix, Matrix]]
-    every: int
 
     def inside(self, name: str) -> tuple[int, int]:
         """Return how many of the model's points lie in the band, and how many there are."""
         simulated = self.simulated[name]
-        low, high = (end[:: self.every] for end in self.bands[name][1:])
+        low, high = (end[::COARSE] for end in self.bands[name][1:])
         return int(((low <= simulated) & (simulated <= high)).sum()), int(np.isfinite(simulated).sum())

@@ -92,7 +92,7 @@ def _undecided(require: Require, name: str, setup: Setup, answers: Mapping[str, 
     if goal is not None:
         limit, unit = goal, ""
     elif known or require.limit not in setup.model.result_fields:
-        limit = _single(limit_amount(require, setup, dict(answers)), unit)
+        limit = _single(limit_amount(require, setup, answers), unit)
     return Check(
         name, nan, limit, unit, nan, passed=False, undecided=_decider(require, setup, answers) or NO_STUDY,
         relation="≥" if goal is not None or require.kind == "at_least" else "≤", compared=compared,

@@ -13,11 +13,10 @@ from typing import Any
 
 import numpy as np
 
-from truing.declare.checks import formula_scope
-from truing.declare.fields import InputField, ResultField
+from truing.declare.fields import Given, InputField, ResultField
 from truing.declare.goals import Vary
+from truing.declare.model import formula_scope
 from truing.declare.quantities import unread_goals, unread_units
-from truing.declare.specs import Given
 from truing.errors import DeclarationError, InputError, TruingError, UnitError
 from truing.evaluate import evaluate
 from truing.example_file import example_text

@@ -6,8 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from truing.declare.checks import Promise
-from truing.declare.model import Model
+from truing.declare.model import Model, Promise
 from truing.testing import declared, running, sources
 from truing.testing.subject import Subject, fail
 

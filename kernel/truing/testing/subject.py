@@ -13,9 +13,8 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from truing.declare.fields import InputField, with_values
+from truing.declare.fields import Given, InputField, with_values
 from truing.declare.model import Model
-from truing.declare.specs import Given
 from truing.errors import InfeasibleError, TruingError, UsageError
 from truing.evaluate import evaluate
 from truing.inputs_file import read_setup

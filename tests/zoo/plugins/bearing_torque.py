@@ -2,21 +2,7 @@
 
 from dataclasses import replace
 
-from truing import (
-    Condition,
-    Effect,
-    Float,
-    Model,
-    Section,
-    Tolerance,
-    Unknown,
-    found,
-    given,
-    hookimpl,
-    inputs,
-    normal,
-    results,
-)
+from truing import Condition, Effect, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
 
 
 @inputs
@@ -151,11 +137,4 @@ BEARING_TORQUE = Model(
             unknowns=[Unknown("rise", 0, 0.2, "kN/K")],
         ),
     ],
-    sheet=[Section("Torque", "lubricant_torque", "load_torque", "torque")],
 )
-
-
-@hookimpl
-def truing_models() -> list[Model[Bearing, Friction]]:
-    """Offer one calculation: bearing_torque."""
-    return [BEARING_TORQUE]

@@ -4,21 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from truing import (
-    Condition,
-    Effect,
-    Float,
-    Model,
-    Section,
-    Tolerance,
-    Unknown,
-    found,
-    given,
-    hookimpl,
-    inputs,
-    normal,
-    results,
-)
+from truing import Condition, Effect, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
 
 
 @inputs
@@ -128,11 +114,4 @@ BELT_DRIVE = Model(
             unknowns=[Unknown("share", 0, 0.05, "", note="loss at 3000 rpm")],
         ),
     ],
-    sheet=[Section("Drive", "pull", "driven_speed")],
 )
-
-
-@hookimpl
-def truing_models() -> list[Model[Drive, Shaft]]:
-    """Offer one calculation: belt_drive."""
-    return [BELT_DRIVE]

@@ -4,21 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from truing import (
-    Condition,
-    Effect,
-    Float,
-    Model,
-    Section,
-    Tolerance,
-    Unknown,
-    found,
-    given,
-    hookimpl,
-    inputs,
-    normal,
-    results,
-)
+from truing import Condition, Effect, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
 
 
 @inputs
@@ -141,11 +127,4 @@ BOLTED_JOINT = Model(
             unknowns=[Unknown("compliance", 0, 2, "um/kN")],
         ),
     ],
-    sheet=[Section("Joint", "compliance", "preload")],
 )
-
-
-@hookimpl
-def truing_models() -> list[Model[Joint, Preload]]:
-    """Offer one calculation: bolted_joint."""
-    return [BOLTED_JOINT]

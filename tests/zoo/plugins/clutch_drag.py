@@ -4,22 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from truing import (
-    Condition,
-    Effect,
-    Float,
-    Model,
-    Section,
-    Tolerance,
-    Unknown,
-    feasible,
-    found,
-    given,
-    hookimpl,
-    inputs,
-    normal,
-    results,
-)
+from truing import Condition, Effect, Float, Model, Tolerance, Unknown, feasible, found, given, inputs, normal, results
 
 TWO_PI = 6.283185307179586
 SPEED, WARM, FEED = 1000.0 / 60, 333.15, 5e-3 / 60
@@ -162,11 +147,4 @@ CLUTCH_DRAG = Model(
             unknowns=[Unknown("swelling", -0.01, 0.01, "1/K")],
         ),
     ],
-    sheet=[Section("Film", "viscosity", "shear_rate"), Section("Drag", "drag_torque")],
 )
-
-
-@hookimpl
-def truing_models() -> list[Model[Clutch, Drag]]:
-    """Offer one calculation: clutch_drag."""
-    return [CLUTCH_DRAG]

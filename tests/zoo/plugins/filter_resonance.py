@@ -5,22 +5,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from truing import (
-    Condition,
-    Effect,
-    Float,
-    Model,
-    Section,
-    Tolerance,
-    Unknown,
-    feasible,
-    found,
-    given,
-    hookimpl,
-    inputs,
-    normal,
-    results,
-)
+from truing import Condition, Effect, Float, Model, Tolerance, Unknown, feasible, found, given, inputs, normal, results
 
 TWO_PI = 6.283185307179586
 RATED = 5e5
@@ -183,11 +168,4 @@ FILTER_RESONANCE = Model(
             unknowns=[Unknown("per_square", 0, 0.1, "1/V^2")],
         ),
     ],
-    sheet=[Section("Filter", "current", "gain")],
 )
-
-
-@hookimpl
-def truing_models() -> list[Model[Filter, Passed]]:
-    """Offer one calculation: filter_resonance."""
-    return [FILTER_RESONANCE]

@@ -4,21 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from truing import (
-    Effect,
-    Float,
-    Model,
-    Section,
-    Tolerance,
-    Unknown,
-    feasible,
-    found,
-    given,
-    hookimpl,
-    inputs,
-    normal,
-    results,
-)
+from truing import Effect, Float, Model, Tolerance, Unknown, feasible, found, given, inputs, normal, results
 
 ROOM = 293.15
 """Temperature of the test hall, K."""
@@ -181,11 +167,4 @@ HEAT_EXCHANGER = Model(
             unknowns=[Unknown("share", 0, 0.2)],
         ),
     ],
-    sheet=[Section("Plates", "through", "conductance", "effectiveness"), Section("Outlet", "hot_outlet")],
 )
-
-
-@hookimpl
-def truing_models() -> list[Model[Exchanger, Outlet]]:
-    """Offer one calculation: heat_exchanger."""
-    return [HEAT_EXCHANGER]

@@ -4,22 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from truing import (
-    Condition,
-    Effect,
-    Float,
-    Model,
-    Section,
-    Tolerance,
-    Unknown,
-    feasible,
-    found,
-    given,
-    hookimpl,
-    inputs,
-    normal,
-    results,
-)
+from truing import Condition, Effect, Float, Model, Tolerance, Unknown, feasible, found, given, inputs, normal, results
 
 FULL = 10.0
 """Command at which the spool stands at its full stroke, V."""
@@ -159,11 +144,4 @@ HYDRAULIC_VALVE = Model(
             unknowns=[Unknown("flow", -0.2, 0.2)],
         ),
     ],
-    sheet=[Section("Spool", "opening"), Section("Flow", "flow")],
 )
-
-
-@hookimpl
-def truing_models() -> list[Model[Valve, Flow]]:
-    """Offer one calculation: hydraulic_valve."""
-    return [HYDRAULIC_VALVE]

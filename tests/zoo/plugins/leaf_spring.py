@@ -4,21 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from truing import (
-    Condition,
-    Effect,
-    Float,
-    Model,
-    Section,
-    Tolerance,
-    Unknown,
-    found,
-    given,
-    hookimpl,
-    inputs,
-    normal,
-    results,
-)
+from truing import Condition, Effect, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
 
 
 @inputs
@@ -144,11 +130,4 @@ LEAF_SPRING = Model(
             unknowns=[Unknown("force", 0, 1500, "N")],
         ),
     ],
-    sheet=[Section("Spring", "way", "force")],
 )
-
-
-@hookimpl
-def truing_models() -> list[Model[Spring, Force]]:
-    """Offer one calculation: leaf_spring."""
-    return [LEAF_SPRING]

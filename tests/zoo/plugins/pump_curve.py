@@ -4,20 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from truing import (
-    Effect,
-    Float,
-    Model,
-    Section,
-    Tolerance,
-    Unknown,
-    found,
-    given,
-    hookimpl,
-    inputs,
-    normal,
-    results,
-)
+from truing import Effect, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
 
 RATED_SPEED, RATED_FLOW = 2900.0 / 60, 60.0 / 3600
 """Speed in 1/s and flow in m³/s of the acceptance test."""
@@ -148,11 +135,4 @@ PUMP_CURVE = Model(
             unknowns=[Unknown("head", 0, 10, "m", note="at 60 m³/h")],
         ),
     ],
-    sheet=[Section("Flow", "impeller_flow", "needed_head"), Section("Head", "head")],
 )
-
-
-@hookimpl
-def truing_models() -> list[Model[Pump, Head]]:
-    """Offer one calculation: pump_curve."""
-    return [PUMP_CURVE]

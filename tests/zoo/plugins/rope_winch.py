@@ -4,21 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from truing import (
-    Condition,
-    Effect,
-    Float,
-    Model,
-    Section,
-    Tolerance,
-    Unknown,
-    found,
-    given,
-    hookimpl,
-    inputs,
-    normal,
-    results,
-)
+from truing import Condition, Effect, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
 
 
 @inputs
@@ -148,11 +134,4 @@ ROPE_WINCH = Model(
             unknowns=[Unknown("share", 0, 0.3)],
         ),
     ],
-    sheet=[Section("Hook", "payout", "drop")],
 )
-
-
-@hookimpl
-def truing_models() -> list[Model[Winch, Hook]]:
-    """Offer one calculation: rope_winch."""
-    return [ROPE_WINCH]

@@ -5,22 +5,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from truing import (
-    Effect,
-    Float,
-    Model,
-    Section,
-    Tolerance,
-    Unknown,
-    axis,
-    column,
-    found,
-    given,
-    hookimpl,
-    inputs,
-    normal,
-    results,
-)
+from truing import Effect, Float, Model, Tolerance, Unknown, axis, column, found, given, inputs, normal, results
 
 TIMES = tuple(2.0 * step for step in range(61))
 SPEEDS = tuple(3000.0 if step < 30 else 1500.0 for step in range(61))
@@ -147,11 +132,4 @@ THERMAL_GROWTH = Model(
             unknowns=[Unknown("growth", -5, 5, "um/K")],
         ),
     ],
-    sheet=[Section("Spindle", "rise", "housing", "growth")],
 )
-
-
-@hookimpl
-def truing_models() -> list[Model[Spindle, Growth]]:
-    """Offer one calculation: thermal_growth."""
-    return [THERMAL_GROWTH]

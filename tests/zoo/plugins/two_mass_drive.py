@@ -4,21 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from truing import (
-    Condition,
-    Effect,
-    Float,
-    Model,
-    Section,
-    Tolerance,
-    Unknown,
-    found,
-    given,
-    hookimpl,
-    inputs,
-    normal,
-    results,
-)
+from truing import Condition, Effect, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
 
 
 @inputs
@@ -156,11 +142,4 @@ TWO_MASS_DRIVE = Model(
             unknowns=[Unknown("rate", -0.5, 0.5, "mrad/s")],
         ),
     ],
-    sheet=[Section("Axis", "torque", "twist")],
 )
-
-
-@hookimpl
-def truing_models() -> list[Model[Axis, Lag]]:
-    """Offer one calculation: two_mass_drive."""
-    return [TWO_MASS_DRIVE]

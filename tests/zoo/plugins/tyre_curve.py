@@ -4,21 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from truing import (
-    Condition,
-    Effect,
-    Float,
-    Model,
-    Section,
-    Tolerance,
-    Unknown,
-    found,
-    given,
-    hookimpl,
-    inputs,
-    normal,
-    results,
-)
+from truing import Condition, Effect, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
 
 RATED_LOAD = 4000.0
 """Load at which friction is stated, N."""
@@ -169,11 +155,4 @@ TYRE_CURVE = Model(
             unknowns=[Unknown("share", -0.1, 0.1)],
         ),
     ],
-    sheet=[Section("Contact", "tread_angle", "sliding"), Section("Force", "side_force")],
 )
-
-
-@hookimpl
-def truing_models() -> list[Model[Tyre, Side]]:
-    """Offer one calculation: tyre_curve."""
-    return [TYRE_CURVE]

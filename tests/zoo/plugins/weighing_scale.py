@@ -4,21 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from truing import (
-    Condition,
-    Effect,
-    Float,
-    Model,
-    Section,
-    Tolerance,
-    Unknown,
-    found,
-    given,
-    hookimpl,
-    inputs,
-    normal,
-    results,
-)
+from truing import Condition, Effect, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
 
 CAPACITY = 100.0
 """Largest load, kg."""
@@ -173,11 +159,4 @@ WEIGHING_SCALE = Model(
             unknowns=[Unknown("reading", -2, 2, "kg")],
         ),
     ],
-    sheet=[Section("Beam", "carried", "strain", "signal"), Section("Display", "reading")],
 )
-
-
-@hookimpl
-def truing_models() -> list[Model[Scale, Shown]]:
-    """Offer one calculation: weighing_scale."""
-    return [WEIGHING_SCALE]

@@ -9,9 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
-from zoo.zoo import Measured, drawn_size
+from zoo.zoo import Measured, drawn_size, sized
 
 HIDDEN = {
     "rupture": ("film_rupture",),
@@ -103,19 +102,19 @@ def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Me
     plain = torque(flooded, run, cold)
     plates, rise = flooded, cold
     if hidden in ("rupture", "rupture_and_warming"):
-        size = drawn_size(generator)
+        size = drawn_size(generator) * NOISE
 
-        def off(reach: float) -> float:
-            return float(np.max(np.abs(torque(Plates(flooded.gaps, thicker, reach), run, cold) - plain)) - size * NOISE)
+        def wetted(reach: float) -> Array:
+            return torque(Plates(flooded.gaps, thicker, reach), run, cold)
 
-        plates = Plates(flooded.gaps, thicker, float(brentq(off, 0.05, 50.0, rtol=1e-4)))
+        plates = Plates(flooded.gaps, thicker, sized(wetted, plain, size, 50.0, low=0.05, rtol=1e-4))
     if hidden in ("warming", "rupture_and_warming"):
-        size, time_constant = drawn_size(generator), generator.uniform(200, 900)
+        size, time_constant = drawn_size(generator) * NOISE, generator.uniform(200, 900)
 
-        def cooler(power: float) -> float:
-            return float(np.max(np.abs(torque(flooded, run, warmed(run, power, time_constant)) - plain)) - size * NOISE)
+        def heated(power: float) -> Array:
+            return torque(flooded, run, warmed(run, power, time_constant))
 
-        rise = warmed(run, float(brentq(cooler, 0.1, 3000.0, rtol=1e-3)), time_constant)
+        rise = warmed(run, sized(heated, plain, size, 3000.0, low=0.1, rtol=1e-3), time_constant)
     columns = {
         "time [s]": run.time,
         "speed [rpm]": run.speed,

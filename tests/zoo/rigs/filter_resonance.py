@@ -9,9 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
-from zoo.zoo import Measured, drawn_size
+from zoo.zoo import Measured, drawn_size, sized
 
 HIDDEN = {
     "hysteresis": ("core_hysteresis",),
@@ -113,21 +112,19 @@ def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Me
     plain = gain(Bench(inductance, capacitance, level), frequency, drive, loop)
     rayleigh, reflection, length = 0.0, 0.0, 300.0
     if hidden in ("hysteresis", "hysteresis_and_echo"):
-        size = drawn_size(generator)
 
-        def off(grown: float) -> float:
-            bench = Bench(inductance, capacitance, level, grown)
-            return float(np.max(np.abs(gain(bench, frequency, drive, loop) - plain))) - size * NOISE
+        def grown(growth: float) -> Array:
+            return gain(Bench(inductance, capacitance, level, growth), frequency, drive, loop)
 
-        rayleigh = float(brentq(off, 0.0, 100.0, rtol=1e-3))
+        rayleigh = sized(grown, plain, drawn_size(generator) * NOISE, 100.0, rtol=1e-3)
     if hidden in ("echo", "hysteresis_and_echo"):
         size, length = min(drawn_size(generator), 15.0), generator.uniform(150, 450)
 
-        def waving(both: float) -> float:
+        def waving(both: float) -> Array:
             bench = Bench(inductance, capacitance, level, 0.0, length, (np.sqrt(both), np.sqrt(both)))
-            return float(np.max(np.abs(gain(bench, frequency, drive, loop) - plain))) - size * NOISE
+            return gain(bench, frequency, drive, loop)
 
-        reflection = float(np.sqrt(brentq(waving, 0.0, 0.5, rtol=1e-3)))
+        reflection = float(np.sqrt(sized(waving, plain, size * NOISE, 0.5, rtol=1e-3)))
     bench = Bench(inductance, capacitance, level, rayleigh, length, (reflection, reflection))
     columns = {
         "time [min]": time,

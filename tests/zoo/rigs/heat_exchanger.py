@@ -4,13 +4,12 @@ The films are better where the water is warm, the heat capacity depends on the t
 orifice beside the plates: how much it takes follows from equal losses of pressure.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
-from zoo.zoo import Measured, drawn_size
+from zoo.zoo import Measured, drawn_size, sized
 
 HIDDEN = {
     "bypass": ("gasket_bypass",),
@@ -115,17 +114,17 @@ def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Me
     points = programme(generator, rows)
     sound = Plates(hot_film, cold_film, 0.7, 0.0)
     plain = outlet(sound, points)
-
-    def off(plates: Plates, size: float) -> float:
-        return float(np.max(np.abs(outlet(plates, points) - plain))) - size * NOISE
-
     gasket, exponent = 0.0, 0.7
     if hidden in ("bypass", "bypass_and_exponent"):
-        size = drawn_size(generator)
-        gasket = float(brentq(lambda open_: off(Plates(hot_film, cold_film, 0.7, open_), size), 0.0, 0.8, rtol=1e-2))
+        size = drawn_size(generator) * NOISE
+        gasket = sized(lambda open_: outlet(replace(sound, gasket=open_), points), plain, size, 0.8, rtol=1e-2)
     if hidden in ("exponent", "bypass_and_exponent"):
-        size = min(drawn_size(generator), MOST)
-        exponent = float(brentq(lambda to: off(Plates(hot_film, cold_film, to, 0.0), size), 0.05, 0.7, rtol=1e-2))
+        size = min(drawn_size(generator), MOST) * NOISE
+
+        def bent(to: float) -> Array:
+            return outlet(replace(sound, exponent=to), points)
+
+        exponent = sized(bent, plain, size, 0.7, low=0.05, rtol=1e-2)
     columns = {
         "hot_flow [kg/s]": points.hot_flow,
         "cold_flow [kg/s]": points.cold_flow,

@@ -8,9 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
-from zoo.zoo import Measured, drawn_size
+from zoo.zoo import Measured, drawn_size, sized
 
 HIDDEN = {"friction": ("spool_friction",), "leak": ("worn_land",), "friction_and_leak": ("spool_friction", "worn_land")}
 Array = NDArray[np.float64]
@@ -94,12 +93,8 @@ def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Me
     plain = flow(run, machine, 0.0, 0.0)
     width = leak = 0.0
     if hidden in ("friction", "friction_and_leak"):
-        size = drawn_size(generator)
-
-        def off(held: float) -> float:
-            return float(np.max(np.abs(flow(run, machine, held, 0.0) - plain))) - size * NOISE
-
-        width = float(brentq(off, 0.01, 3.0, rtol=1e-2))
+        size = drawn_size(generator) * NOISE
+        width = sized(lambda held: flow(run, machine, held, 0.0), plain, size, 3.0, low=0.01, rtol=1e-2)
     if hidden in ("leak", "friction_and_leak"):
         leak = drawn_size(generator) * NOISE * 7e6 / float(np.max(run.loss))
     columns = {

@@ -4,13 +4,12 @@ What leaks through the ring follows from the head that it leaks under, and that 
 begins to cavitate at a suction head of its own.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
-from zoo.zoo import Measured, drawn_size
+from zoo.zoo import Measured, drawn_size, sized
 
 HIDDEN = {"leak": ("worn_ring",), "cavitation": ("cavitation",), "leak_and_cavitation": ("worn_ring", "cavitation")}
 Array = NDArray[np.float64]
@@ -87,17 +86,14 @@ def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Me
     spread = 1 + generator.normal(0, 0.04, VANES)
     sound = Pump(vanes, passages, 0.0, spread, 0.0)
     plain = head(sound, points)
-
-    def off(pump: Pump, size: float) -> float:
-        return float(np.max(np.abs(head(pump, points) - plain))) - size * NOISE
-
     ring, steepness, needs = 0.0, 0.0, spread
     if hidden in ("leak", "leak_and_cavitation"):
-        size = drawn_size(generator)
-        ring = float(brentq(lambda flow: off(Pump(vanes, passages, flow, spread, 0.0), size), 0.0, 2e-3, rtol=1e-3))
+        size = drawn_size(generator) * NOISE
+        ring = sized(lambda flow: head(replace(sound, ring=flow), points), plain, size, 2e-3, rtol=1e-3)
     if hidden in ("cavitation", "leak_and_cavitation"):
-        size, needs = drawn_size(generator), spread * generator.uniform(1.2, 1.9)
-        steepness = float(brentq(lambda lost: off(Pump(vanes, passages, 0.0, needs, lost), size), 0.0, 50.0, rtol=1e-3))
+        size, needs = drawn_size(generator) * NOISE, spread * generator.uniform(1.2, 1.9)
+        hungry = replace(sound, needs=needs)
+        steepness = sized(lambda lost: head(replace(hungry, steepness=lost), points), plain, size, 50.0, rtol=1e-3)
     columns = {
         "flow [m^3/h]": 3600 * points.flow,
         "speed [rpm]": points.speed,

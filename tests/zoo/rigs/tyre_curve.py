@@ -9,9 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
-from zoo.zoo import Measured, drawn_size
+from zoo.zoo import Measured, drawn_size, sized
 
 HIDDEN = {
     "relaxation": ("relaxation",),
@@ -113,17 +112,13 @@ def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Me
     run = programme(generator, rows)
     warm = 45 + 12 * (1 - np.exp(-run.time / 40)) + generator.normal(0, 0.5, rows)
     plain = force(Tread(stiff, grip), run)
-
-    def off(tread: Tread, size: float) -> float:
-        return float(np.max(np.abs(force(tread, run) - plain))) - size * NOISE
-
     length = exponent = 0.0
     if hidden in ("relaxation", "relaxation_and_load"):
-        size = drawn_size(generator)
-        length = float(brentq(lambda way: off(Tread(stiff, grip, 0.0, way), size), 0.01, 3.0, rtol=1e-2))
+        size = drawn_size(generator) * NOISE
+        length = sized(lambda way: force(Tread(stiff, grip, 0.0, way), run), plain, size, 3.0, low=0.01, rtol=1e-2)
     if hidden in ("load", "relaxation_and_load"):
-        size = drawn_size(generator)
-        exponent = float(brentq(lambda power: off(Tread(stiff, grip, power), size), 0.0, 1.0, rtol=1e-2))
+        size = drawn_size(generator) * NOISE
+        exponent = sized(lambda power: force(Tread(stiff, grip, power), run), plain, size, 1.0, rtol=1e-2)
     columns = {
         "time [s]": run.time,
         "slip_angle [deg]": np.degrees(run.angle),

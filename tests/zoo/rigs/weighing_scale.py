@@ -9,9 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
-from zoo.zoo import Measured, drawn_size
+from zoo.zoo import Measured, drawn_size, sized
 
 HIDDEN = {"creep": ("creep",), "stop": ("touching_stop",), "creep_and_stop": ("creep", "touching_stop")}
 Array = NDArray[np.float64]
@@ -120,18 +119,21 @@ def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Me
     heights = generator.normal(0, UNEVEN, GRAINS)
     clean, elastic = Dirt(heights, 0.0), (0.0, 30.0)
     plain = display(weights, scale, clean, elastic)
-
-    def off(dirt: Dirt, creep: tuple[float, float], size: float) -> float:
-        return float(np.max(np.abs(display(weights, scale, dirt, creep) - plain))) - size * NOISE
-
     dirt, creep = clean, elastic
     if hidden in ("creep", "creep_and_stop"):
-        size, time_constant = drawn_size(generator), generator.uniform(10, 35)
-        share = float(brentq(lambda part: off(clean, (part, time_constant), size), 0.0, 0.05, rtol=1e-2))
-        creep = (share, time_constant)
+        size, time_constant = drawn_size(generator) * NOISE, generator.uniform(10, 35)
+
+        def late(part: float) -> Array:
+            return display(weights, scale, clean, (part, time_constant))
+
+        creep = (sized(late, plain, size, 0.05, rtol=1e-2), time_constant)
     if hidden in ("stop", "creep_and_stop"):
-        size, gaps = drawn_size(generator), SINKING * generator.uniform(35, 70) + heights
-        dirt = Dirt(gaps, float(brentq(lambda stiff: off(Dirt(gaps, stiff), elastic, size), 0.0, 1e3, rtol=1e-2)))
+        size, gaps = drawn_size(generator) * NOISE, SINKING * generator.uniform(35, 70) + heights
+
+        def touching(stiff: float) -> Array:
+            return display(weights, scale, Dirt(gaps, stiff), elastic)
+
+        dirt = Dirt(gaps, sized(touching, plain, size, 1e3, rtol=1e-2))
     columns = {
         "time [s]": weights.time,
         "load [kg]": weights.loads[weights.step],
