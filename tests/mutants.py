@@ -106,7 +106,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ("turned_at[turns + 1] = turns", "turned_at[turns + 1] = turns + 1"),
     ),
     *changes(
-        "kernel/truing/studies/demands.py", "unit/test_studies_reliability.py",
+        "kernel/truing/studies/checks.py", "unit/test_studies_reliability.py",
         ("square / (4 * draws * draws)", "square / (2 * draws * draws)"),
         ("np.where(above > 0, ndtr(-above)", "np.where(above > 0, ndtr(above)"),
         ("return values - beside(limit, values)", "return values + _beside(limit, values)"),
@@ -117,7 +117,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ("(limit.high - limit.low) / 2", "(limit.high - limit.low)"),
     ),
     *changes(
-        "kernel/truing/studies/chances.py", "unit/test_studies_allocation.py",
+        "kernel/truing/studies/first_order.py", "unit/test_studies_allocation.py",
         ("mean = value + sum(", "mean = value - sum("),
     ),
     *changes(
@@ -136,12 +136,12 @@ MUTANTS: tuple[Mutant, ...] = (
         ("sd[result] = max(whole, 0.0) ** 0.5", "sd[result] = max(whole, 0.0)"),
     ),
     *changes(
-        "kernel/truing/studies/differences.py", "unit/test_studies_sensitivity.py",
+        "kernel/truing/studies/first_order.py", "unit/test_studies_sensitivity.py",
         ("central = (up - down) / (above - below)", "central = (up - centre) / above"),
         ("for power in (2.0, 4.0):", "for power in (4.0, 16.0):"),
     ),
     *changes(
-        "kernel/truing/studies/chances.py", "unit/test_studies_reliability.py",
+        "kernel/truing/studies/first_order.py", "unit/test_studies_reliability.py",
         ("max(0.0, 1.0 - missed)", "max(0.0, 1.0 - missed / 2)"),
     ),
     *changes(
@@ -299,7 +299,7 @@ MUTANTS: tuple[Mutant, ...] = (
     ),
     *changes(
         "plugins/roller_screw_shift/objectives.py",
-        "published/test_roller_screw_constraints.py published/test_roller_screw_weighing.py",
+        "published/test_roller_screw_model.py",
         ("0.5 * pair.roller_teeth * sine**2", "pair.roller_teeth * sine**2"),
         ("(0.5 * (high - low)) ** -2", "(0.5 * (high - low)) ** -1"),
         ("(turn - np.sin(turn))", "(turn + np.sin(turn))"),

@@ -88,13 +88,19 @@ class Gated:
         log = self.folder / f"{run}.partial" / "batches.log"
         return log.read_bytes().count(b"TRB2") if log.exists() else 0
 
+    @property
+    def left(self) -> list[str]:
+        """Return what lies in the folder beside the calculation."""
+        own = {"pin_wear.py", "gated_pin.py", "calls", "open", "__pycache__"}
+        return sorted(path.name for path in self.folder.iterdir() if path.name not in own)
+
     def open(self) -> None:
         (self.folder / "open").touch()
 
     def start(self, *more: str, launcher: Callable[[list[str]], list[str]] = list) -> subprocess.Popen[str]:
         command = [sys.executable, "-m", "truing", *self.words, *more]
         return subprocess.Popen(
-            launcher(command), cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+            launcher(command), cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
             encoding="utf-8", start_new_session=True,
         )  # fmt: skip
 

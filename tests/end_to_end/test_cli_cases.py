@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
+from contextlib import nullcontext
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+import truing
 from shared import Calc
+from truing.executors import WorkerPool
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
 CASES = "case;load [kN];probe_temperature [degC];note\nlight;0,14;20;\nheavy;2,296;;keep\nnormal;;30;\n"
@@ -65,43 +70,49 @@ def test_all_cases_pass(calc: Calc, tmp_path: Path) -> None:
     assert "FAILS" not in answer.out
 
 
-def test_the_press_in_both_readings_as_cases(calc: Calc, tmp_path: Path) -> None:
+def test_the_press_in_both_readings_as_cases(tmp_path: Path) -> None:
     """The complete reading governs: it misses both goals by more than the printed one keeps them."""
     (tmp_path / "readings.csv").write_text("case,reading\na,printed\nb,complete\n")
-    quick = ("--set", 'studies.run=["sensitivity","reliability","allocation"]', *QUICK)
-    answer = calc("run", "press_linkage", "--cases", "readings.csv", "--json", *quick)
-    assert answer.code == 1
-    found = json.loads(answer.out)
+    studies = {"studies.run": ["sensitivity", "reliability", "allocation"], "studies.reliability.draws": 2000}
+    found = truing.load("press_linkage").run(cases=tmp_path / "readings.csv", set=studies).document
+    assert found["verdict"] == "fails"
     assert [case["governing"] for case in found["cases"]] == [False, True]
     finals = [case["results"]["position_reliability_final"]["value"] for case in found["cases"]]
     assert finals == pytest.approx([0.887, 0.669], abs=5e-4)
     assert found["inputs"]["reading"]["value"] == "complete"
 
 
-def shared_out(calc: Calc, folder: Path, *words: str | Path) -> Path:
-    """Run with two workers and return the folder of the run."""
-    answer = calc("run", PIN, "--cases", "cases.csv", "-q", *words, "--workers", "2", "-o", "2")
-    assert answer.code in {0, 1}, answer.err
-    assert json.loads((folder / "2/run.json").read_text(encoding="utf-8"))["workers"]["count"] == 2
-    return folder / "2"
+@pytest.fixture
+def shared_out(
+    calc: Calc, tmp_path: Path, two_processes: WorkerPool, monkeypatch: pytest.MonkeyPatch
+) -> Callable[..., Any]:
+    """Run with two workers, those of all tests, and return the document of the run."""
+
+    def run(*words: str) -> Any:
+        with monkeypatch.context() as patch:
+            patch.setattr("truing.api.run.open_executor", {"processes:2": nullcontext(two_processes)}.__getitem__)
+            answer = calc("run", PIN, "--cases", "cases.csv", "-q", *words, "--workers", "2", "-o", "2")
+        assert answer.code in {0, 1}, answer.err
+        assert json.loads((tmp_path / "2/run.json").read_text(encoding="utf-8"))["workers"]["count"] == 2
+        return json.loads((tmp_path / "2/results.json").read_text(encoding="utf-8"))
+
+    return run
 
 
-def test_cases_with_studies_are_shared_out(calc: Calc, tmp_path: Path) -> None:
+def test_cases_with_studies_are_shared_out(calc: Calc, shared_out: Callable[..., Any], tmp_path: Path) -> None:
     """Six cases for two workers, one of them impossible; one limit is on a chance, so each case runs its studies."""
     (tmp_path / "cases.csv").write_text("load [N]\n140\n2200\n500000\n2230\n180\n190\n")
-    shared = (shared_out(calc, tmp_path, *QUICK) / "results.json").read_bytes()
+    found = shared_out(*QUICK)
     assert calc("run", PIN, "--cases", "cases.csv", "-q", *QUICK, "-o", "1").code == 1
-    assert (tmp_path / "1/results.json").read_bytes() == shared
-    found = json.loads(shared)
+    assert (tmp_path / "1/results.json").read_bytes() == (tmp_path / "2/results.json").read_bytes()
     assert [case["governing"] for case in found["cases"]] == [False, False, False, True, False, False]
     assert [item["row"] for item in found["failed"]] == [3]
 
 
-def test_cases_in_blocks_are_shared_out(calc: Calc, tmp_path: Path) -> None:
+def test_cases_in_blocks_are_shared_out(shared_out: Callable[..., Any], tmp_path: Path) -> None:
     """2500 cases are three array calls; their loads run from 100 N to 2599 N on 28 mm²."""
     rows = "\n".join(str(100 + row) for row in range(2500))
     (tmp_path / "cases.csv").write_text(f"load [N]\n{rows}\n")
-    folder = shared_out(calc, tmp_path, "--set", "studies.run=[]")
-    found = json.loads((folder / "results.json").read_text(encoding="utf-8"))
+    found = shared_out("--set", "studies.run=[]")
     pressures = [case["results"]["pressure"]["value"] for case in found["cases"]]
     assert pressures == pytest.approx([(100 + row) / 28 for row in range(2500)])

@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import shutil
 from pathlib import Path
-from typing import Any
 
-import numpy as np
 import pytest
 from measured import (
     ANGLE,
-    CONTRACT,
     FORCE,
     HEIGHT,
     SPEED,
@@ -218,47 +215,6 @@ def test_what_a_budget_of_calls_leaves_out_is_said(desk: Path, press: Columns, p
     assert "the search ended after 150 calls" in (few.folder / "sheet.html").read_text(encoding="utf-8")
     assert many["warnings"] == plain.document["warnings"] == []
     assert names(many) == names(plain.document)
-
-
-def test_hostile_words_are_shown_and_obeyed_nowhere(desk: Path, press: Columns) -> None:
-    """A name that breaks out of a string of code carries the error, so it stands in every file that is written."""
-    rng = np.random.default_rng(8)
-    level = rng.uniform(0, 1, 90)
-    evil, markup = 't"); import os; os.system("x") #', "remark <img src=x onerror=alert(1)>"
-    height = [repr(float(cell) + 0.05 * float(value)) for cell, value in zip(press[HEIGHT], level, strict=True)]
-    columns = {**press, HEIGHT: height, f"{evil} [mm]": [repr(value) for value in level.tolist()]}
-    columns[markup] = ["<script>alert(1)</script>", "=1+1", "\x1b[31mred", "{{ 7*7 }}", "$HOME"] * 18
-    found = diagnose_here(desk, "oil <script>alert(2)<b>", text_of(columns))
-    assert found.document["remainder"]["depends_on"] == [evil]
-    assert {path.name for path in found.folder.iterdir()} == CONTRACT | {"new_effect.py", "extended.toml"}
-    html = (found.folder / "sheet.html").read_text(encoding="utf-8")
-    assert "<script>alert" not in html
-    assert "<img src=x" not in html
-    assert "\x1b" not in found.answer.out + found.answer.err
-    assert all("\x1b" not in text.decode() for name, text in contents(found.folder).items() if name != "arrays.npz")
-    scope: dict[str, Any] = {"__name__": "new_effect"}
-    exec(compile((found.folder / "new_effect.py").read_text(encoding="utf-8"), "new_effect.py", "exec"), scope)
-    assert "os" not in scope
-    assert calc_here(desk, "run", "press_linkage", "--inputs", found.folder / "extended.toml", "-o", "run").code in {
-        0,
-        1,
-    }
-
-
-# Units that were probably written wrong, other ways to write the same file
-
-
-def test_a_unit_that_is_probably_wrong_is_named_and_nothing_is_changed(desk: Path, press: Columns) -> None:
-    found = diagnose_here(desk, "metres", text_of(renamed(press, HEIGHT, "slider_position [m]")))
-    (unit_error,) = found.document["unit_slips"]
-    assert unit_error["column"] == "slider_position"
-    assert unit_error["factor"] == pytest.approx(1e-3, rel=1e-12)
-    told = "the unit of column 'slider_position [m]' is probably wrong: multiply it by 0.001; "
-    assert unit_error["text"].startswith(told)
-    assert f"warning: suspected unit slip: {unit_error['text']} (nothing was changed)" in found.answer.err
-    assert "probably wrong" in (found.folder / "sheet.md").read_text(encoding="utf-8")
-    measured = np.load(found.folder / "arrays.npz")["slider_position.measured"]
-    assert measured == pytest.approx([1e3 * float(cell) for cell in press[HEIGHT]], rel=1e-12)  # as the header says
 
 
 def test_another_way_to_write_a_file_gives_the_same_bytes(bench: Path, press: Columns, plain: Diagnosed) -> None:

@@ -1,4 +1,4 @@
-"""The measured presses of the manual: made again byte for byte, and diagnosed to what their READMEs say."""
+"""The measured machines of the manual: made again byte for byte, and diagnosed to what their READMEs say."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import make_press_example
+import make_examples
 import pytest
-from measured import Document, read_document
+from measured import Document, documented, names, read_document
 from shown_in_docs import EXAMPLES, ROOT
 
 from truing.diagnosis import choice
@@ -17,6 +17,8 @@ from truing.diagnosis.noise import SETTINGS
 
 PLAY = EXAMPLES / "press_off_by_40_um"
 WARM = EXAMPLES / "press_warm_links"
+SCREW = EXAMPLES / "roller_screw_rubs"
+REDUCER_PAGE = ROOT / "docs" / "how-to" / "true_a_reducer.md"
 REFERENCE = ROOT / "docs" / "reference" / "verbs" / "diagnose.md"
 METHOD = ROOT / "docs" / "explanation" / "diagnosis.md"
 
@@ -32,14 +34,13 @@ def stated(example: Path, unit: str) -> float:
     return float(number)
 
 
-@pytest.mark.parametrize("press", make_press_example.PRESSES, ids=lambda press: str(press.seed))
-def test_the_shipped_rows_are_those_that_the_script_makes(press: make_press_example.Press) -> None:
-    for name, text in make_press_example.files(press).items():
-        assert (EXAMPLES / name).read_bytes() == text.encode()
+@pytest.mark.parametrize(("name", "text"), make_examples.files().items(), ids=make_examples.files())
+def test_the_shipped_rows_are_those_that_the_script_makes(name: str, text: str) -> None:
+    assert (EXAMPLES / name).read_bytes() == text.encode()
 
 
 def test_the_readmes_state_what_was_hidden() -> None:
-    play, warm = make_press_example.PRESSES
+    play, warm = make_examples.PRESSES
     assert play.hidden == {"joint_clearance": {"clearance": pytest.approx(stated(PLAY, "µm") * 1e-6)}}
     assert warm.hidden == {"link_heating": {"expansion": pytest.approx(stated(WARM, "µm/(m·K)") * 1e-6)}}
 
@@ -56,7 +57,9 @@ def test_the_cause_is_named_with_its_size(document: Document) -> None:
 def test_the_error_falls_to_the_scatter_of_the_gauge(document: Document) -> None:
     gained = document["gain"]["slider_position"]
     assert gained["rmse_before"]["value"] > 20
-    assert gained["rmse_after"]["value"] == pytest.approx(make_press_example.NOISE.sd["slider_position"] * 1e6, rel=0.2)
+    assert gained["rmse_after"]["value"] == pytest.approx(
+        make_examples.PRESS_NOISE.sd["slider_position"] * 1e6, rel=0.2
+    )
 
 
 def interval_shown(page: str, words: str, unit: str) -> tuple[float, float]:
@@ -110,3 +113,40 @@ def test_the_explanation_states_the_levels_in_force() -> None:
         f"{words[len(SETTINGS)]} such filters are tried",
     ):
         assert said in text
+
+
+# The reducer and the roller screw
+
+
+def stated_factor(example: Path) -> float:
+    """The hidden factor that the README of an example prints in bold."""
+    (number,) = re.findall(r"\*\*([\d.]+)\*\*", (example / "README.md").read_text(encoding="utf-8"))
+    return float(number)
+
+
+def test_the_page_shows_two_names_of_one_curve_with_the_hidden_size() -> None:
+    """The page is run elsewhere; here what it prints is compared with what was hidden."""
+    alone, opened = REDUCER_PAGE.read_text(encoding="utf-8").split("## With the wear of a flank")
+    assert "One of 5 causes; this record cannot say which." in alone
+    assert "One of 2 causes; this record cannot say which." in opened
+    assert "is drawn alike by pin rolling or duty share." in opened
+    ((low, high),) = re.findall(r"pin rolling, rolling \S+ \(95 %: ([\d.]+) … ([\d.]+)\)", opened)
+    assert float(low) < stated_factor(EXAMPLES / "reducer_wears_slowly") < float(high)
+
+
+def test_one_way_at_one_load_friction_is_a_gauge_that_is_off() -> None:
+    found = documented(SCREW, "roller_screw_shift", "one_way.csv")
+    (cause,) = found["causes"]
+    assert {cause["effect"], *cause["same_as"]} == {"sensor_offset", "mesh_friction"}
+    asked = found["next"][0]
+    assert set(asked["separates"]) == {"sensor_offset", "mesh_friction"}
+    assert asked["settings"]["axial_load"]["value"] == pytest.approx(20.0)
+    assert asked["settings"]["screw_speed"]["value"] < 0
+
+
+def test_to_and_fro_under_any_load_it_is_friction() -> None:
+    found = documented(SCREW, "roller_screw_shift", "measured.csv")
+    assert (found["verdict"], found["unique"]) == ("named", True)
+    assert names(found) == ["mesh_friction"]
+    low, high = found["causes"][0]["unknowns"]["factor"]["interval95"]
+    assert low < stated_factor(SCREW) < high

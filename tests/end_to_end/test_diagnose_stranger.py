@@ -24,6 +24,7 @@ from measured import (
     names,
     numbers,
     read_document,
+    renamed,
     text_of,
 )
 from numpy.typing import NDArray
@@ -177,6 +178,45 @@ def test_a_plugin_without_any_tolerance(desk: Path) -> None:
     again = ("--inputs", "of softer/extended.toml", "--data", "softer.csv", "-o", "again")
     assert calc_here(desk, "diagnose", "./exact_beam.py", *again).code == 0
     assert read_document(desk / "again")["explanations"] == []
+
+
+# Files that are odd: what the press is too large for (others are tested in test_diagnose_bad_input.py)
+
+
+def test_a_unit_that_is_probably_wrong_is_named_and_nothing_is_changed(desk: Path) -> None:
+    columns = measured_beam(GAUGES["sensor_offset"][0], 1.01)
+    found = diagnose_here(desk, "metres", text_of(renamed(columns, "sag [um]", "sag [mm]")), plugin="./beam.py")
+    (unit_error,) = found.document["unit_slips"]
+    assert unit_error["column"] == "sag"
+    assert unit_error["factor"] == pytest.approx(1e-3, rel=1e-12)
+    told = "the unit of column 'sag [mm]' is probably wrong: multiply it by 0.001; "
+    assert unit_error["text"].startswith(told)
+    assert f"warning: suspected unit slip: {unit_error['text']} (nothing was changed)" in found.answer.err
+    assert "probably wrong" in (found.folder / "sheet.md").read_text(encoding="utf-8")
+    measured = np.load(found.folder / "arrays.npz")["sag.measured"]
+    assert measured == pytest.approx([1e3 * float(cell) for cell in columns["sag [um]"]], rel=1e-12)  # as it says
+
+
+def test_hostile_words_are_shown_and_obeyed_nowhere(desk: Path) -> None:
+    """A name that breaks out of a string of code carries the error, so it stands in every file that is written."""
+    level = np.random.default_rng(8).uniform(0, 1, ROWS)
+    evil, markup = 't"); import os; os.system("x") #', "remark <img src=x onerror=alert(1)>"
+    columns = measured_beam(lambda angle, hours, warm: 50 * level, 1.01)
+    columns[f"{evil} [mm]"] = [repr(value) for value in level.tolist()]
+    columns[markup] = ["<script>alert(1)</script>", "=1+1", "\x1b[31mred", "{{ 7*7 }}", "$HOME"] * 16
+    found = diagnose_here(desk, "oil <script>alert(2)<b>", text_of(columns), plugin="./beam.py")
+    assert found.document["remainder"]["depends_on"] == [evil]
+    assert {path.name for path in found.folder.iterdir()} == CONTRACT | {"new_effect.py", "extended.toml"}
+    html = (found.folder / "sheet.html").read_text(encoding="utf-8")
+    assert "<script>alert" not in html
+    assert "<img src=x" not in html
+    assert "\x1b" not in found.answer.out + found.answer.err
+    texts = [path.read_bytes() for path in found.folder.iterdir() if path.suffix != ".npz"]
+    assert not [text for text in texts if b"\x1b" in text]
+    scope: dict[str, Any] = {"__name__": "new_effect"}
+    exec(compile((found.folder / "new_effect.py").read_text(encoding="utf-8"), "new_effect.py", "exec"), scope)
+    assert "os" not in scope
+    assert calc_here(desk, "run", "./beam.py", "--inputs", found.folder / "extended.toml", "-o", "run").code == 0
 
 
 # A result along an axis, measured by the rows of runs

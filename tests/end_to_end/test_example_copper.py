@@ -18,7 +18,6 @@ from scipy.optimize import least_squares
 from shown_in_docs import EXAMPLES
 
 from truing.kernel.loading import load_file
-from truing.testing import failures
 
 EXAMPLE = EXAMPLES / "copper_expansion"
 PAGE = (EXAMPLE / "README.md").read_text(encoding="utf-8")
@@ -44,15 +43,6 @@ def test_the_rows_are_those_that_nist_certifies() -> None:
     below = 1 + b5 * temperature + b6 * temperature**2 + b7 * temperature**3
     assert len(temperature) == 236
     assert np.sum((coefficient - above / below) ** 2) == pytest.approx(CERTIFIED_SUM_OF_SQUARES, rel=1e-8)
-
-
-def test_the_data_are_said_to_be_free() -> None:
-    assert "Public domain" in (EXAMPLE / "hahn1.csv").read_text(encoding="utf-8").splitlines()[0]
-    assert "**public\ndomain**" in PAGE
-
-
-def test_the_plugin_passes_the_kit(copper: Any) -> None:
-    assert failures(copper.COPPER_EXPANSION) == {}
 
 
 # Abramowitz and Stegun, table 27.1, n = 3

@@ -18,7 +18,6 @@ from scipy.stats import f as f_distribution
 from shown_in_docs import EXAMPLES
 
 from truing.kernel.loading import load_file
-from truing.testing import failures
 
 Values = NDArray[np.float64]
 FILES = {"load_cell": "pontius", "ozone_monitor": "norris", "insulation_ageing": "nelson", "adsorption": "misra1"}
@@ -76,18 +75,6 @@ def interval(document: Document, effect: str, unknown: str) -> tuple[float, floa
 def sum_of_squares(law: Callable[[Values], Values], start: list[float]) -> float:
     fitted = least_squares(law, start, x_scale=np.abs(start), xtol=1e-14, ftol=1e-14, gtol=1e-14)
     return float(np.sum(fitted.fun**2))
-
-
-@pytest.mark.parametrize("name", FILES)
-def test_the_plugin_passes_the_kit(name: str) -> None:
-    assert failures(getattr(load_file(EXAMPLES / name / f"{name}.py"), name.upper())) == {}
-
-
-@pytest.mark.parametrize("name", FILES)
-def test_the_data_are_said_to_be_free(name: str) -> None:
-    first = (EXAMPLES / name / f"{FILES[name]}.csv").read_text(encoding="utf-8").splitlines()[0]
-    assert "NIST StRD" in first
-    assert "Public domain" in first
 
 
 # Load cell. NIST StRD, Pontius: y = b0 + b1 x + b2 x^2

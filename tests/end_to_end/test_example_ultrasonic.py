@@ -21,7 +21,6 @@ from scipy.optimize import least_squares
 from scipy.stats import bartlett
 
 from truing.kernel.loading import load_file
-from truing.testing import failures
 
 CHWIRUT = ExampleRows("ultrasonic_calibration", "chwirut2.csv")
 CERTIFIED = (1.6657666537e-1, 5.1653291286e-3, 1.2150007096e-2)
@@ -59,15 +58,6 @@ def test_the_rows_are_those_that_nist_certifies() -> None:
     assert len(distance) == 54
     left = response - np.exp(-b1 * distance) / (b2 + b3 * distance)
     assert np.sum(left**2) == pytest.approx(CERTIFIED_SUM_OF_SQUARES, rel=1e-9)
-
-
-def test_the_data_are_said_to_be_free() -> None:
-    assert "Public domain" in CHWIRUT.lines[0]
-    assert "**public\ndomain**" in (CHWIRUT.folder / "README.md").read_text(encoding="utf-8")
-
-
-def test_the_plugin_passes_the_kit(ultrasonic: Any) -> None:
-    assert failures(ultrasonic.ULTRASONIC_CALIBRATION) == {}
 
 
 def test_with_the_certified_numbers_the_function_is_that_of_nist(ultrasonic: Any) -> None:

@@ -13,8 +13,6 @@ from numpy.typing import NDArray
 from prepared import PreparedExample, table_of, write
 from scipy.optimize import least_squares
 
-from truing.testing import failures
-
 EXAMPLE = PreparedExample("sliding_wear", "metal_sliding_wear")
 needs_the_record = EXAMPLE.needs_the_record
 CYCLES, LOAD = 0.191, 0.649
@@ -43,10 +41,6 @@ def exponents(document: Document) -> dict[str, dict[str, Any]]:
     every += [other["unknowns"] for other in document["alternatives"]]
     both = next(unknowns for unknowns in every if {"slowing_rate", "load_sharing"} <= set(unknowns))
     return {name: unknowns["exponent"] for name, unknowns in both.items()}
-
-
-def test_the_plugin_passes_the_kit(wear: Any) -> None:
-    assert failures(wear.SLIDING_WEAR) == {}
 
 
 def test_with_nothing_on_it_is_archards_law(wear: Any) -> None:

@@ -9,7 +9,6 @@ import csv
 import io
 import json
 from collections.abc import Callable
-from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -17,10 +16,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from measured import Document, calc_here, documented
 
+import truing
 from harmonic_fractal.structure import structure_function
 from shared import Calc
-from truing.cli import main
 
 SURFACES = Path(__file__).parents[1] / "data" / "surfaces"
 Table = Callable[..., list[dict[str, float]]]
@@ -38,11 +38,9 @@ class Ran:
 
 def ran(folder: Path, *words: str | Path) -> Ran:
     """Run a command in this process and read its folder."""
-    said = io.StringIO()
-    with redirect_stdout(said), redirect_stderr(said):
-        code = main([*map(str, words), "-o", str(folder), "-q"])
+    answer = calc_here(folder.parent, *words, "-o", folder, "-q")
     document = json.loads((folder / "results.json").read_text(encoding="utf-8"))
-    return Ran(code, said.getvalue(), document, (folder / "sheet.md").read_text(encoding="utf-8"))
+    return Ran(answer.code, answer.out + answer.err, document, (folder / "sheet.md").read_text(encoding="utf-8"))
 
 
 def value(run: Ran, name: str) -> float:
@@ -57,7 +55,7 @@ def desk(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def example(desk: Path) -> Ran:
     """The shipped example, with fewer draws."""
-    assert main(["init", "harmonic_fractal", "-o", str(desk / "drive.toml"), "-q"]) == 0
+    assert calc_here(desk, "init", "harmonic_fractal", "-o", "drive.toml", "-q").code == 0
     few = ("--set", "studies.reliability.draws=2000")
     return ran(desk / "example", "run", "harmonic_fractal", "--inputs", desk / "drive.toml", *few)
 
@@ -125,7 +123,7 @@ def test_a_column_of_lags_is_calculated_just_there(table: Table) -> None:
 
 
 @pytest.fixture(scope="module")
-def diagnosed(desk: Path) -> tuple[int, dict[str, Any]]:
+def diagnosed(desk: Path) -> Document:
     """A structure function with 12 nm of white noise in every height, measured at lags of its own."""
     rng = np.random.default_rng(11)
     lags = np.geomspace(0.4, 20.0, 40)
@@ -134,16 +132,11 @@ def diagnosed(desk: Path) -> tuple[int, dict[str, Any]]:
     rows = "\n".join(f"{lag:.17g},{height:.17g}" for lag, height in zip(lags, seen, strict=True))
     (desk / "instrument.csv").write_text(f"lag [um],structure_function [um^2]\n{rows}\n")
     (desk / "instrument.toml").write_text('plugin = "harmonic_fractal"\n[tolerances]\nhardness = "off"\n')
-    files = ("--inputs", desk / "instrument.toml", "--data", desk / "instrument.csv", "-o", desk / "diagnosis")
-    said = io.StringIO()
-    with redirect_stdout(said), redirect_stderr(said):
-        code = main(["diagnose", "harmonic_fractal", *map(str, files), "-q"])
-    return code, json.loads((desk / "diagnosis" / "diagnosis.json").read_text(encoding="utf-8"))
+    return documented(desk, "harmonic_fractal", "instrument.csv", inputs="instrument.toml")
 
 
-def test_noise_of_the_instrument_is_named_from_its_structure_function(diagnosed: tuple[int, dict[str, Any]]) -> None:
-    code, found = diagnosed
-    assert code == 0
+def test_noise_of_the_instrument_is_named_from_its_structure_function(diagnosed: Document) -> None:
+    found = diagnosed
     assert found["rows"] == 40
     assert found["verdict"] in {"named", "one_of"}
     (cause,) = found["causes"]
@@ -181,13 +174,14 @@ def test_the_pair_is_answered_and_what_does_not_exist_says_why(
     file.write_text("\n".join([*text, *studies, "[studies.reliability]", "draws = 100"]), encoding="utf-8")
     raised = tmp_path / "raised.toml"
     raised.write_text("\n".join([*text, 'reference_torque = "20 mN*m"', "[studies]", "run = []"]), encoding="utf-8")
-    found, other = (ran(tmp_path / at.stem, "run", "harmonic_fractal", "--inputs", at) for at in (file, raised))
+    found = ran(tmp_path / "drive", "run", "harmonic_fractal", "--inputs", file)
+    other = truing.load("harmonic_fractal").run(raised).document["results"]
     assert found.code == 0
     results = found.found["results"]
     assert sorted(name for name, result in results.items() if result["value"] is None) == sorted(lacking)
     assert all(reason in results[name]["reason"] for name in lacking)
     for name in ("stiffness", "clearance", "mesh_stiffness"):
-        assert value(found, name) == value(other, name) > 0
+        assert value(found, name) == other[name]["value"] > 0
     assert reason in found.said
     assert found.sheet.count(reason.replace("_", "\\_")) >= len(lacking)
 
@@ -197,13 +191,12 @@ def test_a_case_and_a_row_that_lack_the_torsion_keep_the_rest(calc: Calc, tmp_pa
         'plugin = "harmonic_fractal"\n[inputs]\nconvention = "areal"\n[studies]\nrun = []\n', encoding="utf-8"
     )
     (tmp_path / "rows.csv").write_text("fractal_roughness [m]\n1e-11\n1e-8\n", encoding="utf-8")
-    words = ["harmonic_fractal", "--inputs", tmp_path / "drive.toml"]
-    found = ran(tmp_path / "run", "run", *words, "--cases", tmp_path / "rows.csv")
-    fine, rough = (case["results"] for case in found.found["cases"])
+    found = truing.load("harmonic_fractal").run(tmp_path / "drive.toml", cases=tmp_path / "rows.csv").document
+    fine, rough = (case["results"] for case in found["cases"])
     assert fine["torsion"]["value"] > 0
     assert (rough["torsion"]["value"], "reference_torque" in rough["torsion"]["reason"]) == (None, True)
     assert 0 < rough["stiffness"]["value"] < fine["stiffness"]["value"]
-    shown = calc("table", *words, "--rows", tmp_path / "rows.csv")
+    shown = calc("table", "harmonic_fractal", "--inputs", "drive.toml", "--rows", "rows.csv")
     table = list(csv.DictReader(io.StringIO(shown.out)))
     assert (table[1]["torsion [urad]"], float(table[1]["stiffness [N/m]"])) == ("", rough["stiffness"]["value"])
     assert "rows.csv:3: no approach, closing_clearance, free_play, mesh_torsion, torsion" in shown.err

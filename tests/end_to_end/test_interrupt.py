@@ -10,13 +10,13 @@ import time
 from pathlib import Path
 
 import pytest
-from refusals import listing
+from gated import FREE, Gated, wait_until
 
-from shared import Calc
+from shared import Answer, Calc
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="a console signal there stops the test too")
 
-INPUTS = '[inputs]\nreading = "printed"\n[studies]\nrun = ["reliability"]\n[studies.reliability]\ndraws = 2000000000\n'
+SEES_CHILDREN = Path("/proc/self/task").exists()
 
 
 def children_of(process: int) -> list[int]:
@@ -51,75 +51,58 @@ def wait_until_begun(process: subprocess.Popen[str]) -> None:
         time.sleep(0.05)
 
 
-def interrupted(
-    folder: Path, *more: str, after: float, children_first: bool = False, by: int = signal.SIGINT
-) -> tuple[subprocess.CompletedProcess[str], list[int]]:
-    """Start a run that would take hours, signal to all its processes as a terminal does; return its end and children.
-
-    With ``children_first`` the time counts from when it has children.
-    """
-    (folder / "press.toml").write_text(INPUTS)
-    command = [sys.executable, "-m", "truing", "run", "press_linkage", "--inputs", "press.toml", *more]
-    process = subprocess.Popen(
-        hearing_interrupts(command),
-        cwd=folder,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-    )
+def interrupted(process: subprocess.Popen[str], by: int = signal.SIGINT) -> tuple[Answer, list[int]]:
+    """Signal to all processes of a command as a terminal does; return what it answers, and what it had started."""
     try:
-        wait_until_begun(process)
-        while children_first and process.poll() is None and len(children_of(process.pid)) < 2:
-            time.sleep(0.01)
-        time.sleep(after)
         assert process.poll() is None, process.communicate()
-        children = children_of(process.pid) if Path("/proc/self/task").exists() else []
+        children = children_of(process.pid) if SEES_CHILDREN else []
         os.killpg(process.pid, by)
         out, err = process.communicate(timeout=60)
     finally:
         if process.poll() is None:
             os.killpg(process.pid, signal.SIGKILL)
-    return subprocess.CompletedProcess(command, process.returncode, out, err), children
+    return Answer(process.returncode, out, err), children
 
 
 def test_an_interrupted_run_leaves_nothing(tmp_path: Path) -> None:
-    (tmp_path / "press.toml").write_text(INPUTS)
-    before = listing(tmp_path)
-    end, _ = interrupted(tmp_path, "--output", "deep/down/here", after=1.0)
-    assert end.returncode == 130
-    assert end.stdout == ""
-    assert end.stderr == "calc: interrupted; nothing was written\n"
-    assert listing(tmp_path) == before
+    pin = Gated.in_folder(tmp_path)
+    process = pin.start("-q", "-o", "deep/down/here", launcher=hearing_interrupts)
+    wait_until_begun(process)
+    time.sleep(1.0)
+    end, _ = interrupted(process)
+    assert end == Answer(130, "", "calc: interrupted; nothing was written\n")
+    assert pin.left == []
 
 
 def test_an_interrupted_run_leaves_the_earlier_one_as_it_was(calc: Calc, tmp_path: Path) -> None:
-    (tmp_path / "press.toml").write_text(INPUTS)
-    quick = ("--set", "studies.run=[]", "-q")
-    assert calc("run", "press_linkage", "--inputs", "press.toml", *quick).code == 1  # its limits stay undecided
-    before = [(path.name, path.read_bytes()) for path in sorted((tmp_path / "runs/press").iterdir())]
-    end, _ = interrupted(tmp_path, after=4.0)
-    assert end.returncode == 130
-    assert [(path.name, path.read_bytes()) for path in sorted((tmp_path / "runs/press").iterdir())] == before
-    assert [path.name for path in (tmp_path / "runs").iterdir()] == ["press"]
+    pin = Gated.in_folder(tmp_path)
+    assert calc(*pin.words, "--set", "studies.run=[]", "-q").code == 1  # its limit stays undecided
+    folder = tmp_path / "runs" / "gated_pin"
+    before = [(path.name, path.read_bytes()) for path in sorted(folder.iterdir())]
+    process = pin.start("-q", launcher=hearing_interrupts)
+    pin.at_the_gate(process, FREE + 1)
+    end, _ = interrupted(process)
+    assert end.code == 130
+    assert [(path.name, path.read_bytes()) for path in sorted(folder.iterdir())] == before
+    assert [path.name for path in folder.parent.iterdir()] == ["gated_pin"]
 
 
-@pytest.mark.parametrize(("by", "after"), [(signal.SIGINT, 0.1), (signal.SIGTERM, 4.0)])
-def test_an_interrupted_run_leaves_no_worker_behind(tmp_path: Path, by: int, after: float) -> None:
+@pytest.mark.parametrize("by", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupted_run_leaves_no_worker_behind(tmp_path: Path, by: int) -> None:
     """Nor a word of one, while they start (the first) and while they work."""
-    (tmp_path / "press.toml").write_text(INPUTS)
-    before = listing(tmp_path)
-    seen = Path("/proc/self/task").exists()
-    end, children = interrupted(tmp_path, "--workers", "2", "-o", "new/run", after=after, children_first=seen, by=by)
-    assert end.returncode == (130 if by == signal.SIGINT else 143)
-    assert end.stderr == "calc: interrupted; nothing was written\n"
-    assert listing(tmp_path) == before
-    if seen:
-        assert len(children) >= 2
-        until = time.monotonic() + 20
-        while any(map(is_alive, children)) and time.monotonic() < until:
-            time.sleep(0.2)
-        assert [child for child in children if is_alive(child)] == []
+    pin = Gated.in_folder(tmp_path)
+    process = pin.start("-q", "--workers", "2", "-o", "new/run", launcher=hearing_interrupts)
+    if by == signal.SIGINT and SEES_CHILDREN:
+        wait_until_begun(process)
+        wait_until(lambda: process.poll() is not None or len(children_of(process.pid)) >= 2, "two workers start")
+        time.sleep(0.1)
+    else:
+        pin.at_the_gate(process, FREE + 2)
+    end, children = interrupted(process, by)
+    assert end == Answer(130 if by == signal.SIGINT else 143, "", "calc: interrupted; nothing was written\n")
+    assert pin.left == []
+    assert len(children) >= 2 or not SEES_CHILDREN
+    wait_until(lambda: not any(map(is_alive, children)), "the workers end")
 
 
 WHILE_FINALIZED = """

@@ -22,8 +22,7 @@ from shown_in_docs import EXAMPLES, NEEDED
 from truing import Kernel
 from truing.kernel import Offer
 from truing.kernel.loading import load_file
-from truing.testing import CHECKS, ConformanceCheck, assert_finds, assert_finds_nothing, recorded
-from truing.testing.subject import Subject
+from truing.testing import assert_finds, assert_finds_nothing, recorded
 
 NAMES = ("cycloid_torsion", "cycloid_ripple", "harmonic_stall", "cycloid_drag")
 Values = NDArray[np.float64]
@@ -37,17 +36,6 @@ def offer_of(name: str) -> Offer:
 
 
 OFFERS = {name: offer_of(name) for name in NAMES}
-SUBJECTS = {name: Subject(offer.model, offer.origin) for name, offer in OFFERS.items()}
-
-
-PROMISES = [check for check in CHECKS if check.name != "serial equals parallel"]
-"""A worker reads these files as any other, which is tested elsewhere; here it would take as long as all the rest."""
-
-
-@pytest.mark.parametrize("check", PROMISES, ids=lambda check: check.name)
-@pytest.mark.parametrize("name", NAMES)
-def test_the_plugin_keeps_every_promise(name: str, check: ConformanceCheck) -> None:
-    check.run(SUBJECTS[name])
 
 
 def record(name: str, columns: Mapping[str, Sequence[float] | Values], **hidden: Any) -> Any:

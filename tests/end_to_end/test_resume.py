@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -12,7 +13,8 @@ from pathlib import Path
 
 import pytest
 from gated import BATCHES, FREE, PATIENCE, Gated, run_of, wait_until
-from test_interrupt import children_of, hearing_interrupts, is_alive
+from measured import calc_here
+from test_interrupt import SEES_CHILDREN, children_of, hearing_interrupts, is_alive
 
 from shared import Calc
 from truing.api import run
@@ -25,13 +27,13 @@ PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
 SMALL = ("run", PIN, "-q", "--set", 'studies.run=["reliability"]', "--set", "studies.reliability.draws=60000")
 
 
-def test_a_killed_run_goes_on_where_it_was(calc: Calc, calc_process: Calc, tmp_path: Path) -> None:
+def test_a_killed_run_goes_on_where_it_was(calc: Calc, tmp_path: Path) -> None:
     """Killed with two processes, interrupted with one, completed with one: no finished batch is computed twice."""
     pin = Gated.in_folder(tmp_path)
     process = pin.start("-o", "run", "--resume", "--workers", "2")
     pin.at_the_gate(process, FREE + 2)  # each of the two workers holds a batch
     wait_until(lambda: pin.kept("run") == FREE, "the others are kept")
-    children = children_of(process.pid) if Path("/proc/self/task").exists() else []
+    children = children_of(process.pid) if SEES_CHILDREN else []
     process.kill()
     process.communicate(timeout=PATIENCE)
     wait_until(lambda: not any(map(is_alive, children)), "the workers end with the process that started them")
@@ -48,7 +50,7 @@ def test_a_killed_run_goes_on_where_it_was(calc: Calc, calc_process: Calc, tmp_p
 
     pin.open()
     before = pin.calls
-    answer = calc_process(*pin.words, "-q", "-o", "run", "--resume")
+    answer = calc(*pin.words, "-q", "-o", "run", "--resume")
     assert answer.code == 0, answer.err
     assert run_of(tmp_path / "run")["resumed"] == FREE
     assert pin.calls - before == BATCHES - FREE
@@ -58,17 +60,25 @@ def test_a_killed_run_goes_on_where_it_was(calc: Calc, calc_process: Calc, tmp_p
     assert (tmp_path / "run/results.json").read_bytes() == (tmp_path / "whole/results.json").read_bytes()
 
 
-@pytest.fixture
-def unfinished(calc: Calc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+@pytest.fixture(scope="module")
+def failed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run that failed at the very end, when every batch was finished."""
-    with monkeypatch.context() as broken:
+    folder = tmp_path_factory.mktemp("failed")
+    with pytest.MonkeyPatch.context() as broken:
 
         def full(*_: object, **__: object) -> None:
             raise OutputError("the disk is full")
 
         broken.setattr(run, "write_run", full)
-        assert calc(*SMALL, "-o", "run", "--resume").code == 2
-    assert (tmp_path / "run.partial" / "batches.log").stat().st_size > 0
+        assert calc_here(folder, *SMALL, "-o", "run", "--resume").code == 2
+    assert (folder / "run.partial" / "batches.log").stat().st_size > 0
+    return folder
+
+
+@pytest.fixture
+def unfinished(failed: Path, tmp_path: Path) -> Path:
+    """A copy of it."""
+    shutil.copytree(failed, tmp_path, dirs_exist_ok=True)
     return tmp_path
 
 
@@ -102,8 +112,12 @@ def test_batches_of_another_run_are_refused(calc: Calc, unfinished: Path, change
     )
     assert re.fullmatch(sentence + "\n", answer.err)
     assert (unfinished / "run.partial/batches.log").read_bytes() == before
-    plain = calc(*(word for word in SMALL if word != "-q"), *changed, "-o", "run")
-    assert plain.code == 0  # without --resume they are neither read nor touched
+
+
+def test_without_resume_batches_are_neither_read_nor_touched(calc: Calc, unfinished: Path) -> None:
+    before = (unfinished / "run.partial/batches.log").read_bytes()
+    plain = calc(*(word for word in SMALL if word != "-q"), "--set", "seed=7", "-o", "run")
+    assert plain.code == 0
     note = "note: run.partial holds finished batches of an interrupted run; --resume would take them up\n"
     assert note in plain.err
     assert (unfinished / "run.partial/batches.log").read_bytes() == before
@@ -165,7 +179,7 @@ def test_nothing_is_kept_of_a_run_that_never_began(calc: Calc, tmp_path: Path) -
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="needs /proc to find the workers")
+@pytest.mark.skipif(not SEES_CHILDREN, reason="needs /proc to find the workers")
 def test_a_worker_that_is_killed_changes_nothing_but_the_warning(calc: Calc, tmp_path: Path) -> None:
     pin = Gated.in_folder(tmp_path)
     process = pin.start("-o", "run", "--workers", "2")

@@ -1,38 +1,35 @@
-"""The roller screw through the command line: the example, its optimum, and cases.
+"""The roller screw: the example, its optimum, and cases.
 
 What it calculates is tested in tests/published, on the model.
 """
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
 import pytest
-from measured import calc_here
 
-from shared import Calc
+import truing
 
 
 @pytest.fixture(scope="module")
-def example(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any]]:
-    """Write the example file and run it, once, with a small search for the front."""
-    folder = tmp_path_factory.mktemp("screw")
-    assert calc_here(folder, "init", "roller_screw_shift", "-o", "screw.toml", "-q").code == 0
-    few = [word for size in ("population=16", "generations=6") for word in ("--set", f"studies.optimise.{size}")]
-    told = calc_here(folder, "run", "roller_screw_shift", "--inputs", "screw.toml", "-o", "run", "--json", *few)
-    assert told.code == 0, told.err
-    return folder / "run", json.loads(told.out)
+def found(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    """Run what ``calc init`` writes, once, with a small search for the front."""
+    file = tmp_path_factory.mktemp("screw") / "screw.toml"
+    screw = truing.load("roller_screw_shift")
+    file.write_text(screw.example(), encoding="utf-8")
+    run = screw.run(file, set={"studies.optimise.population": 16, "studies.optimise.generations": 6})
+    assert run.passed
+    return dict(run.document)
 
 
 def value(found: dict[str, Any], name: str) -> Any:
     return found["results"][name]["value"]
 
 
-def test_the_example_is_the_printed_pair(example: tuple[Path, dict[str, Any]]) -> None:
+def test_the_example_is_the_printed_pair(found: dict[str, Any]) -> None:
     """Geometry, sliding and form factors at a shift of 0.21, calculated independently beforehand."""
-    folder, found = example
     degree = 180 / 3.141592653589793
     expected = {
         "ring_shift": -0.16, "working_angle": 0.321344 * degree, "contact_ratio": 1.423027,
@@ -48,11 +45,9 @@ def test_the_example_is_the_printed_pair(example: tuple[Path, dict[str, Any]]) -
         assert value(found, name) == 0, name
     assert all(check["passed"] and check["margin"] > 0 for check in found["checks"])
     assert len(found["checks"]) == 11
-    assert {path.name for path in folder.iterdir()} >= {"inputs.toml", "results.json", "run.json", "sheet.html"}
 
 
-def test_the_optimum_stands_at_the_contact_ratio_by_box_and_by_grid(example: tuple[Path, dict[str, Any]]) -> None:
-    _, found = example
+def test_the_optimum_stands_at_the_contact_ratio_by_box_and_by_grid(found: dict[str, Any]) -> None:
     assert value(found, "optimal_shift_roller") == pytest.approx(0.2525, abs=2e-3)
     assert value(found, "optimal_shift_ring") == pytest.approx(-0.1175, abs=2e-3)
     assert value(found, "optimal_contact_ratio") == pytest.approx(1.4, abs=1e-5)
@@ -61,9 +56,8 @@ def test_the_optimum_stands_at_the_contact_ratio_by_box_and_by_grid(example: tup
     assert found["studies"]["shift"]["limits"] == ["margin_contact_ratio"]
 
 
-def test_no_design_of_the_front_beats_another(example: tuple[Path, dict[str, Any]]) -> None:
+def test_no_design_of_the_front_beats_another(found: dict[str, Any]) -> None:
     """A large sum is bought with a difference of the stresses."""
-    _, found = example
     front = found["studies"]["optimise"]["front"]
     assert len(front) > 3
     assert all(design["feasible"] for design in front)
@@ -75,12 +69,10 @@ def test_no_design_of_the_front_beats_another(example: tuple[Path, dict[str, Any
         assert not any(other != one and all(a <= b for a, b in zip(other, one, strict=True)) for other in goals)
 
 
-def test_cases_over_shifts_name_the_one_that_is_too_large(calc: Calc, tmp_path: Path) -> None:
+def test_cases_over_shifts_name_the_one_that_is_too_large(tmp_path: Path) -> None:
     (tmp_path / "shifts.csv").write_text("roller_shift\n0\n0.21\n0.4\n-0.5\n")
-    few = ("--set", "studies.run=[]", "--set", "sheet.detail=short", "--json", "-o", "run")
-    answer = calc("run", "roller_screw_shift", "--cases", "shifts.csv", *few)
-    assert answer.code == 1
-    found = json.loads(answer.out)
+    found = truing.load("roller_screw_shift").run(cases=tmp_path / "shifts.csv", set={"studies.run": []}).document
+    assert found["verdict"] == "fails"
     ratios = [case["checks"] for case in found["cases"][:3]]
     passed = [next(c["passed"] for c in checks if c["name"] == "margin_contact_ratio") for checks in ratios]
     assert passed == [True, True, False]

@@ -1,41 +1,46 @@
-"""The gearing through the command line: the example and its list of groups, as results and as cases.
+"""The gearing: the example and its list of groups, as results and as cases.
 
 What it calculates is tested in tests/published, on the model.
 """
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
 import pytest
-from measured import calc_here
 
-from shared import Calc
+import truing
+from truing.report.markdown_printer import markdown_of
+from truing.report.sheet import make_sheet
+from truing.runs.provenance import provenance_of
 
 GROUP_5 = {"root_stress_sun": 230.83, "root_stress_planet": 214.75, "contact_stress_sun": 977.37,
            "contact_stress_planet": 924.18}  # fmt: skip
 
 
 @pytest.fixture(scope="module")
-def example(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any]]:
-    """Write the example file and run it as it stands, once, with fewer draws."""
-    folder = tmp_path_factory.mktemp("gearing")
-    assert calc_here(folder, "init", "rv_gearing", "-o", "gearing.toml", "-q").code == 0
-    few = ["--set", "studies.reliability.draws=2000"]
-    told = calc_here(folder, "run", "rv_gearing", "--inputs", "gearing.toml", "-o", "run", "--json", *few)
-    assert told.code == 0, told.err
-    return folder / "run", json.loads(told.out)
+def example(tmp_path_factory: pytest.TempPathFactory) -> truing.Run:
+    """Run what ``calc init`` writes as it stands, once, with fewer draws."""
+    file = tmp_path_factory.mktemp("gearing") / "gearing.toml"
+    gearing = truing.load("rv_gearing")
+    file.write_text(gearing.example(), encoding="utf-8")
+    run = gearing.run(file, set={"studies.reliability.draws": 2000})
+    assert run.passed
+    return run
+
+
+@pytest.fixture
+def found(example: truing.Run) -> dict[str, Any]:
+    return dict(example.document)
 
 
 def value(found: dict[str, Any], name: str) -> Any:
     return found["results"][name]["value"]
 
 
-def test_the_example_has_the_published_set_up_and_its_reference_stresses(example: tuple[Path, dict[str, Any]]) -> None:
+def test_the_example_has_the_published_set_up_and_its_reference_stresses(found: dict[str, Any]) -> None:
     """Sizes, factors and stresses of 20/55 under 2.26 kW, calculated independently beforehand."""
-    folder, found = example
     expected = {
         "teeth_sun": 20, "teeth_planet": 55, "pins": 40, "ratio": 111, "sun_speed": 1665, "sun_torque": 12.963,
         "tangential_force": 518.51, "pitch_line_velocity": 2.160, "contact_ratio": 1.6638, "resonance_ratio": 0.0263,
@@ -52,11 +57,9 @@ def test_the_example_has_the_published_set_up_and_its_reference_stresses(example
     assert value(found, "contact_stress") == value(found, "contact_stress_sun")
     for name in ("transmission_error", "backlash"):
         assert value(found, name) == 0
-    assert {path.name for path in folder.iterdir()} >= {"inputs.toml", "results.json", "run.json", "sheet.html"}
 
 
-def test_checks_and_studies_of_the_example(example: tuple[Path, dict[str, Any]]) -> None:
-    _, found = example
+def test_checks_and_studies_of_the_example(found: dict[str, Any]) -> None:
     assert all(check["passed"] for check in found["checks"])
     assert {"contact_stress_sun", "contact_stress_planet", "root_stress_sun", "root_stress_planet"} <= {
         check["name"] for check in found["checks"]
@@ -64,8 +67,7 @@ def test_checks_and_studies_of_the_example(example: tuple[Path, dict[str, Any]])
     assert {"search", "sensitivity", "reliability"} <= set(found["studies"])
 
 
-def test_the_list_of_groups_is_a_result(example: tuple[Path, dict[str, Any]]) -> None:
-    folder, found = example
+def test_the_list_of_groups_is_a_result(example: truing.Run, found: dict[str, Any]) -> None:
     groups = found["studies"]["search"]["groups"]
     assert value(found, "group_count") == 25
     assert value(found, "group_sun_teeth") == groups["sun"]["values"]
@@ -74,17 +76,15 @@ def test_the_list_of_groups_is_a_result(example: tuple[Path, dict[str, Any]]) ->
     assert groups["centre_distance"]["unit"] == "mm"
     assert groups["centre_distance"]["values"][0] == pytest.approx(46.875, rel=1e-12)
     assert groups["root_stress_sun"]["values"][4] == pytest.approx(GROUP_5["root_stress_sun"], rel=1e-4)
-    sheet = (folder / "sheet.md").read_text(encoding="utf-8")
+    sheet = markdown_of(make_sheet(example.calculation, provenance=provenance_of(example.calculation.setup)))
     assert "| 25 | 36 | 99 | 40 | 111 |" in sheet
 
 
-def test_the_strength_of_all_groups_as_cases(calc: Calc, tmp_path: Path) -> None:
+def test_the_strength_of_all_groups_as_cases(tmp_path: Path) -> None:
     """Larger gears carry more; a number beyond the list fails alone, and the others go on."""
     (tmp_path / "groups.csv").write_text("group\n" + "".join(f"{number}\n" for number in range(1, 27)))
-    short = ("--set", "sheet.detail=short", "--set", "studies.run=[]", "--json")
-    answer = calc("run", "rv_gearing", "-o", "run", "--cases", "groups.csv", *short)
-    assert answer.code == 1
-    found = json.loads(answer.out)
+    found = truing.load("rv_gearing").run(cases=tmp_path / "groups.csv", set={"studies.run": []}).document
+    assert found["verdict"] == "fails"
     safeties = [case["results"]["contact_safety"]["value"] for case in found["cases"][:25]]
     assert safeties == sorted(safeties)
     assert safeties[0] == pytest.approx(1.1 * 1093.4 / 1087.34, rel=1e-4)

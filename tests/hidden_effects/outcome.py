@@ -29,7 +29,7 @@ def outcome(case: Case, answer: Answered) -> dict[str, Any]:
         "seconds": answer.seconds,
         **essentials(document),
         "exact": exact,
-        "in_set": exact or any(is_alternative(case, other) for other in document["alternatives"][:FIRST]),
+        "in_set": is_in_set(case, document),
         "extra": has_extra(case, document),
         "wrong_name": has_wrong_name(case, document),
         "to_truth": None if exact or not document["explanations"] else to_truth(case, document),
@@ -110,6 +110,11 @@ def is_exact(case: Case, document: Document) -> bool:
     has_shape = remainder is not None and set(case.shape.depends_on) <= set(remainder["depends_on"])
     has_other_name = len(own) < len(causes) and remainder is None
     return (has_shape or has_other_name) and are_named(true_candidates(case), own)
+
+
+def is_in_set(case: Case, document: Document) -> bool:
+    """Whether the truth is the verdict or among its first alternatives."""
+    return is_exact(case, document) or any(is_alternative(case, other) for other in document["alternatives"][:FIRST])
 
 
 def is_alternative(case: Case, other: Mapping[str, Any]) -> bool:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from hidden_effects.asking import press_offer, write_case
-from hidden_effects.candidates import columns, registered, stacked, tolerance_columns
+from hidden_effects.candidates import columns, registered, tolerance_columns
 from hidden_effects.cases import Case
 from hidden_effects.designs import DESIGNS, Design, Noise, covariance, measured
 from hidden_effects.information import Lens, rivals
@@ -252,9 +252,3 @@ def test_a_case_is_written_as_a_user_would_have_it(tmp_path: Path) -> None:
     assert record[1].split(",")[:7] == held[1].split(",")[:7]
     assert (len(record) - 1, len(held) - 1) == (len(case.record.rows), 1001)
     assert float(record[1].split(",")[7]) * 1e-3 == pytest.approx(case.readings[POSITION][0], rel=1e-15)
-
-
-def test_stacked_results_stand_one_after_another() -> None:
-    rows = rows_at(crank_angle=np.radians([0.0, 30.0]))
-    found = shown(rows, {"lower_knee_length_deviation_1": 1e-4}, {})
-    assert stacked(found, BOTH).tolist() == [*found[POSITION], *found[TILT]]

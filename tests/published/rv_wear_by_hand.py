@@ -1,6 +1,6 @@
-"""The wear of a cycloid disc by the iteration of the paper, equations 1b to 16, as a plain loop over its pins."""
+"""Wear of a cycloid disc by the iteration of the paper, equations 1b to 16, pin by pin, and the price of its zones."""
 
-from math import acos, cos, log, pi, sin, sqrt
+from math import acos, cos, exp, log, pi, sin, sqrt
 
 HOURS = 6000.0
 PITCH, TEETH, PHASES = 40, 39, 8
@@ -87,3 +87,25 @@ def wear_by_hand(equidistant: float, shift: float, hours: float = HOURS, *, go_o
         left -= lasts
         if left <= 0.0:
             return max(max(worn_off) for worn_off in depths)
+
+
+# What a zone costs
+
+PRICE_OF = {  # kind of its function, and number of the factor
+    "pin_circle_error": ("size", 6), "pin_radius_error": ("size", 7), "modification_error": ("size", 12),
+    "pin_position_error": ("place", 10), "disc_pitch_error": ("place", 11), "disc_runout": ("runout", 9),
+}  # fmt: skip
+SIZE = (16.140, 0.324, 0.217, 0.013, 2.845)
+PLACE = (4.862, 0.483, 0.877, 1.020)
+RUNOUT = (23.729, 0.682)
+
+
+def by_power(kind: str, width: float) -> float:
+    """Yuan for a zone of this full width in mm, by the power form."""
+    if kind == "size":
+        a1, a2, a3, a4, a5 = SIZE
+        return a1 * width**-a2 + a3 * exp(-a4 * width) + a5
+    if kind == "place":
+        b1, b2, b3, b4 = PLACE
+        return b1 * width**-b2 + b3 * exp(-b4 * width)
+    return RUNOUT[0] * width ** -RUNOUT[1]

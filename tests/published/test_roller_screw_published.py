@@ -108,36 +108,6 @@ def test_the_numbers_in_the_findings_are_computed() -> None:
     assert {number for number in numbers if number not in told} == set()
 
 
-FULL_DEPTH = {  # teeth: sliding of the roller with +0.21 on it, and of the ring with -0.16
-    (16, 80): (58.1, 0.765), (18, 90): (4.313, 0.697), (20, 100): (2.246, 0.641), (25, 125): (1.025, 0.536),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("teeth", FULL_DEPTH)
-def test_full_depth_teeth_with_the_printed_labels(teeth: tuple[int, int]) -> None:
-    """With 0.21 on the ring the first three interfere; on the roller none does."""
-    from gear_geometry.pairs import working_angle
-
-    roller, ring = teeth
-
-    def pair(shift: float, ring_shift: float) -> Any:
-        working = working_angle((ring_shift - shift) / (ring - roller), ALPHA)
-        distance = 0.5e-3 * (ring - roller) * cos(ALPHA) / cos(float(working))
-        given = {"roller_teeth": roller, "ring_teeth": ring, "module": 1e-3, "addendum": 1.0, "clearance": 0.25}
-        return ROLLER_SCREW_SHIFT.inputs(**given, centre_distance=distance, roller_shift=shift)
-
-    meshing: Any = ROLLER_SCREW_SHIFT.function(pair(0.21, -0.16))
-    assert meshing.root_sliding_roller == pytest.approx(FULL_DEPTH[teeth][0], rel=5e-4)
-    assert meshing.root_sliding_ring == pytest.approx(FULL_DEPTH[teeth][1], abs=5e-4)
-    if roller < 25:
-        with pytest.raises(TruingError, match="involute interference"):
-            ROLLER_SCREW_SHIFT.function(pair(-0.16, 0.21))
-    else:
-        swapped: Any = ROLLER_SCREW_SHIFT.function(pair(-0.16, 0.21))
-        roots = swapped.root_sliding_roller, swapped.root_sliding_ring
-        assert roots == pytest.approx((3.650, 0.293), abs=5e-4)
-
-
 # The study
 
 

@@ -1,4 +1,4 @@
-"""Backlash of the RV reducer: equation 21 written a second time, its derivatives, its machines and their price.
+"""Backlash of the RV reducer: equation 21 a second time, its derivatives, its machines, their price, its studies.
 
 Sixteen factors with their coefficients in the backlash, in arc minutes per millimetre, worked out by hand from the
 geometry: q = sqrt(1 - K_1^2), K_1 = e z_p / r_p, and the arms r_1 i_H (involute), e z_c (cycloid), a (crank bearings).
@@ -9,14 +9,19 @@ from dataclasses import replace
 from math import erf, exp, pi, sin, sqrt
 from typing import Any
 
+import numpy as np
 import pytest
+from rv_wear_by_hand import PLACE, PRICE_OF, RUNOUT, SIZE, by_power
 
 from rv_wear.calculation import rv_wear
+from rv_wear.discs import DiscValidity, Modifications
 from rv_wear.machines import FACTORS
 from rv_wear.model import RV_WEAR
 from rv_wear.quantities import Reducer
+from truing import Sweep
 from truing.calculation import Calculation, calculate
 from truing.declare.spreads import Off
+from truing.errors import TruingError
 from truing.setup import Setup, default_setup
 from truing.studies.reliability import Reliability
 from truing.studies.sensitivity import Sensitivity
@@ -173,20 +178,6 @@ def test_both_ground_modifications_are_drawn_for_themselves() -> None:
 
 # ---- cost ---------------------------------------------------------------------------------------------------------
 
-SIZE = (16.140, 0.324, 0.217, 0.013, 2.845)
-PLACE = (4.862, 0.483, 0.877, 1.020)
-RUNOUT = (23.729, 0.682)
-
-
-def by_power(kind: str, width: float) -> float:
-    if kind == "size":
-        a1, a2, a3, a4, a5 = SIZE
-        return a1 * width**-a2 + a3 * exp(-a4 * width) + a5
-    if kind == "place":
-        b1, b2, b3, b4 = PLACE
-        return b1 * width**-b2 + b3 * exp(-b4 * width)
-    return RUNOUT[0] * width ** -RUNOUT[1]
-
 
 def by_exponential(kind: str, width: float) -> float:
     if kind == "size":
@@ -209,10 +200,6 @@ def by_process(kind: str, width: float) -> float:
 
 
 FORMS = {"power": by_power, "exponential": by_exponential, "process": by_process}
-PRICED = {
-    "pin_circle_error": ("size", 6), "pin_radius_error": ("size", 7), "modification_error": ("size", 12),
-    "pin_position_error": ("place", 10), "disc_pitch_error": ("place", 11), "disc_runout": ("runout", 9),
-}  # fmt: skip
 
 
 def costs(**values: str) -> Mapping[str, Any]:
@@ -221,7 +208,7 @@ def costs(**values: str) -> Mapping[str, Any]:
 
 @pytest.mark.parametrize("form", FORMS)
 def test_the_cost_is_the_sum_of_six_functions_in_each_form(form: str) -> None:
-    expected = sum(FORMS[form](kind, ZONES[number][1]) for kind, number in PRICED.values())
+    expected = sum(FORMS[form](kind, ZONES[number][1]) for kind, number in PRICE_OF.values())
     found = costs(cost_form=form)
     assert found["manufacturing_cost"] == pytest.approx(expected, rel=1e-9)
     assert found["tolerance_price"] == found["manufacturing_cost"]
@@ -229,12 +216,12 @@ def test_the_cost_is_the_sum_of_six_functions_in_each_form(form: str) -> None:
 
 def test_the_bill_shows_every_form_of_every_zone() -> None:
     bill = run(default_setup(RV_WEAR), study("costs")).outcomes["costs"].as_json()
-    for name, (kind, number) in PRICED.items():
+    for name, (kind, number) in PRICE_OF.items():
         line = bill["tolerances"][name]
         assert line["width"]["value"] == pytest.approx(1000 * ZONES[number][1], rel=1e-9)
         for form, function in FORMS.items():
             assert line["prices"][form] == pytest.approx(function(kind, ZONES[number][1]), rel=1e-9)
-    assert set(bill["tolerances"]) == set(PRICED)
+    assert set(bill["tolerances"]) == set(PRICE_OF)
 
 
 def test_a_zone_that_grows_up_keeps_its_lower_end_at_nothing() -> None:
@@ -248,3 +235,72 @@ def test_a_zone_that_grows_up_keeps_its_lower_end_at_nothing() -> None:
         assert wide is not None
         assert wide.mean == pytest.approx(2 * middle * MM, rel=1e-9)
         assert wide.sd == pytest.approx(2 * width * MM / 6, rel=1e-9)
+
+
+# ---- zones, studies and what may be chosen --------------------------------------------------------------------------
+
+
+def test_every_factor_scatters_normally_in_its_zone_six_standard_deviations_wide() -> None:
+    groups = default_setup(RV_WEAR).distributions().values()
+    scattering = {name: item for inner in groups for name, item in inner.items()}
+    for number, (middle, width) in ZONES.items():
+        name = FACTORS[number]
+        assert scattering[name].mean == pytest.approx(MM * middle, abs=1e-15)
+        assert scattering[name].sd == pytest.approx(MM * width / 6, rel=1e-9)
+        assert scattering[name].shape == "normal"
+        assert getattr(Reducer(), name) == pytest.approx(MM * middle, abs=1e-15)
+    assert set(scattering) == {*(FACTORS[number] for number in ZONES), "composite_roughness"}
+    assert scattering["composite_roughness"].sd == pytest.approx(0.0126 * 0.694e-6, rel=1e-9)
+
+
+def test_the_least_cost_lies_within_the_widths_and_reaches_its_goal() -> None:
+    at = {"equidistant_modification": "-27 um", "shift_modification": "-31 um"}
+    found = run(default_setup(RV_WEAR, **at), replace(study("allocation"), draws=20_000))
+    plan = found.outcomes["allocation"].least_cost
+    setup = default_setup(RV_WEAR)
+    for name, width in plan.widths.items():
+        now = next(iter(setup.distributions()[name].values())).width
+        assert now * (1 - 1e-9) <= width <= 2 * now * (1 + 1e-9), name
+    assert plan.reached
+    assert found.answers["least_cost"] == pytest.approx(1336, rel=2e-3)
+
+
+def test_without_a_design_that_reaches_the_goal_there_is_no_least_cost() -> None:
+    assert np.isnan(run(default_setup(RV_WEAR), study("allocation")).answers["least_cost"])
+
+
+def test_a_sweep_over_something_else_leaves_the_histories_empty() -> None:
+    swept = Sweep(over="output_torque", at="1000..4500 N*m", points=5, gives=study("sweep").gives)
+    found = run(default_setup(RV_WEAR), swept)
+    for name in ("history_time", "wear_history", "backlash_history"):
+        assert len(found.answers[name]) == 0
+    assert found.answers["wear_depth"].max() == pytest.approx(found.answers["max_wear"], rel=1e-9)
+
+
+def test_the_deepest_wear_lies_in_the_middle_of_the_contact() -> None:
+    """58 degree in a contact from about 9 to about 100 degree."""
+    found = run(default_setup(RV_WEAR), study("sweep"))
+    assert 0.4 < found.answers["wear_place"] < 0.6
+    assert np.degrees(found.answers["wear_angle"]) == pytest.approx(58, abs=1.0)
+
+
+@pytest.mark.parametrize("options", [{"points": 1}, {"points": 101}, {"hours": 0.0}])
+def test_impossible_options_are_refused(options: dict[str, Any]) -> None:
+    with pytest.raises(TruingError, match="study 'modifications'"):
+        Modifications(**options)
+
+
+def test_both_readings_of_the_lower_bound_are_shown() -> None:
+    valid = run(default_setup(RV_WEAR), DiscValidity()).outcomes["validity"]
+    assert valid.lowest * 1e6 == pytest.approx(-53.75, abs=5e-3)
+    assert valid.highest * 1e6 == pytest.approx(11.104, abs=1e-3)
+    assert -53 < valid.lowest_by_approach * 1e6 < -30
+    assert valid.warnings() == []
+    assert "twice the radial" in str(valid.blocks()[0])
+
+
+def test_the_example_file_states_every_input_or_names_it_as_neutral() -> None:
+    assert RV_WEAR.example is not None
+    text = RV_WEAR.example.read_text(encoding="utf-8")
+    for name in [*RV_WEAR.input_fields, *RV_WEAR.tolerances, *RV_WEAR.effects, *RV_WEAR.conditions]:
+        assert name in text, name

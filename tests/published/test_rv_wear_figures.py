@@ -6,12 +6,13 @@ independent program.
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from math import acos, cos, degrees, erf, exp, log, pi, radians, sin, sqrt
+from math import acos, cos, degrees, erf, log, pi, radians, sin, sqrt
 from typing import Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from rv_wear_by_hand import PRICE_OF, by_power
 from scipy.optimize import minimize
 
 from rv_wear import sheet
@@ -250,12 +251,7 @@ def test_the_indices_stand_beside_table_2(run: Calculation) -> None:
 
 def by_hand(name: str, width: float) -> float:
     """The price of a zone of this full width in um, yuan."""
-    edge = width / 1000
-    if name in {"pin_circle_error", "pin_radius_error", "modification_error"}:
-        return 16.140 * edge**-0.324 + 0.217 * exp(-0.013 * edge) + 2.845
-    if name in {"pin_position_error", "disc_pitch_error"}:
-        return 4.862 * edge**-0.483 + 0.877 * exp(-1.020 * edge)
-    return 23.729 * edge**-0.682
+    return by_power(PRICE_OF[name][0], width / 1000)
 
 
 def test_the_prices_are_those_of_the_cost_functions(run: Calculation) -> None:

@@ -43,7 +43,7 @@ from truing.fits import GRADES, tolerance
 from truing.report.sheet import check_rows
 from truing.setup import Setup, default_setup
 from truing.studies.allocation import ToleranceVariable, largest_variance, prices_at
-from truing.studies.demands import Demand, normal_chance
+from truing.studies.checks import Demand, normal_chance
 from truing.studies.sampling import Tally
 
 

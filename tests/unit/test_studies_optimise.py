@@ -36,9 +36,8 @@ from truing.inputs_file import read_setup
 from truing.kernel import Offer, Origin
 from truing.prices import price_answers, total_price
 from truing.setup import Setup, default_setup
-from truing.studies.chances import chance, straightened
-from truing.studies.checks import limits, margin_of, plain_checks
-from truing.studies.demands import demands, worst
+from truing.studies.checks import demands, limits, margin_of, plain_checks, worst
+from truing.studies.first_order import chance, straightened
 from truing.studies.optimise import (
     REFERENCE,
     Problem,

@@ -28,7 +28,7 @@ from truing.calculation import calculate
 from truing.declare.spreads import Off
 from truing.errors import UsageError
 from truing.setup import SwitchedOn
-from truing.studies.demands import normal_chance, wilson
+from truing.studies.checks import normal_chance, wilson
 from truing.studies.sampling import Moments, joined, scatter_of
 
 QUICK = Reliability(draws=40_000)

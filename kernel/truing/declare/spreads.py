@@ -30,14 +30,14 @@ FIXED_DRAWS = 2**16
 
 @dataclass(frozen=True, slots=True)
 class Distribution:
-    """One input's scatter in SI: mean, standard deviation and shape."""
+    """One input's scatter in SI: mean, standard deviation and shape; numbers, or arrays of several designs."""
 
-    mean: float
-    sd: float
+    mean: Any
+    sd: Any
     shape: DistributionShape = "normal"
 
     @property
-    def width(self) -> float:
+    def width(self) -> Any:
         """The full band that a drawing would state: six standard deviations, or the whole of a uniform one."""
         return self.sd * (12**0.5 if self.shape == "uniform" else SIGMAS_IN_BAND)
 
@@ -60,7 +60,7 @@ class Distribution:
             log_variance = np.log1p((self.sd / self.mean) ** 2)
             return np.asarray(np.exp(np.log(self.mean) - log_variance / 2 + np.sqrt(log_variance) * standard))
         standard *= self.sd
-        if self.mean:
+        if np.any(self.mean):
             standard += self.mean
         return standard
 
@@ -398,7 +398,7 @@ def width_of(spread: Spread, target: Target) -> float:
     distribution = spread.resolve(target)
     if distribution is None or not isinstance(spread, (Band, Grade, Zone)):
         raise UsageError(_refusal(spread, target))
-    return distribution.width
+    return float(distribution.width)
 
 
 def with_width(spread: Spread, target: Target, width: float) -> Spread:

@@ -21,7 +21,7 @@ from truing.formulas import parse
 from truing.formulas.tree import walk
 from truing.setup import Setup, SwitchedOn
 from truing.studies.bench import Progress, silent
-from truing.studies.differences import exact_slopes, nominal_of, slopes
+from truing.studies.first_order import exact_slopes, nominal_of, slopes
 from truing.studies.sampling import Scatter, scatter_of
 from truing.units import difference_unit, to_si, unit_factor
 from truing.units.names import LEVELS

@@ -24,11 +24,9 @@ from truing.fits import GRADES
 from truing.prices import price_answers, price_of
 from truing.setup import Setup
 from truing.studies.bench import Bench
-from truing.studies.chances import Straight, straightened
-from truing.studies.checks import Check, Proposal, plain_checks
-from truing.studies.demands import Demand, as_number, demands, normal_chance
-from truing.studies.differences import slopes
+from truing.studies.checks import Check, Demand, Proposal, as_number, demands, normal_chance, plain_checks
 from truing.studies.drawings import lines
+from truing.studies.first_order import Straight, slopes, straightened
 from truing.studies.reading import printed, printed_step, spoken
 from truing.studies.sampling import Scatter, Tally, goal_checks, sample, scatter_of, with_tolerances
 from truing.units import unit_text

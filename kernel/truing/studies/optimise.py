@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field, fields, replace
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
+from graphlib import CycleError, TopologicalSorter
 from math import ceil, floor, isnan
 from typing import Any, Literal, Protocol, runtime_checkable
 
 import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from scipy.special import ndtr, ndtri
+from scipy.special import ndtri
 
 from truing.arrays import Matrix
 from truing.declare.blocks import Block, Cell, Drawing, Table, Words
@@ -22,10 +23,8 @@ from truing.declare.model import TOTAL_PRICE
 from truing.declare.near_miss import near_miss
 from truing.declare.sources import Tolerance
 from truing.declare.spreads import (
-    SIGMAS_IN_BAND,
     Band,
     Distribution,
-    DistributionShape,
     Grade,
     Spread,
     Target,
@@ -53,18 +52,24 @@ from truing.packed import Packed, pack, unpack
 from truing.prices import price_answers, price_of, prices_at
 from truing.setup import Setup
 from truing.studies.bench import Bench, Outcome
-from truing.studies.checks import Limit, beside, check_name, goal_of, limit_of, requirements, sockets_of
-from truing.studies.demands import (
+from truing.studies.checks import (
     Demand,
+    Limit,
     as_number,
+    beside,
+    check_name,
     demand_of,
     demands,
+    goal_of,
+    limit_of,
     normal_chance,
+    requirements,
     results_needed,
+    sockets_of,
     worst,
 )
-from truing.studies.differences import nominal_of
 from truing.studies.drawings import BLUE, GREY, ORANGE, WIDTH, labelled
+from truing.studies.first_order import nominal_of
 from truing.studies.reading import printed, spoken
 from truing.studies.sampling import (
     Scatter,
@@ -134,14 +139,15 @@ class Optimise:
             problem = replace(problem, stand_in=_stand_in(bench, self.name))
         done = bench.part(self.name, 0.0, self.generations / (self.generations + 1))
         trail = search(problem, bench.executor, done)
-        optimum = _optimum(problem, trail)
-        return optimum if optimum.knee_place is None else self._verified(bench, problem, optimum, trail)
-
-    def _verified(self, bench: Bench, problem: Problem, optimum: Optimum, trail: Trail) -> Optimum:
-        """Run the knee as an inputs file would state it, and draw machines of it."""
+        values = trail.answers.objectives * np.array([aim.sign for aim in problem.aims])
+        answers = trail.answers[np.lexsort(values.T[::-1])]  # by the first objective, then by the others
+        optimum = _optimum(problem, trail, answers)
         knee = optimum.knee_place
-        assert knee is not None  # run has asked
-        setup = problem.space.setup_of(_sorted(problem, trail)[0][knee])
+        return optimum if knee is None else self._verified(bench, problem, optimum, answers.designs[knee])
+
+    def _verified(self, bench: Bench, problem: Problem, optimum: Optimum, knee: Matrix) -> Optimum:
+        """Run the knee as an inputs file would state it, and draw machines of it."""
+        setup = problem.space.setup_of(knee)
         try:
             answers = {**dict(problem.known), **setup.model.read_results(evaluate(setup)), **price_answers(setup)}
         except InfeasibleError as error:
@@ -167,33 +173,25 @@ def _stand_in(bench: Bench, study: str) -> ModelSubstitute:
     raise UsageError(f"study '{study}': surrogate = true, but no Surrogate ran before it; list it first in run = [...]")
 
 
-def _sorted(problem: Problem, trail: Trail) -> tuple[Matrix, Answers]:
-    """Return designs and answers in the order of the first objective, then of the others."""
-    values = trail.answers.objectives * np.array([aim.sign for aim in problem.aims])
-    order = np.lexsort(values.T[::-1])
-    return trail.designs[order], trail.answers[order]
-
-
 def _nominal(setup: Setup, name: str) -> float:
     return float(setup.nominal(name)) if name in setup.model.input_fields else float("nan")
 
 
-def _optimum(problem: Problem, trail: Trail) -> Optimum:
-    designs, answers = _sorted(problem, trail)
+def _optimum(problem: Problem, trail: Trail, answers: Answers) -> Optimum:
     feasible = bool(answers.feasible.all())
-    start = problem.space.start[None, :]
+    start = answers_of(problem, problem.space.start[None, :], as_stated=True)
     knee, distance = knee_of(small(problem, answers)) if feasible else (None, 0.0)
     return Optimum(
         problem=problem,
-        front=tuple(_designs(problem, designs, answers)) if feasible else (),
-        start=_designs(problem, start, answers_of(problem, start, as_stated=True), as_stated=True)[0],
+        front=tuple(_designs(problem, answers)) if feasible else (),
+        start=_designs(problem, start, as_stated=True)[0],
         knee_place=knee,
         distance=distance,
         status=FOUND if feasible else _nothing(problem, trail),
         volume=volume_of(trail.fronts, exhausted=len(trail.fronts) < problem.study.generations) if feasible else None,
         evaluations=trail.evaluations,
         failed=trail.failed,
-        remarks=(*left_out(problem.setup), *_too_few(problem), *_beyond(problem, designs)),
+        remarks=(*left_out(problem.setup), *_too_few(problem), *_beyond(problem, answers.designs)),
         inputs=acting_inputs(problem.setup),
     )
 
@@ -243,24 +241,21 @@ class DesignPoint:
     feasible: bool
 
 
-def _designs(problem: Problem, designs: Matrix, answers: Answers, *, as_stated: bool = False) -> list[DesignPoint]:
-    """Return the designs (m, v) by name."""
-    columns = problem.space.columns(designs, as_stated=as_stated)
-    choices = problem.space.choices(designs)
+def _designs(problem: Problem, answers: Answers, *, as_stated: bool = False) -> list[DesignPoint]:
+    """Return the designs by name."""
+    columns = problem.space.columns(answers.designs, as_stated=as_stated)
+    choices = problem.space.choices(answers.designs)
     by_chance = problem.by_chance
     return [
         DesignPoint(
             inputs={name: float(values[row]) for name, values in columns.items()},
-            tolerances={
-                name: GRADES[round(values[row])] if variable.kind == "grade" else float(values[row])
-                for name, (variable, values) in choices.items()
-            },
+            tolerances={name: variable.chosen(values[row]) for name, (variable, values) in choices.items()},
             objectives={aim.name: float(answers.objectives[row, i]) for i, aim in enumerate(problem.aims)},
             margins={bound.name: float(answers.margins[row, i]) for i, bound in enumerate(problem.bounds)},
             chances={bound.name: float(answers.chances[row, i]) for i, bound in enumerate(by_chance)},
             feasible=bool(answers.feasible[row]),
         )
-        for row in range(len(designs))
+        for row in range(len(answers.designs))
     ]
 
 
@@ -368,12 +363,14 @@ class Optimum(Outcome):
             return [Words(f"{self.status[:1].upper()}{self.status[1:]}.", "finding"), _comparison(self)]
         blocks: list[Block] = [Words(_summary(self)), _comparison(self), *_undecided(self)]
         if len(self.front) > 1:
-            blocks += [*fit_for_paper(_front(self)), Drawing("Front, start and knee", _drawn_front(self))]
+            blocks += [*fit_for_paper(_front(self)), Drawing("Front, start and knee", partial(_drawn_front, self))]
         words = (
             "Of every generation's front, in the box of the last one (each objective 0 to 1), against the reference "
             f"point {REFERENCE:g} in each objective."
         )
-        blocks.append(Drawing("Hypervolume over the generations", _drawn_history(self), words))
+        assert self.volume is not None  # there is a front
+        history = partial(_drawn_history, self.volume.history)
+        blocks.append(Drawing("Hypervolume over the generations", history, words))
         return blocks
 
     def warnings(self) -> Sequence[str]:
@@ -396,7 +393,7 @@ def _by_aim(optimum: Optimum, values: Sequence[float]) -> dict[str, Any]:
 
 def _variable_json(variable: Any) -> dict[str, Any]:
     if variable.kind == "grade":
-        return {"kind": "grade", "finest": GRADES[round(variable.low)], "coarsest": GRADES[round(variable.high)]}
+        return {"kind": "grade", "finest": variable.chosen(variable.low), "coarsest": variable.chosen(variable.high)}
     return {
         "kind": {"number": "input", "whole": "whole", "width": "width"}[variable.kind],
         "low": printed(variable.low, variable.unit),
@@ -405,15 +402,27 @@ def _variable_json(variable: Any) -> dict[str, Any]:
     }
 
 
-def _design_json(optimum: Optimum, design: DesignPoint) -> dict[str, Any]:
+def _kinds(optimum: Optimum) -> dict[str, dict[str, tuple[str, str]]]:
+    """Return by group and name what each value of a design is, and its unit."""
+    tolerances = [variable for variable in optimum.variables if not variable.is_input]
     return {
-        "inputs": {name: printed(value, _input_unit(optimum, name)) for name, value in design.inputs.items()},
-        "tolerances": {name: _width(optimum, name, value) for name, value in design.tolerances.items()},
-        "objectives": {aim.name: printed(design.objectives[aim.name], aim.unit) for aim in optimum.aims},
-        "margins": {name: as_number(value) for name, value in design.margins.items()},
-        "chances": {name: as_number(value) for name, value in design.chances.items()},
-        "feasible": design.feasible,
+        "inputs": {name: ("input", optimum.problem.setup.print_unit(name)) for name in optimum.start.inputs},
+        "tolerances": {one.name: ("grade" if one.kind == "grade" else "full width", one.unit) for one in tolerances},
+        "objectives": {aim.name: (aim.sense, aim.unit) for aim in optimum.aims},
     }
+
+
+def _design_json(optimum: Optimum, design: DesignPoint) -> dict[str, Any]:
+    values = {
+        group: {
+            name: value if isinstance(value, str) else printed(value, kinds[name][1])
+            for name, value in getattr(design, group).items()
+        }
+        for group, kinds in _kinds(optimum).items()
+    }
+    margins = {name: as_number(value) for name, value in design.margins.items()}
+    chances = {name: as_number(value) for name, value in design.chances.items()}
+    return {**values, "margins": margins, "chances": chances, "feasible": design.feasible}
 
 
 def _knee_json(optimum: Optimum, knee: DesignPoint) -> dict[str, Any]:
@@ -430,18 +439,6 @@ def _knee_json(optimum: Optimum, knee: DesignPoint) -> dict[str, Any]:
         "exact": exact,
         "verified": verified,
     }
-
-
-def _input_unit(optimum: Optimum, name: str) -> str:
-    return optimum.problem.setup.print_unit(name)
-
-
-def _width_unit(optimum: Optimum, name: str) -> str:
-    return next(variable.unit for variable in optimum.variables if not variable.is_input and variable.name == name)
-
-
-def _width(optimum: Optimum, name: str, value: float | str) -> Any:
-    return value if isinstance(value, str) else printed(value, _width_unit(optimum, name))
 
 
 def _summary(optimum: Optimum) -> str:
@@ -472,35 +469,21 @@ def _comparison(optimum: Optimum) -> Table:
     """Set the stated design and the knee side by side: variables, objectives, limits."""
     start, knee = optimum.start, optimum.knee
     designs = [start] if knee is None else [start, knee]
-    rows: list[list[Cell]] = []
-    for name in start.inputs:
-        unit = _input_unit(optimum, name)
-        rows.append([name, "input", unit_text(unit), *(printed(design.inputs[name], unit) for design in designs)])
-    for name, width in start.tolerances.items():
-        unit, kind = ("", "grade") if isinstance(width, str) else (_width_unit(optimum, name), "full width")
-        rows.append(
-            [name, kind, unit_text(unit), *(_width(optimum, name, design.tolerances[name]) for design in designs)]
-        )
-    for aim in optimum.aims:
-        values = [printed(design.objectives[aim.name], aim.unit) for design in designs]
-        rows.append([aim.name, aim.sense, unit_text(aim.unit), *values])
-    rows += [_limit_row(bound, designs) for bound in optimum.bounds]
-    rows += _verified_rows(optimum)
+    told = [_design_json(optimum, design) for design in designs]
+    rows: list[list[Cell]] = [
+        [name, kind, unit_text(unit), *(values[group][name] for values in told)]
+        for group, kinds in _kinds(optimum).items()
+        for name, (kind, unit) in kinds.items()
+    ]
+    for bound in optimum.bounds:
+        chances = [as_number(100 * design.chances[bound.name]) for design in designs if bound.by_chance]
+        margins = [as_number(design.margins[bound.name]) for design in designs]
+        rows.append([bound.name, "chance", "%", *chances] if bound.by_chance else [bound.name, "margin", "", *margins])
+    for name, share in optimum.verified.items():
+        rows.append([name, f"chance, {optimum.study.verify} machines", "%", None, 100 * share])
     rows.append(["every limit is kept", "", "", *(design.feasible for design in designs)])
     columns = ("name", "", "unit", "start", "knee")[: 3 + len(designs)]
     return Table("Start and knee", columns, rows, note=_comparison_note(optimum))
-
-
-def _limit_row(bound: Any, designs: Sequence[DesignPoint]) -> list[Cell]:
-    if bound.by_chance:
-        return [bound.name, "chance", "%", *(as_number(100 * design.chances[bound.name]) for design in designs)]
-    return [bound.name, "margin", "", *(as_number(design.margins[bound.name]) for design in designs)]
-
-
-def _verified_rows(optimum: Optimum) -> Iterator[list[Cell]]:
-    if optimum.tally is not None:
-        for name, share in optimum.verified.items():
-            yield [name, f"chance, {optimum.tally.draws} machines", "%", None, 100 * share]
 
 
 def _comparison_note(optimum: Optimum) -> str:
@@ -519,22 +502,19 @@ def _comparison_note(optimum: Optimum) -> str:
 def _front(optimum: Optimum) -> Table:
     """List the front, thinned evenly; its ends and the knee stay."""
     places = _thinned(len(optimum.front), optimum.knee_place or 0)
-    first = optimum.front[0]
-    inputs = [name for name in first.inputs if name not in first.objectives]
+    kinds = _kinds(optimum)
+    inputs = {name: kind for name, kind in kinds["inputs"].items() if name not in kinds["objectives"]}
     chances = [bound.name for bound in optimum.problem.by_chance]
     rows: list[list[Cell]] = []
     for index in places:
         design = optimum.front[index]
+        told = _design_json(optimum, design)
         row: list[Cell] = [f"{index + 1} knee" if index == optimum.knee_place else str(index + 1)]
-        row += [printed(design.objectives[aim.name], aim.unit) for aim in optimum.aims]
-        row += [as_number(100 * design.chances[name]) for name in chances]
-        row += [printed(design.inputs[name], _input_unit(optimum, name)) for name in inputs]
-        row += [_width(optimum, name, value) for name, value in design.tolerances.items()]
-        rows.append(row)
-    columns = ["design", *(aim.name for aim in optimum.aims), *chances, *inputs, *first.tolerances]
-    units = ["", *(aim.unit for aim in optimum.aims), *("%" for _ in chances)]
-    units += [_input_unit(optimum, name) for name in inputs]
-    units += ["" if isinstance(width, str) else _width_unit(optimum, name) for name, width in first.tolerances.items()]
+        row += [*told["objectives"].values(), *(as_number(100 * design.chances[name]) for name in chances)]
+        rows.append([*row, *(told["inputs"][name] for name in inputs), *told["tolerances"].values()])
+    columns = ["design", *kinds["objectives"], *chances, *inputs, *kinds["tolerances"]]
+    units = ["", *(unit for _, unit in kinds["objectives"].values()), *("%" for _ in chances)]
+    units += [unit for _, unit in (*inputs.values(), *kinds["tolerances"].values())]
     left = len(optimum.front) - len(places)
     note = f"{len(places)} of {len(optimum.front)} designs; results.json holds all of them." if left else ""
     return Table("Front", columns, rows, units, note)
@@ -563,21 +543,17 @@ def _thinned(count: int, knee: int) -> list[int]:
     return sorted({*(round(step * (count - 1) / (steps - 1)) for step in range(steps)), knee})
 
 
-def _drawn_front(optimum: Optimum) -> Callable[[], Figure]:
+def _drawn_front(optimum: Optimum) -> Figure:
     """Draw the first objective against each of the others."""
-
-    def draw() -> Figure:
-        first, others = optimum.aims[0], optimum.aims[1:]
-        figure = Figure(figsize=(WIDTH, 0.4 + 3.2 * len(others)), layout="constrained")
-        panels = figure.subplots(len(others), 1, squeeze=False)[:, 0]
-        for panel, other in zip(panels, others, strict=True):
-            _panel(panel, optimum, (first, other))
-            panel.set_xlabel(labelled(first.name, unit_text(first.unit)))
-            panel.set_ylabel(labelled(other.name, unit_text(other.unit)))
-        panels[0].legend(frameon=False)
-        return figure
-
-    return draw
+    first, others = optimum.aims[0], optimum.aims[1:]
+    figure = Figure(figsize=(WIDTH, 0.4 + 3.2 * len(others)), layout="constrained")
+    panels = figure.subplots(len(others), 1, squeeze=False)[:, 0]
+    for panel, other in zip(panels, others, strict=True):
+        _panel(panel, optimum, (first, other))
+        panel.set_xlabel(labelled(first.name, unit_text(first.unit)))
+        panel.set_ylabel(labelled(other.name, unit_text(other.unit)))
+    panels[0].legend(frameon=False)
+    return figure
 
 
 def _panel(panel: Any, optimum: Optimum, aims: tuple[Any, Any]) -> None:
@@ -598,19 +574,14 @@ def _panel(panel: Any, optimum: Optimum, aims: tuple[Any, Any]) -> None:
     panel.grid(alpha=0.3)
 
 
-def _drawn_history(optimum: Optimum) -> Callable[[], Figure]:
-    def draw() -> Figure:
-        assert optimum.volume is not None  # there is a front
-        history = optimum.volume.history
-        figure = Figure(figsize=(WIDTH, 2.4), layout="constrained")
-        panel: Any = figure.subplots()
-        panel.plot(range(1, len(history) + 1), history, color=BLUE)
-        panel.set_xlabel("generation")
-        panel.set_ylabel("hypervolume")
-        panel.grid(alpha=0.3)
-        return figure
-
-    return draw
+def _drawn_history(history: Sequence[float]) -> Figure:
+    figure = Figure(figsize=(WIDTH, 2.4), layout="constrained")
+    panel: Any = figure.subplots()
+    panel.plot(range(1, len(history) + 1), history, color=BLUE)
+    panel.set_xlabel("generation")
+    panel.set_ylabel("hypervolume")
+    panel.grid(alpha=0.3)
+    return figure
 
 
 def _doubts(optimum: Optimum) -> Iterator[str]:
@@ -669,12 +640,11 @@ TRIFLE, DEAR = 1e-3, 2e-2
 
 @dataclass(frozen=True)
 class Trail:
-    """What the search left: the designs (m, v) it ended with, their answers, and every generation's best objectives.
+    """What the search left: the designs it ended with, and every generation's best objectives.
 
     ``fronts`` hold what should be small (objectives, those to be large negated), of feasible designs no other beats.
     """
 
-    designs: Matrix
     answers: Answers
     fronts: tuple[Matrix, ...]
     evaluations: int
@@ -686,7 +656,7 @@ def search(problem: Problem, executor: Executor, done: Callable[[int, int], None
     algorithm, shell = _algorithm(problem)
     population, generations = problem.study.population, problem.study.generations
     rng = np.random.default_rng([problem.setup.seed, LED])
-    kept: tuple[Matrix, Answers] | None = None
+    kept: Answers | None = None
     fronts: list[Matrix] = []
     evaluations = failed = 0
     for generation in range(generations):
@@ -694,25 +664,18 @@ def search(problem: Problem, executor: Executor, done: Callable[[int, int], None
         if asked is None or not len(asked):
             break
         if kept is not None:
-            asked.set("X", _led(problem, (asked.get("X"), algorithm.pop.get("X")), kept[0], rng))
-        designs = problem.space.designs(asked.get("X"))
-        generation_answers = answered(problem, designs, executor)
-        evaluations, failed = evaluations + len(designs), failed + int(generation_answers.failed.sum())
-        _tell(algorithm, shell, asked, problem, generation_answers)
-        kept = _best(problem, kept, (designs, generation_answers), ROOM * population)
-        fronts.append(small(problem, kept[1]))
+            asked.set("X", _led(problem, (asked.get("X"), algorithm.pop.get("X")), kept.designs, rng))
+        generated = answered(problem, problem.space.designs(asked.get("X")), executor)
+        evaluations, failed = evaluations + len(generated.designs), failed + int(generated.failed.sum())
+        _tell(algorithm, shell, asked, problem, generated)
+        kept = _best(problem, generated if kept is None else joined([kept, generated]), ROOM * population)
+        fronts.append(small(problem, kept))
         done(generation + 1, generations)
     assert kept is not None  # the first generation is never empty
-    designs, answers = _best(problem, None, kept, population)
-    return Trail(designs, answers, tuple(fronts), evaluations, failed)
+    return Trail(_best(problem, kept, population), tuple(fronts), evaluations, failed)
 
 
-def _led(
-    problem: Problem,
-    places: tuple[Matrix, Matrix],
-    best: Matrix,
-    rng: np.random.Generator,
-) -> Matrix:
+def _led(problem: Problem, places: tuple[Matrix, Matrix], best: Matrix, rng: np.random.Generator) -> Matrix:
     """Put differential steps in the place of every second offspring, and return all offspring as places.
 
     A step is a part of the way between two designs of the population, away from one of the best: so it follows the
@@ -736,25 +699,16 @@ def small(problem: Problem, answers: Answers) -> Matrix:
     return np.asarray(answers.objectives[answers.feasible] * np.array([aim.sign for aim in problem.aims]))
 
 
-def _best(
-    problem: Problem,
-    kept: tuple[Matrix, Answers] | None,
-    new: tuple[Matrix, Answers],
-    most: int,
-) -> tuple[Matrix, Answers]:
+def _best(problem: Problem, answers: Answers, most: int) -> Answers:
     """Keep the feasible designs that no other beats, or while there is none the one that misses least.
 
     At most ``most`` of them, chosen so that they spread along the front; the ends always stay.
     """
-    designs, answers = new if kept is None else (np.vstack([kept[0], new[0]]), joined([kept[1], new[1]]))
     if not answers.feasible.any():
-        least = int(np.argmin(violation(answers)))
-        return designs[[least]], answers[[least]]
-    rows = np.flatnonzero(answers.feasible)
+        return answers[[int(np.argmin(violation(answers)))]]
     values = small(problem, answers)
     front = non_dominated(values)
-    chosen = rows[spread_out(values, front[worth_it(values[front])], most)]
-    return designs[chosen], answers[chosen]
+    return answers[np.flatnonzero(answers.feasible)[spread_out(values, front[worth_it(values[front])], most)]]
 
 
 def violation(answers: Answers) -> Matrix:
@@ -1009,15 +963,15 @@ class Problem:
 @keepable
 @dataclass(frozen=True)
 class Answers:
-    """What m designs are worth: objectives (m, a) in SI, margins of every limit (m, b), chances (m, c) and their goals.
+    """Designs (m, v) and what they are worth: objectives (m, a) in SI, margins of every limit (m, b), chances (m, c).
 
     ``failed`` designs have no answer: NaN everywhere.
     """
 
+    designs: Matrix
     objectives: Matrix
     margins: Matrix
     chances: Matrix
-    goals: Matrix
     failed: NDArray[np.bool_]
 
     @property
@@ -1064,7 +1018,7 @@ def answers_of(problem: Problem, designs: Matrix, *, as_stated: bool = False) ->
     for values in world.results.values():
         failed |= ~np.isfinite(values.reshape(count, -1)).all(axis=1)
     objectives, kept, chances = (np.where(failed[:, None], np.nan, part) for part in (objectives, kept, chances))
-    return Answers(objectives, kept, chances, asked, failed)
+    return Answers(designs, objectives, kept, chances, failed)
 
 
 @dataclass(frozen=True)
@@ -1079,7 +1033,7 @@ class Designs:
     columns: Mapping[str, Any]
     results: Mapping[str, Matrix]
     values: Mapping[str, Any]
-    spreads: Mapping[str, Mapping[str, Scattered]]
+    spreads: Spreads
     limits: tuple[Limit, ...]
 
     def value(self, name: str) -> Any:
@@ -1304,14 +1258,9 @@ class Variable:
         """Its name beside all others: that of the input, or ``tolerances.NAME``."""
         return self.name if self.is_input else f"tolerances.{self.name}"
 
-
-@dataclass(frozen=True)
-class Follower:
-    """An input that a formula makes follow, in SI."""
-
-    name: str
-    formula: Formula
-    unit: str
+    def chosen(self, value: float) -> str | float:
+        """Return a value as it is chosen: a grade by its name, anything else in SI."""
+        return GRADES[round(value)] if self.kind == "grade" else float(value)
 
 
 @dataclass(frozen=True, eq=False)
@@ -1320,7 +1269,7 @@ class Space:
 
     setup: Setup
     variables: tuple[Variable, ...]
-    followers: tuple[Follower, ...]
+    followers: Mapping[str, Formula]
 
     @cached_property
     def scatter(self) -> dict[str, dict[str, Distribution]]:
@@ -1330,9 +1279,7 @@ class Space:
     @property
     def moved(self) -> frozenset[str]:
         """The inputs that differ between designs."""
-        return frozenset(variable.name for variable in self.variables if variable.is_input) | {
-            follower.name for follower in self.followers
-        }
+        return frozenset(variable.name for variable in self.variables if variable.is_input) | self.followers.keys()
 
     @property
     def start(self) -> Matrix:
@@ -1361,11 +1308,10 @@ class Space:
         columns: dict[str, Any] = {
             variable.name: designs[:, index] for index, variable in enumerate(self.variables) if variable.is_input
         }
-        for follower in self.followers:
-            held = {name: self.setup.nominal(name) for name in follower.formula.names}
-            stated = self.setup.nominal(follower.name)
-            value = stated if as_stated else evaluate_formula(follower.formula, {**held, **columns})
-            columns[follower.name] = np.broadcast_to(np.asarray(value, dtype=float), (len(designs),))
+        for name, formula in self.followers.items():
+            held = {other: self.setup.nominal(other) for other in formula.names}
+            value = self.setup.nominal(name) if as_stated else evaluate_formula(formula, {**held, **columns})
+            columns[name] = np.broadcast_to(np.asarray(value, dtype=float), (len(designs),))
         return {
             name: np.rint(values).astype(np.int64) if fields[name].kind == "integer" else values
             for name, values in columns.items()
@@ -1382,10 +1328,8 @@ class Space:
     def setup_of(self, design: Matrix) -> Setup:
         """Return the setup of one design, as an inputs file would state it."""
         columns = {name: values[0].item() for name, values in self.columns(design[None, :]).items()}
-        chosen = {
-            name: GRADES[round(values[0])] if variable.kind == "grade" else float(values[0])
-            for name, (variable, values) in self.choices(design[None, :]).items()
-        }
+        choices = self.choices(design[None, :]).items()
+        chosen = {name: variable.chosen(values[0]) for name, (variable, values) in choices}
         return with_tolerances(self.setup.changed(columns), chosen)
 
 
@@ -1394,29 +1338,23 @@ def open_space(setup: Setup, study: Optimise) -> Space:
     stated = [objective for objective in setup.model.objectives if isinstance(objective, Vary)]
     inputs = [vary for vary in stated if not vary.by]
     tolerances = [tolerance for tolerance in setup.model.tolerances.values() if price_of(setup, tolerance) is not None]
-    _demand_known(setup, study, {*(vary.input for vary in inputs), *(tolerance.name for tolerance in tolerances)})
-
-    def kept(name: str) -> bool:
-        return not study.vary or name in study.vary
-
-    variables = [_of_input(setup, vary, study) for vary in inputs if kept(vary.input)]
-    widths = (_of_tolerance(setup, tolerance, study) for tolerance in tolerances if kept(tolerance.name))
+    known = {*(vary.input for vary in inputs), *(tolerance.name for tolerance in tolerances)}
+    kept = study.vary or known
+    for name in kept:
+        if name not in known:
+            raise UsageError(
+                f"study '{study.name}': vary names '{name}', which {setup.model.name} may not choose."
+                f"{near_miss(name, sorted(known))}"
+            )
+    variables = [_of_input(setup, vary, study) for vary in inputs if vary.input in kept]
+    widths = (_of_tolerance(setup, tolerance, study) for tolerance in tolerances if tolerance.name in kept)
     variables += [variable for variable in widths if variable is not None]
     if not variables:
         raise UsageError(
             f"study '{study.name}': {setup.model.name} has nothing to choose; add Vary(input, low, high) to its "
             "objectives or a price to a tolerance that is not off"
         )
-    return Space(setup, tuple(variables), tuple(_followers(setup, stated, study)))
-
-
-def _demand_known(setup: Setup, study: Optimise, known: set[str]) -> None:
-    for name in study.vary:
-        if name not in known:
-            raise UsageError(
-                f"study '{study.name}': vary names '{name}', which {setup.model.name} may not choose."
-                f"{near_miss(name, sorted(known))}"
-            )
+    return Space(setup, tuple(variables), _followers(stated, study))
 
 
 def _of_input(setup: Setup, vary: Vary, study: Optimise) -> Variable:
@@ -1475,57 +1413,29 @@ def _of_grade(setup: Setup, tolerance: Tolerance, spread: Grade, study: Optimise
     return Variable(tolerance.name, "grade", float(min(places)), float(max(places)), "", float(start))
 
 
-def _followers(setup: Setup, stated: list[Vary], study: Optimise) -> Iterator[Follower]:
-    """Yield the inputs that follow, each behind those it follows itself. Raises UsageError for a circle."""
+def _followers(stated: list[Vary], study: Optimise) -> dict[str, Formula]:
+    """Return the inputs that follow a formula, each behind those it follows itself. Raises UsageError for a circle."""
     formulas = {vary.input: parse(vary.by) for vary in stated if vary.by}
-    done: set[str] = set()
-    while len(done) < len(formulas):
-        ready = [
-            name
-            for name, formula in formulas.items()
-            if name not in done and not (set(formula.names) & set(formulas)) - done
-        ]
-        if not ready:
-            circle = " and ".join(f"'{name}'" for name in formulas if name not in done)
-            raise UsageError(f"study '{study.name}': {circle} follow each other by their formulas in a circle")
-        for name in ready:
-            done.add(name)
-            yield Follower(name, formulas[name], setup.print_unit(name))
+    follows = {name: formula.names & formulas.keys() for name, formula in formulas.items()}
+    try:
+        return {name: formulas[name] for name in TopologicalSorter(follows).static_order()}
+    except CycleError as error:
+        circle = " and ".join(f"'{name}'" for name in formulas if name in error.args[1])
+        raise UsageError(f"study '{study.name}': {circle} follow each other by their formulas in a circle") from None
 
 
 # How much every input scatters in every design: means and standard deviations of many designs at once
 
 
-@dataclass(frozen=True)
-class Scattered:
-    """The scatter of one input in m designs, SI: mean (m,), standard deviation (m,), shape; NaN where there is none."""
-
-    mean: Matrix
-    sd: Matrix
-    shape: DistributionShape
-
-    @property
-    def width(self) -> Matrix:
-        """The full band (m,)."""
-        return self.sd * (12**0.5 if self.shape == "uniform" else SIGMAS_IN_BAND)
-
-    def values(self, standard: Matrix) -> Matrix:
-        """Map standard normal values (n,) to every design (m, n), as ``Distribution.from_standard`` does for one."""
-        mean, sd = self.mean[:, None], self.sd[:, None]
-        if self.shape == "lognormal":
-            log_variance = np.log1p((sd / mean) ** 2)
-            return np.asarray(np.exp(np.log(mean) - log_variance / 2 + np.sqrt(log_variance) * standard))
-        if self.shape == "uniform":
-            return np.asarray(mean + self.width[:, None] * (ndtr(standard) - 0.5))
-        return np.asarray(standard * sd + mean)
+Spreads = Mapping[str, Mapping[str, Distribution]]
+"""By tolerance and input the distributions (m,) of m designs, SI; NaN where a design has none."""
 
 
-def scattered(space: Space, designs: Matrix, columns: Mapping[str, Any]) -> dict[str, dict[str, Scattered]]:
-    """Return by tolerance and input how much it scatters in every design; ``columns`` are the nominal inputs there."""
+def scattered(space: Space, designs: Matrix, columns: Mapping[str, Any]) -> Spreads:
+    """Return how much every input scatters in every design; ``columns`` are the nominal inputs there."""
     choices = space.choices(designs)
-    scatter: dict[str, dict[str, Scattered]] = {}
+    scatter = {}
     for name, inner in space.scatter.items():
-        tolerance = space.setup.model.tolerances[name]
         variable, values = choices.get(name, (None, None))
         spread = space.setup.spread_of(name)
         grades = values if variable is not None and variable.kind == "grade" else None
@@ -1533,29 +1443,20 @@ def scattered(space: Space, designs: Matrix, columns: Mapping[str, Any]) -> dict
             column: _resolved(space, spread, column, (base, columns, grades, len(designs)))
             for column, base in inner.items()
         }
-        scatter[name] = _widened(tolerance, spread, by_column, values) if _is_width(variable) else by_column
+        is_width = variable is not None and variable.kind == "width"
+        scatter[name] = _widened(spread, by_column, values) if is_width else by_column
     return scatter
 
 
-def _is_width(variable: Variable | None) -> bool:
-    return variable is not None and variable.kind == "width"
-
-
-def _widened(
-    tolerance: Tolerance, spread: Spread, by_column: Mapping[str, Scattered], widths: Any
-) -> dict[str, Scattered]:
+def _widened(spread: Spread, by_column: Mapping[str, Distribution], widths: Any) -> dict[str, Distribution]:
     """Bring a band to its chosen width (that of its first input); a zone grows where it says."""
     first = next(iter(by_column.values())).width
     with np.errstate(all="ignore"):
         factor = widths / first
     shift = shift_per_width(spread)
     return {
-        column: replace(
-            distribution,
-            mean=distribution.mean + shift * (factor - 1) * distribution.width,
-            sd=distribution.sd * factor,
-        )
-        for column, distribution in by_column.items()
+        column: replace(own, mean=own.mean + shift * (factor - 1) * own.width, sd=own.sd * factor)
+        for column, own in by_column.items()
     }
 
 
@@ -1564,15 +1465,15 @@ def _resolved(
     spread: Spread,
     column: str,
     given: tuple[Distribution, Mapping[str, Any], Matrix | None, int],
-) -> Scattered:
+) -> Distribution:
     """Resolve one spread in every design, once for all of them where nothing it reads differs."""
     base, columns, grades, rows = given
     reads = sorted(_reads(spread, column) & space.moved)
     if not reads and grades is None:
-        mean = np.full(rows, base.mean)
+        mean: Any = np.full(rows, base.mean)
         if column in columns:
             mean = columns[column] + (base.mean - float(space.setup.nominal(column)))
-        return Scattered(mean, np.full(rows, base.sd), base.shape)
+        return Distribution(mean, np.full(rows, base.sd), base.shape)
     places = np.full(rows, -1.0) if grades is None else grades
     nominal = columns.get(column, np.full(rows, float(space.setup.nominal(column))))
     keys = np.column_stack([places, *(columns[name] for name in reads)])
@@ -1581,7 +1482,7 @@ def _resolved(
         _of_design(space.setup, spread, column, dict(zip(reads, key[1:], strict=True)), key[0]) for key in unique
     ]
     shift, sd = (np.array(part)[where.reshape(-1)] for part in zip(*resolved, strict=True))
-    return Scattered(nominal + shift, sd, base.shape)
+    return Distribution(nominal + shift, sd, base.shape)
 
 
 def _of_design(
@@ -1617,7 +1518,7 @@ def _reads(spread: Spread, column: str) -> frozenset[str]:
     return frozenset()
 
 
-def total_prices(setup: Setup, spreads: Mapping[str, Mapping[str, Scattered]], rows: int) -> Matrix:
+def total_prices(setup: Setup, spreads: Spreads, rows: int) -> Matrix:
     """Return what the tolerances of every design cost together (m,), in SI of the currency."""
     total = np.zeros(rows)
     for name, inner in spreads.items():
@@ -1711,7 +1612,11 @@ def _of_cause(cause: ScatterSource, standard: Matrix, designs: Designs) -> list[
     if cause.mixing is not None or cause.name not in designs.spreads:
         return [(column, values[None, :]) for column, _, values in cause.from_standard(standard)]
     own = designs.spreads[cause.name]
-    return [(column, own[column].values(standard[index])) for index, column in enumerate(cause.columns)]
+    drawn = np.broadcast_to(standard[:, None, :], (len(standard), designs.rows, standard.shape[1]))
+    return [
+        (column, replace(own[column], mean=own[column].mean[:, None], sd=own[column].sd[:, None]).from_standard(values))
+        for column, values in zip(cause.columns, drawn, strict=True)
+    ]
 
 
 def by_first_order(problem: Problem, designs: Designs) -> Matrix:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from truing.declare.near_miss import near_miss
 from truing.errors import UnitError, UsageError
 from truing.setup import Setup
-from truing.studies.demands import as_number
+from truing.studies.checks import as_number
 from truing.units import difference_unit, from_si, read_quantity, split_quantity, unit_factor
 from truing.units.names import PURE
 
@@ -48,23 +48,17 @@ def scattering_name(setup: Setup, name: str, study: str) -> str:
     return name
 
 
-def result_names(setup: Setup, names: tuple[str, ...], study: str) -> tuple[str, ...]:
-    """Return these results of the function; raises UsageError for a name it does not have."""
-    known = setup.model.own_result_fields
-    for name in names:
-        if name not in known:
-            raise UsageError(f"study '{study}': {setup.model.name} has no result '{name}'.{near_miss(name, known)}")
-    return names
-
-
 def single_numbers(setup: Setup, of: str | tuple[str, ...], study: str) -> tuple[str, ...]:
     """Return the results that a study names, each once; raises UsageError for one that the function does not have.
 
     Likewise for one that runs along an axis.
     """
     named = (of,) if isinstance(of, str) else tuple(dict.fromkeys(of))
-    for name in result_names(setup, named, study):
-        if setup.model.own_result_fields[name].along:
+    known = setup.model.own_result_fields
+    for name in named:
+        if name not in known:
+            raise UsageError(f"study '{study}': {setup.model.name} has no result '{name}'.{near_miss(name, known)}")
+        if known[name].along:
             raise UsageError(f"study '{study}': '{name}' runs along an axis; name a result that is one number")
     return named
 

@@ -15,10 +15,9 @@ from truing.errors import InfeasibleError, UsageError
 from truing.evaluate import acting_inputs, answered
 from truing.setup import Setup
 from truing.studies.bench import Bench
-from truing.studies.chances import FormResult, chance, form, straightened
-from truing.studies.checks import Check, requirements
-from truing.studies.demands import Z95, Demand, as_number, demands, worst
+from truing.studies.checks import Z95, Check, Demand, as_number, demands, requirements, worst
 from truing.studies.drawings import labelled, lines
+from truing.studies.first_order import FormResult, chance, form, straightened
 from truing.studies.reading import printed, printed_step, read_range, scattering_name, spoken
 from truing.studies.sampling import Moments, Tally, goal_checks, sample, scatter_of
 from truing.units import difference_unit, from_si, unit_text

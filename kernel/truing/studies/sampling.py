@@ -24,8 +24,7 @@ from truing.evaluate import Rows, evaluate_rows
 from truing.executors import SerialExecutor, in_order, keepable
 from truing.packed import Packed, pack, unpack
 from truing.setup import Setup, SwitchedOn, effect_column
-from truing.studies.checks import Check, chance_check
-from truing.studies.demands import Demand, results_needed, wilson, worst
+from truing.studies.checks import Check, Demand, chance_check, results_needed, wilson, worst
 
 KEPT_REASONS = 8
 

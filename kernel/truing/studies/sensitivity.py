@@ -16,10 +16,10 @@ from truing.declare.near_miss import near_miss
 from truing.errors import UsageError
 from truing.evaluate import acting_inputs
 from truing.heavy import stats
-from truing.setup import Setup, effect_column
+from truing.setup import Setup
 from truing.studies.bench import Bench, Outcome, StepProgress
-from truing.studies.differences import exact_slopes, nominal_of, slopes
 from truing.studies.drawings import MOST_BARS, bars
+from truing.studies.first_order import exact_slopes, nominal_of, slopes, unknown_columns
 from truing.studies.reading import per, printed_step, scalar_results, single_numbers, spoken
 from truing.studies.sampling import Scatter, scatter_of, standard_rows
 from truing.units import difference_unit, unit_factor, unit_text
@@ -94,12 +94,7 @@ _Indices = dict[str, dict[str, float]]
 def _sources(setup: Setup, named: tuple[str, ...], study: str) -> tuple[str, ...]:
     """Return what is varied: the names asked for, or whatever may be in error, or every number there is."""
     fields = setup.model.input_fields
-    unknowns = [
-        effect_column(active.effect.name, unknown.name)
-        for active in setup.effects
-        if active.effect.place != "reading"
-        for unknown in active.unknowns
-    ]
+    unknowns = [column for column, (active, _) in unknown_columns(setup).items() if active.effect.place != "reading"]
     numbers = [name for name, field in fields.items() if field.kind == "float"]
     known = [*numbers, *setup.conditions, *unknowns]
     for name in named:
@@ -111,11 +106,8 @@ def _sources(setup: Setup, named: tuple[str, ...], study: str) -> tuple[str, ...
 
 
 def _unit(setup: Setup, source: str) -> str:
-    for active in setup.effects:
-        for unknown in active.unknowns:
-            if source == effect_column(active.effect.name, unknown.name):
-                return unknown.unit
-    return setup.print_unit(source)
+    unknowns = unknown_columns(setup)
+    return unknowns[source][1].unit if source in unknowns else setup.print_unit(source)
 
 
 def _plain(exact: Mapping[str, Any], numeric: Mapping[str, Any]) -> dict[str, float]:

@@ -32,7 +32,7 @@ from truing.heavy import gaussian_kernels, gaussian_process, learning_exceptions
 from truing.packed import Packed, pack, unpack
 from truing.setup import Setup
 from truing.studies.bench import Bench, Outcome, StepProgress
-from truing.studies.demands import Z95, as_number, wilson
+from truing.studies.checks import Z95, as_number, wilson
 from truing.studies.drawings import BLUE, GREY, ORANGE, WIDTH, labelled
 from truing.studies.reading import printed, printed_step, read_range, single_numbers, spoken
 from truing.studies.sampling import generator

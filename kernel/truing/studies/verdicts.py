@@ -20,13 +20,13 @@ from truing.studies.checks import (
     State,
     check_name,
     compared_words,
+    exists,
     goal_of,
     is_known,
     limit_amount,
     plain_checks,
     requirements,
 )
-from truing.studies.demands import exists
 from truing.studies.reliability import Reliability
 from truing.units import from_si
 
