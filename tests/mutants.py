@@ -71,11 +71,11 @@ MUTANTS: tuple[Mutant, ...] = (
     ),
     *changes(
         "kernel/truing/numbers.py", "unit/test_units.py",
-        ('"-" if found["sign"] == "-" else ""', '"" if found["sign"] == "-" else ""'),
+        ('"-" if match["sign"] == "-" else ""', '"" if match["sign"] == "-" else ""'),
     ),
     *changes(
         "kernel/truing/formulas/evaluation.py", "unit/test_formulas.py",
-        ("range(len(arguments) - 3, -1, -2)", "range(len(arguments) - 3, 0, -2)"),
+        ("reversed(list(zip(arguments[:-1:2]", "list(list(zip(arguments[:-1:2]"),
         ('"inv": lambda x: np.tan(x) - x', '"inv": lambda x: np.tan(x) + x'),
     ),
     *changes(
@@ -98,7 +98,7 @@ MUTANTS: tuple[Mutant, ...] = (
     ),
     *changes(
         "kernel/truing/published.py", "unit/test_published_known.py end_to_end/test_cli_verify.py",
-        ("value / item.value if item.value", "item.value / value if item.value"),
+        ("value / number.value if number.value", "number.value / value if number.value"),
     ),
     *changes(
         "kernel/truing/measurements/derived.py", "unit/test_gauge.py",
@@ -223,7 +223,7 @@ MUTANTS: tuple[Mutant, ...] = (
     ),
     *changes(
         "kernel/truing/runs/diagnosis_document.py", "unit/test_diagnosis_document.py",
-        ("[_in(low, unit), _in(high, unit)]", "[_in(low, unit), _in(low, unit)]"),
+        ("for end in (low, high)]}", "for end in (low, low)]}"),
     ),
     *changes(
         "kernel/truing/explain/influence.py", "end_to_end/test_explain.py",
