@@ -196,9 +196,8 @@ def _condition(condition: Condition) -> FileEntry:
 
     reference = f"{plain(condition.reference)} {condition.unit}".strip()
     kind: Any = ["number", "string"] if condition.unit in PURE else "string"
-    return FileEntry(
-        read, {"type": kind, "description": f"{words}; effects vanish at {reference}", "default": reference}
-    )
+    words = f"{condition.note or 'a condition'}; effects vanish at {reference}"
+    return FileEntry(read, {"type": kind, "description": words, "default": reference})
 
 
 # Effects that are on: their unknowns, and how sure these are
