@@ -144,7 +144,7 @@ class _Plan:
     def _shown(self, columns: Mapping[str, Any]) -> Mapping[str, NDArray[np.float64]]:
         """Return what the gauges would show without noise, SI. Raises InputError where the model has no answer."""
         table = TableText(MEASURED, _csv(columns))
-        rows = read_rows(table, offer_of(self.true), self.true)
+        rows = read_rows(table, Offer(self.true.model.name, self.true.model, self.true.origin), self.true)
         reading = read_by_gauge(self.true, rows, list(self.noises))
         if reading.failed.any():
             row, reason = next(iter(reading.reasons.items()))
@@ -255,14 +255,10 @@ def recorded(
     return Hidden(setup=setup, measured=measured, held_out=held_out, effect=effect, truth=truth or {})
 
 
-def offer_of(setup: Setup) -> Offer:
-    """Return the model of a setup as the command line would offer it."""
-    return Offer(setup.model.name, setup.model, setup.origin)
-
-
 def records_of(setup: Setup, text: str, name: str, *, with_unit_errors: bool = True) -> Records:
     """Read a record as the command line does; without a search for wrong units where nobody is told of them."""
-    return read_records([TableText(name, text)], offer_of(setup), setup, with_unit_errors=with_unit_errors)
+    offer = Offer(setup.model.name, setup.model, setup.origin)
+    return read_records([TableText(name, text)], offer, setup, with_unit_errors=with_unit_errors)
 
 
 def predicted(diagnosis: DiagnosisResult, setup: Setup, records: Records) -> dict[str, NDArray[np.float64]]:
@@ -306,26 +302,22 @@ def truth_of(
             faults.append(f"size is {size!r}, but no effect is hidden; leave it out")
         return {}
     stated = _stated(effect, size, measured, faults)
+    known = {unknown.name: unknown for unknown in effect.unknowns}
     sizes: dict[str, float] = {}
     for name, said in stated.items():
-        unknown = next((unknown for unknown in effect.unknowns if unknown.name == name), None)
-        if unknown is None:
-            known = [unknown.name for unknown in effect.unknowns]
-            faults.append(f"effect '{effect.name}' has no unknown '{name}'.{near_miss(name, known)}")
+        if name not in known:
+            faults.append(f"effect '{effect.name}' has no unknown '{name}'.{near_miss(name, list(known))}")
             continue
         try:
-            sizes[name] = _value(effect, unknown, said)
+            sizes[name] = _value(known[name], said)
         except TruingError as error:
             faults.append(f"size of '{name}': {error}")
     touched = [part for part in effect.groups() if any(unknown.name in stated for unknown in part)]
     missing = [unknown.name for part in touched for unknown in part if unknown.name not in stated]
     if missing:
         faults.append(f"effect '{effect.name}': say {' and '.join(missing)} as well, size={{...}}")
-    if (
-        sizes
-        and not any(unknown.is_amplitude and sizes.get(unknown.name) for unknown in effect.unknowns)
-        and not missing
-    ):
+    acts = any(known[name].is_amplitude and value for name, value in sizes.items())
+    if sizes and not acts and not missing:
         faults.append(f"effect '{effect.name}' of size 0 hides nothing; hide(None, ...) does that")
     return sizes
 
@@ -366,7 +358,7 @@ def _half(effect: Effect[Any, Any], parts: Sequence[Sequence[Unknown]], faults: 
     return sizes
 
 
-def _value(effect: Effect[Any, Any], unknown: Unknown, said: str | float) -> float:
+def _value(unknown: Unknown, said: str | float) -> float:
     """Read one unknown, SI. Raises UsageError where it is no quantity of its kind, or out of its bounds."""
     value = float(read_quantity(said if isinstance(said, str) else repr(said), unknown.unit))
     number = float(from_si(value, unknown.unit))

@@ -377,11 +377,12 @@ def _effects_alone(subject: Subject) -> Iterator[Batch]:
         setup = switched(off_reference(subject.setup), effect)
         if setup is None:
             continue
-        alone = {need.name: condition_values(setup, need) for need in effect.needs}
+        alone: dict[str, list[float]] = {}
         for unknown in effect.unknowns:
             own = setup.effects[0].values[unknown.name]
             others = (share * own if unknown.is_amplitude else shape(unknown, share) for share in (0.0, 0.3))
             alone[effect_column(effect.name, unknown.name)] = [own, *others]
+        alone |= {need.name: condition_values(setup, need) for need in effect.needs}
         first = single(setup, {})
         for name, values in alone.items():
             yield Batch(setup, {name: values}, f"effect '{effect.name}' is on and only '{name}' varies", first)
