@@ -4,7 +4,6 @@ import gc
 import os
 import sys
 from collections.abc import Iterator
-from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
@@ -12,7 +11,6 @@ from xdist.scheduler import WorkStealingScheduling
 
 from shared import GUESTS, ROOT, TESTS, copied_guest, made_once, process
 from truing.executors import WorkerPool, open_executor
-from truing.testing import running
 
 collect_ignore = ["third_party", "data"]
 sys.path += [str(TESTS / "data"), str(TESTS / "data" / "gear_record")]
@@ -57,14 +55,6 @@ def two_processes() -> Iterator[WorkerPool]:
     """Two worker processes, for all tests that end none of them: starting them takes seconds."""
     with open_executor("processes:2") as executor:
         yield executor
-
-
-@pytest.fixture(scope="session", autouse=True)
-def _kit_shares_processes(request: pytest.FixtureRequest) -> Iterator[None]:
-    """Let the kit compute in the two processes whatever it wants computed in another one."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(running, "open_executor", lambda _: nullcontext(request.getfixturevalue("two_processes")))
-        yield
 
 
 @pytest.fixture(scope="session")

@@ -200,6 +200,15 @@ MUTANTS: tuple[Mutant, ...] = (
         ("1 - floor**2 / rmse**2", "1 - floor / rmse"),
     ),
     *changes(
+        "kernel/truing/diagnosis/extended.py", "unit/test_diagnosis_memory.py",
+        ("key=lambda i: causes[i].tag)", "key=lambda i: 0)"),
+        ("groups.setdefault((tags, b", "groups.setdefault((tags[:1], b"),
+    ),
+    *changes(
+        "kernel/truing/diagnosis/exact.py", "unit/test_diagnosis_memory.py",
+        ("predicted=predicted, slopes={}).in_sample(sample)", "slopes={}).in_sample(sample)"),
+    ),
+    *changes(
         "kernel/truing/diagnosis/visibility.py", "unit/test_diagnosis_gain_design.py",
         ("1 - LEVEL / (2 * max(explanations, 1))", "1 - LEVEL / (2 * 1)"),
     ),

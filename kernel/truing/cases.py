@@ -198,13 +198,11 @@ def _one_by_one(setup: Setup, cases: Sequence[StatedCase], executor: Executor, p
 
 
 def _packed_case(job: tuple[Packed, StatedCase]) -> CaseResult:
-    """Calculate one case in a worker, all by itself."""
     with open_executor("serial") as alone:
         return _in_full(unpack(job[0]), job[1], alone, silent)
 
 
 def _in_full(setup: Setup, case: StatedCase, executor: Executor, progress: Progress) -> CaseResult:
-    """Calculate one case with its studies."""
     try:
         calculation = calculate(setup, executor=executor, progress=progress)
     except UsageError as error:  # impossible, or a tolerance that its size outgrows
@@ -229,7 +227,6 @@ def _in_blocks(setup: Setup, cases: Sequence[StatedCase], executor: Executor, pr
 
 
 def _packed_block(job: tuple[Packed, Sequence[StatedCase]]) -> list[CaseResult]:
-    """Calculate one block in a worker."""
     return _block(unpack(job[0]), job[1])
 
 

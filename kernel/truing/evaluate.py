@@ -173,7 +173,6 @@ def _is_column(values: Any, rows: int) -> bool:
 
 
 def _joined(pieces: Sequence[NDArray[np.float64]], order: Sequence[NDArray[np.intp]], rows: int) -> NDArray[np.float64]:
-    """Put the answers of the parts back in the order of the rows."""
     inner = max((piece.shape[1:] for piece in pieces), default=())
     joined = np.full((rows, *inner), np.nan)
     for index, piece in zip(order, pieces, strict=True):

@@ -80,7 +80,6 @@ def _lines(offer: Offer) -> Iterator[str]:
 
 
 def _comment(text: str, mark: str = "# ") -> list[str]:
-    """Wrap words into comment lines."""
     return [f"{mark}{line}" for line in textwrap.wrap(text, WIDTH - len(mark))]
 
 

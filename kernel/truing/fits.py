@@ -45,16 +45,6 @@ _FIRST_GRADE_NOT_BELOW_1_MM = GRADES.index("IT14")
 _SAME = 1 + 1e-9  # a size that was converted to metres may miss the limit it stands on by a rounding error
 
 
-def size_range(size: float) -> tuple[float, float]:
-    """Say which range of nominal sizes a size belongs to: (over, up to and including), in metres.
-
-    A size on a limit belongs to the lower range. Raises UnitError outside 0 to 3150 mm.
-    Source: ISO 286-1:2010, Table 1.
-    """
-    row = _row(size)
-    return (_LIMITS_MM[row - 1] / 1000 if row else 0.0), _LIMITS_MM[row] / 1000
-
-
 def tolerance(grade: str, size: float) -> float:
     """Give the full width of a standard tolerance at a nominal size; both in metres.
 

@@ -52,7 +52,6 @@ def shown_by_gauge(setup: Setup, rows: RowsFile) -> Shown:
 
 
 def _lacking(evaluated: Rows) -> dict[int, str]:
-    """Say which results a row lacks, and why."""
     said: dict[int, dict[str, list[str]]] = {}
     for name, lacking in evaluated.absent.items():
         for row, reason in lacking.items():
@@ -224,7 +223,6 @@ def _alike(
 
 
 def _grouped(record: NDArray[np.intp], columns: Sequence[Any]) -> Iterator[NDArray[np.intp]]:
-    """Give the rows of a record in which no column differs."""
     groups: dict[tuple[Any, ...], list[int]] = {}
     for row in record.tolist() if columns else ():
         groups.setdefault(tuple(column[row] for column in columns), []).append(row)
@@ -244,7 +242,6 @@ def _varies(column: Any, places: NDArray[np.intp]) -> bool:
 
 
 def _value_at(column: Any, row: int) -> Any:
-    """Return the one value of a row."""
     value = column[row] if _is_column(column) else column
     return value if isinstance(value, (str, bool, int)) else float(value)
 

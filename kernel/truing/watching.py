@@ -136,7 +136,6 @@ def _imported_by(file: Path) -> Iterator[Path]:
 
 
 def _names_in(node: ast.AST, package: str) -> Iterator[str]:
-    """Yield what an import statement may name as a module."""
     if isinstance(node, ast.Import):
         yield from (alias.name for alias in node.names)
     elif isinstance(node, ast.ImportFrom):

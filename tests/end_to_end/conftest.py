@@ -6,6 +6,7 @@ import csv
 import io
 import json
 from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,7 @@ from shown_in_docs import EXAMPLES, ROOT, check_page, desk_in
 
 import truing
 from shared import Answer, Calc, made_once
+from truing.executors import WorkerPool, open_executor
 
 PRESS = EXAMPLES / "press_off_by_40_um"
 
@@ -60,6 +62,16 @@ def diagnosis() -> truing.Diagnosis:
     """The same, diagnosed by a call."""
     press = truing.load("press_linkage")
     return press.diagnose(truing.read(PRESS / "measured.csv", press), PRESS / "inputs.toml")
+
+
+@pytest.fixture
+def runs_share_processes(two_processes: WorkerPool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let a run with two workers have those of all tests; that a run starts and ends its own is tested elsewhere."""
+
+    def opened(place: str) -> AbstractContextManager[WorkerPool]:
+        return nullcontext(two_processes) if place == "processes:2" else open_executor(place)
+
+    monkeypatch.setattr("truing.api.run.open_executor", opened)
 
 
 @pytest.fixture

@@ -54,7 +54,7 @@ def measured_spring(rows: int = 60) -> pd.DataFrame:
 
 
 def test_the_first_lines_that_a_user_writes(
-    spring: truing.LoadedModel, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    spring: truing.LoadedModel, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, runs_share_processes: None
 ) -> None:
     """The listing by which the API was designed, line by line."""
     monkeypatch.chdir(tmp_path)

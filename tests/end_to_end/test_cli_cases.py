@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +11,6 @@ import pytest
 
 import truing
 from shared import Calc
-from truing.executors import WorkerPool
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
 CASES = "case;load [kN];probe_temperature [degC];note\nlight;0,14;20;\nheavy;2,296;;keep\nnormal;;30;\n"
@@ -83,15 +81,11 @@ def test_the_press_in_both_readings_as_cases(tmp_path: Path) -> None:
 
 
 @pytest.fixture
-def shared_out(
-    calc: Calc, tmp_path: Path, two_processes: WorkerPool, monkeypatch: pytest.MonkeyPatch
-) -> Callable[..., Any]:
-    """Run with two workers, those of all tests, and return the document of the run."""
+def shared_out(calc: Calc, tmp_path: Path, runs_share_processes: None) -> Callable[..., Any]:
+    """Run with two workers and return the document of the run."""
 
     def run(*words: str) -> Any:
-        with monkeypatch.context() as patch:
-            patch.setattr("truing.api.run.open_executor", {"processes:2": nullcontext(two_processes)}.__getitem__)
-            answer = calc("run", PIN, "--cases", "cases.csv", "-q", *words, "--workers", "2", "-o", "2")
+        answer = calc("run", PIN, "--cases", "cases.csv", "-q", *words, "--workers", "2", "-o", "2")
         assert answer.code in {0, 1}, answer.err
         assert json.loads((tmp_path / "2/run.json").read_text(encoding="utf-8"))["workers"]["count"] == 2
         return json.loads((tmp_path / "2/results.json").read_text(encoding="utf-8"))

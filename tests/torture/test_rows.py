@@ -89,10 +89,10 @@ def is_open(line: str, mark: str) -> bool:
 
 def judge(lines: list[int], broken: set[int], used: list[int], count: RowCount) -> None:
     """Demand that the lines used and those left out are the rows of the file, each once."""
-    left = [line for item in count.left_out for line in item.lines]
+    left = [line for lines in count.left_out.values() for line in lines]
     assert sorted([*used, *left]) == lines
     assert (count.in_file, count.used) == (len(lines), len(used))
-    assert all(item.reason for item in count.left_out)
+    assert all(count.left_out)
     assert not broken & set(used)
 
 

@@ -34,10 +34,11 @@ from truing.diagnosis import extended as under_test
 from truing.diagnosis.causes import Candidate, effects_of
 from truing.diagnosis.choice import choose
 from truing.diagnosis.engine import diagnose, laid_out
-from truing.diagnosis.exact import Asking, together
+from truing.diagnosis.exact import Asking, alone, fitting, held_without, together
 from truing.diagnosis.extended import Extended, Request
 from truing.diagnosis.learning import first_noise
 from truing.diagnosis.machine import calibration_of, times
+from truing.diagnosis.sample import sample_of
 
 
 def test_many_rows_times_a_vector_are_summed_in_double_precision() -> None:
@@ -351,3 +352,23 @@ def test_searches_that_end_at_different_times_each_return_their_own(
     for own, right in zip(made, expected, strict=True):
         np.testing.assert_allclose(own, right, rtol=1e-12)
     assert calls == [2, 1], "the last point is known by then"
+
+
+def test_without_one_of_its_causes_the_rest_of_an_explanation_is_held(
+    asked: tuple[Extended, dict[str, Candidate], list[int]],
+) -> None:
+    extended, causes, _ = asked
+    soft, adds = causes["softening"], causes["support"]
+    sample = sample_of(extended.machine, first_noise(extended.machine), np.ones(len(LOADS), dtype=bool))
+    fit = alone(extended, fitting(sample, extended, (soft, adds), [np.array([0.5]), np.array([2e-4])]))
+    assert fit is not None
+    held = held_without(fit, 0, sample, extended)
+    assert held.causes == (adds,)
+    np.testing.assert_array_equal(held.of(adds), fit.of(adds))
+    np.testing.assert_allclose(held.predicted["sag"], LOADS * (1 / 4e3 + fit.of(adds)[0]), rtol=1e-12)
+
+
+def test_readings_that_the_model_meets_to_the_last_digit_have_nothing_wrong(tmp_path: Path) -> None:
+    one = Asked(BEAM, units={"load": "N", "sag": "mm"})
+    answer = diagnose(one.setup, one.records(tmp_path, {"load": LOADS, "sag": LOADS / 4}))
+    assert (answer.verdict, answer.causes, answer.p_any, answer.warnings) == ("none", (), 1.0, ())

@@ -157,22 +157,20 @@ def test_wider_with_every_grade_and_never_narrower_with_size():
 
 
 def test_a_size_on_a_limit_belongs_to_the_lower_range():
-    assert fits.size_range(0.315) == (0.25, 0.315)
-    assert fits.size_range(math.nextafter(0.315, 1)) == (0.25, 0.315), "a rounding error of the conversion is no size"
-    assert fits.size_range(0.3151) == (0.315, 0.4)
-    assert fits.size_range(0.0005) == (0.0, 0.003)
-    assert fits.size_range(3.15) == (2.5, 3.15)
+    assert fits.tolerances(0.315) == fits.tolerances(0.2501) != fits.tolerances(0.3151)
+    assert fits.tolerances(math.nextafter(0.315, 1)) == fits.tolerances(0.315), "a rounding error is no size"
+    assert fits.tolerances(3.15) == fits.tolerances(2.51) != fits.tolerances(2.5)
 
 
 @pytest.mark.parametrize("limit", LIMITS_MM)
 def test_every_limit_in_millimetres_stays_in_its_range(limit):
     for metres in (limit / 1000, limit * 0.001, limit * 1e-3 + 1e-17):
-        assert fits.size_range(metres)[1] == limit / 1000
+        assert fits.tolerances(metres) == fits.tolerances(0.999 * limit / 1000)
 
 
 @pytest.mark.parametrize("size", [0.0, -0.1, 3.1501, 10.0, math.nan, math.inf, -math.inf])
 def test_sizes_outside_the_standard(size):
-    for refused in (fits.size_range, fits.tolerances, lambda value: fits.tolerance("IT7", value)):
+    for refused in (fits.tolerances, lambda value: fits.tolerance("IT7", value)):
         with pytest.raises(UnitError, match="above 0 and up to 3150 mm"):
             refused(size)
 

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from sample_models import PIN_OFFER, PIN_WEAR, STAGE, STAGE_OFFER, Surface
 
 from truing.errors import InputError
-from truing.measurements import DataTable, LeftOut, RowCount, StatedCase, read_cases, read_rows, read_table, table_text
+from truing.measurements import DataTable, RowCount, StatedCase, read_cases, read_rows, read_table, table_text
 from truing.setup import Setup, default_setup
 
 KNOWN = {"time": "h", "depth": "um", "probe_temperature": "degC", "rate": "", "slope": "um/K"}
@@ -299,7 +299,7 @@ def test_cases_override_inputs_and_conditions(table: Write) -> None:
     )
     path = table(content)
     cases = read_cases(path, PIN_OFFER, pin_setup())
-    assert cases.count == RowCount(str(path), 4, (LeftOut("holds nothing", (3,)),))
+    assert cases.count == RowCount(str(path), 4, {"holds nothing": (3,)})
     assert list(cases.cases) == [
         StatedCase(1, 2, "light", {"load": 100.0, "rate": 3e-8, "probe_temperature": 303.15}),
         StatedCase(2, 4, "heavy", {"load": 3000.0}),

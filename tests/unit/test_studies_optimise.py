@@ -200,7 +200,7 @@ def columns_of(scatter: Scatter, problem: Problem) -> dict[str, Any]:
     assert problem.cloud is not None
     columns: dict[str, Any] = {}
     for cause in scatter.causes:
-        standard = problem.cloud.standard[cause.name]
+        standard = problem.cloud[cause.name]
         if cause.function is None:
             _gather(columns, cause.from_standard(standard))
         else:

@@ -546,6 +546,7 @@ def test_any_unit_text_is_a_unit_or_one_sentence(unit):
     assert units.human_dimension(unit)
 
 
+@settings(deadline=None)
 @given(value=st.floats(allow_nan=False, allow_infinity=False, min_value=-1e100, max_value=1e100))
 def test_a_printed_number_is_read_back(value):
     text = f"{value!r} mm"

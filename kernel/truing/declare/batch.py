@@ -41,11 +41,6 @@ class FailedRows:
             self.sentences.append(sentence)
             self.codes[fresh] = len(self.sentences)
 
-    def reason(self, row: int) -> str | None:
-        """Return why this row failed, or None if it did not."""
-        code = int(self.codes[row])
-        return self.sentences[code - 1] if code else None
-
     def reasons(self, rows: int) -> dict[int, str]:
         """Return why rows failed, by row; what holds for a batch of one answer holds for all its ``rows``."""
         codes = np.broadcast_to(self.codes, (rows,))

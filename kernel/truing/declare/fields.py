@@ -354,17 +354,16 @@ class ResultField:
 @dataclass(frozen=True)
 class _Place:
     path: tuple[str, ...]
-    suffixes: tuple[str, ...]
-    index: str
-    spec: Spec
+    scope: str
+    symbol: str
+    spec: Any
     annotation: Any
 
 
 def _walk(cls: type[Any], path: tuple[str, ...] = (), suffixes: tuple[str, ...] = (), index: str = "",
           defaults: Mapping[str, Any] | None = None) -> Iterator[_Place]:  # fmt: skip
-    specs = _specs(cls)
     hints = hints_of(cls)
-    for name, spec in specs.items():
+    for name, spec in _specs(cls).items():
         here = (*path, name)
         if isinstance(spec, Part):
             suffix = name if spec.suffix is None else spec.suffix
@@ -373,13 +372,22 @@ def _walk(cls: type[Any], path: tuple[str, ...] = (), suffixes: tuple[str, ...] 
             continue
         if isinstance(spec, Given) and defaults and name in defaults:
             spec = replace(spec, default=defaults[name])
-        yield _Place(here, suffixes, index, spec, hints[name])
+        mark = index if "_" in spec.symbol or not index else f"_{index}"
+        yield _Place(here, "_".join(suffixes), spec.symbol and spec.symbol + mark, spec, hints[name])
 
 
-def _indexed(symbol: str, index: str) -> str:
-    if not symbol or not index:
-        return symbol
-    return f"{symbol}{index}" if "_" in symbol else f"{symbol}_{index}"
+def _flat(cls: type[Any], word: str, allowed: tuple[type[Any], ...]) -> dict[str, _Place]:
+    """Return the fields of a class and its parts by flat name, refusing those that are no inputs, or no results."""
+    fields: dict[str, _Place] = {}
+    for visited in _walk(cls):
+        name = "_".join(filter(None, (visited.path[-1], visited.scope)))
+        if name in fields:
+            what = f"the flat name '{name}' occurs twice"
+            raise DeclarationError(f"{what}; rename the field or give the part another suffix")
+        if not isinstance(visited.spec, allowed):
+            raise DeclarationError(f"'{name}' of {_spoken(cls)} is no {word}: the class must be declared by @{word}s")
+        fields[name] = visited
+    return fields
 
 
 def hints_of(annotated: Any) -> dict[str, Any]:
@@ -415,43 +423,27 @@ def _kind(visited: _Place) -> tuple[InputKind, tuple[str, ...]]:
 def input_fields(cls: type[Any]) -> dict[str, InputField]:
     """Return every input by its flat name, in the order of declaration."""
     fields: dict[str, InputField] = {}
-    for visited in _walk(cls):
-        name = "_".join((visited.path[-1], *visited.suffixes))
-        _refuse_twice(name, fields)
-        if not isinstance(visited.spec, (Given, Loaded)):
-            raise DeclarationError(f"'{name}' of {_spoken(cls)} is no input: the class must be declared by @inputs")
+    for name, visited in _flat(cls, "input", (Given, Loaded)).items():
         kind, choices = _kind(visited)
-        if kind in {"float", "whole"} and visited.spec.unit is None:
+        spec = visited.spec
+        if kind in {"float", "whole"} and spec.unit is None:
             raise DeclarationError(f'input \'{name}\' has no unit: write given(default, "mm"), or "" for a pure number')
-        if kind in {"switch", "choice", "text", "integer"} and visited.spec.unit:
-            raise DeclarationError(f"input '{name}' has the unit '{visited.spec.unit}', but its annotation allows none")
-        if choices and str(getattr(visited.spec, "default", "")) not in choices:
+        if kind in {"switch", "choice", "text", "integer"} and spec.unit:
+            raise DeclarationError(f"input '{name}' has the unit '{spec.unit}', but its annotation allows none")
+        if choices and str(getattr(spec, "default", "")) not in choices:
             raise DeclarationError(f"input '{name}' is by default none of {', '.join(choices)}")
-        symbol = _indexed(visited.spec.symbol, visited.index)
         fields[name] = InputField(
-            name=name, path=visited.path, spec=visited.spec, kind=kind, symbol=symbol, choices=choices
+            name=name, path=visited.path, spec=spec, kind=kind, symbol=visited.symbol, choices=choices
         )
     return fields
 
 
 def result_fields(cls: type[Any]) -> dict[str, ResultField]:
     """Return every result by its flat name, in the order of declaration."""
-    fields: dict[str, ResultField] = {}
-    for visited in _walk(cls):
-        name = "_".join((visited.path[-1], *visited.suffixes))
-        _refuse_twice(name, fields)
-        if not isinstance(visited.spec, (Found, Axis)):
-            raise DeclarationError(f"'{name}' of {_spoken(cls)} is no result: the class must be declared by @results")
-        symbol = _indexed(visited.spec.symbol, visited.index)
-        fields[name] = ResultField(
-            name=name, path=visited.path, spec=visited.spec, symbol=symbol, scope="_".join(visited.suffixes)
-        )
-    return fields
-
-
-def _refuse_twice(name: str, fields: Mapping[str, Any]) -> None:
-    if name in fields:
-        raise DeclarationError(f"the flat name '{name}' occurs twice; rename the field or give the part another suffix")
+    return {
+        name: ResultField(name=name, path=place.path, spec=place.spec, symbol=place.symbol, scope=place.scope)
+        for name, place in _flat(cls, "result", (Found, Axis)).items()
+    }
 
 
 def read(instance: Any, path: tuple[str, ...]) -> Any:

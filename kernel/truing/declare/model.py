@@ -443,7 +443,6 @@ def _of_effect(source: Effect[Any, Any], model: Model[Any, Any]) -> Iterator[str
 
 
 def _of_tolerance(source: Tolerance, model: Model[Any, Any]) -> Iterator[str]:
-    """Say what a tolerance names that the model does not have."""
     for name in source.on:
         input_field = model.input_fields.get(name)
         condition = name in model.conditions
@@ -509,7 +508,6 @@ def _names_in(formula: str) -> frozenset[str] | str:
 
 
 def _of_objective(objective: Any, model: Model[Any, Any]) -> Iterator[str]:
-    """Say what an objective names that the model does not have."""
     inputs, results = model.input_fields, model.result_fields
     if isinstance(objective, Vary):
         yield from _of_vary(objective, inputs)

@@ -74,7 +74,6 @@ class Published:
         return abs(value - self.value) <= self._distance() * (1 + ROUNDING) + ROUNDING * abs(self.value)
 
     def _distance(self) -> float:
-        """Return how far a number may lie from the printed one."""
         if self.rule == "words":
             return self.within
         if self.rule == "probability":

@@ -116,7 +116,6 @@ def _spreads(model: Model[Any, Any]) -> Iterator[Unread]:
 
 
 def _not_finite(model: Model[Any, Any]) -> Iterator[Unread]:
-    """Give defaults that are no finite numbers."""
     for name, field in model.input_fields.items():
         default = field.spec.default if isinstance(field.spec, Given) else None
         if isinstance(default, float) and not math.isfinite(default):

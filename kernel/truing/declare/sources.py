@@ -227,7 +227,6 @@ def _check_effect(effect: Effect[Any, Any]) -> None:
 
 
 def _check_parts(effect: Effect[Any, Any]) -> None:
-    """Refuse parts that are no division of the unknowns."""
     if not effect.parts:
         return
     named = [name for part in effect.parts for name in part]

@@ -392,15 +392,6 @@ def _settled(declared: Spread, name: str) -> str:
 GROWTH = {"up": 0.5, "down": -0.5, "both": 0.0}
 
 
-def width_of(spread: Spread, target: Target) -> float:
-    """Return the full band of a spread in SI. Raises UsageError where it has none of its own: off, or drawn."""
-    spread = settled(spread, target.value_of)
-    distribution = spread.resolve(target)
-    if distribution is None or not isinstance(spread, (Band, Grade, Zone)):
-        raise UsageError(_refusal(spread, target))
-    return float(distribution.width)
-
-
 def with_width(spread: Spread, target: Target, width: float) -> Spread:
     """Return the spread with another full band (SI): the same words, units and shape; a grade becomes a band.
 
@@ -417,21 +408,13 @@ def with_width(spread: Spread, target: Target, width: float) -> Spread:
     if isinstance(spread, Zone):
         return _zone(spread, target, width)
     if isinstance(spread, Grade):
-        return Band(_quantity(width, _unit(target)), "band")
-    raise UsageError(_refusal(spread, target))
+        return Band(_quantity(width, difference_unit(target.unit)), "band")
+    raise UsageError(f"the spread of '{target.name}' is {spread.text}: it has no width that could be chosen")
 
 
 def shift_per_width(spread: Spread) -> float:
     """Return by how much the middle moves with the width: half of what is added where one end of a zone stays."""
     return GROWTH[spread.grows] if isinstance(spread, Zone) else 0.0
-
-
-def _refusal(spread: Spread, target: Target) -> str:
-    return f"the spread of '{target.name}' is {spread.text}: it has no width that could be chosen"
-
-
-def _unit(target: Target) -> str:
-    return difference_unit(target.unit)
 
 
 def _amount(band: Band, target: Target, width: float) -> str:

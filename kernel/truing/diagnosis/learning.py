@@ -48,7 +48,7 @@ def first_noise(machine: Calibration) -> dict[str, NoiseModel]:
             powers = [driver[rows] ** power for driver in drivers for power in (1, 2)]
             columns = np.column_stack([slopes[rows], np.ones(len(rows)), *powers, values[rows]])
             triangle = np.asarray(np.linalg.qr(np.concatenate([triangle, columns]), mode="r"))
-        scale = max(_unexplained(triangle, len(here)), rounding(values[here]), 1e-300)
+        scale = max(_unexplained(triangle, len(here)), rounding(values[here], machine.records.measured[name][here]))
         given = _stated(machine, name, typical)
         at = machine.base[name] if typical or name in machine.records.sides else None
         noise[name] = NoiseModel(scale, given, given, typical=typical, at=at)
@@ -108,7 +108,7 @@ def _learnt(
     kept = weighted + clipped(innovations, tails) - innovations if is_noise else weighted
     scale = scale_of(kept, _short(channel, predicted, weights[channel.rows]), free)
     return NoiseModel(
-        max(scale, floor, 1e-300), before.given, weights, memory, tails, spread, typical,
+        max(scale, floor), before.given, weights, memory, tails, spread, typical,
         None if before.at is None else predicted,
     )  # fmt: skip
 

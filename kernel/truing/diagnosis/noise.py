@@ -26,8 +26,8 @@ HEAVIER = 1.92
 """In log-likelihood: tails that are no heavier than normal seem so by chance in one record of twenty."""
 READINGS_AT_ONCE = 16_384
 """Readings whose likelihood under every tail is taken in one pass."""
-SMALLEST_SHARE = 1e-6
-"""Of the readings: noise is no smaller, or it is rounding."""
+SMALLEST_SHARE, ROUNDED, SMALLEST = 1e-6, 1e-14, 1e-150
+"""Of the errors and of the readings: noise is no smaller, or it is rounding; the least whose square is not zero."""
 LARGEST_EXPONENT = 2.5
 """The noise differs between rows by at most exp(2.5), twelve times, to each side."""
 SPREAD_LEVEL = 0.01
@@ -125,9 +125,10 @@ def robust_sd(innovations: Matrix) -> float:
     return 1.4826 * float(np.median(np.abs(innovations - np.median(innovations))))
 
 
-def rounding(readings: Matrix) -> float:
-    """Return the standard deviation below which noise of readings of this size is rounding."""
-    return SMALLEST_SHARE * float(np.sqrt(np.mean(readings**2))) if len(readings) else 0.0
+def rounding(errors: Matrix, readings: Matrix) -> float:
+    """Return the standard deviation below which noise that leaves such errors of such readings is rounding."""
+    sizes = (float(np.sqrt(np.mean(each**2))) if len(each) else 0.0 for each in (errors, readings))
+    return max(SMALLEST, *(share * size for share, size in zip((SMALLEST_SHARE, ROUNDED), sizes, strict=True)))
 
 
 def tails_of(innovations: Matrix) -> Tails:

@@ -310,7 +310,7 @@ def _least(machine: Calibration, noise: NoiseModel, name: str, rows: Indices) ->
     """Return the smallest mean square, in units of the noise, that is more than rounding or the steps of the gauge."""
     values = machine.records.measured[name][rows]
     off = difference(values, machine.base[name][rows], noise.typical)
-    return max(rounding(off) ** 2, resolution_of(values) ** 2 / 12, 1e-300) / noise.scale**2
+    return max(rounding(off, values) ** 2, resolution_of(values) ** 2 / 12) / noise.scale**2
 
 
 def resolution_of(values: Matrix) -> float:

@@ -254,9 +254,10 @@ def _tree(value: Any) -> Any:
     return {"class": [name, {field.name: _tree(getattr(value, field.name)) for field in fields(value)}]}
 
 
-def _packed(array: np.ndarray[Any, Any]) -> list[Any]:
-    order = "F" if array.flags.f_contiguous and not array.flags.c_contiguous else "C"
-    return [array.dtype.str, list(array.shape), order, b64encode(array.tobytes(order=order)).decode("ascii")]  # type: ignore[arg-type]
+def _packed(array: np.ndarray[Any, Any]) -> str:
+    stream = io.BytesIO()
+    np.lib.format.write_array(stream, array, allow_pickle=False)
+    return b64encode(stream.getvalue()).decode("ascii")
 
 
 def _answer(tree: Any) -> Any:
@@ -270,18 +271,15 @@ def _answer(tree: Any) -> Any:
     if tag == "dict":
         return {_answer(key): _answer(part) for key, part in content}
     if tag == "array":
-        return _unpacked(*content)
+        return _unpacked(content)
     if tag == "number":
-        return _unpacked(*content)[()]
+        return _unpacked(content)[()]
     if tag == "class":
         name, parts = content
         return _classes[name](**{part: _answer(inner) for part, inner in parts.items()})
     raise NoDataError(f"'{tag}' is no kind of value")
 
 
-def _unpacked(kind: str, shape: list[int], order: str, content: str) -> Any:
-    dtype = np.dtype(kind)
-    if dtype.kind not in KINDS or order not in {"C", "F"}:
-        raise NoDataError(f"an array of '{kind}' is no plain data")
-    flat = np.frombuffer(bytearray(b64decode(content, validate=True)), dtype)
-    return flat.reshape(shape, order=order)  # type: ignore[call-overload]
+def _unpacked(content: str) -> np.ndarray[Any, Any]:
+    stream = io.BytesIO(b64decode(content, validate=True))
+    return np.lib.format.read_array(stream, allow_pickle=False)

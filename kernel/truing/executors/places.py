@@ -142,7 +142,8 @@ class _Part(Generic[J, A]):
     """Jobs that travel together, and their answers to come."""
 
     jobs: list[J]
-    future: Future[Timed[A]]
+    future: Future[Timed[A]] | None = None
+    """None until they are handed out."""
 
 
 class _Work(Generic[J, A]):
@@ -178,12 +179,14 @@ class _Work(Generic[J, A]):
     def cancel(self) -> None:
         """Give up what is under way."""
         for part in self._pending:
-            part.future.cancel()
+            if part.future is not None:
+                part.future.cancel()
 
     def _hand_out(self) -> None:
         if self._waiting:
-            jobs, self._waiting = self._waiting, []
-            self._pending.append(_Part(jobs, self._submitted(jobs)))
+            self._pending.append(_Part(self._waiting))
+            self._waiting = []
+            self._submit()
 
     def _first(self) -> Iterator[A]:
         """Yield the oldest answers. Jobs behind one that failed have none yet and are handed out again."""
@@ -191,7 +194,8 @@ class _Work(Generic[J, A]):
         part = self._pending.popleft()
         left = part.jobs[len(timed.answers) :]
         if left:
-            self._pending.appendleft(_Part(left, self._submitted(left)))
+            self._pending.appendleft(_Part(left))
+            self._submit()
         if timed.seconds > 0:
             fitting = int(self._place.moment * len(timed.answers) / timed.seconds)
             self._together = max(1, min(fitting, 2 * self._together, MOST_TOGETHER))
@@ -201,6 +205,7 @@ class _Work(Generic[J, A]):
         """Wait for the oldest answers, handing out again what was lost as often as is sensible."""
         while True:
             future = self._pending[0].future
+            assert future is not None  # all parts are handed out
             try:
                 return future.result(timeout=self._place.patience)
             except Exception as error:
@@ -209,28 +214,19 @@ class _Work(Generic[J, A]):
                     raise
                 loss = self._place.look_after() if waited else error
                 if loss is not None:
-                    self._hand_out_again(loss)
+                    self._submit(loss)
 
-    def _submitted(self, jobs: list[J]) -> Future[Timed[A]]:
+    def _submit(self, loss: Exception | None = None) -> None:
+        """Hand out the parts that are not; after a loss renew the place first, then every unanswered part again."""
         while True:
+            if loss is not None:
+                self._place.renew(loss)
             try:
-                return self._place.submit_together(self._function, jobs)
+                for part in self._pending:
+                    if part.future is None or (loss is not None and not answered(part.future)):
+                        part.future = self._place.submit_together(self._function, part.jobs)
+                return
             except Exception as error:
                 if not self._place.is_loss(error):
                     raise
-                self._hand_out_again(error)
-
-    def _hand_out_again(self, error: Exception) -> None:
-        """Renew the place and submit every unanswered part once more, in the same order."""
-        while True:
-            self._place.renew(error)
-            try:
-                for part in self._pending:
-                    if not answered(part.future):
-                        part.future = self._place.submit_together(self._function, part.jobs)
-            except Exception as again:
-                if not self._place.is_loss(again):
-                    raise
-                error = again
-                continue
-            return
+                loss = error

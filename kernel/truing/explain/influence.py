@@ -48,15 +48,6 @@ class Influence:
     moves: bool
 
 
-@dataclass(frozen=True)
-class Influences:
-    """What moves each result: by result, with the standard deviation (SI) of all that scatters, and what to know."""
-
-    of: Mapping[str, tuple[Influence, ...]]
-    sd: Mapping[str, float]
-    warnings: tuple[str, ...]
-
-
 def differentiable(setup: Setup) -> list[str]:
     """Return the inputs and conditions that a result can be differentiated by: numbers that are given."""
     numbers = [name for name, field in setup.model.input_fields.items() if field.kind == "float"]
@@ -65,13 +56,16 @@ def differentiable(setup: Setup) -> list[str]:
 
 def influences(
     setup: Setup, answers: Mapping[str, Any], sources: Sequence[str], *, progress: Progress = silent
-) -> Influences:
-    """Differentiate results of the function (by name, with their values) by sources and by all that scatters."""
+) -> tuple[dict[str, list[Influence]], dict[str, float], list[str]]:
+    """Differentiate results of the function (by name, with their values) by sources and by all that scatters.
+
+    Returns what moves each result, the standard deviation (SI) of all that scatters by result, and what to know.
+    """
     scatter = scatter_of(setup)
     columns = tuple(dict.fromkeys([*scatter.columns, *sources]))
     slopes_of, remarks = _slopes(setup, tuple(answers), columns, scatter=scatter, progress=progress)
     exact = exact_slopes(setup)
-    of: dict[str, tuple[Influence, ...]] = {}
+    of: dict[str, list[Influence]] = {}
     sd: dict[str, float] = {}
     for result, answer in answers.items():
         by_source = {**slopes_of[result], **{key: v for key, v in exact.get(result, {}).items() if key in columns}}
@@ -80,10 +74,10 @@ def influences(
         size = _size(answer)
         sd[result] = max(whole, 0.0) ** 0.5
         share = {name: part / whole if whole > 0 else 0.0 for name, part in variance.items()}
-        of[result] = tuple(
+        of[result] = [
             _influence(setup, scatter, name, by_source[name], size=size, share=share.get(name, 0.0)) for name in columns
-        )
-    return Influences(of, sd, tuple(remarks))
+        ]
+    return of, sd, remarks
 
 
 def _slopes(

@@ -169,10 +169,10 @@ def _moves(setup: Setup, sources: Sequence[str]) -> list[dict[str, Any]]:
     results = [
         name for name, field in setup.model.own_result_fields.items() if not getattr(field.spec, "is_table", False)
     ]
-    moved_by = influences(setup, {name: answers[name] for name in results}, sources)
+    moved_by, _, _ = influences(setup, {name: answers[name] for name in results}, sources)
     rows = []
     for result in results:
-        of = [influence for influence in moved_by.of[result] if influence.source in sources and influence.moves]
+        of = [influence for influence in moved_by[result] if influence.source in sources and influence.moves]
         alone = of[0] if of and len(sources) == 1 else None
         row = {
             "name": result,
@@ -398,8 +398,8 @@ def _moved_by(setup: Setup, field: ResultField, answer: Any, progress: Progress)
     name = field.name
     if name not in setup.model.own_result_fields:
         return {"scatter": None, "slopes": [], "remarks": []}
-    moved_by = influences(setup, {name: answer}, differentiable(setup), progress=progress)
-    of = moved_by.of[name]
+    moved_by, sds, remarks = influences(setup, {name: answer}, differentiable(setup), progress=progress)
+    of, sd = moved_by[name], sds[name]
     shares = []
     for one in sorted((one for one in of if one.share), key=lambda one: -abs(one.share)):
         names = [tolerance for tolerance, inner in setup.distributions().items() if one.source in inner]
@@ -407,14 +407,12 @@ def _moved_by(setup: Setup, field: ResultField, answer: Any, progress: Progress)
         shares.append({"name": one.source, "share": one.share, "tolerances": names, "spread": spread})
     steepest = sorted((one for one in of if one.moves and one.step), key=lambda one: -abs(one.step or 0.0))
     return {
-        "scatter": {"sd": step_text(setup, name, moved_by.sd[name]), "shares": shares}
-        if moved_by.sd[name] > 0
-        else None,
+        "scatter": {"sd": step_text(setup, name, sd), "shares": shares} if sd > 0 else None,
         "slopes": [
             {"name": one.source, "change": step_text(setup, name, one.step), "percent": _percent(one.relative)}
             for one in steepest
         ],
-        "remarks": list(moved_by.warnings),
+        "remarks": remarks,
     }
 
 

@@ -136,7 +136,9 @@ def evaluate_quantities(formula: Formula, values: Mapping[str, pint.Quantity[Any
     for name in formula.names & values.keys():
         quantity = registry.Quantity(values[name]).to_base_units()
         magnitudes[name] = np.asarray(quantity.magnitude, dtype=float)
-        dimensions[name] = _dimension_of(quantity, registry)
+        powers = {unit: power for unit, power in quantity.unit_items() if not registry.Unit(unit).dimensionless}
+        exact = {unit: _exact(power) for unit, power in powers.items()}  # without radians and counts
+        dimensions[name] = UnitsContainer(exact, non_int_type=Fraction)
     magnitude = evaluate(formula, magnitudes)
     proof = _Proof(formula, dimensions, magnitudes)
     dimension = proof.of(formula.right)
@@ -146,12 +148,6 @@ def evaluate_quantities(formula: Formula, values: Mapping[str, pint.Quantity[Any
     units = {unit: int(power) if power.denominator == 1 else float(power) for unit, power in exponents.items()}
     result: pint.Quantity[Any] = registry.Quantity(magnitude, registry.UnitsContainer(units))
     return result
-
-
-def _dimension_of(quantity: Any, registry: Any) -> UnitsContainer:
-    """Return base units and their exponents, without radians and counts."""
-    exponents = {unit: power for unit, power in quantity.unit_items() if not registry.Unit(unit).dimensionless}
-    return UnitsContainer({unit: _exact(power) for unit, power in exponents.items()}, non_int_type=Fraction)
 
 
 def _exact(exponent: Any) -> Fraction:

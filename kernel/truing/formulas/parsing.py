@@ -86,18 +86,13 @@ def _expression(text: str) -> ast.expr:
         raise _RefusalError(f"it cannot be read: {error.msg}{place}") from None
     except (ValueError, RecursionError, MemoryError, OverflowError):
         raise _RefusalError("it cannot be read: nested too deeply, or a number too long") from None
-    _keep_number_texts(body, stripped)
+    encoded = stripped.encode()
+    for node in ast.walk(body):
+        if isinstance(node, ast.Constant):  # its text as written stands in ``kind``, which Python uses for strings only
+            node.kind = encoded[node.col_offset : node.end_col_offset].decode().replace("_", "")
     if _levels(body) > DEEPEST:
         raise _RefusalError(f"it is nested deeper than {DEEPEST} levels; split it into named results")
     return body
-
-
-def _keep_number_texts(body: ast.expr, text: str) -> None:
-    """Let each number carry its text as written (in ``kind``, which Python uses for strings only)."""
-    encoded = text.encode()
-    for node in ast.walk(body):
-        if isinstance(node, ast.Constant):
-            node.kind = encoded[node.col_offset : node.end_col_offset].decode().replace("_", "")
 
 
 def _levels(body: ast.AST) -> int:
@@ -150,13 +145,7 @@ def _check_call(node: ast.Call) -> None:
         raise _RefusalError(f"there is no function {function!r}; {hint}")
     if node.keywords:
         raise _RefusalError(f"{function} is called with a keyword; arguments go by their place")
-    _count_arguments(function, len(node.args))
-    checks = [_check, _check_condition if function == "cases" else _check]
-    for index, argument in enumerate(node.args):
-        checks[index % 2](argument)
-
-
-def _count_arguments(function: str, count: int) -> None:
+    count = len(node.args)
     fewest, most = ARGUMENTS[function]
     if function == "cases" and (count < fewest or count % 2 == 0):
         raise _RefusalError(
@@ -165,6 +154,9 @@ def _count_arguments(function: str, count: int) -> None:
     if not fewest <= count <= most:
         wanted = str(fewest) if fewest == most else f"at least {fewest}" if most == ANY_NUMBER else f"{fewest}..{most}"
         raise _RefusalError(f"{function} takes {wanted} argument{'' if wanted == '1' else 's'}, here it has {count}")
+    checks = [_check, _check_condition if function == "cases" else _check]
+    for index, argument in enumerate(node.args):
+        checks[index % 2](argument)
 
 
 def _check_condition(node: Node) -> None:

@@ -78,11 +78,6 @@ def symbol_text(symbol: str) -> str:
     return "".join(parts.base) + subscript + "′" * parts.primes
 
 
-def word_text(name: str) -> str:
-    """Write the name of a quantity without a symbol: underscores become spaces."""
-    return printable(name.replace("_", " "))
-
-
 NUMBER: Final = re.compile(
     r"(?P<sign>[-+−]?)(?P<digits>(?:\d+(?:[\u2009\u202f\u00a0 ]\d{3})*(?:[.,]\d+)?|[.,]\d+))"
     r"(?:[eE](?P<exponent_sign>[-+−]?)(?P<exponent>\d+))?",

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from truing.formulas.layout import Writer
-from truing.formulas.symbols import GREEK, printable, read_number, read_symbol, word_text
+from truing.formulas.symbols import GREEK, printable, read_number, read_symbol
 
 SIGNS: Final = {
     "+": " + ", "-": " - ", "dot": r" \cdot ", "gap": r" \thinspace ", ",": r",\thinspace ", "==": " = ",
@@ -108,7 +108,7 @@ def symbol_latex(text: str, exponent: str | None = None) -> str:
 
 
 def _word(name: str) -> str:
-    return upright(word_text(name))
+    return upright(printable(name.replace("_", " ")))
 
 
 def _quantity(number: str, unit: str) -> str:

@@ -7,7 +7,7 @@ from html import escape
 from typing import Final
 
 from truing.formulas.layout import Writer
-from truing.formulas.symbols import printable, read_number, read_symbol, word_text
+from truing.formulas.symbols import printable, read_number, read_symbol
 
 THIN_GAP: Final = '<mspace width="0.1667em"></mspace>'
 SIGNS: Final = {
@@ -84,7 +84,7 @@ def symbol_mathml(text: str, exponent: str | None = None) -> str:
 
 
 def _word(name: str) -> str:
-    return f"<mtext>{escape(word_text(name))}</mtext>"
+    return f"<mtext>{escape(printable(name.replace('_', ' ')))}</mtext>"
 
 
 def _quantity(number: str, unit: str) -> str:

@@ -96,7 +96,6 @@ def _setup(document: InputsDocument, offer: Offer, folder: Path) -> Setup:
 
 
 def _of_plugin(offer: Offer, reading: InputsRead) -> list[tuple[tuple[str, ...], str]]:
-    """Say that a file is for another calculation."""
     named = reading.values.get(("plugin",), offer.name)
     if named in {offer.name, offer.model.name, offer.origin.name}:
         return []

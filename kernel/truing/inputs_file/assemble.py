@@ -50,7 +50,8 @@ def take_old_names(offer: Offer, reading: InputsRead) -> Iterator[tuple[tuple[st
         if ("inputs", new) in reading.values:
             yield ("inputs", old), f"'{old}' is the old name of '{new}', which is given too; leave '{old}' out"
         reading.values.setdefault(("inputs", new), value)
-        until = _next_major(offer.origin.name, offer.origin.version)
+        plugin, major = offer.origin.name, offer.origin.version.split(".")[0]
+        until = f"{plugin} {int(major) + 1}.0" if major.isdigit() else f"the next major release of {plugin}"
         reading.values["warnings", old] = f"'{old}' is now called '{new}'; the old name goes with {until}"
 
 
@@ -66,17 +67,11 @@ def unexplained(model: Model[Any, Any], document: InputsDocument) -> Iterator[tu
             yield ("inputs", name), f"{name} means nothing without {other}; state {other}{meant} beside it"
 
 
-def _next_major(plugin: str, version: str) -> str:
-    major = version.split(".")[0]
-    return f"{plugin} {int(major) + 1}.0" if major.isdigit() else f"the next major release of {plugin}"
-
-
 def spread_faults(model: Model[Any, Any], document: InputsDocument, values: StatedValues) -> Iterator[Fault]:
     """Resolve every tolerance against the nominals, so that a wrong unit or grade is known by its line."""
-    nominals = nominals_of(model, values)
+    nominals, spreads = nominals_of(model, values), spreads_of(model, values)
     for tolerance in model.tolerances.values():
-        stated = ("tolerances", tolerance.name) in values
-        spread = spreads_of(model, values)[tolerance.name]
+        stated, spread = ("tolerances", tolerance.name) in values, spreads[tolerance.name]
         for name in tolerance.on:
             try:
                 sentence = _unresolved(spread, name, model, nominals, stated=stated)
@@ -110,13 +105,10 @@ def spreads_of(model: Model[Any, Any], values: StatedValues) -> dict[str, Spread
     spreads: dict[str, Spread] = {}
     for tolerance in model.tolerances.values():
         stated = values.get(("tolerances", tolerance.name))
-        absent = all(_is_nan(nominals.get(name)) for name in tolerance.on)
+        values_on = [nominals.get(name) for name in tolerance.on]
+        absent = all(isinstance(value, float) and math.isnan(value) for value in values_on)
         spreads[tolerance.name] = Off() if absent and stated is None else stated or tolerance.spread
     return spreads
-
-
-def _is_nan(value: Any) -> bool:
-    return isinstance(value, float) and math.isnan(value)
 
 
 def studies_of(

@@ -161,7 +161,6 @@ def _after_long_text(text: str, position: int, mark: str) -> int:
 
 
 def _parts(key: str) -> KeyPath:
-    """Return the names of a dotted key."""
     if re.fullmatch(r"[A-Za-z0-9_-]+", key):
         return (key,)
     path: list[str] = []
@@ -281,14 +280,8 @@ class _Repair:
         table[path[-1]] = UNREADABLE if value is None else value
 
 
-class _Unreadable:
-    """Stands for a value that was named as a fault already."""
-
-    def __repr__(self) -> str:
-        return "unreadable"
-
-
-UNREADABLE = _Unreadable()
+UNREADABLE = object()
+"""Stands for a value that was named as a fault already."""
 
 
 def _meant(key: str, rest: str) -> tuple[str, str | None] | None:

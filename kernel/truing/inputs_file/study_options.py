@@ -70,7 +70,8 @@ def study_section(study: Study) -> Section:
 
 def _read_option(name: str, hint: Any, raw: Any, _: InputsRead) -> Any:
     """Return an option as the study wants it. Raises ValueError with one sentence."""
-    if isinstance(raw, bool) and not _takes_bool(hint):
+    takes_bool = hint is Any or hint is bool or bool in getattr(hint, "__args__", ())
+    if isinstance(raw, bool) and not takes_bool:
         raise SentenceError(f"{name} = {written(raw)} is no {_spoken(hint)}")
     try:
         value = _adapter(hint).validate_python(raw)
@@ -89,10 +90,6 @@ def _adapter(hint: Any) -> TypeAdapter[Any]:
     return TypeAdapter(
         hint, config=None if dataclasses.is_dataclass(hint) else ConfigDict(arbitrary_types_allowed=True)
     )
-
-
-def _takes_bool(hint: Any) -> bool:
-    return hint is Any or hint is bool or bool in getattr(hint, "__args__", ())
 
 
 def _wrong(name: str, hint: Any, raw: Any, error: Any) -> str:
@@ -165,7 +162,6 @@ def diagnose_section(model: Model[Any, Any]) -> Section:
 
 
 def _texts(examples: Mapping[str, str]) -> dict[str, Any]:
-    """Return the schema of a table of texts by name."""
     texts = {name: {"type": "string", "examples": [example]} for name, example in examples.items()}
     return {"type": "object", "properties": texts, "additionalProperties": False}
 
@@ -177,7 +173,6 @@ def _settable(model: Model[Any, Any]) -> dict[str, str]:
 
 
 def _per_file(model: Model[Any, Any], raw: Any, _: InputsRead) -> tuple[str, ...]:
-    """Take names of effects, of single unknowns and of inputs."""
     if not isinstance(raw, list) or not all(isinstance(name, str) for name in raw):
         raise SentenceError(f'per_file = {written(raw)} is no list of names; write ["sensor_offset"]')
     effects = model.known_effects
@@ -209,7 +204,6 @@ def _hold_out(model: Model[Any, Any], raw: Any, _: InputsRead) -> str:
 
 
 def _budget(model: Model[Any, Any], raw: Any, _: InputsRead) -> int:
-    """Take a number of calls."""
     if not isinstance(raw, int) or isinstance(raw, bool) or raw < 0:
         raise SentenceError(f"budget = {written(raw)} is no number of calls; write budget = 1000")
     return raw
@@ -259,7 +253,6 @@ def _ends(option: str, name: str, raw: Any, unit: str, *, may_be_open: bool = Fa
 
 
 def _by_result(option: str, raw: Any, model: Model[Any, Any], like: str) -> dict[str, Any]:
-    """Demand a table by results that rows can hold."""
     if not isinstance(raw, dict):
         raise SentenceError(f'{option} = {written(raw)} is no table; write {option} = {{ RESULT = "{like}" }}')
     for name in raw:
@@ -287,14 +280,12 @@ def _marks(option: str, model: Model[Any, Any], raw: Any, _: InputsRead) -> dict
 
 
 def _clipped(model: Model[Any, Any], raw: Any, _: InputsRead) -> dict[str, tuple[float, float]]:
-    """Take the ends of gauges, in SI."""
     fields = model.own_result_fields
     ends = _by_result("clipped", raw, model, "0..10 kN")
     return {name: _ends("clipped", name, text, fields[name].unit, may_be_open=True) for name, text in ends.items()}
 
 
 def _lognormal(model: Model[Any, Any], raw: Any, _: InputsRead) -> tuple[str, ...]:
-    """Take names of results whose errors are in proportion."""
     if not isinstance(raw, list) or not all(isinstance(name, str) for name in raw):
         raise SentenceError(f'lognormal = {written(raw)} is no list of results; write ["life"]')
     for name in raw:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import inspect
 import math
 from collections.abc import Callable, Mapping
@@ -15,6 +14,7 @@ import numpy as np
 from truing.declare.fields import Given, InputField, Loaded
 from truing.declare.near_miss import near_miss
 from truing.errors import TruingError, UnitError
+from truing.inputs_file.files import digest_of
 from truing.units import from_si, human_dimension, read_quantity, to_si
 from truing.units.grammar import shown
 from truing.units.names import PURE
@@ -233,11 +233,8 @@ def _series(input_field: InputField, raw: Any) -> Any:
     if isinstance(raw, dict) and set(raw) == {"values", "unit"} and isinstance(raw["values"], list):
         given = [f"{plain(v)} {raw['unit']}" if is_number(v) else v for v in raw["values"]]
     if not isinstance(given, list) or not given:
-        raise SentenceError(
-            f'{input_field.name} is a series; write {input_field.name} = ["1 {unit}", ...]'
-            if unit
-            else _list_like(input_field)
-        )
+        like = f'["1 {unit}", ...]' if unit else "[...]"
+        raise SentenceError(f"{input_field.name} is a series; write {input_field.name} = {like}")
     if unit is None:
         return _plain_series(input_field, given)
     values = [read_number(f"{input_field.name}[{index}]", one, unit) for index, one in enumerate(given, start=1)]
@@ -246,10 +243,6 @@ def _series(input_field: InputField, raw: Any) -> Any:
     if not input_field.spec.along:
         return tuple(values)
     return np.array(values, dtype=float)
-
-
-def _list_like(input_field: InputField) -> str:
-    return f"{input_field.name} is a series; write {input_field.name} = [...]"
 
 
 def is_number(value: Any) -> bool:
@@ -289,8 +282,7 @@ def _loaded(input_field: InputField, raw: Any, reading: InputsRead) -> Any:
             raise SentenceError(
                 f"{input_field.name}: there is no file {shown(table['file'])} beside the inputs file ({path})"
             )
-        with path.open("rb") as stream:
-            reading.files[input_field.name] = hashlib.file_digest(stream, "sha256").hexdigest()
+        reading.files[input_field.name] = digest_of(path)
         reading.tables[input_field.name] = {"file": str(path.absolute()), **options}
         return spec.reader(path, **options)
     except SentenceError:

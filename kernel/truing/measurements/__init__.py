@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from truing.measurements.csv_text import LeftOut, RowCount, TableSource, TableText
+from truing.measurements.csv_text import RowCount, TableSource, TableText
 from truing.measurements.overriding import CasesFile, RowsFile, StatedCase, read_cases, read_rows
 from truing.measurements.table import EXCEL, PLAIN, DataTable, TableStyle, read_table, table_text
 
@@ -11,7 +11,6 @@ __all__ = [
     "PLAIN",
     "CasesFile",
     "DataTable",
-    "LeftOut",
     "RowCount",
     "RowsFile",
     "StatedCase",

@@ -128,8 +128,8 @@ class CsvFile:
 
     def count(self) -> RowCount:
         """Return how many rows the file holds as far as it is read, with those that are no rows left out."""
-        left = tuple(LeftOut(reason, tuple(lines)) for reason, lines in self.left_out.items())
-        return RowCount(self.faults.file, self.rows + sum(len(left_out.lines) for left_out in left), left)
+        count = RowCount(self.faults.file, self.rows + sum(map(len, self.left_out.values())))
+        return count.without_all(self.left_out)
 
     def chunks(self) -> Iterator[tuple[list[tuple[str, ...]], tuple[int, ...]]]:
         """Give columns of text with the line of each row, thousands at a time; lines that are no rows are faults."""
@@ -218,7 +218,6 @@ def opened(path: TableSource) -> Iterator[CsvFile]:
 
 
 def _foreign_line(path: Path) -> int:
-    """Return the first line that is no UTF-8."""
     with path.open("rb") as stream:
         for count, line in enumerate(stream, start=1):
             try:
@@ -402,25 +401,20 @@ MOST_REASONS = 12
 
 
 @dataclass(frozen=True)
-class LeftOut:
-    """Rows that are not used, all for one reason (a clause: "begins with '#'"), and the lines they stand in."""
-
-    reason: str
-    lines: tuple[int, ...]
-
-
-@dataclass(frozen=True)
 class RowCount:
-    """The rows of one file: how many it holds, and which are left out."""
+    """The rows of one file: how many it holds, and the lines of those that are left out, by reason.
+
+    A reason is a clause: "begins with '#'".
+    """
 
     file: str
     in_file: int
-    left_out: tuple[LeftOut, ...] = ()
+    left_out: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
 
     @property
     def unused(self) -> int:
         """Rows that are left out."""
-        return sum(len(omission.lines) for omission in self.left_out)
+        return sum(map(len, self.left_out.values()))
 
     @property
     def used(self) -> int:
@@ -429,33 +423,29 @@ class RowCount:
 
     def without(self, reason: str, lines: Iterable[int]) -> RowCount:
         """Return the count with further rows left out, joined to those that are left out for the same reason."""
-        taken = tuple(int(line) for line in lines)
-        if not taken:
-            return self
-        before = {omission.reason: omission.lines for omission in self.left_out}
-        by_reason = {**before, reason: tuple(sorted((*before.get(reason, ()), *taken)))}
-        return replace(self, left_out=tuple(LeftOut(*reason_and_lines) for reason_and_lines in by_reason.items()))
+        return self.without_all({reason: lines})
 
     def without_all(self, lines: Mapping[str, Iterable[int]]) -> RowCount:
         """Return the count with rows left out for several reasons."""
-        count = self
+        left = dict(self.left_out)
         for reason, taken in lines.items():
-            count = count.without(reason, taken)
-        return count
+            joined = (*left.get(reason, ()), *map(int, taken))
+            left |= {reason: tuple(sorted(joined))} if joined else {}
+        return replace(self, left_out=left)
 
     def sentence(self) -> str:
         """Say how many rows there are, and what became of those that are left out: "5 rows, 4 used; left out: ..."."""
         rows = counted(self.in_file)
         if not self.left_out:
             return f"{rows}, all used"
-        named = [f"{_where(left_out.lines)} ({left_out.reason})" for left_out in self.left_out[:MOST_REASONS]]
-        more = sum(len(left_out.lines) for left_out in self.left_out[MOST_REASONS:])
+        named = [f"{_where(lines)} ({reason})" for reason, lines in self.left_out.items()][:MOST_REASONS]
+        more = sum(map(len, [*self.left_out.values()][MOST_REASONS:]))
         named += [f"{more} more for other reasons"] if more else []
         return f"{rows}, {self.used} used; {self.unused} left out: {', '.join(named)}"
 
     def as_json(self) -> dict[str, Any]:
         """Return the count as data."""
-        left = [{"reason": omission.reason, "lines": list(omission.lines)} for omission in self.left_out]
+        left = [{"reason": reason, "lines": list(lines)} for reason, lines in self.left_out.items()]
         return {"in_file": self.in_file, "used": self.used, "left_out": left}
 
 

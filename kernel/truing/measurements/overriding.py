@@ -66,11 +66,6 @@ class RowsFile:
     def __len__(self) -> int:
         return len(self.lines)
 
-    def placed(self, name: str) -> NDArray[np.float64] | None:
-        """Return what each row says of an input, a condition or an axis, SI (n,); None where no column has it."""
-        kinds: tuple[Mapping[str, Any], ...] = (self.columns, self.axes, self.series)
-        return next((np.asarray(kind[name], dtype=float) for kind in kinds if name in kind), None)
-
     def taken(self, places: NDArray[np.intp] | slice) -> RowsFile:
         """Return some of the rows, in this order."""
 
@@ -126,7 +121,6 @@ def _no_input(header: Header, setup: Setup, offer: Offer) -> str:
 
 
 def _known(setup: Setup) -> dict[str, Known]:
-    """Return what a row may override."""
     return {**{name: setup.unit_of(name) for name in setup.conditions}, **setup.model.input_fields}
 
 
@@ -171,7 +165,6 @@ def read_rows(path: TableSource, offer: Offer, setup: Setup) -> RowsFile:
 
 
 def _axes(setup: Setup) -> dict[str, Known]:
-    """Return the axes on which a row may say where it lies, with their units."""
     fields = setup.model.own_result_fields.items()
     return {name: result.unit for name, result in fields if isinstance(result.spec, Axis) and not result.spec.is_table}
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 import csv
 import math
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from io import StringIO
+from itertools import chain
 from pathlib import Path
 from typing import Any, TypeGuard
 
@@ -140,32 +141,26 @@ def _column(
     unknown: Callable[[Header], str],
 ) -> _Column:
     """Return what takes the cells of a column, with what is wrong with its header."""
-    name = header.name
-    what = known.get(name)
-    if isinstance(what, InputField):
-        if what.kind == "file" or (what.kind == "series" and not what.spec.along):
-            return _Column(header, f"{name} cannot change from row to row; state it in the inputs file")
-        if what.kind in WORDS:
-            return _Words(header, word_header_fault(name, header.unit), what)
-        return _Numbers(header, header_fault(header, what.unit), what.unit, what, is_strict=not is_measured)
-    if isinstance(what, Source):
-        fault = header_fault(header, what.unit) if what.unit is not None else ""
-        fault = f"{fault} ('{what.made}' is made from it)" if fault else ""
-        return _Numbers(header, fault, what.unit, is_strict=not is_measured)
+    name, what = header.name, known.get(header.name)
+    field_of = what if isinstance(what, InputField) else None
+    if field_of is not None and (field_of.kind == "file" or (field_of.kind == "series" and not field_of.spec.along)):
+        return _Column(header, f"{name} cannot change from row to row; state it in the inputs file")
+    if field_of is not None and field_of.kind in WORDS:
+        return _Words(header, word_header_fault(name, header.unit), field_of)
     if what is not None:
-        return _Numbers(header, header_fault(header, what), what, is_strict=not is_measured)
-    unit = _unit_of(name.removeprefix(SIGMA), known) if is_measured and name.startswith(SIGMA) else None
-    if unit is not None:
-        return _Numbers(header, header_fault(header, difference_unit(unit)), difference_unit(unit), is_sigma=True)
+        unit = _unit(what)
+        fault = header_fault(header, unit) if unit is not None else ""
+        fault += f" ('{what.made}' is made from it)" if fault and isinstance(what, Source) else ""
+        return _Numbers(header, fault, unit, field_of, is_strict=not is_measured)
+    measured = known.get(name.removeprefix(SIGMA)) if is_measured and name.startswith(SIGMA) else None
+    if not (isinstance(measured, InputField) and measured.kind not in NUMBERS) and _unit(measured) is not None:
+        unit = difference_unit(_unit(measured) or "")
+        return _Numbers(header, header_fault(header, unit), unit, is_sigma=True)
     return _Texts(header, unknown(header), is_words=name in words or name == RUN)
 
 
-def _unit_of(name: str, known: Mapping[str, Known]) -> str | None:
-    """Return the unit of numbers that are known by their name."""
-    what = known.get(name)
-    if isinstance(what, InputField):
-        return what.unit if what.kind in NUMBERS else None
-    return what.unit if isinstance(what, Source) else what
+def _unit(what: Known | None) -> str | None:
+    return what.unit if isinstance(what, (InputField, Source)) else what
 
 
 @dataclass
@@ -195,7 +190,7 @@ class _Numbers(_Column):
 
     def take(self, cells: Sequence[str], lines: Sequence[int], file: CsvFile) -> None:
         """Take cells: numbers, empty, or where that is allowed a word for a missing value."""
-        values = read_cells(cells, lines, self.header, file, is_strict=self.is_strict)
+        values = self._read(cells, lines, file)
         if self.is_sigma and (values < 0).any():
             line = lines[int((values < 0).argmax())]
             file.faults.add(f"{self.header.name}: a standard deviation is 0 or more", line)
@@ -204,6 +199,20 @@ class _Numbers(_Column):
         self.parts.append(self._in_si(values, cells, lines, file.faults))
         if self.item is not None:
             _keep_bounds(self.item, self.parts[-1], lines, file.faults)
+
+    def _read(self, cells: Sequence[str], lines: Sequence[int], file: CsvFile) -> NDArray[np.float64]:
+        """Return numbers as they stand; what is none is a fault with its line."""
+        fast = plain_numbers(cells)
+        if fast is not None and not (file.decimal_comma and any("." in cell for cell in cells)):
+            return fast
+        values = np.full(len(cells), math.nan)
+        for row, cell in enumerate(cells):
+            try:
+                values[row] = read_cell(cell, decimal_comma=file.decimal_comma, may_be_missing_word=not self.is_strict)
+                file.marks.take(self.header.name, cell.strip(), lines[row])
+            except ValueError as error:
+                file.faults.add(f"{self.header.name}: {error}", lines[row])
+        return values
 
     def _in_si(
         self, values: NDArray[np.float64], cells: Sequence[str], lines: Sequence[int], faults: Faults
@@ -227,7 +236,6 @@ class _Numbers(_Column):
 
 
 def _keep_bounds(input_field: InputField, values: NDArray[np.float64], lines: Sequence[int], faults: Faults) -> None:
-    """Say which rows break a declared bound."""
     distinct = np.unique(values[np.isfinite(values)]).tolist()
     tried = distinct if getattr(input_field.spec, "whole", False) else [*distinct[:1], *distinct[-1:]]
     if any(broken_bound(input_field, value) for value in tried):
@@ -295,24 +303,6 @@ class _Texts(_Column):
 def is_number(column: Any) -> TypeGuard[NDArray[np.float64]]:
     """Whether a column holds numbers."""
     return isinstance(column, np.ndarray) and column.dtype != object
-
-
-def read_cells(
-    cells: Sequence[str], lines: Sequence[int], header: Header, file: CsvFile, *, is_strict: bool
-) -> NDArray[np.float64]:
-    """Return the numbers of a column as they stand; what is none is a fault with its line."""
-    fast = plain_numbers(cells)
-    if fast is not None and not (file.decimal_comma and any("." in cell for cell in cells)):
-        return fast
-    values = np.empty(len(cells))
-    for row, cell in enumerate(cells):
-        try:
-            values[row] = read_cell(cell, decimal_comma=file.decimal_comma, may_be_missing_word=not is_strict)
-            file.marks.take(header.name, cell.strip(), lines[row])
-        except ValueError as error:
-            values[row] = math.nan
-            file.faults.add(f"{header.name}: {error}", lines[row])
-    return values
 
 
 def in_si(values: NDArray[np.float64], unit: str) -> NDArray[np.float64]:
@@ -388,22 +378,13 @@ def table_text(headers: Sequence[str], columns: Sequence[Iterable[Any]], *, form
         for quoting in (csv.QUOTE_MINIMAL, csv.QUOTE_ALL)
     )
     alone = [""] if form.delimiter != "," and len(headers) == 1 else []
-    for row in _rows(headers, columns, form):
+    # plain Python values are written much faster than numpy's
+    plain = (column.tolist() if hasattr(column, "tolist") else column for column in columns)
+    for values in chain([headers], zip(*plain, strict=True)):
+        row = [_cell(value, form) for value in values]
         # a line that begins with # would be a comment; a column alone must show what parts the cells
         (everything if row and row[0].lstrip().startswith("#") else minimal).writerow(row + alone)
     return stream.getvalue()
-
-
-def _rows(headers: Sequence[str], columns: Sequence[Iterable[Any]], form: TableStyle) -> Iterator[list[str]]:
-    yield [_cell(header, form) for header in headers]
-    for row in zip(*(_plain(column) for column in columns), strict=True):
-        yield [_cell(value, form) for value in row]
-
-
-def _plain(column: Any) -> Iterable[Any]:
-    """Return plain Python values, which are written much faster than numpy's."""
-    plain: Iterable[Any] = column.tolist() if hasattr(column, "tolist") else column
-    return plain
 
 
 def _cell(value: Any, form: TableStyle) -> str:

@@ -33,7 +33,6 @@ from truing.report.document import (
 )
 from truing.report.equations import equation_of
 from truing.report.figures import draw
-from truing.setup import Setup
 
 RANK = {"short": 0, "normal": 1, "full": 2}
 LONGEST_TABLE = {"short": 20, "normal": 60, "full": 1000}
@@ -75,17 +74,12 @@ class Writing:
     detail: str
     figures: Figures
 
-    @property
-    def setup(self) -> Setup:
-        """The setup of the run."""
-        return self.calculation.setup
-
 
 def result_chapters(writing: Writing) -> Iterator[Chapter]:
     """Write the model's sections at this level of detail, then the studies, then the rest."""
     rank = RANK.get(writing.detail, 1)
     named: set[str] = set()
-    for section in writing.setup.model.sheet:
+    for section in writing.calculation.setup.model.sheet:
         named.update(section.names)
         if RANK[section.level] <= rank:
             chapter = _of_section(writing, section)
@@ -97,7 +91,9 @@ def result_chapters(writing: Writing) -> Iterator[Chapter]:
         return
     yield from _studies(writing)
     rest = [
-        name for name in writing.setup.model.result_fields if name not in named and name in writing.calculation.answers
+        name
+        for name in writing.calculation.setup.model.result_fields
+        if name not in named and name in writing.calculation.answers
     ]
     if rest:
         yield Chapter("Further results", tuple(_results(writing, rest)))
@@ -116,7 +112,7 @@ def _of_section(writing: Writing, section: Section) -> Chapter:
 
 def _main_results(writing: Writing) -> Iterator[Chapter]:
     """Write the values of the normal sections without their formulas."""
-    model = writing.setup.model
+    model = writing.calculation.setup.model
     sections = [section for section in model.sheet if section.level == "normal"]
     names = [name for section in sections for name in section.names] or (
         list(model.result_fields) if not model.sheet else []
@@ -140,7 +136,7 @@ def _is_scalar(value: Any) -> bool:
 def _results(writing: Writing, names: Sequence[str]) -> Iterator[BlockView]:
     """Write single results as entries, long axes as entries with their range, short ones as tables."""
     for name in names:
-        spec = writing.setup.model.result_fields[name].spec
+        spec = writing.calculation.setup.model.result_fields[name].spec
         if not (isinstance(spec, Axis) and spec.is_table):
             yield _entry(writing, name, with_formula=True)
     yield from _axis_tables(writing, names)
@@ -148,10 +144,12 @@ def _results(writing: Writing, names: Sequence[str]) -> Iterator[BlockView]:
 
 def _entry(writing: Writing, name: str, *, with_formula: bool) -> ResultEntry:
     """Say a result: its formula, and its value where the formula does not end with it."""
-    result, answers = writing.setup.model.result_fields[name], writing.calculation.answers
+    result, answers = writing.calculation.setup.model.result_fields[name], writing.calculation.answers
     absent = writing.calculation.absent.get(name, "")
     is_scalar = _is_scalar(answers[name])
-    equation = equation_of(writing.setup, answers, result) if with_formula and not (absent and is_scalar) else None
+    equation = (
+        equation_of(writing.calculation.setup, answers, result) if with_formula and not (absent and is_scalar) else None
+    )
     symbol = (Marked("symbol", result.symbol), " ") if result.symbol else ()
     value: Text = ""
     if absent:
@@ -159,14 +157,14 @@ def _entry(writing: Writing, name: str, *, with_formula: bool) -> ResultEntry:
     elif not is_scalar:
         along = result.along if isinstance(result.spec, Found) else ""
         words = f"{np.size(answers[name])} values" + (f" along {along}" if along and along != name else "")
-        low, high, unit = format_ends(answers[name], writing.setup.print_unit(name))
+        low, high, unit = format_ends(answers[name], writing.calculation.setup.print_unit(name))
         extent = Value(f"{pretty(low)} … {pretty(high)}", unit) if low else Value("no finite value")
         value = (*symbol, *(("is ",) if symbol else ()), Marked("strong", extent), " ", Marked("aside", f"({words})"))
     elif equation is None or equation.departs:
-        printed = Value(*format_value(answers[name], writing.setup.print_unit(name), result.digits))
+        printed = Value(*format_value(answers[name], writing.calculation.setup.print_unit(name), result.digits))
         value = (*symbol, *(("= ",) if symbol else ()), Marked("strong", printed))
         if equation is not None:
-            on_results = any(active.effect.place == "results" for active in writing.setup.effects)
+            on_results = any(active.effect.place == "results" for active in writing.calculation.setup.effects)
             value += (" ", Marked("aside", DEPARTURES[on_results]))
     method = with_source(getattr(result.spec, "method", ""), getattr(result.spec, "source", ""))
     return ResultEntry(name, label_of(result.spec.note, name), equation, value, method)
@@ -177,7 +175,7 @@ def _axis_tables(writing: Writing, names: Sequence[str]) -> Iterator[TableView]:
 
     Where there are too many rows they are evenly thinned.
     """
-    fields, answers = writing.setup.model.result_fields, writing.calculation.answers
+    fields, answers = writing.calculation.setup.model.result_fields, writing.calculation.answers
     by_axis: dict[str, list[str]] = {}
     for name in names:
         result = fields[name]
@@ -186,7 +184,10 @@ def _axis_tables(writing: Writing, names: Sequence[str]) -> Iterator[TableView]:
     for axis, columns in by_axis.items():
         axis_field = fields.get(axis)
         is_table = axis_field is not None and isinstance(axis_field.spec, Axis) and axis_field.spec.is_table
-        units = {name: writing.setup.print_unit(name) for name in (*([axis] if axis in answers else []), *columns)}
+        units = {
+            name: writing.calculation.setup.print_unit(name)
+            for name in (*([axis] if axis in answers else []), *columns)
+        }
         length = len(answers[columns[-1]])
         most = LONGEST_TABLE[writing.detail] if is_table else AXIS_ROWS[writing.detail]
         if length <= most or writing.detail == "full" or is_table:

@@ -32,23 +32,21 @@ MOST_STEPS = 7
 
 def main_covariates(diagnosis: DiagnosisResult) -> list[Covariate]:
     """Return what residuals are drawn over: the covariate of every cause and of the remainder, else the main one."""
-    found = [_guilty(diagnosis, cause.effect) for cause in diagnosis.causes]
     covariates = diagnosis.records.covariates
+    found = [_followed(diagnosis, cause.effect) for cause in diagnosis.causes]
     if diagnosis.remainder is not None:
         found += [covariates[name] for name in diagnosis.remainder.depends_on[:2] if name in covariates]
-    unique = {item.name: item for item in found if item is not None}
-    if not unique and (main := _main(diagnosis)) is not None:
-        unique = {main.name: main}
-    return list(unique.values())[:3]
+    found = [item for item in found if item is not None] or [_main(diagnosis)]
+    return list({item.name: item for item in found if item is not None}.values())[:3]
 
 
-def _guilty(diagnosis: DiagnosisResult, cause: str) -> Covariate | None:
+def _followed(diagnosis: DiagnosisResult, cause: str) -> Covariate | None:
     """Return the covariate that a cause follows: the condition it needs that takes most values, else the main one."""
     effect = diagnosis.setup.model.known_effects.get(cause)
     covariates = diagnosis.records.covariates
     needs = [covariates[need.name] for need in effect.needs if need.name in covariates] if effect is not None else []
-    rich = sorted((item for item in needs if _places(item) >= MOST_PLACES), key=_places, reverse=True)
-    return rich[0] if rich else _main(diagnosis)
+    rich = [item for item in needs if _places(item) >= MOST_PLACES]
+    return max(rich, key=_places) if rich else _main(diagnosis)
 
 
 def _main(diagnosis: DiagnosisResult) -> Covariate | None:

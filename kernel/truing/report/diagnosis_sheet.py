@@ -215,7 +215,12 @@ def _cause(diagnosis: DiagnosisResult, drawn: Figures) -> ChapterParts:
         title = "Ranking of the explanations"
         caption = f"{title}; blue is what this data does not exclude."
         yield drawn.view(title, partial(figures.ranking_bars, diagnosis), caption)
-    yield from _residuals(diagnosis, drawn)
+    for covariate in figures.main_covariates(diagnosis):
+        for curves in figures.shown_curves(diagnosis):
+            when = ", before and after" if figures.has_changed(curves) else ""
+            title = f"Residuals of {spoken(curves.result)} over {spoken(covariate.name)}{when}"
+            caption = f"{title}. The grey band is the noise floor.{figures.thinning_words(diagnosis, curves)}"
+            yield drawn.view(title, partial(figures.over_covariate, diagnosis, curves, covariate), caption)
     sentences = list(map(prose, diagnosis.inseparable))
     yield from sentences
     yield from _sight(diagnosis)
@@ -252,11 +257,9 @@ def _named(diagnosis: DiagnosisResult) -> ChapterParts:
     for cause, (name, _, alike, _) in zip(diagnosis.causes, rows, strict=True):
         if cause.same_as:
             yield f"the same curve as {name} on this data: {alike}"
-    if len(rows) < 2:
-        yield table_of("Named", heads[:-1], [row[:-1] for row in rows])
-        return
+    shown = slice(None) if len(rows) > 1 else slice(-1)
     note = "Share: of the mean squares of what the named causes add to the model, over all rows in units of the noise."
-    yield table_of("Named", heads, rows, (3,), note)
+    yield table_of("Named", heads[shown], [row[shown] for row in rows], (3,), note if len(rows) > 1 else "")
 
 
 def _near(diagnosis: DiagnosisResult) -> Iterator[str]:
@@ -327,15 +330,6 @@ def _judged(alternative: Alternative, diagnosis: DiagnosisResult) -> str:
     if best.causes and set(best.causes) < set(alternative.causes):
         return "adds nothing"
     return "excluded" if alternative.behind >= figures.NEAR else "needs more for the same"
-
-
-def _residuals(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[BlockView]:
-    for covariate in figures.main_covariates(diagnosis):
-        for curves in figures.shown_curves(diagnosis):
-            when = ", before and after" if figures.has_changed(curves) else ""
-            title = f"Residuals of {spoken(curves.result)} over {spoken(covariate.name)}{when}"
-            caption = f"{title}. The grey band is the noise floor.{figures.thinning_words(diagnosis, curves)}"
-            yield drawn.view(title, partial(figures.over_covariate, diagnosis, curves, covariate), caption)
 
 
 def _sight(diagnosis: DiagnosisResult) -> ChapterParts:
@@ -530,13 +524,10 @@ def _ties(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
     for tie in diagnosis.ties:
         names = listed([together([name]) for name in tie.explanations])
         yield Paragraph(f"No measurement proposed here tells {names} apart; a fact from elsewhere does.")
-        facts = [
-            (
-                together([fact.explanation]), spoken(fact.quantity.removeprefix("input:")), fact.note or ABSENT,
-                amount_text(readable(fact.value)),
-            )
-            for fact in tie.facts
-        ]  # fmt: skip
+        facts = []
+        for fact in tie.facts:
+            what, size = spoken(fact.quantity.removeprefix("input:")), amount_text(readable(fact.value))
+            facts.append((together([fact.explanation]), what, fact.note or ABSENT, size))
         if facts:
             heads = ("If it is", "then this quantity", "that is", "has this value")
             yield table_of("Facts that decide", heads, facts, (3,))

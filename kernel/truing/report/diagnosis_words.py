@@ -290,7 +290,15 @@ def _next_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
     for point in results:
         yield f"measure {settings_text(point)}: it separates {pair_text(point)}."
     if settings:
-        yield plan_text(settings)
+        needed, first = settings[0].needed, settings_text(settings[0])
+        pairs = listed([pair_text(point) for point in settings])
+        if needed > len(settings):
+            yield f"{needed} points like {first} would be needed to separate {pairs}."
+        elif needed < 2:
+            yield f"measure next at {first}: it separates {pairs}."
+        else:
+            places = "; ".join(settings_text(point) for point in settings[:needed])
+            yield f"measure next at {places}: these {needed} points together separate {pairs}."
     yield from map(tie_text, diagnosis.ties)
     if diagnosis.next or diagnosis.ties:
         return
@@ -298,18 +306,6 @@ def _next_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
         yield "no other explanation comes near; there is nothing left to separate."
     if diagnosis.verdict == "one_of":
         yield "no setting can be proposed that tells them apart; another record, of other conditions, may."
-
-
-def plan_text(points: Sequence[NextPoint]) -> str:
-    """Say what settings to measure are worth: that they separate, or how many of them would be needed."""
-    count, needed = len(points), points[0].needed
-    pairs = listed(list(dict.fromkeys(pair_text(point) for point in points)))
-    if needed > count:
-        return f"{needed} points like {settings_text(points[0])} would be needed to separate {pairs}."
-    if needed < 2:
-        return f"measure next at {settings_text(points[0])}: it separates {pairs}."
-    places = "; ".join(settings_text(point) for point in points[:needed])
-    return f"measure next at {places}: these {needed} points together separate {pairs}."
 
 
 def pair_text(point: NextPoint) -> str:

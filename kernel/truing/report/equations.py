@@ -49,13 +49,15 @@ def equation_of(setup: Setup, answers: Mapping[str, Any], result: ResultField) -
     numeric = result.spec.numeric
     departing = _departing(formula, fields, numbered, answers.get(result.name), result) if plain else None
     shown = answers.get(result.name) if departing is None else departing
+    printed = setup.print_unit(result.name)
+    units = (result.unit, printed) if numeric and printed != result.unit else (printed,)
     return Equation(
         formula=formula,
         name=result.name,
         symbol=result.symbol,
         symbols={name: field.symbol for name, field in fields.items() if field.symbol},
         numbers={n: _number(setup, fields[n], v, numeric=numeric) for n, v in numbered.items()} if plain else None,
-        results=_results(setup, result, shown, numeric=numeric) if _is_single(shown) else (),
+        results=tuple(Value(*format_value(shown, unit, result.digits)) for unit in units) if _is_single(shown) else (),
         departs=departing is not None,
     )
 
@@ -97,15 +99,6 @@ def _number(setup: Setup, field: InputField | ResultField, value: Any, *, numeri
     if numeric:
         return format_value(value, field.unit, digits)[0], ""
     return format_value(value, difference_unit(setup.print_unit(field.name)), digits)
-
-
-def _results(setup: Setup, result: ResultField, value: Any, *, numeric: bool) -> tuple[Value, ...]:
-    """Return the result as the formula gives it and, where that is another unit, as it is printed."""
-    unit = setup.print_unit(result.name)
-    last = Value(*format_value(value, unit, result.digits))
-    if numeric and unit != result.unit:
-        return Value(*format_value(value, result.unit, result.digits)), last
-    return (last,)
 
 
 def lines(writer: Writer, equation: Equation, *, limit: float = LINE) -> list[EquationLine]:

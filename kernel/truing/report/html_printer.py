@@ -123,18 +123,14 @@ def _unbroken(markup: str) -> Any:
 
 def _is_wide(entry: ResultEntry) -> bool:
     """Tell whether the formula of an entry needs the whole width of the page."""
-    return entry.equation is not None and max(line.width for line in _lines(entry.equation)) > COLUMN
-
-
-def _lines(equation: Equation) -> list[equations.EquationLine]:
-    return equations.lines(MATHML, equation)
+    return entry.equation is not None and max(line.width for line in equations.lines(MATHML, entry.equation)) > COLUMN
 
 
 def _equation(equation: Equation) -> Any:
     """Set a formula as blocks of MathML, one a line; ``--room`` is the width in em for which paper keeps room."""
     alternative = escape(f"{equation.name} = {equation.formula.text}")
     blocks = []
-    lines = _lines(equation)
+    lines = equations.lines(MATHML, equation)
     room = f' style="--room: {WIDEST * max(line.width for line in lines):.0f}"'
     for index, line in enumerate(lines):
         label = f' alttext="{alternative}"' if index == 0 else ""

@@ -95,19 +95,13 @@ def _table(table: TableView) -> Iterator[str]:
         yield f"**{escaped(table.title)}**"
     titles = [escaped(column.heading) for column in table.columns]
     rule = ["---:" if column.kind == "number" else "---" for column in table.columns]
-    states = table.states or ("",) * len(table.rows)
-    rows = [
-        [_cell(cell, is_marked=state == "marked") for cell in row]
-        for row, state in zip(table.rows, states, strict=True)
-    ]
+    rows = [[_said(cell) for cell in row] for row in table.rows]
+    for row, state in zip(rows, table.states, strict=False):
+        if state == "marked":
+            row[:] = [f"**{text}**" if text else text for text in row]
     yield _rows([titles, rule, *rows])
     if table.note:
         yield _said(table.note)
-
-
-def _cell(cell: Text, *, is_marked: bool) -> str:
-    text = _said(cell)
-    return f"**{text}**" if is_marked and text else text
 
 
 def _entry(entry: ResultEntry) -> Iterator[str]:

@@ -65,6 +65,7 @@ def sandbox_arguments() -> list[str]:
 def pdf_bytes(html: str, browser: Path | None = None, *, paper: str = "A4") -> bytes:
     """Print the text of a sheet on "A4" or "letter" paper and return the PDF.
 
+    The browser runs once, unseen, with an empty profile and no word to the network.
     Raises OutputError with one sentence: no browser (and how to print without), or what went wrong.
     """
     browser = browser or find_browser()
@@ -73,21 +74,18 @@ def pdf_bytes(html: str, browser: Path | None = None, *, paper: str = "A4") -> b
     with tempfile.TemporaryDirectory(prefix="truing-print-", ignore_cleanup_errors=True) as folder:
         page, made = Path(folder, "sheet.html"), Path(folder, "sheet.pdf")
         page.write_text(html.replace("</style>", f"@page {{ size: {paper} }}\n</style>", 1), encoding="utf-8")
-        _run(browser, [f"--user-data-dir={Path(folder, 'profile')}", f"--print-to-pdf={made}", page.as_uri()], made)
-        return made.read_bytes()
-
-
-def _run(browser: Path, arguments: list[str], made: Path) -> None:
-    """Run the browser once, unseen, with an empty profile and no word to the network."""
-    command = [str(browser), *QUIET, *sandbox_arguments(), *arguments]
-    try:
-        done = subprocess.run(command, capture_output=True, timeout=PATIENCE, check=False)
-    except subprocess.TimeoutExpired:
-        raise OutputError(f"{browser.name} did not print within {PATIENCE:.0f} s; {HOW_TO_PRINT}") from None
-    except OSError as error:
-        raise OutputError(f"{browser} cannot be started: {error.strerror or error}; {HOW_TO_PRINT}") from None
-    if done.returncode or not made.is_file() or not made.read_bytes().startswith(b"%PDF"):
-        last = done.stderr.decode("utf-8", "replace").strip().splitlines()[-1:]
-        raise OutputError(
-            f"{browser.name} printed no PDF ({' '.join(last) or f'exit {done.returncode}'}); {HOW_TO_PRINT}"
-        )
+        command = [
+            str(browser), *QUIET, *sandbox_arguments(), f"--user-data-dir={Path(folder, 'profile')}",
+            f"--print-to-pdf={made}", page.as_uri(),
+        ]  # fmt: skip
+        try:
+            done = subprocess.run(command, capture_output=True, timeout=PATIENCE, check=False)
+        except subprocess.TimeoutExpired:
+            raise OutputError(f"{browser.name} did not print within {PATIENCE:.0f} s; {HOW_TO_PRINT}") from None
+        except OSError as error:
+            raise OutputError(f"{browser} cannot be started: {error.strerror or error}; {HOW_TO_PRINT}") from None
+        content = made.read_bytes() if made.is_file() else b""
+        if done.returncode or not content.startswith(b"%PDF"):
+            last = " ".join(done.stderr.decode("utf-8", "replace").strip().splitlines()[-1:])
+            raise OutputError(f"{browser.name} printed no PDF ({last or f'exit {done.returncode}'}); {HOW_TO_PRINT}")
+        return content

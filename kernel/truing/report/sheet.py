@@ -63,12 +63,9 @@ SHEET = "Calculation sheet"
 
 
 def make_sheet(
-    calculation: Calculation,
-    *,
-    provenance: Provenance,
-    verified: Sequence[ComparedRow] = (),
+    calculation: Calculation, *, provenance: Provenance, verified: Sequence[ComparedRow] = (),
     cases: CasesTable | None = None,
-) -> Document:
+) -> Document:  # fmt: skip
     """Say everything that stands on the sheet of a calculation, at the level of detail of its setup."""
     setup = calculation.setup
     detail = setup.sheet.detail if setup.sheet.detail in LONGEST_TABLE else "normal"
@@ -76,7 +73,13 @@ def make_sheet(
     results = list(result_chapters(Writing(calculation, detail, figures)))
     warnings = tuple(_warnings(calculation, cases, figures.failures))
     front = _front(calculation, cases, detail)
-    back = () if detail == "short" else _back(setup, verified)
+    findings = setup.model.findings
+    back = []
+    if verified and detail != "short":
+        back.append(Chapter("Paper against this calculation", tuple(published_blocks(setup, verified)), "published"))
+    if findings and detail != "short":
+        items = Items("findings", tuple(each.text for each in findings), tuple(each.title for each in findings))
+        back.append(Chapter("Findings", (items,), "findings"))
     cites = [
         *setup.model.cites,
         *(text for each in calculation.outcomes.values() for text in getattr(each, "cites", ())),
@@ -199,15 +202,6 @@ def _front(calculation: Calculation, cases: CasesTable | None, detail: str) -> I
         yield Chapter("Conditions and effects", tuple(effect_blocks(setup)), "effects")
 
 
-def _back(setup: Setup, verified: Sequence[ComparedRow]) -> Iterator[Chapter]:
-    findings = setup.model.findings
-    if verified:
-        yield Chapter("Paper against this calculation", tuple(published_blocks(setup, verified)), "published")
-    if findings:
-        texts, labels = tuple(each.text for each in findings), tuple(each.title for each in findings)
-        yield Chapter("Findings", (Items("findings", texts, labels),), "findings")
-
-
 def end_chapters(warnings: Sequence[str], provenance: Provenance, references: Sequence[str] = ()) -> Iterator[Chapter]:
     """Write what stands last on every sheet."""
     if warnings:
@@ -254,13 +248,8 @@ def _case_row(setup: Setup, case: CaseResult, varied: Sequence[str], checks: Seq
     broken = [check.name.replace("_", " ") for check in case.checks if check.state == case.verdict]
     verdict_text = case.verdict if case.verdict == "passes" else f"{SHORT[case.verdict]}: {', '.join(broken)}"
     margin = least_margin(case.checks)
-    return (
-        case_name(case),
-        *values,
-        *(texts.get(name, "–") for name in checks),
-        with_unit(margin.text, margin.unit),
-        verdict_text,
-    )
+    shown = [texts.get(name, "–") for name in checks]
+    return (case_name(case), *values, *shown, with_unit(margin.text, margin.unit), verdict_text)
 
 
 # What the sheet says of what was asked, of limits, of published numbers, and of where the numbers come from

@@ -446,29 +446,24 @@ Choice = Mapping[str, str | float]
 
 
 @dataclass(frozen=True)
-class GradeChoice:
-    """One grade of one part: its full width (m), its cost, and its first-order variance by demand (SI)."""
-
-    grade: str
-    width: float
-    cost: float
-    variances: Mapping[str, float]
-
-
-@dataclass(frozen=True)
 class GradedTolerance:
-    """A tolerance that is a grade: the grade it starts at, and every grade it may take, finest first."""
+    """A tolerance that is a grade: the grade it starts at, and what every grade does that it may take, finest first.
+
+    By grade: full widths (m), costs, and first-order variances by demand (SI).
+    """
 
     start: str
-    choices: Mapping[str, GradeChoice]
+    widths: Mapping[str, float]
+    costs: Mapping[str, float]
+    variances: Mapping[str, Mapping[str, float]]
 
     def cost(self, grade: str) -> float:
         """Return what a grade costs."""
-        return self.choices[grade].cost
+        return self.costs[grade]
 
     def added(self, demand: str, grade: str) -> float:
         """Return what a grade adds to the fixed variance of a demand's response."""
-        return self.choices[grade].variances[demand]
+        return self.variances[grade][demand]
 
 
 @dataclass(frozen=True)
@@ -600,7 +595,7 @@ def _graded(
     spread, price = setup.spread_of(tolerance.name), price_of(setup, tolerance) if priced else None
     assert isinstance(spread, Grade)  # open_problem has chosen these
     start = GRADES.index(spread.grade)
-    choices: dict[str, GradeChoice] = {}
+    widths, costs, variances = {}, {}, {}
     for grade in GRADES[min(GRADES.index(study.finest), start) : len(GRADES) if study.loosen else start + 1]:
         own = replace(spread, grade=grade)
         try:
@@ -610,9 +605,9 @@ def _graded(
             if own == spread:
                 raise
             continue
-        cost = 1e-3 / width if price is None else price.at(width)
-        choices[grade] = GradeChoice(grade, width, cost, _variances(straight, sds))
-    return GradedTolerance(spread.grade, choices)
+        widths[grade], variances[grade] = width, _variances(straight, sds)
+        costs[grade] = 1e-3 / width if price is None else price.at(width)
+    return GradedTolerance(spread.grade, widths, costs, variances)
 
 
 def _variances(straight: Mapping[str, Straight], sds: Mapping[str, float]) -> dict[str, float]:
@@ -731,7 +726,7 @@ def by_rule(problem: AllocationProblem, order: Mapping[str, float], finest: str)
         )
         before, after = grades[name], GRADES[coarsest - 1]
         grades = {**grades, name: after}
-        widths = (problem.parts[name].choices[before].width, problem.parts[name].choices[after].width)
+        widths = (problem.parts[name].widths[before], problem.parts[name].widths[after])
         steps.append(Step(len(steps) + 1, name, before, after, *widths, problem.chances(grades)))
     return steps, _plan(problem, grades, f"every tolerance is at {finest}")
 
@@ -792,21 +787,21 @@ def least_cost(problem: AllocationProblem) -> AllocationPlan:
 
 
 def _finest(problem: AllocationProblem, reason: str) -> AllocationPlan:
-    grades = {name: min(part.choices, key=GRADES.index) for name, part in problem.parts.items()}
+    grades = {name: min(part.widths, key=GRADES.index) for name, part in problem.parts.items()}
     return _plan(problem, grades, reason)
 
 
 def _solve(problem: AllocationProblem, bounds: Mapping[str, float], margin: float) -> dict[str, str] | None:
     """Solve the choice of grades as a mixed-integer linear program; None where no choice meets the bounds."""
-    choices = [(name, choice) for name, part in problem.parts.items() for choice in part.choices.values()]
-    costs = np.array([choice.cost for _, choice in choices])
-    one_each = np.array([[float(name == part) for name, _ in choices] for part in problem.parts])
+    choices = [(name, part, grade) for name, part in problem.parts.items() for grade in part.widths]
+    costs = np.array([part.cost(grade) for _, part, grade in choices])
+    one_each = np.array([[float(name == part) for name, *_ in choices] for part in problem.parts])
     constraints: list[Any] = [LinearConstraint(one_each, 1.0, 1.0)]
     for demand, bound in bounds.items():
         room = bound * (1 - margin) - problem.fixed[demand]
         if room <= 0:
             return None
-        shares = np.array([choice.variances[demand] / room for _, choice in choices])
+        shares = np.array([part.added(demand, grade) / room for _, part, grade in choices])
         constraints.append(LinearConstraint(shares[None], -np.inf, 1.0))
     answer = milp(
         costs / np.abs(costs).max(),
@@ -817,7 +812,7 @@ def _solve(problem: AllocationProblem, bounds: Mapping[str, float], margin: floa
     )
     if answer.x is None:
         return None
-    return {name: choice.grade for (name, choice), taken in zip(choices, answer.x, strict=True) if taken > 0.5}
+    return {name: grade for (name, _, grade), taken in zip(choices, answer.x, strict=True) if taken > 0.5}
 
 
 # Which widths? The least cost under all goals, where tolerances are no grades but widths with a price
@@ -929,7 +924,7 @@ def bettered(problem: AllocationProblem, plan: AllocationPlan) -> AllocationPlan
 def _steps_from(problem: AllocationProblem, plan: AllocationPlan) -> Iterator[AllocationPlan]:
     """Yield the designs with one grade a step finer or coarser that meet all goals; widths start where they are."""
     for name, part in problem.parts.items():
-        offered = list(part.choices)
+        offered = list(part.widths)
         index = offered.index(plan.grades[name])
         for grade in offered[max(index - 1, 0) : index] + offered[index + 1 : index + 2]:
             search = AllocationSearch(problem, {**plan.grades, name: grade})

@@ -214,8 +214,8 @@ def _too_few(problem: Problem) -> tuple[str, ...]:
     words = []
     for bound in problem.by_chance:
         goal = goal_of(bound.require, problem.setup)
-        if goal is not None and problem.cloud.draws * (1 - goal) < 1:
-            words.append(f"{problem.cloud.draws} machines cannot tell {goal:g} of '{bound.name}' from certainty")
+        if goal is not None and problem.study.draws * (1 - goal) < 1:
+            words.append(f"{problem.study.draws} machines cannot tell {goal:g} of '{bound.name}' from certainty")
     return tuple(words)
 
 
@@ -653,7 +653,7 @@ class Trail:
 
 def search(problem: Problem, executor: Executor, done: Callable[[int, int], None]) -> Trail:
     """Look for the designs that no other beats; each generation is answered at once."""
-    algorithm, shell = _algorithm(problem)
+    algorithm = _algorithm(problem)
     population, generations = problem.study.population, problem.study.generations
     rng = np.random.default_rng([problem.setup.seed, LED])
     kept: Answers | None = None
@@ -667,7 +667,7 @@ def search(problem: Problem, executor: Executor, done: Callable[[int, int], None
             asked.set("X", _led(problem, (asked.get("X"), algorithm.pop.get("X")), kept.designs, rng))
         generated = answered(problem, problem.space.designs(asked.get("X")), executor)
         evaluations, failed = evaluations + len(generated.designs), failed + int(generated.failed.sum())
-        _tell(algorithm, shell, asked, problem, generated)
+        _tell(algorithm, asked, problem, generated)
         kept = _best(problem, generated if kept is None else joined([kept, generated]), ROOM * population)
         fronts.append(small(problem, kept))
         done(generation + 1, generations)
@@ -760,19 +760,18 @@ def spread_out(values: Matrix, front: NDArray[np.intp], most: int) -> NDArray[np
     return front
 
 
-def _tell(algorithm: Any, shell: Any, asked: Any, problem: Problem, answers: Answers) -> None:
+def _tell(algorithm: Any, asked: Any, problem: Problem, answers: Answers) -> None:
     """Hand the answers back; a design without one is finite and worse than any other."""
     signs = np.array([aim.sign for aim in problem.aims])
     objectives = np.where(answers.failed[:, None], FAILED, answers.objectives * signs)
     missing = np.where(answers.failed, FAILED, -1.0)
     limits = np.where(answers.failed[:, None], FAILED, -answers.margins)
-    pymoo_evaluator.Evaluator().eval(
-        pymoo_static.StaticProblem(shell, F=objectives, G=np.column_stack([limits, missing])), asked
-    )
+    shell = pymoo_static.StaticProblem(algorithm.problem, F=objectives, G=np.column_stack([limits, missing]))
+    pymoo_evaluator.Evaluator().eval(shell, asked)
     algorithm.tell(infills=asked)
 
 
-def _algorithm(problem: Problem) -> tuple[Any, Any]:
+def _algorithm(problem: Problem) -> Any:
     """Set up the algorithm of the literature with the first population."""
     pymoo_config.Config.warnings["not_compiled"] = False
     count = len(problem.space.variables)
@@ -789,7 +788,7 @@ def _algorithm(problem: Problem) -> tuple[Any, Any]:
     )
     termination = ("n_gen", problem.study.generations)
     algorithm.setup(shell, termination=termination, seed=problem.setup.seed, verbose=False)
-    return algorithm, shell
+    return algorithm
 
 
 def _first(problem: Problem) -> Matrix:
@@ -1078,17 +1077,9 @@ def _own_results(problem: Problem, columns: Mapping[str, Any], count: int) -> Ma
     return evaluate_rows(replace(setup, effects=()), neutral, count, wanted=within - {TOTAL_PRICE}).results
 
 
-@dataclass(frozen=True)
-class DesignBatch:
-    """Some designs, as they go to a worker: plain data, except in this process."""
-
-    problem: Problem | tuple[Packed, Optimise, Known]
-    designs: Matrix
-
-
-def run_job(job: DesignBatch) -> Answers:
-    """Answer the designs of one job."""
-    return answers_of(job.problem if isinstance(job.problem, Problem) else _unpacked(*job.problem), job.designs)
+def run_job(packed: Packed, study: Optimise, known: Known, designs: Matrix) -> Answers:
+    """Answer some designs in a worker."""
+    return answers_of(_unpacked(packed, study, known), designs)
 
 
 @lru_cache(maxsize=4)
@@ -1100,7 +1091,7 @@ def answered(problem: Problem, designs: Matrix, executor: Executor) -> Answers:
     """Answer designs (m, v), cut into jobs in a way that does not depend on who computes them."""
     rows = 1
     if problem.cloud is not None:
-        rows = problem.cloud.draws
+        rows = problem.study.draws
     elif problem.by_chance:
         rows = 1 + 2 * len(problem.scatter.columns)
     size = max(1, min(ROWS // rows, -(-len(designs) // problem.study.parts)))
@@ -1108,8 +1099,8 @@ def answered(problem: Problem, designs: Matrix, executor: Executor) -> Answers:
     if isinstance(executor, SerialExecutor) or problem.stand_in is not None:
         return joined([answers_of(problem, part) for part in parts])
     study = replace(problem.study, vary=tuple(problem.study.vary), gives=None)
-    carried = (pack(problem.setup), study, problem.known)
-    return joined(list(in_order(executor, run_job, (DesignBatch(carried, part) for part in parts))))
+    run = partial(run_job, pack(problem.setup), study, problem.known)
+    return joined(list(in_order(executor, run, parts)))
 
 
 # What an optimisation is for: objectives and limits of many designs at once
@@ -1534,13 +1525,8 @@ def total_prices(setup: Setup, spreads: Spreads, rows: int) -> Matrix:
 STEP = 0.1  # of a standard deviation, for central differences
 
 
-@dataclass(frozen=True, eq=False)
-class Cloud:
-    """The causes of scatter, and by name standard normal values (k, n), or deviations where a function draws them."""
-
-    causes: tuple[ScatterSource, ...]
-    standard: Mapping[str, Matrix]
-    draws: int
+Cloud = Mapping[str, Matrix]
+"""By cause of scatter standard normal values (k, n), or deviations where a function draws them."""
 
 
 def cloud_of(scatter: Scatter, seed: int, study: Optimise) -> Cloud:
@@ -1554,7 +1540,7 @@ def cloud_of(scatter: Scatter, seed: int, study: Optimise) -> Cloud:
             standard[cause.name] = np.array([np.asarray(deviations[column], dtype=float) for column in cause.columns])
         else:
             standard[cause.name] = np.array([_stratified(rng, draws) for _ in cause.columns])
-    return Cloud(scatter.causes, standard, draws)
+    return standard
 
 
 def _stratified(rng: np.random.Generator, draws: int) -> Matrix:
@@ -1563,12 +1549,10 @@ def _stratified(rng: np.random.Generator, draws: int) -> Matrix:
 
 def by_draws(problem: Problem, designs: Designs) -> Matrix:
     """Return the share of machines (m, limits) that keep each limit; a machine without an answer keeps none."""
-    cloud, wanted = problem.cloud, designs.by_chance
-    assert cloud is not None  # else it is done to first order
-    shape = (designs.rows, cloud.draws)
-    columns = _machines(cloud, designs)
+    shape, wanted = (designs.rows, problem.study.draws), designs.by_chance
+    columns = _machines(problem, designs)
     flat = {name: np.ascontiguousarray(values).reshape(-1) for name, values in columns.items()}
-    results = problem.answer(flat, designs.rows * cloud.draws, results_needed(designs.setup, wanted))
+    results = problem.answer(flat, designs.rows * problem.study.draws, results_needed(designs.setup, wanted))
     each = {name: np.asarray(values).reshape(*shape, *np.shape(values)[1:]) for name, values in results.items()}
     shares = []
     for demand in wanted:
@@ -1591,12 +1575,13 @@ def _worst(chances: Any) -> Any:
     return chances.min(axis=tuple(range(1, chances.ndim))) if chances.ndim > 1 else chances
 
 
-def _machines(cloud: Cloud, designs: Designs) -> dict[str, Any]:
+def _machines(problem: Problem, designs: Designs) -> dict[str, Any]:
     """Return the columns of all machines of all designs (m, n); two tolerances on one input add their deviations."""
-    shape = (designs.rows, cloud.draws)
+    assert problem.cloud is not None  # else it is done to first order
+    shape = (designs.rows, problem.study.draws)
     columns: dict[str, Any] = {}
-    for cause in cloud.causes:
-        for column, values in _of_cause(cause, cloud.standard[cause.name], designs):
+    for cause in problem.scatter.causes:
+        for column, values in _of_cause(cause, problem.cloud[cause.name], designs):
             if column in columns:
                 values = columns[column] + (values - designs.nominal(column)[:, None])
             columns[column] = np.broadcast_to(values, shape)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import ceil
 from typing import Any
@@ -100,7 +100,9 @@ class Reliability:
         axis = read_range(self.at, bench.setup.unit_of(over), self.points)
         quick = replace(self, method=tuple(method for method in self.method if method != "form"), points=len(axis))
         answers = [quick._at(bench, over, float(value), stage + 1) for stage, value in enumerate(axis)]
-        return Curve.of(over, bench.setup.print_unit(over), axis, answers)
+        along = {of: _along(answers, of) for of in ("probability", "at_least", "analytic")}
+        failed = tuple((row, odds) for row, odds in enumerate(answers) if isinstance(odds, str))
+        return Curve(over=over, unit=bench.setup.print_unit(over), axis=axis, failed=failed, **along)
 
     def _at(self, bench: Bench, over: str, value: float, stage: int) -> Odds | str:
         """Answer at one point, or say why there is no answer."""
@@ -126,26 +128,20 @@ def _lacking(bench: Bench) -> list[str]:
     return [f"'{name}' has no probability: {bench.absent[name]}" for name in limited]
 
 
-def _few_draws(study: Reliability, wanted: Sequence[Demand]) -> tuple[str, ...]:
+def _few_draws(study: Reliability, wanted: Sequence[Demand]) -> Iterator[str]:
     """Say where so few machines are drawn that a goal would be met only if not one of them misses it."""
-    if "monte_carlo" not in study.method:
-        return ()
-    words = []
-    for demand in wanted:
-        goal = demand.goal
-        if goal is None:
-            continue
+    goals = {demand.name: demand.goal for demand in wanted if demand.goal is not None}
+    for name, goal in goals.items() if "monte_carlo" in study.method else ():
         if goal >= 1:
-            words.append(
-                f"no number of draws shows a reliability of 1 of '{demand.name}'; it counts as reached when none of "
+            yield (
+                f"no number of draws shows a reliability of 1 of '{name}'; it counts as reached when none of "
                 f"{study.draws} machines misses"
             )
         elif study.draws < (needed := ceil(round(1 / (1 - goal), 6))):
-            words.append(
-                f"draws = {study.draws} cannot show a reliability of {goal:g} of '{demand.name}'; ask for {needed} or "
+            yield (
+                f"draws = {study.draws} cannot show a reliability of {goal:g} of '{name}'; ask for {needed} or "
                 "more, better a hundred times as many"
             )
-    return tuple(words)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -160,28 +156,14 @@ class Curve:
     analytic: Mapping[str, Matrix]
     failed: tuple[tuple[int, str], ...] = ()
 
-    @classmethod
-    def of(cls, over: str, unit: str, axis: Matrix, answers: Sequence[Odds | str]) -> Curve:
-        """Put the answers at all points together."""
-        good = [odds for odds in answers if not isinstance(odds, str)]
-        names = [name for name in good[0].probability if all(name in odds.probability for odds in good)] if good else []
 
-        def along(read: Callable[[Odds], Mapping[str, Any]]) -> dict[str, Matrix]:
-            gap = {name: np.full(np.shape(read(good[0])[name]), np.nan) for name in names}
-            return {
-                name: np.array([gap[name] if isinstance(odds, str) else read(odds)[name] for odds in answers])
-                for name in names
-            }
-
-        return cls(
-            over=over,
-            unit=unit,
-            axis=axis,
-            probability=along(lambda odds: odds.probability),
-            at_least=along(lambda odds: odds.at_least),
-            analytic=along(lambda odds: odds.analytic),
-            failed=tuple((row, odds) for row, odds in enumerate(answers) if isinstance(odds, str)),
-        )
+def _along(answers: Sequence[Odds | str], of: str) -> dict[str, Matrix]:
+    """Put one kind of probability at all points together, by check."""
+    given = [None if isinstance(odds, str) else getattr(odds, of) for odds in answers]
+    known = [chances for chances in given if chances is not None]
+    names = [name for name in known[0] if all(name in chances for chances in known)] if known else []
+    gaps = {name: np.full(np.shape(known[0][name]), np.nan) for name in names}
+    return {name: np.array([gaps[name] if one is None else one[name] for one in given]) for name in names}
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,7 +12,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -27,20 +27,6 @@ from truing.setup import Setup, SwitchedOn, effect_column
 from truing.studies.checks import Check, Demand, chance_check, results_needed, wilson, worst
 
 KEPT_REASONS = 8
-
-
-@dataclass(frozen=True)
-class SampleBatch:
-    """One batch, as it goes to a worker: plain data, except in this process.
-
-    ``centres`` are the nominal results (SI), about which the moments are summed.
-    """
-
-    scatter: Scatter | Packed
-    demands: tuple[Demand, ...]
-    centres: Mapping[str, Any]
-    batch: int
-    rows: int
 
 
 @keepable
@@ -112,12 +98,10 @@ def sample(
     """Draw machines in batches and count which of them meet each demand; ``answers`` are the nominal results in SI."""
     carried: Scatter | Packed = scatter if isinstance(executor, SerialExecutor) else pack(scatter.setup)
     centres = {name: answers[name] for name in results_needed(scatter.setup, wanted)}
-    jobs = (
-        SampleBatch(carried, tuple(wanted), centres, number, min(batch, draws - start))
-        for number, start in enumerate(range(0, draws, batch))
-    )
+    run = partial(run_batch, carried, tuple(wanted), centres)
     total: Tally | None = None
-    for tally in in_order(executor, run_batch, jobs):
+    batches = enumerate(min(batch, draws - start) for start in range(0, draws, batch))
+    for tally in in_order(executor, run, batches):
         total = tally if total is None else merged(total, tally)
         done(total.draws, draws)
     assert total is not None  # there is at least one draw
@@ -139,16 +123,19 @@ def _keep_freed_memory() -> None:
     np.empty(31 * 2**20, dtype=np.uint8)
 
 
-def run_batch(job: SampleBatch) -> Tally:
-    """Draw one batch, run the model on it, and return counts and moments."""
+def run_batch(
+    carried: Scatter | Packed, wanted: Sequence[Demand], centres: Mapping[str, Any], batch: tuple[int, int]
+) -> Tally:
+    """Draw a batch (its number and rows), run the model on it, return counts, and moments about the centres (SI)."""
     _keep_freed_memory()
-    scatter = _unpacked(job.scatter) if isinstance(job.scatter, Packed) else job.scatter
-    columns = scatter.draw(scatter.setup.seed, job.batch, job.rows)
-    rows = evaluate_rows(scatter.setup, columns, job.rows, wanted=tuple(job.centres)).complete()
+    number, count = batch
+    scatter = _unpacked(carried) if isinstance(carried, Packed) else carried
+    columns = scatter.draw(scatter.setup.seed, number, count)
+    rows = evaluate_rows(scatter.setup, columns, count, wanted=tuple(centres)).complete()
     return Tally(
-        draws=job.rows,
-        hits={demand.name: _hits(demand, rows, columns) for demand in job.demands},
-        moments={name: _moments(rows, name, centre) for name, centre in job.centres.items()},
+        draws=count,
+        hits={demand.name: _hits(demand, rows, columns) for demand in wanted},
+        moments={name: _moments(rows, name, centre) for name, centre in centres.items()},
         failed=int(rows.failed.sum()),
         reasons=dict(Counter(rows.reasons.values())),
     )

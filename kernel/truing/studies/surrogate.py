@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from functools import lru_cache, partial
 from itertools import count, pairwise
@@ -91,8 +90,7 @@ class Surrogate:
         along = self._along(box)
         sampling, judging, learning, timing = (bench.part(self.name, *ends) for ends in pairwise(SHARES))
         learnt, judge = (
-            self._ran(bench, box, names, stage, points, done)
-            for stage, (points, done) in enumerate(((self.design, sampling), (self.held_out, judging)))
+            self._ran(bench, box, names, stage=stage, done=done) for stage, done in enumerate((sampling, judging))
         )
         emulators, seconds = self._learnt(setup, box, learnt, learning)
         stand_in = StandIn(box, emulators)
@@ -108,7 +106,7 @@ class Surrogate:
             own={name: float(bench.answers[name]) for name in names},
             units={name: setup.print_unit(name) for name in names} | units,
             inputs=acting_inputs(setup),
-            speed=self._speed(setup, stand_in, (learnt.seconds, seconds), timing),
+            speed=clocked(setup, stand_in, self, (learnt.seconds, seconds), timing) if self.compare else None,
         )
 
     def _along(self, box: Box) -> str:
@@ -133,17 +131,11 @@ class Surrogate:
         assert gaussian_process.GaussianProcessRegressor  # imported before the clock starts
         start = perf_counter()
         places, fits, results = box.places(learnt.usable), count(1), learnt.rows.results
-        emulators = {
-            name: fitted(
-                places,
-                values[kept],
-                logarithmic=self.log_result,
-                restarts=self.restarts,
-                seed=setup.seed,
-                done=lambda: done(next(fits), len(results) * (self.restarts + 1)),
-            )
-            for name, values in results.items()
-        }
+
+        def heard() -> None:
+            done(next(fits), len(results) * (self.restarts + 1))
+
+        emulators = {name: fitted(places, values[kept], self, setup.seed, heard) for name, values in results.items()}
         return emulators, perf_counter() - start
 
     def _judged(self, stand_in: StandIn, judge: DesignedSample) -> dict[str, HeldOutComparison]:
@@ -154,23 +146,24 @@ class Surrogate:
             for name, band in bands.items()
         }
 
-    def _ran(
-        self, bench: Bench, box: Box, names: tuple[str, ...], stage: int, points: int, done: StepProgress
-    ) -> DesignedSample:
+    def _ran(self, bench: Bench, box: Box, names: tuple[str, ...], *, stage: int, done: StepProgress) -> DesignedSample:
         """Run the model at designed points; those can be used that have every result, above 0 for a logarithm."""
-        columns = designed(bench.setup, box, stage, points, self.name)
-        rows, seconds = ran(bench.setup, columns, names, batch=self.batch, executor=bench.executor, done=done)
+        setup, batch, executor = bench.setup, self.batch, bench.executor
+        points = (self.design, self.held_out)[stage]
+        columns = designed(setup, box, stage, points, self.name)
+        carried: Setup | Packed = setup if isinstance(executor, SerialExecutor) else pack(setup)
+        answers = []
+        for answer in in_order(executor, partial(run_points, carried, names), _parts(columns, points, batch)):
+            answers.append(answer)
+            done(min(len(answers) * batch, points), points)
+        parts = [rows for rows, _ in answers]
+        reasons = {i * batch + row: text for i, rows in enumerate(parts) for row, text in rows.reasons.items()}
+        results = {name: np.concatenate([rows.results[name] for rows in parts]) for name in names}
+        rows = Rows(results, np.concatenate([rows.failed for rows in parts]), reasons)
         kept = ~rows.failed
         for values in rows.results.values():
             kept &= np.isfinite(values) & ((values > 0) if self.log_result else True)
-        return DesignedSample(columns, rows, kept, seconds)
-
-    def _speed(self, setup: Setup, stand_in: StandIn, making: tuple[float, float], done: StepProgress) -> Speed | None:
-        if not self.compare:
-            return None
-        columns = designed(setup, stand_in.box, 2, self.compare, self.name)
-        predictions, model, measured = clocked(setup, columns, stand_in, batch=self.batch, done=done)
-        return Speed(self.compare, *making, predictions, model, measured)
+        return DesignedSample(columns, rows, kept, sum(seconds for _, seconds in answers))
 
 
 def _course(setup: Setup, stand_in: StandIn, along: str) -> Course | None:
@@ -514,16 +507,6 @@ LONGEST = 3.0
 keepable(Rows)
 
 
-@dataclass(frozen=True)
-class SurrogateBatch:
-    """Some points, as they go to a worker: plain data, except in this process."""
-
-    setup: Setup | Packed
-    columns: Mapping[str, Any]
-    rows: int
-    wanted: tuple[str, ...]
-
-
 def designed(setup: Setup, box: Box, stage: int, points: int, study: str) -> dict[str, Matrix]:
     """Return a Latin hypercube: every side of the box in as many layers as there are points.
 
@@ -533,41 +516,19 @@ def designed(setup: Setup, box: Box, stage: int, points: int, study: str) -> dic
     return box.sampled(stats.qmc.LatinHypercube(len(box.features), seed=rng).random(points))
 
 
-def run_points(job: SurrogateBatch) -> tuple[Rows, float]:
-    """Run the model at some points, all in one call; return the seconds too."""
-    setup = _unpacked(job.setup) if isinstance(job.setup, Packed) else job.setup
+def run_points(
+    carried: Setup | Packed, wanted: tuple[str, ...], part: tuple[Mapping[str, Any], int]
+) -> tuple[Rows, float]:
+    """Run the model at some points (their columns, their number), all in one call; return the seconds too."""
+    setup = _unpacked(carried) if isinstance(carried, Packed) else carried
     start = perf_counter()
-    rows = evaluate_rows(setup, job.columns, job.rows, wanted=job.wanted).complete()
+    rows = evaluate_rows(setup, *part, wanted=wanted).complete()
     return rows, perf_counter() - start
 
 
 @lru_cache(maxsize=4)
 def _unpacked(packed: Packed) -> Setup:
     return unpack(packed)
-
-
-def ran(
-    setup: Setup,
-    columns: Mapping[str, Any],
-    wanted: tuple[str, ...],
-    *,
-    batch: int,
-    executor: Executor,
-    done: StepProgress,
-) -> tuple[Rows, float]:
-    """Run the model at all points, so many in one call; return the seconds that it worked, too."""
-    carried: Setup | Packed = setup if isinstance(executor, SerialExecutor) else pack(setup)
-    points = len(next(iter(columns.values())))
-    jobs = (SurrogateBatch(carried, part, rows, wanted) for part, rows in _parts(columns, points, batch))
-    answers = []
-    for answer in in_order(executor, run_points, jobs):
-        answers.append(answer)
-        done(min(len(answers) * batch, points), points)
-    parts = [rows for rows, _ in answers]
-    reasons = {index * batch + row: text for index, rows in enumerate(parts) for row, text in rows.reasons.items()}
-    results = {name: np.concatenate([rows.results[name] for rows in parts]) for name in wanted}
-    failed = np.concatenate([rows.failed for rows in parts])
-    return Rows(results, failed, reasons), sum(seconds for _, seconds in answers)
 
 
 def _parts(columns: Mapping[str, Any], points: int, batch: int) -> Iterator[tuple[dict[str, Any], int]]:
@@ -608,22 +569,23 @@ class Speed:
 
 
 def clocked(
-    setup: Setup, columns: Mapping[str, Any], stand_in: StandIn, *, batch: int, done: StepProgress
-) -> tuple[float, float, int]:
-    """Return the seconds for all predictions, those for all runs of the model, and how many were really run."""
-    points = len(next(iter(columns.values())))
+    setup: Setup, stand_in: StandIn, study: Surrogate, making: tuple[float, float], done: StepProgress
+) -> Speed:
+    """Take the time of all predictions, and of as many runs of the model as there is time for."""
+    points, batch = study.compare, study.batch
+    columns = designed(setup, stand_in.box, 2, points, study.name)
     start = perf_counter()
     for part, _ in _parts(columns, points, batch):
         stand_in.predict(part)
     predictions = perf_counter() - start
     spent, run, wanted = 0.0, 0, tuple(stand_in.emulators)
     for part, rows in _parts(columns, points, batch):
-        spent += run_points(SurrogateBatch(setup, part, rows, wanted))[1]
+        spent += run_points(setup, wanted, (part, rows))[1]
         run += rows
         done(max(run, round(points * spent / LONGEST)), points)
         if spent > LONGEST:
             break
-    return predictions, spent * points / run, run
+    return Speed(points, *making, predictions, spent * points / run, run)
 
 
 # A Gaussian process as a stand-in for the model: what it learnt at some points, it says of all between them
@@ -677,15 +639,7 @@ def _in_parts(predict: Any, places: Matrix, answers: int = 1) -> Matrix:
     return predictions
 
 
-def fitted(
-    places: Matrix,
-    values: Matrix,
-    *,
-    logarithmic: bool,
-    restarts: int,
-    seed: int,
-    done: Callable[[], None] = lambda: None,
-) -> Emulator:
+def fitted(places: Matrix, values: Matrix, study: Surrogate, seed: int, done: Callable[[], None]) -> Emulator:
     """Learn a result (n,) at places (n, d): the lengths, amplitude and noise that make the sample most likely.
 
     ``done`` hears of every search for them that ends: the first, and each of the restarts.
@@ -699,14 +653,14 @@ def fitted(
         return optimum.x, optimum.fun
 
     process = gaussian_process.GaussianProcessRegressor(
-        kernel, alpha=JITTER, normalize_y=True, n_restarts_optimizer=restarts, random_state=seed % 2**32,
+        kernel, alpha=JITTER, normalize_y=True, n_restarts_optimizer=study.restarts, random_state=seed % 2**32,
         optimizer=searched,
     )  # fmt: skip
     with one_thread(), warnings.catch_warnings():
         warnings.simplefilter("ignore", learning_exceptions.ConvergenceWarning)
-        process.fit(places, np.log(values) if logarithmic else values)
+        process.fit(places, np.log(values) if study.log_result else values)
     process.set_params(optimizer=None)  # it is fitted, and travels to workers
-    return Emulator(process, logarithmic)
+    return Emulator(process, study.log_result)
 
 
 # The box of a surrogate: over what it was made, how it is sampled, and what lies outside
