@@ -5,13 +5,17 @@ twenty hide nothing under one noise after another, three have gross errors. It p
 95 % interval, and the test of the probabilities against uniform ones. ``pytest`` holds the same against the bounds.
 """
 
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from diagnosis_nothing import NOISES, decision_on, gross_errors, nothing_wrong
 from many_cases import Outcome, gathered, options_of, share
 from scipy.stats import kstest
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "unit"))
+
+from diagnosis_nothing import NOISES, decision_on, gross_errors, nothing_wrong
 
 CASES, GROSS = 400, 60
 GROSS_ERRORS = "gross errors"

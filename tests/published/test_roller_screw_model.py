@@ -12,7 +12,10 @@ from gear_geometry.roots import Cutter, cut_ring_arm, cut_ring_root, form_factor
 from roller_screw_shift.geometry import geometry_of
 from roller_screw_shift.model import ROLLER_SCREW_SHIFT
 from roller_screw_shift.objectives import (
+    PRINTED_RANGES,
+    PRINTED_WEIGHTS,
     Margins,
+    lower_limit,
     margins_of,
     normalised,
     objectives_of,
@@ -311,6 +314,20 @@ def test_curve_rises_is_level_at_both_ends_and_clipped_beyond() -> None:
     assert (values[2000:] == 1.0).all()
     step = 1e-4  # level: the third power of the distance is all that is left
     assert normalised(step, (0.0, 1.0)) == pytest.approx((2 * pi * step) ** 3 / 6 / (2 * pi), rel=1e-4)
+
+
+@pytest.mark.parametrize(("place", "limit"), [(0, 2.00), (1, 13.2), (2, 0.86)])
+def test_lower_limits_from_which_the_printed_weights_would_follow(place: int, limit: float) -> None:
+    given, high = PRINTED_WEIGHTS[place], PRINTED_RANGES[place][1]
+    found = lower_limit(given, high)
+    assert found == pytest.approx(limit, abs=5e-3)
+    assert weight((found, high)) == pytest.approx(given, rel=1e-12)
+
+
+def test_the_rounded_second_weight_allows_many_lower_limits() -> None:
+    """0.01 stands for 0.005 to 0.015."""
+    assert lower_limit(0.005, 33.2) == pytest.approx(4.9, abs=0.05)
+    assert lower_limit(0.015, 33.2) == pytest.approx(16.9, abs=0.05)
 
 
 def test_total_objective_by_hand() -> None:

@@ -360,12 +360,13 @@ def test_without_one_of_its_causes_the_rest_of_an_explanation_is_held(
     extended, causes, _ = asked
     soft, adds = causes["softening"], causes["support"]
     sample = sample_of(extended.machine, first_noise(extended.machine), np.ones(len(LOADS), dtype=bool))
-    fit = alone(extended, fitting(sample, extended, (soft, adds), [np.array([0.5]), np.array([2e-4])]))
+    both, values = (soft, adds), [np.array([0.5]), np.array([2e-4])]
+    fit = alone(extended, fitting(sample, extended, both, values, held=[*soft.numbers, *adds.numbers]))
     assert fit is not None
     held = held_without(fit, 0, sample, extended)
     assert held.causes == (adds,)
-    np.testing.assert_array_equal(held.of(adds), fit.of(adds))
-    np.testing.assert_allclose(held.predicted["sag"], LOADS * (1 / 4e3 + fit.of(adds)[0]), rtol=1e-12)
+    np.testing.assert_array_equal(held.of(adds), [2e-4])
+    np.testing.assert_allclose(held.predicted["sag"], LOADS * (1 / 4e3 + 2e-4), rtol=1e-12)
 
 
 def test_readings_that_the_model_meets_to_the_last_digit_have_nothing_wrong(tmp_path: Path) -> None:

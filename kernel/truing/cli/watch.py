@@ -51,9 +51,8 @@ def watch(
     measured = tuple(data or ())
     if measured and (cases or excel or workers > 1):
         raise UsageError("--cases, --excel and --workers are for runs; a diagnosis (--data) has none of them")
-    for file in (inputs, *measured):
-        if not file.is_file():
-            refuse_file(file, largest=0, instead="", is_table=False)
+    for file in (path for path in (inputs, *measured) if not path.is_file()):
+        refuse_file(file, largest=0, instead="", is_table=False)
     folder = output or Path("runs") / (measured or (inputs,))[0].stem
     how = {} if measured else {"cases": cases, "workers": workers, "excel": excel}
     watcher = _Watcher(plugin, inputs, measured, tuple(changed or ()), folder, how, settings)

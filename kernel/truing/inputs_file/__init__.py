@@ -13,7 +13,7 @@ from truing.inputs_file.document import InputsDocument, apply_overrides, read_do
 from truing.inputs_file.entries import whole_file
 from truing.inputs_file.files import read_text
 from truing.inputs_file.sentences import in_order, read_entries
-from truing.inputs_file.values import Entry, InputsRead, Section
+from truing.inputs_file.values import FileEntry, FileSection, InputsRead
 from truing.kernel import Offer
 from truing.setup import Setup
 from truing.units.grammar import shown
@@ -65,13 +65,13 @@ def json_schema(offer: Offer) -> dict[str, Any]:
     }
 
 
-def _schema(name: str, entry: Entry | Section, known: dict[str, Any]) -> dict[str, Any]:
+def _schema(name: str, entry: FileEntry | FileSection, known: dict[str, Any]) -> dict[str, Any]:
     """Return the schema of an entry; sections are put into ``known`` by their title and referred to."""
-    if isinstance(entry, Entry) or not entry.title:
+    if isinstance(entry, FileEntry) or not entry.title:
         return {**entry.schema, "title": name}
     title = entry.title.replace(" ", "_")
     properties = {inner: _schema(inner, each, known) for inner, each in entry.entries.items()}
-    required = [inner for inner, each in entry.entries.items() if isinstance(each, Entry) and each.is_required]
+    required = [inner for inner, each in entry.entries.items() if isinstance(each, FileEntry) and each.is_required]
     table = {"type": "object", "title": entry.title, "properties": properties, "additionalProperties": False}
     known[title] = {**table, "required": required} if required else table
     return {"$ref": f"#/$defs/{title}", "description": entry.words, "title": name}

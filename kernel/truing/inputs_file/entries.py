@@ -19,9 +19,9 @@ from truing.inputs_file.assemble import default_of, renamed, spread_text
 from truing.inputs_file.document import SECTIONS
 from truing.inputs_file.study_options import DIAGNOSE, diagnose_section, study_section
 from truing.inputs_file.values import (
-    Entry,
+    FileEntry,
+    FileSection,
     InputsRead,
-    Section,
     SentenceError,
     bounds_in_words,
     is_number,
@@ -41,20 +41,20 @@ DETAILS = ("short", "normal", "full")
 
 
 @lru_cache(maxsize=16)
-def sections(model: Model[Any, Any]) -> dict[str, Section]:
+def sections(model: Model[Any, Any]) -> dict[str, FileSection]:
     """Return what the sections of a calculation's inputs files may hold."""
-    makers: dict[str, Callable[[Model[Any, Any]], Mapping[str, Entry | Section]]] = {
+    makers: dict[str, Callable[[Model[Any, Any]], Mapping[str, FileEntry | FileSection]]] = {
         "sheet": _sheet, "inputs": _inputs, "tolerances": _tolerances, "conditions": _conditions,
         "effects": _effects, "calibrated": _calibrated, "studies": _studies, "units": _units,
     }  # fmt: skip
-    return {name: Section(name.capitalize(), words, makers[name](model)) for name, words in SECTIONS.items()}
+    return {name: FileSection(name.capitalize(), words, makers[name](model)) for name, words in SECTIONS.items()}
 
 
-def whole_file(model: Model[Any, Any]) -> Section:
+def whole_file(model: Model[Any, Any]) -> FileSection:
     """Return what an inputs file of a calculation may hold, its sections and what stands above them."""
     schema = {"type": "string", "description": "The calculation this file is for."}
-    plugin = Entry(partial(_text, "plugin"), schema)
-    return Section("InputsFile", f"Inputs of {model.name}: {model.title}", {**sections(model), "plugin": plugin})
+    plugin = FileEntry(partial(_text, "plugin"), schema)
+    return FileSection("InputsFile", f"Inputs of {model.name}: {model.title}", {**sections(model), "plugin": plugin})
 
 
 def _text(name: str, raw: Any, _: InputsRead) -> str:
@@ -66,10 +66,10 @@ def _text(name: str, raw: Any, _: InputsRead) -> str:
 # The head of the sheet: texts, numbers and dates
 
 
-def _sheet(_: Model[Any, Any]) -> dict[str, Entry]:
-    entries = {name: Entry(partial(_head_text, name), {"type": ["string", "number"]}) for name in HEAD}
+def _sheet(_: Model[Any, Any]) -> dict[str, FileEntry]:
+    entries = {name: FileEntry(partial(_head_text, name), {"type": ["string", "number"]}) for name in HEAD}
     schema = {"enum": list(DETAILS), "default": "normal", "description": "How much the sheet shows."}
-    return {**entries, "detail": Entry(_detail, schema)}
+    return {**entries, "detail": FileEntry(_detail, schema)}
 
 
 def _head_text(name: str, raw: Any, reading: InputsRead) -> str:
@@ -86,20 +86,22 @@ def _detail(raw: Any, _: InputsRead) -> str:
 # Inputs, and those that are fitted to one machine
 
 
-def _inputs(model: Model[Any, Any]) -> dict[str, Entry]:
+def _inputs(model: Model[Any, Any]) -> dict[str, FileEntry]:
     entries = {name: _input(field) for name, field in model.input_fields.items()}
     for old, new in renamed(model).items():
         if old not in entries and new in model.input_fields:
             entry = _input(model.input_fields[new])
-            entries[old] = Entry(entry.read, {**entry.schema, "deprecated": True, "description": f"Now called {new}."})
+            entries[old] = FileEntry(
+                entry.read, {**entry.schema, "deprecated": True, "description": f"Now called {new}."}
+            )
     return entries
 
 
-def _calibrated(model: Model[Any, Any]) -> dict[str, Entry]:
+def _calibrated(model: Model[Any, Any]) -> dict[str, FileEntry]:
     return {name: _input(field) for name, field in model.input_fields.items() if field.varies}
 
 
-def _input(field: InputField) -> Entry:
+def _input(field: InputField) -> FileEntry:
     schema: dict[str, Any] = {"description": described(field), **_type_of(field)}
     default = default_of(field)
     if default is not None:
@@ -107,7 +109,7 @@ def _input(field: InputField) -> Entry:
     extra = {"x-symbol": field.symbol, "x-unit": field.unit}
     schema |= {key: value for key, value in extra.items() if value}
     is_required = isinstance(field.spec, Loaded) and field.spec.default is MISSING
-    return Entry(partial(read_input, field), schema, is_required)
+    return FileEntry(partial(read_input, field), schema, is_required)
 
 
 def described(field: InputField) -> str:
@@ -149,9 +151,9 @@ def _number_type(field: InputField) -> dict[str, Any]:
 # Tolerances; what one resolves to is checked when the nominals are known
 
 
-def _tolerances(model: Model[Any, Any]) -> dict[str, Entry]:
+def _tolerances(model: Model[Any, Any]) -> dict[str, FileEntry]:
     return {
-        name: Entry(partial(_read_tolerance, tolerance), _tolerance_schema(tolerance))
+        name: FileEntry(partial(_read_tolerance, tolerance), _tolerance_schema(tolerance))
         for name, tolerance in model.tolerances.items()
     }
 
@@ -184,36 +186,36 @@ def _tolerance_schema(tolerance: Tolerance) -> dict[str, Any]:
 # Conditions
 
 
-def _conditions(model: Model[Any, Any]) -> dict[str, Entry]:
+def _conditions(model: Model[Any, Any]) -> dict[str, FileEntry]:
     return {name: _condition(condition) for name, condition in model.known_conditions.items()}
 
 
-def _condition(condition: Condition) -> Entry:
+def _condition(condition: Condition) -> FileEntry:
     def read(raw: Any, _: InputsRead) -> float:
         return read_number(condition.name, raw, condition.unit)
 
     reference = f"{plain(condition.reference)} {condition.unit}".strip()
-    words = condition.note or "a condition"
     kind: Any = ["number", "string"] if condition.unit in PURE else "string"
-    return Entry(read, {"type": kind, "description": f"{words}; effects vanish at {reference}", "default": reference})
+    words = f"{condition.note or 'a condition'}; effects vanish at {reference}"
+    return FileEntry(read, {"type": kind, "description": words, "default": reference})
 
 
 # Effects that are on: their unknowns, and how sure these are
 
 
-def _effects(model: Model[Any, Any]) -> dict[str, Section]:
+def _effects(model: Model[Any, Any]) -> dict[str, FileSection]:
     return {name: _effect(effect) for name, effect in model.known_effects.items()}
 
 
-def _effect(effect: Effect[Any, Any]) -> Section:
+def _effect(effect: Effect[Any, Any]) -> FileSection:
     entries = {
-        unknown.name: Entry(partial(_read_unknown, unknown), _unknown_schema(unknown), not effect.parts)
+        unknown.name: FileEntry(partial(_read_unknown, unknown), _unknown_schema(unknown), not effect.parts)
         for unknown in effect.unknowns
     }
-    entries.setdefault("covariance", Entry(partial(_read_covariance, effect), _covariance_schema(effect)))
+    entries.setdefault("covariance", FileEntry(partial(_read_covariance, effect), _covariance_schema(effect)))
     alone = "what is left out is off" if effect.parts else ""
     words = (effect.why or effect.looks_like or effect.name, f"acts on the {effect.place}", effect.source, alone)
-    return Section(f"Effect {effect.name}", "; ".join(word for word in words if word), entries)
+    return FileSection(f"Effect {effect.name}", "; ".join(word for word in words if word), entries)
 
 
 def _unknown_schema(unknown: Unknown) -> dict[str, Any]:
@@ -296,13 +298,13 @@ def _keep_possible(rows: list[list[float]]) -> None:
 # Studies
 
 
-def _studies(model: Model[Any, Any]) -> dict[str, Entry | Section]:
+def _studies(model: Model[Any, Any]) -> dict[str, FileEntry | FileSection]:
     names = [study.name for study in model.studies]
     run = {"type": "array", "items": {"enum": names} if names else {}, "uniqueItems": True}
     seed = {"type": "integer", "minimum": 0, "default": DEFAULT_SEED, "description": "Where the random numbers begin."}
-    entries: dict[str, Entry | Section] = {
-        "run": Entry(partial(_read_run, names), {**run, "description": "The studies that run, in this order."}),
-        "seed": Entry(_read_seed, seed),
+    entries: dict[str, FileEntry | FileSection] = {
+        "run": FileEntry(partial(_read_run, names), {**run, "description": "The studies that run, in this order."}),
+        "seed": FileEntry(_read_seed, seed),
         **{study.name: study_section(study) for study in model.studies},
     }
     entries.setdefault(DIAGNOSE, diagnose_section(model))
@@ -331,7 +333,7 @@ def _read_seed(raw: Any, _: InputsRead) -> int:
 # Units in which something is printed
 
 
-def _units(model: Model[Any, Any]) -> dict[str, Entry]:
+def _units(model: Model[Any, Any]) -> dict[str, FileEntry]:
     declared = {name: field.unit for name, field in model.result_fields.items()}
     for name, field in model.input_fields.items():
         if isinstance(field.spec, Given) and field.spec.unit is not None:
@@ -339,7 +341,7 @@ def _units(model: Model[Any, Any]) -> dict[str, Entry]:
     return {name: _unit(name, unit) for name, unit in declared.items()}
 
 
-def _unit(name: str, declared: str) -> Entry:
+def _unit(name: str, declared: str) -> FileEntry:
     def read(raw: Any, reading: InputsRead) -> str:
         unit = _text(name, raw, reading)
         try:
@@ -348,4 +350,4 @@ def _unit(name: str, declared: str) -> Entry:
             raise SentenceError(f"{name}: {error}") from None
         return unit
 
-    return Entry(read, {"type": "string", "default": declared, "description": f"a unit like {declared or '1'}"})
+    return FileEntry(read, {"type": "string", "default": declared, "description": f"a unit like {declared or '1'}"})

@@ -14,7 +14,7 @@ from truing.errors import Fault, InfeasibleError, InputError
 from truing.inputs_file.assemble import renamed
 from truing.inputs_file.document import SECTIONS, UNREADABLE, InputsDocument
 from truing.inputs_file.entries import sections, whole_file
-from truing.inputs_file.values import Entry, InputsRead, Section
+from truing.inputs_file.values import FileEntry, FileSection, InputsRead
 from truing.setup import Setup
 from truing.units.grammar import shown
 
@@ -60,7 +60,7 @@ class _Words:
         self.near_misses = 0
 
     def read(
-        self, table: Mapping[str, Any], section: Section, path: tuple[str, ...], reading: InputsRead
+        self, table: Mapping[str, Any], section: FileSection, path: tuple[str, ...], reading: InputsRead
     ) -> Iterator[tuple[tuple[str, ...], str]]:
         """Read a table into ``reading``; give what is wrong by path, without a sentence where a name is unknown.
 
@@ -70,11 +70,11 @@ class _Words:
         for name, entry in section.entries.items():
             here = (*path, name)
             if name not in table:
-                if isinstance(entry, Entry) and entry.is_required:
+                if isinstance(entry, FileEntry) and entry.is_required:
                     yield here, self.missing(here)
             elif table[name] in passed_over:
                 continue
-            elif isinstance(entry, Entry):
+            elif isinstance(entry, FileEntry):
                 yield from _read_entry(here, entry, table[name], reading)
             elif isinstance(table[name], dict):
                 yield from self.read(table[name], entry, here, reading)
@@ -169,7 +169,7 @@ class _Words:
 
 
 def _read_entry(
-    path: tuple[str, ...], entry: Entry, raw: Any, reading: InputsRead
+    path: tuple[str, ...], entry: FileEntry, raw: Any, reading: InputsRead
 ) -> Iterator[tuple[tuple[str, ...], str]]:
     if isinstance(raw, dict) and UNREADABLE in raw.values():
         return

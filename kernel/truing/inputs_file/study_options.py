@@ -17,9 +17,9 @@ from truing.declare.model import Model, Study
 from truing.declare.near_miss import near_miss
 from truing.errors import UnitError
 from truing.inputs_file.values import (
-    Entry,
+    FileEntry,
+    FileSection,
     InputsRead,
-    Section,
     SentenceError,
     StatedValues,
     broken_bound,
@@ -57,15 +57,15 @@ def _hint(owner: type[Any], option: dataclasses.Field[Any], value: Any) -> Any:
         return type(value) if value is not None else Any
 
 
-def study_section(study: Study) -> Section:
+def study_section(study: Study) -> FileSection:
     """Return the options of a study that a file may set."""
     entries = {}
     for name, hint in options_of(study).items():
         value = getattr(study, name)
         default = {"default": value} if isinstance(value, (bool, int, float, str)) else {}
-        entries[name] = Entry(partial(_read_option, name, hint), {**_option_schema(hint), **default})
+        entries[name] = FileEntry(partial(_read_option, name, hint), {**_option_schema(hint), **default})
     summary = (type(study).__doc__ or "").strip().splitlines()
-    return Section("", summary[0] if summary else study.name, entries)
+    return FileSection("", summary[0] if summary else study.name, entries)
 
 
 def _read_option(name: str, hint: Any, raw: Any, _: InputsRead) -> Any:
@@ -128,7 +128,7 @@ def diagnose_options(model: Model[Any, Any], values: StatedValues) -> DiagnoseOp
     return DiagnoseOptions(**{path[2]: value for path, value in values.items() if path[:2] == ("studies", DIAGNOSE)})
 
 
-def diagnose_section(model: Model[Any, Any]) -> Section:
+def diagnose_section(model: Model[Any, Any]) -> FileSection:
     """Return what may be asked of a diagnosis."""
     ranges = {name: f"0..10 {unit}".strip() for name, unit in _settable(model).items()}
     results = model.measurable
@@ -155,10 +155,10 @@ def diagnose_section(model: Model[Any, Any]) -> Section:
         "budget": (_budget, {"type": "integer", "minimum": 0, "default": 0, "examples": [1000]}),
     }
     entries = {
-        name: Entry(partial(read, model), {**schema, "description": words[name]})
+        name: FileEntry(partial(read, model), {**schema, "description": words[name]})
         for name, (read, schema) in kinds.items()
     }
-    return Section("", "What is asked of a diagnosis.", entries)
+    return FileSection("", "What is asked of a diagnosis.", entries)
 
 
 def _texts(examples: Mapping[str, str]) -> dict[str, Any]:

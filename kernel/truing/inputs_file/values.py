@@ -43,7 +43,7 @@ class InputsRead:
 
 
 @dataclass(frozen=True)
-class Entry:
+class FileEntry:
     """One name of a section: what reads its value, or raises ValueError with one sentence, and its JSON Schema."""
 
     read: Callable[[Any, InputsRead], Any]
@@ -52,12 +52,12 @@ class Entry:
 
 
 @dataclass(frozen=True)
-class Section:
+class FileSection:
     """A table of an inputs file: what it holds, in words and by name; ``title`` names it in the JSON Schema."""
 
     title: str
     words: str
-    entries: Mapping[str, Entry | Section]
+    entries: Mapping[str, FileEntry | FileSection]
 
     @property
     def schema(self) -> dict[str, Any]:
