@@ -147,12 +147,32 @@ def test_the_power_law_is_the_mean_of_the_exact_sum(dimension: float) -> None:
     assert float(np.mean(exact_sum(lags, dimension, 1e-9) / law)) == pytest.approx(1.0, abs=0.005)
 
 
+@pytest.mark.parametrize(
+    ("dimension", "factor"),
+    # (2 pi)^((2 - D_s)/(D_s - 1)) by hand: 6.28^4 at 1.2, 6.28^1.5 at 1.4, 6.28 at 1.5, 6.28^(2/3) at 1.6
+    [(1.2, 1558.5), (1.4, 15.750), (1.5, 6.2832), (1.6, 3.4051)],
+)
+def test_without_two_pi_the_roughness_is_too_large_by_a_known_factor(dimension: float, factor: float) -> None:
+    """The constant of many papers, Lambda/ln(gamma), taken to the exact sum."""
+    lags = lags_of_a_decade()
+    level = np.mean(exact_sum(lags, dimension, 1e-9) / lags ** (4 - 2 * dimension))
+    usual = float(spectral_constant(dimension)) / np.log(DENSITY)
+    found = (level / usual) ** (1 / (2 * (dimension - 1)))
+    assert found / 1e-9 == pytest.approx(factor, rel=0.005)
+
+
 @pytest.mark.parametrize("dimension", DIMENSIONS)
 def test_many_directions_weigh_by_the_mean_power_of_the_cosine(dimension: float) -> None:
     """The areal constant over that of one direction, by quadrature over the angle of the trace."""
     mean = quad(lambda angle: np.cos(angle) ** (4 - 2 * dimension), 0, np.pi / 2)[0] / (np.pi / 2)
     ratio = constant(dimension, DENSITY, "areal") / constant(dimension, DENSITY, "one_direction")
     assert float(ratio) == pytest.approx(mean, rel=1e-9)
+
+
+def test_an_areal_roughness_is_four_times_that_of_the_profile() -> None:
+    """At D_s = 1.5 and gamma = 1.5 by (pi/2)/ln 1.5, the square root of which is not taken: 2 (D_s - 1) = 1."""
+    areal = converted(1e-9, 1.5, DENSITY, source="profile", target="areal")
+    assert float(areal) == pytest.approx(1e-9 * np.pi / 2 / np.log(1.5), rel=1e-12)
 
 
 def test_a_convention_is_undone_by_the_way_back() -> None:

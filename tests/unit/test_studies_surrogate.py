@@ -19,7 +19,7 @@ from truing.calculation import calculate
 from truing.errors import UsageError
 from truing.executors import SerialExecutor, WorkerPool
 from truing.inputs_file.study_options import study_section
-from truing.inputs_file.values import Entry, InputsRead
+from truing.inputs_file.values import FileEntry, InputsRead
 from truing.setup import Setup, SwitchedOn
 from truing.studies.surrogate import Speed, designed, open_box
 
@@ -283,7 +283,7 @@ def test_the_answer_stands_for_what_it_was_made_for(found: Emulated) -> None:
 def test_options_can_stand_in_a_file() -> None:
     def read(name: str, raw: object) -> object:
         entry = study_section(STUDY).entries[name]
-        assert isinstance(entry, Entry)
+        assert isinstance(entry, FileEntry)
         return entry.read(raw, InputsRead(Path()))
 
     assert read("over", {"x1": "0..1"}) == {"x1": "0..1"}
