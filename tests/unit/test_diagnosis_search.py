@@ -398,9 +398,6 @@ def test_a_shape_is_vaguer_that_draws_98_percent_of_what_the_winner_has(
         assert _is_vaguer(made, jump, load) is is_vaguer
 
 
-# What may be there as well
-
-
 # The search and what it gains by chance: against all subsets by least squares, and noise by the recursion.
 
 NAMES = ("lead_error", "clearance", "wear", "thermal_growth", "sensor_offset", "sensor_gain", "sensor_drift")
@@ -466,6 +463,20 @@ def test_one_more_cause_may_be_there_where_chance_seldom_gives_as_much(
     monkeypatch.setattr(choice, "carries_over", lambda *_: carried)
     told = [rival.fit.key for rival in _rivals(made, best, 1) if best.key < rival.fit.key]
     assert told == ([more.key] if is_told else [])
+
+
+def test_what_explains_as_much_in_the_place_of_the_winner_is_not_told_beside_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(choice, "law_of", lambda *_, seed: Law(np.full(100, -1e9), 0.01))
+    monkeypatch.setattr(choice, "carries_over", lambda *_: 9.0)
+    bench = wide(FEW_ROWS, seed=21)
+    made = searched(tmp_path, 0.012 * bench.travel + 1.6 * np.sign(bench.load))
+    best, _, both = (fit_of(made, *names) for names in (["lead_error"], ["clearance"], ["lead_error", "clearance"]))
+    assert both.key in {rival.fit.key for rival in _rivals(made, best, 1)}
+    monkeypatch.setattr(choice, "CLOSE", 1e6)
+    monkeypatch.setattr(choice, "_is_near", lambda made, best, fit: fit.key == frozenset(["clearance"]))
+    assert {rival.fit.key for rival in _rivals(made, best, 1)} == {frozenset(["clearance"])}
 
 
 def test_of_shapes_that_say_the_same_the_one_stands_that_leaves_a_name_most(
