@@ -441,7 +441,7 @@ def _drawn(allotted: Allotted) -> Any:
 
 RECIPROCAL = "1/mm"
 COMPLEX_STEP = 1e-30
-Choice = Mapping[str, str | float]
+GradesAndWidths = Mapping[str, str | float]
 """Tolerances by name: a grade, or a full width in SI. What is not named is as in force."""
 
 
@@ -525,17 +525,17 @@ class AllocationProblem:
         """The grades before anything is adjusted."""
         return {name: part.start for name, part in self.parts.items()}
 
-    def variance(self, name: str, chosen: Choice) -> float:
+    def variance(self, name: str, chosen: GradesAndWidths) -> float:
         """Return the first-order variance of a demand's response with these tolerances."""
         added: float = sum(own.added(name, chosen.get(key, own.start)) for key, own in self.tolerances.items())
         return max(0.0, self.fixed[name] + added)
 
-    def mean(self, name: str, chosen: Choice) -> float:
+    def mean(self, name: str, chosen: GradesAndWidths) -> float:
         """Return the first-order mean of a demand's response with these tolerances."""
         moved = ((own, chosen.get(key, own.start)) for key, own in self.variables.items())
         return self.means[name] + sum(own.pulls[name] * (float(width) - own.start) for own, width in moved)
 
-    def chances(self, chosen: Choice) -> dict[str, float]:
+    def chances(self, chosen: GradesAndWidths) -> dict[str, float]:
         """Return the first-order probability of every demand with these tolerances."""
         chances = {}
         for demand in self.demands:
@@ -543,12 +543,12 @@ class AllocationProblem:
             chances[demand.name] = normal_chance(mean, variance**0.5, demand.low, demand.high)
         return chances
 
-    def cost(self, chosen: Choice) -> float:
+    def cost(self, chosen: GradesAndWidths) -> float:
         """Return the sum of what these tolerances cost."""
         cost: float = sum(own.cost(chosen.get(key, own.start)) for key, own in self.tolerances.items())
         return cost
 
-    def reached(self, chosen: Choice) -> bool:
+    def reached(self, chosen: GradesAndWidths) -> bool:
         """Say whether every goal is met to first order."""
         chances = self.chances(chosen)
         return all(chances[demand.name] >= demand.goal for demand in self.goals if demand.goal is not None)
@@ -676,7 +676,7 @@ class AllocationPlan:
     widths are from a minimum of the cost: 0 is one; None where none were found.
     """
 
-    chosen: Choice
+    chosen: GradesAndWidths
     cost: float
     chances: Mapping[str, float]
     reached: bool
@@ -737,7 +737,7 @@ def as_it_stands(problem: AllocationProblem) -> AllocationPlan:
 
 
 def _plan(
-    problem: AllocationProblem, chosen: Choice, shortfall: str, *, residual: float | None = 0.0
+    problem: AllocationProblem, chosen: GradesAndWidths, shortfall: str, *, residual: float | None = 0.0
 ) -> AllocationPlan:
     reached = problem.reached(chosen)
     status = "reached" if reached else f"not reachable: {shortfall}"

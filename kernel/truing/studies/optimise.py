@@ -928,7 +928,7 @@ class Problem:
 
     space: Space
     study: Optimise
-    known: Known
+    known: ConstantAnswers
     aims: tuple[Aim, ...]
     bounds: tuple[Bound, ...]
     scatter: Scatter
@@ -990,7 +990,7 @@ def joined(parts: Sequence[Answers]) -> Answers:
     )
 
 
-def make_problem(setup: Setup, study: Optimise, known: Known = ()) -> Problem:
+def make_problem(setup: Setup, study: Optimise, known: ConstantAnswers = ()) -> Problem:
     """Collect variables, objectives and limits, and draw the machines. Raises UsageError where one is missing."""
     aims, space, bounds = aims_of(setup, study.name), open_space(setup, study), bounds_of(setup)
     scatter = scatter_of(setup)
@@ -1077,13 +1077,13 @@ def _own_results(problem: Problem, columns: Mapping[str, Any], count: int) -> Ma
     return evaluate_rows(replace(setup, effects=()), neutral, count, wanted=within - {TOTAL_PRICE}).results
 
 
-def run_job(packed: Packed, study: Optimise, known: Known, designs: Matrix) -> Answers:
+def run_job(packed: Packed, study: Optimise, known: ConstantAnswers, designs: Matrix) -> Answers:
     """Answer some designs in a worker."""
     return answers_of(_unpacked(packed, study, known), designs)
 
 
 @lru_cache(maxsize=4)
-def _unpacked(packed: Packed, study: Optimise, known: Known) -> Problem:
+def _unpacked(packed: Packed, study: Optimise, known: ConstantAnswers) -> Problem:
     return make_problem(unpack(packed), study, known)
 
 
@@ -1189,7 +1189,7 @@ def left_out(setup: Setup) -> tuple[str, ...]:
     )
 
 
-def constants(setup: Setup, answers: Mapping[str, Any]) -> Known:
+def constants(setup: Setup, answers: Mapping[str, Any]) -> ConstantAnswers:
     """Return the limits that are results of earlier studies: they stay what they are."""
     limits = {require.limit for require in requirements(setup)}
     theirs = limits & given_by_studies(setup) & set(answers)
@@ -1219,7 +1219,7 @@ def margins(limit: Limit, world: Designs) -> Matrix:
 
 VariableKind = Literal["number", "whole", "width", "grade"]
 SLACK = 1e-9
-Known = tuple[tuple[str, float], ...]
+ConstantAnswers = tuple[tuple[str, float], ...]
 """Results of earlier studies that are limits, by name in SI."""
 
 
