@@ -206,7 +206,7 @@ MUTANTS: tuple[Mutant, ...] = (
     ),
     *changes(
         "kernel/truing/diagnosis/exact.py", "unit/test_diagnosis_memory.py",
-        ("predicted=predicted, slopes={}).in_sample(sample)", "slopes={}).in_sample(sample)"),
+        ("predicted=predicted, slopes={}, moves={})", "slopes={}, moves={})"),
     ),
     *changes(
         "kernel/truing/diagnosis/visibility.py", "unit/test_diagnosis_gain_design.py",

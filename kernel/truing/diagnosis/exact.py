@@ -108,7 +108,7 @@ def held_without(fit: Fit, index: int, sample: Sample, extended: Extended) -> Fi
     """Return an explanation without one of its causes, all else held where it is."""
     causes, values = fit.less(index)
     (predicted,) = extended.at(causes, [(values, fit.moved)])
-    return replace(fit, causes=causes, values=values, predicted=predicted, slopes={}).in_sample(sample)
+    return replace(fit, causes=causes, values=values, predicted=predicted, slopes={}, moves={}).in_sample(sample)
 
 
 class Fitting:
