@@ -192,6 +192,16 @@ def test_every_file_on_the_way_is_there(begin: str) -> None:
     assert not [file for file in files if not (ROOT / "kernel" / "truing" / file).is_file()]
 
 
+def test_the_page_of_the_diagnosis_names_modules_that_are_there() -> None:
+    """At the head of a paragraph, and in brackets in the one on how rows are read."""
+    page = (ROOT / "docs" / "explanation" / "diagnosis.md").read_text(encoding="utf-8")
+    heads = re.findall(r"\n\n((?:`[a-z_]+`(?:, )?)+)[.:]", page)
+    reading = next(part for part in page.split("\n\n") if part.startswith("First the rows are read"))
+    named = {*re.findall(r"`([a-z_]+)`", " ".join(heads)), *re.findall(r"\(`([a-z_]+)`\)", reading)}
+    assert len(named) > 15
+    assert named <= {file.stem for file in (ROOT / "kernel" / "truing" / "diagnosis").glob("*.py")}
+
+
 def imports_of(file: Path) -> Iterator[str]:
     for node in nodes_of(file):
         if isinstance(node, ast.Import):
