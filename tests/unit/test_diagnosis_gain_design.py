@@ -21,7 +21,6 @@ from diagnosis_models import (
     fit_of,
     gauge,
     of_size_one,
-    plain_competition,
     size_of,
     twist_model,
     wander,
@@ -96,8 +95,7 @@ def ready(folder: Path, error: Array, runs: list[str] | None = None, **more: Any
     bench = wide(len(error), seed=33)
     options = more.pop("diagnose", DiagnoseOptions())
     asked = Asked(drive_model(**more), diagnose=options)
-    records = asked.records(folder, bench.columns(gauge(bench.load, bench.travel) + error), runs or [])
-    return plain_competition(asked, records, UM)
+    return asked.competing(folder, bench.shown(error), runs or [])
 
 
 def remembering(sample: Sample, rho: float, *, held: NDArray[np.bool_] | None = None) -> Sample:
@@ -208,10 +206,10 @@ def test_what_is_chosen_without_a_fold_is_counted(tmp_path: Path) -> None:
 def test_a_gain_is_held_against_the_calibrated_model_and_the_noise_floor(tmp_path: Path) -> None:
     rng = np.random.default_rng(35)
     bench = wide(200, seed=35)
-    contact = np.sign(bench.load) * np.abs(bench.load) ** (2 / 3)
+    contact = bench.contact
     error = 0.12 * contact + 0.02 * bench.travel + rng.normal(0, 1, 200)  # 0.12 lies inside the tolerance
     asked = Asked(drive_model())
-    found = diagnose(asked.setup, asked.records(tmp_path, bench.columns(gauge(bench.load, bench.travel) + error)))
+    found = diagnose(asked.setup, asked.records(tmp_path, bench.shown(error)))
     (gain,) = found.gain
     design = np.column_stack([contact, bench.load * bench.travel])
     free = error - design @ np.linalg.lstsq(design, error)[0]
@@ -252,7 +250,7 @@ def test_the_smallest_visible_size_by_dense_algebra(tmp_path: Path, tolerances: 
     made = ready(tmp_path, error, tolerances=tolerances, effects=("lead_error", "clearance"))
     made.sample = remembering(made.sample, rho)
     seen = {item.name: item for item in smallest_visible(unmoved(made))}
-    contact = np.sign(bench.load) * np.abs(bench.load) ** (2 / 3)
+    contact = bench.contact
     if tolerances:
         noise = noise + np.outer(0.09 * contact, 0.09 * contact) + 25.0
     for name, curve, unit in (("lead_error", bench.travel, UM / 1e-3), ("clearance", np.sign(bench.load), UM)):
@@ -290,8 +288,8 @@ def one_sign(folder: Path, box: dict[str, tuple[float, float]], noise: float, *,
     bench = wide(40, seed=36)
     bench = replace(bench, load=np.abs(bench.load) + 1)
     asked = Asked(drive_model(("clearance",), {}), diagnose=DiagnoseOptions(box=box))
-    columns = bench.columns(gauge(bench.load, bench.travel) + 3 + noise * np.resize([1, -1], 40))
-    made = plain_competition(asked, asked.records(folder, columns), UM)
+    columns = bench.shown(3 + noise * np.resize([1, -1], 40))
+    made = asked.competing(folder, columns)
     best = fit_of(made, "sensor_offset")
     if is_named:
         return chosen_as(made, best, same={best.causes[0].tag: ("clearance",)})
@@ -324,8 +322,7 @@ def test_rivals_are_separated_inside_the_box(tmp_path: Path) -> None:
     narrow = replace(bench, travel=140 + bench.travel / 15)
     asked = Asked(drive_model(("lead_error",), {}), diagnose=DiagnoseOptions(box={"travel": (0.0, 0.3)}))
     error = 0.01 * narrow.travel + np.random.default_rng(37).normal(0, 0.5, 80)
-    records = asked.records(tmp_path, narrow.columns(gauge(narrow.load, narrow.travel) + error))
-    made = plain_competition(asked, records, UM)
+    made = asked.competing(tmp_path, narrow.shown(error))
     points = next_points(chosen_as(made, fit_of(made, "lead_error"), fit_of(made, "sensor_offset"))).points
     assert points
     travel = [point.settings["travel"].value for point in points]
@@ -393,7 +390,7 @@ def test_two_unit_vectors_at_thirty_degrees(tmp_path: Path) -> None:
     noise[2:] = np.sqrt(1.2) * np.resize([1, -1], 10)
     columns = {"first": first, "second": second, "reading": 8 * first + noise}
     asked = Asked(twist_model(), units=dict.fromkeys(columns, "-"))
-    made = plain_competition(asked, asked.records(tmp_path, columns), 1.0)
+    made = asked.competing(tmp_path, columns, scale=1.0)
     assert_allclose(seen_angle(made, "along_first", "along_second"), 30, rtol=1e-9)
     true, rival = fit_of(made, "along_first"), fit_of(made, "along_second")
     assert_allclose(size_of(true, "one"), 8, rtol=1e-6)
@@ -408,7 +405,7 @@ def test_a_rival_refits_within_its_bounds(tmp_path: Path) -> None:
     noise[2:] = np.sqrt(1.2) * np.resize([1, -1], 10)
     columns = {"first": first, "second": second, "reading": 8 * first + noise}
     asked = Asked(twist_model(), units=dict.fromkeys(columns, "-"))
-    made = plain_competition(asked, asked.records(tmp_path, columns), 1.0)
+    made = asked.competing(tmp_path, columns, scale=1.0)
     true, rival = fit_of(made, "along_first"), fit_of(made, "along_second")
     assert_allclose(separation(true, rival, made.extended), 36 + (12 * np.sqrt(0.75) - 9) ** 2, rtol=1e-6)
 
@@ -420,7 +417,7 @@ def test_a_warm_up_and_a_drift_are_fourteen_degrees_apart(
     bench = warming()
     asked = Asked(drive_model(tolerances=tolerances))
     noise = of_size_one(np.random.default_rng(41), len(bench))
-    made = plain_competition(asked, asked.records(tmp_path, bench.columns(gauge(bench.load, bench.travel) + noise)), UM)
+    made = asked.competing(tmp_path, bench.shown(noise))
     ours = seen_angle(made, "thermal_growth", "sensor_drift")
     free = np.column_stack([bench.temperature - 20, bench.time])
     free = free - free.mean(axis=0) if tolerances else free
@@ -433,8 +430,8 @@ def test_growth_in_a_warm_up_is_visible_but_not_separable_from_a_drift(tmp_path:
     asked = Asked(drive_model(tolerances={}))
     curve = 0.05 * (bench.temperature - 20)
     noise = of_size_one(np.random.default_rng(42), len(bench))
-    columns = bench.columns(gauge(bench.load, bench.travel) + curve + noise)
-    made = plain_competition(asked, asked.records(tmp_path, columns), UM)
+    columns = bench.shown(curve + noise)
+    made = asked.competing(tmp_path, columns)
     true = believed(made, "thermal_growth", 0.05 * UM)
 
     def left(*columns: Array) -> float:
@@ -458,7 +455,7 @@ def test_a_gain_and_a_loss_of_stiffness_are_three_degrees_apart(tmp_path: Path) 
     bench = replace(wide(len(load)), load=load, travel=travel)
     asked = Asked(drive_model(tolerances={}))
     noise = of_size_one(np.random.default_rng(43), len(bench))
-    made = plain_competition(asked, asked.records(tmp_path, bench.columns(gauge(load, travel) + noise)), UM)
+    made = asked.competing(tmp_path, bench.columns(gauge(load, travel) + noise))
     contact = np.sign(load) * np.abs(load) ** (2 / 3)
     linear = 0.5 * load * travel / STROKE
     dense = np.degrees(subspace_angles((3 * contact + linear)[:, None], (2 * contact + linear)[:, None])[0])

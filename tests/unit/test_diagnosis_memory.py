@@ -52,12 +52,12 @@ def test_many_rows_times_a_vector_are_summed_in_double_precision() -> None:
 def test_the_first_idea_of_the_noise_is_what_least_squares_leave(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    bench, rng = wide(400), np.random.default_rng(5)
+    bench, rng = wide(400, turning=True), np.random.default_rng(5)
     measured = gauge(bench.load, bench.travel, 3.3) + 0.01 * bench.temperature**2 + rng.normal(0, 2, 400)
     asked = Asked(drive_model())
     there = machine.calibration_of(asked.setup, asked.records(tmp_path, bench.columns(measured)))
     powers = [np.asarray(values) ** power for values in vars(bench).values() for power in (1, 2)]
-    loads = [np.sign(bench.load) * np.cbrt(bench.load) ** 2, bench.load * bench.travel]
+    loads = [bench.contact, bench.load * bench.travel]
     design = np.column_stack([np.ones(400), *powers, *loads])
     design /= np.sqrt(np.mean(design**2, axis=0))
     left = measured - gauge(bench.load, bench.travel)
@@ -100,7 +100,7 @@ def test_a_decision_on_some_rows_is_kept_and_its_rivals_are_fitted_to_all(
     monkeypatch.setattr(engine, "LONG", 100)
     bench, asked = wide(400), Asked(drive_model(("lead_error", "thermal_growth"), {}))
     error = 0.3 * (bench.temperature - 20) + np.random.default_rng(9).normal(size=400)
-    records = asked.records(tmp_path, bench.columns(gauge(bench.load, bench.travel) + error))
+    records = asked.records(tmp_path, bench.shown(error))
     whole = machine.calibration_of(asked.setup, records)
     few = laid_out(machine.calibration_of(asked.setup, engine.searched(records, seed=1)))
     competition.search(few)
@@ -121,7 +121,7 @@ def test_what_a_search_of_some_rows_came_to_is_fitted_to_all(tmp_path: Path, mon
     monkeypatch.setattr(engine, "LONG", 80)
     bench, asked = wide(300), Asked(drive_model(("lead_error",), {}))
     error = 0.03 * bench.travel + np.random.default_rng(9).normal(size=300)
-    found = asked.diagnosed(tmp_path, bench.columns(gauge(bench.load, bench.travel) + error))
+    found = asked.diagnosed(tmp_path, bench.shown(error))
     assert name_sets(found) == [{"lead_error"}]
     exact = bench.travel @ error / (bench.travel @ bench.travel)  # by all rows
     (size,) = found.causes[0].unknowns
@@ -164,7 +164,7 @@ def calls_of(tmp_path: Path, extra: int, tolerances: Mapping[str, str]) -> int:
     asked = Asked(Model(name="drive", title="Deflection of a screw drive", function=counting, errors=errors))
     bench = wide(80)
     error = 0.03 * bench.travel + np.random.default_rng(8).normal(size=80)
-    records = asked.records(tmp_path, bench.columns(gauge(bench.load, bench.travel) + error))
+    records = asked.records(tmp_path, bench.shown(error))
     slow.calls = 0
     found = diagnose(asked.setup, records)
     assert [cause.effect for cause in found.causes] == ["lead_error"]

@@ -202,7 +202,7 @@ def machine(
 ) -> Calibration:
     """A record of BENCH with an error in um."""
     one = Asked(drive_model((), tolerances))
-    columns = BENCH.columns(gauge(BENCH.load, BENCH.travel) + error)
+    columns = BENCH.shown(error)
     return calibration_of(one.setup, one.records(folder, columns, runs))
 
 
@@ -233,7 +233,7 @@ def test_what_is_left_is_measured_minus_predicted_in_units_of_the_noise(tmp_path
     weights = np.linspace(0.5, 2, 150)
     made = sample(there, scale=0.4 * UM, weights=weights)
     assert_allclose(made.left(there.base), noise() * weights / 0.4, atol=1e-6)
-    contact = 0.09 * np.sign(BENCH.load) * np.cbrt(BENCH.load) ** 2
+    contact = 0.09 * BENCH.contact
     shaft = 0.015 * BENCH.load * BENCH.travel / 150
     slopes = np.column_stack([contact, shaft]) * (weights / 0.4)[:, None]
     assert_allclose(made.drawn @ made.drawn.T, slopes @ slopes.T, rtol=1e-6, atol=1e-6)  # whatever the directions

@@ -71,9 +71,7 @@ WAVE = 2 * np.pi * 9 * np.arange(ROWS) / ROWS
 def competing(folder: Path, error: Array) -> Competition:
     """The effects of a drive on a record of BENCH with an error (um) and noise of 1 um; nothing searched."""
     one = Asked(drive_model(tolerances={}))
-    return plain_competition(
-        one, one.records(folder, BENCH.columns(gauge(BENCH.load, BENCH.travel) + error + NOISE)), UM
-    )
+    return one.competing(folder, BENCH.shown(error + NOISE))
 
 
 def shape_of(made: Competition, tag: str) -> Candidate:
@@ -238,7 +236,7 @@ def test_a_further_wave_must_carry_over_to_the_ends_of_the_record(
 
 def test_the_ends_are_the_first_and_the_last_quarter_of_every_run(tmp_path: Path) -> None:
     one = Asked(drive_model(tolerances={}))
-    columns = BENCH.columns(gauge(BENCH.load, BENCH.travel))
+    columns = BENCH.shown()
     records = one.records(tmp_path, columns, ["a"] * 40 + ["b"] * 110)
     ends = ends_of(plain_competition(one, records, UM).sample).block_of
     edges = [0, 10, 30, 40, 67, 123, 150]
@@ -273,12 +271,12 @@ def test_the_order_of_a_file_without_an_order_leaves_the_folds_as_they_are(tmp_p
     order = np.random.default_rng(9).permutation(ROWS)
     marked = []
     for place, rows in enumerate((np.arange(ROWS), order)):
-        columns = BENCH.columns(gauge(BENCH.load, BENCH.travel) + NOISE)
+        columns = BENCH.shown(NOISE)
         columns = {name: values[rows] for name, values in columns.items() if name != "time"}
         folder = tmp_path / str(place)
         folder.mkdir()
         one = Asked(drive_model(tolerances={}))
-        made = plain_competition(one, one.records(folder, columns), UM)
+        made = one.competing(folder, columns)
         folds = folds_of(made.sample)
         marked.append({float(columns["travel"][row]): int(folds.block_of[row]) % folds.count for row in range(ROWS)})
     assert marked[0] == marked[1]
@@ -296,8 +294,8 @@ def gauge_competing(folder: Path, error: Array, asked: Asked = PLAIN, *, load: A
     bench = wide(FEW_ROWS, seed=21)
     bench = bench if load is None else replace(bench, load=load)
     noise = np.random.default_rng(3).normal(0, 1, FEW_ROWS)
-    columns = bench.columns(gauge(bench.load, bench.travel) + error + noise)
-    return plain_competition(asked, asked.records(folder, columns), UM)
+    columns = bench.shown(error + noise)
+    return asked.competing(folder, columns)
 
 
 def searched(folder: Path, error: Array) -> Competition:
@@ -351,7 +349,7 @@ def test_where_what_is_left_is_noise_a_difference_d_is_unsure_by_two_roots_of_d(
     """
     bench = wide(4000, seed=21)
     asked = Asked(drive_model(("clearance",), {}))
-    made = plain_competition(asked, asked.records(tmp_path, bench.columns(gauge(bench.load, bench.travel))), UM)
+    made = asked.competing(tmp_path, bench.shown())
     noise = {name: replace(own, memory=Autocorrelation(rho)) for name, own in made.sample.noise.items()}
     sample = sample_of(made.sample.machine, noise, made.sample.mask)
     curve = np.sin(np.arange(4000) / 50)
@@ -424,8 +422,7 @@ def named_competing(
     """These causes alone on a record of WARMING with an error (um) and noise of 1 um, in white noise."""
     own = [name for name in names if not name.startswith(("sensor", "input", "unknown", "step"))]
     one = Asked(drive_model(own, {"contact": "3 %", "shaft": "3 %"} if tolerated else {}))
-    records = one.records(folder, WARMING.columns(gauge(WARMING.load, WARMING.travel) + error + WARMING_NOISE))
-    made = plain_competition(one, records, UM)
+    made = one.competing(folder, WARMING.shown(error + WARMING_NOISE))
     made.causes = tuple(cause for cause in made.causes if cause.name in names)
     return made
 
@@ -596,7 +593,7 @@ def test_an_input_far_outside_of_its_tolerance_is_a_sign_unless_it_is_the_cause(
     """The contact gives way 30 % more, ten standard deviations: the prior alone holds it where it is calibrated."""
     error = gauge(WARMING.load, WARMING.travel, 3.9) - gauge(WARMING.load, WARMING.travel)
     made = named_competing(tmp_path, error, ["input:contact", "input:shaft"], tolerated=True)
-    cube = np.sign(WARMING.load) * np.cbrt(WARMING.load) ** 2
+    cube = WARMING.contact
     slopes, weight, moved = (
         np.column_stack([0.09 * cube, 0.015 * WARMING.load * WARMING.travel / 150]),
         1.0,
