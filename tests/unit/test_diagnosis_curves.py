@@ -12,6 +12,7 @@ import pytest
 from diagnosis_models import (
     KN,
     SKEWED,
+    TOLERANCES,
     UM,
     Array,
     Asked,
@@ -58,7 +59,6 @@ OWN = {
     ),
     "rubbing": Effect("rubbing", on_results=rubbing, unknowns=[Unknown("drag", -2, 4, "um/mm")]),
 }
-TOLERANCES = {"contact": "3 %", "shaft": "3 %"}
 
 
 def made_of(
@@ -398,16 +398,6 @@ def test_an_input_of_every_file_is_a_machine_for_each(tmp_path: Path) -> None:
     assert len({cause.tag for cause in causes}) == 3
     (made,) = Extended(there).at([causes[1]], [([np.array([2.0])], np.zeros(3))])
     assert_allclose(made["deflection"] - there.base["deflection"], 2 * slopes[:, 1], rtol=1e-6, atol=1e-15)
-
-
-def test_the_prior_of_an_input_lies_at_its_nominal_with_its_deviation(tmp_path: Path) -> None:
-    bench = wide(50)
-    there = calibration(asked(tolerances={"contact": "3 %", "zero": "5 um"}), tmp_path, bench)
-    assert [(item.name, item.mean) for item in there.inputs] == [("contact", 0.0), ("zero", 0.0)]
-    assert_allclose([item.sd for item in there.inputs], [0.09 * UM, 5 * UM])
-    contact = bench.contact
-    assert_allclose(there.slopes["deflection"] / UM, np.column_stack([0.09 * contact, np.full(50, 5.0)]), rtol=1e-6)
-    assert_allclose(there.shifts["deflection"], 0)
 
 
 def test_an_input_that_moves_nothing_is_no_cause(tmp_path: Path) -> None:

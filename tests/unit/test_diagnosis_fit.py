@@ -180,7 +180,7 @@ def test_an_earlier_calibration_is_no_nominal_of_the_extended_model(tmp_path: Pa
     bench = wide(40, seed=21)
     contact = bench.contact
     error = 0.15 * contact + 0.03 * bench.travel + np.random.default_rng(22).normal(0, 1, 40)
-    asked = Asked(drive_model(tolerances={"contact": "3 %"}))
+    asked = Asked(drive_model(["lead_error"], {"contact": "3 %"}))
     again = replace(asked.setup, calibrated={"contact": 3.1 * UM})
     done = diagnose(again, asked.records(tmp_path, bench.shown(error)))
     assert done.extended is not None

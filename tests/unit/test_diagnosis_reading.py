@@ -569,12 +569,8 @@ Columns = Mapping[str, NDArray[np.float64]]
 HEATED = '[effects.link_heating]\nexpansion = "11 um/(m*K)"\n'
 
 
-def offer_of_model(model: Model[Any, Any]) -> Offer:
-    return Offer(model.name, model, Origin(model.name, "", "", "", f"module:{model.name}"))
-
-
 def read_columns(folder: Path, model: Model[Any, Any], columns: Columns, text: str = "[inputs]\n") -> Records:
-    path, offer = folder / "a.csv", offer_of_model(model)
+    path, offer = folder / "a.csv", offer_of(model)
     rows = zip(*(values.tolist() for values in columns.values()), strict=True)
     lines = [",".join(columns), *(",".join(map(repr, row)) for row in rows)]
     path.write_text("\n".join(lines) + "\n")

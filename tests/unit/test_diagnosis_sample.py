@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from diagnosis_models import UM, Array, Asked, drive_model, gauge, wander, white_noise, wide
+from diagnosis_models import TOLERANCES, UM, Array, Asked, drive_model, gauge, wander, white_noise, wide
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.linalg import block_diag, solve_triangular, toeplitz
 from scipy.optimize import approx_fprime, minimize_scalar
@@ -24,7 +24,6 @@ from truing.diagnosis.noise import (
     Autocorrelation,
     SpreadTrend,
     Tails,
-    clipped,
     colour,
     robust_sd,
     spread_of,
@@ -109,16 +108,6 @@ def test_tails_are_recovered_from_two_thousand_innovations(freedom: float, expec
     assert ("heavy" in found.words) == (found.freedom < inf)
 
 
-def test_what_is_clipped_lies_beyond_the_limit() -> None:
-    values = innovations(3.0, 5)
-    found = tails_of(values)
-    sd = robust_sd(values)
-    kept = clipped(values, found)
-    assert np.abs(kept).max() <= found.limit * sd * (1 + 1e-12)
-    inside = np.abs(values) <= found.limit * sd
-    assert_array_equal(kept[inside], values[inside])
-
-
 def test_the_robust_deviation_is_that_of_a_normal_law_and_ignores_spikes() -> None:
     values = np.random.default_rng(7).normal(2.0, 0.3, 20_000)
     assert_allclose(robust_sd(values), 0.3, rtol=0.03)
@@ -193,7 +182,6 @@ def test_weights_undo_the_spread_they_were_learnt_from() -> None:
 
 # The rows as a fit sees them: their noise, its memory and tails, how many count, and what the inputs draw.
 
-TOLERANCES = {"contact": "3 %", "shaft": "3 %"}
 BENCH = wide(150, seed=31)
 
 
