@@ -16,6 +16,7 @@ from diagnosis_models import (
     Bench,
     drive_model,
     ends,
+    fit_of,
     name_sets,
     names_in,
     warming,
@@ -23,6 +24,7 @@ from diagnosis_models import (
 )
 from diagnosis_nothing import nothing_wrong
 from numpy.testing import assert_allclose
+from scipy.optimize import least_squares
 from scipy.stats import t
 
 from truing.diagnosis.engine import laid_out
@@ -196,6 +198,23 @@ def test_a_large_effect_between_two_points_of_its_curves_is_named_alone(
         assert low <= true <= high
     assert found.wrong[0].noise.autocorrelation == 0
     assert_allclose(found.wrong[0].noise_floor.value / UM, 1, atol=4 / np.sqrt(2 * 150))
+
+
+@pytest.mark.parametrize("time_constant", [0.14, 1.7, 6.2, 12.0])
+def test_a_shape_is_fitted_wherever_it_lies(tmp_path: Path, time_constant: float) -> None:
+    """By the least squares of scipy, from the truth."""
+    one = Asked(drive_model(["warm_up"], {}))
+    error = 100 * (1 - np.exp(-BENCH.time / time_constant))
+    made = one.competing(tmp_path, read(error))
+
+    def left(values: Array) -> Array:
+        return np.asarray(values[0] * (1 - np.exp(-BENCH.time / np.exp(values[1]))) - error - noise())
+
+    best = least_squares(left, [100, np.log(time_constant)], xtol=1e-14, ftol=1e-14, gtol=1e-14)
+    rise, hours = fit_of(made, "warm_up").values[0] / [UM, 3600]
+    assert_allclose([rise, hours], [best.x[0], np.exp(best.x[1])], rtol=1e-4)
+    starts = np.geomspace(0.1, 20, 9)
+    assert np.abs(starts / hours - 1).min() > 0.05  # no curve that was asked for is as near
 
 
 # A second cause that may be zero
