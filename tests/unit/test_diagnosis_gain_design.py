@@ -340,7 +340,7 @@ def test_it_is_said_how_many_points_would_be_needed(tmp_path: Path, size: float)
     assert is_said is (bool(enough) and enough[0] > POINTS)
 
 
-# Known answers of the algebra of a diagnosis: likelihood, angles, separation, updates, profiles.
+# Known answers of the algebra of a diagnosis: angles, separation, and what must be seen.
 
 
 def believed(made: Competition, name: str, *numbers: float) -> Fit:
