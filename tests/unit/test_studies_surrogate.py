@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import RBFInterpolator
 from study_models import CHAIN, ROOT, WEAR, Sum, Three, setup_of
-from test_studies_allocation import GROWING, bought
+from test_studies_allocation import GROWING, allotted
 from threadpoolctl import threadpool_info, threadpool_limits
 
 from truing import Emulated, Model, Surrogate, Table
@@ -208,7 +208,7 @@ def test_the_number_of_threads_changes_nothing() -> None:
     for threads in (1, 2):
         with threadpool_limits(threads, user_api="blas"):
             assert {pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"} == {threads}
-            said.append(json.dumps([emulated(HILL, STUDY).as_json(), bought(GROWING, draws=10).as_json()]))
+            said.append(json.dumps([emulated(HILL, STUDY).as_json(), allotted(GROWING, draws=10).as_json()]))
     assert said[0] == said[1]
     assert json.loads(said[0])[1]["reached"]
 

@@ -739,9 +739,9 @@ def worth_it(front: Matrix) -> NDArray[np.bool_]:
     by more than ``DEAR`` in anything, is no trade: the ends of a front would hang on to such designs for ever.
     """
     span = np.ptp(front, axis=0)
-    scaled = front / np.where(span > 0, span, 1.0)
-    apart: Matrix = scaled[:, None, :] - scaled[None, :, :]  # how much worse the first is than the second
-    beaten = (apart.min(axis=2) > -TRIFLE) & (apart.max(axis=2) > DEAR)
+    scaled = (front / np.where(span > 0, span, 1.0)).T
+    apart: Matrix = scaled[:, :, None] - scaled[:, None, :]  # how much worse the first is than the second
+    beaten = (apart.min(axis=0) > -TRIFLE) & (apart.max(axis=0) > DEAR)
     return np.asarray(~beaten.any(axis=1))
 
 
