@@ -400,7 +400,8 @@ def test_no_design_of_a_front_beats_another_and_the_sheet_shows_it(setup: Setup)
     assert not any((one <= other).all() for one, other in itertools.permutations(small, 2))
     titles = ["Start and knee", "Front", "Front, start and knee", "Hypervolume over the generations"]
     blocks = [block for block in best.blocks() if not isinstance(block, Words)]
-    assert list(dict.fromkeys(block.title.partition(", part")[0] for block in blocks)) == titles
+    shown = titles if len(best.front) > 1 else [titles[0], titles[-1]]
+    assert list(dict.fromkeys(block.title.partition(", part")[0] for block in blocks)) == shown
     for block in blocks:
         if isinstance(block, Table):
             assert all(len(row) == len(block.columns) for row in block.rows)
