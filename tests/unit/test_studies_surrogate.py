@@ -59,7 +59,7 @@ def learnt(setup: Setup) -> tuple[Any, Any]:
 def test_mean_and_band_are_those_of_the_textbook(found: Emulated) -> None:
     """The joint normal of Rasmussen and Williams, equations 2.25 and 2.26, written out here."""
     places, values = learnt(setup_of(HILL))
-    process = found.stand_in.emulators["total"].process
+    process = found.stand_in.processes["total"]
     amplitude = process.kernel_.k1.k1.constant_value
     lengths, noise = process.kernel_.k1.k2.length_scale, process.kernel_.k2.noise_level
     centre, scale = values.mean(), values.std()
