@@ -44,7 +44,7 @@ from truing.studies.optimise import (
     open_space,
     volume_of,
 )
-from truing.studies.sampling import Scatter, _gather, scatter_of
+from truing.studies.sampling import Scatter, gather, scatter_of
 
 SMALL = Optimise(population=20, generations=12, draws=600, verify=2000)
 
@@ -226,12 +226,8 @@ def columns_of(scatter: Scatter, problem: Problem) -> dict[str, Any]:
     assert problem.cloud is not None
     columns: dict[str, Any] = {}
     for cause in scatter.causes:
-        standard = problem.cloud[cause.name]
-        if cause.function is None:
-            _gather(columns, cause.from_standard(standard))
-        else:
-            pairs = enumerate(zip(cause.columns, cause.nominals, strict=True))
-            _gather(columns, iter([(name, nominal, nominal + standard[i]) for i, (name, nominal) in pairs]))
+        drawn = problem.cloud[cause.name]
+        gather(columns, cause.deviating(drawn) if cause.function else cause.from_standard(drawn))
     return columns
 
 
