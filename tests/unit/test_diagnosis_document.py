@@ -828,8 +828,8 @@ def states(draw: st.DrawFn) -> DiagnosisResult:
 
 
 def sheet_text(made: DiagnosisResult) -> str:
-    """What the chapters of the sheet say, without their figures."""
-    said = []
+    """What the sheet says above its chapters and in them, without their figures."""
+    said = [*headline(made)]
     for chapter in diagnosis_chapters(made, NoFigures()):
         for block in chapter.blocks:
             if isinstance(block, TableView):
