@@ -170,19 +170,6 @@ def test_every_table_of_the_markdown_has_equal_rows(markdown: str) -> None:
     lines = [line for line in markdown.splitlines() if line.startswith("|")]
     rules = [line for line in lines if re.fullmatch(r"[|\s:-]+", line) and "---" in line]
     assert rows == len(lines) - len(rules)
-    for _, group in groups(markdown):
-        assert len({line.count("|") for line in group}) == 1, group[0]
-
-
-def groups(markdown: str) -> list[tuple[int, list[str]]]:
-    found: list[tuple[int, list[str]]] = []
-    for place, line in enumerate(markdown.splitlines()):
-        if line.startswith("|"):
-            if found and found[-1][0] + len(found[-1][1]) == place:
-                found[-1][1].append(line)
-            else:
-                found.append((place, [line]))
-    return found
 
 
 @pytest.mark.parametrize(
