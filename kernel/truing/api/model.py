@@ -18,8 +18,7 @@ from truing.api.notebook import bullets, fold, heading, html_table, joined, para
 from truing.api.records import MeasuredRecord
 from truing.api.run import Differences, Run, comparison_of, performed
 from truing.api.study import StudyResult
-from truing.api.tables import LABEL, beside, frame_text
-from truing.api.values import settings_of, text_of
+from truing.api.tables import LABEL, beside, frame_text, settings_of, text_of
 from truing.declare.model import Study
 from truing.declare.near_miss import near_miss
 from truing.describe import description, sections

@@ -14,8 +14,7 @@ from typing import Any
 
 from truing.api.notebook import MOST_ROWS, fold, heading, html_table, joined, paragraphs, table_html
 from truing.api.study import StudyResult
-from truing.api.tables import frame_of, frame_text
-from truing.api.values import quantity_of
+from truing.api.tables import frame_of, frame_text, quantity_of
 from truing.calculation import Calculation, calculate
 from truing.cases import CasesTable, run_cases
 from truing.declare.near_miss import near_miss
