@@ -228,19 +228,23 @@ def test_a_folder_that_is_no_run_of_ours_is_left_alone(tmp_path: Path, content: 
     assert leftovers(tmp_path) == ["folder"]
 
 
-def test_a_place_below_a_file_is_refused_in_one_sentence(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("place", "sentence"),
+    [
+        ("file/runs/one", "file is a file, so there can be no folder below it; name another place"),
+        ("file", "is a file; a run is a folder, name another place"),
+        pytest.param(
+            "link", "link: is a link that leads nowhere; name another place or remove this one",
+            marks=pytest.mark.skipif(sys.platform == "win32", reason="links need a privilege there"),
+        ),
+    ],
+)  # fmt: skip
+def test_a_place_that_is_none_is_refused_in_one_sentence(tmp_path: Path, place: str, sentence: str) -> None:
     (tmp_path / "file").write_text("x")
-    with pytest.raises(OutputError, match=r"file is a file, so there can be no folder below it; name another place$"):
-        demand_place(tmp_path / "file" / "runs" / "one")
-    with pytest.raises(OutputError, match=r"is a file; a run is a folder"):
-        demand_place(tmp_path / "file")
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="links need a privilege there")
-def test_a_link_that_leads_nowhere_is_no_place(tmp_path: Path) -> None:
-    (tmp_path / "link").symlink_to(tmp_path / "nowhere")
-    with pytest.raises(OutputError, match=r"link: is a link that leads nowhere; name another place"):
-        demand_place(tmp_path / "link")
+    if place == "link":
+        (tmp_path / "link").symlink_to(tmp_path / "nowhere")
+    with pytest.raises(OutputError, match=f"{sentence}$"):
+        demand_place(tmp_path / place)
 
 
 def test_a_place_that_is_free_is_not_touched_by_asking(tmp_path: Path) -> None:
