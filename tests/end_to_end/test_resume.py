@@ -69,7 +69,7 @@ def failed(tmp_path_factory: pytest.TempPathFactory) -> Path:
         def full(*_: object, **__: object) -> None:
             raise OutputError("the disk is full")
 
-        broken.setattr(run, "write_run", full)
+        broken.setattr(run, "write_outcome", full)
         assert calc_here(folder, *SMALL, "-o", "run", "--resume").code == 2
     assert (folder / "run.partial" / "batches.log").stat().st_size > 0
     return folder

@@ -90,7 +90,7 @@ from truing.report.html_printer import html_of
 from truing.report.markdown_printer import markdown_of
 from truing.runs.diagnosis_document import diagnosis_document, file_labels
 from truing.runs.extension import extended_setup, extended_text
-from truing.runs.folder import demand_place, is_ours, json_text, write_diagnosis, write_folder
+from truing.runs.folder import demand_place, diagnosis_files, is_ours, json_text, write_folder, write_outcome
 from truing.runs.index import _of_diagnosis
 from truing.runs.new_effect import code_name, new_effect_source, safe_expression
 from truing.runs.provenance import provenance_of
@@ -364,10 +364,11 @@ def test_names_in_code_can_stand_there(name: str, expected: str) -> None:
 
 
 def write(folder: Path, made: DiagnosisResult) -> dict[str, Any]:
-    sheets: dict[str, str | bytes] = {"sheet.html": "<p>sheet</p>", "sheet.md": "# sheet\n"}
-    return write_diagnosis(
-        folder, made, provenance=provenance_of(made.setup), run_info={"date": "2026-11-21"}, sheets=sheets
-    )  # fmt: skip
+    document, provenance = diagnosis_document(made), provenance_of(made.setup)
+    files = diagnosis_files(made, {"sheet.html": "<p>sheet</p>", "sheet.md": "# sheet\n"}, folder)
+    info = {"date": "2026-11-21"}
+    write_outcome(folder, "diagnosis", made.setup, document, provenance=provenance, run_info=info, files=files)
+    return document
 
 
 ALWAYS = {"arrays.npz", "diagnosis.json", "inputs.toml", "run.json", "sheet.html", "sheet.md"}
