@@ -325,7 +325,7 @@ def test_options_are_checked(options: dict[str, Any], sentence: str) -> None:
         ({"over": {"first": "1..2 mm", "second - third": "1..2 mm"}}, "one input must be left to follow"),
         ({"over": {"first": "1..2 mm", "first * 2": "1..2 mm"}}, "it is none"),
         ({"over": {"first": "1..2 mm", "first - third": "1..2 kg"}}, "another dimension"),
-        ({"over": {"first": "1..2 mm", "first + third**3": "1..2 mm"}}, "must have one dimension"),
+        ({"over": {"first": "1..2 mm", "first + third**3": "1..2 mm"}}, "does not go with"),
         ({"over": {"first": "10..20 mm", "first * third * third": "1..900 mm^3"}}, "is not straight in 'third'"),
         ({"over": {"1 + ": "1..2 mm"}}, "formula"),
         ({"along": "third"}, "no input in over"),
