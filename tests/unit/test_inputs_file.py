@@ -33,13 +33,13 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def stage(text: str, folder: Path) -> Setup:
-    return setup_from_text(text, STAGE_OFFER, file="stage.toml", folder=folder)
+def stage(text: str, folder: Path, *overrides: str) -> Setup:
+    return setup_from_text(text, STAGE_OFFER, file="stage.toml", folder=folder, overrides=overrides)
 
 
-def stage_faults(text: str, folder: Path) -> list[str]:
+def stage_faults(text: str, folder: Path, *overrides: str) -> list[str]:
     with pytest.raises(InputError) as caught:
-        stage(text, folder)
+        stage(text, folder, *overrides)
     return str(caught.value).splitlines()
 
 
@@ -396,11 +396,10 @@ def test_overrides_replace_what_the_file_says(tmp_path: Path) -> None:
     assert setup.source.file == str(path)
 
 
-def test_an_effect_is_switched_off(tmp_path: Path) -> None:
-    path = tmp_path / "wear.toml"
-    path.write_text('[effects.warm_probe]\nslope = "1 um/K"\n')
-    assert len(read_setup(path, PIN_OFFER).effects) == 1
-    assert read_setup(path, PIN_OFFER, overrides=["effects.warm_probe=off"]).effects == ()
+def test_an_effect_is_switched_off() -> None:
+    text = '[effects.warm_probe]\nslope = "1 um/K"\n'
+    assert len(setup_of(text).effects) == 1
+    assert setup_of(text, "effects.warm_probe=off").effects == ()
 
 
 def test_faults_of_overrides_come_after_those_of_the_file(tmp_path: Path) -> None:
@@ -425,50 +424,33 @@ def test_settings_of_published_numbers() -> None:
         setup_from_settings(PIN_OFFER, {"area": "1 N"})
 
 
-@pytest.mark.parametrize(("text", "expected"), [("true", True), ("false", False)])
-def test_switches_counts_and_files_on_the_command_line(tmp_path: Path, text: str, expected: bool) -> None:
-    (tmp_path / "flank.txt").write_text("1\n2\n4\n")
-    path = tmp_path / "stage.toml"
-    path.write_text("[inputs]\n")
-    overrides = [f"is_hardened={text}", "planets=5", "reading=printed", SET_SURFACE, "orders=[4]"]
-    setup = read_setup(path, STAGE_OFFER, overrides=[*overrides, 'profile=["1 um"]'])
-    assert setup.inputs.is_hardened is expected
+def test_switches_counts_and_files_on_the_command_line(folder: Path) -> None:
+    overrides = ["planets=5", "reading=printed", SET_SURFACE, "orders=[4]", 'profile=["1 um"]']
+    for text, expected in (("true", True), ("false", False)):
+        setup = stage("[inputs]\n", folder, f"is_hardened={text}", *overrides)
+        assert setup.inputs.is_hardened is expected
     assert (setup.inputs.planets, setup.inputs.reading, setup.inputs.orders) == (5, "printed", (4,))
     assert setup.inputs.surface.heights == (1.0, 2.0, 4.0)
 
 
-@pytest.mark.parametrize(
-    "stated", ['surface = { file = "flank.txt", spacing = "0.4 um" }', 'surface = "flank.txt"'], ids=["table", "file"]
-)
-def test_an_option_of_a_data_file_on_the_command_line(tmp_path: Path, stated: str) -> None:
-    (tmp_path / "flank.txt").write_text("1\n2\n4\n")
-    (tmp_path / "stage.toml").write_text(f"[inputs]\n{stated}\n")
-    setup = read_setup(tmp_path / "stage.toml", STAGE_OFFER, overrides=['surface.spacing="0.5 um"'])
-    assert setup.inputs.surface.spacing == "0.5 um"
-    assert setup.inputs.surface.heights == (1.0, 2.0, 4.0)
+@pytest.mark.parametrize("stated", [SURFACE, 'surface = "flank.txt"'], ids=["table", "file"])
+def test_an_option_of_a_data_file_on_the_command_line(folder: Path, stated: str) -> None:
+    setup = stage(f"[inputs]\n{stated}\n", folder, 'surface.spacing="0.5 um"')
+    assert (setup.inputs.surface.spacing, setup.inputs.surface.heights) == ("0.5 um", (1.0, 2.0, 4.0))
 
 
 @pytest.mark.parametrize(
-    ("option", "words"),
+    ("stated", "option", "words"),
     [
-        ("surface.spacng=1 um", "the reader takes no 'spacng'; beside file it takes: spacing, height_unit."),
-        ("surface.file=none.txt", "there is no file 'none.txt'"),
+        (SURFACE, "surface.spacng=1 um", "the reader takes no 'spacng'; beside file it takes: spacing, height_unit."),
+        (SURFACE, "surface.file=none.txt", "there is no file 'none.txt'"),
+        ("", "surface.spacing=1 um", "surface is read from a data file"),
     ],
 )
-def test_an_option_that_is_none_is_named_with_the_override(tmp_path: Path, option: str, words: str) -> None:
-    (tmp_path / "flank.txt").write_text("1\n2\n4\n")
-    (tmp_path / "stage.toml").write_text(f"[inputs]\n{SET_SURFACE.replace('=', ' = ', 1)}\n")
-    with pytest.raises(InputError) as caught:
-        read_setup(tmp_path / "stage.toml", STAGE_OFFER, overrides=[option])
-    (line,) = str(caught.value).splitlines()
-    assert line.startswith(f"--set {option}: surface: ")
+def test_an_option_that_is_none_is_named_with_the_override(folder: Path, stated: str, option: str, words: str) -> None:
+    (line,) = stage_faults(f"[inputs]\n{stated}\n", folder, option)
+    assert line.startswith(f"--set {option}: surface")
     assert words in line
-
-
-def test_an_option_without_its_file_asks_for_the_file(tmp_path: Path) -> None:
-    (tmp_path / "stage.toml").write_text("[inputs]\n")
-    with pytest.raises(InputError, match=r"--set surface\.spacing=1 um: surface is read from a data file"):
-        read_setup(tmp_path / "stage.toml", STAGE_OFFER, overrides=["surface.spacing=1 um"])
 
 
 # The JSON Schema by which editors complete an inputs file.
