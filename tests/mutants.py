@@ -67,7 +67,6 @@ MUTANTS: tuple[Mutant, ...] = (
     *changes(
         "kernel/truing/fits.py", "unit/test_fits.py",
         ("if size_mm <= limit * _SAME:", "if size_mm < limit / _SAME:"),
-        ("GRADES[column - 1] if column", "GRADES[column - 2] if column"),
     ),
     *changes(
         "kernel/truing/numbers.py", "unit/test_units.py",
