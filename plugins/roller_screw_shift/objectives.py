@@ -32,10 +32,7 @@ def normalised(value: Float, reach: Range) -> Float:
 
     f_r = (X - sin X)/(2 pi) with X = 2 pi (value - low)/(high - low). Raises TruingError where the range has no width.
     """
-    low, high = reach
-    if not (low < high and np.isfinite(high - low)):
-        raise TruingError(f"an objective from {low:g} to {high:g} cannot be brought to 0 to 1: its range has no width")
-    turn = 2.0 * np.pi * np.clip((value - low) / (high - low), 0.0, 1.0)
+    turn = 2.0 * np.pi * np.clip((value - reach[0]) / _width(reach), 0.0, 1.0)
     return (turn - np.sin(turn)) / (2.0 * np.pi)
 
 
@@ -44,10 +41,14 @@ def weight(reach: Range) -> float:
 
     It has a unit, one over that of the objective squared: stresses in other units would weigh otherwise.
     """
+    return (0.5 * _width(reach)) ** -2
+
+
+def _width(reach: Range) -> float:
     low, high = reach
     if not (low < high and np.isfinite(high - low)):
-        raise TruingError(f"an objective from {low:g} to {high:g} has no weight: its range has no width")
-    return (0.5 * (high - low)) ** -2
+        raise TruingError(f"an objective from {low:g} to {high:g} cannot be weighed: its range has no width")
+    return high - low
 
 
 def rule_weights(ranges: Ranges) -> Three:

@@ -138,7 +138,7 @@ def test_equal_sliding_is_found_whatever_the_limits(pair: Pair) -> None:
 @pytest.fixture(scope="module")
 def field(pair: Pair) -> Field:
     """With a contact ratio of 1.2 the optimum lies within."""
-    found = field_of(replace(pair, least_contact_ratio=1.2), SPAN, 20_001)
+    found = field_of(replace(pair, least_contact_ratio=1.2), SPAN, 4001)
     assert found is not None
     return found
 

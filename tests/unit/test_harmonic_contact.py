@@ -18,7 +18,7 @@ from harmonic_fractal.model import HARMONIC_FRACTAL
 from harmonic_fractal.structure import structure_function
 from harmonic_fractal.surface import Surface
 from truing.errors import InfeasibleError
-from truing.evaluate import answered, evaluate_rows
+from truing.evaluate import evaluate_rows
 from truing.setup import default_setup
 
 SURFACES = [(2.1, 1e-22), (2.3, 1e-11), (2.4, 1e-11), (2.5 - 1e-7, 1e-9), (2.5, 1e-9), (2.5 + 1e-7, 1e-9),
@@ -289,22 +289,6 @@ def test_two_measured_flanks_are_added_over_the_range_that_both_have() -> None:
 
 
 # What must hold
-
-
-@pytest.mark.parametrize(
-    ("changed", "result", "sentence"),
-    [
-        ({"fractal_dimension": 2.3}, "torsion", "raise reference_torque"),
-        ({"reference_torque": 1e-6}, "torsion", "raise reference_torque"),
-        ({"catalogue_size": "40", "flexspline_teeth": 60}, "catalogue_torsion", "no size 40 with a ratio below 40"),
-    ],
-    ids=["rough", "early", "size"],
-)
-def test_what_does_not_exist_has_its_reason(changed: dict[str, Any], result: str, sentence: str) -> None:
-    found = answered(default_setup(HARMONIC_FRACTAL, **changed))
-    assert sentence in found.absent[result]
-    assert np.isnan(getattr(found.results, result))
-    assert np.isfinite([found.results.stiffness, found.results.clearance]).all()
 
 
 def test_a_smooth_mate_needs_no_range_of_lags() -> None:
