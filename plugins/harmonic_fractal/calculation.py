@@ -229,15 +229,11 @@ def _pair(drive: Drive, contact: rough_contact.Contact, pair: rough_contact.Pres
     """Return one pair under its load by the names of its results."""
     plastic = np.exp(contact.law.growth * pair.size) * contact.plastic_limit / drive.pair_load
     return {
-        "largest_area": pair.largest_area,
+        **{name: value for name, value in vars(pair).items() if name != "size"},
         "area_ratio": np.exp(pair.size),
         "elastic_sum": elastic_sum(pair.size, contact.law),
         "plastic_share": np.where(pair.size > 0.0, plastic, 1.0),
-        "contact_area": pair.contact_area,
-        "real_area": pair.real_area,
         "flank_share": pair.real_area / (drive.face_width * drive.flank_height),
-        "stiffness": pair.stiffness,
-        "load_exponent": pair.load_exponent,
     }
 
 

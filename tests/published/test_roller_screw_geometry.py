@@ -181,12 +181,6 @@ def test_backlash_is_the_play_of_the_roller_in_the_ring(deviation: float) -> Non
     assert deviation * play <= 0.0
 
 
-@pytest.mark.parametrize("deviation", [-2e-6, 2e-6])
-def test_backlash_of_a_small_deviation_is_linear(deviation: float) -> None:
-    geometry = geometry_of(pair_of(centre_distance_deviation=deviation))
-    assert float(backlash(geometry)) == pytest.approx(-2 * deviation * np.tan(geometry.working_angle), rel=1e-3)
-
-
 def test_the_shift_of_the_ring_does_not_follow_a_deviation() -> None:
     near, far = geometry_of(pair_of()), geometry_of(pair_of(centre_distance_deviation=30e-6))
     assert far.ring_shift == near.ring_shift

@@ -35,13 +35,6 @@ def contact(dimension: float = 2.4, roughness: float = 1e-11, **changed: Any) ->
 # Domain factor
 
 
-@pytest.mark.parametrize(
-    ("dimension", "limit"), [(2.0 + 1e-9, ((1 + np.sqrt(5)) / 2) ** 2), (3.0 - 1e-9, np.e - 1)], ids=["2", "3"]
-)
-def test_domain_factor_has_its_limits(dimension: float, limit: float) -> None:
-    assert micro.domain_factor(dimension) == pytest.approx(limit, rel=1e-8)
-
-
 def test_domain_factor_solves_its_equation() -> None:
     dimension = np.linspace(2.01, 2.99, 99)
     expected = [RoughPair(value, 1e-11).domain_factor for value in dimension]
@@ -74,14 +67,6 @@ def test_a_tip_radius_that_follows_the_area_makes_the_pair_stiffer(dimension: fl
     found = pressed(400.0, contact(dimension, roughness, tip_rule="scaled"))
     expected = RoughPair(dimension, roughness).stiffness(float(found.largest_area), following=True)
     assert found.stiffness == pytest.approx(expected, rel=1e-6)
-
-
-def test_the_closed_form_is_smooth_across_two_and_a_half() -> None:
-    dimension = 2.5 + np.array([-1e-7, -1e-9, 0.0, 1e-9, 1e-7])
-    found = pressed(25.0, contact(dimension, 1e-9))  # type: ignore[arg-type]
-    slope = 13.24  # d ln K/d D there
-    expected = np.log(found.stiffness[2]) + slope * (dimension - 2.5)  # type: ignore[index]
-    np.testing.assert_allclose(np.log(found.stiffness), expected, atol=1e-9)
 
 
 # Load and largest area
