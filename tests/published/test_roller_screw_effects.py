@@ -292,6 +292,3 @@ def test_friction_opposes_the_turning(load: float, speed: float, expected: float
     one = change("mesh_friction", "friction_torque", screw_speed=600 * RPM, **here)
     found = change("mesh_friction", "friction_torque", pair_at(load), screw_speed=speed * RPM, **here)
     assert found == pytest.approx(expected * one, rel=1e-9, abs=1e-15)
-
-
-# All
