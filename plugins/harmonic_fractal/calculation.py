@@ -4,7 +4,6 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from harmonic_fractal import clearance as gap
 from harmonic_fractal import contact as rough_contact
 from harmonic_fractal.mesh import DriveMesh, line_stiffness, load_of_largest, mesh_of, mesh_torsion, normal_stiffness
 from harmonic_fractal.micro import LEAST_DIMENSION, MOST_DIMENSION, elastic_sum
@@ -242,16 +241,16 @@ def _clearance(
 ) -> dict[str, Any]:
     """Return the clearance of one pair by the names of its results."""
     largest = np.sqrt(pair.largest_area / np.pi)
-    radius, multiple = gap.read_radius(drive, largest)
-    first, second = gap.heights(drive)
+    radius, multiple = rough_contact.read_radius(drive, largest)
+    first, second = rough_contact.heights(drive)
     reference = load_of_largest(drive.reference_torque, mesh)
-    approach = gap.approach(drive.pair_load, reference, contact)
+    approach = rough_contact.approach(drive.pair_load, reference, contact)
     left = np.maximum((first + second) / 2.0 - approach, 0.0)
     return {
         "largest_radius": largest,
         "clearance_radius": radius,
         "clearance_multiple": multiple,
-        "clearance": multiple * gap.amplitude(radius, contact, drive.density),
+        "clearance": multiple * rough_contact.amplitude(radius, contact, drive.density),
         "rough_height": first,
         "mating_rough_height": second,
         "open_clearance": (first + second) / 2.0,

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from harmonic_fractal import clearance
+from harmonic_fractal import contact as rough_contact
 from harmonic_fractal.calculation import column_of, harmonic_fractal, polyline_of
 from harmonic_fractal.contact import Rough
 from harmonic_fractal.model import HARMONIC_FRACTAL
@@ -53,7 +53,7 @@ def test_one_pair_under_25_newtons(
         assert printed is None or value == half_a_digit(printed)
     assert amplitude is None or 1e9 * found.clearance == half_a_digit(amplitude)
     # the printed rms is that of one patch with random phases; over patches it scatters by 12 to 20 %
-    ours = clearance.patch_rms(Rough(dimension=dimension, roughness=roughness), 2e-4, 1.5)
+    ours = rough_contact.patch_rms(Rough(dimension=dimension, roughness=roughness), 2e-4, 1.5)
     assert rms is None or 1e9 * ours == pytest.approx(rms, rel=0.2)
 
 

@@ -9,7 +9,8 @@ from harmonic_by_quadrature import RoughPair
 from harmonic_drives import drive_of
 from scipy.integrate import quad
 
-from harmonic_fractal import clearance, micro
+from harmonic_fractal import contact as rough_contact
+from harmonic_fractal import micro
 from harmonic_fractal.calculation import harmonic_fractal
 from harmonic_fractal.contact import Contact, Rough, contact_of, interface_of, pressed, range_of, spacing_of
 from harmonic_fractal.estimate import Estimate
@@ -116,7 +117,7 @@ def test_load_exponent_is_the_slope_of_the_stiffness(dimension: float, roughness
 def test_the_clearance_twice_is_the_interference_of_the_largest_contact(dimension: float, roughness: float) -> None:
     ours = contact(dimension, roughness)
     largest = float(pressed(25.0, ours).largest_area)
-    once = clearance.amplitude(np.sqrt(largest / np.pi), ours, 1.5)
+    once = rough_contact.amplitude(np.sqrt(largest / np.pi), ours, 1.5)
     assert 2.0 * once == pytest.approx(RoughPair(dimension, roughness).interference(largest), rel=1e-12)
 
 
@@ -124,8 +125,8 @@ def test_three_readings_of_the_clearance() -> None:
     ours = {}
     for rule in ("amplitude", "interference", "patch"):
         drive = drive_of(clearance_rule=rule)
-        radius, multiple = clearance.read_radius(drive, 1e-4)
-        ours[rule] = multiple * clearance.amplitude(radius, contact(), 1.5)
+        radius, multiple = rough_contact.read_radius(drive, 1e-4)
+        ours[rule] = multiple * rough_contact.amplitude(radius, contact(), 1.5)
     assert ours["interference"] == pytest.approx(2.0 * ours["amplitude"], rel=1e-12)
     # the wave as long as the patch: G^(D-2) sqrt(ln 1.5) L^(3-D)
     assert ours["patch"] == pytest.approx(1e-11**0.4 * np.sqrt(np.log(1.5)) * 2e-4**0.6, rel=1e-12)
@@ -142,18 +143,18 @@ def test_the_approach_is_the_integral_of_the_compliance(dimension: float, roughn
         lambda x: np.exp(x) / pressed(np.exp(x), ours).stiffness, np.log(first), np.log(25.0),
         points=[np.log(first * (1.0 + 10.0**-k)) for k in range(1, 4)], limit=500, epsabs=0.0, epsrel=1e-11,
     )[0]  # fmt: skip
-    assert clearance.approach(25.0, first, ours) == pytest.approx(expected, rel=1e-8)
+    assert rough_contact.approach(25.0, first, ours) == pytest.approx(expected, rel=1e-8)
 
 
 def test_the_approach_from_the_plastic_limit_has_no_end() -> None:
     """Near F_c the stiffness rises in proportion, so each step towards it adds as much as the last one."""
     ours = contact()
-    added = [clearance.approach(25.0, ours.plastic_limit * (1.0 + 10.0**-k), ours) for k in (4, 5, 6, 7)]
+    added = [rough_contact.approach(25.0, ours.plastic_limit * (1.0 + 10.0**-k), ours) for k in (4, 5, 6, 7)]
     steps = np.diff(added)
     np.testing.assert_allclose(steps, steps[0], rtol=1e-3)
     assert steps[0] > 1e-9
-    assert clearance.approach(25.0, ours.plastic_limit, ours) == np.inf
-    assert clearance.approach(1e-3, 2e-3, ours) == 0.0
+    assert rough_contact.approach(25.0, ours.plastic_limit, ours) == np.inf
+    assert rough_contact.approach(1e-3, 2e-3, ours) == 0.0
 
 
 def test_height_of_a_patch_from_its_waves() -> None:
@@ -165,7 +166,7 @@ def test_height_of_a_patch_from_its_waves() -> None:
         size = length * (1e-11 / length) ** (dimension - 2.0) * np.sqrt(np.log(ratio) / ridges)
         sizes = np.repeat(size * ratio ** ((dimension - 3.0) * order), ridges)
         rms = np.sqrt(0.5 * np.sum(sizes**2))
-        assert clearance.patch_rms(rough, length, ratio) == pytest.approx(rms, rel=0.02)
+        assert rough_contact.patch_rms(rough, length, ratio) == pytest.approx(rms, rel=0.02)
         number = 2.0 * np.pi * np.repeat(ratio**order, ridges) / length
         angle = np.tile(np.pi * np.arange(ridges) / ridges, len(order))
         along = np.exp(1j * np.outer(np.linspace(0.0, length, 201), number * np.cos(angle)))
@@ -174,15 +175,17 @@ def test_height_of_a_patch_from_its_waves() -> None:
         for _ in range(12):
             phases = np.exp(2j * np.pi * rng.random(len(sizes)))
             heights.append(np.ptp(((along * (sizes * phases)) @ across).real))
-        assert clearance.patch_height(rough, length, ratio) == pytest.approx(np.mean(heights), rel=0.12)
+        assert rough_contact.patch_height(rough, length, ratio) == pytest.approx(np.mean(heights), rel=0.12)
 
 
 def test_heights_are_stated_else_of_the_patch_else_none() -> None:
-    first, second = clearance.heights(drive_of(peak_height=2e-6))
+    first, second = rough_contact.heights(drive_of(peak_height=2e-6))
     assert (first, second) == (2e-6, 0.0)
-    first, second = clearance.heights(drive_of(mating_dimension=2.4, mating_roughness=1e-11))
+    first, second = rough_contact.heights(drive_of(mating_dimension=2.4, mating_roughness=1e-11))
     assert first == pytest.approx(second, rel=1e-12)
-    assert first == pytest.approx(clearance.patch_height(Rough(dimension=2.4, roughness=1e-11), 2e-4, 1.5), rel=1e-12)
+    assert first == pytest.approx(
+        rough_contact.patch_height(Rough(dimension=2.4, roughness=1e-11), 2e-4, 1.5), rel=1e-12
+    )
 
 
 # Two rough flanks as one, and what must hold before a drive is calculated.
