@@ -306,10 +306,12 @@ MUTANTS: tuple[Mutant, ...] = (
         ("2.0 * geometry.roller.tip_radius * half", "geometry.roller.tip_radius * half"),
     ),
     *changes(
-        "plugins/roller_screw_shift/objectives.py",
-        "published/test_roller_screw_model.py",
+        "plugins/roller_screw_shift/calculation.py", "published/test_roller_screw_model.py",
         ("0.5 * pair.roller_teeth * sine**2", "pair.roller_teeth * sine**2"),
-        ("(0.5 * (high - low)) ** -2", "(0.5 * (high - low)) ** -1"),
+    ),
+    *changes(
+        "plugins/roller_screw_shift/objectives.py", "published/test_roller_screw_model.py",
+        ("(0.5 * _width(reach)) ** -2", "(0.5 * _width(reach)) ** -1"),
         ("(turn - np.sin(turn))", "(turn + np.sin(turn))"),
     ),
     *changes(
