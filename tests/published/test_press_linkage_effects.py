@@ -1,4 +1,4 @@
-"""What the press linkage leaves out: statics, signs, and what holds for every effect.
+"""What the press linkage leaves out: signs, and what holds for every effect.
 
 What each effect does is compared with a machine of its own in ``test_effects_of_machines.py``.
 """
@@ -9,11 +9,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from press_linkage_cases import AROUND, MECHANISMS, scattered, solve
 
-from press_linkage.effects import EFFECTS, shares_of_load
+from press_linkage.effects import EFFECTS
 from press_linkage.errors import press_linkage
-from press_linkage.kinematics import Half
 from press_linkage.model import PRESS_LINKAGE
 from press_linkage.quantities import Press
 from truing import Effect, Float
@@ -41,31 +39,6 @@ def moved(effect: Effect[Any, Any], crank_angle: Float, **values: Float) -> tupl
     is_input = effect.place == "inputs"
     there = press_linkage(effect.function(press, **values)) if is_input else effect.function(press, base, **values)
     return there.slider_position - base.slider_position, there.slider_tilt - base.slider_tilt
-
-
-# Statics: every joint is in equilibrium
-
-
-def along(half: Half, link: str) -> tuple[Float, Float]:
-    direction = getattr(half, link)
-    return direction.cosine, direction.sine
-
-
-@MECHANISMS
-@pytest.mark.parametrize("size", [0.0, 2e-3])
-def test_link_forces_are_in_equilibrium(geometry: Press, size: float) -> None:
-    """Slider joint, knee and platform, under half of a newton on each side that pushes the slider up."""
-    off = scattered(size, 31)
-    position = solve(geometry, AROUND, side_1=off, side_2=off)
-    platform = 0.0
-    for half, force in zip((position.side_1, position.side_2), shares_of_load(position), strict=True):
-        drive, upper, lower, rod = (along(half, name) for name in ("drive", "upper", "lower", "rod"))
-        assert force["lower_knee_length"] * lower[1] == pytest.approx(np.full(AROUND.shape, 0.5), abs=1e-14)
-        for part in (0, 1):  # links that are pressed push the knee away from their other ends
-            knee = force["knee_drive_length"] * drive[part] + force["upper_knee_length"] * upper[part]
-            assert knee == pytest.approx(force["lower_knee_length"] * lower[part], abs=1e-13)
-        platform = platform + force["rod_length"] * rod[1] - force["knee_drive_length"] * drive[1]
-    assert platform == pytest.approx(np.zeros_like(AROUND), abs=1e-14)
 
 
 # Signs
