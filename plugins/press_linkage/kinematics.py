@@ -246,19 +246,12 @@ def top_crank_angle(press: Press) -> Float:
     return np.arctan2(-rod_sine, -rod_cosine) - np.arctan2(sine, cosine)
 
 
-def stroke(press: Press) -> Float:
-    """Slider height at the lower dead centre minus that at the upper one, m, of the nominal mechanism."""
-    without = nominal(press)
-    return solve(without, 0.0).slider_position - solve(without, top_crank_angle(press)).slider_position
-
-
 # What must hold for the press linkage to close: loop by loop, side by side, with the inequality that is violated
 #
 # Every demand is a condition (one truth value, or one per sample) with the sentence for the engineer. A condition that
 # meets NaN does not hold.
 
 SINGULAR = 1e-6  # sine of an angle between two links below which the position is undetermined
-NEARLY_SINGULAR = 0.05  # below it the sensitivities exceed 20: worth a warning
 
 
 Holds = bool | NDArray[np.bool_]
@@ -280,7 +273,7 @@ def knee_sine(half: Half) -> Float:
 def smallest_sine(position: Position) -> Float:
     """How far the press is from a singular position: the least sine that a height is divided by, both sides.
 
-    Zero is singular; below NEARLY_SINGULAR an error of a link reaches the slider more than twentyfold.
+    Zero is singular; below 0.05 an error of a link reaches the slider more than twentyfold.
     """
     least: Float = np.inf
     with np.errstate(invalid="ignore"):

@@ -26,6 +26,11 @@ CONDITION = 10.0
 MODULUS = 2.06e11 / (1 - 0.3**2)
 
 
+def coefficient(line_load: Any, radius: Any, oil: float, roughness: float) -> Any:
+    """The wear coefficient by both of its parts, 1/Pa."""
+    return wear.lubricant_part(MODULUS, oil, roughness) * wear.contact_part(MODULUS, line_load, radius)
+
+
 def of(**changes: Any) -> Any:
     """Deepest wear in um."""
     return worn(replace(PAPER, **changes))["max_wear"] * 1e6
@@ -67,12 +72,12 @@ def test_wear_is_that_of_the_plain_iteration(modification: float, hours: float) 
 
 def test_coefficient_written_out_and_its_size() -> None:
     group = 3.981e29 * (1.5e5 / (MODULUS * 4.5e-3)) ** 1.219 * (2.2e-8 * MODULUS) ** -7.377 * (0.7e-6 / 4.5e-3) ** 1.589
-    written = wear.wear_coefficient(MODULUS, 1.5e5, 4.5e-3, 2.2e-8, 0.7e-6)
+    written = coefficient(1.5e5, 4.5e-3, 2.2e-8, 0.7e-6)
     assert written == pytest.approx(group / MODULUS, rel=1e-13)
     short = 2.2 * 40 / 114.5
     path = 114.5e-3 * (1 - short**2) ** 1.5 / (41 * short**2 - 1 - 40 * short**2)  # G2 at the longest arm
     radius = abs((path + 5e-3) * 5e-3 / path)
-    here = wear.wear_coefficient(MODULUS, worn(PAPER)["max_force"] / 20e-3, radius, 2.2e-8, 0.694e-6)
+    here = coefficient(worn(PAPER)["max_force"] / 20e-3, radius, 2.2e-8, 0.694e-6)
     assert worn(PAPER)["coefficient"] == pytest.approx(here, rel=1e-12)
 
 
@@ -96,7 +101,7 @@ def test_the_first_step_is_equation_13() -> None:
     new = discs.flank(PAPER)
     force, mesh = new.force[0], mesh_of(PAPER)
     radius = np.asarray(geometry.relative_radius(mesh, new.angle))
-    k = wear.wear_coefficient(MODULUS, force / 0.02, radius, 2.2e-8, 0.694e-6)
+    k = coefficient(force / 0.02, radius, 2.2e-8, 0.694e-6)
     rate = k * force / 0.02 * np.asarray(geometry.sliding_ratio(mesh, new.angle)) / 0.1  # per second
     assert of(working_time=10 * HOUR) == pytest.approx(rate.max() * 10 * HOUR * 1e6, rel=1e-12)
     assert discs.flank(PAPER, 10 * HOUR).wear[0] == pytest.approx(rate * 10 * HOUR, rel=1e-11, abs=1e-22)
@@ -132,7 +137,6 @@ def test_order_of_questions_does_not_matter(designs: int) -> None:
     discs = ground(np.linspace(-40e-6, 5e-6, designs))
 
     def asked(times: list[float]) -> list[Any]:
-        wear.history_of_one.cache_clear()
         wear.history_of_group.cache_clear()
         return [of(working_time=time * HOUR, **discs).tolist() for time in times]
 
