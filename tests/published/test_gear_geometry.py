@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 from traced_gears import (
     ALPHA,
     Couple,
@@ -301,22 +300,3 @@ def test_the_limits_of_a_mass_that_an_error_shakes() -> None:
     assert shaken_by_error(1.0, zeta) == pytest.approx(1 / (2 * zeta), rel=1e-14)
     assert shaken_by_error(100.0, zeta) == pytest.approx(1.0, rel=2e-4)
     assert ratio[np.argmax(shaken_by_error(ratio, zeta))] == pytest.approx(1 / np.sqrt(1 - 2 * zeta**2), abs=1e-5)
-
-
-@pytest.mark.parametrize("ratio", [0.05, 0.6, 1.0, 1.7, 6.0])
-def test_a_mass_that_an_error_shakes_step_by_step(ratio: float) -> None:
-    """The mass of frequency 1 moves by itself from rest, over 25 of its periods; then the spring is read for one wave.
-
-    The error is of one harmonic and size 1; what is read is the way of the mass less the error.
-    """
-    zeta, period = 0.12, 2 * np.pi / ratio
-
-    def moved(at: float, state: np.ndarray) -> list[float]:
-        gap, closing = state[0] - np.sin(ratio * at), state[1] - ratio * np.cos(ratio * at)
-        return [state[1], -gap - 2 * zeta * closing]
-
-    start = np.ceil(25 * 2 * np.pi / period) * period
-    times = start + period * np.linspace(0, 1, 2000)
-    way = solve_ivp(moved, (0.0, times[-1]), [0.0, 0.0], t_eval=times, rtol=1e-9, atol=1e-12).y[0]
-    worked = way - np.sin(ratio * times)
-    assert np.max(np.abs(worked)) == pytest.approx(float(shaken_by_error(ratio, zeta)), rel=1e-5)

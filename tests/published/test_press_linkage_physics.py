@@ -2,7 +2,7 @@
 
 The paper: error analysis and accuracy synthesis of a parallel-driven multi-link servo press (Shanghai Jiao Tong
 University). Where a number is not printed there, it was solved independently from the loop equations, to the digits
-shown. Positions and derivatives are compared with the loops themselves in ``test_press_linkage_by_hand.py``.
+shown. Positions and derivatives are compared with a press of their own in ``test_press_linkage_by_hand.py``.
 """
 
 from dataclasses import replace

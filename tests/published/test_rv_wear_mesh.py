@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 from scipy.special import lambertw
 
 from rv_wear import discs, geometry
@@ -203,46 +202,31 @@ def test_torque_is_held_in_every_position_and_step(pins: int, load_sharing: str)
         assert np.all(state.loads.force[teeth.angle[state.teeth.pins][:, :, 0] >= pi] == 0)
 
 
-def solved_again(phase: float, torque: float, *, hertz: bool) -> tuple[float, NDArray[np.float64]]:
-    """Force at the longest arm and pin forces of one position, by bisection from equations 1b to 4."""
-    psi = 2 * pi * (np.arange(20) + phase) / 40
-    gap, arm = plain_clearance(-26e-6, -30e-6, psi), lever(psi) / (0.0022 * 39)
-    gap = gap - arm * np.min(gap / arm)
-    soft = 2 * (1 - 0.3**2) / (pi * 2.06e11 * 0.02)
-
-    def radii(at: float) -> tuple[float, float]:
-        s = sqrt(1 + K_1**2 - 2 * K_1 * np.cos(at))
-        rho_0 = 0.1145 * s**3 / (K_1 * 41 * np.cos(at) - (1 + 40 * K_1**2))
-        rho = rho_0 + 0.005
-        return min(abs(rho), 0.1145), abs(rho * 0.005 / (rho - 0.005))
-
-    def approach(force: float, at: float) -> float:
-        rho, radius = radii(at)
-        width = 2 * sqrt(8 * force * radius * (1 - 0.3**2) / (pi * 0.02 * 2.06e11))
-        return soft * force * (2 / 3 + log(16 * 0.005 * rho / width**2))
-
-    def force_of(delta: float, at: float) -> float:
-        return brentq(lambda force: approach(force, at) - delta, 1e-9, 1e6, xtol=1e-12) if delta > 0 else 0.0
-
-    def forces(scale: float) -> NDArray[np.float64]:
-        delta = approach(scale, PSI_0)
-        if hertz:
-            return np.array([force_of(a * delta - s, at) for a, s, at in zip(arm, gap, psi, strict=True)])
-        return np.asarray(np.maximum(arm * delta - gap, 0) / delta * scale)
-
-    scale = brentq(lambda force: float(np.sum(forces(force) * lever(psi))) - torque, 1.0, 1e5, xtol=1e-11)
-    return scale, forces(scale)
-
-
 @pytest.mark.parametrize("hertz", [False, True])
 @pytest.mark.parametrize("torque", [100.0, 1724.8, 3000.0])
-def test_forces_are_those_of_a_bisection(torque: float, hertz: bool) -> None:
-    choices = Choices(load_sharing="hertz" if hertz else "linear")
-    _, loads = unworn(replace(MESH, torque=torque, choices=choices))
+def test_every_force_approaches_disc_and_pin_by_what_its_clearance_leaves(torque: float, hertz: bool) -> None:
+    """Equations 1b and 2, pin by pin: by its own radii, or in proportion to the approach at the longest arm."""
+    _, loads = unworn(replace(MESH, torque=torque, choices=Choices(load_sharing="hertz" if hertz else "linear")))
+    soft = 2 * (1 - 0.3**2) / (pi * 2.06e11 * 0.02)
+
+    def approach(force: Any, at: Any) -> Any:
+        s = np.sqrt(1 + K_1**2 - 2 * K_1 * np.cos(at))
+        rho = 0.1145 * s**3 / (K_1 * 41 * np.cos(at) - (1 + 40 * K_1**2)) + 0.005
+        radius = np.abs(rho * 0.005 / (rho - 0.005))
+        width = 2 * np.sqrt(8 * force * radius * (1 - 0.3**2) / (pi * 0.02 * 2.06e11))
+        return soft * force * (2 / 3 + np.log(16 * 0.005 * np.minimum(np.abs(rho), 0.1145) / width**2))
+
     for position in (0, 3, 7):
-        scale, forces = solved_again((position + 0.5) / 8, torque, hertz=hertz)
-        assert loads.scale[position, 0] == pytest.approx(scale, rel=1e-10)
-        assert loads.force[:, position, 0] == pytest.approx(forces, rel=1e-9, abs=1e-6)
+        psi = 2 * pi * (np.arange(20) + (position + 0.5) / 8) / 40
+        force, scale = loads.force[:, position, 0], loads.scale[position, 0]
+        arm, most = lever(psi) / (0.0022 * 39), approach(scale, PSI_0)
+        gap = plain_clearance(-26e-6, -30e-6, psi)
+        left = arm * (most + np.min(gap / arm)) - gap
+        bears = left > 0
+        assert np.all(force[~bears] == 0)
+        assert np.sum(force * lever(psi)) == pytest.approx(torque, rel=1e-10)
+        expected = approach(force[bears], psi[bears]) if hertz else force[bears] / scale * most
+        assert expected == pytest.approx(left[bears], rel=1e-9, abs=1e-15)
 
 
 def test_forces_of_the_paper() -> None:

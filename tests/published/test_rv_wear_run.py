@@ -17,7 +17,6 @@ import pytest
 from matplotlib.patches import Circle
 from numpy.typing import NDArray
 from rv_wear_by_hand import PRICE_OF, price_by_hand
-from scipy.optimize import minimize
 
 from rv_wear import sheet
 from rv_wear.discs import Modifications
@@ -270,47 +269,6 @@ def test_the_prices_are_those_of_the_cost_functions(run: Calculation) -> None:
     )
     shares, paid = line(right, "disc runout, now 6.55 µm")
     assert paid == pytest.approx([by_hand("disc_runout", 6.55 * share) for share in shares])
-
-
-def cheapest(goal: float, nominal: float, wear: float) -> float:
-    """The least cost that reaches the goal, by another method: widths in um from one to two times those now."""
-    names = list(PRICED)
-    start = np.array([PRICED[name][1] for name in names])
-    z = NormalDist().inv_cdf(goal)
-
-    def left(widths: NDArray[np.float64]) -> float:
-        chosen = dict(zip(names, widths, strict=True))
-        grown = sum(
-            PRICED[name][0] * (chosen[name] - PRICED[name][1]) / 2 * PER_MICROMETRE
-            for name in ("disc_runout", "pin_position_error")
-        )
-        return (1 - nominal - grown) / spread(chosen, wear) - z
-
-    def cost(widths: NDArray[np.float64]) -> float:
-        return sum(by_hand(name, width) for name, width in zip(names, widths, strict=True))
-
-    found = minimize(
-        lambda shares: cost(shares * start) / 1000, np.full(len(names), 1.01), bounds=[(1, 2)] * len(names),
-        constraints=[{"type": "ineq", "fun": lambda shares: left(shares * start)}], method="SLSQP",
-        options={"ftol": 1e-12, "maxiter": 300},
-    )  # fmt: skip
-    assert found.success
-    return 1000 * float(found.fun)
-
-
-@pytest.mark.parametrize("goal", [0.95, 0.999])
-def test_the_fronts_are_least_costs(run: Calculation, goal: float) -> None:
-    """The same front from equations written here and another optimiser, at three places."""
-    panel = figures(run, sheet.better_tolerances)["Cost and wear"].axes[0]
-    cost, wear = line(panel, f"least cost for {100 * goal:g} %")
-    fronts: Fronts = run.outcomes["least_costs"]
-    designs = next(front.designs for front in fronts.fronts if front.goal == goal)
-    assert np.all(np.diff(cost) < 0)
-    assert np.all(np.diff(wear) > 0)
-    for place in (1, 3, 5):
-        equidistant = designs[place].modification * 1e6
-        nominal = 0.6985 + (2 - 2 * Q) * (equidistant + 26) * PER_MICROMETRE + 2 * wear[place] * PER_MICROMETRE
-        assert cost[place] == pytest.approx(cheapest(goal, nominal, wear[place]), rel=2e-3)
 
 
 def test_the_front_shows_the_start_and_what_the_paper_prints(run: Calculation) -> None:
