@@ -3,7 +3,7 @@
 One entry per distinct mesh of a batch; what geometry fixes is calculated once, before any force is known.
 """
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -336,8 +336,7 @@ class Teeth:
     """Contacts of many meshes: phase angle (pins, phases, 1), arms, slack and radii (pins, phases, m).
 
     ``weight`` is the torque per force at the longest arm and approach; ``depth_number``, ``compliance`` and ``torque``
-    are the numbers of equation 1b and the torque for every position (phases, m); ``nothing`` is 0. ``first`` is the
-    number of the first pin where a part of the pins is left out.
+    are the numbers of equation 1b and the torque for every position (phases, m); ``nothing`` is 0.
     """
 
     mesh: Mesh
@@ -351,17 +350,11 @@ class Teeth:
     compliance: Array
     torque: Array
     nothing: Array
-    first: int = 0
 
     @property
     def count(self) -> int:
         """How many meshes there are."""
         return int(self.slack.shape[-1])
-
-    @property
-    def pins(self) -> slice:
-        """The pins that are looked at."""
-        return slice(self.first, self.first + len(self.angle))
 
 
 def teeth_of(mesh: Mesh, angle: Float | None = None) -> Teeth:
@@ -389,12 +382,6 @@ def teeth_of(mesh: Mesh, angle: Float | None = None) -> Teeth:
         torque=torque,
         nothing=np.zeros_like(arm),
     )
-
-
-def part_of(teeth: Teeth, pins: slice) -> Teeth:
-    """The same meshes with some pins only, of all those there are."""
-    names = ("angle", "relative_arm", "per_arm", "weight", "slack", "relative_radius", "nothing")
-    return replace(teeth, **{name: getattr(teeth, name)[pins] for name in names}, first=pins.start)
 
 
 def pitch_number(mesh: Mesh) -> Float:

@@ -19,7 +19,6 @@ from rv_wear.geometry import (
     distinct,
     longest_arm_angle,
     mesh_of,
-    part_of,
     relative_radius,
     some_of,
     teeth_of,
@@ -84,11 +83,9 @@ Node = tuple[Array, Array, Array]
 class WearState:
     """The disc at the beginning of a step: exposure (m,), wear and its growth (pins, phases, m), how long it lasts.
 
-    ``teeth`` holds the pins that bear, and the arrays hold the same; the others have no wear yet. ``lasts`` is an
-    exposure (m,), ``grown`` and ``after`` what wears in the step and what is worn at its end.
+    ``lasts`` is an exposure (m,), ``grown`` and ``after`` what wears in the step and what is worn at its end.
     """
 
-    teeth: Teeth
     loads: Loads
     exposure: Array
     wear: Array
@@ -160,26 +157,19 @@ def _at_pitch_point(teeth: Teeth, unworn: Loads) -> Array:
 
 def states(teeth: Teeth) -> Iterator[WearState]:
     """The disc at the beginning of every step, without end."""
-    unworn = shared(teeth, teeth.slack, start_scale(teeth))
-    part, clear = around(teeth, unworn.force)
-    rate_of = growth(part, unworn)
-    wear, exposure, last = np.zeros_like(part.slack), np.zeros(teeth.count), unworn.scale
-    loads = Loads(unworn.scale, unworn.approach, unworn.taken, unworn.force[part.pins])
+    loads = shared(teeth, teeth.slack, start_scale(teeth))
+    rate_of = growth(teeth, loads)
+    wear, exposure, last = np.zeros_like(teeth.slack), np.zeros(teeth.count), loads.scale
     while True:
         rate = rate_of(loads.force)
         lasts = _lasts(teeth, rate)
         grown = rate * lasts
         after = wear + grown
-        yield WearState(part, loads, exposure, wear, rate, lasts, grown, after)
+        yield WearState(loads, exposure, wear, rate, lasts, grown, after)
         wear = after
         exposure = exposure + lasts
         guess, last = np.maximum(2.0 * loads.scale - last, 0.5 * loads.scale), loads.scale
-        loads = shared(part, _slack(part, wear), guess)
-        while (clear - loads.taken <= loads.approach).any():
-            wider, clear = widened(teeth, part)
-            wear = _put(wear, part, wider)
-            part, rate_of = wider, growth(wider, unworn)
-            loads = shared(part, _slack(part, wear), guess)
+        loads = shared(teeth, _slack(teeth, wear), guess)
 
 
 def _slack(teeth: Teeth, wear: Array) -> Array:
@@ -193,40 +183,13 @@ def _lasts(teeth: Teeth, rate: Array) -> Array:
     return np.where(fastest > 0.0, teeth.mesh.threshold / np.maximum(fastest, 1.0 / NEVER), NEVER)
 
 
-def around(teeth: Teeth, force: Array) -> tuple[Teeth, Array]:
-    """The pins that bear somewhere, and the least slack (phases, m) of the others, which stay as they are."""
-    bearing = np.flatnonzero((force > 0.0).any(axis=(1, 2)))
-    pins = slice(int(bearing[0]), int(bearing[-1]) + 1)
-    return part_of(teeth, pins), _least_outside(teeth, pins)
-
-
-def widened(teeth: Teeth, part: Teeth) -> tuple[Teeth, Array]:
-    """One pin more at either end, as far as there are any."""
-    pins = slice(max(part.pins.start - 1, 0), min(part.pins.stop + 1, len(teeth.angle)))
-    return part_of(teeth, pins), _least_outside(teeth, pins)
-
-
-def _least_outside(teeth: Teeth, pins: slice) -> Array:
-    outside = np.concatenate([teeth.slack[: pins.start], teeth.slack[pins.stop :]])
-    value: Array = outside.min(axis=0, initial=np.inf)
-    return value
-
-
-def _put(values: Array, part: Teeth, whole: Teeth) -> Array:
-    """Put what is known of a part of the pins among more of them; 0 elsewhere."""
-    wide = np.zeros_like(whole.slack)
-    start = part.first - whole.first
-    wide[start : start + len(values)] = values
-    return wide
-
-
 def nodes_of(teeth: Teeth) -> Iterator[Node]:
     """Exposure (m,), largest wear and phase angle of its place: of the new disc, then twice in every step."""
     angle = teeth.angle.reshape(-1)
     deepest: NDArray[np.intp] | None = None
     for state in islice(states(teeth), MOST_STEPS):
         if deepest is None:
-            deepest = _flat(state.rate).argmax(axis=0) + state.teeth.first * teeth.angle.shape[1]
+            deepest = _flat(state.rate).argmax(axis=0)
             yield state.exposure, np.zeros(teeth.count), angle[deepest]
         deepest, added = _step(state, deepest, angle)
         yield from added
@@ -243,19 +206,17 @@ def _step(state: WearState, leader: NDArray[np.intp], angle: Array) -> tuple[NDA
     """
     before, grown, after = _flat(state.wear), _flat(state.grown), _flat(state.after)
     meshes = np.arange(len(state.lasts))
-    offset = state.teeth.first * state.teeth.angle.shape[1]
-    old = leader - offset
-    start, lead, top = before[old, meshes], grown[old, meshes], after.max(axis=0)
-    part, new = np.full(len(meshes), 0.5), old
-    passed = np.flatnonzero(after[old, meshes] < top)
+    start, lead, top = before[leader, meshes], grown[leader, meshes], after.max(axis=0)
+    part, new = np.full(len(meshes), 0.5), leader
+    passed = np.flatnonzero(after[leader, meshes] < top)
     if len(passed):
-        new = old.copy()
+        new = leader.copy()
         new[passed] = after[:, passed].argmax(axis=0)
         behind = start[passed] - before[new[passed], passed]
         share = behind / (grown[new[passed], passed] - lead[passed])
         part[passed] = np.minimum(np.maximum(share, 0.0), 1.0)
     middle = (state.exposure + part * state.lasts, start + part * lead, angle[leader])
-    return new + offset, [middle, (state.exposure + state.lasts, top, angle[new + offset])]
+    return new, [middle, (state.exposure + state.lasts, top, angle[new])]
 
 
 def wear_at(teeth: Teeth, exposure: Array) -> Array:
@@ -265,8 +226,7 @@ def wear_at(teeth: Teeth, exposure: Array) -> Array:
         left = exposure - state.exposure
         within = (left >= 0.0) & ((left < state.lasts) | (count == MOST_STEPS))
         if within.any():
-            here = np.where(within, state.wear + state.rate * left, 0.0)
-            found = np.where(within, _put(here, state.teeth, teeth), found)
+            found = np.where(within, state.wear + state.rate * left, found)
         if np.all(exposure < state.exposure + state.lasts) or count == MOST_STEPS:
             break
     return found
@@ -450,10 +410,6 @@ def _reach(rows: Array, place: NDArray[np.intp] | None, count: int) -> Array:
 def _read(history: Histories, column: int, exposure: Array) -> tuple[Array, Array]:
     """Depth and angle at exposures (n,) of one mesh; the depth is NaN beyond the last node."""
     nodes, depths, angles = (values[:, column] for values in (history.exposure, history.depth, history.angle))
-    if len(exposure) > len(nodes) and np.isfinite(exposure).all():  # most rows of a batch lie close together
-        first, last = np.searchsorted(nodes, [exposure.min(), exposure.max()])
-        kept = slice(max(first - 1, 0), last + 1)
-        nodes, depths, angles = nodes[kept], depths[kept], angles[kept]
     depth = np.interp(exposure, nodes, depths, right=np.nan)
     turns = np.flatnonzero(angles[1:] != angles[:-1])
     if not len(turns):
