@@ -291,7 +291,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ("0.5 * (half_1.face + half_2.face)", "(half_1.face + half_2.face)"),
     ),
     *changes(
-        "plugins/press_linkage/effects.py", "published/test_press_linkage_effects.py",
+        "plugins/press_linkage/effects.py", "published/test_effects_of_machines.py",
         ("expansion_1 * warmer, expansion_2 * warmer", "expansion_2 * warmer, expansion_1 * warmer"),
         ("-rise * np.expm1(-time / time_constant)", "rise * np.expm1(-time / time_constant)"),
         ("mass_compliance * by_angle * (TURN * speed) ** 2", "mass_compliance * by_angle * speed**2"),
@@ -343,7 +343,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ("involute - reducer.base_tangent_error", "involute + reducer.base_tangent_error"),
     ),
     *changes(
-        "plugins/rv_wear/effects.py", "published/test_rv_wear_effects.py",
+        "plugins/rv_wear/effects.py", "published/test_effects_of_machines.py",
         ("2.0 * compliance * np.abs(measuring_torque)", "compliance * np.abs(measuring_torque)"),
         ("np.exp(VISCOSITY_EXPONENT * softening", "np.exp(softening"),
     ),
