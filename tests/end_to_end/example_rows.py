@@ -74,6 +74,14 @@ def explanations(document: Document) -> set[frozenset[str]]:
     return {frozenset(causes) for causes in document["explanations"]}
 
 
+def interval_of(document: Document, effect: str, unknown: str) -> tuple[float, float]:
+    """Return the 95 % interval of an unknown, in the first explanation that holds it."""
+    every = [{cause["effect"]: cause["unknowns"] for cause in document["causes"]}]
+    every += [other["unknowns"] for other in document["alternatives"]]
+    low, high = next(item[effect] for item in every if effect in item)[unknown]["interval95"]
+    return low, high
+
+
 def spoken_of(document: Document) -> set[str]:
     """Return the effects of which a diagnosis says anything: found, visible from some size, or out of sight."""
     lists = ("not_excited", "hidden_in_tolerances")

@@ -168,14 +168,6 @@ def by_hand(copper: Any, memory: float, *, drift: bool) -> tuple[float, Any]:
     return float(np.log(1 - memory**2) - 236 * np.log(2 * fitted.cost / 236)), fitted.x
 
 
-def test_these_rows_ask_for_a_drift_beside_both_causes_by_hand(copper: Any) -> None:
-    """So the diagnosis may say so: no real solid follows Debye's law of one temperature to a thousandth."""
-    memories = np.linspace(0, 0.9, 19)
-    alone, beside = (max(by_hand(copper, each, drift=drift)[0] for each in memories) for drift in (False, True))
-    assert beside - alone == pytest.approx(19, abs=1)
-    assert beside - alone > np.log(236) + 6
-
-
 # J. W. Ekin, Experimental Techniques for Low-Temperature Measurements, appendix A6.4
 @pytest.mark.parametrize(("temperature", "contraction"), [(4, 3.24), (77, 3.02), (150, 2.21), (250, 0.70)])
 def test_both_published_causes_know_how_a_bar_shrinks_in_the_cold_and_a_drift_spoils_it(

@@ -69,44 +69,6 @@ def beam_law(unknowns: Values) -> Values:
     return np.asarray(LAB_SIZES / (1 + unknowns[0] * LAB_SIZES))
 
 
-def power_law(unknowns: Values) -> Values:
-    return np.asarray(unknowns[1] * (LAB_SIZES / unknowns[1]) ** (1 - unknowns[0]))
-
-
-def straight_line(unknowns: Values) -> Values:
-    return np.asarray(unknowns[0] * LAB_SIZES + unknowns[1])
-
-
-def parabola(unknowns: Values) -> Values:
-    return np.asarray(np.polyval(unknowns, LAB_SIZES))
-
-
-def offset_alone(unknowns: Values) -> Values:
-    return np.asarray(LAB_SIZES + unknowns[0])
-
-
-def gain_alone(unknowns: Values) -> Values:
-    return np.asarray(LAB_SIZES * unknowns[0])
-
-
-def test_an_offset_or_a_gain_alone_is_far_behind_a_parabola_by_hand() -> None:
-    bent = likelihood(parabola, [-0.004, 1.0, 0.0])[0]
-    offset, gain = likelihood(offset_alone, [-1.0])[0], likelihood(gain_alone, [0.9])[0]
-    assert 2 * (bent - offset) - 2 * np.log(107) > 40
-    assert 2 * (bent - gain) - 2 * np.log(107) > 20
-
-
-def test_a_straight_line_is_excluded_and_the_spread_grows_by_hand() -> None:
-    (line, _, of_line), (power, _, _), (beam, _, of_beam) = (
-        likelihood(straight_line, [0.7, 5.0]), likelihood(power_law, [0.1, 12.0]), likelihood(beam_law, [0.003]),
-    )  # fmt: skip
-    assert 2 * (power - line) > 6  # of as many unknowns
-    assert 2 * (beam - line) + np.log(107) > 10  # of one unknown less
-    assert abs(2 * (power - beam)) < 6  # these rows do not tell them apart by their likelihood
-    assert np.log(107) - 2 * (power - beam) > 6  # but a power has a number more, and its price makes it no alternative
-    assert (of_line, of_beam) == pytest.approx((0.75, 0.75), abs=0.2)
-
-
 def test_every_explanation_is_concave_and_the_bend_of_one_number_stands_first(whole: Document) -> None:
     """A power of two numbers fits no better, as computed by hand above: it is ranked, but need not be among them."""
     assert whole["verdict"] in {"named", "one_of"}
