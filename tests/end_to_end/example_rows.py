@@ -55,11 +55,14 @@ class ExampleRows:
 
     def diagnosed(
         self, desk: Path, taken: Callable[[Rows], Rows] = as_they_stand, *, declared: Callable[[str], str] = str,
-        hold_out: str | None = None,
+        hold_out: str | None = None, inputs: Path | None = None,
     ) -> Document:  # fmt: skip
-        """Diagnose some of the rows in a folder of their own; ``declared`` may change the text of the plugin."""
+        """Diagnose some of the rows in a folder of their own; ``declared`` may change the text of the plugin.
+
+        ``inputs`` is another inputs file than that of the example, such as an extended one.
+        """
         desk.mkdir(parents=True, exist_ok=True)
-        shutil.copy(self.folder / "inputs.toml", desk)
+        shutil.copy(inputs or self.folder / "inputs.toml", desk / "inputs.toml")
         text = (self.folder / f"{self.name}.py").read_text(encoding="utf-8")
         (desk / f"{self.name}.py").write_text(declared(text), encoding="utf-8")
         _, header, *rows = self.lines
