@@ -92,7 +92,7 @@ def test_without_a_cause_that_could_draw_it_no_cause_is_named(tmp_path: Path) ->
 
 
 def test_the_wave_is_named_where_its_period_is_known_nearly(tmp_path: Path) -> None:
-    """Its alternation is no autocorrelation then; outliers are rows where the wave is out of step, as in the handbook."""
+    """Its alternation is no autocorrelation then; outliers are where the wave is out of step, as in the handbook."""
     document = LEW.diagnosed(tmp_path, declared=period_known_nearly)
     assert_names_the_wave(document)
     low, high = document["causes"][0]["unknowns"]["period"]["interval95"]
