@@ -15,7 +15,7 @@ from hidden_effects.record import Record
 from hidden_effects.shapes import Shape, family_of
 
 Stratum: TypeAlias = Literal["none", "single", "double", "unknown", "beside"]
-VISIBLE = 25.0
+VISIBLE, APART = 25.0, 10.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,7 +60,11 @@ class Case:
     @cached_property
     def change(self) -> Array:
         """What was hidden in the readings, one result after another."""
-        return self.true_readings(self.record.rows) - stacked(shown(self.record.rows, self.off, {}), self.results)
+        return self.change_at(self.record.rows)
+
+    def change_at(self, rows: Rows) -> Array:
+        """What is hidden at these rows, one result after another."""
+        return self.true_readings(rows) - stacked(shown(rows, self.off, {}), self.results)
 
     @cached_property
     def lens(self) -> Lens:
