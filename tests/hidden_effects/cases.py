@@ -6,12 +6,12 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from hidden_effects.candidates import columns, stacked
+from hidden_effects.candidates import Candidate, columns, stacked
 from hidden_effects.designs import Design
 from hidden_effects.information import Lens, Rival, beside_groups, other_groups, over_results, rivals
-from hidden_effects.noises import Kind
 from hidden_effects.press_machine import Array, Hidden, Rows, shown
 from hidden_effects.record import Record
+from hidden_effects.rigs import Kind
 from hidden_effects.shapes import Shape, family_of
 
 Stratum: TypeAlias = Literal["none", "single", "double", "unknown", "beside"]
@@ -49,6 +49,11 @@ class Case:
     def kind(self) -> Kind:
         """What the noise is like."""
         return self.record.noise.kind
+
+    @property
+    def causes(self) -> list[Candidate]:
+        """The candidates that are true."""
+        return [self.record.candidates[self.record.place(name)] for name in self.truth]
 
     def true_readings(self, rows: Rows) -> Array:
         """What the gauges would show without noise, one result after another."""
@@ -130,8 +135,7 @@ class Case:
     def true_columns(self, rows: Rows) -> Array:
         """Columns of the amplitudes of what is true, with its true shapes."""
         made = []
-        for name in self.truth:
-            candidate = self.record.candidates[self.record.place(name)]
+        for candidate in self.causes:
             unknowns = self.hidden[candidate.effect]
             shapes = {shape: unknowns[shape] for shape in candidate.shapes or {}}
             made.append(columns(rows, self.results, candidate, shapes))

@@ -13,9 +13,9 @@ import numpy as np
 from hidden_effects.candidates import HOUR, Candidate, changes, columns
 from hidden_effects.cases import Case, Stratum
 from hidden_effects.designs import DESIGNS, Design, drawn_noise, measured, parted
-from hidden_effects.noises import KINDS, Kind
-from hidden_effects.press_machine import POSITION, SCATTER, TILT, Array, Hidden, Rows, shown
+from hidden_effects.press_machine import POSITION, SCATTER, TILT, Array, Hidden, Rows
 from hidden_effects.record import Record
+from hidden_effects.rigs import KINDS, Kind
 from hidden_effects.shapes import MAKERS, Shape
 
 SCHEDULE: tuple[Stratum, ...] = (
@@ -207,8 +207,3 @@ def _shape(bench: Bench, wish: Wish, measure: Measure, rng: np.random.Generator)
     unit = replace(shape, sizes=tuple(ways.items()))
     factor = _target(wish, rng) / measure(unit.of(record.rows, record.results))
     return replace(shape, sizes=tuple((result, float(factor * way)) for result, way in ways.items()))
-
-
-def plain(case: Case, rows: Rows) -> dict[str, Array]:
-    """What the gauges would show of the machine as drawn with nothing wrong."""
-    return shown(rows, case.off, {})

@@ -13,7 +13,7 @@ import numpy as np
 
 from hidden_effects.candidates import HOUR, Candidate, columns, tolerance_columns
 from hidden_effects.cases import APART, Case
-from hidden_effects.outcome import FIRST, is_alternative, is_exact, names_of
+from hidden_effects.outcome import FIRST, is_alternative, is_exact
 from hidden_effects.press_machine import Array, Rows
 from truing.units import to_si
 
@@ -61,7 +61,7 @@ def open_rival(case: Case, document: Mapping[str, Any]) -> tuple[str, ...] | Non
     else:
         is_open = any(is_alternative(case, other) for other in others) and document["remainder"] is None
         named = [tuple(cause["effect"] for cause in document["causes"])] if is_open else []
-    true = set().union(*(names_of(case, name) for name in case.truth))
+    true = set().union(*(case.record.effects_of(name) for name in case.truth))
     known = {candidate.effect for candidate in case.record.candidates}
     kept = [names for names in named if not set(names) <= true and set(names) <= known]
     return kept[0] if kept else None

@@ -10,7 +10,7 @@ from scipy.stats import binomtest
 
 from hidden_effects.cases import APART, VISIBLE
 from hidden_effects.designs import DESIGNS
-from hidden_effects.noises import KINDS
+from hidden_effects.rigs import KINDS
 
 Outcome = Mapping[str, Any]
 NOTHING = ("none", "undecided")

@@ -133,17 +133,18 @@ class _Plan:
         for name, noise in self.noises.items():
             rng = generator(self.seed, part, f"noise of {name}")
             size = noise.size(true[name])
-            added = size * _correlated(rng, design, self.correlation)
+            drawn = rng.standard_normal((design.runs, design.rows))
+            added = size * with_memory(drawn, self.correlation).ravel()
             unit = self.setup.print_unit(name)
             step = size / unit_factor(difference_unit(unit)) / 1000
             read = from_si(true[name] + added, unit)
             columns[f"{name} [{unit or '1'}]"] = np.round(read, -math.floor(math.log10(step))) if step else read
             left[name] = float(np.sqrt(np.mean(added**2)))
-        return _csv(columns), left
+        return csv_of(columns), left
 
     def _shown(self, columns: Mapping[str, Any]) -> Mapping[str, NDArray[np.float64]]:
         """Return what the gauges would show without noise, SI. Raises InputError where the model has no answer."""
-        table = TableText(MEASURED, _csv(columns))
+        table = TableText(MEASURED, csv_of(columns))
         rows = read_rows(table, Offer(self.true.model.name, self.true.model, self.true.origin), self.true)
         reading = read_by_gauge(self.true, rows, list(self.noises))
         if reading.failed.any():
@@ -154,16 +155,17 @@ class _Plan:
         return reading.results
 
 
-def _csv(columns: Mapping[str, Any]) -> str:
+def csv_of(columns: Mapping[str, Any]) -> str:
+    """Return columns by header as CSV, every digit kept."""
     return table_text(list(columns), list(columns.values()))
 
 
-def _correlated(rng: np.random.Generator, design: RecordDesign, correlation: float) -> NDArray[np.float64]:
-    """Draw noise of unit variance for every row; that of neighbours in a run is correlated."""
-    drawn = rng.standard_normal((design.runs, design.rows))
-    for row in range(1, design.rows if correlation else 0):
-        drawn[:, row] = correlation * drawn[:, row - 1] + math.sqrt(1 - correlation**2) * drawn[:, row]
-    return np.asarray(drawn.ravel())
+def with_memory(drawn: NDArray[np.float64], correlation: float) -> NDArray[np.float64]:
+    """Return noise of unit variance (runs, rows) in which that of neighbours in a run is correlated."""
+    noise = drawn.copy()
+    for row in range(1, noise.shape[1] if correlation else 0):
+        noise[:, row] = correlation * noise[:, row - 1] + math.sqrt(1 - correlation**2) * noise[:, row]
+    return noise
 
 
 def _raise(model: Model[Any, Any], faults: Sequence[str]) -> None:
