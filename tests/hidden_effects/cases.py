@@ -1,6 +1,6 @@
 """A case with a hidden answer: what a diagnosis may see, what is true, how visible and how separable that is."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal, TypeAlias
 
@@ -33,12 +33,12 @@ class Case:
     record: Record
     held: Rows
     off: dict[str, float]
-    hidden: Hidden
-    truth: tuple[str, ...]
-    shape: Shape | None
-    counters: tuple[float, float]
-    readings: dict[str, Array]
-    held_readings: dict[str, Array]
+    hidden: Hidden = field(default_factory=dict)
+    truth: tuple[str, ...] = ()
+    shape: Shape | None = None
+    counters: tuple[float, float] = (0.0, 0.0)
+    readings: dict[str, Array] = field(default_factory=dict)
+    held_readings: dict[str, Array] = field(default_factory=dict)
 
     @property
     def results(self) -> tuple[str, ...]:
