@@ -8,7 +8,7 @@ import numpy as np
 from hidden_effects.harmonic_machine import MESH, TORSION, Array, Rows, shown
 from hidden_effects.rigs import Bench, Places, Rig, Wish, parted
 
-Design: TypeAlias = Literal["loops", "climb", "points"]
+Design: TypeAlias = Literal["loops", "points"]
 UNIT = {TORSION: "urad", MESH: "N*m/rad"}
 INPUTS = """plugin = "harmonic_fractal"
 
@@ -58,10 +58,10 @@ def of_both(count: int, held: int, rng: np.random.Generator) -> tuple[Places, Pl
 def measured(design: Design, count: int, rng: np.random.Generator) -> Rows:
     """Rows in the order of the clock.
 
-    Loops: from rest up and down between growing and smaller peaks, each leg at its own speed and temperature. Climb:
-    from rest up to 50 N m once. Points: any torque to either side, every reading at its own state of the drive.
+    Loops: from rest up and down between growing and smaller peaks, each leg at its own speed and temperature. Points:
+    any torque to either side, every reading at its own state of the drive.
     """
-    path = {"loops": _loops, "climb": _climb, "points": _points}[design](count, rng)
+    path = {"loops": _loops, "points": _points}[design](count, rng)
     torque, turned, leg = path
     legs = int(leg.max()) + 1
     of_leg = {"temperature": rng.uniform(0, 60, legs)[leg], "speed": rng.choice([0, 250, 500, 1000, 2000], legs)[leg]}
@@ -92,11 +92,6 @@ def _loops(count: int, rng: np.random.Generator) -> tuple[Array, Array, Places]:
     begun = np.array(ends)[leg]
     torque = begun + np.sign(np.array(ends)[leg + 1] - begun) * (along - np.concatenate([[0], np.cumsum(ways)])[leg])
     return np.round(torque, 3), begun, leg
-
-
-def _climb(count: int, rng: np.random.Generator) -> tuple[Array, Array, Places]:
-    torque = np.round(np.linspace(0.5, 50, count), 3)
-    return torque, np.full(count, torque[0]), np.zeros(count, dtype=np.intp)
 
 
 def _points(count: int, rng: np.random.Generator) -> tuple[Array, Array, Places]:

@@ -73,13 +73,14 @@ NAMED = [
         seed=31,
         hidden={"hysteresis": {"loop": 200, "torque_scale": 0.16}, "eccentricity": {"cosine": -12, "sine": 16}},
         logs=("wave_angle", "temperature"),
+        count=30,
     ),
     surface(seed=3, hidden={"instrument_noise": {"variance": 60}}),
     surface(seed=4, hidden={"waviness": {"square": 0.01, "wavelength": 25}}),
 ]
 UNKNOWN = [
     (stage(seed=26, strange=fifth_order, results=(ERROR,)), {"input_angle"}),
-    (reducer(seed=22, strange=warm_seal, kind="heavy"), {"housing_temperature", "measuring_torque"}),
+    (reducer(seed=22, strange=warm_seal, kind="heavy", count=45), {"housing_temperature", "measuring_torque"}),
     (screw(seed=22, strange=warm_and_fast_seal, results=(TORQUE,), kind="heavy"), {"temperature", "screw_speed"}),
     (drive(seed=41, strange=hot_and_fast, logs=("temperature", "speed"), **STIFF), {"temperature", "speed"}),
 ]
