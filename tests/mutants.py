@@ -226,7 +226,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ("for end in (low, high)]}", "for end in (low, low)]}"),
     ),
     *changes(
-        "kernel/truing/explain/influence.py", "end_to_end/test_explain.py",
+        "kernel/truing/explain.py", "end_to_end/test_explain.py",
         ("(unknown.low * unknown.high) ** 0.5", "unknown.low * unknown.high"),
     ),
     *changes(

@@ -220,7 +220,7 @@ def roughness_length_of(heights: Array, spacing: float) -> RoughnessLength:
     sizes = window_sizes(heights.shape[1])
     roughness = np.array([_mean_roughness(heights, int(size)) for size in sizes])
     known = np.isfinite(roughness) & (roughness > 0)
-    windows = sizes[known] * spacing
+    windows = np.asarray(sizes[known] * spacing, dtype=float)
     dimension = float("nan")
     if known.sum() > 1:
         dimension = 2.0 - float(np.polyfit(np.log(windows), np.log(roughness[known]), 1)[0])

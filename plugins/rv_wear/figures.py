@@ -90,7 +90,7 @@ def position_of(reducer: Reducer) -> FigurePosition:
     pitch_point = throw * count
     loaded = circle * np.exp(1j * angle)
     to_pitch = (pitch_point - loaded) / np.abs(pitch_point - loaded)
-    contact = loaded + float(mesh.pin_radius) * to_pitch
+    contact = np.asarray(loaded + float(mesh.pin_radius) * to_pitch, dtype=np.complex128)
     return FigurePosition(MM * pins, MM * outline, MM * throw, MM * pitch_point, angle, MM * contact, force)
 
 

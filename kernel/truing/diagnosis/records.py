@@ -54,7 +54,7 @@ class Covariate:
     def moves_with(self, other: Covariate, least: float) -> bool:
         """Whether the correlation with another one is above ``least``, of either sign."""
         both = np.isfinite(self.values) & np.isfinite(other.values)
-        return both.sum() > 2 and bool(abs(np.corrcoef(self.values[both], other.values[both])[0, 1]) > least)
+        return bool(both.sum() > 2 and abs(np.corrcoef(self.values[both], other.values[both])[0, 1]) > least)
 
 
 @dataclass(frozen=True)
