@@ -10,7 +10,7 @@ over that of the truth itself; ``--dump FILE`` writes one JSON line per case.
 
 from collections import Counter
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -21,11 +21,9 @@ from many_cases import Outcome
 from hidden_effects import gearing_cases, harmonic_cases, rv_cases, screw_cases
 from hidden_effects.clear import DRIVES, REDUCERS, SCREWS, SHAPES, STAGE_STRESSES, STAGES
 from hidden_effects.harmonic_machine import MESH, Rows
-from hidden_effects.harmonic_surface import SurfaceWish
-from hidden_effects.noises import KINDS
-from hidden_effects.rig_cases import RigCase
+from hidden_effects.harmonic_surface import FLANK, surface
+from hidden_effects.rigs import KINDS, Wish
 from hidden_effects.rows import Array, Hidden
-from truing.testing.hiding import Answered
 
 OF_STAGES: list[tuple[tuple[str, ...], gearing_cases.Design]] = [
     (STAGE_STRESSES, "rig"),
@@ -66,18 +64,18 @@ def sized(hidden: Hidden, rng: np.random.Generator, without: Collection[str] = (
     }
 
 
-def stage(place: int, seed: int) -> gearing_cases.Wish:
+def stage(place: int, seed: int) -> Wish:
     """A first stage: of three the first hides nothing, the others what comes next in the list."""
     rng = np.random.default_rng([seed, 9])
     kind = KINDS[int(rng.integers(len(KINDS)))]
     if place % 3 == 0:
         results, design = OF_STAGES[place // 3 % len(OF_STAGES)]
-        return gearing_cases.Wish(seed=seed, results=results, design=design, kind=kind)
+        return gearing_cases.stage(seed=seed, results=results, design=design, kind=kind)
     clear = STAGES[(place - place // 3 - 1) % len(STAGES)]
     return replace(clear, seed=seed, hidden=sized(clear.hidden, rng), kind=kind)
 
 
-def reducer(_: int, seed: int) -> rv_cases.Wish:
+def reducer(_: int, seed: int) -> Wish:
     """A reducer: of three seeds one hides nothing, the others any effect."""
     rng = np.random.default_rng([seed, 9])
     name = "" if seed % 3 == 0 else list(REDUCERS)[int(rng.integers(len(REDUCERS)))]
@@ -85,17 +83,17 @@ def reducer(_: int, seed: int) -> rv_cases.Wish:
     design: rv_cases.Design = "fleet" if name in FLEETS or rng.random() < 0.5 else "endurance"
     results = (rv_cases.BACKLASH, rv_cases.WEAR) if rng.random() < 0.5 else (rv_cases.BACKLASH,)
     kind = KINDS[int(rng.integers(len(KINDS)))]
-    return rv_cases.Wish(seed=seed, hidden=hidden, design=design, kind=kind, results=results)
+    return rv_cases.reducer(seed=seed, hidden=hidden, design=design, kind=kind, results=results)
 
 
-def screw(_: int, seed: int) -> screw_cases.Wish:
+def screw(_: int, seed: int) -> Wish:
     """A roller screw: of three seeds one hides nothing, the others any effect, at times in one of its results alone."""
     rng = np.random.default_rng([seed, 31])
     kind = KINDS[int(rng.integers(len(KINDS)))]
     if seed % 3 == 0:
         results = tuple(rng.choice(OF_SCREWS, 2, replace=False).tolist())
         design: screw_cases.Design = "endurance" if rng.random() < 0.5 else "bench"
-        return screw_cases.Wish(seed=seed, design=design, kind=kind, results=results)
+        return screw_cases.screw(seed=seed, design=design, kind=kind, results=results)
     clear = SCREWS[int(rng.integers(len(SCREWS)))]
     hidden, results = sized(clear.hidden, rng), clear.results
     if len(results) > 1 and rng.random() < 0.3:
@@ -104,55 +102,41 @@ def screw(_: int, seed: int) -> screw_cases.Wish:
     return replace(clear, seed=seed, hidden=hidden, design=design, kind=kind, results=results)
 
 
-def drive(_: int, seed: int) -> harmonic_cases.Wish | SurfaceWish:
+def drive(_: int, seed: int) -> Wish:
     """A harmonic drive or a flank: of four seeds one hides nothing, one what nobody registered, two the next effect."""
     rng = np.random.default_rng([seed, 37])
     kind = KINDS[int(rng.integers(len(KINDS)))]
     if seed % 4 in {0, 2}:
         which, is_strange = int(rng.integers(3)), seed % 4 == 2
         if which == 2:
-            return SurfaceWish(seed=seed, strange=feed_marks if is_strange else None)
+            return surface(seed=seed, strange=feed_marks if is_strange else None)
         strange = (fifth_order, stiff_when_hot_and_fast)[which] if is_strange else None
         points: dict[str, Any] = {"design": "points", "results": (MESH,)} if which else {}
-        return harmonic_cases.Wish(seed=seed, kind=kind, strange=strange, **points)
+        return harmonic_cases.drive(seed=seed, kind=kind, strange=strange, **points)
     clear = DRIVES[seed // 2 % len(DRIVES)]
-    known: dict[str, Any] = {} if isinstance(clear, SurfaceWish) else {"kind": kind}
-    return replace(clear, seed=seed, hidden=sized(clear.hidden, rng), **known)
+    hidden = sized(clear.hidden, rng)
+    return replace(clear, seed=seed, hidden=hidden, kind=clear.kind if clear.rig is FLANK else kind)
 
 
-@dataclass(frozen=True)
-class Machines:
-    """How cases of a plugin are wished for (by place and seed), made, and asked."""
-
-    wished: Callable[[int, int], Any]
-    made: Callable[[Any], RigCase]
-    diagnosed: Callable[[RigCase], Answered]
-
-
-MACHINES: dict[str, Machines] = {
-    "rv_gearing": Machines(stage, gearing_cases.make_case, gearing_cases.diagnosed),
-    "rv_wear": Machines(reducer, rv_cases.make_case, rv_cases.diagnosed),
-    "roller_screw_shift": Machines(screw, screw_cases.make_case, screw_cases.diagnosed),
-    "harmonic_fractal": Machines(drive, harmonic_cases.make_case, harmonic_cases.diagnosed),
-}
+WISHED: dict[str, Callable[[int, int], Wish]] = {
+    "rv_gearing": stage, "rv_wear": reducer, "roller_screw_shift": screw, "harmonic_fractal": drive,
+}  # fmt: skip
+"""How cases of a plugin are wished for, by place and seed."""
 
 
 def outcome(seed: int, *, plugin: str, first: int) -> Outcome:
     """Ask one case and say what was answered: in a word, with the intervals that hold the truth and the error left."""
-    machines = MACHINES[plugin]
-    wish = machines.wished(seed - first, seed)
-    case = machines.made(wish)
-    answer = machines.diagnosed(case)
-    document = answer.document
+    wish = WISHED[plugin](seed - first, seed)
+    document = wish.answered.document
     said = said_of(wish, document)
     without = {OF_ITS_OWN.get(effect, "") for effect in wish.hidden} if plugin == "harmonic_fractal" else set()
     return {
-        "seed": seed, "title": wish.title, "seconds": answer.seconds, "said": said,
+        "seed": seed, "title": wish.title, "seconds": wish.answered.seconds, "said": said,
         "hides": "something" if wish.strange is not None else "effect" if wish.hidden else "nothing",
         "hidden": {effect: dict(unknowns) for effect, unknowns in wish.hidden.items()},
         "causes": [cause["effect"] for cause in document["causes"]],
         "covered": covered(wish.hidden, document["causes"][0], without) if said == "named" and wish.hidden else {},
-        "left": max((case.left_over_noise(answer.predicted, name) for name in wish.results), default=1.0),
+        "left": max((wish.case.left_over_noise(wish.answered.predicted, name) for name in wish.results), default=1.0),
     }  # fmt: skip
 
 
@@ -163,7 +147,7 @@ QUIET = {"nothing", "named", "same curve", "called unknown"}
 """What may be said of a case without a line being printed."""
 
 
-def said_of(wish: Any, document: Mapping[str, Any]) -> str:
+def said_of(wish: Wish, document: Mapping[str, Any]) -> str:
     """Say in a word what was answered."""
     if wish.strange is not None:
         verdict = str(document["verdict"])
@@ -225,7 +209,7 @@ def verdict_on(document: Mapping[str, Any], hidden: str) -> str:
 def main() -> None:
     """Read the options and run."""
     parser = many_cases.options_of(__doc__, 40)
-    parser.add_argument("plugin", choices=MACHINES)
+    parser.add_argument("plugin", choices=WISHED)
     options = parser.parse_args()
     say(many_cases.gathered(partial(outcome, plugin=options.plugin, first=options.seed), options))
 

@@ -13,7 +13,7 @@ from timed import least
 from published.rv_wear_by_hand import wear_by_hand
 from rv_wear.model import RV_WEAR
 from rv_wear.quantities import Reducer
-from rv_wear.wear import history_of_group, history_of_one, unworn_of_group, unworn_of_one, worn
+from rv_wear.wear import history_of_group, unworn_of_group, worn
 
 DESIGNS = 1000
 BY_HAND = 10  # of them in the plain loop; its time per design hardly varies
@@ -27,7 +27,7 @@ def designs(count: int) -> Reducer:
 
 def at_once(count: int) -> np.ndarray:
     """All of them in one call that remembers nothing."""
-    for remembered in (unworn_of_group, unworn_of_one, history_of_group, history_of_one):
+    for remembered in (unworn_of_group, history_of_group):
         remembered.cache_clear()
     return np.asarray(worn(designs(count))["max_wear"])
 
