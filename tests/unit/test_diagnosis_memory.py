@@ -143,7 +143,7 @@ def test_effects_on_results_cost_no_call_of_a_slow_model_however_many_pairs_ther
     Of an effect that was not fitted the model is asked twice whether it fails with it.
     """
     none, six = (calls_of(tmp_path, extra, {}) for extra in (0, 6))
-    assert none == 1
+    assert none <= 1  # the answer to the rows is known since they were read
     assert six <= 1 + 2 * 6
 
 
