@@ -520,7 +520,7 @@ def _rivals(competition: Competition, best: Fit, seed: int) -> list[Rival]:
         if fit.key not in alike and _is_near(competition, best, fit):
             near.append(fit)
     more = [fit for fit in _with_more(competition, best, seed) if not any(fit.key > other.key for other in near)]
-    return [Rival(fit, max(0.0, competition.score(fit) - top)) for fit in sorted((*near, *more), key=competition.score)]
+    return [Rival(fit, max(0.0, competition.score(fit) - top)) for fit in sorted((*near, *more), key=competition.rank)]
 
 
 def _with_more(competition: Competition, best: Fit, seed: int) -> list[Fit]:

@@ -32,6 +32,8 @@ MOST_CAUSES = 5
 """So many causes are named at most; what another one would explain stays in the remainder."""
 MARGIN = 6.0
 """What every sign of a wrong explanation costs, in score: a Bayes factor of about 20."""
+SCORE_DIGITS = 6
+"""Decimal places of a score by which explanations are put in order: less is rounding."""
 UNREGISTERED = 4.0
 """What a shape that nobody registered costs beside its numbers."""
 LEAST_PROMISE = 4.0
@@ -123,6 +125,10 @@ class Competition:
         """Return how unlikely an explanation is: its cost, and its price."""
         return fit.cost + self.price(fit)
 
+    def rank(self, fit: Fit) -> float:
+        """Return the score as explanations are put in order by it: those that only rounding parts stay as they came."""
+        return round(self.score(fit), SCORE_DIGITS)
+
     def own_score(self, fit: Fit) -> float:
         """Return the same where what is left counts as noise with the memory that suits it best."""
         if fit not in self.owned:
@@ -131,11 +137,11 @@ class Competition:
 
     def ranked(self, accept: Callable[[Fit], bool] = lambda _: True) -> list[Fit]:
         """Return what was fitted and is accepted, the best first."""
-        return sorted((fit for fit in self.known.values() if accept(fit)), key=self.score)
+        return sorted((fit for fit in self.known.values() if accept(fit)), key=self.rank)
 
     def best(self, size: int) -> Fit | None:
         """Return the best explanation of so many causes."""
-        return min((fit for fit in self.known.values() if len(fit.causes) == size), key=self.score, default=None)
+        return min((fit for fit in self.known.values() if len(fit.causes) == size), key=self.rank, default=None)
 
     @property
     def null(self) -> Fit:
