@@ -3,7 +3,7 @@
 One entry per distinct mesh of a batch; what geometry fixes is calculated once, before any force is known.
 """
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -114,7 +114,7 @@ def columns_of(mesh: Mesh) -> list[Float]:
 
 def with_columns(mesh: Mesh, columns: list[Float]) -> Mesh:
     """The same choices with other numbers, in the order of ``columns_of``."""
-    return replace(mesh, **dict(zip(NUMBERS, columns, strict=True)))
+    return Mesh(**dict(zip(NUMBERS, columns, strict=True)), choices=mesh.choices)
 
 
 def distinct(mesh: Mesh) -> tuple[Mesh, NDArray[np.intp] | None]:
