@@ -75,8 +75,7 @@ class ToothLoad:
 def load_of(stage: Gearing) -> ToothLoad:
     """Return the load of a stage: by torque and speed where they are given, else by power and output speed.
 
-    The force is nominal, without any load factor. The line load is that of the width that carries, with the application
-    factor, and never 0.
+    The force is nominal; the line load is that of the width that carries, with the application factor, and never 0.
     """
     teeth = chosen_teeth(stage)
     ratio = ratio_of(teeth.sun, teeth.planet, teeth.pins)
@@ -86,7 +85,8 @@ def load_of(stage: Gearing) -> ToothLoad:
     reduction = ratio * efficiency
     asked = np.abs(either(stage.load_torque, torque_of(stage.power, speed) * reduction))
     torque = either(stage.stated_sun_torque, asked / reduction)
-    half = 0.5 * stage.module / np.cos(stage.helix_angle)
+    cosine = np.cos(stage.helix_angle)
+    half = 0.5 * stage.module / cosine
     radii = half * teeth.sun, half * teeth.planet
     force, width = torque / (stage.planets * radii[0]), stage.carrying_share * stage.face_width
     inward = np.cos(transverse_angle(stage.pressure_angle, stage.helix_angle))
@@ -101,7 +101,7 @@ def load_of(stage: Gearing) -> ToothLoad:
         sun_torque=torque,
         output_torque=torque * ratio * efficiency,
         tangential_force=force,
-        pitch_line_velocity=np.pi * (teeth.sun * stage.module / np.cos(stage.helix_angle)) * mesh_speed,
+        pitch_line_velocity=np.pi * (teeth.sun * stage.module / cosine) * mesh_speed,
         carrying_width=width,
         line_load=np.maximum(force * stage.application_factor / width, LEAST_LINE_LOAD),
     )
