@@ -61,7 +61,8 @@ class Duty:
 class ToothLoad:
     """What one mesh of sun and planet carries: the duty as it is printed, and what else the calculation needs of it.
 
-    The direction is the sign of the load torque, +1 where there is none.
+    The force is nominal; the line load is that of the width that carries, with the application factor, and never 0. The
+    direction is the sign of the load torque, +1 where there is none.
     """
 
     duty: Duty
@@ -73,10 +74,7 @@ class ToothLoad:
 
 
 def load_of(stage: Gearing) -> ToothLoad:
-    """Return the load of a stage: by torque and speed where they are given, else by power and output speed.
-
-    The force is nominal; the line load is that of the width that carries, with the application factor, and never 0.
-    """
+    """Return the load of a stage: by torque and speed where they are given, else by power and output speed."""
     teeth = chosen_teeth(stage)
     ratio = ratio_of(teeth.sun, teeth.planet, teeth.pins)
     efficiency = efficiency_of(stage, teeth.sun, teeth.planet, teeth.pins)
