@@ -237,7 +237,7 @@ WRONG: dict[str, tuple[Callable[[], Model[Any, Any]], str]] = {
     ),
     "inputs survive a file": (
         lambda: with_input(lambda it: 1.0, default=1.5, unit=None, annotation=Literal[1.5, 2.5]),
-        "not survive a file",
+        "'it' is 1.5 before and '1.5' after a file (SI)",
     ),
     "example can be read": (lambda: good(example=BAD_EXAMPLE), "the example of `calc init`"),
     "zero is the base": (
