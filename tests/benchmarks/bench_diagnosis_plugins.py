@@ -5,8 +5,7 @@ hides nothing (of harmonic drives and flanks a quarter, and a quarter something 
 one effect at a size drawn between half and the whole of a clear one, on every noise and in several designs, with the
 results measured in which it shows. A name counts if it is the verdict alone or another name of its curve. Prints
 counts, the names of what went wrong, how often an interval held the truth, and the error on rows that were not fitted
-over that of the truth itself; ``--dump FILE`` writes one JSON line per case. ``--catalogue`` asks for every size and
-ratio of the catalogue of harmonic drives instead: which causes carry the torsion, and with what shares.
+over that of the truth itself; ``--dump FILE`` writes one JSON line per case.
 """
 
 from collections import Counter
@@ -23,9 +22,8 @@ from hidden_effects import gearing_cases, harmonic_cases, rv_cases, screw_cases
 from hidden_effects.clear import DRIVES, REDUCERS, SCREWS, SHAPES, STAGE_STRESSES, STAGES
 from hidden_effects.harmonic_machine import MESH, Rows
 from hidden_effects.harmonic_surface import FLANK, surface
-from hidden_effects.rigs import KINDS, Wish, model_of
+from hidden_effects.rigs import KINDS, Wish
 from hidden_effects.rows import Array, Hidden
-from truing.testing import recorded
 
 OF_STAGES: list[tuple[tuple[str, ...], str]] = [
     (STAGE_STRESSES, "rig"),
@@ -39,16 +37,6 @@ FLEETS = {"wear_temperature", "film_lubrication", "load_exponent"}
 OF_SCREWS = (*screw_cases.STRESSES, screw_cases.ERROR, screw_cases.WEAR, screw_cases.AXIAL, screw_cases.TORQUE,
              screw_cases.BACKLASH)  # fmt: skip
 OF_ITS_OWN = {"lost_motion": "torque_scale", "flank_wear": "torque_scale", "creep": "time_scale"}
-STIFFNESS = {  # of the catalogues, kN m/rad, by size and ratio (100 stands for all above 50), and where it changes, N m
-    "14": ((2.0, 6.9), {30: (1.9, 2.4, 3.4), 50: (3.4, 4.7, 5.7), 100: (4.7, 6.1, 7.1)}),
-    "17": ((3.9, 12.0), {30: (3.4, 4.4, 6.7), 50: (8.1, 11.0, 13.0), 100: (10.0, 14.0, 16.0)}),
-    "20": ((7.0, 25.0), {30: (5.7, 7.1, 11.0), 50: (13.0, 18.0, 23.0), 100: (16.0, 25.0, 29.0)}),
-    "25": ((14.0, 48.0), {30: (10.0, 13.0, 21.0), 50: (25.0, 34.0, 44.0), 100: (31.0, 50.0, 57.0)}),
-    "32": ((29.0, 108.0), {30: (24.0, 30.0, 49.0), 50: (54.0, 78.0, 98.0), 100: (67.0, 110.0, 120.0)}),
-    "40": ((54.0, 196.0), {50: (100.0, 140.0, 180.0), 100: (130.0, 200.0, 230.0)}),
-    "50": ((108.0, 382.0), {50: (200.0, 280.0, 340.0), 100: (250.0, 400.0, 440.0)}),
-    "58": ((168.0, 598.0), {50: (310.0, 440.0, 540.0), 100: (400.0, 610.0, 710.0)}),
-}
 
 
 def fifth_order(rows: Rows) -> Array:
@@ -218,51 +206,11 @@ def verdict_on(document: Mapping[str, Any], hidden: str) -> str:
     return str(document["verdict"]) if document["verdict"] != "named" else "another name"
 
 
-# The catalogue
-
-
-def catalogue(seed: int) -> None:
-    """Ask what carries the torsion of every drive of the catalogue; flanks as by default, all else rigid."""
-    for size, (changes, by_ratio) in STIFFNESS.items():
-        for ratio, stiff in by_ratio.items():
-            document, rough = asked(size, ratio, drawn_line(changes, stiff, np.random.default_rng([seed, ratio])))
-            causes = ", ".join(f"{each['effect']} {100 * each['share']:.0f} %" for each in document["causes"])
-            others = "; ".join(" + ".join(each["causes"]) for each in document["alternatives"])
-            print(f"  {size:>3} {ratio:>4}: flanks {rough:.2%}; {causes or document['verdict']}; or {others or 'none'}")
-
-
-def drawn_line(changes: tuple[float, float], stiff: tuple[float, ...], rng: np.random.Generator) -> tuple[Array, Array]:
-    """Torques, N m, to twice the second change, and torsions, urad, with 10 urad of scatter."""
-    torque = np.round(changes[1] / 50 * np.arange(1, 101), 4)
-    ends = np.array([0.0, *changes, 3 * changes[1]])
-    angles = np.concatenate([[0.0], np.cumsum(np.diff(ends) / (1e-3 * np.array(stiff)))])
-    return torque, np.interp(torque, ends, angles) + 10 * rng.standard_normal(len(torque))
-
-
-def asked(size: str, ratio: int, read: tuple[Array, Array]) -> tuple[Mapping[str, Any], float]:
-    """What the diagnosis says to a record, and the share of the torsion that the flanks alone explain."""
-    larger = int(size) / 20
-    inputs = (
-        f'plugin = "harmonic_fractal"\n[inputs]\ncatalogue_size = "{size}"\npitch_radius = "{25.4 * larger:g} mm"\n'
-        f'face_width = "{10 * larger:g} mm"\nflank_height = "{0.4 * larger * 100 / ratio:g} mm"\n'
-        f"flexspline_teeth = {2 * ratio}\nengaged_pairs = {2 * int(0.3 * ratio)}\n"
-    )
-    rows = "".join(f"{torque!r},{angle!r}\n" for torque, angle in zip(*(part.tolist() for part in read), strict=True))
-    measured = "torque [N*m],torsion [urad]\n" + rows
-    document = recorded(model_of("harmonic_fractal"), inputs=inputs, measured=measured).answered.document
-    left = document["wrong"]["torsion"]["rmse"]["value"]
-    return document, 1 - left / float(np.sqrt(np.mean(read[1] ** 2)))
-
-
 def main() -> None:
     """Read the options and run."""
     parser = many_cases.options_of(__doc__, 40)
     parser.add_argument("plugin", choices=WISHED)
-    parser.add_argument("--catalogue", action="store_true", help="ask for the drives of the catalogue instead")
     options = parser.parse_args()
-    if options.catalogue:
-        catalogue(options.seed)
-        return
     say(many_cases.gathered(partial(outcome, plugin=options.plugin, first=options.seed), options))
 
 

@@ -10,7 +10,6 @@ from typing import Any, Literal
 
 import numpy as np
 import pytest
-from gear_record import GEAR_RECORD
 from pin_wear import PIN_WEAR
 
 from shared import TESTS
@@ -48,6 +47,8 @@ from truing.runs.provenance import provenance_of
 from truing.setup import default_setup
 from truing.testing import CHECKS, conformance, failures
 from truing.testing.subject import Subject
+
+pytestmark = pytest.mark.usefixtures("kit_shares_processes")
 
 
 @inputs
@@ -283,9 +284,7 @@ def test_every_check_has_its_wrong_model() -> None:
     assert all(check.promise.endswith(".") for check in CHECKS)
 
 
-@pytest.mark.parametrize(
-    "model", [good(), GEAR_RECORD, replace(ELSEWHERE, function=spring)], ids=lambda model: model.name
-)
+@pytest.mark.parametrize("model", [good(), replace(ELSEWHERE, function=spring)], ids=lambda model: model.name)
 def test_a_right_model_passes(model: Model[Any, Any]) -> None:
     assert failures(model) == {}
 
