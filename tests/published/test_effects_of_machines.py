@@ -14,7 +14,7 @@ import pytest
 
 from hidden_effects import gearing_cases, press_machine, rv_cases
 from hidden_effects.gearing_stage import Stage
-from hidden_effects.plugin_asking import model_of
+from hidden_effects.rigs import model_of
 from hidden_effects.rows import Array
 from truing.evaluate import evaluate_rows
 from truing.setup import SwitchedOn, default_setup
