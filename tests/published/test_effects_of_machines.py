@@ -106,8 +106,8 @@ GEARING = Machine(
 )  # fmt: skip
 REDUCER = Machine(
     plugin="rv_wear", rows=lambda design: rv_cases.measured(design, COUNT, np.random.default_rng(3)),
-    shown=lambda rows, hidden: rv_cases.shown(rows, {}, hidden), columns=rv_cases.REDUCER.written, results=rv_cases.UNIT,
-    inputs={},
+    shown=lambda rows, hidden: rv_cases.shown(rows, {}, hidden), columns=rv_cases.REDUCER.written,
+    results=rv_cases.UNIT, inputs={},
 )  # fmt: skip
 HEAT = {"link_heating": {"expansion": 1.15e-5}}
 HANGING = {"slider_mass": "20 t", "counterbalance": "150 kN"}
