@@ -1,7 +1,5 @@
 """Examples on records that are not shipped: without them what can be checked is the plugins and the preparation.
 
-Where the records are (TRUING_MEASURED), the pages are run with all that they say of them.
-
 The effects are hidden by generators of other physics than the plugins write: a slider that is moved step by step, waves
 by complex numbers, a ladder of springs and dampers.
 """
@@ -115,27 +113,6 @@ def test_a_motor_without_a_gear_relaxes_not() -> None:
     assert_finds_nothing(record("harmonic_stall", held_up(1, 0, 4)))
 
 
-@pytest.mark.parametrize(("stress", "limit"), [(270.0, 200.0), (380.0, 200.0), (300.0, 120.0)])
-def test_a_limit_is_the_stress_that_counts_as_none(stress: float, limit: float) -> None:
-    """Basquin's line over S - S_L: with the slope of the tangent at the usual stress and the same level there."""
-    panel = load_file(EXAMPLES / "panel_fatigue" / "panel_fatigue.py")
-    life = panel.panel_fatigue(panel.PANEL_FATIGUE.inputs(stress=stress * 1e6, limit=limit * 1e6, exponent=5.0))
-    assert life.log_life == pytest.approx(6.2 - 5 * np.log10((stress - limit) / (300 - limit)), rel=1e-12)
-
-
-@pytest.mark.parametrize(("load", "cycles"), [(0.1, 2.0), (1.0, 500.0), (0.3, 40.0)])
-def test_a_width_that_slows_is_a_load_that_is_shared(load: float, cycles: float) -> None:
-    """(F n^(1-s))^(1-p) = F^(1-p) n^((1-p)(1-s)), and with neither it is Archard's law."""
-    plugin = load_file(EXAMPLES / "sliding_wear" / "sliding_wear.py")
-
-    def worn(**more: float) -> float:
-        return float(plugin.sliding_wear(plugin.SLIDING_WEAR.inputs(load=load, cycles=cycles, **more)).wear)
-
-    assert worn(widened=0.4, slowed=0.7) == pytest.approx(worn(shared=0.4, slowed=1 - 0.6 * 0.3), rel=1e-12)
-    rate = plugin.SLIDING_WEAR.inputs().rate
-    assert worn() == pytest.approx(rate * load * cycles, rel=1e-12)
-
-
 # Preparation
 
 
@@ -229,22 +206,6 @@ def test_every_second_stretch_of_the_drag_judges(prepare: Callable[[str, str], i
     assert float(rows[0]["torque [N*m]"]) == pytest.approx(24.5)  # the mean of 17 to 32
 
 
-PANEL = "stress [MPa],life [kcycles],outcome [-]\n"
-WEAR = "specimen [-],load [gf],cycles [-],wear [um]\n"
-
-
-def test_run_outs_of_panels_are_marked_at_their_last_cycle(prepare: Callable[[str, str], int], tmp_path: Path) -> None:
-    assert prepare("panel_fatigue", PANEL + "380,100,failed\n270,10000,runout\n300,1000,failed\n") == 0
-    rows = [list(row.values()) for row in made(tmp_path, "lives.csv")]
-    assert rows == [["380", "5", "failed"], ["270", "7", "runout"], ["300", "6", "failed"]]
-
-
-def test_the_last_two_specimens_of_a_load_judge(prepare: Callable[[str, str], int], tmp_path: Path) -> None:
-    assert prepare("sliding_wear", WEAR + "".join(f"{name},10,2,100\n" for name in (7, 8, 9))) == 0
-    assert [list(row.values())[-1] for row in made(tmp_path)] == ["fit", "validation", "validation"]
-    assert list(made(tmp_path, "logarithms.csv")[0].values()) == ["7", "10", "2", "2.000000", "fit"]
-
-
 NO_FILE = "this is no table"
 REFUSED = [
     ("cycloid_torsion", NO_FILE, r"data.csv:1: no column 'time \[s\]'; README.md says which file is meant"),
@@ -263,12 +224,6 @@ REFUSED = [
     ("cycloid_drag", NO_FILE, r"data.csv:1: no column 'time \[s\]'; README.md says which file is meant"),
     ("cycloid_drag", drag_record(80), r"data.csv: shorter than two stretches of 10 s, so that no row is left to judge"),
     ("cycloid_drag", drag_record(240).replace(",9\n", ",slip\n"), r"data.csv:10: torque 'slip' is no number"),
-    ("panel_fatigue", NO_FILE, r"data.csv:1: no column 'stress \[MPa\]'; README.md says which file is meant"),
-    ("panel_fatigue", PANEL + "380,100,failed\n", r".*holds other words than 'failed' and 'runout', or one alone"),
-    ("panel_fatigue", PANEL + "380,100,failed\n270,0,runout\n", r"data.csv:3: life '0' is no number above 0"),
-    ("sliding_wear", NO_FILE, r"data.csv:1: no column 'specimen \[-\]'; README.md says which file is meant"),
-    ("sliding_wear", WEAR + "1,10,2,3\n2,10,2,3\n", r".*a load with fewer than 3 specimens: none is left to .*"),
-    ("sliding_wear", WEAR + "1,10,2,worn\n", r"data.csv:2: wear 'worn' is no number above 0"),
     ("harmonic_stall", "\n".join(stall_record(1).splitlines()[:25]), r"data.csv: the plateau of run 1 is too short"),
 ]
 
