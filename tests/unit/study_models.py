@@ -114,18 +114,6 @@ UNIFORMS = Model(
 )  # fmt: skip
 
 
-def parabola(two: Two) -> Sum:
-    """A curved limit: total > 0 outside a parabola."""
-    return Sum(total=3.0 + 0.3 * two.x**2 - two.y)
-
-
-PARABOLA = Model(
-    name="parabola", title="Curved limit", function=parabola,
-    errors=[Tolerance("both", normal(sd="1"), on=["x", "y"])],
-    objectives=[Require("total", at_least="0", reliability=0.9)],
-)  # fmt: skip
-
-
 def strength_minus(two: Two) -> Sum:
     """The load itself; the strength is the input y."""
     return Sum(total=two.x)
@@ -292,4 +280,4 @@ PRICED = Model(
 
 @hookimpl
 def truing_models() -> list:
-    return [CHAIN, UNIFORMS, PARABOLA, STRENGTH, ISHIGAMI, ROOT, JOINT, WEAR, LOGNORMAL, SADDLE, STACK, PRICED]
+    return [CHAIN, UNIFORMS, STRENGTH, ISHIGAMI, ROOT, JOINT, WEAR, LOGNORMAL, SADDLE, STACK, PRICED]

@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 from pin_wear import PIN_WEAR, Pin
 
-from shared import ROUNDING
 from truing import (
     Allocation,
     Float,
@@ -34,7 +33,6 @@ from truing import (
 )
 from truing.calculation import calculate
 from truing.cases import CaseResult, CasesTable, case_setup, run_cases
-from truing.declare.goals import PriceByChoice
 from truing.describe import description
 from truing.errors import DeclarationError
 from truing.executors import open_executor
@@ -67,51 +65,30 @@ SUM = 40 / BAND**0.5 + 2 / 1.0  # EUR: and a band of 1 mm^2
 
 
 def test_the_sum_is_an_answer_and_a_check() -> None:
-    found = calculate(default_setup(LIMITED))
+    setup = default_setup(LIMITED)
+    found = calculate(replace(setup, units={"tolerance_price": "kEUR"}))
     assert found.answers["tolerance_price"] == pytest.approx(SUM, rel=1e-12)
-    (check,) = found.checks
+    document = results_document(found, provenance_of(found.setup))
+    assert document["results"]["tolerance_price"] == {"value": pytest.approx(SUM / 1000, rel=1e-12), "unit": "kEUR"}
+    (check,) = calculate(setup).checks
     assert (check.name, check.unit, check.passed) == ("tolerance_price", "EUR", False)
     assert check.margin == pytest.approx((10 - SUM) / 10, rel=1e-12)
-
-
-def test_the_sum_is_printed_in_the_unit_asked_for() -> None:
-    setup = replace(default_setup(LIMITED), units={"tolerance_price": "kEUR"})
-    document = results_document(calculate(setup), provenance_of(setup))
-    assert document["results"]["tolerance_price"] == {"value": pytest.approx(SUM / 1000, rel=1e-12), "unit": "kEUR"}
-
-
-def test_what_is_off_is_not_paid() -> None:
-    setup = default_setup(LIMITED)
-    free = replace(setup, spreads={**setup.spreads, "area": off()})
-    assert calculate(free).answers["tolerance_price"] == pytest.approx(SUM - 2.0, rel=1e-12)
-    assert calculate(replace(free, spreads=dict.fromkeys(setup.spreads, off()))).answers["tolerance_price"] == 0.0
-
-
-def test_a_band_on_several_inputs_is_paid_once() -> None:
-    both = Tolerance("both", normal(sd="3 %"), on=["load", "hardness"], price=PAID)
-    model = replace(LIMITED, errors=[both])
-    assert calculate(default_setup(model)).answers["tolerance_price"] == pytest.approx(40 / BAND**0.5, rel=1e-12)
-
-
-def cases_file(cases: list[StatedCase]) -> CasesFile:
-    return CasesFile(tuple(cases), RowCount("cases.csv", len(cases)))
-
-
-def test_every_case_has_its_own_price() -> None:
-    cases = [StatedCase(1, 2, "light", {"load": 30.0}), StatedCase(2, 3, "as it is", {"load": 120.0})]
-    with open_executor("serial") as executor:
-        full, table = run_cases(default_setup(LIMITED), cases_file(cases), executor=executor)
-    light, normal_ = (case.answers["tolerance_price"] for case in table.cases)
-    assert light == pytest.approx(40 / (BAND / 4) ** 0.5 + 2, rel=1e-12)
-    assert normal_ == pytest.approx(SUM, rel=1e-12)
-    assert table.governing == 0
-    assert full.answers["tolerance_price"] == pytest.approx(light, rel=ROUNDING)
-
-
-def test_a_model_without_prices_has_no_such_result() -> None:
     plain = replace(LIMITED, errors=[Tolerance("load", normal(sd="3 %"))], objectives=[])
-    assert "tolerance_price" not in plain.result_fields
-    assert "tolerance_price" not in calculate(default_setup(plain)).answers
+    assert "tolerance_price" not in {**plain.result_fields, **calculate(default_setup(plain)).answers}
+
+
+@pytest.mark.parametrize(
+    ("errors", "free", "price"),
+    [
+        (LIMITED.errors, ("area",), SUM - 2.0),  # what is off is not paid
+        (LIMITED.errors, ("load", "area", "hardness"), 0.0),
+        ([Tolerance("both", normal(sd="3 %"), on=["load", "hardness"], price=PAID)], (), SUM - 2.0),  # paid once
+    ],
+)
+def test_every_tolerance_in_force_is_paid_once(errors: list[Any], free: tuple[str, ...], price: float) -> None:
+    setup = default_setup(replace(LIMITED, errors=errors))
+    setup = replace(setup, spreads={**setup.spreads, **dict.fromkeys(free, off())})
+    assert calculate(setup).answers["tolerance_price"] == pytest.approx(price, rel=1e-12)
 
 
 # A price that follows a choice
@@ -198,16 +175,15 @@ WRONG = [
 
 
 @pytest.mark.parametrize(("price", "words"), WRONG)
-def test_a_price_that_cannot_be_chosen_is_refused(price: PriceByChoice, words: str) -> None:
+def test_a_price_that_cannot_be_chosen_is_refused(price: Any, words: str) -> None:
     with pytest.raises(DeclarationError, match=words):
         replace(CHOSEN, errors=[Tolerance("length", plus_minus("0.1 mm"), price=price)])
 
 
 def test_spreads_and_prices_are_not_mixed() -> None:
-    with pytest.raises(DeclarationError, match="takes a spread for each choice, or a price for each"):
-        by_choice("cost_form", power=EUR, exponential=off())  # type: ignore[call-overload]
-    with pytest.raises(DeclarationError, match="takes a spread for each choice, or a price for each"):
-        by_choice("cost_form")
+    for laws in ({"power": EUR, "exponential": off()}, {}):
+        with pytest.raises(DeclarationError, match="takes a spread for each choice, or a price for each"):
+            by_choice("cost_form", **laws)
 
 
 # Many cases: each row changes the setup, the smallest margin governs, one that fails does not take the others away.
@@ -295,44 +271,36 @@ def test_a_case_that_is_impossible_keeps_its_reason(model: Model[Any, Any]) -> N
     assert table.varied == ("load", "speed")
 
 
-def test_a_limit_on_what_a_study_gives_is_asked_in_every_case() -> None:
-    """Depth over load is k v t / (A H): at twice the speed it is twice as steep."""
-    table = run(GIVEN, {"speed": 0.5}, {"speed": 1.0})
-    slopes = [case.answers["slope"] for case in table.cases]
-    assert slopes[0] == pytest.approx(3e-8 * 0.5 * 720e3 / (28e-6 * 2.1e9), rel=1e-9)
-    assert slopes[1] == pytest.approx(2 * slopes[0], rel=1e-9)
-    assert [[check.passed for check in case.checks] for case in table.cases] == [[True], [False]]
-    assert table.governing == 1
+def test_what_studies_give_is_asked_in_every_case() -> None:
+    """Depth over load is k v t / (A H): at twice the speed it is twice as steep, whoever decides limits."""
+    for model, kept in ((GIVEN, [[True], [False]]), (replace(GIVEN, objectives=PLAIN.objectives), [[True], [True]])):
+        table = run(model, {"speed": 0.5}, {"speed": 1.0})
+        slopes = [case.answers["slope"] for case in table.cases]
+        assert slopes[0] == pytest.approx(3e-8 * 0.5 * 720e3 / (28e-6 * 2.1e9), rel=1e-9)
+        assert slopes[1] == pytest.approx(2 * slopes[0], rel=1e-9)
+        assert [[check.passed for check in case.checks] for case in table.cases] == kept
+        assert table.governing == (1 if model is GIVEN else 0)
 
 
-def test_cases_without_limits_are_governed_by_the_first() -> None:
-    table = run(replace(PLAIN, objectives=[]), {"load": 280.0}, {"load": 140.0})
-    assert table.governing == 0
-    assert table.verdict == "passes"
-    assert [case.margin for case in table.cases] == [float("inf")] * 2
-
-
-def test_an_effect_that_is_on_acts_in_every_case() -> None:
-    worn = replace(
-        default_setup(PLAIN), effects=(SwitchedOn(PLAIN.effects["running_in"], {"extra": 7e-6, "length": 10.0}),)
-    )
-    cases = ({"load": 140.0}, {"load": 280.0})
-    plain, with_effect = run(PLAIN, *cases), run(PLAIN, *cases, setup=worn)
-    added = [b.answers["depth"] - a.answers["depth"] for a, b in zip(plain.cases, with_effect.cases, strict=True)]
-    assert added == pytest.approx([7e-6, 7e-6])
-
-
-def test_every_row_carries_what_studies_give_and_a_limit_that_none_decides() -> None:
-    """A study that decides no limit is run for each row all the same: its results stand in every row."""
-    table = run(replace(GIVEN, objectives=PLAIN.objectives), {"speed": 0.5}, {"speed": 1.0})
-    slopes = [case.answers["slope"] for case in table.cases]
-    assert slopes[1] == pytest.approx(2 * slopes[0], rel=1e-9)
-    setup = replace(default_setup(CHANCE), studies=())
-    table = run(CHANCE, {"load": 140.0}, {"load": 280.0}, setup=setup)
-    assert [case.verdict for case in table.cases] == ["undecided"] * 2
-    assert table.verdict == "undecided"
+def test_a_limit_that_no_study_decides_is_undecided_in_every_case() -> None:
+    table = run(CHANCE, {"load": 140.0}, {"load": 280.0}, setup=replace(default_setup(CHANCE), studies=()))
+    assert [table.verdict, *(case.verdict for case in table.cases)] == ["undecided"] * 3
     (check,) = calculate(replace(default_setup(GIVEN), studies=())).checks
     assert (check.name, check.limit, check.unit, check.undecided) == ("slope", 0.2, "um/N", "sensitivity")
+
+
+def test_prices_effects_and_cases_without_limits() -> None:
+    """Every case has its own price; an effect that is on acts in each; without limits the first one governs."""
+    light, stated = (case.answers["tolerance_price"] for case in run(LIMITED, {"load": 30.0}, {"load": 120.0}).cases)
+    assert (light, stated) == pytest.approx((40 / (BAND / 4) ** 0.5 + 2, SUM), rel=1e-12)
+    free = replace(PLAIN, objectives=[])
+    on = SwitchedOn(PLAIN.effects["running_in"], {"extra": 7e-6, "length": 10.0})
+    cases = ({"load": 280.0}, {"load": 140.0})
+    plain, worn = run(free, *cases), run(free, *cases, setup=replace(default_setup(free), effects=(on,)))
+    added = [b.answers["depth"] - a.answers["depth"] for a, b in zip(plain.cases, worn.cases, strict=True)]
+    assert added == pytest.approx([7e-6, 7e-6])
+    assert (plain.governing, plain.verdict) == (0, "passes")
+    assert [case.margin for case in plain.cases] == [float("inf")] * 2
 
 
 def test_cases_that_pass_with_different_changes_only_do_not_pass() -> None:

@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from functools import reduce
 from math import hypot, log, sqrt
 
 import numpy as np
@@ -32,6 +33,7 @@ from truing.studies.checks import normal_chance, wilson
 from truing.studies.sampling import Moments, joined, scatter_of
 
 QUICK = Reliability(draws=40_000)
+GAP_LIMITS = [Require("gap", at_most="10.2 mm", reliability=0.5), Require("gap", at_least="9.9 mm", reliability=0.5)]
 
 
 def odds_of(setup, study=QUICK, executor=None):
@@ -51,13 +53,36 @@ def within_sampling_error(probability, expected, draws):
 # ---- first order --------------------------------------------------------------------------------------------------
 
 
-def test_a_linear_sum_of_normals_is_exact(of_chain):
-    gap, twice = 2 * norm.cdf(0.2 / 0.13) - 1, norm.cdf(0.3 / 0.26)
-    assert of_chain.analytic == pytest.approx({"gap": gap, "twice": twice}, rel=1e-12)
-    assert of_chain.form["gap"].probability == pytest.approx(gap, rel=1e-9)
-    assert of_chain.form["twice"].probability == pytest.approx(twice, rel=1e-9)
-    assert within_sampling_error(of_chain.probability["gap"], gap, of_chain.draws)
-    assert within_sampling_error(of_chain.probability["twice"], twice, of_chain.draws)
+def half_of_the_limit(two: Two) -> Sum:
+    """The load takes half of the strength with it."""
+    return Sum(total=two.x + 0.5 * two.y)
+
+
+CLOSED = [  # model, nominals, and the standard normal quantiles of what lies between the limits
+    (CHAIN, {}, "gap", (-0.2 / 0.13, 0.2 / 0.13)),
+    (CHAIN, {}, "twice", (-np.inf, 0.3 / 0.26)),
+    (STRENGTH, {"y": 10.0}, "total", (-np.inf, 2.0)),  # load N(0, 3) against strength N(10, 4)
+    (STRENGTH, {"y": -5.0}, "total", (-np.inf, -1.0)),  # the nominal machine misses
+    (replace(STRENGTH, function=half_of_the_limit), {"y": 10.0}, "total", (-np.inf, 5 / sqrt(13))),  # of x - y/2
+    (JOINT, {}, "total", (-1.0, 1.0)),  # x = c and y = -c/2: the sum has half the spread
+    (replace(CHAIN, objectives=GAP_LIMITS), {}, "gap at most", (-np.inf, 0.2 / 0.13)),
+    (replace(CHAIN, objectives=GAP_LIMITS), {}, "gap at least", (-np.inf, 0.1 / 0.13)),
+]
+
+
+@pytest.mark.parametrize(("model", "values", "limit", "quantiles"), CLOSED)
+def test_a_linear_sum_of_normals_is_exact(model, values, limit, quantiles):
+    """To first order, by the tangent plane (FORM), and within its error the sampling; also where the limit moves."""
+    odds = odds_of(setup_of(model, **values))
+    expected = norm.cdf(quantiles[1]) - norm.cdf(quantiles[0])
+    near = 0.01 if model.name == "joint" else 1e-9  # 65536 draws stand for the joint spread
+    assert odds.analytic[limit] == pytest.approx(expected, rel=near)
+    assert odds.form[limit].probability == pytest.approx(expected, rel=max(near, 1e-6))
+    assert within_sampling_error(odds.probability[limit], expected, odds.draws)
+    low, high = odds.interval[limit]
+    error = sqrt(odds.probability[limit] * (1 - odds.probability[limit]) / odds.draws)
+    assert odds.as_json()[limit]["standard_error"] == pytest.approx(error, rel=1e-12)
+    assert high - low == pytest.approx(2 * 1.96 * error, rel=0.01)
 
 
 def test_the_shift_of_a_zone_is_in_the_mean():
@@ -86,18 +111,12 @@ def test_the_normal_chance_is_exact_in_both_tails(mean, sd, low, high, expected)
 
 
 # Newcombe, Statistics in Medicine 17 (1998) 857, table I, method 3 (score): successes, trials, lower, upper.
-NEWCOMBE = [(81, 263, 0.2553, 0.3662), (15, 148, 0.0624, 0.1605), (0, 20, 0.0, 0.1611), (1, 29, 0.0061, 0.1718)]
-
-
-@pytest.mark.parametrize(("hits", "draws", "low", "high"), NEWCOMBE)
+@pytest.mark.parametrize(
+    ("hits", "draws", "low", "high"), [(81, 263, 0.2553, 0.3662), (0, 20, 0.0, 0.1611), (1, 29, 0.0061, 0.1718)]
+)
 def test_the_interval_is_wilsons(hits, draws, low, high):
     assert wilson(hits, draws) == pytest.approx((low, high), abs=5e-5)
     assert wilson(draws - hits, draws) == pytest.approx((1 - high, 1 - low), abs=5e-5)
-
-
-def test_the_standard_error_is_that_of_a_share(of_chain):
-    share = of_chain.probability["gap"]
-    assert of_chain.as_json()["gap"]["standard_error"] == pytest.approx(sqrt(share * (1 - share) / 40_000), rel=1e-12)
 
 
 # ---- Monte Carlo --------------------------------------------------------------------------------------------------
@@ -124,36 +143,6 @@ def test_failed_machines_count_as_missed():
     assert odds.as_json()["side"]["failed"] == odds.failed
 
 
-def test_a_limit_that_scatters_moves_with_the_machine():
-    """Load N(0, 3) against strength N(10, 4): P = Phi(10/5)."""
-    odds = odds_of(setup_of(STRENGTH, y=10.0))
-    assert odds.analytic["total"] == pytest.approx(norm.cdf(2), rel=1e-9)
-    assert odds.form["total"].sides["high"].beta == pytest.approx(2, rel=1e-6)
-    assert within_sampling_error(odds.probability["total"], norm.cdf(2), odds.draws)
-
-
-def test_a_limit_that_moves_the_result_too():
-    """The result x + y/2 against its own limit y: the distance x - y/2 has the spread sqrt(9 + 4), not sqrt(9 + 36)."""
-    model = replace(STRENGTH, function=half_of_the_limit)
-    odds = odds_of(setup_of(model, y=10.0))
-    expected = norm.cdf(5 / sqrt(13))
-    assert odds.analytic["total"] == pytest.approx(expected, rel=1e-9)
-    assert odds.form["total"].probability == pytest.approx(expected, rel=1e-6)
-    assert within_sampling_error(odds.probability["total"], expected, odds.draws)
-
-
-def half_of_the_limit(two: Two) -> Sum:
-    """The load takes half of the strength with it."""
-    return Sum(total=two.x + 0.5 * two.y)
-
-
-def test_inputs_that_scatter_together():
-    """x = c and y = -c/2 with c normal: the sum has half its spread."""
-    odds = odds_of(setup_of(JOINT))
-    assert within_sampling_error(odds.probability["total"], 2 * norm.cdf(1) - 1, odds.draws)
-    assert odds.sd["total"] == pytest.approx(0.5, rel=0.02)
-
-
 def test_conditions_scatter_and_effects_carry_it():
     """gap = 10 mm (1 + 1e-4/K (T - 20 degC)) with T scattering by 10 K: 10 um more beside 130 um."""
     model = replace(CHAIN, errors=[*CHAIN.errors, Tolerance("room", normal(sd="10 K"), on=["warmth"])])
@@ -177,8 +166,7 @@ def test_a_diagnosed_effect_scatters_by_its_uncertainty():
 def test_two_tolerances_on_one_input_add_up():
     model = replace(STRENGTH, errors=[*STRENGTH.errors, Tolerance("more", normal(sd="4"), on=["x"])])
     odds = odds_of(setup_of(replace(model, objectives=[Require("total", at_most="5", reliability=0.5)])))
-    assert odds.first_sd["total"] == pytest.approx(5, rel=1e-9)
-    assert odds.sd["total"] == pytest.approx(5, rel=0.02)
+    assert (odds.first_sd["total"], odds.sd["total"]) == (pytest.approx(5, rel=1e-9), pytest.approx(5, rel=0.02))
 
 
 def test_a_reading_never_fails_a_machine(of_chain):
@@ -252,35 +240,30 @@ def test_form_of_lognormal_load_and_strength():
     assert abs(odds.analytic["total"] - norm.cdf(beta)) > 1e-3  # first order takes them for normal
 
 
-def test_form_of_a_quadratic_limit():
-    """The benchmark 0.1 (x - y)^2 - (x + y)/sqrt 2 + 2.5: the nearest point is (2.5, 2.5)/sqrt 2, beta 2.5."""
-    odds = odds_of(setup_of(SADDLE), Reliability(draws=400_000))
-    side = odds.form["total"].sides["low"]
-    assert side.beta == pytest.approx(2.5, rel=1e-6)
-    assert side.point == pytest.approx({"x": 2.5 / sqrt(2), "y": 2.5 / sqrt(2)}, rel=1e-4)
-    # Literature: P(failure) 4.21e-3 by integration, against 6.21e-3 of the tangent plane.
-    assert within_sampling_error(odds.probability["total"], 1 - 4.21e-3, 400_000)
-    assert odds.form["total"].probability == pytest.approx(norm.cdf(2.5), rel=1e-9)
-
-
 def cubic(two: Two) -> Sum:
     """A limit that bends ever more."""
     return Sum(total=3.0 - 0.6 * two.x - 0.6 * two.y - 0.1 * two.y**3)
 
 
-def test_form_of_a_cubic_limit():
-    """The nearest point of the curve x = 5 - y - y^3/6, where x dx/dy + y vanishes: by bisection."""
+def nearest_of_the_cubic() -> dict[str, float]:
+    """Where x dx/dy + y vanishes on the curve x = 5 - y - y^3/6."""
     y = brentq(lambda y: y - (5 - y - y**3 / 6) * (1 + y**2 / 2), 0.0, 2.5, xtol=1e-14)
-    x = 5 - y - y**3 / 6
-    side = odds_of(setup_of(replace(SADDLE, function=cubic))).form["total"].sides["low"]
-    assert side.beta == pytest.approx(hypot(x, y), rel=1e-9)
-    assert side.point == pytest.approx({"x": x, "y": y}, abs=1e-4 * side.beta)  # where the search ends
+    return {"x": 5 - y - y**3 / 6, "y": y}
 
 
-def test_form_when_the_nominal_machine_misses():
-    odds = odds_of(setup_of(STRENGTH, y=-5.0))
-    assert odds.form["total"].sides["high"].beta == pytest.approx(-1, rel=1e-6)
-    assert odds.form["total"].probability == pytest.approx(norm.cdf(-1), rel=1e-6)
+@pytest.mark.parametrize(
+    ("model", "point"),
+    [(SADDLE, {"x": 2.5 / sqrt(2), "y": 2.5 / sqrt(2)}), (replace(SADDLE, function=cubic), nearest_of_the_cubic())],
+)
+def test_form_of_a_curved_limit(model, point):
+    """The benchmark 0.1 (x - y)^2 - (x + y)/sqrt 2 + 2.5, whose beta is 2.5, and a cubic one."""
+    odds = odds_of(setup_of(model), Reliability(draws=400_000))
+    side = odds.form["total"].sides["low"]
+    assert side.beta == pytest.approx(hypot(*point.values()), rel=1e-6)
+    assert side.point == pytest.approx(point, abs=1e-4 * side.beta)  # where the search ends
+    assert odds.form["total"].probability == pytest.approx(norm.cdf(side.beta), rel=1e-9)
+    if model is SADDLE:  # literature: P(failure) 4.21e-3 by integration, against 6.21e-3 of the tangent plane
+        assert within_sampling_error(odds.probability["total"], 1 - 4.21e-3, 400_000)
 
 
 def test_a_search_that_fails_is_a_status_and_no_number():
@@ -291,11 +274,6 @@ def test_a_search_that_fails_is_a_status_and_no_number():
     assert set(written) == {"status"}
     assert "no convergence" in written["status"]
     assert any("FORM of the total" in getattr(block, "text", "") for block in odds.blocks())
-
-
-def test_form_stands_only_beside_a_sampling():
-    with pytest.raises(UsageError, match="only beside a sampling"):
-        Reliability(method=("first_order", "form"))
 
 
 # ---- seeds and workers --------------------------------------------------------------------------------------------
@@ -318,20 +296,13 @@ def test_a_further_tolerance_reshuffles_no_other():
     assert (scatter_of(setup_of(CHAIN)).draw(1, 4, 100)["first"] != alone["first"]).all()
 
 
-def test_inputs_of_one_tolerance_are_drawn_independently():
-    columns = scatter_of(setup_of(UNIFORMS)).draw(1, 0, 20_000)
-    assert abs(np.corrcoef(columns["x"], columns["y"])[0, 1]) < 4 / sqrt(20_000)
-
-
 def test_moments_of_batches_join_to_those_of_the_whole():
-    rng = np.random.default_rng(5)
-    values = rng.normal(3557.6, 2.5e-2, 10_000)
-    parts = np.split(values, [17, 18, 4000])
-    whole = None
-    for part in parts:
-        mean = part.mean()
-        moments = Moments(len(part), mean, ((part - mean) ** 2).sum(), part.min(), part.max())
-        whole = moments if whole is None else joined(whole, moments)
+    values = np.random.default_rng(5).normal(3557.6, 2.5e-2, 10_000)
+    parts = [
+        Moments(len(part), part.mean(), np.square(part - part.mean()).sum(), part.min(), part.max())
+        for part in np.split(values, [17, 18, 4000])
+    ]
+    whole = reduce(joined, parts)
     assert whole.count == 10_000
     assert whole.mean == pytest.approx(np.mean(values), rel=1e-15)
     assert whole.sd == pytest.approx(np.std(values, ddof=1), rel=1e-9)
@@ -341,69 +312,55 @@ def test_moments_of_batches_join_to_those_of_the_whole():
 # ---- what is said -------------------------------------------------------------------------------------------------
 
 
-def test_checks_compare_the_sampling_with_the_goal(of_chain):
-    check = next(check for check in of_chain.checks() if check.name == "gap")
-    assert (check.value, check.limit, check.passed) == (of_chain.probability["gap"], 0.85, True)
-    assert check.margin == pytest.approx((check.value - 0.85) / 0.85)
-    assert "take the Monte Carlo" in of_chain.blocks()[0].note
-
-
-def test_the_table_of_the_sheet_is_in_percent(of_chain):
-    table = of_chain.blocks()[0]
-    assert table.columns == ("limit kept", "goal", "Monte Carlo", "95 % from", "to", "first order", "FORM")
-    assert table.units == ("", "%", "%", "%", "%", "%", "%")
-    gap = 2 * norm.cdf(0.2 / 0.13) - 1
-    noise = 1.96 * sqrt(gap * (1 - gap) / of_chain.draws)
-    _, goal, sampled, low, high, first, tangent = table.rows[0]
-    assert (goal, first, tangent) == (pytest.approx(85), pytest.approx(100 * gap), pytest.approx(100 * gap))
-    assert sampled == pytest.approx(100 * gap, abs=200 * noise)
-    assert (high - sampled, sampled - low) == pytest.approx((100 * noise, 100 * noise), rel=0.05)
-
-
-def test_a_check_says_how_its_probability_was_found(of_chain):
-    assert of_chain.checks()[0].method == "Monte Carlo, 40000 machines"
-    assert odds_of(setup_of(CHAIN), Reliability(method=("first_order",))).checks()[0].method == "first order"
-
-
-def test_the_sheet_tells_mean_and_extremes_from_the_nominal_result(of_chain):
+def test_the_sheet_is_in_percent_and_tells_differences_from_the_nominal_result(of_chain):
     """gap = 10 mm, sd 0.13 mm: in five digits the mean itself would say nothing."""
-    table = next(block for block in of_chain.blocks() if block.title == "Scatter of the results")
-    name, unit, mean, spread, first, smallest, largest = table.rows[0]
+    chances, scatter = of_chain.blocks()
+    assert chances.columns == ("limit kept", "goal", "Monte Carlo", "95 % from", "to", "first order", "FORM")
+    assert chances.units == ("", "%", "%", "%", "%", "%", "%")
+    assert "take the Monte Carlo" in chances.note
+    ends = [100 * end for end in of_chain.interval["gap"]]
+    gap = pytest.approx(100 * (2 * norm.cdf(0.2 / 0.13) - 1))
+    expected = ["gap", pytest.approx(85), pytest.approx(100 * of_chain.probability["gap"]), *ends, gap, gap]
+    assert chances.rows[0] == expected
+    name, unit, mean, spread, first, smallest, largest = scatter.rows[0]
     assert (name, unit) == ("gap", "mm")
     assert abs(mean) < 4 * 0.13 / sqrt(of_chain.draws)
     assert (spread, first) == (pytest.approx(0.13, rel=0.01), pytest.approx(0.13, rel=1e-9))
     assert 3.5 * 0.13 < -smallest < 6 * 0.13
     assert 3.5 * 0.13 < largest < 6 * 0.13
-    assert "differences from the result without scatter" in table.note
+    assert "differences from the result without scatter" in scatter.note
 
 
-def test_a_goal_within_the_sampling_error_is_said():
-    model = replace(CHAIN, objectives=[Require("gap", within="0.2 mm", reliability=0.876)])
-    warnings = odds_of(setup_of(model), Reliability(draws=1000)).warnings()
-    assert any("within the sampling error" in text for text in warnings)
-
-
-def test_several_limits_on_one_result_have_names_of_their_own():
-    limits = [Require("gap", at_most="10.2 mm", reliability=0.5), Require("gap", at_least="9.9 mm", reliability=0.5)]
-    odds = odds_of(setup_of(replace(CHAIN, objectives=limits)))
-    assert odds.analytic == pytest.approx(
-        {"gap at most": norm.cdf(0.2 / 0.13), "gap at least": norm.cdf(0.1 / 0.13)}, rel=1e-9
-    )
-
-
-def test_without_sampling_the_chance_is_first_order():
+def test_checks_compare_the_chance_with_the_goal_and_say_how_it_was_found(of_chain):
+    check = next(check for check in of_chain.checks() if check.name == "gap")
+    assert (check.value, check.limit, check.passed) == (of_chain.probability["gap"], 0.85, True)
+    assert check.margin == pytest.approx((check.value - 0.85) / 0.85)
+    assert check.method == "Monte Carlo, 40000 machines"
     odds = odds_of(setup_of(CHAIN), Reliability(method=("first_order",)))
+    assert odds.checks()[0].method == "first order"
     assert odds.probability == odds.analytic
-    assert odds.draws == 0
     entry = odds.as_json()["gap"]
-    assert entry["method"] == "first_order"
-    assert entry["interval95"] is None
+    assert (entry["method"], entry["interval95"], entry["draws"]) == ("first_order", None, 0)
     assert [block.title for block in odds.blocks()] == ["Probability"]
 
 
-def test_nothing_required_is_said():
-    with pytest.raises(UsageError, match="requires nothing"):
-        odds_of(setup_of(replace(CHAIN, objectives=[])))
+FEW = "draws = 19 cannot show a reliability of 0.95 of 'total'; ask for 20 or more"
+
+
+@pytest.mark.parametrize(
+    ("goal", "limit", "draws", "sentence", "said"),
+    [
+        (0.95, "5", 19, FEW, True),  # a reliability of 0.95 allows one miss in 1 / (1 - 0.95) = 20 machines
+        (0.95, "5", 20, "cannot show", False),
+        ("y", "100", 50, "no number of draws shows a reliability of 1 of 'total'", True),
+        (norm.cdf(1.0), "3", 1000, "lies within the sampling error", True),
+        (0.5, "3", 1000, "lies within the sampling error", False),
+    ],
+)
+def test_too_few_draws_are_a_warning(goal, limit, draws, sentence, said):
+    model = replace(STRENGTH, objectives=[Require("total", at_most=limit, reliability=goal)])
+    warnings = odds_of(setup_of(model, y="1"), Reliability(draws=draws)).warnings()
+    assert any(sentence in text for text in warnings) is said
 
 
 @pytest.mark.parametrize(
@@ -413,32 +370,17 @@ def test_nothing_required_is_said():
         ({"batch": 0}, "at least 1"),
         ({"method": ("bootstrap",)}, "not bootstrap"),
         ({"method": ()}, "not nothing"),
+        ({"method": ("first_order", "form")}, "only beside a sampling"),
         ({"points": 1}, "2 to 1000"),
+        ({"over": "first"}, "over and at go together"),
+        ({"at": "1..2 mm"}, "over and at go together"),
     ],
 )
 def test_options_are_checked(options, sentence):
     with pytest.raises(UsageError, match=sentence):
-        Reliability(**options)
-
-
-@pytest.mark.parametrize("options", [{"over": "first"}, {"at": "1..2 mm"}])
-def test_a_curve_needs_input_and_range(options):
-    with pytest.raises(UsageError, match="over and at go together"):
         odds_of(setup_of(CHAIN), Reliability(**options))
 
 
-@pytest.mark.parametrize(("draws", "warned"), [(19, True), (20, False), (1000, False)])
-def test_fewer_draws_than_one_miss_may_be_among_are_a_warning(draws, warned):
-    """A reliability of 0.95 allows one miss in 1 / (1 - 0.95) = 20 machines."""
-    model = replace(STRENGTH, objectives=[Require("total", at_most="5", reliability=0.95)])
-    words = odds_of(setup_of(model), Reliability(draws=draws)).warnings()
-    said = "study 'reliability': draws = 19 cannot show a reliability of 0.95 of 'total'; ask for 20 or more"
-    assert any(text.startswith(said) for text in words) is warned
-
-
-def test_a_reliability_of_one_cannot_be_shown():
-    """It may come from an input; how many machines were drawn is said."""
-    model = replace(STRENGTH, objectives=[Require("total", at_most="100", reliability="y")])
-    odds = odds_of(setup_of(model, y="1"), Reliability(draws=50))
-    assert odds.checks()[0].passed
-    assert "no number of draws shows a reliability of 1 of 'total'" in " ".join(odds.warnings())
+def test_nothing_required_is_said():
+    with pytest.raises(UsageError, match="requires nothing"):
+        odds_of(setup_of(replace(CHAIN, objectives=[])))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from math import exp, inf
 from typing import Any, Literal
 
@@ -744,6 +744,7 @@ def _plan(
     return AllocationPlan(chosen, problem.cost(chosen), problem.chances(chosen), reached, status, residual)
 
 
+@lru_cache(maxsize=1024)
 def largest_variance(demand: Demand, mean: float) -> float | None:
     """Return the variance up to which a demand's goal is met; None where no variance, however small, meets it.
 

@@ -75,6 +75,7 @@ from truing.studies.sampling import (
     Scatter,
     ScatterSource,
     Tally,
+    gather,
     generator,
     sample,
     scatter_of,
@@ -739,9 +740,9 @@ def worth_it(front: Matrix) -> NDArray[np.bool_]:
     by more than ``DEAR`` in anything, is no trade: the ends of a front would hang on to such designs for ever.
     """
     span = np.ptp(front, axis=0)
-    scaled = front / np.where(span > 0, span, 1.0)
-    apart: Matrix = scaled[:, None, :] - scaled[None, :, :]  # how much worse the first is than the second
-    beaten = (apart.min(axis=2) > -TRIFLE) & (apart.max(axis=2) > DEAR)
+    scaled = (front / np.where(span > 0, span, 1.0)).T
+    apart: Matrix = scaled[:, :, None] - scaled[:, None, :]  # how much worse the first is than the second
+    beaten = (apart.min(axis=0) > -TRIFLE) & (apart.max(axis=0) > DEAR)
     return np.asarray(~beaten.any(axis=1))
 
 
@@ -1032,6 +1033,7 @@ class Designs:
     columns: Mapping[str, Any]
     results: Mapping[str, Matrix]
     values: Mapping[str, Any]
+    scatter: Scatter
     spreads: Spreads
     limits: tuple[Limit, ...]
 
@@ -1042,6 +1044,23 @@ class Designs:
     def nominal(self, column: str) -> Any:
         """Return the nominal values (m,) of a column."""
         return self.columns[column] if column in self.columns else np.full(self.rows, nominal_of(self.setup, column))
+
+    def each(self, values: Any) -> Matrix:
+        """Return numbers (m,) of what is a number or (m, 1)."""
+        return np.broadcast_to(np.ravel(values), (self.rows,))
+
+    @cached_property
+    def causes(self) -> tuple[ScatterSource, ...]:
+        """What scatters, with nominal values and distributions (m, 1) where they are those of a tolerance."""
+        causes = []
+        for cause in self.scatter.causes:
+            if own := self.spreads.get(cause.name):
+                nominals = tuple(self.nominal(column)[:, None] for column in cause.columns)
+                spreads = [own[column] for column in cause.columns]
+                deep = tuple(replace(one, mean=one.mean[:, None], sd=one.sd[:, None]) for one in spreads)
+                cause = replace(cause, nominals=nominals, distributions=deep)
+            causes.append(cause)
+        return tuple(causes)
 
     @property
     def by_chance(self) -> list[Demand]:
@@ -1062,7 +1081,7 @@ def _world(problem: Problem, designs: Matrix, *, as_stated: bool) -> Designs:
         values[TOTAL_PRICE] = total_prices(setup, spreads, count)
     centres = {**values, **_own_results(problem, columns, count)}
     limits = tuple(limit_of(bound.name, bound.require, setup, values, centres) for bound in problem.bounds)
-    return Designs(setup, count, columns, results, values, spreads, limits)
+    return Designs(setup, count, columns, results, values, problem.scatter, spreads, limits)
 
 
 def _own_results(problem: Problem, columns: Mapping[str, Any], count: int) -> Mapping[str, Matrix]:
@@ -1525,26 +1544,22 @@ def total_prices(setup: Setup, spreads: Spreads, rows: int) -> Matrix:
 STEP = 0.1  # of a standard deviation, for central differences
 
 
-Cloud = Mapping[str, Matrix]
-"""By cause of scatter standard normal values (k, n), or deviations where a function draws them."""
+Cloud = Mapping[str, Any]
+"""By cause of scatter standard normal values (k, n), or deviations (n,) by column where a function draws them."""
 
 
 def cloud_of(scatter: Scatter, seed: int, study: Optimise) -> Cloud:
     """Draw the machines once, for all designs; other random numbers than those of any verification."""
     draws = study.draws
-    standard: dict[str, Matrix] = {}
+    cloud: dict[str, Any] = {}
     for cause in scatter.causes:
         rng = generator(seed, 0, f"{study.name}: {cause.name}")
         if cause.function is not None:
-            deviations = cause.function(rng, draws)
-            standard[cause.name] = np.array([np.asarray(deviations[column], dtype=float) for column in cause.columns])
+            cloud[cause.name] = cause.function(rng, draws)
         else:
-            standard[cause.name] = np.array([_stratified(rng, draws) for _ in cause.columns])
-    return standard
-
-
-def _stratified(rng: np.random.Generator, draws: int) -> Matrix:
-    return np.asarray(ndtri((rng.permutation(draws) + rng.random(draws)) / draws))
+            strata = [(rng.permutation(draws) + rng.random(draws)) / draws for _ in cause.columns]
+            cloud[cause.name] = ndtri(np.array(strata))
+    return cloud
 
 
 def by_draws(problem: Problem, designs: Designs) -> Matrix:
@@ -1580,76 +1595,52 @@ def _machines(problem: Problem, designs: Designs) -> dict[str, Any]:
     assert problem.cloud is not None  # else it is done to first order
     shape = (designs.rows, problem.study.draws)
     columns: dict[str, Any] = {}
-    for cause in problem.scatter.causes:
-        for column, values in _of_cause(cause, problem.cloud[cause.name], designs):
-            if column in columns:
-                values = columns[column] + (values - designs.nominal(column)[:, None])
-            columns[column] = np.broadcast_to(values, shape)
-    for column, nominal in designs.columns.items():
-        if column not in columns:
-            columns[column] = np.broadcast_to(nominal[:, None], shape)
-    return columns
-
-
-def _of_cause(cause: ScatterSource, standard: Matrix, designs: Designs) -> list[tuple[str, Any]]:
-    if cause.function is not None:
-        return [(name, designs.nominal(name)[:, None] + standard[i]) for i, name in enumerate(cause.columns)]
-    if cause.mixing is not None or cause.name not in designs.spreads:
-        return [(column, values[None, :]) for column, _, values in cause.from_standard(standard)]
-    own = designs.spreads[cause.name]
-    drawn = np.broadcast_to(standard[:, None, :], (len(standard), designs.rows, standard.shape[1]))
-    return [
-        (column, replace(own[column], mean=own[column].mean[:, None], sd=own[column].sd[:, None]).from_standard(values))
-        for column, values in zip(cause.columns, drawn, strict=True)
-    ]
+    for cause in designs.causes:
+        drawn = problem.cloud[cause.name]
+        if cause.function is not None:
+            gather(columns, cause.deviating(drawn))
+        elif cause.name in designs.spreads:
+            gather(columns, cause.from_standard(np.broadcast_to(drawn[:, None], (len(drawn), *shape))))
+        else:
+            gather(columns, cause.from_standard(drawn))
+    still = {name: nominal[:, None] for name, nominal in designs.columns.items() if name not in columns}
+    return {name: np.broadcast_to(values, shape) for name, values in {**columns, **still}.items()}
 
 
 def by_first_order(problem: Problem, designs: Designs) -> Matrix:
     """Return the normal probability (m, limits) of the model made straight at every design; 0 where there is none."""
     wanted = designs.by_chance
-    steps, variances, shifts = _moments(problem.scatter, designs)
+    squares: dict[str, Any] = {}
+    shifts: dict[str, Any] = {}
+    for cause in designs.causes:
+        for column, nominal, distribution in zip(cause.columns, cause.nominals, cause.distributions, strict=True):
+            squares[column] = squares.get(column, 0.0) + designs.each(distribution.sd) ** 2
+            shifts[column] = shifts.get(column, 0.0) + designs.each(distribution.mean - nominal)
+    steps = {column: STEP * np.sqrt(square) for column, square in squares.items()}
     values = _beside_the_designs(problem, designs, steps, results_needed(designs.setup, wanted))
     chances = []
     for demand in wanted:
         mean, slopes = _line(demand.response(values, values), steps)
-        variance = variances(slopes)
+        sd = np.sqrt(np.maximum(_variance(designs, slopes), 0.0))
         for column, shift in shifts.items():
-            mean = mean + slopes[column] * beside(shift, slopes[column])
-        sd = np.sqrt(np.maximum(variance, 0.0))
+            if np.any(shift != 0):
+                mean = mean + slopes[column] * beside(shift, slopes[column])
         chance = _worst(np.asarray(normal_chance(mean, sd, beside(demand.low, mean), beside(demand.high, mean))))
         chances.append(np.where(np.isfinite(chance), chance, 0.0))
     return np.column_stack(chances)
 
 
-def _moments(scatter: Scatter, designs: Designs) -> tuple[dict[str, Any], Any, dict[str, Any]]:
-    """Return by column the step (m,), then how variances follow from slopes, and how far means lie from nominals."""
-    squares: dict[str, Any] = {}
-    shifts: dict[str, Any] = {}
-    for cause in scatter.causes:
-        own = designs.spreads.get(cause.name) if cause.mixing is None else None
-        for index, column in enumerate(cause.columns):
-            stated = cause.distributions[index]
-            sd = np.full(designs.rows, stated.sd) if own is None else own[column].sd
-            shift = stated.mean - cause.nominals[index] if own is None else own[column].mean - designs.nominal(column)
-            squares[column] = squares.get(column, 0.0) + sd**2
-            shifts[column] = shifts.get(column, 0.0) + shift * np.ones(designs.rows)
-    steps = {column: STEP * np.sqrt(square) for column, square in squares.items()}
-
-    def variances(slopes: Mapping[str, Any]) -> Any:
-        total: Any = 0.0
-        for cause in scatter.causes:
-            own = designs.spreads.get(cause.name) if cause.mixing is None else None
-            if own is not None:
-                for column in cause.columns:
-                    total = total + (slopes[column] * beside(own[column].sd, slopes[column])) ** 2
-                continue
-            matrix = cause.covariance()
-            for i, one in enumerate(cause.columns):
-                for j, other in enumerate(cause.columns):
-                    total = total + slopes[one] * slopes[other] * matrix[i, j]
-        return total
-
-    return steps, variances, {column: shift for column, shift in shifts.items() if np.any(shift != 0)}
+def _variance(designs: Designs, slopes: Mapping[str, Any]) -> Any:
+    """Return the first-order variance of a response of every design from its slopes (m, ...) by column."""
+    variance: Any = 0.0
+    for cause in designs.causes:
+        gradient = [slopes[column] for column in cause.columns]
+        if cause.mixing is not None:
+            variance = variance + (gradient * np.tensordot(cause.covariance(), gradient, axes=1)).sum(axis=0)
+            continue
+        for slope, distribution in zip(gradient, cause.distributions, strict=True):
+            variance = variance + (slope * beside(designs.each(distribution.sd), slope)) ** 2
+    return variance
 
 
 def _beside_the_designs(

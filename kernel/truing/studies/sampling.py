@@ -211,7 +211,7 @@ class ScatterSource:
 
     name: str
     columns: tuple[str, ...]
-    nominals: tuple[float, ...]
+    nominals: tuple[Any, ...]
     distributions: tuple[Distribution, ...]
     mixing: Matrix | None = None
     function: Callable[[Any, int], Mapping[str, Any]] | None = None
@@ -219,15 +219,18 @@ class ScatterSource:
     def draw(self, rng: np.random.Generator, rows: int) -> Iterator[tuple[str, float, Matrix]]:
         """Yield column, nominal value and ``rows`` values, in the order of the columns."""
         if self.function is not None:
-            deviations = self.function(rng, rows)
-            for column, nominal in zip(self.columns, self.nominals, strict=True):
-                yield column, nominal, nominal + deviations[column]
+            yield from self.deviating(self.function(rng, rows))
             return
         if self.mixing is not None:
             yield from self.from_standard(rng.standard_normal((len(self.columns), rows)))
             return
         for column, nominal, distribution in zip(self.columns, self.nominals, self.distributions, strict=True):
             yield column, nominal, distribution.draw(rng, rows)
+
+    def deviating(self, deviations: Mapping[str, Any]) -> Iterator[tuple[str, float, Matrix]]:
+        """Yield column, nominal value, and values that deviate from it so."""
+        for column, nominal in zip(self.columns, self.nominals, strict=True):
+            yield column, nominal, nominal + np.asarray(deviations[column], dtype=float)
 
     def from_standard(self, standard: Matrix) -> Iterator[tuple[str, float, Matrix]]:
         """Map independent standard normal values (k, n) to the columns."""
@@ -264,7 +267,7 @@ class Scatter:
         """Draw the machines of one batch: SI values (rows,) by column."""
         columns: dict[str, Matrix] = {}
         for cause in self.causes:
-            _gather(columns, cause.draw(generator(seed, batch, cause.name), rows))
+            gather(columns, cause.draw(generator(seed, batch, cause.name), rows))
         return columns
 
     def from_standard(self, standard: Matrix) -> dict[str, Matrix]:
@@ -273,7 +276,7 @@ class Scatter:
         start = 0
         for cause in self.causes:
             end = start + len(cause.columns)
-            _gather(columns, cause.from_standard(standard[start:end]))
+            gather(columns, cause.from_standard(standard[start:end]))
             start = end
         return columns
 
@@ -306,7 +309,7 @@ class Scatter:
         return math.sqrt(variance)
 
 
-def _gather(columns: dict[str, Matrix], drawn: Iterator[tuple[str, float, Matrix]]) -> None:
+def gather(columns: dict[str, Matrix], drawn: Iterator[tuple[str, float, Matrix]]) -> None:
     """Put what was drawn into the batch; two tolerances on one input add their deviations."""
     for column, nominal, values in drawn:
         columns[column] = columns[column] + (values - nominal) if column in columns else values

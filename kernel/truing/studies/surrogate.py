@@ -92,8 +92,8 @@ class Surrogate:
         learnt, judge = (
             self._ran(bench, box, names, stage=stage, done=done) for stage, done in enumerate((sampling, judging))
         )
-        emulators, seconds = self._learnt(setup, box, learnt, learning)
-        stand_in = StandIn(box, emulators)
+        processes, seconds = self._learnt(setup, box, learnt, learning)
+        stand_in = StandIn(box, processes, self.log_result)
         units = {part.name: setup.print_unit(part.name) if part.is_plain else part.unit for part in box.features}
         return Emulated(
             name=self.name,
@@ -119,7 +119,7 @@ class Surrogate:
 
     def _learnt(
         self, setup: Setup, box: Box, learnt: DesignedSample, done: StepProgress
-    ) -> tuple[dict[str, Emulator], float]:
+    ) -> tuple[dict[str, Any], float]:
         """Fit every result; the clock does not count the import of scikit-learn."""
         kept = learnt.kept
         if kept.sum() < 2 * (len(box.features) + 1):
@@ -135,8 +135,8 @@ class Surrogate:
         def heard() -> None:
             done(next(fits), len(results) * (self.restarts + 1))
 
-        emulators = {name: fitted(places, values[kept], self, setup.seed, heard) for name, values in results.items()}
-        return emulators, perf_counter() - start
+        processes = {name: fitted(places, values[kept], self, setup.seed, heard) for name, values in results.items()}
+        return processes, perf_counter() - start
 
     def _judged(self, stand_in: StandIn, judge: DesignedSample) -> dict[str, HeldOutComparison]:
         """Compare the surrogate with the model at points it never saw."""
@@ -175,7 +175,7 @@ def _course(setup: Setup, stand_in: StandIn, along: str) -> Course | None:
     if feature.logarithmic:
         axis = np.linspace(feature.low, feature.high, FINE)
     coarse = axis[::COARSE]
-    rows = evaluate_rows(setup, {along: coarse}, len(coarse), wanted=tuple(stand_in.emulators))
+    rows = evaluate_rows(setup, {along: coarse}, len(coarse), wanted=tuple(stand_in.processes))
     return Course(along, axis, coarse, rows.results, stand_in.bands({along: axis}))
 
 
@@ -323,15 +323,15 @@ def _box(emulated: Emulated) -> dict[str, Any]:
 
 def _result(emulated: Emulated, name: str) -> dict[str, Any]:
     unit = emulated.units[name]
-    emulator = emulated.stand_in.emulators[name]
-    features = [feature.name for feature in emulated.stand_in.box.features]
-    mean, low, high = (float(values[0]) for values in emulated.stand_in.bands({})[name])
+    stand_in = emulated.stand_in
+    features = [feature.name for feature in stand_in.box.features]
+    mean, low, high = (float(values[0]) for values in stand_in.bands({})[name])
     entry: dict[str, Any] = {"unit": unit}
     if name in emulated.judged:
         entry |= _accuracy(emulated.judged[name], unit)
     return entry | {
-        "lengths": dict(zip(features, emulator.lengths, strict=True)),
-        "noise": emulator.noise,
+        "lengths": dict(zip(features, stand_in.lengths(name), strict=True)),
+        "noise": stand_in.noise(name),
         "at_inputs": {
             "predicted": printed(mean, unit),
             "band95": [printed(low, unit), printed(high, unit)],
@@ -417,15 +417,15 @@ def _speed_table(emulated: Emulated, speed: Speed) -> Table:
 
 def _box_table(emulated: Emulated) -> Table:
     rows: list[list[Any]] = []
-    emulators = emulated.stand_in.emulators
-    for index, feature in enumerate(emulated.stand_in.box.features):
+    stand_in = emulated.stand_in
+    for index, feature in enumerate(stand_in.box.features):
         unit = emulated.units[feature.name]
         scale = "logarithmic" if feature.logarithmic else "even"
-        lengths = [emulator.lengths[index] for emulator in emulators.values()]
+        lengths = [stand_in.lengths(name)[index] for name in emulated.of]
         rows.append(
             [feature.name, printed(feature.low, unit), printed(feature.high, unit), unit_text(unit), scale, *lengths]
         )
-    columns = ("direction", "from", "to", "unit", "scale", *(f"length of {spoken(name)}" for name in emulators))
+    columns = ("direction", "from", "to", "unit", "scale", *(f"length of {spoken(name)}" for name in emulated.of))
     note = "Lengths over the side of the box: over a short one the result turns, over a long one it is straight."
     return Table("Box of the surrogate", columns, rows, (), note)
 
@@ -436,37 +436,26 @@ def _agreement(emulated: Emulated, names: Sequence[str]) -> Figure:
     panels = figure.subplots(len(names), 2, squeeze=False)
     for pair, name in zip(panels, names, strict=True):
         judged, unit = emulated.judged[name], emulated.units[name]
-        _draw_values(pair[0], judged, unit)
-        _draw_errors(pair[1], judged, unit)
+        model, mean = from_si(judged.simulated, unit), from_si(judged.predicted, unit)
+        ends = [float(model.min()), float(model.max())]
+        pair[0].plot(model, mean, "o", color=BLUE, markersize=3, label="surrogate")
+        pair[0].plot(ends, ends, color=ORANGE, linewidth=0.9, label="model")
+        pair[0].set_ylabel(labelled("by the surrogate", unit_text(unit)))
+        pair[0].legend(frameon=False)
+        # errors in percent of the value, or of the range of all values
+        of_band = (judged.predicted, judged.low, judged.high)
+        off, low, high = (100 * (values - judged.simulated) / judged.whole for values in of_band)
+        bars = np.abs([off - low, high - off])
+        pair[1].errorbar(model, off, yerr=bars, fmt="o", color=BLUE, ecolor=GREY, markersize=3, elinewidth=0.8)
+        pair[1].axhline(0.0, color=ORANGE, linewidth=0.9)
+        pair[1].set_ylabel("off by, %")
         for panel in pair:
-            if judged.is_share:
-                panel.set_xscale("log")
             panel.set_xlabel(labelled(f"{name} by the model", unit_text(unit)))
             panel.grid(alpha=0.3)
-        pair[0].legend(frameon=False)
+        if judged.is_share:
+            for scale in (pair[0].set_xscale, pair[0].set_yscale, pair[1].set_xscale):
+                scale("log")
     return figure
-
-
-def _draw_values(panel: Any, judged: HeldOutComparison, unit: str) -> None:
-    model, mean = from_si(judged.simulated, unit), from_si(judged.predicted, unit)
-    panel.plot(model, mean, "o", color=BLUE, markersize=3, label="surrogate")
-    ends = [float(model.min()), float(model.max())]
-    panel.plot(ends, ends, color=ORANGE, linewidth=0.9, label="model")
-    panel.set_ylabel(labelled("by the surrogate", unit_text(unit)))
-    if judged.is_share:
-        panel.set_yscale("log")
-
-
-def _draw_errors(panel: Any, judged: HeldOutComparison, unit: str) -> None:
-    """Draw errors in percent of the value, or of the range of all values."""
-    ends = (judged.predicted, judged.low, judged.high)
-    off, low, high = (100 * (values - judged.simulated) / judged.whole for values in ends)
-    bars = np.abs([off - low, high - off])
-    panel.errorbar(
-        from_si(judged.simulated, unit), off, yerr=bars, fmt="o", color=BLUE, ecolor=GREY, markersize=3, elinewidth=0.8
-    )
-    panel.axhline(0.0, color=ORANGE, linewidth=0.9)
-    panel.set_ylabel("off by, %")
 
 
 def _along(emulated: Emulated, course: Course) -> Figure:
@@ -578,7 +567,7 @@ def clocked(
     for part, _ in _parts(columns, points, batch):
         stand_in.predict(part)
     predictions = perf_counter() - start
-    spent, run, wanted = 0.0, 0, tuple(stand_in.emulators)
+    spent, run, wanted = 0.0, 0, tuple(stand_in.processes)
     for part, rows in _parts(columns, points, batch):
         spent += run_points(setup, wanted, (part, rows))[1]
         run += rows
@@ -598,49 +587,8 @@ JITTER = 1e-12
 ROWS = 2**13
 
 
-@dataclass(frozen=True, eq=False)
-class Emulator:
-    """What was learnt of one result: a fitted process over places (n, d) between 0 and 1, of the result's logarithm."""
-
-    process: Any
-    logarithmic: bool
-
-    def mean(self, places: Matrix) -> Matrix:
-        """Return the expected result (SI), of a logarithm its median; NaN where a place is NaN."""
-        return self._result(_in_parts(lambda part: self.process.predict(part)[None], places)[0])
-
-    def band(self, places: Matrix) -> tuple[Matrix, Matrix, Matrix]:
-        """Return the expected result and the two ends of its 95 % band, noise included."""
-        mean, sd = _in_parts(lambda part: np.array(self.process.predict(part, return_std=True)), places, 2)
-        return self._result(mean), self._result(mean - Z95 * sd), self._result(mean + Z95 * sd)
-
-    def _result(self, values: Matrix) -> Matrix:
-        return np.exp(values) if self.logarithmic else values
-
-    @property
-    def lengths(self) -> tuple[float, ...]:
-        """The length of every direction over the side of the box."""
-        return tuple(float(one) for one in np.atleast_1d(self.process.kernel_.k1.k2.length_scale))
-
-    @property
-    def noise(self) -> float:
-        """The standard deviation of the noise over that of the results learnt."""
-        return math.sqrt(self.process.kernel_.k2.noise_level)
-
-
-def _in_parts(predict: Any, places: Matrix, answers: int = 1) -> Matrix:
-    """Predict a part at a time, so that memory stays flat; rows that are not finite stay NaN."""
-    predictions = np.full((answers, len(places)), np.nan)
-    usable = np.flatnonzero(np.isfinite(places).all(axis=1))
-    with one_thread():
-        for start in range(0, len(usable), ROWS):
-            rows = usable[start : start + ROWS]
-            predictions[:, rows] = predict(places[rows])
-    return predictions
-
-
-def fitted(places: Matrix, values: Matrix, study: Surrogate, seed: int, done: Callable[[], None]) -> Emulator:
-    """Learn a result (n,) at places (n, d): the lengths, amplitude and noise that make the sample most likely.
+def fitted(places: Matrix, values: Matrix, study: Surrogate, seed: int, done: Callable[[], None]) -> Any:
+    """Learn a result (n,) at places (n, d): a process with the lengths, amplitude and noise of greatest likelihood.
 
     ``done`` hears of every search for them that ends: the first, and each of the restarts.
     """
@@ -660,7 +608,7 @@ def fitted(places: Matrix, values: Matrix, study: Surrogate, seed: int, done: Ca
         warnings.simplefilter("ignore", learning_exceptions.ConvergenceWarning)
         process.fit(places, np.log(values) if study.log_result else values)
     process.set_params(optimizer=None)  # it is fitted, and travels to workers
-    return Emulator(process, study.log_result)
+    return process
 
 
 # The box of a surrogate: over what it was made, how it is sampled, and what lies outside
@@ -849,20 +797,48 @@ def _unit_of(setup: Setup, formula: Formula, text: str, study: str) -> str:
 
 @dataclass(frozen=True, eq=False)
 class StandIn:
-    """The box and what was learnt in it, by result. Columns are numbers or arrays (n,) in SI, by input."""
+    """The box and what was learnt in it: by result a fitted process over places (n, d) between 0 and 1.
+
+    If ``logarithmic`` it knows logarithms of results. Columns are numbers or arrays (n,) in SI, by input.
+    """
 
     box: Box
-    emulators: Mapping[str, Emulator]
+    processes: Mapping[str, Any]
+    logarithmic: bool
 
     def predict(self, columns: Mapping[str, Any]) -> dict[str, Matrix]:
-        """Return the expected results (n,), SI."""
-        places = self.box.places(columns)
-        return {name: emulator.mean(places) for name, emulator in self.emulators.items()}
+        """Return the expected results (n,), SI, of a logarithm the median; NaN where a place is NaN."""
+        return {name: self._result(mean) for name, (mean,) in self._asked(columns, with_sd=False).items()}
 
     def bands(self, columns: Mapping[str, Any]) -> dict[str, tuple[Matrix, Matrix, Matrix]]:
-        """Return the expected results (n,) and both ends of their 95 % bands, SI."""
+        """Return the expected results (n,) and both ends of their 95 % bands, noise included, SI."""
+        return {
+            name: (self._result(mean), self._result(mean - Z95 * sd), self._result(mean + Z95 * sd))
+            for name, (mean, sd) in self._asked(columns, with_sd=True).items()
+        }
+
+    def _asked(self, columns: Mapping[str, Any], *, with_sd: bool) -> dict[str, Matrix]:
+        """Ask a part at a time, so that memory stays flat, for means (1, n), or means and deviations (2, n)."""
         places = self.box.places(columns)
-        return {name: emulator.band(places) for name, emulator in self.emulators.items()}
+        answers = {name: np.full((1 + with_sd, len(places)), np.nan) for name in self.processes}
+        usable = np.flatnonzero(np.isfinite(places).all(axis=1))
+        with one_thread():
+            for start in range(0, len(usable), ROWS):
+                rows = usable[start : start + ROWS]
+                for name, process in self.processes.items():
+                    answers[name][:, rows] = process.predict(places[rows], return_std=with_sd)
+        return answers
+
+    def _result(self, values: Matrix) -> Matrix:
+        return np.exp(values) if self.logarithmic else values
+
+    def lengths(self, name: str) -> tuple[float, ...]:
+        """Return the length of every direction over the side of the box, of a result."""
+        return tuple(float(length) for length in np.atleast_1d(self.processes[name].kernel_.k1.k2.length_scale))
+
+    def noise(self, name: str) -> float:
+        """Return the standard deviation of the noise over that of the results learnt."""
+        return math.sqrt(self.processes[name].kernel_.k2.noise_level)
 
 
 @dataclass(frozen=True, eq=False)
