@@ -80,9 +80,8 @@ def load_of(stage: Gearing) -> ToothLoad:
     efficiency = efficiency_of(stage, teeth.sun, teeth.planet, teeth.pins)
     speed = either(stage.input_speed, stage.output_speed * ratio)
     mesh_speed = either(stage.stated_mesh_speed, speed * (1.0 - 1.0 / ratio))
-    reduction = ratio * efficiency
-    asked = np.abs(either(stage.load_torque, torque_of(stage.power, speed) * reduction))
-    torque = either(stage.stated_sun_torque, asked / reduction)
+    asked = np.abs(either(stage.load_torque, torque_of(stage.power, speed) * (ratio * efficiency)))
+    torque = either(stage.stated_sun_torque, asked / (ratio * efficiency))
     cosine = np.cos(stage.helix_angle)
     half = 0.5 * stage.module / cosine
     radii = half * teeth.sun, half * teeth.planet

@@ -1636,7 +1636,7 @@ def _variance(designs: Designs, slopes: Mapping[str, Any]) -> Any:
     for cause in designs.causes:
         gradient = [slopes[column] for column in cause.columns]
         if cause.mixing is not None:
-            variance = variance + (gradient * np.tensordot(cause.covariance(), gradient, axes=1)).sum(axis=0)
+            variance = variance + np.sum(gradient * np.tensordot(cause.covariance(), gradient, axes=1), axis=0)
             continue
         for slope, distribution in zip(gradient, cause.distributions, strict=True):
             variance = variance + (slope * beside(designs.each(distribution.sd), slope)) ** 2
