@@ -11,7 +11,7 @@ from truing.calculation import Calculation, calculate
 from truing.declare.model import Study
 from truing.errors import Fault, InputError, UsageError
 from truing.evaluate import evaluate_rows
-from truing.executors import SerialExecutor, in_order, keepable, open_executor
+from truing.executors import in_order, keepable, open_executor, stays_here
 from truing.measurements import CasesFile, RowCount, StatedCase
 from truing.packed import Packed, pack, travels, unpack
 from truing.prices import price_answers
@@ -214,7 +214,7 @@ def _in_blocks(setup: Setup, cases: Sequence[StatedCase], executor: Executor, pr
     """Calculate cases in array calls of fixed length: a block is the same wherever it is calculated."""
     blocks = [cases[start : start + BLOCK] for start in range(0, len(cases), BLOCK)]
     results: Iterable[list[CaseResult]]
-    if len(blocks) == 1 or isinstance(executor, SerialExecutor) or not travels(setup):
+    if len(blocks) == 1 or stays_here(executor) or not travels(setup):
         results = (_block(setup, block) for block in blocks)
     else:
         packed = pack(setup)

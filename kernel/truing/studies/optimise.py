@@ -33,7 +33,7 @@ from truing.declare.spreads import (
 )
 from truing.errors import InfeasibleError, TruingError, UnitError, UsageError
 from truing.evaluate import acting_inputs, evaluate, evaluate_rows
-from truing.executors import SerialExecutor, in_order, keepable
+from truing.executors import in_order, keepable, stays_here
 from truing.fits import GRADES
 from truing.formulas import Formula, parse
 from truing.formulas import evaluate as evaluate_formula
@@ -1115,7 +1115,7 @@ def answered(problem: Problem, designs: Matrix, executor: Executor) -> Answers:
         rows = 1 + 2 * len(problem.scatter.columns)
     size = max(1, min(ROWS // rows, -(-len(designs) // problem.study.parts)))
     parts = [designs[start : start + size] for start in range(0, len(designs), size)]
-    if isinstance(executor, SerialExecutor) or problem.stand_in is not None:
+    if stays_here(executor) or problem.stand_in is not None:
         return joined([answers_of(problem, part) for part in parts])
     study = replace(problem.study, vary=tuple(problem.study.vary), gives=None)
     run = partial(run_job, pack(problem.setup), study, problem.known)
