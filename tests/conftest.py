@@ -4,6 +4,7 @@ import gc
 import os
 import sys
 from collections.abc import Iterator
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
@@ -13,7 +14,7 @@ from shared import GUESTS, ROOT, TESTS, copied_guest, made_once, process
 from truing.executors import WorkerPool, open_executor
 
 collect_ignore = ["third_party", "data"]
-sys.path += [str(TESTS / "data"), str(TESTS / "data" / "gear_record")]
+sys.path.append(str(TESTS / "data"))
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # the commands that tests run compile the kernel once, not each
 os.environ.setdefault("MYPY_CACHE_DIR", str(ROOT / ".mypy_cache"))  # one check of types reads what another has
 for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
@@ -55,6 +56,12 @@ def two_processes() -> Iterator[WorkerPool]:
     """Two worker processes, for all tests that end none of them: starting them takes seconds."""
     with open_executor("processes:2") as executor:
         yield executor
+
+
+@pytest.fixture
+def kit_shares_processes(two_processes: WorkerPool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let the kit compute in these processes what it wants computed elsewhere; strangers' own tests start theirs."""
+    monkeypatch.setattr("truing.testing.running.open_executor", lambda _: nullcontext(two_processes))
 
 
 @pytest.fixture(scope="session")

@@ -11,7 +11,7 @@ from truing.calculation import Calculation, calculate
 from truing.declare.model import Study
 from truing.errors import Fault, InputError, UsageError
 from truing.evaluate import evaluate_rows
-from truing.executors import in_order, keepable, open_executor, stays_here
+from truing.executors import in_order, keepable, open_executor
 from truing.measurements import CasesFile, RowCount, StatedCase
 from truing.packed import Packed, pack, travels, unpack
 from truing.prices import price_answers
@@ -141,8 +141,7 @@ def run_cases(
     can be calculated.
     """
     cases = _completed(setup, read.cases)
-    of_each = replace(setup, studies=_studies_of_each(setup))
-    done = (_one_by_one if of_each.studies else _in_blocks)(of_each, cases, executor, progress)
+    done = _calculated(replace(setup, studies=_studies_of_each(setup)), cases, executor, progress)
     while alive := [index for index, case in enumerate(done) if case.reason is None]:
         governing = min(alive, key=lambda index: done[index].margin)
         try:
@@ -171,35 +170,32 @@ def _studies_of_each(setup: Setup) -> tuple[Study, ...]:
     return tuple(setup.studies[:last])
 
 
-def _one_by_one(setup: Setup, cases: Sequence[StatedCase], executor: Executor, progress: Progress) -> list[CaseResult]:
-    """Run the studies of every case.
+def _calculated(setup: Setup, cases: Sequence[StatedCase], executor: Executor, progress: Progress) -> list[CaseResult]:
+    """Calculate blocks of cases, one by one where they have studies: a block is the same wherever it is calculated.
 
-    Where cases are many, each is a job of its own; where they are few, the batches of each are shared out.
+    Where blocks are many, each is a job of its own; where they are few, the batches of the studies are shared out.
     """
-    results: Iterable[CaseResult]
-    if len(cases) >= 2 * getattr(executor, "slots", 1) > 2 and travels(setup):
-        jobs = ((pack(case_setup(setup, case), studies=True), case) for case in cases)
-        results = in_order(executor, _packed_case, jobs)
+    size = 1 if setup.studies else BLOCK
+    blocks = [cases[start : start + size] for start in range(0, len(cases), size)]
+    results: Iterable[list[CaseResult]]
+    if len(blocks) >= 2 * getattr(executor, "slots", 1) > 2 and travels(setup):
+        packed = pack(setup, studies=True)
+        results = in_order(executor, _packed_block, ((packed, block) for block in blocks))
     else:
-        names = [study.name for study in setup.studies]
-        parts = (
-            within(progress, "cases", index / len(cases), (index + 1) / len(cases), names)
-            for index in range(len(cases))
-        )
-        results = (
-            _in_full(case_setup(setup, case), case, executor, part) for case, part in zip(cases, parts, strict=True)
-        )
-    done = []
+        names, count = [study.name for study in setup.studies], len(blocks)
+        parts = (within(progress, "cases", place / count, (place + 1) / count, names) for place in range(count))
+        results = (_block(setup, block, executor, part) for block, part in zip(blocks, parts, strict=True))
+    done: list[CaseResult] = []
     progress("cases", 0, FINE)
     for result in results:
-        done.append(result)
+        done += result
         progress("cases", round(FINE * len(done) / len(cases)), FINE)
     return done
 
 
-def _packed_case(job: tuple[Packed, StatedCase]) -> CaseResult:
+def _packed_block(job: tuple[Packed, Sequence[StatedCase]]) -> list[CaseResult]:
     with open_executor("serial") as alone:
-        return _in_full(unpack(job[0]), job[1], alone, silent)
+        return _block(unpack(job[0]), job[1], alone, silent)
 
 
 def _in_full(setup: Setup, case: StatedCase, executor: Executor, progress: Progress) -> CaseResult:
@@ -210,28 +206,10 @@ def _in_full(setup: Setup, case: StatedCase, executor: Executor, progress: Progr
     return CaseResult(case, calculation.answers, calculation.decided, absent=calculation.absent)
 
 
-def _in_blocks(setup: Setup, cases: Sequence[StatedCase], executor: Executor, progress: Progress) -> list[CaseResult]:
-    """Calculate cases in array calls of fixed length: a block is the same wherever it is calculated."""
-    blocks = [cases[start : start + BLOCK] for start in range(0, len(cases), BLOCK)]
-    results: Iterable[list[CaseResult]]
-    if len(blocks) == 1 or stays_here(executor) or not travels(setup):
-        results = (_block(setup, block) for block in blocks)
-    else:
-        packed = pack(setup)
-        results = in_order(executor, _packed_block, ((packed, block) for block in blocks))
-    done: list[CaseResult] = []
-    for result in results:
-        done += result
-        progress("cases", len(done), len(cases))
-    return done
-
-
-def _packed_block(job: tuple[Packed, Sequence[StatedCase]]) -> list[CaseResult]:
-    return _block(unpack(job[0]), job[1])
-
-
-def _block(setup: Setup, cases: Sequence[StatedCase]) -> list[CaseResult]:
-    """Calculate some cases in one array call, with what the tolerances cost in each, and its checks."""
+def _block(setup: Setup, cases: Sequence[StatedCase], executor: Executor, progress: Progress) -> list[CaseResult]:
+    """Calculate some cases, without studies in one array call, each with the cost of its tolerances and its checks."""
+    if setup.studies:
+        return [_in_full(case_setup(setup, case), case, executor, progress) for case in cases]
     columns = {name: [case.values[name] for case in cases] for name in cases[0].values}
     rows = evaluate_rows(setup, columns, len(cases))
     done = []

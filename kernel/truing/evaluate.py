@@ -106,13 +106,15 @@ def evaluate_rows(
     wanted: Collection[str] | None = None,
     done: Callable[[int, int], None] = lambda count, rows: None,
     repeats: int = 0,
+    size: int = 0,
 ) -> Rows:
     """Run ``rows`` calculations, as one array call wherever the declaration allows it.
 
     A column holds (rows,) values or one value for all. Only ``wanted`` results are returned (all by default). Failed
     rows are NaN in every result and keep their reason; a table shorter than the longest is filled up with NaN. A row
     that lacks a result keeps the others: see ``Rows.absent`` and ``Rows.complete``.
-    ``done`` hears of rows that are done where they take several calls. Rows that come in so many ``repeats``, one copy
+    ``done`` hears of rows that are done where they take several calls: one call has at most ``size`` rows, if that is
+    given. Rows that come in so many ``repeats``, one copy
     of all behind another, cost no more than one of them where they differ in what acts after the model: see repeated.
     Raises UsageError for a column that nobody knows or that has another length.
     """
@@ -121,7 +123,7 @@ def evaluate_rows(
     parts: list[Rows] = []
     order: list[NDArray[np.intp]] = []
     finished = 0
-    for index, part in _uniform_parts(case, fixed, arrays, rows):
+    for index, part in _uniform_parts(case, fixed, arrays, rows, size):
         copies = repeats if len(index) == rows else 0
         parts.append(_one_call(case, part, len(index), names, reading=reading, repeats=copies))
         if len(index) == rows > 0:
@@ -129,10 +131,10 @@ def evaluate_rows(
         order.append(index)
         finished += len(index)
         done(finished, rows)
-    return _put_together(parts, order, names, rows)
+    return put_together(parts, order, names, rows)
 
 
-def _put_together(parts: Sequence[Rows], order: Sequence[NDArray[np.intp]], names: Sequence[str], rows: int) -> Rows:
+def put_together(parts: Sequence[Rows], order: Sequence[NDArray[np.intp]], names: Sequence[str], rows: int) -> Rows:
     """Put the answers of parts back in the order of the rows."""
     failed = np.zeros(rows, dtype=bool)
     reasons: dict[int, str] = {}
@@ -144,32 +146,6 @@ def _put_together(parts: Sequence[Rows], order: Sequence[NDArray[np.intp]], name
             absent.setdefault(name, {}).update({int(index[row]): text for row, text in lacking.items()})
     results = {name: _joined([part.results[name] for part in parts], order, rows) for name in names}
     return Rows(results, failed, dict(sorted(reasons.items())), absent)
-
-
-def evaluate_in_parts(
-    case: Case,
-    columns: Mapping[str, Any],
-    rows: int,
-    *,
-    size: int,
-    wanted: Collection[str] | None = None,
-    done: Callable[[int, int], None] = lambda count, rows: None,
-) -> Rows:
-    """Run ``rows`` calculations as ``evaluate_rows`` does, ``size`` in one call; ``done`` hears of every call."""
-    if rows <= size:
-        return evaluate_rows(case, columns, rows, wanted=wanted, done=done)
-    parts: list[Rows] = []
-    for start in range(0, rows, size):
-        end = min(start + size, rows)
-        taken = {name: values[start:end] if _is_column(values, rows) else values for name, values in columns.items()}
-        parts.append(evaluate_rows(case, taken, end - start, wanted=wanted))
-        done(end, rows)
-    places = np.split(np.arange(rows), range(size, rows, size))
-    return _put_together(parts, places, list(parts[0].results), rows)
-
-
-def _is_column(values: Any, rows: int) -> bool:
-    return isinstance(values, list) or (getattr(values, "shape", ()) or (0,))[0] == rows
 
 
 def _joined(pieces: Sequence[NDArray[np.float64]], order: Sequence[NDArray[np.intp]], rows: int) -> NDArray[np.float64]:
@@ -253,7 +229,7 @@ def _sorted_columns(case: Case, columns: Mapping[str, Any], rows: int) -> tuple[
 
 
 def _uniform_parts(
-    case: Case, fixed: Mapping[str, Any], arrays: Mapping[str, Any], rows: int
+    case: Case, fixed: Mapping[str, Any], arrays: Mapping[str, Any], rows: int, size: int
 ) -> Iterator[tuple[NDArray[np.intp], dict[str, Any]]]:
     """Split a batch so that everything but Float inputs has one value; tables are made row by row, equal rows once."""
     per_row = {name: _each(values, case.model.input_fields[name].kind) for name, values in fixed.items()}
@@ -266,8 +242,9 @@ def _uniform_parts(
         isinstance(result.spec, Axis) and result.spec.is_table for result in case.model.own_result_fields.values()
     )
     vary = differing or any(isinstance(values, np.ndarray) for values in arrays.values())
-    groups = [np.array([row]) for row in range(rows)] if alone and vary else _groups(differing, rows)
-    for index in groups:
+    groups = [np.array([row]) for row in range(rows)] if alone and vary else rows_alike([*differing.values()], rows)
+    size = size or max(rows, 1)
+    for index in (piece for group in groups for piece in np.split(group, range(size, len(group), size))):
         part = {name: _taken(values, index, rows, alone=alone) for name, values in arrays.items()}
         yield index, {**common, **part, **{name: values[index[0]] for name, values in differing.items()}}
 
@@ -289,13 +266,13 @@ def _taken(values: Any, index: NDArray[Any], rows: int, *, alone: bool) -> Any:
     return values[index[0]] if alone else values[index]
 
 
-def _groups(differing: Mapping[str, list[Any]], rows: int) -> list[NDArray[Any]]:
-    """Return the row numbers that share the values of every differing column, in the order they first appear."""
-    if not differing:
+def rows_alike(columns: Sequence[Sequence[Any]], rows: int) -> list[NDArray[np.intp]]:
+    """Return the row numbers that share the values of every column, in the order they first appear; NaN equals none."""
+    if not columns:
         return [np.arange(rows)] if rows else []
     places: dict[tuple[Any, ...], list[int]] = {}
     for row in range(rows):
-        places.setdefault(tuple(_key(values[row]) for values in differing.values()), []).append(row)
+        places.setdefault(tuple(_key(values[row]) for values in columns), []).append(row)
     return [np.array(indices) for indices in places.values()]
 
 

@@ -53,31 +53,9 @@ def tolerance(grade: str, size: float) -> float:
     """
     column = _column(grade)
     row = _row(size)
-    if column >= _FIRST_GRADE_NOT_BELOW_1_MM and _up_to_1_mm(size):
+    if column >= _FIRST_GRADE_NOT_BELOW_1_MM and size * 1000 <= _SAME:
         raise UnitError(f"ISO 286-1 gives {GRADES[column]} only for sizes above 1 mm; this size is {_in_mm(size)}")
     return _WIDTHS_UM[row][column] / 1e6
-
-
-def tolerances(size: float) -> dict[str, float]:
-    """Give every grade that the standard has for a nominal size, finest first: {"IT1": width in metres, ...}.
-
-    Raises UnitError for a size outside 0 to 3150 mm. Up to 1 mm the list ends at IT13.
-    """
-    widths = _WIDTHS_UM[_row(size)]
-    count = _FIRST_GRADE_NOT_BELOW_1_MM if _up_to_1_mm(size) else len(GRADES)
-    return {grade: width / 1e6 for grade, width in zip(GRADES[:count], widths[:count], strict=True)}
-
-
-def finer(grade: str) -> str | None:
-    """Name the next finer grade; None for IT1. Raises UnitError for an unknown grade."""
-    column = _column(grade)
-    return GRADES[column - 1] if column else None
-
-
-def coarser(grade: str) -> str | None:
-    """Name the next coarser grade; None for IT18. Raises UnitError for an unknown grade."""
-    column = _column(grade)
-    return GRADES[column + 1] if column + 1 < len(GRADES) else None
 
 
 def _column(grade: str) -> int:
@@ -96,10 +74,6 @@ def _row(size: float) -> int:
     raise UnitError(
         f"ISO 286-1 gives tolerance grades for sizes above 0 and up to 3150 mm; this size is {_in_mm(size)}"
     )
-
-
-def _up_to_1_mm(size: float) -> bool:
-    return size * 1000 <= _SAME
 
 
 def _in_mm(size: float) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
@@ -12,11 +12,15 @@ from numpy.typing import NDArray
 
 from truing.declare.fields import Axis
 from truing.errors import UsageError
-from truing.evaluate import Rows, evaluate_rows
+from truing.evaluate import Rows, evaluate_rows, put_together, rows_alike
 from truing.measurements import RowsFile
 from truing.setup import Setup
 from truing.units import from_si
 
+Trial = Mapping[str, Any]
+"""What is changed where rows are read again and again: columns by name, in SI."""
+AT_ONCE = 65_536
+"""So many rows are one call of the model."""
 TOGETHER = 16
 """So many calculations that each answer for many rows are one call of the model: more no longer fit the cache."""
 
@@ -59,7 +63,7 @@ def _lacking(evaluated: Rows) -> dict[int, str]:
     return {row: "; ".join(f"no {', '.join(names)}: {why}" for why, names in of.items()) for row, of in said.items()}
 
 
-def read_by_gauge(machine: Setup, rows: RowsFile, wanted: Collection[str] | None = None, repeats: int = 0) -> Rows:
+def read_by_gauge(machine: Setup, rows: RowsFile, wanted: Collection[str] | None = None) -> Rows:
     """Evaluate every row: its columns replace inputs and conditions, readings act; one value (n,) per result, SI.
 
     A result along an axis is read at the row's place on it (linear between points, NaN beyond its ends); without such a
@@ -67,24 +71,20 @@ def read_by_gauge(machine: Setup, rows: RowsFile, wanted: Collection[str] | None
     inputs run along an axis, the rows of one run are one record and one evaluation; where results do, so are rows that
     are alike; else all rows are. Only ``wanted`` results are returned (all by default), and a row that lacks one of
     them fails. Conditions that no effect needs are not looked at. ``machine`` is taken as it is: see ``one_machine``.
-    ``repeats``: see ``evaluate_rows``.
     """
-    if answers_many(machine, rows, wanted):
-        (answer,) = read_each(machine, rows, [{}], wanted)
+    if _answers_many(machine, rows, wanted):
+        (answer,) = _read_each(machine, rows, [{}], wanted)
         return answer
-    names, columns = set(_readable(machine, rows, wanted)), seen_columns(machine, rows.columns)
-    machine = _at_places(machine, rows)
-    answer = evaluate_rows(machine, columns, len(rows), reading=True, wanted=names, repeats=repeats)
-    return answer if wanted is None else answer.complete()
+    return _row_by_row(machine, rows, [{}], wanted)
 
 
-def answers_many(machine: Setup, rows: RowsFile, wanted: Collection[str] | None = None) -> bool:
+def _answers_many(machine: Setup, rows: RowsFile, wanted: Collection[str] | None) -> bool:
     """Whether one calculation answers for many rows: for a record, along an axis, or where no column is looked at."""
     along = any(machine.model.axes[name] for name in _readable(machine, rows, wanted))
-    return bool(rows.series) or along or not seen_columns(machine, rows.columns)
+    return bool(rows.series) or along or not _seen_columns(machine, rows.columns)
 
 
-def seen_columns(machine: Setup, columns: Mapping[str, Any]) -> dict[str, Any]:
+def _seen_columns(machine: Setup, columns: Mapping[str, Any]) -> dict[str, Any]:
     """Return the columns that the model or an effect that is on looks at."""
     return {name: values for name, values in columns.items() if name in machine.columns_looked_at}
 
@@ -112,6 +112,24 @@ def without_place(evaluated: Rows, machine: Setup, rows: RowsFile) -> dict[int, 
     return reasons
 
 
+def _row_by_row(machine: Setup, rows: RowsFile, trials: Sequence[Trial], wanted: Collection[str] | None) -> Rows:
+    """Calculate every row in every trial, one trial behind another, in one call."""
+    names, count = set(_readable(machine, rows, wanted)), len(trials)
+    changed = (name for trial in trials for name in trial)
+    columns: dict[str, Any] = {}
+    for name in _seen_columns(machine, dict.fromkeys([*rows.columns, *changed])):
+        values: Any = rows.columns.get(name)
+        if isinstance(values, list):
+            columns[name] = values * count
+            continue
+        if values is None and not all(name in trial for trial in trials):
+            values = machine.nominal(name)
+        columns[name] = np.concatenate([np.broadcast_to(trial.get(name, values), len(rows)) for trial in trials])
+    machine = _at_places(machine, rows)
+    answer = evaluate_rows(machine, columns, count * len(rows), reading=True, wanted=names, repeats=count)
+    return answer if wanted is None else answer.complete()
+
+
 @dataclass(frozen=True)
 class _Alike:
     """Rows that one calculation answers for, the one value that each column has there, and the trial."""
@@ -121,44 +139,15 @@ class _Alike:
     trial: int
 
 
-@dataclass(frozen=True)
-class _Answer:
-    """What is known so far of the rows of one trial."""
-
-    values: dict[str, NDArray[np.float64]]
-    reasons: dict[int, str] = field(default_factory=dict)
-    absent: dict[str, dict[int, str]] = field(default_factory=dict)
-
-    def take(
-        self, computed: Rows, number: int, places: NDArray[np.intp], *, along: Mapping[str, str], rows: RowsFile
-    ) -> None:
-        """Take one calculation of several for the rows that it answers for, read at their places on the axes."""
-        for name, values in self.values.items():
-            value, axis = computed.results[name][number], along[name]
-            values[places] = _read_at(rows.axes[axis][places], computed.results[axis][number], value) if axis else value
-        if computed.failed[number]:
-            self.reasons.update(dict.fromkeys(places.tolist(), computed.reasons[number]))
-        for name, lacking in computed.absent.items():
-            if number in lacking:
-                self.absent.setdefault(name, {}).update(dict.fromkeys(places.tolist(), lacking[number]))
-
-    def rows(self, count: int) -> Rows:
-        """Return it as a batch answers."""
-        failed = np.zeros(count, dtype=bool)
-        failed[list(self.reasons)] = True
-        return Rows(self.values, failed, dict(sorted(self.reasons.items())), self.absent)
-
-
-def read_each(
-    machine: Setup, rows: RowsFile, trials: Sequence[Trial], wanted: Collection[str] | None = None
-) -> list[Rows]:
+def _read_each(machine: Setup, rows: RowsFile, trials: Sequence[Trial], wanted: Collection[str] | None) -> list[Rows]:
     """Return what ``read_by_gauge`` does, in several trials of the same rows where one calculation answers for many.
 
     A trial changes columns, to one value or to (n,). Calculations of several trials are one call of the model.
     """
     along = {name: machine.model.axes[name] for name in _readable(machine, rows, wanted)}
     asked, machine = {*along, *filter(None, along.values())}, _at_places(machine, rows)
-    answers = [_Answer({name: np.full(len(rows), np.nan) for name in along}) for _ in trials]
+    parts: list[list[Rows]] = [[] for _ in trials]
+    order: list[list[NDArray[np.intp]]] = [[] for _ in trials]
     for record in _records(rows):
         series = {name: column[record] for name, column in rows.series.items()}
         for several, repeats in _calls(record, machine, rows, trials):
@@ -166,9 +155,25 @@ def read_each(
             changed, size = columns | series, len(several)
             computed = evaluate_rows(machine, changed, size, reading=True, wanted=asked, repeats=repeats)
             for number, alike in enumerate(several):
-                answers[alike.trial].take(computed, number, alike.places, along=along, rows=rows)
-    done = [answer.rows(len(rows)) for answer in answers]
+                parts[alike.trial].append(_for_rows(computed, number, alike.places, along=along, rows=rows))
+                order[alike.trial].append(alike.places)
+    done = [put_together(*each, list(along), len(rows)) for each in zip(parts, order, strict=True)]
     return done if wanted is None else [answer.complete() for answer in done]
+
+
+def _for_rows(
+    computed: Rows, number: int, places: NDArray[np.intp], *, along: Mapping[str, str], rows: RowsFile
+) -> Rows:
+    """Return one calculation of several as the rows that it answers for, read at their places on the axes."""
+    results: dict[str, NDArray[np.float64]] = {}
+    for name, axis in along.items():
+        value = computed.results[name][number]
+        at_places = _read_at(rows.axes[axis][places], computed.results[axis][number], value) if axis else value
+        results[name] = np.broadcast_to(at_places, places.shape)
+    all_rows = range(len(places))
+    reasons = dict.fromkeys(all_rows, computed.reasons[number]) if computed.failed[number] else {}
+    lacking = {name: dict.fromkeys(all_rows, why[number]) for name, why in computed.absent.items() if number in why}
+    return Rows(results, np.broadcast_to(computed.failed[number], places.shape), reasons, lacking)
 
 
 def _calls(
@@ -199,34 +204,25 @@ def _records(rows: RowsFile) -> Sequence[NDArray[np.intp]]:
 
 
 @lru_cache(maxsize=8)
-def _places_by_run(runs: tuple[str, ...]) -> tuple[NDArray[np.intp], ...]:
+def _places_by_run(runs: tuple[str, ...]) -> list[NDArray[np.intp]]:
     """Return the places of the rows of each run; a fit asks for the same ones again and again."""
-    rows_by_run: dict[str, list[int]] = {}
-    for index, name in enumerate(runs):
-        rows_by_run.setdefault(name, []).append(index)
-    return tuple(np.array(places) for places in rows_by_run.values())
+    return rows_alike([runs], len(runs))
 
 
 def _alike(
     record: NDArray[np.intp], machine: Setup, given: Mapping[str, Any], rows: RowsFile
 ) -> Iterator[tuple[NDArray[np.intp], dict[str, Any]]]:
     """Give the rows of a record that share their values, and these. Raises UsageError for an input that changes."""
-    columns = seen_columns(machine, given)
+    columns = _seen_columns(machine, given)
     varying = [name for name, column in columns.items() if _varies(column, record)]
     for name in varying if rows.series else ():
         if name in machine.model.input_fields:
             column = columns[name]
             line = next(rows.lines[row] for row in record if column[row] != column[record[0]])
             raise UsageError(f"{rows.file}:{line}: {name} changes within a run, but a record is one calculation")
-    for places in _grouped(record, [columns[name] for name in varying]):
-        yield places, {name: _value_at(column, places[0]) for name, column in columns.items()}
-
-
-def _grouped(record: NDArray[np.intp], columns: Sequence[Any]) -> Iterator[NDArray[np.intp]]:
-    groups: dict[tuple[Any, ...], list[int]] = {}
-    for row in record.tolist() if columns else ():
-        groups.setdefault(tuple(column[row] for column in columns), []).append(row)
-    yield from (np.array(places) for places in groups.values()) if columns else (record,)
+    differing = [[columns[name][row] for row in record.tolist()] for name in varying]
+    for places in rows_alike(differing, len(record)):
+        yield record[places], {name: _value_at(column, record[places[0]]) for name, column in columns.items()}
 
 
 def _is_column(column: Any) -> bool:
@@ -265,11 +261,6 @@ def _read_at(places: Any, axis: NDArray[np.float64], curve: NDArray[np.float64])
 # Rows read again and again with something changed: a call costs much whatever its rows, so one asks many changes
 
 
-Trial = Mapping[str, Any]
-AT_ONCE = 65_536
-"""So many rows are one call of the model."""
-
-
 def read_trials(
     machine: Setup, rows: RowsFile, trials: Sequence[Trial], wanted: Collection[str]
 ) -> Iterator[Mapping[str, NDArray[np.float64]]]:
@@ -280,61 +271,31 @@ def read_trials(
     """
     count = min(len(trials), AT_ONCE // max(len(rows), 1))
     if count < 2 or any(name in rows.series for trial in trials for name in trial):
-        yield from (_read(*_changed(machine, rows, trial), wanted) for trial in trials)
+        yield from (_read_alone(machine, rows, trial, wanted) for trial in trials)
         return
-    is_many = answers_many(machine, rows, wanted)
+    is_many = _answers_many(machine, rows, wanted)
     for begin in range(0, len(trials), count):
         block = trials[begin : begin + count]
         if is_many:
-            yield from (each.results for each in read_each(machine, rows, block, wanted))
+            yield from (each.results for each in _read_each(machine, rows, block, wanted))
             continue
-        values = _read(machine, _stacked(machine, rows, block), wanted, len(block))
+        values = _row_by_row(machine, rows, block, wanted).results
         parts = {name: np.split(value, len(block)) for name, value in values.items()}
         yield from ({name: part[index] for name, part in parts.items()} for index in range(len(block)))
 
 
-def _changed(machine: Setup, rows: RowsFile, trial: Trial) -> tuple[Setup, RowsFile]:
-    """Return machine and rows of a trial: one value for all rows is the machine's, others are columns of its own."""
+def _read_alone(
+    machine: Setup, rows: RowsFile, trial: Trial, wanted: Collection[str]
+) -> Mapping[str, NDArray[np.float64]]:
+    """Read rows in one trial, not too many of them in one call.
+
+    What has one value for all rows is the machine's, the rest columns of its own.
+    """
     columns = {name: np.array(value) for name, value in trial.items() if np.ndim(value) > 0}
     series = {name: columns.pop(name, values) for name, values in rows.series.items()}
-    values = {name: value for name, value in trial.items() if np.ndim(value) == 0}
-    moved = machine.changed(values) if values else machine
-    return moved, replace(rows, columns={**rows.columns, **columns}, series=series)
-
-
-def _stacked(machine: Setup, rows: RowsFile, trials: Sequence[Trial]) -> RowsFile:
-    """Return the rows as each trial has them, one trial behind another; of the columns what somebody looks at."""
-    names = seen_columns(machine, dict.fromkeys([*rows.columns, *(name for one in trials for name in one)]))
-    return replace(
-        rows,
-        columns={name: _behind(name, machine, rows, trials) for name in names},
-        axes={name: np.tile(values, len(trials)) for name, values in rows.axes.items()},
-        lines=rows.lines * len(trials),
-        runs=rows.runs * len(trials),
-    )
-
-
-def _behind(name: str, machine: Setup, rows: RowsFile, trials: Sequence[Trial]) -> Any:
-    """Return a column as each trial has it, one behind another."""
-    values: Any = rows.columns.get(name)
-    if isinstance(values, list):
-        return values * len(trials)
-    if values is None and not all(name in trial for trial in trials):
-        values = machine.nominal(name)
-    if not any(name in trial for trial in trials):
-        return np.tile(np.broadcast_to(values, (len(rows),)), len(trials))
-    column = np.empty((len(trials), len(rows)))
-    for index, trial in enumerate(trials):
-        column[index] = trial.get(name, values)
-    return column.ravel()
-
-
-def _read(
-    machine: Setup, rows: RowsFile, wanted: Collection[str], repeats: int = 1
-) -> Mapping[str, NDArray[np.float64]]:
-    """Read rows, not too many of them in one call."""
-    if len(rows) <= AT_ONCE or rows.series:
-        return read_by_gauge(machine, rows, wanted, repeats).results
-    blocks = [slice(begin, begin + AT_ONCE) for begin in range(0, len(rows), AT_ONCE)]
-    parts = [read_by_gauge(machine, rows.taken(block), wanted).results for block in blocks]
-    return {name: np.concatenate([part[name] for part in parts]) for name in wanted}
+    machine = machine.changed({name: value for name, value in trial.items() if np.ndim(value) == 0})
+    rows = replace(rows, columns={**rows.columns, **columns}, series=series)
+    size = len(rows) if rows.series else AT_ONCE
+    blocks = [rows.taken(slice(begin, begin + size)) for begin in range(0, len(rows), size)]
+    parts = [read_by_gauge(machine, block, wanted).results for block in blocks]
+    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}

@@ -71,12 +71,12 @@ def fillet_of(rack: Rack, teeth: Float, shift: Float) -> Fillet:
     return Fillet(offset=offset, height=height, constant=constant, angle=angle)
 
 
-def external_root(rack: Rack, teeth: Float, shift: Float) -> Root:
+def external_root(rack: Rack, teeth: Float, shift: Float, fillet: Fillet | None = None) -> Root:
     """Return the critical section of an external gear; ``teeth`` is the virtual number for a helical one.
 
-    NaN where there is no such section, see ``fillet_of``.
+    NaN where there is no such section, see ``fillet_of``, whose answer may be handed in.
     """
-    rho, fillet = rack.fillet, fillet_of(rack, teeth, shift)
+    rho, fillet = rack.fillet, fillet or fillet_of(rack, teeth, shift)
     g, theta = fillet.height, fillet.angle
     offset = g / np.cos(theta) - rho
     return Root(

@@ -4,7 +4,6 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from harmonic_fractal import clearance as gap
 from harmonic_fractal import contact as rough_contact
 from harmonic_fractal.mesh import DriveMesh, line_stiffness, load_of_largest, mesh_of, mesh_torsion, normal_stiffness
 from harmonic_fractal.micro import LEAST_DIMENSION, MOST_DIMENSION, elastic_sum
@@ -229,15 +228,11 @@ def _pair(drive: Drive, contact: rough_contact.Contact, pair: rough_contact.Pres
     """Return one pair under its load by the names of its results."""
     plastic = np.exp(contact.law.growth * pair.size) * contact.plastic_limit / drive.pair_load
     return {
-        "largest_area": pair.largest_area,
+        **{name: value for name, value in vars(pair).items() if name != "size"},
         "area_ratio": np.exp(pair.size),
         "elastic_sum": elastic_sum(pair.size, contact.law),
         "plastic_share": np.where(pair.size > 0.0, plastic, 1.0),
-        "contact_area": pair.contact_area,
-        "real_area": pair.real_area,
         "flank_share": pair.real_area / (drive.face_width * drive.flank_height),
-        "stiffness": pair.stiffness,
-        "load_exponent": pair.load_exponent,
     }
 
 
@@ -246,16 +241,16 @@ def _clearance(
 ) -> dict[str, Any]:
     """Return the clearance of one pair by the names of its results."""
     largest = np.sqrt(pair.largest_area / np.pi)
-    radius, multiple = gap.read_radius(drive, largest)
-    first, second = gap.heights(drive)
+    radius, multiple = rough_contact.read_radius(drive, largest)
+    first, second = rough_contact.heights(drive)
     reference = load_of_largest(drive.reference_torque, mesh)
-    approach = gap.approach(drive.pair_load, reference, contact)
+    approach = rough_contact.approach(drive.pair_load, reference, contact)
     left = np.maximum((first + second) / 2.0 - approach, 0.0)
     return {
         "largest_radius": largest,
         "clearance_radius": radius,
         "clearance_multiple": multiple,
-        "clearance": multiple * gap.amplitude(radius, contact, drive.density),
+        "clearance": multiple * rough_contact.amplitude(radius, contact, drive.density),
         "rough_height": first,
         "mating_rough_height": second,
         "open_clearance": (first + second) / 2.0,

@@ -11,7 +11,7 @@ from matplotlib import colormaps
 from matplotlib.figure import Figure
 
 from gear_geometry.drawing import BLUE, GREEN, GREY, INK, ORANGE, PALE, WIDTH, panels, quiet, signed
-from harmonic_fractal import clearance as gap
+from harmonic_fractal import contact as rough_contact
 from harmonic_fractal.calculation import Polyline, around_of, polyline_of, ratio_of
 from harmonic_fractal.contact import Rough, contact_of, flanks_of, interface_of, pressed
 from harmonic_fractal.estimate import HIGHEST, LOWEST, Estimate
@@ -384,10 +384,10 @@ def clearances(drive: "Drive", load: Array) -> tuple[Array, Array]:
     contact = contact_of(drive, interface_of(drive))
     radius = np.sqrt(pressed(load, contact).largest_area / np.pi)
     reference = load_of_largest(drive.reference_torque, mesh_of(drive, contact))
-    opened = sum(gap.heights(drive)) / 2.0
-    closed = gap.approach(load, reference, contact)
+    opened = sum(rough_contact.heights(drive)) / 2.0
+    closed = rough_contact.approach(load, reference, contact)
     closing = np.where(np.isinf(closed), np.nan, np.maximum(opened - closed, 0.0))
-    return np.asarray(gap.amplitude(radius, contact, drive.density)), closing
+    return np.asarray(rough_contact.amplitude(radius, contact, drive.density)), closing
 
 
 def pair_figure(drive: "Drive") -> "Figure":
@@ -410,7 +410,7 @@ def _stiffnesses(panel: Any, drive: "Drive", load: Array) -> None:
         values = np.asarray(pressed(load, contact_of(ruled, interface_of(ruled))).stiffness)
         panel.loglog(load, np.where(values > 0.0, values, np.nan), dashes, color=colour, linewidth=2.2 if used else 1.1,
                      label=f"{name}, {radius}{' (used)' if used else ''}")  # fmt: skip
-    height = gap.patch_rms(interface_of(drive), drive.patch_length, drive.density)
+    height = rough_contact.patch_rms(interface_of(drive), drive.patch_length, drive.density)
     panel.loglog(load, load / (MEAN_PLANE * height), "--", color=GREY, linewidth=1.1,
                  label="F / (0.48 rms height of the patch), Persson 2007")  # fmt: skip
     quiet(panel, "", "stiffness K of the pair, N/m")
@@ -426,7 +426,7 @@ def _clearances(panel: Any, drive: "Drive", load: Array) -> None:
         panel.semilogx(load, NANO * multiple * amplitude, dashes, color=GREEN, label=f"equation 7, {words}",
                        linewidth=2.2 if drive.clearance_rule == rule else 1.1)  # fmt: skip
     contact = contact_of(drive, interface_of(drive))
-    patch = float(gap.amplitude(drive.patch_length / 2.0, contact, drive.density))
+    patch = float(rough_contact.amplitude(drive.patch_length / 2.0, contact, drive.density))
     panel.axhline(
         NANO * patch, color=GREY, linestyle="--", linewidth=1.1, label="equation 7, longest wave of the patch"
     )
@@ -466,7 +466,7 @@ def _single(drive: "Drive", record: "DriveRun") -> Table:
     for words, name in (("the largest", "largest_area"), ("just elastic", "critical_area")):
         area = float(record.answers[name])
         radius = np.sqrt(area / np.pi)
-        interference = 2.0 * float(gap.amplitude(radius, contact, drive.density))
+        interference = 2.0 * float(rough_contact.amplitude(radius, contact, drive.density))
         tip = area / (2.0 * np.pi * interference)
         force = 4.0 / 3.0 * float(contact.modulus) * np.sqrt(tip) * interference**1.5
         stiffness = 2.0 * float(contact.modulus) * np.sqrt(area / (2.0 * np.pi)) * float(contact.tip_factor)

@@ -127,20 +127,56 @@ FEW_SPIKES = 0.02
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Prepared:
-    """A surface after cleaning, the shares that were missing and spiked, S_q in m before and after form removal."""
+class Flank:
+    """A surface after cleaning, with the estimates along x and y and the direction whose D and G are used.
 
+    ``chosen`` is None where no direction has a self-affine range: then ``reason`` says why and the contact is that of
+    the stated D and G. ``both`` are the lines along x and along y pooled. ``warnings`` are sentences for the sheet.
+    ``raw`` is the surface as it was read. ``missing`` and ``spiked`` are shares of the points of the rectangle, the
+    ``sq`` their root mean square heights, m: as read, less the plane, less the second-order surface (spikes included).
+    """
+
+    raw: Surface
     surface: Surface
-    missing: float
-    spiked: float
-    sq_raw: float
-    sq_plane: float
-    sq_second_order: float
-    warnings: tuple[str, ...]
+    estimates: tuple[Estimate, ...] = ()
+    chosen: Direction | None = None
+    reason: str = ""
+    warnings: tuple[str, ...] = ()
+    missing: float = 0.0
+    spiked: float = 0.0
+    sq_raw: float = float("nan")
+    sq_plane: float = float("nan")
+    sq_second_order: float = float("nan")
+
+    def __post_init__(self) -> None:
+        self.raw.heights.setflags(write=False)
+        self.surface.heights.setflags(write=False)
+
+    def __setstate__(self, state: dict[str, object]) -> None:
+        self.__dict__.update(state)
+        self.__post_init__()  # arrays come out of another process writeable
+
+    @property
+    def used(self) -> Estimate | None:
+        """The estimate whose D and G are used, or None."""
+        return next((item for item in self.estimates if item.direction == self.chosen), None)
+
+    @property
+    def height(self) -> float:
+        """The height from the lowest to the highest point after cleaning, S_z, in m."""
+        return float(np.nanmax(self.surface.heights) - np.nanmin(self.surface.heights))
+
+    @property
+    def resampled(self) -> NDArray[np.float64]:
+        """Pairs of D and ln G (B, 2) of the chosen direction; empty without one."""
+        return np.empty((0, 2)) if self.used is None else self.used.resampled
 
 
-def prepared(raw: Surface, options: Options) -> Prepared:
-    """Cut the rectangle, count the holes, remove the form, take out spikes. Raises ValueError with one sentence."""
+def prepared(raw: Surface, options: Options) -> Flank:
+    """Cut the rectangle, count the holes, remove the form, take out spikes; no direction is estimated yet.
+
+    Raises ValueError with one sentence.
+    """
     surface = cut(raw, options.rectangle, options.corner) if options.rectangle else raw
     rows, points = surface.heights.shape
     if max(rows, points) < FEWEST_POINTS:
@@ -158,8 +194,8 @@ def prepared(raw: Surface, options: Options) -> Prepared:
     if options.spikes == "remove":
         heights = np.where(spikes, np.nan, heights)
     clean = Surface(np.array(heights), surface.spacing_x, surface.spacing_y, surface.name)
-    return Prepared(
-        surface=clean, missing=missing, spiked=spiked, sq_raw=root_mean_square(surface.heights),
+    return Flank(
+        raw=raw, surface=clean, missing=missing, spiked=spiked, sq_raw=root_mean_square(surface.heights),
         sq_plane=root_mean_square(plane), sq_second_order=root_mean_square(second),
         warnings=(*_shares(missing, spiked, options), *_steps(clean, step)),
     )  # fmt: skip
@@ -197,41 +233,31 @@ ALIKE = 3.0  # ratio of the structure functions along x and y, at the lags they 
 ROUNDING = 1e-18  # of the structure function along the other direction: no relief but rounding
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Choice:
-    """The estimates of all directions, the one that is used or None with the reason, and what is to be said."""
-
-    estimates: tuple[Estimate, ...]
-    chosen: Direction | None
-    reason: str = ""
-    warnings: tuple[str, ...] = ()
-
-
-def choice_of(surface: Surface, settings: Estimation, options: Options) -> Choice:
+def with_choice(clean: Flank, options: Options) -> Flank:
     """Estimate D and G along each direction, each line less its own straight line, and choose.
 
     A profile keeps its lines: its form was removed. With ``auto`` both directions are pooled where both are
     self-affine, their dimensions agree within 0.15, their structure functions within a factor of 3 and their spacings
-    within 1 %; else the direction of sliding is
-    used, or the only one.
+    within 1 %; else the direction of sliding is used, or the only one.
     Raises ValueError where a direction is asked for that the surface does not have.
     """
+    surface, settings = clean.surface, options.estimation
     if surface.is_profile:
         if options.direction in {"y", "both"} or options.sliding == "y":
             raise ValueError("one profile has the direction x alone: leave out direction and sliding")
-        return _asked((estimate_of(surface.lines("x"), "x", settings),), "x")
+        return _asked(clean, (estimate_of(surface.lines("x"), "x", settings),), "x")
     lines: dict[Direction, Lines] = {"x": _level(surface.lines("x")), "y": _level(surface.lines("y"))}
     alone = _with_relief(tuple(estimate_of(each, axis, settings) for axis, each in lines.items()))
     said = _anisotropy(alone)
     if options.direction == "both":
-        return replace(_asked((*alone, _together(lines, settings)), "both"), warnings=said)
+        return _asked(clean, (*alone, _together(lines, settings)), "both", said)
     if options.direction != "auto":
-        return replace(_asked(alone, options.direction), warnings=said)
+        return _asked(clean, alone, options.direction, said)
     if not said and surface.is_square and all(estimate.is_accepted for estimate in alone):
         both = _together(lines, settings)
         if both.is_accepted:
-            return _asked((*alone, both), "both")
-    return _best(alone, options, said)
+            return _asked(clean, (*alone, both), "both")
+    return _best(clean, alone, options, said)
 
 
 def _level(lines: Lines) -> Lines:
@@ -242,25 +268,26 @@ def _together(lines: dict[Direction, Lines], settings: Estimation) -> Estimate:
     return estimate_of(pooled(lines["x"], lines["y"]), "both", settings)
 
 
-def _asked(estimates: tuple[Estimate, ...], direction: Direction) -> Choice:
+def _asked(clean: Flank, estimates: tuple[Estimate, ...], direction: Direction, said: tuple[str, ...] = ()) -> Flank:
     """Use this direction, or none with its reason."""
     found = next(estimate for estimate in estimates if estimate.direction == direction)
-    if found.is_accepted:
-        return Choice(estimates=estimates, chosen=direction)
-    return Choice(estimates=estimates, chosen=None, reason=found.reason)
+    return replace(
+        clean, estimates=estimates, chosen=direction if found.is_accepted else None, reason=found.reason,
+        warnings=(*clean.warnings, *said, *found.warnings),
+    )  # fmt: skip
 
 
-def _best(alone: tuple[Estimate, ...], options: Options, said: tuple[str, ...]) -> Choice:
+def _best(clean: Flank, alone: tuple[Estimate, ...], options: Options, said: tuple[str, ...]) -> Flank:
     accepted = [estimate.direction for estimate in alone if estimate.is_accepted]
     refused = [f"along {estimate.direction}: {estimate.reason}" for estimate in alone if not estimate.is_accepted]
     if not accepted:
-        return Choice(estimates=alone, chosen=None, reason="; ".join(refused))
+        return replace(clean, estimates=alone, reason="; ".join(refused))
     chosen = options.sliding if options.sliding in accepted else accepted[0]
     if refused:
         said = (*said, f"the direction {chosen} alone is used; {refused[0]}")
     elif not said:
         said = (f"the direction of sliding, {chosen}, is used; the directions cannot be pooled",)
-    return Choice(estimates=alone, chosen=chosen, warnings=said)
+    return _asked(clean, alone, chosen, said)
 
 
 def _with_relief(alone: tuple[Estimate, ...]) -> tuple[Estimate, ...]:
@@ -331,52 +358,6 @@ def _ratio(x: Estimate, y: Estimate) -> float:
 # - ``sliding``: "x" or "y", along the height of the tooth; used where x and y differ.
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Flank:
-    """A surface after cleaning, with the estimates along x and y and the direction whose D and G are used.
-
-    ``chosen`` is None where no direction has a self-affine range: then ``reason`` says why and the contact is that of
-    the stated D and G. ``both`` are the lines along x and along y pooled. ``warnings`` are sentences for the sheet.
-    ``raw`` is the surface as it was read. ``missing`` and ``spiked`` are shares of the points of the rectangle, the
-    ``sq`` their root mean square heights, m: as read, less the plane, less the second-order surface (spikes included).
-    """
-
-    raw: Surface
-    surface: Surface
-    estimates: tuple[Estimate, ...]
-    chosen: Direction | None
-    reason: str
-    warnings: tuple[str, ...]
-    missing: float = 0.0
-    spiked: float = 0.0
-    sq_raw: float = float("nan")
-    sq_plane: float = float("nan")
-    sq_second_order: float = float("nan")
-
-    def __post_init__(self) -> None:
-        self.raw.heights.setflags(write=False)
-        self.surface.heights.setflags(write=False)
-
-    def __setstate__(self, state: dict[str, object]) -> None:
-        self.__dict__.update(state)
-        self.__post_init__()  # arrays come out of another process writeable
-
-    @property
-    def used(self) -> Estimate | None:
-        """The estimate whose D and G are used, or None."""
-        return next((item for item in self.estimates if item.direction == self.chosen), None)
-
-    @property
-    def height(self) -> float:
-        """The height from the lowest to the highest point after cleaning, S_z, in m."""
-        return float(np.nanmax(self.surface.heights) - np.nanmin(self.surface.heights))
-
-    @property
-    def resampled(self) -> NDArray[np.float64]:
-        """Pairs of D and ln G (B, 2) of the chosen direction; empty without one."""
-        return np.empty((0, 2)) if self.used is None else self.used.resampled
-
-
 def read_flank(  # the signature is the list of options of the inputs file
     path: Path,
     *,
@@ -407,14 +388,8 @@ def read_flank(  # the signature is the list of options of the inputs file
     reading = read_surface(path, options.layout)
     clean = prepared(reading.surface, options)
     options, filtered = _filtered(options, reading)
-    choice = choice_of(clean.surface, options.estimation, options)
-    noise = next((found.warnings for found in choice.estimates if found.direction == choice.chosen), ())
-    return Flank(
-        raw=reading.surface, surface=clean.surface, estimates=choice.estimates, chosen=choice.chosen,
-        reason=choice.reason, warnings=(*reading.remarks, *filtered, *clean.warnings, *choice.warnings, *noise),
-        missing=clean.missing, spiked=clean.spiked, sq_raw=clean.sq_raw, sq_plane=clean.sq_plane,
-        sq_second_order=clean.sq_second_order,
-    )  # fmt: skip
+    found = with_choice(clean, options)
+    return replace(found, warnings=(*reading.remarks, *filtered, *found.warnings))
 
 
 def _filtered(options: Options, reading: Reading) -> tuple[Options, tuple[str, ...]]:

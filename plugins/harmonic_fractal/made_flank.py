@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
+from scipy.ndimage import gaussian_filter
 
 from harmonic_fractal import generators
 from harmonic_fractal.estimate import Estimate, Estimation, estimate_of
@@ -165,18 +166,6 @@ def is_patch(made: Made, truth: Truth) -> bool:
     return truth.shape[0] > 1 and made.kind != "profile"
 
 
-def instrument_of(made: Made) -> generators.Instrument:
-    """Return the instrument that looks at the flank."""
-    return generators.Instrument(
-        cutoff=float(made.filter_cutoff),
-        noise=float(made.noise),
-        step=float(made.height_step),
-        spikes=float(made.spikes),
-        spike_height=float(made.spike_height),
-        holes=float(made.holes),
-    )
-
-
 def waves_of(made: Made) -> generators.Waves:
     """Return the waves, with G of their own form: S along the lines is that of the truth however many directions."""
     truth = truth_of(made)
@@ -207,7 +196,7 @@ def is_possible(made: Made, truth: Truth) -> bool:
 
 
 def _demands(made: Made, truth: Truth) -> Iterator[tuple[bool, str]]:
-    margin = 2 * instrument_of(made).margin(float(made.spacing))
+    margin = 2 * margin_of(made)
     lines, points = truth.shape
     shape = (lines + margin * is_patch(made, truth), points + margin)
     dimension = truth.dimension
@@ -267,10 +256,10 @@ def made_flank(made: Made) -> MadeFlank:
 
 def surface_of(made: Made) -> Surface:
     """Return the flank as the instrument shows it: everything random comes from its seed."""
-    truth, instrument, spacing = truth_of(made), instrument_of(made), float(made.spacing)
+    truth, spacing = truth_of(made), float(made.spacing)
     of_flank, of_instrument = np.random.default_rng(made.seed).spawn(2)
-    made_heights = _heights(made, instrument.margin(spacing), of_flank)
-    heights = generators.as_measured(made_heights, spacing, instrument, of_instrument, across=is_patch(made, truth))
+    made_heights = _heights(made, margin_of(made), of_flank)
+    heights = as_measured(made_heights, made, of_instrument, across=is_patch(made, truth))
     across = spacing if truth.shape[0] > 1 else float("nan")
     return Surface(heights=heights, spacing_x=spacing, spacing_y=across, name=f"made flank, seed {made.seed}")
 
@@ -292,6 +281,48 @@ def _heights(made: Made, margin: int, rng: np.random.Generator) -> Array:
     if made.kind == "profile":
         return generators.weierstrass_profile(waves_of(made), x, lines, rng)
     return generators.weierstrass_surface(waves_of(made), x, y, rng)
+
+
+# What an instrument makes of a surface: lateral filter, noise, steps of its scale, spikes and holes
+
+# ISO 16610-21
+DEVIATION = float(np.sqrt(np.log(2.0) / 2.0) / np.pi)  # of the Gaussian weight over the wave that is halved, 0.1874
+REACH = 4.0  # standard deviations to which the weight is taken
+
+
+def margin_of(made: Made) -> int:
+    """Return how many points beyond its edge the lateral filter needs on each side."""
+    return int(np.ceil(REACH * DEVIATION * float(made.filter_cutoff) / float(made.spacing)))
+
+
+def as_measured(heights: Array, made: Made, rng: np.random.Generator, *, across: bool = True) -> Array:
+    """Return heights (rows, points), m, as the instrument gives them, NaN in its holes.
+
+    The filter takes the margin away on each side; without ``across`` it acts along the rows only, and takes nothing
+    away across them. Order: filter, noise, steps, spikes, holes. Spikes and holes are shares of the points, each alone.
+    """
+    seen = _filtered(heights, made, across=across)
+    seen = seen + float(made.noise) * rng.standard_normal(seen.shape)
+    step = float(made.height_step)
+    if step > 0.0:
+        seen = np.round(seen / step) * step
+    flat = seen.ravel()
+    order = rng.permutation(flat.size)
+    spikes, holes = (round(float(share) * flat.size) for share in (made.spikes, made.holes))
+    flat[order[:spikes]] += float(made.spike_height) * rng.choice([-1.0, 1.0], spikes)
+    flat[order[flat.size - holes :]] = np.nan
+    return np.asarray(flat.reshape(seen.shape), dtype=np.float64)
+
+
+def _filtered(heights: Array, made: Made, *, across: bool) -> Array:
+    """Weigh with a Gaussian along the rows, and across them where asked, and cut the margin off."""
+    margin = margin_of(made)
+    if not margin:
+        return heights.copy()
+    deviation = DEVIATION * float(made.filter_cutoff) / float(made.spacing)
+    seen = gaussian_filter(heights, (deviation if across else 0.0, deviation), truncate=REACH)
+    rows = slice(margin, -margin) if across else slice(None)
+    return np.asarray(seen[rows, margin:-margin], dtype=np.float64)
 
 
 def exact_structure_function(made: Made, lags: Array) -> Array:

@@ -1,7 +1,8 @@
 """All engaged pairs of teeth together: who carries how much, how stiff the mesh is, and its torsion."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, is_dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,8 +18,14 @@ STEPS = 60  # of Newton's iteration at most, kept within its bracket
 FINE = 1e-15
 
 
-def _taken(value: Float, index: NDArray[np.intp], rows: int, axes: int) -> Float:
-    """Return the values of these rows out of so many, with axes behind; what is one number for all stays it."""
+def _taken(value: Any, index: NDArray[np.intp], rows: int, axes: int) -> Any:
+    """Return the values of these rows out of so many, with axes behind; what is one number for all stays it.
+
+    Of a pair, or of an engagement, the same with all its numbers taken.
+    """
+    if is_dataclass(value):
+        taken = {each.name: _taken(getattr(value, each.name), index, rows, axes) for each in fields(value)}
+        return type(value)(**taken)
     if np.ndim(value) == 0:
         return value
     many = np.broadcast_to(np.asarray(value, dtype=float), (rows,))[index]
@@ -58,11 +65,6 @@ class Engagement:
                 break
         value: Float = np.exp(way)
         return value
-
-    def of_rows(self, index: NDArray[np.intp], rows: int, axes: int) -> "Engagement":
-        """Return that of these rows out of so many, with axes behind."""
-        numbers = {name: _taken(value, index, rows, axes) for name, value in vars(self).items()}
-        return Engagement(**numbers)
 
 
 def engagement_of(drive: Drive) -> Engagement:
@@ -119,14 +121,6 @@ class ToothPair:
     film: Float
     area_ratio: Float
     compliance: Float
-
-    def of_rows(self, index: NDArray[np.intp], rows: int, axes: int) -> "ToothPair":
-        """Return the pair of these rows out of so many, with axes behind."""
-        dimension, ratio, *numbers = (_taken(value, index, rows, axes) for value in self.numbers)
-        scale, film, area_ratio, compliance = numbers
-        return ToothPair(
-            law=micro.ContactLaw(dimension, ratio), scale=scale, film=film, area_ratio=area_ratio, compliance=compliance
-        )
 
     @property
     def numbers(self) -> tuple[Float, ...]:
@@ -222,7 +216,7 @@ def normal_stiffness(torque: Float, mesh: DriveMesh) -> Float:
     step = max(CHUNK // len(mesh.arcs.shares), 1)
     for start in range(0, rows, step):
         index = np.arange(start, min(start + step, rows))
-        pair = mesh.pair.of_rows(index, rows, 1)
+        pair = _taken(mesh.pair, index, rows, 1)
         size = micro.size_of(first[index, np.newaxis] + mesh.arcs.offsets, pair.law)
         rough = pair.scale * micro.stiffness_share(size, pair.law)
         touched = micro.touched_area(size, pair.law) if np.any(pair.film) else 0.0
@@ -299,7 +293,7 @@ def _torsions(
     begins = np.flatnonzero(np.diff(way, prepend=-1))
     leaders, furthest = rows[begins], np.maximum.reduceat(last[rows], begins)
     marks = _marks(leaders, first, mesh)
-    ends = _variable(micro.size_of(marks, mesh.pair.of_rows(leaders, len(first), 1).law))
+    ends = _variable(micro.size_of(marks, _taken(mesh.pair.law, leaders, len(first), 1)))
     panels, counts = _cut(np.where(marks <= furthest[:, np.newaxis], ends, np.nan))
     behind = np.concatenate([np.zeros((len(leaders), 1), dtype=int), np.cumsum(counts, axis=1)], axis=1)
     parts = np.zeros((2, len(leaders), int(behind.max()) + 1))
@@ -307,7 +301,7 @@ def _torsions(
     parts[:, panels.owner, ordinal + 1] = _integrals(panels, leaders, mesh, len(first))
     passed = (marks[way] <= last[rows, np.newaxis]).sum(axis=1) - 1
     found = np.cumsum(parts, axis=2)[:, way, behind[way, passed]]
-    high = _variable(micro.size_of(last[rows], mesh.pair.of_rows(rows, len(first), 0).law))
+    high = _variable(micro.size_of(last[rows], _taken(mesh.pair.law, rows, len(first), 0)))
     panels, _ = _cut(np.stack([ends[way, passed], high], axis=1))
     for total, part in zip(found, _integrals(panels, rows, mesh, len(first)), strict=True):
         np.add.at(total, panels.owner, part)
@@ -344,7 +338,7 @@ def _cut(ends: NDArray[np.float64]) -> tuple[Panels, NDArray[np.intp]]:
 def _onsets(index: NDArray[np.intp], offsets: NDArray[np.float64], mesh: DriveMesh, rows: int) -> NDArray[np.float64]:
     """Return the torques at which pairs with these shares turn elastic, (rows asked for, shares)."""
     share = _taken(mesh.plastic_share, index, rows, 1) * np.exp(-offsets)
-    found = np.asarray(mesh.engagement.of_rows(index, rows, 1).torque_of(share))
+    found = np.asarray(_taken(mesh.engagement, index, rows, 1).torque_of(share))
     return np.broadcast_to(found, (len(index), len(offsets)))
 
 
@@ -365,7 +359,7 @@ def _integrated(panels: Panels, rows: NDArray[np.intp], mesh: DriveMesh, count: 
     """
     some, kind = _distinct(panels, rows, mesh)
     step, size, law = _contacts(Panels(rows[some], panels.start[some], panels.width[some]), mesh, count)
-    pair = mesh.pair.of_rows(rows, count, 2)
+    pair = _taken(mesh.pair, rows, count, 2)
     alone = pair.scale * micro.stiffness_share(size, law)[kind]
     touched = micro.touched_area(size, law)[kind] if np.any(pair.film) else 0.0
     whole, rough = pair.around(alone, touched), alone @ mesh.arcs.counts
@@ -390,13 +384,13 @@ def _contacts(
 
     The owners of the panels are rows of ``count``.
     """
-    law = mesh.pair.of_rows(panels.owner, count, 2).law
+    law: micro.ContactLaw = _taken(mesh.pair.law, panels.owner, count, 2)
     way = panels.start[:, np.newaxis] + panels.width[:, np.newaxis] * 0.5 * (RULE[0] + 1.0)
     grown = np.exp(way)[..., np.newaxis]
     size = np.log1p(grown) / TURN
     begin, share = (_taken(value, panels.owner, count, 2) for value in (mesh.plastic_torque, mesh.plastic_share))
     torque = begin * np.exp(micro.load_logarithm(size, law))
-    factor = mesh.engagement.of_rows(panels.owner, count, 2).factor(torque)
+    factor = _taken(mesh.engagement, panels.owner, count, 2).factor(torque)
     step = torque / factor * micro.load_slope(size, law) * grown / ((1.0 + grown) * TURN)
     loads = np.log(torque / (factor * share)) + mesh.arcs.offsets
     return step, np.asarray(micro.size_of(loads, law)), law

@@ -409,9 +409,14 @@ def _unit(topography: Any, stated: str) -> float:
     return metres
 
 
+def _demand_alike(axis: str, own: float, stated: float, source: str) -> None:
+    """Refuse a stated spacing, m, that is not the file's own; NaN is any."""
+    if abs(stated / own - 1.0) > EQUAL:
+        raise ValueError(f"spacing_{axis} is stated as {stated * 1e6:.6g} um, and {source} {own * 1e6:.6g} um")
+
+
 def _spacing(axis: str, own: float, stated: float) -> float:
-    if np.isfinite(own) and abs(stated / own - 1.0) > EQUAL:
-        raise ValueError(f"spacing_{axis} is stated as {stated * 1e6:.6g} um, and the file says {own * 1e6:.6g} um")
+    _demand_alike(axis, own, stated, "the file says")
     if axis == "x" and not (np.isfinite(own) or np.isfinite(stated)):
         raise ValueError('the file does not state the spacing of its points: write spacing = "0.4 um"')
     return float(own if np.isfinite(own) else stated)
@@ -549,11 +554,8 @@ def _points(table: TextTable, columns: dict[str, HeightColumn], known: FileLayou
         heights, spacing_x, spacing_y = grid(x, _place(table, columns, "y"), z)
     else:
         (heights, spacing_x), spacing_y = profile(x, z), NAN
-    for axis, mine, stated in (("x", spacing_x, known.spacing_x), ("y", spacing_y, known.spacing_y)):
-        if abs(mine / stated - 1.0) > EQUAL:
-            raise ValueError(
-                f"spacing_{axis} is stated as {stated * 1e6:.6g} um, and column {axis} has {mine * 1e6:.6g} um"
-            )
+    for axis, own, stated in (("x", spacing_x, known.spacing_x), ("y", spacing_y, known.spacing_y)):
+        _demand_alike(axis, own, stated, f"column {axis} has")
     return Surface(heights, spacing_x, spacing_y, name)
 
 

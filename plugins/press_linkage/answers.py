@@ -34,8 +34,8 @@ def sources_of(kinds: tuple[str, ...]) -> list[str]:
 def cycle(swept: Swept) -> Cycle:
     """Dead centres, stroke, and how close the press comes to a singular position; the crank must turn fully."""
     press: Press = swept.inputs
-    for demand in cycle_demands(press):
-        feasible(demand.holds, demand.sentence + SWING)
+    for holds, sentence in cycle_demands(press):
+        feasible(holds, sentence + SWING)
     top = top_crank_angle(press)
     bdc, tdc = solve(press, 0.0).slider_position, solve(press, top).slider_position
     turn = smallest_sine(solve(press, np.linspace(-pi, pi, 721)))

@@ -162,8 +162,8 @@ def permitted_tilt(press: Press) -> Float:
 def press_linkage(press: Press) -> Slider:
     """Height and tilt of the slider from the closed vector loops I to VI; every field is a number or an array (n,)."""
     position = solve(press)
-    for demand in demands(press, position):
-        feasible(demand.holds, demand.sentence)
+    for holds, sentence in demands(press, position):
+        feasible(holds, sentence)
     return Slider(
         face_height_1=position.side_1.face,
         face_height_2=position.side_2.face,

@@ -246,30 +246,40 @@ def top_crank_angle(press: Press) -> Float:
     return np.arctan2(-rod_sine, -rod_cosine) - np.arctan2(sine, cosine)
 
 
-def stroke(press: Press) -> Float:
-    """Slider height at the lower dead centre minus that at the upper one, m, of the nominal mechanism."""
-    without = nominal(press)
-    return solve(without, 0.0).slider_position - solve(without, top_crank_angle(press)).slider_position
-
-
 # What must hold for the press linkage to close: loop by loop, side by side, with the inequality that is violated
 #
 # Every demand is a condition (one truth value, or one per sample) with the sentence for the engineer. A condition that
 # meets NaN does not hold.
 
 SINGULAR = 1e-6  # sine of an angle between two links below which the position is undetermined
-NEARLY_SINGULAR = 0.05  # below it the sensitivities exceed 20: worth a warning
 
 
 Holds = bool | NDArray[np.bool_]
 
 
-class TiltDemand(NamedTuple):
-    """What must hold: a name, where it holds, and the sentence for the engineer where it does not."""
-
-    name: str
-    holds: Holds
-    sentence: str
+Demand = tuple[Holds, str]
+"""Where something holds that must, and the sentence for the engineer where it does not."""
+LOOPS = (  # names on side 1 and 2, what the loop needs, and where it is singular
+    (
+        ("I", "VI"),
+        "the rod cannot reach the platform, it needs |e cos(beta_1) - y_B| < k_R (horizontal distance of its ends "
+        "below rod_length)",
+        "the rod is horizontal (|sin(theta_2{0})| < 1e-6), the platform height is undetermined",
+    ),
+    (
+        ("II", "V"),
+        "the knee drive is open, it needs |l_m - l_g| < |M - B_5| < l_m + l_g (distance from platform arm to ground "
+        "pivot between difference and sum of upper_knee_length and knee_drive_length)",
+        "platform arm, knee and ground pivot lie in line (|sin(theta_{0}9 - theta_{0}7)| < 1e-6)",
+    ),
+    (
+        ("III", "IV"),
+        "the lower link cannot reach the slider, it needs |l - y_G| < l_h (horizontal distance of its ends below "
+        "lower_knee_length)",
+        "the lower link is horizontal (|sin(theta_{0}8)| < 1e-6)",
+    ),
+)
+"""Rod and platform, knee drive and upper link, lower link and slider."""
 
 
 def knee_sine(half: Half) -> Float:
@@ -280,7 +290,7 @@ def knee_sine(half: Half) -> Float:
 def smallest_sine(position: Position) -> Float:
     """How far the press is from a singular position: the least sine that a height is divided by, both sides.
 
-    Zero is singular; below NEARLY_SINGULAR an error of a link reaches the slider more than twentyfold.
+    Zero is singular; below 0.05 an error of a link reaches the slider more than twentyfold.
     """
     least: Float = np.inf
     with np.errstate(invalid="ignore"):
@@ -291,114 +301,79 @@ def smallest_sine(position: Position) -> Float:
     return least
 
 
-def nominal_demands(press: Press) -> Iterator[TiltDemand]:
-    """What the nominal sizes must satisfy for a bottom dead centre on this branch."""
-    yield TiltDemand(
-        "branch",
-        press.crank_pivot_radius > press.platform_half_width,
-        "the crank pivots must lie farther out than the rod joints of the platform: "
-        "crank_pivot_radius > platform_half_width",
-    )
-    yield TiltDemand(
-        "stretched",
-        press.crank_pivot_radius - press.platform_half_width < press.crank_radius + press.rod_length,
-        "loop I has no bottom dead centre: crank and rod in line do not reach the platform; it needs "
-        "crank_pivot_radius - platform_half_width < crank_radius + rod_length",
-    )
-
-
-def rotation_demand(press: Press) -> TiltDemand:
+def rotation_demand(press: Press) -> Demand:
     """What a full turn of the crank needs, and with it the upper dead centre and the stroke."""
     offset = np.abs(press.crank_pivot_radius - press.platform_half_width)
-    return TiltDemand(
-        "full rotation",
+    return (
         offset + press.crank_radius < press.rod_length,
         "loop I does not close over a full turn of the crank: it needs "
         "crank_pivot_radius - platform_half_width + crank_radius < rod_length",
     )
 
 
-def demands(press: Press, position: Position) -> Iterator[TiltDemand]:
+def demands(press: Press, position: Position) -> Iterator[Demand]:
     """What must hold in this position with these deviations: nominal sizes, then loop by loop, side by side.
 
     They come in the order of the chain, so the first one that fails names the cause and not a consequence.
     """
-    yield from nominal_demands(press)
+    yield (
+        press.crank_pivot_radius > press.platform_half_width,
+        "the crank pivots must lie farther out than the rod joints of the platform: "
+        "crank_pivot_radius > platform_half_width",
+    )
+    yield (
+        press.crank_pivot_radius - press.platform_half_width < press.crank_radius + press.rod_length,
+        "loop I has no bottom dead centre: crank and rod in line do not reach the platform; it needs "
+        "crank_pivot_radius - platform_half_width < crank_radius + rod_length",
+    )
+    sides = ((1, position.side_1), (2, position.side_2))
     with np.errstate(invalid="ignore"):
-        for side, half in ((1, position.side_1), (2, position.side_2)):
-            yield _sizes(half, side)
-        for side, half in ((1, position.side_1), (2, position.side_2)):
-            yield from _rod_demands(half, side)
-        yield TiltDemand(
-            "platform arm",
+        for side, half in sides:
+            yield _sizes(half), f"side {side}: every length with its deviation must be greater than zero"
+        for side, half in sides:
+            yield from _loop(0, half, side)
+        yield (
             position.side_1.arm_end > position.platform_height,
             "the platform arm with its deviation must be longer than zero",
         )
-        for side, half in ((1, position.side_1), (2, position.side_2)):
-            yield from _knee_demands(half, side)
-            yield from _slider_demands(half, side)
+        for side, half in sides:
+            yield from _loop(1, half, side)
+            yield from _loop(2, half, side)
 
 
-def _sizes(half: Half, side: int) -> TiltDemand:
+def _sizes(half: Half) -> Holds:
     """Every length of one side is positive, its deviation included."""
     parts = half.parts
     known = (parts.pivot, parts.crank, parts.platform, parts.ground, parts.slider)
     holds = parts.rod > 0.0
     for length in (parts.drive, parts.upper, parts.lower, *(polar.length for polar in known)):
         holds = holds & (length > 0.0)
-    return TiltDemand(f"sizes {side}", holds, f"side {side}: every length with its deviation must be greater than zero")
+    return holds
 
 
-def _loop(loop: str, side: int, closed: Holds, regular: Holds, words: tuple[str, str]) -> Iterator[TiltDemand]:
-    """A loop closes, and not in a singular position; ``words`` say what it needs, and what is singular."""
-    yield TiltDemand(f"loop {loop}", closed, f"loop {loop}, side {side} does not close: {words[0]}")
-    yield TiltDemand(f"singular {loop}", regular, f"loop {loop}, side {side} is singular: {words[1]}")
+def _loop(number: int, half: Half, side: int) -> Iterator[Demand]:
+    """A loop closes, and not in a singular position."""
+    parts, names = half.parts, LOOPS[number][0]
+    links = parts.drive * parts.upper
+    closed, regular = (
+        (half.rod_drop >= 0.0, half.rod_drop >= SINGULAR * parts.rod),
+        (half.knee_fold >= 0.0, half.knee_fold * half.knee_span**2 >= (SINGULAR * links) ** 2),
+        (half.lower_drop >= 0.0, half.lower_drop >= SINGULAR * parts.lower),
+    )[number]
+    name = f"loop {names[side - 1]}, side {side}"
+    yield closed, f"{name} does not close: {LOOPS[number][1]}"
+    yield regular, f"{name} is singular: {LOOPS[number][2].format(side)}"
 
 
-def _rod_demands(half: Half, side: int) -> Iterator[TiltDemand]:
-    """Loop I (VI on side 2): the rod reaches the platform, and not in a horizontal position."""
-    words = (
-        "the rod cannot reach the platform, it needs |e cos(beta_1) - y_B| < k_R (horizontal distance of its ends "
-        "below rod_length)",
-        f"the rod is horizontal (|sin(theta_2{side})| < 1e-6), the platform height is undetermined",
-    )
-    regular = half.rod_drop >= SINGULAR * half.parts.rod
-    return _loop("I" if side == 1 else "VI", side, half.rod_drop >= 0.0, regular, words)
-
-
-def _knee_demands(half: Half, side: int) -> Iterator[TiltDemand]:
-    """Loop II (V on side 2): knee drive and upper link meet, and not in line."""
-    words = (
-        "the knee drive is open, it needs |l_m - l_g| < |M - B_5| < l_m + l_g (distance from platform arm to ground "
-        "pivot between difference and sum of upper_knee_length and knee_drive_length)",
-        f"platform arm, knee and ground pivot lie in line (|sin(theta_{side}9 - theta_{side}7)| < 1e-6)",
-    )
-    links = half.parts.drive * half.parts.upper
-    regular = half.knee_fold * (half.knee_span * half.knee_span) >= (SINGULAR * SINGULAR) * (links * links)
-    return _loop("II" if side == 1 else "V", side, half.knee_fold >= 0.0, regular, words)
-
-
-def _slider_demands(half: Half, side: int) -> Iterator[TiltDemand]:
-    """Loop III (IV on side 2): the lower link reaches the slider, and not in a horizontal position."""
-    words = (
-        "the lower link cannot reach the slider, it needs |l - y_G| < l_h (horizontal distance of its ends below "
-        "lower_knee_length)",
-        f"the lower link is horizontal (|sin(theta_{side}8)| < 1e-6)",
-    )
-    regular = half.lower_drop >= SINGULAR * half.parts.lower
-    return _loop("III" if side == 1 else "IV", side, half.lower_drop >= 0.0, regular, words)
-
-
-def cycle_demands(press: Press, samples: int = 721) -> Iterator[TiltDemand]:
+def cycle_demands(press: Press, samples: int = 721) -> Iterator[Demand]:
     """What a full turn of the crank demands of one nominal mechanism (plain numbers): every loop, at every angle.
 
     The loops are tried at *samples* equally spaced crank angles; none of the roots may vanish on the way, so the
     mechanism stays on its branch.
     """
     yield rotation_demand(press)
-    turn = solve(nominal(press), np.linspace(-np.pi, np.pi, samples))
-    for name, holds, sentence in demands(press, turn):
-        yield TiltDemand(name, bool(np.all(holds)), f"over the full turn: {sentence}")
+    for holds, sentence in demands(press, solve(nominal(press), np.linspace(-np.pi, np.pi, samples))):
+        yield bool(np.all(holds)), f"over the full turn: {sentence}"
 
 
 # How does the slider accelerate? The loops differentiated twice, exact in any position, numbers or arrays (n,)

@@ -1,5 +1,6 @@
 """From the profile shift to geometry, objectives and constraints, and what a pair needs before."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -8,9 +9,8 @@ from gear_geometry.roots import Fillet, gap_offset, notch
 from roller_screw_shift import geometry as geo
 from roller_screw_shift import strength
 from roller_screw_shift.geometry import Geometry, involute_margin
-from roller_screw_shift.objectives import margins_at
 from roller_screw_shift.quantities import Meshing, Pair
-from truing import feasible
+from truing import Float, feasible
 
 # What a pair needs before it can be calculated: the sentence names the inputs and what to do
 
@@ -91,11 +91,28 @@ def roller_screw_shift(pair: Pair) -> Meshing:
     """The pair at one shift or at a batch of them; every Float is a number or an array (n,), SI."""
     geometry, fillet = geo.geometry_of(pair), strength.roller_fillet(pair)
     require_pair(pair, geometry)
-    roller, ring = strength.roller_tooth(pair), strength.ring_tooth(pair, geometry)
+    roller, ring = strength.roller_tooth(pair, fillet), strength.ring_tooth(pair, geometry)
     require_roots(pair, roller, ring, fillet)
+    return _meshing(pair, geometry, fillet, roller, ring)
+
+
+def meshing_of(pair: Pair) -> Meshing:
+    """The same, but nothing is refused: NaN where a result does not exist, and a margin below 0 then or NaN.
+
+    Where a tip circle lies inside its base circle, what depends on the angle at the tip does not exist; where the tip
+    of the ring meets no involute, sliding does not.
+    """
+    with np.errstate(all="ignore"):
+        geometry, fillet = geo.geometry_of(pair), strength.roller_fillet(pair)
+        roller, ring = strength.roller_tooth(pair, fillet), strength.ring_tooth(pair, geometry)
+        return _meshing(pair, geometry, fillet, roller, ring)
+
+
+def _meshing(pair: Pair, geometry: Geometry, fillet: Fillet, roller: strength.Tooth, ring: strength.Tooth) -> Meshing:
+    mesh = _mesh(pair, geometry)
     return Meshing(
         **_circles(geometry),
-        **_mesh(pair, geometry),
+        **mesh,
         tangential_force=strength.load_of(pair).tangential_force,
         fillet_offset_roller=fillet.offset,
         fillet_height_roller=fillet.height,
@@ -107,7 +124,7 @@ def roller_screw_shift(pair: Pair) -> Meshing:
         root_stress_ring=ring.stress * strength.acting(pair) * pair.rim_factor,
         shift_sum=pair.roller_shift + geometry.ring_shift,
         stress_difference=np.abs(roller.stress - ring.stress),
-        **vars(margins_at(pair, geometry)),
+        **_margins(pair, geometry, mesh),
         **dict.fromkeys(("transmission_error", "wear_depth", "axial_shift", "friction_torque"), 0.0),
         backlash=geo.backlash(geometry),
     )
@@ -125,7 +142,9 @@ def _circles(geometry: geo.Geometry) -> dict[str, Any]:
 
 def _mesh(pair: Pair, geometry: geo.Geometry) -> dict[str, Any]:
     """Return contact ratio, tips and sliding by the names of their results."""
-    crossing, (roller, ring) = geo.crossing_of(geometry), geo.sliding(pair, geometry)
+    crossing, count = geo.crossing_of(geometry), geo.tips_count(pair)
+    roots, tips = geo.sliding_at_roots(geometry), geo.sliding_at_tips(geometry)
+    roller, ring = (np.maximum(root, count * tip) for root, tip in zip(roots, tips, strict=True))
     return {
         "contact_ratio": geo.contact_ratio(geometry),
         "half_angle_roller": geo.half_angle_at_tip(pair, geometry),
@@ -135,9 +154,9 @@ def _mesh(pair: Pair, geometry: geo.Geometry) -> dict[str, Any]:
         "crossing_angle_roller": crossing.roller,
         "crossing_angle_ring": crossing.ring,
         "tip_clearance": crossing.clearance,
-        **dict(zip(("root_sliding_roller", "root_sliding_ring"), geo.sliding_at_roots(geometry), strict=True)),
-        **dict(zip(("tip_sliding_roller", "tip_sliding_ring"), geo.sliding_at_tips(geometry), strict=True)),
-        "tips_count": geo.tips_count(pair),
+        **dict(zip(("root_sliding_roller", "root_sliding_ring"), roots, strict=True)),
+        **dict(zip(("tip_sliding_roller", "tip_sliding_ring"), tips, strict=True)),
+        "tips_count": count,
         "sliding_roller": roller,
         "sliding_ring": ring,
         "sliding_difference": np.abs(roller - ring),
@@ -164,3 +183,36 @@ def _cut(pair: Pair, ring: strength.Tooth) -> dict[str, Any]:
     """Return the section that a cutter leaves by the names of its results; 0 where the ring is taken as a rack."""
     section = {"chord": ring.root.chord, "fillet": ring.root.fillet, "arm": ring.arm.height, "angle": ring.arm.angle}
     return {f"cut_{name}_ring": np.where(strength.is_cut(pair), value, 0.0) for name, value in section.items()}
+
+
+# The constraints g1 to g10 of the paper and of gear geometry: above 0 is safe
+
+MARGINS = tuple(name for name in Meshing.__dataclass_fields__ if name.startswith("margin_"))
+
+
+def _margins(pair: Pair, geometry: Geometry, mesh: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the margins by the names of their results."""
+    roller, ring, distance = geometry.roller, geometry.ring, geometry.mounted_distance
+    clearances = {
+        "margin_opposite_tips": ring.tip_radius - roller.tip_radius + distance,
+        "margin_roller_root": ring.tip_radius - roller.root_radius - distance,
+        "margin_ring_root": ring.root_radius - roller.tip_radius - distance,
+    }
+    return {
+        "margin_ring_base": ring.tip_radius / ring.base_radius - 1.0,
+        "margin_roller_base": roller.tip_radius / roller.base_radius - 1.0,
+        "margin_contact_ratio": mesh["contact_ratio"] - pair.least_contact_ratio,
+        "margin_interference": mesh["tip_clearance"] - pair.interference_margin,
+        **{name: clearance / pair.module - pair.least_clearance for name, clearance in clearances.items()},
+        "margin_involute": involute_margin(geometry),
+        "margin_undercut": pair.roller_shift - undercut_limit(pair),
+        "margin_tip_land": mesh["tip_land"] / pair.module - pair.least_tip_land,
+        "margin_sliding": pair.most_sliding_difference - mesh["sliding_difference"],
+    }
+
+
+def undercut_limit(pair: Pair) -> Float:
+    """Return the shift below which the rack undercuts the roller."""
+    sine = np.sin(pair.pressure_angle)
+    straight = pair.addendum + pair.clearance - pair.roller_fillet * (1.0 - sine)
+    return straight - 0.5 * pair.roller_teeth * sine**2

@@ -88,16 +88,6 @@ def involute_margin(geometry: Geometry) -> Float:
     return pairs.clear_of_base(_teeth(geometry), geometry.ring.tip_angle, geometry.mounted_angle)
 
 
-def sliding(pair: Pair, geometry: Geometry) -> tuple[Float, Float]:
-    """Return the specific sliding of roller and ring that counts, magnitudes; NaN under involute interference.
-
-    The largest on the path of contact, or that at the roots, as ``sliding_reading`` has it.
-    """
-    roots, tips = sliding_at_roots(geometry), sliding_at_tips(geometry)
-    count = tips_count(pair)
-    return np.maximum(roots[0], count * tips[0]), np.maximum(roots[1], count * tips[1])
-
-
 def tips_count(pair: Pair) -> float:
     """Return 1 where the sliding at the tips counts, 0 where that at the roots alone does."""
     return 1.0 if pair.sliding_reading == "path" else 0.0

@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from roller_screw_shift.calculation import roller_screw_shift
+from roller_screw_shift.calculation import MARGINS, roller_screw_shift
 from roller_screw_shift.effects import EFFECTS
-from roller_screw_shift.optimum import LIMITS, Shifting, choice
+from roller_screw_shift.optimum import Shifting, choice
 from roller_screw_shift.published import FINDINGS, PUBLISHED
 from roller_screw_shift.sheet import SECTIONS
 from truing import Maximise, Minimise, Model, Optimise, Require, Tolerance, Vary, plus_minus
@@ -26,7 +26,6 @@ LITERATURE = [
     "Guin, J. A., Modification of the complex method of constrained optimization, The Computer Journal 10 (1968), p. "
     "416.",
 ]
-MARGINS = tuple(LIMITS)
 
 ROLLER_SCREW_SHIFT = Model(
     name="roller_screw_shift",

@@ -1,110 +1,16 @@
-"""The objectives and constraints of the paper, and how three objectives become one."""
+"""How the three objectives of the paper become one, and how they and the limits run over the shift."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import sqrt
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from roller_screw_shift import geometry as geo
+from roller_screw_shift.calculation import MARGINS, meshing_of
 from roller_screw_shift.quantities import Pair
-from roller_screw_shift.strength import ring_tooth, roller_tooth
 from truing import Array, Float, TruingError
-
-# The three objectives of the paper: sum of the shifts, difference of the root stresses, difference of sliding
-
-
-@dataclass(frozen=True, kw_only=True)
-class Objectives:
-    """f1 (to be large), f2 in Pa and f3 (to be small)."""
-
-    shift_sum: Float
-    stress_difference: Float
-    sliding_difference: Float
-
-
-def objectives_of(pair: Pair) -> Objectives:
-    """Return the objectives of one shift or of many; NaN where one does not exist, never an exception.
-
-    The stresses are nominal: the neutral factors of load, rim and face width do not change the choice of the shift.
-    """
-    with np.errstate(all="ignore"):
-        geometry = geo.geometry_of(pair)
-        difference = np.abs(roller_tooth(pair).stress - ring_tooth(pair, geometry).stress)
-        return Objectives(
-            shift_sum=pair.roller_shift + geometry.ring_shift,
-            stress_difference=difference,
-            sliding_difference=sliding_difference(pair, geometry),
-        )
-
-
-def sliding_difference(pair: Pair, geometry: geo.Geometry) -> Float:
-    """Return the difference of the magnitudes of specific sliding that count of both gears."""
-    roller, ring = geo.sliding(pair, geometry)
-    return np.abs(roller - ring)
-
-
-# The constraints g1 to g10 of the paper and of gear geometry as margins: above 0 is safe
-
-
-@dataclass(frozen=True, kw_only=True)
-class Margins:
-    """The constraints in the order of their numbers, named as the results are."""
-
-    margin_ring_base: Float
-    margin_roller_base: Float
-    margin_contact_ratio: Float
-    margin_interference: Float
-    margin_opposite_tips: Float
-    margin_roller_root: Float
-    margin_ring_root: Float
-    margin_involute: Float
-    margin_undercut: Float
-    margin_tip_land: Float
-    margin_sliding: Float
-
-
-def margins_of(pair: Pair) -> Margins:
-    """Return the margins of one shift or of many; NaN where one does not exist, never an exception.
-
-    Where a tip circle lies inside its base circle, what depends on the angle at the tip does not exist; where the tip
-    of the ring meets no involute, sliding does not. Another margin is below 0 then.
-    """
-    with np.errstate(all="ignore"):
-        return margins_at(pair, geo.geometry_of(pair))
-
-
-def margins_at(pair: Pair, geometry: geo.Geometry) -> Margins:
-    """Return the margins of a pair whose geometry is known."""
-    roller, ring, distance = geometry.roller, geometry.ring, geometry.mounted_distance
-    return Margins(
-        margin_ring_base=ring.tip_radius / ring.base_radius - 1.0,
-        margin_roller_base=roller.tip_radius / roller.base_radius - 1.0,
-        margin_contact_ratio=geo.contact_ratio(geometry) - pair.least_contact_ratio,
-        margin_interference=geo.crossing_of(geometry).clearance - pair.interference_margin,
-        margin_opposite_tips=_over(pair, ring.tip_radius - roller.tip_radius + distance),
-        margin_roller_root=_over(pair, ring.tip_radius - roller.root_radius - distance),
-        margin_ring_root=_over(pair, ring.root_radius - roller.tip_radius - distance),
-        margin_involute=geo.involute_margin(geometry),
-        margin_undercut=pair.roller_shift - undercut_limit(pair),
-        margin_tip_land=geo.tip_land(pair, geometry) / pair.module - pair.least_tip_land,
-        margin_sliding=pair.most_sliding_difference - sliding_difference(pair, geometry),
-    )
-
-
-def _over(pair: Pair, clearance: Float) -> Float:
-    """Return a clearance in modules over the least."""
-    return clearance / pair.module - pair.least_clearance
-
-
-def undercut_limit(pair: Pair) -> Float:
-    """Return the shift below which the rack undercuts the roller."""
-    sine = np.sin(pair.pressure_angle)
-    straight = pair.addendum + pair.clearance - pair.roller_fillet * (1.0 - sine)
-    return straight - 0.5 * pair.roller_teeth * sine**2
-
 
 # Three objectives made one: each brought to 0 to 1 over its range, weighed, and added
 #
@@ -126,10 +32,7 @@ def normalised(value: Float, reach: Range) -> Float:
 
     f_r = (X - sin X)/(2 pi) with X = 2 pi (value - low)/(high - low). Raises TruingError where the range has no width.
     """
-    low, high = reach
-    if not (low < high and np.isfinite(high - low)):
-        raise TruingError(f"an objective from {low:g} to {high:g} cannot be brought to 0 to 1: its range has no width")
-    turn = 2.0 * np.pi * np.clip((value - low) / (high - low), 0.0, 1.0)
+    turn = 2.0 * np.pi * np.clip((value - reach[0]) / _width(reach), 0.0, 1.0)
     return (turn - np.sin(turn)) / (2.0 * np.pi)
 
 
@@ -138,10 +41,14 @@ def weight(reach: Range) -> float:
 
     It has a unit, one over that of the objective squared: stresses in other units would weigh otherwise.
     """
+    return (0.5 * _width(reach)) ** -2
+
+
+def _width(reach: Range) -> float:
     low, high = reach
     if not (low < high and np.isfinite(high - low)):
-        raise TruingError(f"an objective from {low:g} to {high:g} has no weight: its range has no width")
-    return (0.5 * (high - low)) ** -2
+        raise TruingError(f"an objective from {low:g} to {high:g} cannot be weighed: its range has no width")
+    return high - low
 
 
 def rule_weights(ranges: Ranges) -> Three:
@@ -227,17 +134,10 @@ class Interval:
 def course_of(pair: Pair, shifts: Array) -> ShiftCourse:
     """Return objectives and margins of these shifts (n,) in one call; NaN where one does not exist."""
     shifts = np.asarray(shifts, dtype=float)
-    shifted = replace(pair, roller_shift=shifts)
-    found = objectives_of(shifted)
-    stress = np.asarray(found.stress_difference) / MEGA
-    objectives = np.array([_each(values, shifts) for values in (found.shift_sum, stress, found.sliding_difference)])
-    return ShiftCourse(
-        shifts, objectives, {name: _each(each, shifts) for name, each in vars(margins_of(shifted)).items()}
-    )
-
-
-def _each(values: Any, shifts: Array) -> Array:
-    return np.broadcast_to(np.asarray(values, dtype=float), shifts.shape)
+    found = meshing_of(replace(pair, roller_shift=shifts))
+    names = ("shift_sum", "stress_difference", "sliding_difference", *MARGINS)
+    total, stress, sliding, *margins = (np.broadcast_to(getattr(found, name), shifts.shape) for name in names)
+    return ShiftCourse(shifts, np.array([total, stress / MEGA, sliding]), dict(zip(MARGINS, margins, strict=True)))
 
 
 def intervals_of(pair: Pair, span: tuple[float, float], points: int) -> tuple[Interval, ...]:

@@ -2,11 +2,12 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import floor, isfinite, log10, nan
+from math import isfinite, nan
 from typing import Any, Literal
 
 import numpy as np
 
+from gear_geometry.drawing import signed as written
 from roller_screw_shift import objectives
 from roller_screw_shift.geometry import geometry_of
 from roller_screw_shift.quantities import Pair
@@ -213,11 +214,11 @@ def limits_at(field: Field, shift: float) -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class Variant:
-    """The optimum under another least contact ratio or with other weights."""
+    """The optimum under another least contact ratio or with other weights: their reading and their values."""
 
     least_contact_ratio: float
-    reading: str
-    weights: objectives.Three
+    weights: str
+    values: objectives.Three
     shift: float
     contact_ratio: float
     limits: tuple[str, ...]
@@ -294,7 +295,7 @@ class Shifting:
             raise TruingError(f"study '{self.name}': points = {self.points}, but a grid has 11 to 1000000")
         if not all(ratio >= 1 for ratio in self.ratios):
             raise TruingError(f"study '{self.name}': ratios are least contact ratios, 1 or more")
-        Plan(vertices=self.vertices, reflection=self.reflection, spread=self.spread)
+        _ = self.plan  # which refuses what makes no complex
 
     def run(self, bench: Bench) -> "ChosenShift":
         """Find where every limit is kept, the ranges of the objectives there, the weights, and the optimum."""
@@ -309,7 +310,7 @@ class Shifting:
         bench.progress(self.name, 1, _steps(ratios))
         weights = objectives.weights_of(pair.weights, field.ranges)
         grid = grid_optimum(field, weights)
-        box, remarks = self._box(bench, field, weights, span)
+        box, remarks = self._box(bench, field, weights)
         best = grid if box is None else float(box.point[0])
         return ChosenShift(
             pair, span, equal,
@@ -326,12 +327,14 @@ class Shifting:
             remarks=remarks,
         )  # fmt: skip
 
-    def _box(
-        self, bench: Bench, field: Field, weights: objectives.Three, span: tuple[float, float]
-    ) -> tuple[BoxOptimum | None, tuple[str, ...]]:
-        plan = Plan(vertices=self.vertices, reflection=self.reflection, spread=self.spread)
+    @property
+    def plan(self) -> Plan:
+        """How Box's method searches."""
+        return Plan(vertices=self.vertices, reflection=self.reflection, spread=self.spread)
+
+    def _box(self, bench: Bench, field: Field, weights: objectives.Three) -> tuple[BoxOptimum | None, tuple[str, ...]]:
         try:
-            found = box_optimum(field, weights, span, np.random.default_rng(bench.setup.seed), plan)
+            found = box_optimum(field, weights, self.span, np.random.default_rng(bench.setup.seed), self.plan)
         except TruingError as error:
             return None, (f"Box's method found nothing: {error}; the grid's optimum stands",)
         return found, () if found.settled else ("Box's method ended before its vertices met",)
@@ -370,10 +373,9 @@ def _compared(bench: Bench, field: Field, best: float) -> Mapping[str, Any]:
 
 def _kept(bench: Bench, shift: float) -> float:
     """The share of screws of this shift that keep every limit, with the tolerances in force."""
-    names = tuple(objectives.Margins.__dataclass_fields__)
     columns = {**bench.drawn(SCREWS), "roller_shift": np.full(SCREWS, shift)}
-    found = bench.rows(columns, SCREWS, *names)
-    return float(np.mean(np.all([found[name] >= 0.0 for name in names], axis=0)))
+    found = bench.rows(columns, SCREWS, *LIMITS)
+    return float(np.mean(np.all([found[name] >= 0.0 for name in LIMITS], axis=0)))
 
 
 def before(field: Field) -> float:
@@ -424,47 +426,30 @@ class ChosenShift(Outcome):
             return entry
         names = ("shift_sum", "stress_difference", "sliding_difference")
         ranges = zip(names, OBJECTIVES, field.ranges, strict=True)
-        entry["intervals"] = [
-            {"low": part.low, "high": part.high, "low_limits": list(part.low_limits),
-             "high_limits": list(part.high_limits)}
-            for part in field.intervals
-        ]  # fmt: skip
+        entry["intervals"] = [vars(part) for part in field.intervals]
         entry["ranges"] = {name: {"low": low, "high": high, "unit": unit} for name, (_, _, unit), (low, high) in ranges}
         entry["weights"] = {"reading": self.inputs.weights, "values": list(self.weights)}
         entry["grid"] = {"shift": self.grid, "points": len(field.course.shifts)}
         if self.box is not None:
-            box = self.box
-            entry["box"] = {
-                "shift": float(box.point[0]), "cost": box.cost, "spread": box.spread, "evaluations": box.evaluations,
-                "drawn": box.drawn, "reflections": box.reflections, "settled": box.settled,
-            }  # fmt: skip
+            rest = {name: value for name, value in vars(self.box).items() if name != "point"}
+            entry["box"] = {"shift": float(self.box.point[0]), **rest}
         entry["other_sliding_reading"] = {"reading": OTHER[self.inputs.sliding_reading], "shift": number(self.other)}
         entry["limits"] = list(self.limits)
         entry["kept"] = {"stated": number(self.kept[0]), "optimum": number(self.kept[1])}
         entry["stress_factor"] = self.factor
-        entry["variants"] = [
-            {"least_contact_ratio": each.least_contact_ratio, "weights": each.reading, "values": list(each.weights),
-             "shift": each.shift, "contact_ratio": each.contact_ratio, "limits": list(each.limits)}
-            for each in self.variants
-        ]  # fmt: skip
+        entry["variants"] = [vars(each) for each in self.variants]
         return entry
 
     def warnings(self) -> Sequence[str]:
-        """Say what was not found."""
-        status = () if self.status == FOUND else (self.status,)
-        return [f"study 'shift': {text}" for text in (*status, *self.remarks, *_silent(self))]
-
-
-def _silent(chosen: ChosenShift) -> Sequence[str]:
-    """Name objectives that are the same for every shift."""
-    names = ("sum of the shifts", "difference of the root stresses", "difference of sliding")
-    if chosen.field is None:
-        return ()
-    return [
-        f"the {name} is the same for every shift, so it is left out of the weighing"
-        for name, (low, high) in zip(names, chosen.field.ranges, strict=True)
-        if not high > low
-    ]
+        """Say what was not found, and name objectives that are the same for every shift."""
+        said = list(self.remarks) if self.status == FOUND else [self.status]
+        if self.field is not None:
+            said += [
+                f"the {name} is the same for every shift, so it is left out of the weighing"
+                for (name, _, _), (low, high) in zip(OBJECTIVES, self.field.ranges, strict=True)
+                if not high > low
+            ]
+        return [f"study 'shift': {text}" for text in said]
 
 
 # How the choice of the shift is written: results.json, tables and words of the sheet
@@ -475,7 +460,6 @@ SLIDING = {
     "path": "the largest sliding of each gear on the path of contact",
     "roots": "the sliding at the roots alone, which need not be the largest,",
 }
-RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 LIMITS = {
     "margin_ring_base": ("g1", "base circle of the ring"),
     "margin_roller_base": ("g2", "base circle of the roller"),
@@ -574,11 +558,11 @@ def optimum_words(chosen: "ChosenShift", field: "Field") -> "list[Block]":
     ring = chosen.shift + field_difference(field)
     where = f"The optimum is {signed(chosen.shift)} for the roller and {signed(ring)} for the ring. "
     if chosen.box is not None:
-        box = chosen.box
+        box, beside = chosen.box, abs(chosen.shift - chosen.grid)
         where += (
             f"Box's method found it with {box.evaluations} evaluations, {box.drawn} to draw the first vertices; "
             f"the grid of {len(field.course.shifts)} shifts says {signed(chosen.grid, '.6f')}, "
-            f"{small(abs(chosen.shift - chosen.grid))} beside it."
+            f"{signed(beside, '.1e') if beside else 'nothing'} beside it."
         )
     blocks.append(Words(where))
     held = (
@@ -626,7 +610,7 @@ def variants_table(chosen: "ChosenShift", field: "Field") -> Table:
     """List the optimum by least contact ratio and weights."""
     difference = field_difference(field)
     rows = [
-        (f"{each.least_contact_ratio:g}", READING[each.reading], each.shift, each.shift + difference,
+        (f"{each.least_contact_ratio:g}", READING[each.weights], each.shift, each.shift + difference,
          each.contact_ratio, spoken(each.limits) or "none")
         for each in chosen.variants
     ]  # fmt: skip
@@ -638,17 +622,9 @@ def variants_table(chosen: "ChosenShift", field: "Field") -> Table:
     )
 
 
-def small(value: float) -> str:
-    """A small number in words of the sheet."""
-    if not value:
-        return "nothing"
-    power = floor(log10(value))
-    return f"{value / 10.0**power:.1f}·10{str(power).translate(RAISED)}"
-
-
 def signed(value: float, digits: str = ".4f") -> str:
-    """A number with a true minus."""
-    return f"{value:{digits}}".replace("-", "−")
+    """A number with a true minus, by default with four decimals."""
+    return written(value, digits)
 
 
 # What the choice of the shift gives as results

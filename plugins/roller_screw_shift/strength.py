@@ -70,10 +70,10 @@ def roller_fillet(pair: Pair) -> roots.Fillet:
     return roots.fillet_of(rack_of(pair, pair.roller_fillet), pair.roller_teeth, pair.roller_shift)
 
 
-def roller_tooth(pair: Pair) -> Tooth:
+def roller_tooth(pair: Pair, fillet: roots.Fillet) -> Tooth:
     """Return the tooth of the roller: made by a rack, section at the tangent of 30 degrees. Source: ISO 6336-3."""
     rack, teeth, shift = rack_of(pair, pair.roller_fillet), pair.roller_teeth, pair.roller_shift
-    root = roots.external_root(rack, teeth, shift)
+    root = roots.external_root(rack, teeth, shift, fillet)
     return _tooth(pair, root, roots.external_arm(rack, teeth, shift, root, teeth + 2.0 * (pair.addendum + shift)))
 
 

@@ -29,7 +29,7 @@ LEAST_FORCE = 1e-3  # N, of an idle mesh: even that touches somewhere
 
 def face_misalignment(stage: Gearing, *, misalignment: Float, per_load: Float) -> Gearing:
     """The teeth do not meet along their whole width: by so much at any load, and by so much per newton of a mesh."""
-    out_of_line = misalignment + per_load * load_of(stage).tangential_force
+    out_of_line = misalignment + per_load * load_of(stage).duty.tangential_force
     return replace(stage, extra_misalignment=stage.extra_misalignment + out_of_line)
 
 
@@ -40,7 +40,7 @@ def structural_resonance(stage: Gearing, *, strength: Float, resonance_speed: Fl
     ``strength`` N² / sqrt((1 - N²)² + (2 zeta N)²), nothing at rest and strength/(2 zeta) at the resonance. Speeds are
     those of the sun relative to the carrier, which the frequency of the mesh follows.
     """
-    answer = strength * shaken_by_error(load_of(stage).mesh_speed / resonance_speed, damping)
+    answer = strength * shaken_by_error(load_of(stage).duty.mesh_speed / resonance_speed, damping)
     return replace(stage, extra_dynamic_factor=stage.extra_dynamic_factor + answer)
 
 
@@ -55,7 +55,7 @@ def crowned_contact(stage: Gearing, *, full_line_load: Float) -> Gearing:
     Of a parabola, on a bed of springs and on Hertz's half space alike. The mean over this width is what is raised; how
     uneven the load is across it stays with the face load factor.
     """
-    force = np.maximum(load_of(stage).tangential_force, LEAST_FORCE)
+    force = np.maximum(load_of(stage).duty.tangential_force, LEAST_FORCE)
     share = np.cbrt(force / np.maximum(force, full_line_load * stage.face_width))
     return replace(stage, carrying_share=stage.carrying_share * share)
 
@@ -73,7 +73,7 @@ def relief_error(stage: Gearing, *, missing: Float) -> Gearing:
 
 def relative_angle(load: ToothLoad, input_angle: Float) -> Float:
     """Return the angle of the sun against the carrier, which turns with the output."""
-    return input_angle * (1.0 - 1.0 / load.ratio)
+    return input_angle * (1.0 - 1.0 / load.duty.ratio)
 
 
 def with_error(strength: Strength, error: Float) -> Strength:
@@ -120,8 +120,8 @@ def output_eccentricity(
 ) -> Strength:
     """The output, or what it is measured on, is off its axis; and the teeth of the discs pass once per turn of it."""
     load = load_of(stage)
-    output = input_angle / load.ratio
-    of_teeth = wave((load.pins - 1.0) * output, tooth_cosine, tooth_sine)
+    output = input_angle / load.duty.ratio
+    of_teeth = wave((load.duty.pins - 1.0) * output, tooth_cosine, tooth_sine)
     return with_error(strength, wave(output, cosine, sine) + of_teeth)
 
 
@@ -203,9 +203,9 @@ def speed_dependent_loss(stage: Gearing, strength: Strength, *, constant: Float,
     T_1 is the torque that was calculated without M_0, so the loss is meant to be small beside it.
     """
     load = load_of(stage)
-    product = viscosity_at_work(stage) * load.input_speed
+    product = viscosity_at_work(stage) * load.duty.sun_speed
     held_back = constant + viscous * np.cbrt(product / REFERENCE) ** 2
-    loss = held_back / np.maximum(load.sun_torque, LEAST_TORQUE)
+    loss = held_back / np.maximum(load.duty.sun_torque, LEAST_TORQUE)
     return replace(strength, efficiency=np.maximum(strength.efficiency - loss, 0.0))
 
 
@@ -215,7 +215,7 @@ def speed_dependent_loss(stage: Gearing, strength: Strength, *, constant: Float,
 def wind_up(stage: Gearing, strength: Strength, *, compliance: Float) -> Strength:
     """The shaft of the sun twists in proportion to its torque, to the side to which it turns."""
     load = load_of(stage)
-    return with_error(strength, compliance * load.sun_torque * load.direction)
+    return with_error(strength, compliance * load.duty.sun_torque * load.direction)
 
 
 def lost_motion(stage: Gearing, strength: Strength, *, play: Float, torque_scale: Float) -> Strength:
@@ -224,7 +224,7 @@ def lost_motion(stage: Gearing, strength: Strength, *, play: Float, torque_scale
     At ``torque_scale`` of the output 76 % (tanh 1) of half the play is taken up.
     """
     load = load_of(stage)
-    torque = load.direction * load.sun_torque * load.ratio * load.efficiency
+    torque = load.direction * load.duty.output_torque
     moved = with_error(strength, 0.5 * play * np.tanh(torque / torque_scale))
     return replace(moved, backlash=strength.backlash + play)
 

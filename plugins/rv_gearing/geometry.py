@@ -8,7 +8,7 @@ import numpy as np
 from gear_geometry import pairs
 from gear_geometry.pairs import involute, transverse_angle
 from gear_geometry.roots import Rack
-from rv_gearing.groups import chosen_teeth, efficiency_of, ratio_of, torque_of
+from rv_gearing.groups import chosen_teeth, efficiency_of, mesh_efficiency, ratio_of, torque_of
 from rv_gearing.quantities import Gear, Gearing
 from truing import Array, Float, either, feasible, found, results
 
@@ -20,21 +20,54 @@ from truing import Array, Float, either, feasible, found, results
 LEAST_LINE_LOAD = 1.0  # N/m; what an idle mesh counts as loaded with where something is divided by the load
 
 
+@results
+class Duty:
+    """What the drive does, and what it asks of one mesh."""
+
+    pins: Float = found("", symbol="Z_5", note="pins", method="those stated, else those of the group", digits=4)
+    ratio: Float = found("", symbol="i", note="input turns over output turns", source="equation 1 of the paper",
+                         formula="1 + teeth_planet * pins / teeth_sun")  # fmt: skip
+    pin_ratio: Float = found("", symbol="k", note="pins over teeth of the disc", formula="pins / (pins - 1)")
+    mesh_efficiency: Float = found(
+        "", symbol="eta_16", note="efficiency of both meshes", source="equation 8 of the paper",
+        formula="(pin_ratio - 1) * (pin_ratio - cycloid_efficiency + tooth_ratio * pin_ratio * involute_efficiency)"
+        " / ((pin_ratio - cycloid_efficiency) * (pin_ratio - 1 + tooth_ratio * pin_ratio))",
+    )  # fmt: skip
+    sun_speed: Float = found("rpm", symbol="n_1", note="speed of the sun",
+                             formula="either(input_speed, output_speed * ratio)")  # fmt: skip
+    mesh_speed: Float = found("rpm", symbol="n_rel", note="speed of the sun relative to the carrier",
+                              formula="either(stated_mesh_speed, sun_speed * (1 - 1 / ratio))")  # fmt: skip
+    asked_torque: Float = found(
+        "N*m", symbol="T_a", note="torque asked for at the output: as given, else that of the power", numeric=True,
+        formula="abs(either(load_torque, 9550 * power / sun_speed * ratio * mesh_efficiency * bearing_efficiency**3))",
+    )  # fmt: skip
+    sun_torque: Float = found(
+        "N*m", symbol="T_1", note="torque of the sun; as stated where it is",
+        formula="either(stated_sun_torque, asked_torque / (ratio * mesh_efficiency * bearing_efficiency**3))",
+    )  # fmt: skip
+    output_torque: Float = found("N*m", symbol="T_2", note="torque at the output",
+                                 formula="sun_torque * ratio * mesh_efficiency * bearing_efficiency**3")  # fmt: skip
+    tangential_force: Float = found("N", symbol="F_t", note="tangential force of one mesh, without load factors",
+                                    formula="2 * sun_torque / (planets * reference_diameter_sun)")  # fmt: skip
+    pitch_line_velocity: Float = found("m/s", symbol="v", note="pitch line velocity relative to the carrier",
+                                       formula="pi * reference_diameter_sun * mesh_speed")  # fmt: skip
+    carrying_width: Float = found("mm", symbol="b_w", note="face width that carries",
+                                  formula="carrying_share * face_width")  # fmt: skip
+    line_load: Float = found("N/mm", symbol="w", note="line load with the application factor", numeric=True,
+                             formula="max(tangential_force * application_factor / carrying_width, 0.001)")  # fmt: skip
+
+
 @dataclass(frozen=True, kw_only=True)
 class ToothLoad:
-    """What one mesh of sun and planet carries; the force is nominal, without any load factor."""
+    """What one mesh of sun and planet carries: the duty as it is printed, and what else the calculation needs of it.
 
+    The direction is the sign of the load torque, +1 where there is none.
+    """
+
+    duty: Duty
     sun: Float
     planet: Float
-    pins: Float
-    ratio: Float
     efficiency: Float
-    asked_torque: Float
-    sun_torque: Float
-    input_speed: Float
-    mesh_speed: Float
-    tangential_force: Float
-    line_load: Float
     direction: Float
     base_radii: tuple[Float, Float]
 
@@ -42,34 +75,41 @@ class ToothLoad:
 def load_of(stage: Gearing) -> ToothLoad:
     """Return the load of a stage: by torque and speed where they are given, else by power and output speed.
 
-    The line load is that of the width that carries, with the application factor, and never 0. The direction is the sign
-    of the load torque, +1 where there is none.
+    The force is nominal, without any load factor. The line load is that of the width that carries, with the application
+    factor, and never 0.
     """
     teeth = chosen_teeth(stage)
     ratio = ratio_of(teeth.sun, teeth.planet, teeth.pins)
     efficiency = efficiency_of(stage, teeth.sun, teeth.planet, teeth.pins)
     speed = either(stage.input_speed, stage.output_speed * ratio)
+    mesh_speed = either(stage.stated_mesh_speed, speed * (1.0 - 1.0 / ratio))
     reduction = ratio * efficiency
     asked = np.abs(either(stage.load_torque, torque_of(stage.power, speed) * reduction))
     torque = either(stage.stated_sun_torque, asked / reduction)
     half = 0.5 * stage.module / np.cos(stage.helix_angle)
     radii = half * teeth.sun, half * teeth.planet
-    force = torque / (stage.planets * radii[0])
+    force, width = torque / (stage.planets * radii[0]), stage.carrying_share * stage.face_width
     inward = np.cos(transverse_angle(stage.pressure_angle, stage.helix_angle))
-    return ToothLoad(
-        sun=teeth.sun,
-        planet=teeth.planet,
+    duty = Duty(
         pins=teeth.pins,
         ratio=ratio,
-        efficiency=efficiency,
+        pin_ratio=teeth.pins / (teeth.pins - 1.0),
+        mesh_efficiency=mesh_efficiency(stage, teeth.planet / teeth.sun, teeth.pins),
+        sun_speed=speed,
+        mesh_speed=mesh_speed,
         asked_torque=asked,
         sun_torque=torque,
-        input_speed=speed,
-        mesh_speed=either(stage.stated_mesh_speed, speed * (1.0 - 1.0 / ratio)),
+        output_torque=torque * ratio * efficiency,
         tangential_force=force,
-        line_load=np.maximum(
-            force * stage.application_factor / (stage.carrying_share * stage.face_width), LEAST_LINE_LOAD
-        ),
+        pitch_line_velocity=np.pi * (teeth.sun * stage.module / np.cos(stage.helix_angle)) * mesh_speed,
+        carrying_width=width,
+        line_load=np.maximum(force * stage.application_factor / width, LEAST_LINE_LOAD),
+    )
+    return ToothLoad(
+        duty=duty,
+        sun=teeth.sun,
+        planet=teeth.planet,
+        efficiency=efficiency,
         direction=np.where(stage.load_torque < 0.0, -1.0, 1.0),
         base_radii=(radii[0] * inward, radii[1] * inward),
     )

@@ -6,7 +6,7 @@ paper; and the study that shows them.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -357,14 +357,8 @@ GroupColumn = Literal[
     "root_stress_planet", "contact_stress_sun", "contact_stress_planet", "root_safety_sun", "root_safety_planet",
     "contact_safety_sun", "contact_safety_planet",
 ]  # fmt: skip
-STRENGTH: tuple[GroupColumn, ...] = (
-    "root_stress_sun", "root_stress_planet", "contact_stress_sun", "contact_stress_planet", "root_safety_sun",
-    "root_safety_planet", "contact_safety_sun", "contact_safety_planet",
-)  # fmt: skip
-SIZES: tuple[GroupColumn, ...] = (
-    "sun", "planet", "pins", "ratio", "deviation", "torque", "centre_distance", "circle_low", "circle_high",
-)  # fmt: skip
-MEETING: tuple[GroupColumn, ...] = ("common_first", "common_second", "planet_kinds", "mesh_phases", "preference")
+COLUMNS: tuple[GroupColumn, ...] = get_args(GroupColumn)
+SIZES, MEETING, STRENGTH = COLUMNS[1:10], COLUMNS[10:15], COLUMNS[15:]
 PERMITTED = tuple(f"permitted_{name}" for name in STRENGTH if "stress" in name)
 PRINTED = {"deviation": ("%", 100.0), "torque": ("N*m", 1.0)} | dict.fromkeys(
     ("centre_distance", "circle_low", "circle_high"), ("mm", 1e3)
@@ -426,7 +420,7 @@ class GroupSearch:
     gives: Callable[[Any], Any] | None = None
 
     def __post_init__(self) -> None:
-        if self.sort_by not in ("group", *SIZES, *MEETING, *STRENGTH):
+        if self.sort_by not in COLUMNS:
             raise TruingError(f"study '{self.name}': the groups have no column '{self.sort_by}'")
 
     def run(self, bench: "Bench") -> "FoundGroups":
@@ -521,7 +515,7 @@ class FoundGroups(Outcome):
     def as_json(self) -> Mapping[str, Any]:
         """Return counts, the rated group and every column in its printed unit; null where there is no answer."""
         columns = {}
-        for name in ("group", *SIZES, *MEETING, *STRENGTH):
+        for name in COLUMNS:
             unit, factor = printed_in(name)
             values = [float(value) * factor if np.isfinite(value) else None for value in self.column(name)]
             columns[name] = {"unit": unit, "values": values}

@@ -167,7 +167,7 @@ def stiffness_of(
     rack = (1.0 + 0.5 * (1.2 - stage.dedendum)) * (1.0 - 0.02 * (20.0 - np.degrees(stage.pressure_angle)))
     moduli = stage.sun.young_modulus, stage.planet.young_modulus
     modulus = 2.0 * moduli[0] * moduli[1] / ((moduli[0] + moduli[1]) * STEEL_MODULUS)
-    low = np.minimum((load.line_load / FULL_LOAD) ** 0.25, 1.0)
+    low = np.minimum((load.duty.line_load / FULL_LOAD) ** 0.25, 1.0)
     tooth = 0.8 * rack * np.cos(stage.helix_angle) * modulus * low * theoretical
     mesh = either(stage.stated_mesh_stiffness, tooth * (0.75 * contact_ratio + 0.25))
     return MeshStiffness(
@@ -281,8 +281,8 @@ def dynamics_of(
     bases = load.base_radii
     mass = inertia[0] * inertia[1] / (stage.planets * inertia[1] * bases[0] ** 2 + inertia[0] * bases[1] ** 2)
     resonance = np.sqrt(stiffness.mesh_stiffness / mass) / (2.0 * np.pi * load.sun)
-    ratio, limit = load.mesh_speed / resonance, resonance_limit(load.line_load)
-    specific = stiffness.tooth_stiffness / load.line_load
+    ratio, limit = load.duty.mesh_speed / resonance, resonance_limit(load.duty.line_load)
+    specific = stiffness.tooth_stiffness / load.duty.line_load
     pitch, profile, relief = specific * quality.pitch_left, specific * quality.profile_left, _relief(stage, specific)
     c_2, c_3, c_4, c_6, c_7 = coefficients(total_contact_ratio)
     slow = 0.32 * pitch + c_2 * profile + c_3 * relief

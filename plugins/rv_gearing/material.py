@@ -1,5 +1,7 @@
 """What the treatment of the steel fixes, and what it bears at the number of loads of a life."""
 
+from typing import Any
+
 import numpy as np
 
 from rv_gearing.geometry import ToothLoad
@@ -16,43 +18,34 @@ LIFE = "ISO 6336-3:2006, clause 12"
 NOTCH = "ISO 6336-3:2006, clause 13"
 SURFACE = "ISO 6336-3:2006, clause 14"
 SIZE = "ISO 6336-3:2006, clause 15"
-BY_MATERIAL = "by the material"
 PROOF_STRESS = (500e6, 600e6, 800e6, 1000e6)  # Pa, of through-hardened steel
 SLIP_LAYER = (0.0281e-3, 0.0194e-3, 0.0064e-3, 0.0014e-3)  # m
+
+
+def constant(symbol: str, note: str, source: str) -> Any:
+    """Declare a number that the material fixes."""
+    return found("", symbol=symbol, note=note, method="by the material", source=source)
 
 
 @results
 class Steel:
     """Constants of the material of both gears, as the formulas of the factors use them."""
 
-    contact_life_most: Float = found("", symbol="Z_NT,st", note="life factor for contact of few cycles",
-                                     method=BY_MATERIAL, source=PART_2)  # fmt: skip
-    contact_life_knee: Float = found("", symbol="N_H", note="cycles of the endurance limit for contact",
-                                     method=BY_MATERIAL, source=PART_2)  # fmt: skip
-    contact_life_slope: Float = found("", symbol="q_H", note="exponent of limited life for contact",
-                                      method=BY_MATERIAL, source=PART_2)  # fmt: skip
-    contact_life_tail: Float = found("", symbol="q_H,l", note="exponent of long life for contact",
-                                     method=BY_MATERIAL, source=PART_2)  # fmt: skip
-    bending_life_most: Float = found("", symbol="Y_NT,st", note="life factor for bending of few cycles",
-                                     method=BY_MATERIAL, source=LIFE)  # fmt: skip
-    bending_life_slope: Float = found("", symbol="q_F", note="exponent of limited life for bending",
-                                      method=BY_MATERIAL, source=LIFE)  # fmt: skip
+    contact_life_most: Float = constant("Z_NT,st", "life factor for contact of few cycles", PART_2)
+    contact_life_knee: Float = constant("N_H", "cycles of the endurance limit for contact", PART_2)
+    contact_life_slope: Float = constant("q_H", "exponent of limited life for contact", PART_2)
+    contact_life_tail: Float = constant("q_H,l", "exponent of long life for contact", PART_2)
+    bending_life_most: Float = constant("Y_NT,st", "life factor for bending of few cycles", LIFE)
+    bending_life_slope: Float = constant("q_F", "exponent of limited life for bending", LIFE)
     slip_layer: Float = found("mm", symbol="rho'", note="thickness of the slip layer", source=NOTCH,
                               method="by the material; of through-hardened steel by its proof stress")  # fmt: skip
-    surface_smooth: Float = found("", symbol="Y_R,0", note="surface factor of a root smoother than 1 um",
-                                  method=BY_MATERIAL, source=SURFACE)  # fmt: skip
-    surface_constant: Float = found("", symbol="Y_R,1", note="constant of the surface factor",
-                                    method=BY_MATERIAL, source=SURFACE)  # fmt: skip
-    surface_slope: Float = found("", symbol="Y_R,2", note="slope of the surface factor",
-                                 method=BY_MATERIAL, source=SURFACE)  # fmt: skip
-    surface_exponent: Float = found("", symbol="q_R", note="exponent of the surface factor",
-                                    method=BY_MATERIAL, source=SURFACE)  # fmt: skip
-    size_constant: Float = found("", symbol="Y_X,1", note="constant of the size factor for bending",
-                                 method=BY_MATERIAL, source=SIZE)  # fmt: skip
-    size_slope: Float = found("", symbol="Y_X,2", note="slope of the size factor for bending, per mm",
-                              method=BY_MATERIAL, source=SIZE)  # fmt: skip
-    size_least: Float = found("", symbol="Y_X,3", note="least size factor for bending",
-                              method=BY_MATERIAL, source=SIZE)  # fmt: skip
+    surface_smooth: Float = constant("Y_R,0", "surface factor of a root smoother than 1 um", SURFACE)
+    surface_constant: Float = constant("Y_R,1", "constant of the surface factor", SURFACE)
+    surface_slope: Float = constant("Y_R,2", "slope of the surface factor", SURFACE)
+    surface_exponent: Float = constant("q_R", "exponent of the surface factor", SURFACE)
+    size_constant: Float = constant("Y_X,1", "constant of the size factor for bending", SIZE)
+    size_slope: Float = constant("Y_X,2", "slope of the size factor for bending, per mm", SIZE)
+    size_least: Float = constant("Y_X,3", "least size factor for bending", SIZE)
 
 
 HARDENED_CONTACT = {
@@ -126,7 +119,7 @@ class Cycles:
 
 def cycles_of(stage: Gearing, load: ToothLoad) -> Cycles:
     """Return the load cycles of sun and planet: a sun tooth meets every planet."""
-    turns = load.mesh_speed * stage.working_life
+    turns = load.duty.mesh_speed * stage.working_life
     return Cycles(load_cycles_sun=turns * stage.planets, load_cycles_planet=turns * load.sun / load.planet)
 
 

@@ -10,8 +10,17 @@ from numpy.typing import NDArray
 
 from gear_geometry.pairs import involute
 from rv_gearing import load_factors, stress_factors
-from rv_gearing.geometry import LEAST_LINE_LOAD, GearSize, MeshSize, ToothLoad, Which, gear_size, load_of, mesh_size
-from rv_gearing.groups import mesh_efficiency
+from rv_gearing.geometry import (
+    LEAST_LINE_LOAD,
+    Duty,
+    GearSize,
+    MeshSize,
+    ToothLoad,
+    Which,
+    gear_size,
+    load_of,
+    mesh_size,
+)
 from rv_gearing.material import Cycles, GearLife, Steel, cycles_of, life_of, steel_of
 from rv_gearing.quantities import Gearing
 from truing import Array, Bench, Block, Float, Outcome, Sweep, Swept, Table, TruingError, found, part, results
@@ -29,43 +38,6 @@ BEARS_3 = "equation 11 of the paper; ISO 6336-3:2006, clause 5"
 METHOD_B = "ISO 6336-3:2006, clause 5, method B"
 GEARS: tuple[Which, Which] = ("sun", "planet")
 MOST_SAFETY = 1000.0  # a stage without load is that safe
-
-
-@results
-class Duty:
-    """What the drive does, and what it asks of one mesh."""
-
-    pins: Float = found("", symbol="Z_5", note="pins", method="those stated, else those of the group", digits=4)
-    ratio: Float = found("", symbol="i", note="input turns over output turns", source="equation 1 of the paper",
-                         formula="1 + teeth_planet * pins / teeth_sun")  # fmt: skip
-    pin_ratio: Float = found("", symbol="k", note="pins over teeth of the disc", formula="pins / (pins - 1)")
-    mesh_efficiency: Float = found(
-        "", symbol="eta_16", note="efficiency of both meshes", source="equation 8 of the paper",
-        formula="(pin_ratio - 1) * (pin_ratio - cycloid_efficiency + tooth_ratio * pin_ratio * involute_efficiency)"
-        " / ((pin_ratio - cycloid_efficiency) * (pin_ratio - 1 + tooth_ratio * pin_ratio))",
-    )  # fmt: skip
-    sun_speed: Float = found("rpm", symbol="n_1", note="speed of the sun",
-                             formula="either(input_speed, output_speed * ratio)")  # fmt: skip
-    mesh_speed: Float = found("rpm", symbol="n_rel", note="speed of the sun relative to the carrier",
-                              formula="either(stated_mesh_speed, sun_speed * (1 - 1 / ratio))")  # fmt: skip
-    asked_torque: Float = found(
-        "N*m", symbol="T_a", note="torque asked for at the output: as given, else that of the power", numeric=True,
-        formula="abs(either(load_torque, 9550 * power / sun_speed * ratio * mesh_efficiency * bearing_efficiency**3))",
-    )  # fmt: skip
-    sun_torque: Float = found(
-        "N*m", symbol="T_1", note="torque of the sun; as stated where it is",
-        formula="either(stated_sun_torque, asked_torque / (ratio * mesh_efficiency * bearing_efficiency**3))",
-    )  # fmt: skip
-    output_torque: Float = found("N*m", symbol="T_2", note="torque at the output",
-                                 formula="sun_torque * ratio * mesh_efficiency * bearing_efficiency**3")  # fmt: skip
-    tangential_force: Float = found("N", symbol="F_t", note="tangential force of one mesh, without load factors",
-                                    formula="2 * sun_torque / (planets * reference_diameter_sun)")  # fmt: skip
-    pitch_line_velocity: Float = found("m/s", symbol="v", note="pitch line velocity relative to the carrier",
-                                       formula="pi * reference_diameter_sun * mesh_speed")  # fmt: skip
-    carrying_width: Float = found("mm", symbol="b_w", note="face width that carries",
-                                  formula="carrying_share * face_width")  # fmt: skip
-    line_load: Float = found("N/mm", symbol="w", note="line load with the application factor", numeric=True,
-                             formula="max(tangential_force * application_factor / carrying_width, 0.001)")  # fmt: skip
 
 
 @results
@@ -184,8 +156,7 @@ def gear_of(
     gear, place = (stage.sun, 0) if which == "sun" else (stage.planet, 1)
     root = stress_factors.root_of(stage, sizes[place], mesh, steel, which)
     life = life_of(gear, steel, getattr(cycles, f"load_cycles_{which}"))
-    width = stage.carrying_share * stage.face_width
-    bent = load.tangential_force / (width * stage.module) * bending.helix_factor_bending
+    bent = load.duty.tangential_force / (load.duty.carrying_width * stage.module) * bending.helix_factor_bending
     at_tip = bent * bending.contact_ratio_factor_bending * root.form_factor * root.stress_correction
     at_outer = bent * bending.deep_tooth_factor * root.form_factor_outer * root.stress_correction_outer
     raised = stage.application_factor * shares[1]
@@ -221,24 +192,24 @@ def rv_gearing(stage: Gearing) -> Strength:
     mesh = mesh_size(stage, load)
     sun_size = gear_size(stage, load, mesh, "sun")
     sizes = sun_size, gear_size(stage, load, mesh, "planet")
-    duty = duty_of(stage, load, sun_size, mesh)
+    duty = load.duty
     made, quality = load_factors.quality_of(stage, sizes, mesh, duty.pitch_line_velocity)
     stiffness = load_factors.stiffness_of(stage, load, sizes, mesh.contact_ratio)
     dynamics = load_factors.dynamics_of(stage, load, sizes, mesh.total_contact_ratio, (quality, stiffness))
-    planets = load_factors.planets_of(stage, load.line_load, stiffness.mesh_stiffness)
-    mean = np.maximum(load.line_load * dynamics.dynamic_factor * planets.planet_factor, LEAST_LINE_LOAD)
+    planets = load_factors.planets_of(stage, duty.line_load, stiffness.mesh_stiffness)
+    mean = np.maximum(duty.line_load * dynamics.dynamic_factor * planets.planet_factor, LEAST_LINE_LOAD)
     seen = (sun_size, mesh, duty.pitch_line_velocity)
     face = load_factors.face_load_of(stage, made, mean, stiffness.mesh_stiffness_face, seen)
     z_epsilon = stress_factors.contact_ratio_factor(stage, mesh)
     held = stiffness.mesh_stiffness, z_epsilon
     sharing = load_factors.sharing_of(stage, mesh, mean * face.face_factor, quality.pitch_left, held)
     contact = stress_factors.contact_factors(stage, sizes, mesh, duty.pitch_line_velocity, z_epsilon)
-    bending = stress_factors.bending_factors(stage, mesh, stiffness.tooth_stiffness, load.line_load)
+    bending = stress_factors.bending_factors(stage, mesh, stiffness.tooth_stiffness, duty.line_load)
     for_contact = face.face_factor * sharing.transverse_factor * planets.planet_factor
     for_bending = face.face_factor_bending * sharing.transverse_factor_bending * planets.planet_factor_bending
     shares = dynamics.dynamic_factor * for_contact, dynamics.dynamic_factor * for_bending
     steel, cycles, u = steel_of(stage), cycles_of(stage, load), mesh.tooth_ratio
-    pressed = load.tangential_force / (sun_size.reference_diameter * duty.carrying_width) * (u + 1.0) / u
+    pressed = duty.tangential_force / (sun_size.reference_diameter * duty.carrying_width) * (u + 1.0) / u
     nominal = contact.zone_factor * contact.elasticity_factor * contact.contact_ratio_factor * contact.helix_factor
     nominal = nominal * np.sqrt(pressed)
     sun, planet = (
@@ -247,7 +218,7 @@ def rv_gearing(stage: Gearing) -> Strength:
         for which in GEARS
     )  # fmt: skip
     return Strength(
-        contact_stress=sun.contact_stress, transmission_error=0.0 * load.tangential_force, efficiency=load.efficiency,
+        contact_stress=sun.contact_stress, transmission_error=0.0 * duty.tangential_force, efficiency=load.efficiency,
         flank_temperature=stage.oil_temperature, backlash=backlash_of(stage, load, mesh),
         nominal_contact_stress=nominal, contact_safety=np.minimum(sun.contact_safety, planet.contact_safety),
         root_safety=np.minimum(sun.root_safety, planet.root_safety),
@@ -255,25 +226,6 @@ def rv_gearing(stage: Gearing) -> Strength:
         quality=quality, steel=steel, stiffness=stiffness, dynamics=dynamics, planets=planets, face=face,
         sharing=sharing, contact=contact, bending=bending, cycles=cycles, sun=sun, planet=planet,
     )  # fmt: skip
-
-
-def duty_of(stage: Gearing, load: ToothLoad, sun: GearSize, mesh: MeshSize) -> Duty:
-    """Return the load as it is printed."""
-    return Duty(
-        pins=load.pins,
-        ratio=load.ratio,
-        pin_ratio=load.pins / (load.pins - 1.0),
-        mesh_efficiency=mesh_efficiency(stage, mesh.tooth_ratio, load.pins),
-        sun_speed=load.input_speed,
-        mesh_speed=load.mesh_speed,
-        asked_torque=load.asked_torque,
-        sun_torque=load.sun_torque,
-        output_torque=load.sun_torque * load.ratio * load.efficiency,
-        tangential_force=load.tangential_force,
-        pitch_line_velocity=np.pi * sun.reference_diameter * load.mesh_speed,
-        carrying_width=stage.carrying_share * stage.face_width,
-        line_load=load.line_load,
-    )
 
 
 def backlash_of(stage: Gearing, load: ToothLoad, mesh: MeshSize) -> Float:

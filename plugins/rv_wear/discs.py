@@ -1,8 +1,8 @@
 """Curves over phase and time for figures, differently ground discs, and where modifications may lie."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
-from typing import Any, Literal
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,7 +21,6 @@ from truing import Array, Bench, Block, Float, Outcome, Table, TruingError, foun
 
 CLOSE = 1e-13  # m
 ROUNDS = 100
-PermittedRange = Literal["double_clearance", "approach"]
 
 
 @dataclass(frozen=True)
@@ -47,7 +46,6 @@ def flank(reducer: Reducer, time: float = 0.0) -> DiscFlank:
 
 def worn_mesh(reducer: Reducer, time: float = 0.0) -> tuple[Teeth, Loads, Array]:
     """Contacts, loads and wear (pins, phases, n) after a time (s)."""
-    reducer = _in_rows(reducer)
     teeth = teeth_of(_feasible(mesh_of(reducer)))
     exposure = np.broadcast_to(np.asarray(exposure_of(reducer, oil_part(reducer), time)), (teeth.count,))
     wear = wear_at(teeth, exposure) if time > 0.0 else np.zeros_like(teeth.slack)
@@ -60,22 +58,12 @@ def clearance_over_angle(reducer: Reducer, angle: ArrayLike) -> Array:
     return np.asarray(geometry.clearance(mesh, np.asarray(angle, dtype=float)[:, None])).T
 
 
-def allowed_equidistant(reducer: Reducer, lower: PermittedRange = "double_clearance") -> tuple[Array, Array]:
-    """Smallest and largest equidistant modification (n,) of equation 17 at the radial clearance of the reducer.
+def lowest_by_approach(reducer: Reducer) -> Array:
+    """The equidistant modification (n,) whose largest clearance is its own approach, at the radial clearance given.
 
-    Above the largest one disc and pins interfere. Below the smallest one the clearance somewhere exceeds, as *lower*
-    says, twice the radial clearance, or the approach under load at that very modification, so that pins there never
-    bear. Which of them the paper meant is not stated; its printed bound follows from the first.
+    Another reading of the lost condition in equation 17: pins there never bear. Tried again until it stays.
     """
-    mesh = _feasible(mesh_of(_in_rows(reducer)))
-    lowest = geometry.lowest_equidistant(mesh)
-    if lower == "approach":
-        lowest = _lowest_by_approach(mesh)
-    return np.asarray(lowest), np.asarray(geometry.highest_equidistant(mesh))
-
-
-def _lowest_by_approach(mesh: Mesh) -> Array:
-    """The modification whose largest clearance is its own approach: tried again with what was found until it stays."""
+    mesh = _feasible(mesh_of(reducer))
     radial, trial = mesh.radial_clearance, np.asarray(mesh.equidistant)
     for _ in range(ROUNDS):
         tried = replace(mesh, equidistant=trial, shift=trial - radial)
@@ -95,21 +83,6 @@ def _feasible(mesh: Mesh) -> Mesh:
     good, broken = holding(mesh)
     refuse(broken, None if len(good) == 1 else np.arange(len(good)))
     return mesh
-
-
-def _in_rows(reducer: Reducer) -> Reducer:
-    """The same with every Float as long as the longest, where one is an array."""
-    values = {each.name: getattr(reducer, each.name) for each in fields(reducer)}
-    arrays = [value for value in values.values() if isinstance(value, np.ndarray) and value.ndim]
-    if not arrays:
-        return reducer
-    rows = max(len(value) for value in arrays)
-    wide: dict[str, Any] = {
-        name: np.broadcast_to(value, (rows,))
-        for name, value in values.items()
-        if isinstance(value, float | np.ndarray | np.floating)
-    }
-    return replace(reducer, **wide)
 
 
 # A study of our own: the paper's Figs. 1 and 2, forces and early wear of differently ground discs
@@ -229,13 +202,12 @@ class DiscValidity:
         """Compare the inputs, as effects leave them, with the ranges."""
         reducer: Reducer = bench.inputs
         lowest, highest = (float(bench.answers[name]) for name in ("equidistant_low", "equidistant_high"))
-        by_approach, _ = allowed_equidistant(reducer, "approach")
         return DiscValid(
             name=self.name,
             equidistant=float(reducer.equidistant_modification),
             highest=highest,
             lowest=lowest,
-            lowest_by_approach=float(by_approach[0]),
+            lowest_by_approach=float(lowest_by_approach(reducer)[0]),
             beyond=tuple(_beyond(reducer, lowest, float(bench.answers["loaded_pins"]))),
         )
 

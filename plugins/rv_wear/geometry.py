@@ -3,7 +3,7 @@
 One entry per distinct mesh of a batch; what geometry fixes is calculated once, before any force is known.
 """
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,22 +22,15 @@ class Choices:
     phases: int = 8
     load_sharing: str = "linear"
     wear_coefficient: str = "pointwise"
-
-
-@dataclass(frozen=True)
-class Film:
-    """Oil between disc and pins: pressure-viscosity coefficient, viscosity, output speed (1/s), roughness, share."""
-
-    pressure_viscosity: Float
-    viscosity: Float
-    speed: Float
-    roughness: Float
-    factor: Float
+    has_film: bool = False
 
 
 @dataclass(frozen=True)
 class Mesh:
-    """One disc among its pins, or many of them: every field but the last two is a number or an array (m,), in SI."""
+    """One disc among its pins, or many of them: every field but the last is a number or an array (m,), in SI.
+
+    What begins with ``film`` is the oil between them, 0 where no film is asked for; the speed is that of the output.
+    """
 
     pin_circle_radius: Float
     pin_radius: Float
@@ -49,8 +42,12 @@ class Mesh:
     young_modulus: Float
     poisson_ratio: Float
     threshold: Float
+    film_pressure_viscosity: Float = 0.0
+    film_viscosity: Float = 0.0
+    film_speed: Float = 0.0
+    film_roughness: Float = 0.0
+    film_factor: Float = 0.0
     choices: Choices = Choices()
-    film: Film | None = None
 
     @property
     def short_width(self) -> Float:
@@ -83,19 +80,17 @@ class Mesh:
         return 4.0 * self.torque / (self.short_width * (self.choices.pin_count - 1) * self.pin_circle_radius)
 
 
-NUMBERS = tuple(each.name for each in fields(Mesh) if each.name not in {"choices", "film"})
-FILM_NUMBERS = tuple(each.name for each in fields(Film))
+NUMBERS = tuple(each.name for each in fields(Mesh) if each.name != "choices")
 
 
 def mesh_of(reducer: Reducer) -> Mesh:
     """The mesh of a reducer, numbers and arrays as they are; the oil belongs to it only where a film is asked for."""
-    film = Film(
-        pressure_viscosity=reducer.pressure_viscosity,
-        viscosity=reducer.oil_viscosity,
-        speed=reducer.output_speed,
-        roughness=reducer.composite_roughness,
-        factor=reducer.film_factor,
-    )
+    has_film = bool(np.any(np.asarray(reducer.film_factor) > 0.0))
+    film: dict[str, Float] = {
+        "film_pressure_viscosity": reducer.pressure_viscosity, "film_viscosity": reducer.oil_viscosity,
+        "film_speed": reducer.output_speed, "film_roughness": reducer.composite_roughness,
+        "film_factor": reducer.film_factor,
+    }  # fmt: skip
     return Mesh(
         pin_circle_radius=reducer.pin_circle_radius,
         pin_radius=reducer.pin_radius,
@@ -107,22 +102,19 @@ def mesh_of(reducer: Reducer) -> Mesh:
         young_modulus=reducer.young_modulus,
         poisson_ratio=reducer.poisson_ratio,
         threshold=reducer.reconstruction_depth,
-        choices=Choices(reducer.pin_count, reducer.phases, reducer.load_sharing, reducer.wear_coefficient),
-        film=film if np.any(np.asarray(reducer.film_factor) > 0.0) else None,
+        choices=Choices(reducer.pin_count, reducer.phases, reducer.load_sharing, reducer.wear_coefficient, has_film),
+        **(film if has_film else {}),
     )
 
 
 def columns_of(mesh: Mesh) -> list[Float]:
-    """The numbers of a mesh in a fixed order, those of its film last."""
-    own: list[Float] = [getattr(mesh, name) for name in NUMBERS]
-    return own + ([] if mesh.film is None else [getattr(mesh.film, name) for name in FILM_NUMBERS])
+    """The numbers of a mesh in a fixed order."""
+    return [getattr(mesh, name) for name in NUMBERS]
 
 
 def with_columns(mesh: Mesh, columns: list[Float]) -> Mesh:
     """The same choices with other numbers, in the order of ``columns_of``."""
-    own = dict(zip(NUMBERS, columns, strict=False))
-    film = Film(**dict(zip(FILM_NUMBERS, columns[len(NUMBERS) :], strict=True))) if mesh.film is not None else None
-    return Mesh(**own, choices=mesh.choices, film=film)
+    return Mesh(*columns, choices=mesh.choices)
 
 
 def distinct(mesh: Mesh) -> tuple[Mesh, NDArray[np.intp] | None]:
@@ -167,11 +159,6 @@ def pin_distance(mesh: Mesh, angle: Float) -> Float:
     """S(psi): distance of the pin from the pitch point over the radius of the pin circle."""
     short_width = mesh.short_width
     return np.sqrt(1.0 + short_width**2 - 2.0 * short_width * np.cos(angle))
-
-
-def arm(mesh: Mesh, angle: Float) -> Float:
-    """Arm of the contact force about the centre of the disc; longest at ``longest_arm_angle``."""
-    return mesh.longest_arm * relative_arm(mesh, angle)
 
 
 def relative_arm(mesh: Mesh, angle: Float) -> Float:
@@ -225,11 +212,6 @@ def clearance(mesh: Mesh, angle: Float) -> Float:
     by_shift = 1.0 / (1.0 - short_width * cosine + mesh.root * sine)
     bracket = mesh.equidistant * by_equidistant - mesh.shift * by_shift
     return (cosine - short_width) ** 2 / distance * bracket
-
-
-def highest_equidistant(mesh: Mesh) -> Float:
-    """Largest equidistant modification of equation 17: above it disc and pins interfere, Delta r / (1 - q)."""
-    return mesh.radial_clearance / (1.0 - mesh.root)
 
 
 def lowest_equidistant(mesh: Mesh, largest: Float | None = None, points: int = 121) -> Float:
@@ -301,7 +283,7 @@ def sliding_ratio(mesh: Mesh, angle: Float) -> Float:
     return sliding_speed(mesh, angle) / rolling_speed(mesh, angle)
 
 
-# Line contact of disc and pin: half width, approach, and the force that an approach needs; SI, arrays welcome
+# Line contact of disc and pin: the force that an approach needs, and the pressure under it; SI, arrays welcome
 #
 # Roark's formulas for two cylinders of equal elastic constants; the pins lie in half-round grooves and do not bend.
 
@@ -314,20 +296,10 @@ def compliance(mesh: Mesh) -> Float:
     return 2.0 / (np.pi * mesh.equivalent_modulus * mesh.width)
 
 
-def half_width(mesh: Mesh, force: Float, relative_radius: Float) -> Float:
-    """Half width b of the contact, sqrt(8 F R' (1 - nu^2) / (pi E B))."""
-    return np.sqrt(4.0 * compliance(mesh) * force * relative_radius)
-
-
 def depth_number(mesh: Mesh, profile_radius: Float, relative_radius: Float) -> Float:
     """What equation 1b is without the force: 2/3 + ln(16 r_rp |rho| F / c^2) with the full width c = 2 b."""
     radius = np.minimum(np.abs(profile_radius), mesh.pin_circle_radius)  # no body is deeper than the disc
     return 2.0 / 3.0 + np.log(mesh.pin_radius * radius / (compliance(mesh) * relative_radius))
-
-
-def approach(mesh: Mesh, force: Float, number: Float) -> Float:
-    """Approach of disc and pin under a force, equation 1b; ``number`` is that of ``depth_number``."""
-    return compliance(mesh) * force * (number - np.log(force))
 
 
 def force_of(mesh: Mesh, approached: Float, number: Float) -> Float:
@@ -364,8 +336,7 @@ class Teeth:
     """Contacts of many meshes: phase angle (pins, phases, 1), arms, slack and radii (pins, phases, m).
 
     ``weight`` is the torque per force at the longest arm and approach; ``depth_number``, ``compliance`` and ``torque``
-    are the numbers of equation 1b and the torque for every position (phases, m); ``nothing`` is 0. ``first`` is the
-    number of the first pin where a part of the pins is left out.
+    are the numbers of equation 1b and the torque for every position (phases, m); ``nothing`` is 0.
     """
 
     mesh: Mesh
@@ -379,17 +350,11 @@ class Teeth:
     compliance: Array
     torque: Array
     nothing: Array
-    first: int = 0
 
     @property
     def count(self) -> int:
         """How many meshes there are."""
         return int(self.slack.shape[-1])
-
-    @property
-    def pins(self) -> slice:
-        """The pins that are looked at."""
-        return slice(self.first, self.first + len(self.angle))
 
 
 def teeth_of(mesh: Mesh, angle: Float | None = None) -> Teeth:
@@ -417,12 +382,6 @@ def teeth_of(mesh: Mesh, angle: Float | None = None) -> Teeth:
         torque=torque,
         nothing=np.zeros_like(arm),
     )
-
-
-def part_of(teeth: Teeth, pins: slice) -> Teeth:
-    """The same meshes with some pins only, of all those there are."""
-    names = ("angle", "relative_arm", "per_arm", "weight", "slack", "relative_radius", "nothing")
-    return replace(teeth, **{name: getattr(teeth, name)[pins] for name in names}, first=pins.start)
 
 
 def pitch_number(mesh: Mesh) -> Float:

@@ -1,11 +1,10 @@
 """Wear of the flank, step by step, for many meshes at once, and the largest wear after the working time."""
 
-from collections import OrderedDict
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import islice
 from threading import Lock
-from typing import Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,18 +13,15 @@ from rv_wear import geometry
 from rv_wear.forces import Loads, holding, refuse, shared, start_scale
 from rv_wear.geometry import (
     Choices,
-    Film,
     Mesh,
     Teeth,
     columns_of,
     distinct,
     longest_arm_angle,
     mesh_of,
-    part_of,
     relative_radius,
     some_of,
     teeth_of,
-    with_columns,
 )
 from rv_wear.quantities import Reducer
 from truing import Array, Float, either, feasible
@@ -50,11 +46,6 @@ def contact_part(modulus: Float, line_load: Float, relative_radius: Float) -> Fl
     return (line_load / (modulus * relative_radius)) ** LOAD * relative_radius**-ROUGHNESS
 
 
-def wear_coefficient(modulus: Float, line_load: Float, relative_radius: Float, oil: Float, roughness: Float) -> Float:
-    """Coefficient k, 1/Pa, for E' (Pa), W' (N/m), R' (m), pressure-viscosity coefficient (1/Pa) and R_q (m)."""
-    return lubricant_part(modulus, oil, roughness) * contact_part(modulus, line_load, relative_radius)
-
-
 def unworn_share(film_ratio: Float) -> Float:
     """Share of the wear that a film leaves: 1 below Lambda 0.5, 0 above 3."""
     return np.minimum(np.maximum((3.0 - film_ratio) / 2.5, 0.0), 1.0)
@@ -66,11 +57,10 @@ def film_number(mesh: Mesh, speed: Float, relative_radius: Float) -> Float:
     Dowson and Higginson's least film 2.65 R' U^0.7 G^0.54 W^-0.13 over the roughness; *speed* is the mean speed of the
     two surfaces against the contact, m/s.
     """
-    film, modulus = mesh.film, mesh.equivalent_modulus
-    assert film is not None
-    drive = (film.viscosity * speed / (modulus * relative_radius)) ** 0.7
-    oil = (film.pressure_viscosity * modulus) ** 0.54
-    return film.factor * 2.65 * relative_radius * drive * oil / film.roughness
+    modulus = mesh.equivalent_modulus
+    drive = (mesh.film_viscosity * speed / (modulus * relative_radius)) ** 0.7
+    oil = (mesh.film_pressure_viscosity * modulus) ** 0.54
+    return mesh.film_factor * 2.65 * relative_radius * drive * oil / mesh.film_roughness
 
 
 # Wear of the flank, step by step: forces, wear, new profile, new forces; equations 13 to 16 for all meshes at once
@@ -86,18 +76,16 @@ SLIGHT = 1e-6  # N; a smaller force does not wear
 NEVER = 1e200  # exposure of a step in which nothing wears
 
 Rate = Callable[[Array], Array]
-Answer = TypeVar("Answer")
+Node = tuple[Array, Array, Array]
 
 
 @dataclass(frozen=True)
 class WearState:
     """The disc at the beginning of a step: exposure (m,), wear and its growth (pins, phases, m), how long it lasts.
 
-    ``teeth`` holds the pins that bear, and the arrays hold the same; the others have no wear yet. ``lasts`` is an
-    exposure (m,), ``grown`` and ``after`` what wears in the step and what is worn at its end.
+    ``lasts`` is an exposure (m,), ``grown`` and ``after`` what wears in the step and what is worn at its end.
     """
 
-    teeth: Teeth
     loads: Loads
     exposure: Array
     wear: Array
@@ -125,9 +113,9 @@ def growth(teeth: Teeth, unworn: Loads) -> Rate:
         factor = _at_pitch_point(teeth, unworn) * by_load
         return lambda force: factor * force
     by_load = by_load * contact_part(modulus, 1.0 / mesh.width, teeth.relative_radius)
-    if mesh.film is None:
+    if not mesh.choices.has_film:
         return _power_law(by_load, 1.0 + LOAD, None)
-    turning = 2.0 * np.pi * mesh.film.speed
+    turning = 2.0 * np.pi * mesh.film_speed
     carried = geometry.rolling_speed(mesh, teeth.angle) - 0.5 * geometry.sliding_speed(mesh, teeth.angle)
     number = film_number(mesh, np.abs(carried) * turning, teeth.relative_radius)
     return _power_law(by_load, 1.0 + LOAD, number * (mesh.width * modulus * teeth.relative_radius) ** 0.13)
@@ -169,26 +157,19 @@ def _at_pitch_point(teeth: Teeth, unworn: Loads) -> Array:
 
 def states(teeth: Teeth) -> Iterator[WearState]:
     """The disc at the beginning of every step, without end."""
-    unworn = shared(teeth, teeth.slack, start_scale(teeth))
-    part, clear = around(teeth, unworn.force)
-    rate_of = growth(part, unworn)
-    wear, exposure, last = np.zeros_like(part.slack), np.zeros(teeth.count), unworn.scale
-    loads = Loads(unworn.scale, unworn.approach, unworn.taken, unworn.force[part.pins])
+    loads = shared(teeth, teeth.slack, start_scale(teeth))
+    rate_of = growth(teeth, loads)
+    wear, exposure, last = np.zeros_like(teeth.slack), np.zeros(teeth.count), loads.scale
     while True:
         rate = rate_of(loads.force)
         lasts = _lasts(teeth, rate)
         grown = rate * lasts
         after = wear + grown
-        yield WearState(part, loads, exposure, wear, rate, lasts, grown, after)
+        yield WearState(loads, exposure, wear, rate, lasts, grown, after)
         wear = after
         exposure = exposure + lasts
         guess, last = np.maximum(2.0 * loads.scale - last, 0.5 * loads.scale), loads.scale
-        loads = shared(part, _slack(part, wear), guess)
-        while (clear - loads.taken <= loads.approach).any():
-            wider, clear = widened(teeth, part)
-            wear = _put(wear, part, wider)
-            part, rate_of = wider, growth(wider, unworn)
-            loads = shared(part, _slack(part, wear), guess)
+        loads = shared(teeth, _slack(teeth, wear), guess)
 
 
 def _slack(teeth: Teeth, wear: Array) -> Array:
@@ -202,76 +183,40 @@ def _lasts(teeth: Teeth, rate: Array) -> Array:
     return np.where(fastest > 0.0, teeth.mesh.threshold / np.maximum(fastest, 1.0 / NEVER), NEVER)
 
 
-def around(teeth: Teeth, force: Array) -> tuple[Teeth, Array]:
-    """The pins that bear somewhere, and the least slack (phases, m) of the others, which stay as they are."""
-    bearing = np.flatnonzero((force > 0.0).any(axis=(1, 2)))
-    pins = slice(int(bearing[0]), int(bearing[-1]) + 1)
-    return part_of(teeth, pins), _least_outside(teeth, pins)
-
-
-def widened(teeth: Teeth, part: Teeth) -> tuple[Teeth, Array]:
-    """One pin more at either end, as far as there are any."""
-    pins = slice(max(part.pins.start - 1, 0), min(part.pins.stop + 1, len(teeth.angle)))
-    return part_of(teeth, pins), _least_outside(teeth, pins)
-
-
-def _least_outside(teeth: Teeth, pins: slice) -> Array:
-    outside = np.concatenate([teeth.slack[: pins.start], teeth.slack[pins.stop :]])
-    value: Array = outside.min(axis=0, initial=np.inf)
-    return value
-
-
-def _put(values: Array, part: Teeth, whole: Teeth) -> Array:
-    """Put what is known of a part of the pins among more of them; 0 elsewhere."""
-    wide = np.zeros_like(whole.slack)
-    start = part.first - whole.first
-    wide[start : start + len(values)] = values
-    return wide
-
-
-def histories(teeth: Teeth, first_steps: Float) -> Histories:
-    """Histories of all meshes over so many times (m,) the exposure of their first step, or the most steps."""
-    nodes: list[tuple[Array, Array, Array]] = []
-    deepest, reach = np.zeros(0, dtype=np.intp), np.zeros(0)
-    for count, state in enumerate(states(teeth), 1):
-        if not nodes:
-            reach = state.lasts * first_steps
-            deepest = _flat(state.rate).argmax(axis=0) + state.teeth.first * teeth.angle.shape[1]
-            nodes.append((state.exposure, np.zeros(teeth.count), teeth.angle.reshape(-1)[deepest]))
-        deepest, added = _step(state, deepest, teeth.angle.reshape(-1))
-        nodes.extend(added)
-        if (nodes[-1][0] >= reach).all() or count == MOST_STEPS:
-            break
-    exposure, depth, angle = (np.array(column) for column in zip(*nodes, strict=True))
-    return Histories(exposure, depth, angle)
+def nodes_of(teeth: Teeth) -> Iterator[Node]:
+    """Exposure (m,), largest wear and phase angle of its place: of the new disc, then twice in every step."""
+    angle = teeth.angle.reshape(-1)
+    deepest: NDArray[np.intp] | None = None
+    for state in islice(states(teeth), MOST_STEPS):
+        if deepest is None:
+            deepest = _flat(state.rate).argmax(axis=0)
+            yield state.exposure, np.zeros(teeth.count), angle[deepest]
+        deepest, added = _step(state, deepest, angle)
+        yield from added
 
 
 def _flat(values: Array) -> Array:
     return values.reshape(-1, values.shape[-1])
 
 
-def _step(
-    state: WearState, leader: NDArray[np.intp], angle: Array
-) -> tuple[NDArray[np.intp], list[tuple[Array, Array, Array]]]:
+def _step(state: WearState, leader: NDArray[np.intp], angle: Array) -> tuple[NDArray[np.intp], list[Node]]:
     """The deepest point after a step, and the nodes where it is overtaken (else half way) and at the end of the step.
 
     Points are counted over all pins and positions.
     """
     before, grown, after = _flat(state.wear), _flat(state.grown), _flat(state.after)
     meshes = np.arange(len(state.lasts))
-    offset = state.teeth.first * state.teeth.angle.shape[1]
-    old = leader - offset
-    start, lead, top = before[old, meshes], grown[old, meshes], after.max(axis=0)
-    part, new = np.full(len(meshes), 0.5), old
-    passed = np.flatnonzero(after[old, meshes] < top)
+    start, lead, top = before[leader, meshes], grown[leader, meshes], after.max(axis=0)
+    part, new = np.full(len(meshes), 0.5), leader
+    passed = np.flatnonzero(after[leader, meshes] < top)
     if len(passed):
-        new = old.copy()
+        new = leader.copy()
         new[passed] = after[:, passed].argmax(axis=0)
         behind = start[passed] - before[new[passed], passed]
         share = behind / (grown[new[passed], passed] - lead[passed])
         part[passed] = np.minimum(np.maximum(share, 0.0), 1.0)
     middle = (state.exposure + part * state.lasts, start + part * lead, angle[leader])
-    return new + offset, [middle, (state.exposure + state.lasts, top, angle[new + offset])]
+    return new, [middle, (state.exposure + state.lasts, top, angle[new])]
 
 
 def wear_at(teeth: Teeth, exposure: Array) -> Array:
@@ -281,23 +226,16 @@ def wear_at(teeth: Teeth, exposure: Array) -> Array:
         left = exposure - state.exposure
         within = (left >= 0.0) & ((left < state.lasts) | (count == MOST_STEPS))
         if within.any():
-            here = np.where(within, state.wear + state.rate * left, 0.0)
-            found = np.where(within, _put(here, state.teeth, teeth), found)
+            found = np.where(within, state.wear + state.rate * left, found)
         if np.all(exposure < state.exposure + state.lasts) or count == MOST_STEPS:
             break
     return found
 
 
-# Forces and histories of many meshes, which each are calculated once; those of a few are remembered
+# Forces and histories of many meshes, which each are calculated once; those of the latest groups are remembered
 
 CHUNK = 256  # meshes at a time: their contacts stay in the cache of a core
-FEW = 8  # so many meshes are remembered one by one
-FEW_REMEMBERED = 64
-GROUPS_REMEMBERED = 8  # a fit asks for the same rows again and again
-FINENESS = 32  # a history reaches to the next power of two ^ (1 / 32), so that batches ask for the same one
-FURTHER = 16  # of the powers of 2 ^ (1 / 32)
-SHORTEST = 1e-9
-ROUNDING = 1e-9
+GROUPS_REMEMBERED = 16  # a fit asks for the same rows again and again
 
 
 @dataclass(frozen=True)
@@ -324,20 +262,17 @@ class HistoryKey:
     numbers: bytes
     count: int
     choices: Choices
-    has_film: bool
 
 
 def key_of(mesh: Mesh, places: NDArray[np.intp]) -> HistoryKey:
     """Some of many meshes (m,)."""
     table = np.stack([np.asarray(column)[places] for column in columns_of(mesh)])
-    return HistoryKey(table.tobytes(), len(places), mesh.choices, mesh.film is not None)
+    return HistoryKey(table.tobytes(), len(places), mesh.choices)
 
 
 def mesh_from(key: HistoryKey) -> Mesh:
     """The meshes of a key."""
-    film = Film(0.0, 0.0, 0.0, 0.0, 0.0) if key.has_film else None
-    blank = Mesh(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, key.choices, film)
-    return with_columns(blank, list(np.frombuffer(key.numbers).reshape(-1, key.count)))
+    return Mesh(*np.frombuffer(key.numbers).reshape(-1, key.count), choices=key.choices)
 
 
 def unworn(mesh: Mesh) -> Unworn:
@@ -365,42 +300,37 @@ def unworn_of_group(key: HistoryKey) -> Unworn:
     return unworn(mesh_from(key))
 
 
-@lru_cache(maxsize=GROUPS_REMEMBERED)
-def history_of_group(key: HistoryKey, power: int) -> Histories:
-    """Histories of the meshes of a key, each over 2 ^ (power / FINENESS) times the exposure of its first step."""
-    return histories(teeth_of(mesh_from(key)), 2.0 ** (power / FINENESS))
+class GrowingHistory:
+    """The histories of some meshes, which go on as far as they are asked for; threads may share them."""
 
-
-class Latest(Generic[Answer]):
-    """The latest answers to single meshes, whatever thread asks."""
-
-    def __init__(self) -> None:
-        self._answers: OrderedDict[HistoryKey, Answer] = OrderedDict()
+    def __init__(self, teeth: Teeth) -> None:
+        self._more = nodes_of(teeth)
+        self._nodes: list[Node] = []
+        self._told: Histories | None = None
         self._lock = Lock()
 
-    def known(self, keys: Sequence[HistoryKey]) -> dict[HistoryKey, Answer]:
-        """Return the answers that are remembered."""
+    def up_to(self, exposure: Array) -> Histories:
+        """Return the histories to at least an exposure (m,) each, or over the most steps."""
         with self._lock:
-            return {key: self._answers[key] for key in keys if key in self._answers}
+            while self._told is None or (self._nodes[-1][0] < exposure).any():
+                before = len(self._nodes)
+                self._nodes.extend(self._until(exposure))
+                if len(self._nodes) == before:
+                    break
+                self._told = Histories(*(np.array(column) for column in zip(*self._nodes, strict=True)))
+            return self._told
 
-    def keep(self, answers: Mapping[HistoryKey, Answer]) -> None:
-        """Remember answers, and forget the oldest of too many."""
-        with self._lock:
-            for key, answer in answers.items():
-                self._answers[key] = answer
-                self._answers.move_to_end(key)
-            while len(self._answers) > FEW_REMEMBERED:
-                self._answers.popitem(last=False)
-
-    def cache_clear(self) -> None:
-        """Forget them all, as ``lru_cache`` says it."""
-        with self._lock:
-            self._answers.clear()
+    def _until(self, exposure: Array) -> Iterator[Node]:
+        for node in self._more:
+            yield node
+            if (node[0] >= exposure).all():
+                return
 
 
-unworn_of_one: Latest[Unworn] = Latest()
-history_of_one: Latest[tuple[int, Histories]] = Latest()
-"""The power to which a history reaches, and the history."""
+@lru_cache(maxsize=GROUPS_REMEMBERED)
+def history_of_group(key: HistoryKey) -> GrowingHistory:
+    """The histories of the meshes of a key."""
+    return GrowingHistory(teeth_of(mesh_from(key)))
 
 
 def groups(order: NDArray[np.intp]) -> list[NDArray[np.intp]]:
@@ -410,60 +340,21 @@ def groups(order: NDArray[np.intp]) -> list[NDArray[np.intp]]:
 
 def all_unworn(mesh: Mesh, count: int) -> Unworn:
     """The new meshes, all of them."""
-    if count == 0:
-        return Unworn(*np.empty((len(Unworn.__dataclass_fields__), 0)))
-    if count > FEW:
-        return _joined([unworn_of_group(key_of(mesh, places)) for places in groups(np.arange(count))])
-    keys = [key_of(mesh, np.array([place])) for place in range(count)]
-    answers = unworn_of_one.known(keys)
-    missing = [place for place, key in enumerate(keys) if key not in answers]
-    if missing:
-        new = unworn(some_of(mesh, np.array(missing)))
-        for column, place in enumerate(missing):
-            answers[keys[place]] = Unworn(*(values[column : column + 1] for values in vars(new).values()))
-    unworn_of_one.keep(answers)
-    return _joined([answers[key] for key in keys])
-
-
-def _joined(parts: Sequence[Unworn]) -> Unworn:
-    names = Unworn.__dataclass_fields__
-    return Unworn(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
+    parts = [unworn_of_group(key_of(mesh, places)) for places in groups(np.arange(count))]
+    return Unworn(**{
+        name: np.concatenate([np.empty(0), *(getattr(part, name) for part in parts)])
+        for name in Unworn.__dataclass_fields__
+    })  # fmt: skip
 
 
 def all_histories(mesh: Mesh, reach: Array, first_step: Array) -> Iterator[tuple[NDArray[np.intp], Histories]]:
     """Histories to an exposure (m,) each, in groups of about the same length: the places of their meshes, and they."""
-    steps = np.maximum(reach / first_step, SHORTEST)
-    if len(reach) <= FEW:
-        powers = np.ceil(FINENESS * np.log2(steps) + ROUNDING).astype(int)
-        yield from ((np.array([place]), history) for place, history in enumerate(_few_histories(mesh, powers)))
-        return
-    order = np.argsort(steps, kind="stable") if len(reach) > CHUNK else np.arange(len(reach))
+    order = np.argsort(reach / first_step, kind="stable") if len(reach) > CHUNK else np.arange(len(reach))
     for places in groups(order):
-        power = int(np.ceil(FINENESS * np.log2(steps[places].max()) + ROUNDING))
-        yield places, history_of_group(key_of(mesh, places), power)
-
-
-def _few_histories(mesh: Mesh, powers: NDArray[np.intp]) -> list[Histories]:
-    """Histories of a few meshes, remembered each; those that are missing or too short are calculated together.
-
-    One that was too short goes further than asked for, since a fit asks again for a little more.
-    """
-    keys = [key_of(mesh, np.array([place])) for place in range(len(powers))]
-    known = history_of_one.known(keys)
-    missing = [place for place, key in enumerate(keys) if key not in known or known[key][0] < powers[place]]
-    if missing:
-        asked = powers[missing] + np.array([FURTHER * (keys[place] in known) for place in missing])
-        new = histories(teeth_of(some_of(mesh, np.array(missing))), 2.0 ** (asked / FINENESS))
-        for column, place in enumerate(missing):
-            part = Histories(*(values[:, column : column + 1].copy() for values in vars(new).values()))
-            known[keys[place]] = int(asked[column]), part
-    history_of_one.keep(known)
-    return [known[key][1] for key in keys]
+        yield places, history_of_group(key_of(mesh, places)).up_to(reach[places])
 
 
 # Reading wear off the histories: which exposure of which mesh a row of a batch has, and how deep it has worn
-
-FEW_ROWS = 4  # so many rows of a mesh are read together with those of the others
 
 
 @dataclass(frozen=True)
@@ -498,28 +389,10 @@ def _of_many(meshes: Meshes, place: NDArray[np.intp], new: Unworn, rows: Array) 
     order = np.argsort(place, kind="stable")
     ends = np.searchsorted(place[order], np.arange(meshes.count + 1))
     for places, history in all_histories(meshes.mesh, _reach(rows, place, meshes.count), new.first_step):
-        parts = [order[ends[mesh] : ends[mesh + 1]] for mesh in places]
-        mine = np.concatenate(parts)
-        if len(mine) <= FEW_ROWS * len(places):
-            columns = np.repeat(np.arange(len(places)), [len(part) for part in parts])
-            depth[mine], angle[mine] = _read_each(history, columns, rows[mine])
-            continue
-        for column, part in enumerate(parts):
-            depth[part], angle[part] = _read(history, column, rows[part])
+        for column, mesh in enumerate(places):
+            mine = order[ends[mesh] : ends[mesh + 1]]
+            depth[mine], angle[mine] = _read(history, column, rows[mine])
     return depth, angle
-
-
-def _read_each(history: Histories, columns: NDArray[np.intp], exposure: Array) -> tuple[Array, Array]:
-    """Depth and angle at exposures (n,), each of its own mesh; the depth is NaN beyond the last node."""
-    last = len(history.exposure) - 1
-    nodes = history.exposure[:, columns]
-    passed = np.minimum((nodes <= exposure).sum(axis=0), last)
-    before = np.maximum(passed - 1, 0), columns
-    after = passed, columns
-    slope = (history.depth[after] - history.depth[before]) / (history.exposure[after] - history.exposure[before])
-    depth = slope * (exposure - history.exposure[before]) + history.depth[before]
-    at = np.minimum((nodes < exposure).sum(axis=0), last)
-    return np.where(exposure <= nodes[-1], depth, np.nan), history.angle[at, columns]
 
 
 def _reach(rows: Array, place: NDArray[np.intp] | None, count: int) -> Array:
@@ -537,10 +410,6 @@ def _reach(rows: Array, place: NDArray[np.intp] | None, count: int) -> Array:
 def _read(history: Histories, column: int, exposure: Array) -> tuple[Array, Array]:
     """Depth and angle at exposures (n,) of one mesh; the depth is NaN beyond the last node."""
     nodes, depths, angles = (values[:, column] for values in (history.exposure, history.depth, history.angle))
-    if len(exposure) > len(nodes) and np.isfinite(exposure).all():  # most rows of a batch lie close together
-        first, last = np.searchsorted(nodes, [exposure.min(), exposure.max()])
-        kept = slice(max(first - 1, 0), last + 1)
-        nodes, depths, angles = nodes[kept], depths[kept], angles[kept]
     depth = np.interp(exposure, nodes, depths, right=np.nan)
     turns = np.flatnonzero(angles[1:] != angles[:-1])
     if not len(turns):

@@ -5,13 +5,12 @@ hides nothing (of harmonic drives and flanks a quarter, and a quarter something 
 one effect at a size drawn between half and the whole of a clear one, on every noise and in several designs, with the
 results measured in which it shows. A name counts if it is the verdict alone or another name of its curve. Prints
 counts, the names of what went wrong, how often an interval held the truth, and the error on rows that were not fitted
-over that of the truth itself; ``--dump FILE`` writes one JSON line per case. ``--catalogue`` asks for every size and
-ratio of the catalogue of harmonic drives instead: which causes carry the torsion, and with what shares.
+over that of the truth itself; ``--dump FILE`` writes one JSON line per case.
 """
 
 from collections import Counter
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -22,13 +21,9 @@ from many_cases import Outcome
 from hidden_effects import gearing_cases, harmonic_cases, rv_cases, screw_cases
 from hidden_effects.clear import DRIVES, REDUCERS, SCREWS, SHAPES, STAGE_STRESSES, STAGES
 from hidden_effects.harmonic_machine import MESH, Rows
-from hidden_effects.harmonic_surface import SurfaceWish
-from hidden_effects.noises import KINDS
-from hidden_effects.plugin_asking import model_of
-from hidden_effects.rig_cases import RigCase
+from hidden_effects.harmonic_surface import FLANK, surface
+from hidden_effects.rigs import KINDS, Wish
 from hidden_effects.rows import Array, Hidden
-from truing.testing import recorded
-from truing.testing.hiding import Answered
 
 OF_STAGES: list[tuple[tuple[str, ...], gearing_cases.Design]] = [
     (STAGE_STRESSES, "rig"),
@@ -42,16 +37,6 @@ FLEETS = {"wear_temperature", "film_lubrication", "load_exponent"}
 OF_SCREWS = (*screw_cases.STRESSES, screw_cases.ERROR, screw_cases.WEAR, screw_cases.AXIAL, screw_cases.TORQUE,
              screw_cases.BACKLASH)  # fmt: skip
 OF_ITS_OWN = {"lost_motion": "torque_scale", "flank_wear": "torque_scale", "creep": "time_scale"}
-STIFFNESS = {  # of the catalogues, kN m/rad, by size and ratio (100 stands for all above 50), and where it changes, N m
-    "14": ((2.0, 6.9), {30: (1.9, 2.4, 3.4), 50: (3.4, 4.7, 5.7), 100: (4.7, 6.1, 7.1)}),
-    "17": ((3.9, 12.0), {30: (3.4, 4.4, 6.7), 50: (8.1, 11.0, 13.0), 100: (10.0, 14.0, 16.0)}),
-    "20": ((7.0, 25.0), {30: (5.7, 7.1, 11.0), 50: (13.0, 18.0, 23.0), 100: (16.0, 25.0, 29.0)}),
-    "25": ((14.0, 48.0), {30: (10.0, 13.0, 21.0), 50: (25.0, 34.0, 44.0), 100: (31.0, 50.0, 57.0)}),
-    "32": ((29.0, 108.0), {30: (24.0, 30.0, 49.0), 50: (54.0, 78.0, 98.0), 100: (67.0, 110.0, 120.0)}),
-    "40": ((54.0, 196.0), {50: (100.0, 140.0, 180.0), 100: (130.0, 200.0, 230.0)}),
-    "50": ((108.0, 382.0), {50: (200.0, 280.0, 340.0), 100: (250.0, 400.0, 440.0)}),
-    "58": ((168.0, 598.0), {50: (310.0, 440.0, 540.0), 100: (400.0, 610.0, 710.0)}),
-}
 
 
 def fifth_order(rows: Rows) -> Array:
@@ -79,18 +64,18 @@ def sized(hidden: Hidden, rng: np.random.Generator, without: Collection[str] = (
     }
 
 
-def stage(place: int, seed: int) -> gearing_cases.Wish:
+def stage(place: int, seed: int) -> Wish:
     """A first stage: of three the first hides nothing, the others what comes next in the list."""
     rng = np.random.default_rng([seed, 9])
     kind = KINDS[int(rng.integers(len(KINDS)))]
     if place % 3 == 0:
         results, design = OF_STAGES[place // 3 % len(OF_STAGES)]
-        return gearing_cases.Wish(seed=seed, results=results, design=design, kind=kind)
+        return gearing_cases.stage(seed=seed, results=results, design=design, kind=kind)
     clear = STAGES[(place - place // 3 - 1) % len(STAGES)]
     return replace(clear, seed=seed, hidden=sized(clear.hidden, rng), kind=kind)
 
 
-def reducer(_: int, seed: int) -> rv_cases.Wish:
+def reducer(_: int, seed: int) -> Wish:
     """A reducer: of three seeds one hides nothing, the others any effect."""
     rng = np.random.default_rng([seed, 9])
     name = "" if seed % 3 == 0 else list(REDUCERS)[int(rng.integers(len(REDUCERS)))]
@@ -98,17 +83,17 @@ def reducer(_: int, seed: int) -> rv_cases.Wish:
     design: rv_cases.Design = "fleet" if name in FLEETS or rng.random() < 0.5 else "endurance"
     results = (rv_cases.BACKLASH, rv_cases.WEAR) if rng.random() < 0.5 else (rv_cases.BACKLASH,)
     kind = KINDS[int(rng.integers(len(KINDS)))]
-    return rv_cases.Wish(seed=seed, hidden=hidden, design=design, kind=kind, results=results)
+    return rv_cases.reducer(seed=seed, hidden=hidden, design=design, kind=kind, results=results)
 
 
-def screw(_: int, seed: int) -> screw_cases.Wish:
+def screw(_: int, seed: int) -> Wish:
     """A roller screw: of three seeds one hides nothing, the others any effect, at times in one of its results alone."""
     rng = np.random.default_rng([seed, 31])
     kind = KINDS[int(rng.integers(len(KINDS)))]
     if seed % 3 == 0:
         results = tuple(rng.choice(OF_SCREWS, 2, replace=False).tolist())
         design: screw_cases.Design = "endurance" if rng.random() < 0.5 else "bench"
-        return screw_cases.Wish(seed=seed, design=design, kind=kind, results=results)
+        return screw_cases.screw(seed=seed, design=design, kind=kind, results=results)
     clear = SCREWS[int(rng.integers(len(SCREWS)))]
     hidden, results = sized(clear.hidden, rng), clear.results
     if len(results) > 1 and rng.random() < 0.3:
@@ -117,55 +102,41 @@ def screw(_: int, seed: int) -> screw_cases.Wish:
     return replace(clear, seed=seed, hidden=hidden, design=design, kind=kind, results=results)
 
 
-def drive(_: int, seed: int) -> harmonic_cases.Wish | SurfaceWish:
+def drive(_: int, seed: int) -> Wish:
     """A harmonic drive or a flank: of four seeds one hides nothing, one what nobody registered, two the next effect."""
     rng = np.random.default_rng([seed, 37])
     kind = KINDS[int(rng.integers(len(KINDS)))]
     if seed % 4 in {0, 2}:
         which, is_strange = int(rng.integers(3)), seed % 4 == 2
         if which == 2:
-            return SurfaceWish(seed=seed, strange=feed_marks if is_strange else None)
+            return surface(seed=seed, strange=feed_marks if is_strange else None)
         strange = (fifth_order, stiff_when_hot_and_fast)[which] if is_strange else None
         points: dict[str, Any] = {"design": "points", "results": (MESH,)} if which else {}
-        return harmonic_cases.Wish(seed=seed, kind=kind, strange=strange, **points)
+        return harmonic_cases.drive(seed=seed, kind=kind, strange=strange, **points)
     clear = DRIVES[seed // 2 % len(DRIVES)]
-    known: dict[str, Any] = {} if isinstance(clear, SurfaceWish) else {"kind": kind}
-    return replace(clear, seed=seed, hidden=sized(clear.hidden, rng), **known)
+    hidden = sized(clear.hidden, rng)
+    return replace(clear, seed=seed, hidden=hidden, kind=clear.kind if clear.rig is FLANK else kind)
 
 
-@dataclass(frozen=True)
-class Machines:
-    """How cases of a plugin are wished for (by place and seed), made, and asked."""
-
-    wished: Callable[[int, int], Any]
-    made: Callable[[Any], RigCase]
-    diagnosed: Callable[[RigCase], Answered]
-
-
-MACHINES: dict[str, Machines] = {
-    "rv_gearing": Machines(stage, gearing_cases.make_case, gearing_cases.diagnosed),
-    "rv_wear": Machines(reducer, rv_cases.make_case, rv_cases.diagnosed),
-    "roller_screw_shift": Machines(screw, screw_cases.make_case, screw_cases.diagnosed),
-    "harmonic_fractal": Machines(drive, harmonic_cases.make_case, harmonic_cases.diagnosed),
-}
+WISHED: dict[str, Callable[[int, int], Wish]] = {
+    "rv_gearing": stage, "rv_wear": reducer, "roller_screw_shift": screw, "harmonic_fractal": drive,
+}  # fmt: skip
+"""How cases of a plugin are wished for, by place and seed."""
 
 
 def outcome(seed: int, *, plugin: str, first: int) -> Outcome:
     """Ask one case and say what was answered: in a word, with the intervals that hold the truth and the error left."""
-    machines = MACHINES[plugin]
-    wish = machines.wished(seed - first, seed)
-    case = machines.made(wish)
-    answer = machines.diagnosed(case)
-    document = answer.document
+    wish = WISHED[plugin](seed - first, seed)
+    document = wish.answered.document
     said = said_of(wish, document)
     without = {OF_ITS_OWN.get(effect, "") for effect in wish.hidden} if plugin == "harmonic_fractal" else set()
     return {
-        "seed": seed, "title": wish.title, "seconds": answer.seconds, "said": said,
+        "seed": seed, "title": wish.title, "seconds": wish.answered.seconds, "said": said,
         "hides": "something" if wish.strange is not None else "effect" if wish.hidden else "nothing",
         "hidden": {effect: dict(unknowns) for effect, unknowns in wish.hidden.items()},
         "causes": [cause["effect"] for cause in document["causes"]],
         "covered": covered(wish.hidden, document["causes"][0], without) if said == "named" and wish.hidden else {},
-        "left": max((case.left_over_noise(answer.predicted, name) for name in wish.results), default=1.0),
+        "left": max((wish.case.left_over_noise(wish.answered.predicted, name) for name in wish.results), default=1.0),
     }  # fmt: skip
 
 
@@ -176,7 +147,7 @@ QUIET = {"nothing", "named", "same curve", "called unknown"}
 """What may be said of a case without a line being printed."""
 
 
-def said_of(wish: Any, document: Mapping[str, Any]) -> str:
+def said_of(wish: Wish, document: Mapping[str, Any]) -> str:
     """Say in a word what was answered."""
     if wish.strange is not None:
         verdict = str(document["verdict"])
@@ -235,51 +206,11 @@ def verdict_on(document: Mapping[str, Any], hidden: str) -> str:
     return str(document["verdict"]) if document["verdict"] != "named" else "another name"
 
 
-# The catalogue
-
-
-def catalogue(seed: int) -> None:
-    """Ask what carries the torsion of every drive of the catalogue; flanks as by default, all else rigid."""
-    for size, (changes, by_ratio) in STIFFNESS.items():
-        for ratio, stiff in by_ratio.items():
-            document, rough = asked(size, ratio, drawn_line(changes, stiff, np.random.default_rng([seed, ratio])))
-            causes = ", ".join(f"{each['effect']} {100 * each['share']:.0f} %" for each in document["causes"])
-            others = "; ".join(" + ".join(each["causes"]) for each in document["alternatives"])
-            print(f"  {size:>3} {ratio:>4}: flanks {rough:.2%}; {causes or document['verdict']}; or {others or 'none'}")
-
-
-def drawn_line(changes: tuple[float, float], stiff: tuple[float, ...], rng: np.random.Generator) -> tuple[Array, Array]:
-    """Torques, N m, to twice the second change, and torsions, urad, with 10 urad of scatter."""
-    torque = np.round(changes[1] / 50 * np.arange(1, 101), 4)
-    ends = np.array([0.0, *changes, 3 * changes[1]])
-    angles = np.concatenate([[0.0], np.cumsum(np.diff(ends) / (1e-3 * np.array(stiff)))])
-    return torque, np.interp(torque, ends, angles) + 10 * rng.standard_normal(len(torque))
-
-
-def asked(size: str, ratio: int, read: tuple[Array, Array]) -> tuple[Mapping[str, Any], float]:
-    """What the diagnosis says to a record, and the share of the torsion that the flanks alone explain."""
-    larger = int(size) / 20
-    inputs = (
-        f'plugin = "harmonic_fractal"\n[inputs]\ncatalogue_size = "{size}"\npitch_radius = "{25.4 * larger:g} mm"\n'
-        f'face_width = "{10 * larger:g} mm"\nflank_height = "{0.4 * larger * 100 / ratio:g} mm"\n'
-        f"flexspline_teeth = {2 * ratio}\nengaged_pairs = {2 * int(0.3 * ratio)}\n"
-    )
-    rows = "".join(f"{torque!r},{angle!r}\n" for torque, angle in zip(*(part.tolist() for part in read), strict=True))
-    measured = "torque [N*m],torsion [urad]\n" + rows
-    document = recorded(model_of("harmonic_fractal"), inputs=inputs, measured=measured).answered.document
-    left = document["wrong"]["torsion"]["rmse"]["value"]
-    return document, 1 - left / float(np.sqrt(np.mean(read[1] ** 2)))
-
-
 def main() -> None:
     """Read the options and run."""
     parser = many_cases.options_of(__doc__, 40)
-    parser.add_argument("plugin", choices=MACHINES)
-    parser.add_argument("--catalogue", action="store_true", help="ask for the drives of the catalogue instead")
+    parser.add_argument("plugin", choices=WISHED)
     options = parser.parse_args()
-    if options.catalogue:
-        catalogue(options.seed)
-        return
     say(many_cases.gathered(partial(outcome, plugin=options.plugin, first=options.seed), options))
 
 

@@ -29,7 +29,8 @@ from truing.diagnosis import competition
 from truing.diagnosis.engine import diagnose, laid_out
 from truing.diagnosis.machine import calibration_of, predict
 from truing.diagnosis.records import Covariate, Records, Role
-from truing.gauge import one_machine, read_by_gauge
+from truing.evaluate import evaluate_rows
+from truing.gauge import one_machine
 from truing.inputs_file import read_setup
 from truing.measurements import RowsFile
 from truing.setup import Setup
@@ -115,10 +116,10 @@ def model_calls(results: tuple[str, ...], *, with_pairs: bool) -> int:
     def counting(*held: Any, **known: Any) -> Any:
         nonlocal calls
         calls += 1
-        return read_by_gauge(*held, **known)
+        return evaluate_rows(*held, **known)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(gauge, "read_by_gauge", counting)
+        patch.setattr(gauge, "evaluate_rows", counting)
         if not with_pairs:
             patch.setattr(competition, "_pairs", lambda made: None)
         diagnose(press_setup(), in_memory(300, results))

@@ -14,7 +14,7 @@ from functools import partial
 from timed import least
 
 from rv_wear.model import BOX, RV_WEAR
-from rv_wear.wear import history_of_group, history_of_one, unworn_of_group, unworn_of_one
+from rv_wear.wear import history_of_group, unworn_of_group
 from truing import Optimise, Surrogate
 from truing.calculation import calculate
 from truing.setup import Setup, default_setup
@@ -35,7 +35,7 @@ def setups(generations: int) -> tuple[Setup, Setup]:
 
 def calculated_anew(setup: Setup) -> None:
     """The studies of a setup, nothing being remembered from before."""
-    for kept in (history_of_group, history_of_one, unworn_of_group, unworn_of_one):
+    for kept in (history_of_group, unworn_of_group):
         kept.cache_clear()
     calculate(setup)
 

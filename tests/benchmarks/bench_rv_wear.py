@@ -4,10 +4,8 @@ Run it: ``python -m pytest tests/benchmarks/bench_rv_wear.py -s``. The baseline 
 written well: geometry is computed once for each disc, and only plain floats and functions of ``math`` are used. It
 starts every solution from the force without clearance, as the paper does; starting from the last force saves it a
 tenth, and is printed beside it. Both are measured alternately in one process, in time of the processor, and the least
-of each counts. The second question is what the reliability of the backlash costs beside drawing its random numbers.
+of each counts.
 """
-
-from dataclasses import replace
 
 import numpy as np
 from timed import least
@@ -15,16 +13,10 @@ from timed import least
 from published.rv_wear_by_hand import wear_by_hand
 from rv_wear.model import RV_WEAR
 from rv_wear.quantities import Reducer
-from rv_wear.wear import history_of_group, history_of_one, unworn_of_group, unworn_of_one, worn
-from truing import Reliability
-from truing.calculation import calculate
-from truing.kernel import Kernel
-from truing.setup import Setup, default_setup
-from truing.studies.sampling import scatter_of
+from rv_wear.wear import history_of_group, unworn_of_group, worn
 
 DESIGNS = 1000
 BY_HAND = 10  # of them in the plain loop; its time per design hardly varies
-BATCH = 2**14
 
 
 def designs(count: int) -> Reducer:
@@ -35,7 +27,7 @@ def designs(count: int) -> Reducer:
 
 def at_once(count: int) -> np.ndarray:
     """All of them in one call that remembers nothing."""
-    for remembered in (unworn_of_group, unworn_of_one, history_of_group, history_of_one):
+    for remembered in (unworn_of_group, history_of_group):
         remembered.cache_clear()
     return np.asarray(worn(designs(count))["max_wear"])
 
@@ -60,26 +52,3 @@ def test_one_call_is_a_hundred_times_faster_than_the_plain_loop() -> None:
     print(f"\nwear to 6000 h per design: plain loop {loop * 1e3:.2f} ms, one call {call * 1e3:.3f} ms: ", end="")
     print(f"{loop / call:.0f} times (plain loop from the last force: {going_on / call:.0f} times)")
     assert loop / call >= 100.0
-
-
-def drawing_only(draws: int, sources: int) -> None:
-    """The baseline: the random numbers alone, always into the same memory."""
-    rng, store = np.random.Generator(np.random.SFC64(0)), np.empty(BATCH)
-    for _ in range(-(-draws // BATCH) * sources):
-        rng.standard_normal(out=store)
-
-
-def reliability(setup: Setup, draws: int) -> object:
-    """The chance of the backlash at the working time, as ``calc run`` finds it."""
-    study = Reliability(draws=draws, batch=BATCH, method=("first_order", "monte_carlo"))
-    return calculate(replace(setup, studies=(study,))).outcomes["reliability"]
-
-
-def test_reliability_costs_at_most_twice_its_random_numbers() -> None:
-    offer, draws = Kernel.installed(strict=True).offer("rv_wear"), 10_000_000
-    setup = default_setup(offer.model, offer.origin)
-    sources = len(scatter_of(setup).columns)
-    reliability(setup, 100_000)
-    drawing, whole = least(lambda: drawing_only(draws, sources), lambda: reliability(setup, draws))
-    print(f"\n{draws} machines: the whole reliability over drawing alone: {whole / drawing:.2f} (at most 2.0)")
-    assert whole / drawing <= 2.0

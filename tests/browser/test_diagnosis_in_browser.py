@@ -1,4 +1,4 @@
-"""The sheets of all kinds of verdict, as a browser shows and prints them: the rules of every sheet hold here too."""
+"""The sheets of diagnoses, as a browser shows and prints them: the rules of every sheet hold here too."""
 
 from __future__ import annotations
 
@@ -52,9 +52,9 @@ def hostile() -> DiagnosisResult:
     )
 
 
-@pytest.fixture(scope="session", params=[*SAMPLES, "hostile"])
+@pytest.fixture(scope="session", params=["unknown", "remainder", "hostile"])
 def sheet(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The sheet of a diagnosis on disk, one of every kind of verdict and a hostile one."""
+    """The sheet of a diagnosis on disk: with a shape that is drawn, with causes and a remainder, and a hostile one."""
     made = {**SAMPLES, "hostile": hostile}[request.param]()
     text = html_of(make_diagnosis_sheet(made, provenance=provenance_of(made.setup, date="2026-11-21")))
     file = tmp_path_factory.mktemp("Größe ü") / f"{request.param} sheet.html"

@@ -1,8 +1,11 @@
 """The conformance kit over every calculation that is installed, ours and any guest's."""
 
+import pytest
+
 from truing import Kernel
 from truing.testing import conformance
 
+pytestmark = pytest.mark.usefixtures("kit_shares_processes")
 OFFERS = Kernel.installed().offers
 globals().update({f"test_{name.replace('.', '_')}": conformance(offer.model) for name, offer in OFFERS.items()})
 

@@ -15,9 +15,9 @@ class Surface:
     roughness: float
 
 
-def read_surface(path: Path) -> Surface:
-    """Read the depths, one per line."""
-    return Surface(float(np.std(np.loadtxt(path))))
+def read_surface(path: Path, factor: float = 1.0) -> Surface:
+    """Read the depths, one per line, so many times."""
+    return Surface(float(np.std(factor * np.loadtxt(path))))
 
 
 @inputs

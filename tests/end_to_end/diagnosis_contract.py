@@ -1,78 +1,18 @@
-"""diagnosis.json as it is promised: every field of the contract, its type, its unit, and what must agree with what."""
+"""diagnosis.json as it is promised: what its schema says of every field, and what must agree with what."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from typing import Any
 
 import jsonschema
 
+from shared import ROOT
 from truing.units import same_dimension
 
 Document = Mapping[str, Any]
-TEXT = {"type": "string", "minLength": 1}
-NAMES = {"type": "array", "items": TEXT}
-NUMBER, COUNT = {"type": "number"}, {"type": "integer", "minimum": 0}
-SHARE = {"type": "number", "minimum": 0, "maximum": 1}
-MAYBE = {"anyOf": [SHARE, {"type": "null"}]}
-END = {"type": ["number", "null"]}
-
-
-def _object(**fields: Any) -> dict[str, Any]:
-    """All of these fields; more may stand beside them."""
-    return {"type": "object", "properties": fields, "required": list(fields)}
-
-
-def _by_name(item: Any) -> dict[str, Any]:
-    return {"type": "object", "additionalProperties": item}
-
-
-AMOUNT = _object(value=NUMBER, unit={"type": "string"})
-UNKNOWN = _object(
-    value=NUMBER, unit={"type": "string"}, interval95={"type": "array", "items": END, "minItems": 2, "maxItems": 2}
-)
-KINDS = ["bias", "trend", "order", "step", "spread", "autocorrelation", "outlier"]
-WRONG = _object(
-    rmse=AMOUNT,
-    noise_floor=AMOUNT,
-    reducible_share=SHARE,
-    noise=_object(autocorrelation={"type": "number", "minimum": -1, "maximum": 1}, tails=TEXT, spread=TEXT),
-    findings={
-        "type": "array",
-        "items": _object(kind={"enum": KINDS}, covariate={"type": "string"}, p_value=MAYBE, text=TEXT),
-    },
-)
-GAIN = _object(
-    rmse_before=AMOUNT, rmse_after=AMOUNT, noise_floor=AMOUNT, reducible_removed=NUMBER, log_score_gain=NUMBER,
-    p_value=SHARE, coverage90=SHARE,
-)  # fmt: skip
-SCHEMA = _object(
-    schema={"const": "truing.diagnosis/1"},
-    plugin=_object(name=TEXT, version={"type": "string"}),
-    kernel=TEXT,
-    input_hash={"type": "string", "pattern": "^[0-9a-f]{64}$"},
-    seed=COUNT,
-    measured={**NAMES, "minItems": 1},
-    rows=COUNT,
-    runs=COUNT,
-    wrong=_by_name(WRONG),
-    verdict={"enum": ["none", "undecided", "named", "one_of", "unknown"]},
-    causes={"type": "array", "items": _object(effect=TEXT, unknowns=_by_name(UNKNOWN), same_as=NAMES)},
-    unique={"type": "boolean"},
-    alternatives={"type": "array", "items": _object(causes=NAMES, behind={"type": "number", "minimum": 0})},
-    remainder={"anyOf": [_object(depends_on=NAMES, shape=TEXT), {"type": "null"}]},
-    not_excited=NAMES,
-    not_measured=_by_name({**NAMES, "minItems": 1}),
-    smallest_visible=_by_name(
-        _object(value={"type": "number", "exclusiveMinimum": 0}, unit={"type": "string"})  # a size is no zero
-    ),
-    calibrated=_by_name(_object(value=NUMBER, unit={"type": "string"}, of_its_sd=NUMBER)),
-    gain={**_object(stability=SHARE), "additionalProperties": GAIN},
-    next={
-        "type": "array",
-        "items": _object(settings=_by_name(AMOUNT), separates={**NAMES, "minItems": 2, "maxItems": 2}, why=TEXT),
-    },
-)
+FORMAT = ROOT / "docs" / "reference" / "files" / "diagnosis.schema.json"
 
 
 def demand_contract(document: Document, described: Document) -> None:
@@ -80,7 +20,7 @@ def demand_contract(document: Document, described: Document) -> None:
 
     Another unit of the same kind than the declared one is as good.
     """
-    jsonschema.validate(document, SCHEMA)
+    jsonschema.validate(document, json.loads(FORMAT.read_text(encoding="utf-8")))
     _demand_agreement(document)
     units = {item["name"]: item["unit"] for item in described["results"]}
     known = [*described["effects"], *described["built_in"]["effects"], *described["built_in"]["where_measured"]]
@@ -97,7 +37,7 @@ def demand_contract(document: Document, described: Document) -> None:
         effect, _, unknown = name.partition(".")
         if effect in effects:
             kinds = [effects[effect][unknown]] if unknown else effects[effect].values()
-            assert any(_is_same_kind(item["unit"], kind) for kind in kinds), name
+            assert any(same_dimension(item["unit"], kind) for kind in kinds), name
 
 
 def _demand_result(name: str, document: Document, unit: str) -> None:
@@ -105,7 +45,7 @@ def _demand_result(name: str, document: Document, unit: str) -> None:
     wrong, gain = document["wrong"][name], document["gain"][name]
     for amount in (wrong["rmse"], wrong["noise_floor"], *(gain[key] for key in ("rmse_before", "rmse_after"))):
         assert amount["value"] >= 0
-        assert _is_same_kind(amount["unit"], unit)
+        assert same_dimension(amount["unit"], unit)
     known = ["", *document["covariates"]]
     pairs = {f"{one} and {other}" for one in known for other in known}
     assert {one["covariate"] for one in wrong["findings"]} <= {*known, *pairs}
@@ -134,11 +74,7 @@ def _demand_unknowns(cause: Mapping[str, Any], effects: Mapping[str, Mapping[str
     assert cause["unknowns"]
     for name, unknown in cause["unknowns"].items():
         if not cause["effect"].startswith("input:"):
-            assert _is_same_kind(unknown["unit"], effects[cause["effect"]][name])
+            assert same_dimension(unknown["unit"], effects[cause["effect"]][name])
         low, high = unknown["interval95"]
         assert low is None or low <= unknown["value"]
         assert high is None or unknown["value"] <= high
-
-
-def _is_same_kind(unit: str, other: str) -> bool:
-    return same_dimension(unit, other)

@@ -55,11 +55,14 @@ class ExampleRows:
 
     def diagnosed(
         self, desk: Path, taken: Callable[[Rows], Rows] = as_they_stand, *, declared: Callable[[str], str] = str,
-        hold_out: str | None = None,
+        hold_out: str | None = None, inputs: Path | None = None,
     ) -> Document:  # fmt: skip
-        """Diagnose some of the rows in a folder of their own; ``declared`` may change the text of the plugin."""
+        """Diagnose some of the rows in a folder of their own; ``declared`` may change the text of the plugin.
+
+        ``inputs`` is another inputs file than that of the example, such as an extended one.
+        """
         desk.mkdir(parents=True, exist_ok=True)
-        shutil.copy(self.folder / "inputs.toml", desk)
+        shutil.copy(inputs or self.folder / "inputs.toml", desk / "inputs.toml")
         text = (self.folder / f"{self.name}.py").read_text(encoding="utf-8")
         (desk / f"{self.name}.py").write_text(declared(text), encoding="utf-8")
         _, header, *rows = self.lines
@@ -72,6 +75,14 @@ class ExampleRows:
 def explanations(document: Document) -> set[frozenset[str]]:
     """Return every explanation that is left, each as the set of its causes."""
     return {frozenset(causes) for causes in document["explanations"]}
+
+
+def interval_of(document: Document, effect: str, unknown: str) -> tuple[float, float]:
+    """Return the 95 % interval of an unknown, in the first explanation that holds it."""
+    every = [{cause["effect"]: cause["unknowns"] for cause in document["causes"]}]
+    every += [other["unknowns"] for other in document["alternatives"]]
+    low, high = next(item[effect] for item in every if effect in item)[unknown]["interval95"]
+    return low, high
 
 
 def spoken_of(document: Document) -> set[str]:

@@ -40,41 +40,6 @@ def truing_models() -> list[Model[Beam, Tip]]:
     return [Model(name="beam", title="Clamped beam", function=beam, errors=ERRORS)]
 '''
 EXACT_BEAM = BEAM.replace('ERRORS = [Tolerance("modulus", normal(sd="2 %"))]', "ERRORS: list[Tolerance] = []")
-SLEDGE = '''"""A sledge that is pushed by a force that changes: how far has it gone after each second?"""
-
-import numpy as np
-
-from truing import Float, Model, axis, column, found, given, hookimpl, inputs, results
-
-
-@inputs
-class Push:
-    """What is set, and the force as it was recorded."""
-
-    force: Float = given((10.0, 10.0), "N", symbol="F", note="force at every second", along="moment")
-    mass: Float = given(40.0, "kg", symbol="m", note="mass of the sledge", above=0)
-
-
-@results
-class Course:
-    """The way over time."""
-
-    moment: Float = axis("s", note="time since the push began")
-    way: Float = found("mm", symbol="s", note="way so far", along="moment")
-
-
-def sledge(push: Push) -> Course:
-    """Return the way without friction: twice summed up, second by second."""
-    speed = np.cumsum(push.force, axis=-1) / column(push.mass)
-    way = np.cumsum(speed, axis=-1)
-    return Course(moment=np.arange(np.shape(way)[-1], dtype=np.float64), way=way)
-
-
-@hookimpl
-def truing_models() -> list[Model[Push, Course]]:
-    """Offer it."""
-    return [Model(name="sledge", title="Pushed sledge", function=sledge)]
-'''
 GUEST = """[build-system]
 requires = ["hatchling>=1.24"]
 build-backend = "hatchling.build"

@@ -101,17 +101,6 @@ def test_a_run_has_the_numbers_of_the_command_line(pin: truing.LoadedModel, calc
     assert (tmp_path / "at once" / "results.csv").is_file()
 
 
-def test_results_are_quantities_in_the_unit_that_is_printed(pin: truing.LoadedModel) -> None:
-    run = pin.run(load="84 N")
-    pressure = run["pressure"]
-    assert str(pressure.units) == "megapascal"
-    assert pressure.magnitude == pytest.approx(84 / 28)  # N/mm2
-    assert run.si["pressure"] == pytest.approx(84 / 28e-6)
-    assert str(run["tolerance_price"].units) == "EUR"
-    assert (run.verdict, run.passed) == ("passes", True)
-    assert [check.passed for check in run.checks] == [True]
-
-
 @pytest.mark.parametrize(
     "load", ["84 N", "0.084 kN", 84, np.float64(84), pint.get_application_registry().Quantity(84.0, "newton")], ids=str
 )
@@ -167,12 +156,6 @@ def test_an_inputs_file_and_values_in_its_place(pin: truing.LoadedModel, tmp_pat
     assert pin.given(load="84 N").run(file).si["pressure"] == pytest.approx(6e6)
     rows = pin.evaluate(pd.DataFrame({"load [N]": [84.0]}), file)
     assert rows["pressure [MPa]"].tolist() == pytest.approx([6])
-
-
-def test_a_table_of_results(pin: truing.LoadedModel) -> None:
-    frame = pin.run(load="84 N").frame().set_index("name")
-    assert frame.loc["pressure", ["symbol", "unit", "note"]].tolist() == ["p", "MPa", "contact pressure"]
-    assert frame.loc["pressure", "value"] == pytest.approx(3)
 
 
 def test_a_sweep_and_a_study_of_ones_own(pin: truing.LoadedModel) -> None:
@@ -361,14 +344,6 @@ def test_a_dataframe_is_a_record_too(diagnosis: truing.Diagnosis, press: truing.
     (columns,) = record.columns
     parts = {column.name: column.part for column in columns}
     assert (parts["crank_angle"], parts["slider_position"], parts["speed"]) == ("input", "measured", "condition")
-
-
-def test_the_extended_model_is_a_model_again(diagnosis: truing.Diagnosis) -> None:
-    better = diagnosis.extended.setup()
-    assert [on.effect.name for on in better.effects] == ["joint_clearance"]
-    assert better.effects[0].values["clearance"] == pytest.approx(
-        diagnosis.result.causes[0].unknowns[0].value, rel=1e-5
-    )
 
 
 def test_sheets_are_written_on_request(diagnosis: truing.Diagnosis, pin: truing.LoadedModel, tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 import subprocess
 import sys
@@ -139,62 +140,54 @@ ALONE = """
 import sys
 from importlib.machinery import PathFinder
 
-find = PathFinder.find_spec
-PathFinder.find_spec = lambda name, *more: None if name.partition(".")[0] in {blocked!r} else find(name, *more)
+blocked, find = {"pandas", "polars"}, PathFinder.find_spec
+PathFinder.find_spec = lambda name, *more: None if name.partition(".")[0] in blocked else find(name, *more)
 
 import json
+from typing import Any
 import numpy as np
-import {library} as library
+import pyarrow
 import truing
 
-make = getattr(library, {maker!r})
-pin = truing.load({pin!r})
-time = np.linspace(10.0, 400.0, 40)
-base = pin.evaluate(make({{"time [h]": time.tolist()}}))
-assert type(base).__module__.split(".")[0] == {library!r}, type(base)
-depth = np.asarray(base["depth [um]"]) + 7.0 + np.random.default_rng(1).normal(0, 0.1, 40)
-units = {{"time": "h", "depth": "um"}}
-record = truing.record(make({{"time": time.tolist(), "depth": depth.tolist()}}), pin, units=units)
-found = pin.diagnose(record)
-for frame in (pin.run().frame(), record.frame(), found.ranking.frame(), found.residuals.frame(),
-              pin.sweep("load", 50, 90, 3).frame(), pin.run(cases=make({{"load [N]": [50.0, 60.0]}})).case_frame(),
-              pin.run(load=50).compare(pin.run()).frame()):
-    assert type(frame).__module__.split(".")[0] == {library!r}, type(frame)
-assert not [name for name in {blocked!r} if sys.modules.get(name)]
-print(json.dumps(found.document))
+DIAGNOSED
+pin = truing.load(sys.argv[1])
+made = diagnosed(pin, pyarrow.table)
+runs = [pin.run(), pin.sweep("load", 50, 90, 3), pin.run(load=50).compare(pin.run())]
+cases = pin.run(cases=pyarrow.table({"load [N]": [50.0, 60.0]})).case_frame()
+for frame in [*made[1:], *(run.frame() for run in runs), cases]:
+    assert type(frame).__module__.split(".")[0] == "pyarrow", type(frame)
+assert not [name for name in blocked if sys.modules.get(name)]
+assert pin.sweep("load", 50, 90, 3).plot()._repr_png_().startswith(b"\\x89PNG")
+assert "matplotlib.pyplot" not in sys.modules
+print(json.dumps(made[0].document))
 """
 
 
-@pytest.mark.parametrize(
-    ("library", "maker", "others"),
-    [("polars", "DataFrame", ("pandas", "pyarrow")), ("pyarrow", "table", ("pandas", "polars"))],
-)
-def test_one_library_of_dataframes_is_enough(
-    library: str, maker: str, others: tuple[str, ...], with_pandas: dict[str, Any]
-) -> None:
-    assert documented(library, maker, others) == with_pandas
+def diagnosed(pin: Any, make: Any) -> list[Any]:
+    """A diagnosis whose rows came as a dataframe, and dataframes that come back of it."""
+    time = np.linspace(10.0, 400.0, 40)
+    base = pin.evaluate(make({"time [h]": time.tolist()}))
+    depth = np.asarray(base["depth [um]"]) + 7.0 + np.random.default_rng(1).normal(0, 0.1, 40)
+    columns = {"time": time.tolist(), "depth": depth.tolist()}
+    record = truing.record(make(columns), pin, units={"time": "h", "depth": "um"})
+    found = pin.diagnose(record)
+    return [found, base, record.frame(), found.ranking.frame(), found.residuals.frame()]
 
 
-@pytest.fixture(scope="module")
-def with_pandas() -> dict[str, Any]:
-    """What a diagnosis says whose rows came as a dataframe of pandas."""
-    return documented("pandas", "DataFrame", ("polars", "pyarrow"))
+def test_one_library_of_dataframes_is_enough(pin: truing.LoadedModel) -> None:
+    """In a process that finds pyarrow alone; the notebook runs with pandas and with polars alone.
 
-
-def documented(library: str, maker: str, blocked: tuple[str, ...]) -> dict[str, Any]:
-    """Use every dataframe of the API in a process that finds one library of them, and return the diagnosis."""
-    code = ALONE.format(library=library, maker=maker, blocked=blocked, pin=str(PIN))
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=300, check=False)
+    A notebook shows what has ``_repr_png_``: pyplot is not imported for it.
+    """
+    code = ALONE.replace("DIAGNOSED", inspect.getsource(diagnosed))
+    done = subprocess.run([sys.executable, "-c", code, PIN], capture_output=True, text=True, timeout=300, check=False)
     assert done.returncode == 0, done.stderr
-    document: dict[str, Any] = json.loads(done.stdout)
-    return document
+    assert json.loads(done.stdout) == diagnosed(pin, pd.DataFrame)[0].document
 
 
-def test_without_any_a_sentence_says_what_to_install() -> None:
-    code = (
-        "import sys\nfor name in ('pandas', 'polars', 'pyarrow'): sys.modules[name] = None\n"
-        f"import truing\nrun = truing.load({str(PIN)!r}).run()\n"
-        "try: run.frame()\nexcept truing.TruingError as error: print(error)\n"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120, check=False)
-    assert done.stdout == "a table in Python needs one of pandas, polars, pyarrow: pip install pandas\n", done.stderr
+def test_without_any_a_sentence_says_what_to_install(pin: truing.LoadedModel, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("pandas", "polars", "pyarrow"):
+        monkeypatch.setitem(sys.modules, name, None)
+    with pytest.raises(truing.TruingError) as caught:
+        pin.run().frame()
+    assert str(caught.value) == "a table in Python needs one of pandas, polars, pyarrow: pip install pandas"

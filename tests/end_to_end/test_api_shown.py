@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import re
-import subprocess
-import sys
 from collections.abc import Iterator
 from html.parser import HTMLParser
 from typing import Any
@@ -91,17 +89,6 @@ def test_a_name_of_a_stranger_is_text() -> None:
     run = hostile.run(TESTS / "data" / "hostile_pin.toml")
     for shown in (hostile, run):
         assert set(Seen(shown._repr_html_()).tags) <= TAGS
-
-
-def test_a_figure_is_shown_without_pyplot() -> None:
-    """A notebook shows what has ``_repr_png_``; pyplot is not imported for it."""
-    code = (
-        "import sys, truing\n"
-        f"figure = truing.load({str(TESTS / 'data' / 'pin_wear.py')!r}).sweep('load', 50, 90, 3).plot()\n"
-        "print(figure._repr_png_()[:4], 'matplotlib.pyplot' in sys.modules)\n"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120, check=False)
-    assert done.stdout == "b'\\x89PNG' False\n", done.stderr
 
 
 def test_figures_look_like_those_of_the_sheet_whatever_the_user_has_set() -> None:

@@ -81,3 +81,17 @@ def test_a_shipped_plugin_is_verified_row_by_row(calc: Calc, plugin: str) -> Non
     titles = " ".join(finding["title"] for finding in document["findings"])
     assert titles == " ".join(finding.title for finding in model.findings)
     assert all(words in titles for words in TITLES[plugin])
+
+
+def test_settings_ratio_verdict_and_reasons_are_printed(calc: Calc) -> None:
+    answer = calc("verify", "press_linkage")
+    assert answer.code == 0
+    lines = answer.out.split("\n")
+    assert " ".join(lines[0].split()) == "quantity where unit paper ours ratio verdict obtained kind why"
+    assert {"with reading = printed", "with reading = complete"} <= set(lines)
+    (row,) = [line for line in lines if line.startswith("order of adjustment, l_g  ")]
+    assert row.split()[-7:-1] == ["1.426", "1.4263", "1.0002", "matches", "calibrated", "calibrated"]
+    number = row.split()[-1]
+    assert any(line.startswith(f"{number} with the ground pivot angle 0.367 rad") for line in lines)
+    assert sum(line.startswith("Finding: Misprint") for line in lines) >= 2
+    assert lines[-2].endswith("every verdict is as stated")

@@ -13,7 +13,7 @@ import pytest
 
 from shared import Calc
 from truing.cli import main
-from truing.cli.compare import styles_of
+from truing.cli.folders import styles_of
 from truing.runs.comparison import Change, amount_of, differing, words_of
 from truing.runs.comparison import compared as changes
 

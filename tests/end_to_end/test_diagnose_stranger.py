@@ -24,11 +24,10 @@ from measured import (
     names,
     numbers,
     read_document,
-    renamed,
     text_of,
 )
 from numpy.typing import NDArray
-from strange_plugins import BEAM, EXACT_BEAM, GUEST, SLEDGE
+from strange_plugins import BEAM, EXACT_BEAM, GUEST
 
 from hidden_effects.asking import write_case
 from hidden_effects.making import Wish, make_case
@@ -38,14 +37,13 @@ from shared import Calc, process
 pytestmark = pytest.mark.filterwarnings("error::RuntimeWarning")
 Array = NDArray[Any]
 ROWS = 80
-PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
 
 
 @pytest.fixture(scope="session")
 def desk(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with the strangers' files and an inputs file that says nothing."""
     folder = tmp_path_factory.mktemp("strangers")
-    for name, text in {"beam.py": BEAM, "exact_beam.py": EXACT_BEAM, "sledge.py": SLEDGE}.items():
+    for name, text in {"beam.py": BEAM, "exact_beam.py": EXACT_BEAM}.items():
         (folder / name).write_text(text, encoding="utf-8")
     (folder / "inputs.toml").write_text("[studies]\nrun = []\n", encoding="utf-8")
     return folder
@@ -114,23 +112,17 @@ def on_its_gauge(desk: Path) -> Callable[[str], Diagnosed]:
 
 
 @pytest.mark.parametrize("effect", GAUGES)
-def test_what_a_gauge_may_do_is_found_without_any_declaration(
+def test_what_a_gauge_may_do_is_found_and_the_extended_model_shows_it(
     desk: Path, on_its_gauge: Callable[[str], Diagnosed], effect: str
 ) -> None:
-    document, truth = on_its_gauge(effect).document, GAUGES[effect][1]
+    found, truth = on_its_gauge(effect), GAUGES[effect][1]
+    document = found.document
     assert names(document) == [effect]
     assert document["remainder"] is None
     demand_unknowns(document, truth)
     assert document["causes"][0]["unknowns"][next(iter(truth))]["unit"] == UNITS[effect]
     demand_contract(document, json.loads(calc_here(desk, "describe", "./beam.py", "--json").out))
     assert document["calibrated"]["modulus"]["of_its_sd"] == pytest.approx(-0.5, abs=0.1)
-
-
-@pytest.mark.parametrize("effect", GAUGES)
-def test_the_extended_model_shows_what_the_gauge_shows(
-    desk: Path, on_its_gauge: Callable[[str], Diagnosed], effect: str
-) -> None:
-    found = on_its_gauge(effect)
     rows = (found.folder / "extended.toml", "--rows", f"{effect}.csv", "-o", "shown.csv")
     assert calc_here(desk, "table", "./beam.py", "--inputs", *rows).code == 0
     shown, read = (
@@ -180,23 +172,6 @@ def test_a_plugin_without_any_tolerance(desk: Path) -> None:
     assert read_document(desk / "again")["explanations"] == []
 
 
-# Files that are odd: what the press is too large for (others are tested in test_diagnose_bad_input.py)
-
-
-def test_a_unit_that_is_probably_wrong_is_named_and_nothing_is_changed(desk: Path) -> None:
-    columns = measured_beam(GAUGES["sensor_offset"][0], 1.01)
-    found = diagnose_here(desk, "metres", text_of(renamed(columns, "sag [um]", "sag [mm]")), plugin="./beam.py")
-    (unit_error,) = found.document["unit_slips"]
-    assert unit_error["column"] == "sag"
-    assert unit_error["factor"] == pytest.approx(1e-3, rel=1e-12)
-    told = "the unit of column 'sag [mm]' is probably wrong: multiply it by 0.001; "
-    assert unit_error["text"].startswith(told)
-    assert f"warning: suspected unit slip: {unit_error['text']} (nothing was changed)" in found.answer.err
-    assert "probably wrong" in (found.folder / "sheet.md").read_text(encoding="utf-8")
-    measured = np.load(found.folder / "arrays.npz")["sag.measured"]
-    assert measured == pytest.approx([1e3 * float(cell) for cell in columns["sag [um]"]], rel=1e-12)  # as it says
-
-
 def test_hostile_words_are_shown_and_obeyed_nowhere(desk: Path) -> None:
     """A name that breaks out of a string of code carries the error, so it stands in every file that is written."""
     level = np.random.default_rng(8).uniform(0, 1, ROWS)
@@ -217,83 +192,6 @@ def test_hostile_words_are_shown_and_obeyed_nowhere(desk: Path) -> None:
     exec(compile((found.folder / "new_effect.py").read_text(encoding="utf-8"), "new_effect.py", "exec"), scope)
     assert "os" not in scope
     assert calc_here(desk, "run", "./beam.py", "--inputs", found.folder / "extended.toml", "-o", "run").code == 0
-
-
-# A result along an axis, measured by the rows of runs
-
-
-def pushed_sledges() -> Columns:
-    """Five pushes of other lengths and masses, recorded second by second; the gauge begins at 2.5 mm."""
-    rng = np.random.default_rng(3)
-    columns: Columns = {name: [] for name in ("run", "moment [s]", "force [N]", "mass [kg]", "way [mm]", "time [h]")}
-    for run, mass in enumerate((30, 40, 55, 70, 50)):
-        force = rng.uniform(0, 3, 20 + run)
-        speed, way = 0.0, 0.0
-        for second, newton in enumerate(force.tolist()):
-            speed += newton / mass
-            way += speed
-            read = 1e3 * way + 2.5 + float(rng.normal(0, 0.5))
-            cells = (f"push {run}", second, newton, mass, read, run * 0.5 + second / 3600)
-            for column, cell in zip(columns.values(), cells, strict=True):
-                column.append(str(cell))
-    return columns
-
-
-def test_a_record_along_an_axis_with_a_series_as_input(desk: Path) -> None:
-    columns = pushed_sledges()
-    found = diagnose_here(desk, "pushes", text_of(columns), plugin="./sledge.py")
-    assert (found.document["rows"], found.document["runs"]) == (110, 5)
-    assert names(found.document) == ["sensor_offset"]
-    demand_unknowns(found.document, {"way": 2.5})
-    assert found.document["calibrated"] == {}
-    assert {path.name for path in found.folder.iterdir()} == CONTRACT | {"extended.toml"}
-    answer = calc_here(desk, "run", "./sledge.py", "--inputs", "of pushes/extended.toml", "-o", "run")
-    assert answer.code == 0, answer.err
-    again = ("--inputs", "of pushes/extended.toml", "--data", "pushes.csv", "-o", "again")
-    assert calc_here(desk, "diagnose", "./sledge.py", *again).code == 0
-    assert read_document(desk / "again")["explanations"] == []
-
-
-# Effects that strangers declare
-
-
-def test_a_strangers_own_effect_is_named_with_its_shape(desk: Path) -> None:
-    """Running-in: 9 um in the first 1.4 km and Archard's law by hand; a drift or an offset would be the vaguer word."""
-    rng = np.random.default_rng(4)
-    hours = np.concatenate([np.linspace(0.1, 3, 40), np.linspace(3.5, 60, 40)])
-    distance = 0.5 * hours * 3600
-    depth = 3e-8 * (120 / 28e-6) * distance / 2.1e9 * 1e6 + 9 * (1 - np.exp(-distance / 1400))
-    columns = numbers({"time [h]": hours, "depth [um]": depth + rng.normal(0, 0.2, 80)})
-    found = diagnose_here(desk, "running in", text_of(columns), plugin=PIN)
-    assert names(found.document) == ["running_in"]
-    demand_unknowns(found.document, {"extra": 9.0, "length": 1400.0})
-
-
-def test_an_installed_strangers_effect_is_named(
-    calc: Calc, strangers: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """VDI 2230 by hand: what is left of the preload after embedding, a working force and 12 um of later settling."""
-    rng = np.random.default_rng(6)
-    cycles, force = 10 ** rng.uniform(1, 6, ROWS), rng.uniform(0, 15, ROWS)
-    pitch_diameter, core_diameter = 12 - 0.649519 * 1.75, 12 - 1.226869 * 1.75
-    area = np.pi / 4 * ((pitch_diameter + core_diameter) / 2) ** 2
-    preload = 84e3 / (1.75 / (2 * np.pi) + 0.577 * pitch_diameter * 0.12 + 15.05 / 2 * 0.12) / 1e3  # kN
-    screw, plate = 60 / (205 * area), 60 / (205 * 330)  # mm/kN
-    settled = 11e-3 + 12e-3 * (1 - np.exp(-cycles / 2e4))
-    left = preload - settled / (screw + plate) - (1 - plate / (screw + plate)) * force
-    columns = {
-        "load_cycles [1]": cycles,
-        "axial_force [kN]": force,
-        "gauge_temperature [degC]": rng.uniform(15, 30, ROWS),
-    }
-    text = text_of(numbers({**columns, "clamp_left [kN]": left + rng.normal(0, 0.1, ROWS)}))
-    (tmp_path / "joint.csv").write_text(text, encoding="utf-8")
-    monkeypatch.syspath_prepend(strangers)
-    answer = calc("diagnose", "screw_joint", "--data", "joint.csv", "--json")
-    assert answer.code == 0, answer.err
-    document = json.loads(answer.out)
-    assert names(document) == ["settling"]
-    demand_unknowns(document, {"depth": 12.0, "life": 2e4})
 
 
 # What nobody registered becomes an effect

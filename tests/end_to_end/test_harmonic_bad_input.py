@@ -6,11 +6,8 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-import numpy as np
 import pytest
 
-from harmonic_fractal.flank import Flank, read_flank
-from harmonic_fractal.generators import Array, brownian_profiles
 from shared import Calc
 
 Refused = Callable[..., list[str]]
@@ -108,40 +105,6 @@ def test_the_fault_names_the_flank_whose_file_it_is(refused: Refused, tmp_path: 
     (tmp_path / "flank.csv").write_text(matrix())
     (found,) = refused(f'{name} = {{ file = "flank.csv", spacing = "0.4 um" }}')
     assert found.startswith(f"inputs.toml:3: {name}: ")
-
-
-def heights(rows: int = 40, points: int = 400, dimension: float = 1.5, seed: int = 1) -> Array:
-    """Lines of fractional Brownian motion, nm, 100 nm from point to point."""
-    return brownian_profiles(dimension, 1e4, (rows, points), np.random.default_rng(seed))
-
-
-def flank(folder: Path, z: Array, direction: str = "auto") -> Flank:
-    """Write heights in nm as a text and read it as an inputs file would."""
-    rows = [",".join("" if np.isnan(each) else f"{each:.6g}" for each in row) for row in z]
-    (folder / "flank.csv").write_text("\n".join(rows) + "\n")
-    return read_flank(folder / "flank.csv", spacing="0.4 um", height_unit="nm", direction=direction)
-
-
-NO_RANGE = "no self-affine range"
-LONG = np.linspace(0.0, 1.0, 400)
-
-
-@pytest.mark.parametrize(
-    ("z", "words"),
-    [
-        pytest.param(np.random.default_rng(4).normal(0, 50, (40, 400)), NO_RANGE, id="white noise: slope 0"),
-        pytest.param(300 * np.sin(2 * np.pi * LONG + np.arange(40)[:, None]), NO_RANGE, id="one long wave: slope 2"),
-        pytest.param(heights(rows=1, points=108), "less than a decade", id="less than a decade of lags"),
-        pytest.param(np.concatenate([heights(40, 200), np.full((40, 200), 0.0)], axis=1)
-                     + 400 * np.sin(2 * np.pi * 40 * LONG), NO_RANGE, id="chatter"),
-    ],
-)  # fmt: skip
-def test_what_has_no_range_is_refused_with_its_slopes(tmp_path: Path, z: Array, words: str) -> None:
-    found = flank(tmp_path, z, direction="x")
-    assert found.chosen is None
-    assert words in found.reason
-    assert len(found.resampled) == 0
-    assert len(found.estimates[0].local_dimensions) >= 3
 
 
 def test_a_study_is_named_once(refused: Refused) -> None:

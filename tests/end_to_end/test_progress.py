@@ -7,16 +7,14 @@ import os
 import re
 import sys
 import time
-from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
 
-from progress_seen import LEAST_STEPS, watched
 from shared import Calc
 from truing import progress
 from truing.progress import Task, has_terminal, shown_progress, spoken
-from truing.studies.bench import Bench, part_of, within
+from truing.studies.bench import part_of, within
 
 SLOW = """
 import time
@@ -250,40 +248,3 @@ def test_parts_of_a_task_lie_one_behind_the_other() -> None:
 
 
 # What the benchmark asks of every shipped study
-
-
-@dataclass(frozen=True)
-class Told:
-    """A study on a clock of its own: so many words, at these seconds."""
-
-    times: tuple[float, ...]
-    end: float
-    clock: list[float]
-    name: str = "told"
-
-    def run(self, bench: Bench) -> None:
-        for place, when in enumerate(self.times):
-            self.clock[0] = when
-            bench.progress(self.name, place, len(self.times))
-        self.clock[0] = self.end
-
-
-@pytest.mark.parametrize(
-    ("times", "end", "faults"),
-    [
-        ((), 1.9, []),
-        (tuple(float(time) for time in range(12)), 12.0, []),
-        ((), 3.0, ["took 3.0 s and spoke of 0 steps", "was silent for 3.0 of 3.0 s"]),
-        ((0.0, 6.0), 12.0, [f"spoke of 2 steps, not {LEAST_STEPS}", "was silent for 6.0 of 12.0 s"]),
-        (tuple(0.1 * time for time in range(12)), 12.0, ["was silent for 10.9 of 12.0 s"]),
-    ],
-)
-def test_who_waits_hears_enough(
-    times: tuple[float, ...], end: float, faults: list[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    clock = [0.0]
-    with watched(monkeypatch, {Told}, lambda: clock[0]) as seen:
-        Told(times, end, clock).run(Bench(None, None, None))  # type: ignore[arg-type]
-    (found,) = (one.faults for one in seen)
-    assert len(found) == len(faults)
-    assert all(words in fault for words, fault in zip(faults, found, strict=True))

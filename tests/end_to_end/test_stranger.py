@@ -48,24 +48,10 @@ def test_plugins_as_json(stranger: Callable[..., Answer]) -> None:
     assert (broken["plugin"], broken["version"], broken["line"]) == ("broken_guest", "0.0.7", 6)
 
 
-def test_names_load_nothing(stranger: Callable[..., Answer]) -> None:
-    answer = stranger("plugins", "--names")
-    ours = ["harmonic_fractal", "press_linkage", "roller_screw_shift", "rv_gearing", "rv_wear"]
-    assert answer.out.split() == ["broken_guest", *ours, "screw_joint"]
-    assert answer.err == ""
-
-
 def test_strict_ends_at_the_broken_guest(stranger: Callable[..., Answer]) -> None:
     answer = stranger("plugins", "--strict")
     assert answer.code == 3
     assert BROKEN in answer.err
-
-
-def test_what_is_broken_cannot_be_run_and_says_why(stranger: Callable[..., Answer]) -> None:
-    answer = stranger("run", "broken_guest")
-    assert answer.code == 3
-    assert answer.err.count(BROKEN) == 1
-    assert answer.out == ""
 
 
 def test_describe(stranger: Callable[..., Answer]) -> None:
@@ -99,11 +85,6 @@ def test_init_and_run(stranger: Callable[..., Answer], tmp_path: Path) -> None:
     }
 
 
-def test_a_check_that_fails_exits_with_1(stranger: Callable[..., Answer]) -> None:
-    answer = stranger("run", "screw_joint", "--set", "axial_force=45 kN", "--set", "studies.reliability.draws=2000")
-    assert answer.code == 1, answer.err
-
-
 def test_the_effects_of_the_stranger_change_its_results(stranger: Callable[..., Answer], tmp_path: Path) -> None:
     few = ("screw_joint", "--set", "studies.run=[]")
     base = run_folder(stranger, tmp_path / "base", *few)
@@ -130,12 +111,6 @@ def test_the_guests_effect_acts_on_our_model(
     assert "frame_settling" in {item["what"] for item in on["added"]}
     sheet = (tmp_path / "on" / "sheet.html").read_text(encoding="utf-8")
     assert "Screwed joints of the frame" in sheet
-
-
-def test_verify(stranger: Callable[..., Answer]) -> None:
-    answer = stranger("verify", "screw_joint")
-    assert answer.code == 0, answer.err
-    assert "Preload" in answer.out
 
 
 def test_a_single_file_with_a_mistake_is_named_with_its_line(calc: Calc, tmp_path: Path) -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import _thread
-import json
 import os
 import queue
 import re
@@ -139,120 +137,28 @@ def test_a_diagnosis_follows_its_measured_rows(calc: Calc, tmp_path: Path) -> No
         assert why in answer.err
 
 
-GRAIN = '''"""A grain on a table: the heaviest of a file."""
-from truing import Float, Model, found, hookimpl, inputs, loaded, results
-from {package}.reading import heaviest
-
-
-@inputs
-class Table:
-    """What was weighed."""
-
-    grains: float = loaded(heaviest)
-
-
-@results
-class Weight:
-    """What it weighs."""
-
-    weight: Float = found("N", note="weight")
-
-
-def weigh(table: Table) -> Weight:
-    """Mass by gravity."""
-    return Weight(weight=9.81 * table.grains)
-
-
-MODEL = Model(name="{package}", title="Grains", function=weigh)
-
-
-@hookimpl
-def truing_models() -> list[Model[Table, Weight]]:
-    """Offer one calculation."""
-    return [MODEL]
-'''
-READING = '''"""Reads grains."""
-from pathlib import Path
-
-
-def heaviest(path: Path) -> float:
-    """The largest mass in the file, kg."""
-    return FACTOR * max(map(float, path.read_text().split()))
-
-
-FACTOR = 1.0
-'''
-
-
-@pytest.fixture
-def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """An installed plugin that is a package, and a data file beside its inputs."""
-    name = "grains_on_a_table"
+@pytest.mark.skipif(sys.platform == "win32", reason="a console signal there stops the test too")
+def test_data_files_and_the_files_of_an_installed_package_are_watched(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    name, text = "worn_surface", PIN.with_name("worn_surface.py").read_text(encoding="utf-8")
     home, described = tmp_path / "site" / name, tmp_path / "site" / f"{name}-1.0.dist-info"
     home.mkdir(parents=True)
     described.mkdir()
-    saved(home / "__init__.py", GRAIN.replace("{package}", name))
-    saved(home / "reading.py", READING)
+    saved(home / "__init__.py", f"from {name}.law import truing_models as truing_models\n")
+    saved(home / "law.py", text)
     saved(described / "METADATA", f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.0\n")
     saved(described / "entry_points.txt", f"[truing.plugins]\n{name} = {name}\n")
-    monkeypatch.syspath_prepend(str(tmp_path / "site"))
-    monkeypatch.setattr(sys, "dont_write_bytecode", True)
-    saved(tmp_path / "grains.txt", "1 2 3")
-    saved(tmp_path / "table.toml", '[inputs]\ngrains = "grains.txt"\n')
-    yield home
-    for module in [module for module in sys.modules if module.startswith(name)]:
-        del sys.modules[module]
-
-
-@contextmanager
-def hearing() -> Iterator[None]:
-    """Hear Ctrl-C, also where the tests themselves were started deaf to it (``&``)."""
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
-
-
-def test_data_files_and_the_files_of_a_package_are_watched(calc: Calc, package: Path, tmp_path: Path) -> None:
-    results, weights = tmp_path / "out" / "results.json", []
-
-    def weight_other_than(last: Any) -> Any:
-        until = time.monotonic() + LONGEST
-        while time.monotonic() < until:
-            try:
-                found = json.loads(results.read_text(encoding="utf-8"))["results"]["weight"]["value"]
-            except (OSError, ValueError):
-                found = None
-            if found not in {None, last}:
-                return found
-            time.sleep(0.02)
-        return None
-
-    def edit() -> None:
-        try:
-            weights.append(weight_other_than(None))
-            saved(tmp_path / "grains.txt", "1 2 4", by_renaming=True)
-            weights.append(weight_other_than(weights[-1]))
-            saved(package / "reading.py", READING.replace("1.0", "0.5"))
-            weights.append(weight_other_than(weights[-1]))
-            time.sleep(0.3)
-        finally:
-            if not ended.is_set():
-                _thread.interrupt_main()
-
-    ended, editor = threading.Event(), threading.Thread(target=edit, daemon=True)
-    with hearing():
-        editor.start()
-        answer = calc("watch", package.name, "--inputs", "table.toml", "-o", "out", "--every", "0.02")
-        ended.set()
-        editor.join(LONGEST)
-    assert answer.code == 0, answer.err
-    assert weights == pytest.approx([3 * 9.81, 4 * 9.81, 2 * 9.81])
-    lines = answer.out.splitlines()
-    assert lines[0].endswith(f"no checks; sheet: {Path('out') / 'sheet.html'}")
-    assert "weight +33.3 %; no checks" in lines[1]
-    assert "weight -50 %; no checks" in lines[2]
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path / "site"))
+    saved(tmp_path / "depths.txt", "1\n2\n3\n")
+    saved(tmp_path / "worn.toml", '[inputs]\nsurface = "depths.txt"\n')
+    with watching(tmp_path, name, "--inputs", "worn.toml", "-o", "out") as watch:
+        assert watch.says(r"no checks; sheet: out.sheet\.html$")
+        saved(tmp_path / "depths.txt", "2\n4\n6\n", by_renaming=True)
+        assert watch.says(r"share -50 %; no checks")
+        saved(home / "law.py", text.replace("share=given_.load", "share=2 * given_.load"))
+        assert watch.says(r"share \+100 %; no checks")
+        assert watch.interrupted() == 0
 
 
 @pytest.mark.parametrize(

@@ -10,11 +10,11 @@ from pathlib import Path
 from hidden_effects.candidates import HOUR
 from hidden_effects.cases import Case
 from hidden_effects.press_machine import POSITION, TILT, Array, Rows
+from hidden_effects.rigs import model_of
 from truing import Kernel
 from truing.kernel import Offer
-from truing.measurements import table_text
 from truing.testing import recorded
-from truing.testing.hiding import Answered
+from truing.testing.hiding import Answered, csv_of
 
 INPUTS = (
     'plugin = "press_linkage"\n\n[inputs]\nreading = "complete"\n'
@@ -35,7 +35,7 @@ def table(rows: Rows, readings: Mapping[str, Array], counters: tuple[float, floa
         "direction [1]": rows.direction,
         **{f"{name} [{WRITTEN[name][0]}]": values * WRITTEN[name][1] for name, values in readings.items()},
     }
-    return table_text(list(columns), list(columns.values()))
+    return csv_of(columns)
 
 
 def tables(case: Case) -> tuple[str, str]:
@@ -60,4 +60,4 @@ def press_offer() -> Offer:
 def diagnosed(case: Case) -> Answered:
     """Ask for a diagnosis of the record and predict the rows that were held out."""
     measured, held = tables(case)
-    return recorded(press_offer().model, inputs=INPUTS, measured=measured, held_out=held).answered
+    return recorded(model_of("press_linkage"), inputs=INPUTS, measured=measured, held_out=held).answered

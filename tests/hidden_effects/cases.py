@@ -1,21 +1,21 @@
 """A case with a hidden answer: what a diagnosis may see, what is true, how visible and how separable that is."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal, TypeAlias
 
 import numpy as np
 
-from hidden_effects.candidates import columns, stacked
+from hidden_effects.candidates import Candidate, columns, stacked
 from hidden_effects.designs import Design
 from hidden_effects.information import Lens, Rival, beside_groups, other_groups, over_results, rivals
-from hidden_effects.noises import Kind
 from hidden_effects.press_machine import Array, Hidden, Rows, shown
 from hidden_effects.record import Record
+from hidden_effects.rigs import Kind
 from hidden_effects.shapes import Shape, family_of
 
 Stratum: TypeAlias = Literal["none", "single", "double", "unknown", "beside"]
-VISIBLE = 25.0
+VISIBLE, APART = 25.0, 10.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,12 +33,12 @@ class Case:
     record: Record
     held: Rows
     off: dict[str, float]
-    hidden: Hidden
-    truth: tuple[str, ...]
-    shape: Shape | None
-    counters: tuple[float, float]
-    readings: dict[str, Array]
-    held_readings: dict[str, Array]
+    hidden: Hidden = field(default_factory=dict)
+    truth: tuple[str, ...] = ()
+    shape: Shape | None = None
+    counters: tuple[float, float] = (0.0, 0.0)
+    readings: dict[str, Array] = field(default_factory=dict)
+    held_readings: dict[str, Array] = field(default_factory=dict)
 
     @property
     def results(self) -> tuple[str, ...]:
@@ -50,6 +50,11 @@ class Case:
         """What the noise is like."""
         return self.record.noise.kind
 
+    @property
+    def causes(self) -> list[Candidate]:
+        """The candidates that are true."""
+        return [self.record.candidates[self.record.place(name)] for name in self.truth]
+
     def true_readings(self, rows: Rows) -> Array:
         """What the gauges would show without noise, one result after another."""
         return stacked(shown(rows, self.off, self.hidden), self.results) + self._of_shape(rows)
@@ -60,7 +65,11 @@ class Case:
     @cached_property
     def change(self) -> Array:
         """What was hidden in the readings, one result after another."""
-        return self.true_readings(self.record.rows) - stacked(shown(self.record.rows, self.off, {}), self.results)
+        return self.change_at(self.record.rows)
+
+    def change_at(self, rows: Rows) -> Array:
+        """What is hidden at these rows, one result after another."""
+        return self.true_readings(rows) - stacked(shown(rows, self.off, {}), self.results)
 
     @cached_property
     def lens(self) -> Lens:
@@ -126,8 +135,7 @@ class Case:
     def true_columns(self, rows: Rows) -> Array:
         """Columns of the amplitudes of what is true, with its true shapes."""
         made = []
-        for name in self.truth:
-            candidate = self.record.candidates[self.record.place(name)]
+        for candidate in self.causes:
             unknowns = self.hidden[candidate.effect]
             shapes = {shape: unknowns[shape] for shape in candidate.shapes or {}}
             made.append(columns(rows, self.results, candidate, shapes))

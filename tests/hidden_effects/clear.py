@@ -1,39 +1,37 @@
 """Every effect that can be hidden in the machines of each plugin, at a clear size, in results in which it shows."""
 
-from dataclasses import replace
+from math import inf
 
-from hidden_effects import harmonic_cases, screw_cases
-from hidden_effects.gearing_cases import CONTACT, ERROR, LOSS, PLAY, SUN_ROOT, WARMTH, Design
-from hidden_effects.gearing_cases import Wish as Stage
+from hidden_effects import gearing_cases, harmonic_cases, screw_cases
+from hidden_effects.gearing_cases import CONTACT, ERROR, LOSS, PLAY, SUN_ROOT, WARMTH
 from hidden_effects.harmonic_machine import MESH
-from hidden_effects.harmonic_surface import SurfaceWish
+from hidden_effects.harmonic_surface import surface
+from hidden_effects.rigs import Wish
 
 STAGE_STRESSES = (SUN_ROOT, CONTACT)
 
 
-def stage(results: tuple[str, ...], design: Design = "rig", **hidden: dict[str, float]) -> Stage:
-    return Stage(hidden=hidden, results=results, design=design)
+def stage(results: tuple[str, ...], design: str = "rig", **hidden: dict[str, float]) -> Wish:
+    return gearing_cases.stage(hidden=hidden, results=results, design=design)
 
 
-def screw(
-    results: tuple[str, ...], design: screw_cases.Design = "bench", **hidden: dict[str, float]
-) -> screw_cases.Wish:
-    return screw_cases.Wish(hidden=hidden, results=results, design=design)
+def screw(results: tuple[str, ...], design: str = "bench", **hidden: dict[str, float]) -> Wish:
+    return screw_cases.screw(hidden=hidden, results=results, design=design)
 
 
-def drive(**hidden: dict[str, float]) -> harmonic_cases.Wish:
+def drive(**hidden: dict[str, float]) -> Wish:
     """A drive of which the torsion is measured."""
-    return harmonic_cases.Wish(hidden=hidden)
+    return harmonic_cases.drive(hidden=hidden)
 
 
-def mesh(**hidden: dict[str, float]) -> harmonic_cases.Wish:
+def mesh(tooth: float = inf, **hidden: dict[str, float]) -> Wish:
     """A drive of which the stiffness of the mesh is measured."""
-    return harmonic_cases.Wish(hidden=hidden, results=(MESH,), design="points")
+    return harmonic_cases.drive(tooth, hidden=hidden, results=(MESH,), design="points")
 
 
-def flank(**hidden: dict[str, float]) -> SurfaceWish:
+def flank(**hidden: dict[str, float]) -> Wish:
     """A flank under an instrument."""
-    return SurfaceWish(hidden=hidden)
+    return surface(hidden=hidden)
 
 
 STAGES = [
@@ -84,9 +82,9 @@ SCREWS = [
     screw((screw_cases.WEAR, screw_cases.BACKLASH), "endurance", flank_wear={"rate": 2.0}),
     screw((screw_cases.TORQUE,), mesh_friction={"factor": 1.3}),
 ]
-DRIVES: list[harmonic_cases.Wish | SurfaceWish] = [
+DRIVES = [
     drive(series_compliance={"compliance": 12}),
-    replace(mesh(engaged_pairs={"gain": 1.8, "torque_scale": 0.8}), tooth=2e7),
+    mesh(2e7, engaged_pairs={"gain": 1.8, "torque_scale": 0.8}),
     mesh(oil_film={"stiffness": 0.03}),
     mesh(asperity_smoothing={"dimension": 0.03, "roughness": 0.6, "cycle_scale": 2e5}),
     drive(modulus_temperature={"softening": 8e-4}),

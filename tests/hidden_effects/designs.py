@@ -2,14 +2,14 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import pi, radians
+from math import radians
 from typing import Literal, TypeAlias
 
 import numpy as np
 from scipy.linalg import block_diag
 
-from hidden_effects.noises import Kind
 from hidden_effects.press_machine import POSITION, TILT, Array, Rows
+from hidden_effects.rigs import Kind, noise_of
 
 Design: TypeAlias = Literal["wide", "narrow", "warm-up"]
 DESIGNS: tuple[Design, ...] = ("wide", "narrow", "warm-up")
@@ -40,12 +40,7 @@ class Noise:
 
     def drawn(self, rows: Rows, result: str, rng: np.random.Generator) -> Array:
         """One record of this noise."""
-        count = len(rows)
-        is_heavy = self.kind == "heavy"  # t with 3 degrees of freedom has variance 3
-        pure = rng.standard_t(3, count) / np.sqrt(3.0) if is_heavy else rng.standard_normal(count)
-        rho = self.autocorrelation
-        for row in range(1, count if rho else 0):
-            pure[row] = rho * pure[row - 1] + np.sqrt(1 - rho**2) * pure[row]
+        pure = noise_of(self.kind, len(rows), rng, freedom=3, memory=self.autocorrelation)
         return np.asarray(self.spread(rows, result) * pure)
 
 
@@ -128,11 +123,6 @@ def parted(rows: Rows, count: int, rng: np.random.Generator) -> tuple[Rows, Rows
     other = np.setdiff1d(np.arange(1, len(rows)), kept)
     first = np.zeros(1, dtype=np.intp)
     return rows.taken(np.concatenate([first, kept])), rows.taken(np.concatenate([first, other]))
-
-
-def turns(angle: Array) -> Array:
-    """Angles between -180 and 180 degrees."""
-    return np.asarray(np.remainder(angle + pi, 2 * pi) - pi)
 
 
 def covariance(noise: Noise, rows: Rows, results: Sequence[str]) -> Array:

@@ -1,14 +1,13 @@
 """First stages with something wrong, or nothing: how they were measured, with what noise, and what a user has."""
 
-from dataclasses import dataclass
+from functools import partial
 from typing import Literal, TypeAlias
 
 import numpy as np
 
 from hidden_effects.gearing_machine import Rows, shown
 from hidden_effects.gearing_stage import Stage
-from hidden_effects.plugin_asking import Rig
-from hidden_effects.rig_cases import RigCases, RigWish
+from hidden_effects.rigs import Bench, Rig, Wish
 
 Design: TypeAlias = Literal["rig", "sweep", "one_way"]
 SUN_ROOT, PLANET_ROOT, CONTACT = "root_stress_sun", "root_stress_planet", "contact_stress"
@@ -18,15 +17,7 @@ NOISE = {SUN_ROOT: 2.0, PLANET_ROOT: 2.0, CONTACT: 8.0, ERROR: 0.5, PLAY: 1.0, L
 TURN_OF_OUTPUT = 39960.0  # deg of the sun
 
 
-@dataclass(frozen=True, kw_only=True)
-class Wish(RigWish):
-    """What a case is to be like."""
-
-    design: Design = "rig"
-    count: int = 100
-
-
-def built(_: Wish, rng: np.random.Generator) -> Stage:
+def built(rng: np.random.Generator) -> Stage:
     """Draw a machine within its tolerances."""
     width, sun, planet, bearing = rng.standard_normal(4) * (0.033, 0.01, 0.01, 0.001)
     return Stage(12.0 + width, sun, planet, 0.99 + bearing)
@@ -48,14 +39,17 @@ def measured(design: Design, count: int, rng: np.random.Generator) -> Rows:
     )
 
 
-CASES = RigCases(
-    stream=75, held=300, measured=measured, machine=built, shown=shown,
-    spread=lambda rows: 0.4 + 1.6 * np.abs(rows.load_torque) / 1300, noise=NOISE,
+STAGE = Rig(
+    plugin="rv_gearing",
+    inputs='plugin = "rv_gearing"\n[inputs]\nsun_teeth = 20\nplanet_teeth = 55\n',
+    written={
+        "time": "h", "load_torque": "N*m", "input_speed": "rpm", "oil_temperature": "degC", "input_angle": "deg",
+    },
+    measured=UNIT,
+    make=Bench(
+        stream=75, held=300, measured=measured, machine=built, shown=shown,
+        spread=lambda rows: 0.4 + 1.6 * np.abs(rows.load_torque) / 1300, noise=NOISE,
+    ),
 )  # fmt: skip
-make_case = CASES.made
-INPUTS = 'plugin = "rv_gearing"\n[inputs]\nsun_teeth = 20\nplanet_teeth = 55\n'
-WRITTEN = {
-    "time": "h", "load_torque": "N*m", "input_speed": "rpm", "oil_temperature": "degC", "input_angle": "deg",
-}  # fmt: skip
-STAGE = Rig(plugin="rv_gearing", inputs=INPUTS, written=WRITTEN, measured=UNIT)
-diagnosed = STAGE.diagnosed
+stage = partial(Wish, rig=STAGE, design="rig", count=100)
+"""What a first stage is to be like."""

@@ -4,19 +4,15 @@ Nothing of the plugin is imported. Lines are drawn as a sum of all waves with th
 what is looked at on either side; a wave, a blunt instrument and its noise act on the heights. Lengths um.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
-from functools import cache
+from dataclasses import dataclass
+from functools import cache, partial
 from math import gamma, pi, sin
-from typing import TypeAlias
 
 import numpy as np
 
 from hidden_effects.harmonic_contact import Array
-from hidden_effects.noises import title_of
-from hidden_effects.plugin_asking import Rig
-from hidden_effects.rig_cases import RigCase
-from hidden_effects.rows import Hidden, of
+from hidden_effects.rigs import Rig, RigCase, Wish
+from hidden_effects.rows import of
 
 STRUCTURE = "structure_function"
 DIMENSION, ROUGHNESS = 2.4, 1e-5  # um, of a surface with ridges in all directions: the defaults
@@ -24,7 +20,6 @@ EXPONENT = 6 - 2 * DIMENSION
 STEP, POINTS, LINES = 0.2, 2**13, 4
 FOLDS = 30  # of the spectrum about the sampling frequency: a point is no mean over a step
 FIRST, LAST = 2, 300  # lags in steps
-Strange: TypeAlias = Callable[[Array], Array]
 
 
 @dataclass(frozen=True)
@@ -36,23 +31,6 @@ class Lags:
 
     def __len__(self) -> int:
         return len(self.lag)
-
-
-@dataclass(frozen=True, kw_only=True)
-class SurfaceWish:
-    """What a surface is to be like: hidden unknowns in the units of the registry, and what nobody registered."""
-
-    seed: int = 3
-    hidden: Hidden = field(default_factory=dict)
-    count: int = 40
-    strange: Strange | None = None
-    """Added to the heights along a line."""
-    results: tuple[str, ...] = (STRUCTURE,)
-
-    @property
-    def title(self) -> str:
-        """What the case is called in the list of tests."""
-        return title_of(self.hidden, self.strange, "surface")
 
 
 @cache
@@ -74,7 +52,7 @@ def spectrum(frequency: Array, width: float) -> Array:
     return np.asarray(sum(scale * f ** -(1 + EXPONENT) * np.exp(-((2 * pi * f * width) ** 2)) for f in folded))
 
 
-def lines(rng: np.random.Generator, wish: SurfaceWish, count: int) -> Array:
+def lines(rng: np.random.Generator, wish: Wish, count: int) -> Array:
     """Heights of so many lines, um, as the instrument shows them."""
     period = POINTS * 2
     frequency = np.fft.rfftfreq(period, STEP)[1:]
@@ -106,10 +84,10 @@ def relative_error(step: int) -> float:
 
 @cache
 def _plain() -> Array:
-    return lines(np.random.default_rng(63), SurfaceWish(seed=0), 200)
+    return lines(np.random.default_rng(63), surface(seed=0), 200)
 
 
-def true_structure(wish: SurfaceWish, lag: Array) -> Array:
+def true_structure(wish: Wish, lag: Array) -> Array:
     """What endless lines would show, um^2, the spot as a sum over places."""
     width = of(wish.hidden, "lateral_filter", "width")
     places = np.linspace(-8, 8, 4001)
@@ -121,7 +99,7 @@ def true_structure(wish: SurfaceWish, lag: Array) -> Array:
     return np.asarray(power() * np.array(plain) + of(wish.hidden, "waviness", "square") * wave + noise)
 
 
-def make_surface(wish: SurfaceWish) -> RigCase:
+def make_surface(wish: Wish) -> RigCase:
     """Read a surface, each lag on lines of its own and in any order, so that its errors are its own.
 
     Every other lag is held out.
@@ -135,7 +113,6 @@ def make_surface(wish: SurfaceWish) -> RigCase:
     lags = [Lags(STEP * steps[part], sigma[part]) for part in parts]
     found = [{STRUCTURE: read[part]} for part in parts]
     return RigCase(
-        wish=wish,
         rows=lags[0],
         held=lags[1],
         readings=found[0],
@@ -150,4 +127,7 @@ FLANK = Rig(
     inputs='plugin = "harmonic_fractal"\n',
     written={"lag": "um", "sigma_structure_function": "um^2"},
     measured={STRUCTURE: "um^2"},
+    make=make_surface,
 )
+surface = partial(Wish, rig=FLANK, design="surface", results=(STRUCTURE,), count=40)
+"""What a surface is to be like; what nobody registered is added to the heights along a line."""

@@ -13,9 +13,9 @@ import numpy as np
 from hidden_effects.candidates import HOUR, Candidate, changes, columns
 from hidden_effects.cases import Case, Stratum
 from hidden_effects.designs import DESIGNS, Design, drawn_noise, measured, parted
-from hidden_effects.noises import KINDS, Kind
-from hidden_effects.press_machine import POSITION, SCATTER, TILT, Array, Hidden, Rows, shown
+from hidden_effects.press_machine import POSITION, SCATTER, TILT, Array, Rows
 from hidden_effects.record import Record
+from hidden_effects.rigs import KINDS, Kind
 from hidden_effects.shapes import MAKERS, Shape
 
 SCHEDULE: tuple[Stratum, ...] = (
@@ -52,15 +52,6 @@ NOTHING = Wish()
 Measure = Callable[[Array], float]
 
 
-@dataclass(frozen=True)
-class Bench:
-    """A machine on the bench: its record, the rows that judge, and what its parts are off."""
-
-    record: Record
-    held: Rows
-    off: dict[str, float]
-
-
 def make_case(seed: int, wish: Wish = NOTHING) -> Case:
     """The case of this seed. Stratum, noise and what is measured follow from the seed in turn, all else is drawn."""
     rng = np.random.default_rng([seed, 20240])
@@ -69,36 +60,23 @@ def make_case(seed: int, wish: Wish = NOTHING) -> Case:
     results = wish.results or ((POSITION,), (POSITION, TILT))[int(rng.integers(2))]
     design = wish.design or DESIGNS[int(rng.integers(len(DESIGNS)))]
     for _ in range(ATTEMPTS):
-        bench = _bench(design, wish.rows or int(rng.choice(LENGTHS)), kind, results, rng)
-        found = _wrong(stratum, bench, wish, rng)
-        if found is not None:
-            return _case(bench, found, rng, seed=seed, stratum=stratum, design=design)
+        count = wish.rows or int(rng.choice(LENGTHS))
+        rows, held = parted(measured(design, count + HELD_OUT, rng), count, rng)
+        off = {name: float(sd * rng.standard_normal()) for name, sd in SCATTER.items()}
+        record = Record(rows, results, drawn_noise(kind, rng))
+        right = Case(seed=seed, stratum=stratum, design=design, record=record, held=held, off=off)
+        wrong = _wrong(right, wish, rng)
+        if wrong is not None:
+            return _read(wrong, rng)
     raise ValueError(f"seed {seed}: nothing of this kind can be hidden at this size")
 
 
-def _bench(design: Design, count: int, kind: Kind, results: tuple[str, ...], rng: np.random.Generator) -> Bench:
-    rows, held = parted(measured(design, count + HELD_OUT, rng), count, rng)
-    off = {name: float(sd * rng.standard_normal()) for name, sd in SCATTER.items()}
-    return Bench(Record(rows, results, drawn_noise(kind, rng)), held, off)
-
-
-@dataclass(frozen=True)
-class Wrong:
-    """What is wrong with a machine: effects with their unknowns, the candidates they belong to, and a shape."""
-
-    hidden: Hidden
-    truth: tuple[str, ...]
-    shape: Shape | None = None
-
-
-def _case(bench: Bench, wrong: Wrong, rng: np.random.Generator, *, seed: int, stratum: Stratum, design: Design) -> Case:
-    record, first = bench.record, rng.random() < 0.5
-    case = Case(
-        seed=seed, stratum=stratum, design=design, record=record, held=bench.held, off=bench.off, hidden=wrong.hidden,
-        truth=wrong.truth, shape=wrong.shape, readings={}, held_readings={},
-        counters=(0.0, 0.0) if first else (rng.uniform(0, 500) * HOUR, float(rng.integers(0, 4_000_000))),
-    )  # fmt: skip
-    return replace(case, readings=_noisy(case, record.rows, rng), held_readings=_noisy(case, bench.held, rng))
+def _read(case: Case, rng: np.random.Generator) -> Case:
+    """The case with what its gauges and counters showed."""
+    is_new = rng.random() < 0.5
+    counters = (0.0, 0.0) if is_new else (rng.uniform(0, 500) * HOUR, float(rng.integers(0, 4_000_000)))
+    readings, held = (_noisy(case, rows, rng) for rows in (case.record.rows, case.held))
+    return replace(case, counters=counters, readings=readings, held_readings=held)
 
 
 def _noisy(case: Case, rows: Rows, rng: np.random.Generator) -> dict[str, Array]:
@@ -106,25 +84,25 @@ def _noisy(case: Case, rows: Rows, rng: np.random.Generator) -> dict[str, Array]
     return {result: part + case.record.noise.drawn(rows, result, rng) for result, part in parts}
 
 
-def _wrong(stratum: Stratum, bench: Bench, wish: Wish, rng: np.random.Generator) -> Wrong | None:
+def _wrong(case: Case, wish: Wish, rng: np.random.Generator) -> Case | None:
     """Draw what is wrong; None where what was drawn cannot be hidden here at its size."""
-    many = {"none": 0, "single": 1, "double": 2, "unknown": 0, "beside": 1}[stratum]
-    measure = _measure(bench.record, wish, rng)
+    many = {"none": 0, "single": 1, "double": 2, "unknown": 0, "beside": 1}[case.stratum]
+    measure = _measure(case.record, wish, rng)
     hidden: dict[str, Mapping[str, float]] = {}
     truth: list[str] = []
     for at in range(many):
-        candidate = _candidate(bench.record, wish.effects[at] if wish.effects else "", rng)
-        unknowns = _sized(bench, candidate, _target(wish, rng), measure, rng)
+        candidate = _candidate(case.record, wish.effects[at] if wish.effects else "", rng)
+        unknowns = _sized(case, candidate, _target(wish, rng), measure, rng)
         if unknowns is None or candidate.effect in hidden:
             return None
         hidden[candidate.effect] = unknowns
         truth.append(candidate.name)
-    if _is_one_in_another(bench.record, truth):
+    if _is_one_in_another(case.record, truth):
         return None
-    shape = _shape(bench, wish, measure, rng) if stratum in ("unknown", "beside") else None
+    shape = _shape(case.record, wish, measure, rng) if case.stratum in ("unknown", "beside") else None
     if shape is not None and shape.also in hidden:
         return None
-    return Wrong(hidden, tuple(truth), shape)
+    return replace(case, hidden=hidden, truth=tuple(truth), shape=shape)
 
 
 def _measure(record: Record, wish: Wish, rng: np.random.Generator) -> Measure:
@@ -159,10 +137,10 @@ def _is_one_in_another(record: Record, truth: list[str]) -> bool:
 
 
 def _sized(
-    bench: Bench, candidate: Candidate, target: float, measure: Measure, rng: np.random.Generator
+    case: Case, candidate: Candidate, target: float, measure: Measure, rng: np.random.Generator
 ) -> dict[str, float] | None:
     """Unknowns of the wanted size, or None where their bounds do not allow it."""
-    record = bench.record
+    record = case.record
     shapes = {name: _shape_value(name, record.rows, rng) for name in candidate.shapes or {}}
     ways = rng.standard_normal(len(candidate.amplitudes))
     made = columns(record.rows, record.results, candidate, shapes)
@@ -176,7 +154,7 @@ def _sized(
         amplitudes = {name: float(factor * way) for name, way in zip(candidate.amplitudes, signs, strict=True)}
         if not _is_inside(candidate, amplitudes):
             return None
-        change = changes(record.rows, record.results, {candidate.effect: {**shapes, **amplitudes}}, bench.off)
+        change = changes(record.rows, record.results, {candidate.effect: {**shapes, **amplitudes}}, case.off)
         size = measure(change)
         if size < 1e-9 * target:
             return None
@@ -197,9 +175,8 @@ def _shape_value(name: str, rows: Rows, rng: np.random.Generator) -> float:
     return float(rng.integers(1, 4)) if name.endswith("_order") else float(rng.uniform(0.15, 0.85) * length)
 
 
-def _shape(bench: Bench, wish: Wish, measure: Measure, rng: np.random.Generator) -> Shape:
+def _shape(record: Record, wish: Wish, measure: Measure, rng: np.random.Generator) -> Shape:
     """A shape that nobody registered, in one or all of the readings, of the wanted size."""
-    record = bench.record
     makers = [maker for maker in MAKERS if wish.maker in ("", maker.__name__)]
     shape = makers[int(rng.integers(len(makers)))](record.rows, rng)
     seen = record.results if rng.random() < 0.4 else (record.results[int(rng.integers(len(record.results)))],)
@@ -207,8 +184,3 @@ def _shape(bench: Bench, wish: Wish, measure: Measure, rng: np.random.Generator)
     unit = replace(shape, sizes=tuple(ways.items()))
     factor = _target(wish, rng) / measure(unit.of(record.rows, record.results))
     return replace(shape, sizes=tuple((result, float(factor * way)) for result, way in ways.items()))
-
-
-def plain(case: Case, rows: Rows) -> dict[str, Array]:
-    """What the gauges would show of the machine as drawn with nothing wrong."""
-    return shown(rows, case.off, {})

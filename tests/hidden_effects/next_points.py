@@ -11,30 +11,20 @@ from typing import Any
 
 import numpy as np
 
-from hidden_effects.candidates import HOUR, Candidate, columns, stacked, tolerance_columns
-from hidden_effects.cases import Case
-from hidden_effects.outcome import FIRST, is_alternative, is_exact, names_of
-from hidden_effects.press_machine import Array, Rows, shown
+from hidden_effects.candidates import HOUR, Candidate, columns, tolerance_columns
+from hidden_effects.cases import APART, Case
+from hidden_effects.outcome import FIRST, is_alternative, is_exact
+from hidden_effects.press_machine import Array, Rows
 from truing.units import to_si
 
 POINTS = 4
 SETS = 200
 ROUNDS = 3
 SPARSE = 16
-APART = 10.0
 BOX = {  # where the press can be set, SI; the crank angle as the inputs file of a case says, all else as declared
     "crank_angle": (-np.pi / 3, np.pi / 3), "forming_force": (-200e3, 2000e3), "link_temperature": (15.0, 60.0),
     "time": (0.0, 10 * HOUR), "strokes": (0.0, 1e6), "speed": (5 / 60, 1.0), "direction": (-1.0, 1.0),
 }  # fmt: skip
-
-
-@dataclass(frozen=True)
-class Normal:
-    """A least squares problem in summed form: its matrix (k, k), right side (k,) and sum of squares."""
-
-    matrix: Array
-    right: Array
-    total: float
 
 
 def asked(case: Case, document: Mapping[str, Any]) -> dict[str, Any] | None:
@@ -71,7 +61,7 @@ def open_rival(case: Case, document: Mapping[str, Any]) -> tuple[str, ...] | Non
     else:
         is_open = any(is_alternative(case, other) for other in others) and document["remainder"] is None
         named = [tuple(cause["effect"] for cause in document["causes"])] if is_open else []
-    true = set().union(*(names_of(case, name) for name in case.truth))
+    true = set().union(*(case.record.effects_of(name) for name in case.truth))
     known = {candidate.effect for candidate in case.record.candidates}
     kept = [names for names in named if not set(names) <= true and set(names) <= known]
     return kept[0] if kept else None
@@ -99,12 +89,15 @@ def _joined(*parts: Rows) -> Rows:
 
 @dataclass(frozen=True)
 class Problem:
-    """One rival with its shapes chosen: the record summed up, and further points over their noise, by result.
+    """One rival with its shapes chosen: the record as a least squares problem in summed form, and further points.
 
-    ``design`` (results, points, k), ``change`` (results, points).
+    The matrix (k, k), right side (k,) and sum of squares of the record; design (results, points, k) and change
+    (results, points) of the points, over their noise.
     """
 
-    record: Normal
+    matrix: Array
+    right: Array
+    total: float
     design: Array
     change: Array
 
@@ -113,11 +106,10 @@ class Problem:
         chosen = list(points)
         design = self.design[:, chosen].reshape(-1, self.design.shape[2])
         change = self.change[:, chosen].reshape(-1)
-        matrix = self.record.matrix + design.T @ design
-        right = self.record.right + design.T @ change
+        matrix, right = self.matrix + design.T @ design, self.right + design.T @ change
         scale = 1 / np.sqrt(np.maximum(np.diag(matrix), 1e-30))
         solved = np.linalg.solve(matrix * np.outer(scale, scale) + 1e-12 * np.eye(len(scale)), scale * right)
-        return self.record.total + float(change @ change) - float(solved @ (scale * right))
+        return self.total + float(change @ change) - float(solved @ (scale * right))
 
 
 def _left(problems: Sequence[Problem], points: Sequence[int]) -> float:
@@ -141,12 +133,12 @@ def _exchanged(problems: Sequence[Problem], points: Sequence[int], pool: Sequenc
 
 def _problems(case: Case, rival: Sequence[str], points: Rows) -> Iterator[Problem]:
     """Give the rival with every choice of its shapes."""
-    record = case.record
-    change = _change(case, points)
+    record, change = case.record, case.change
     weight = np.asarray(np.linalg.inv(record.covariance), dtype=float)
     tolerances = tolerance_columns(points, case.results)
-    groups = [_of_name(case, name) for name in rival]
-    for choice in product(*groups):
+    sds = np.array([record.noise.sd[result] for result in case.results])[:, None]
+    further = np.array(np.split(case.change_at(points), len(sds))) / sds
+    for choice in product(*(_of_name(case, name) for name in rival)):
         made = [
             np.hstack([columns(rows, case.results, candidate, shapes) for candidate, shapes in choice])
             for rows in (record.rows, points)
@@ -154,31 +146,13 @@ def _problems(case: Case, rival: Sequence[str], points: Rows) -> Iterator[Proble
         scale = np.linalg.norm(made[0], axis=0) + np.linalg.norm(made[1], axis=0)
         old = np.hstack([record.tolerances, made[0] / np.where(scale > 0, scale, 1.0)])
         new = np.hstack([tolerances, made[1] / np.where(scale > 0, scale, 1.0)])
-        yield _problem(case, _summed(old, case.change, weight, record.tolerances.shape[1]), new, change)
+        prior = np.arange(old.shape[1]) < record.tolerances.shape[1]
+        weighted = old.T @ weight
+        matrix, total = weighted @ old + np.diag(prior), float(change @ weight @ change)
+        yield Problem(matrix, weighted @ change, total, np.array(np.split(new, len(sds))) / sds[:, :, None], further)
 
 
 def _of_name(case: Case, name: str) -> list[tuple[Candidate, dict[str, float]]]:
     """Every candidate of this effect with every choice of its shapes; one of several parts is enough."""
     fits = [candidate for candidate in case.record.candidates if candidate.effect == name]
     return [(candidate, shapes) for candidate in fits for shapes in candidate.variants()]
-
-
-def _summed(design: Array, change: Array, weight: Array, tolerances: int) -> Normal:
-    prior = np.zeros(design.shape[1])
-    prior[:tolerances] = 1.0
-    weighted = design.T @ weight
-    return Normal(weighted @ design + np.diag(prior), weighted @ change, float(change @ weight @ change))
-
-
-def _problem(case: Case, record: Normal, design: Array, change: Array) -> Problem:
-    """Sum up the record, and bring the further points into units of their noise."""
-    sds = np.array([case.record.noise.sd[result] for result in case.results])[:, None]
-    return Problem(
-        record, np.array(np.split(design, len(sds))) / sds[:, :, None], np.array(np.split(change, len(sds))) / sds
-    )
-
-
-def _change(case: Case, rows: Rows) -> Array:
-    """What is hidden at these rows, one result after another."""
-    true = case.true_readings(rows)
-    return true - stacked(shown(rows, case.off, {}), case.results)

@@ -1,6 +1,7 @@
 """What a diagnosis said to one case, held against the truth: every fact that the table of metrics needs, as JSON."""
 
 from collections.abc import Mapping, Sequence
+from itertools import permutations
 from typing import Any
 
 import numpy as np
@@ -74,11 +75,6 @@ def essentials(document: Document) -> dict[str, Any]:
     }
 
 
-def true_candidates(case: Case) -> list[Candidate]:
-    """The candidates that are true."""
-    return [case.record.candidates[case.record.place(name)] for name in case.truth]
-
-
 def is_named(candidate: Candidate, cause: Mapping[str, Any]) -> bool:
     """Whether a cause names this candidate, of an effect with parts the right part, or lists it as the same curve."""
     if cause["effect"] != candidate.effect:
@@ -89,13 +85,8 @@ def is_named(candidate: Candidate, cause: Mapping[str, Any]) -> bool:
 
 def are_named(candidates: Sequence[Candidate], causes: Sequence[Mapping[str, Any]]) -> bool:
     """Whether causes and candidates are one and the same, each by one cause."""
-    if len(candidates) != len(causes):
-        return False
-    if not candidates:
-        return True
-    first, rest = candidates[0], candidates[1:]
-    return any(
-        is_named(first, cause) and are_named(rest, [*causes[:at], *causes[at + 1 :]]) for at, cause in enumerate(causes)
+    return len(candidates) == len(causes) and any(
+        all(map(is_named, candidates, order)) for order in permutations(causes)
     )
 
 
@@ -105,11 +96,11 @@ def is_exact(case: Case, document: Document) -> bool:
     if case.stratum == "none":
         return not document["explanations"]
     if case.shape is None:
-        return bool(causes) and remainder is None and are_named(true_candidates(case), causes)
+        return bool(causes) and remainder is None and are_named(case.causes, causes)
     own = [cause for cause in causes if cause["effect"] != case.shape.also]
     has_shape = remainder is not None and set(case.shape.depends_on) <= set(remainder["depends_on"])
     has_other_name = len(own) < len(causes) and remainder is None
-    return (has_shape or has_other_name) and are_named(true_candidates(case), own)
+    return (has_shape or has_other_name) and are_named(case.causes, own)
 
 
 def is_in_set(case: Case, document: Document) -> bool:
@@ -128,26 +119,20 @@ def is_alternative(case: Case, other: Mapping[str, Any]) -> bool:
         named = [name for name in named if has_shape or name != case.shape.also]
     elif "unknown" in other["causes"]:
         return False
-    wanted = [names_of(case, name) for name in case.truth]
+    wanted = [case.record.effects_of(name) for name in case.truth]
     return len(named) == len(wanted) and all(any(name in names for name in named) for names in wanted)
-
-
-def names_of(case: Case, truth: str) -> set[str]:
-    """Every effect that is the same curve as a true candidate."""
-    record = case.record
-    return {record.candidates[record.place(name)].effect for name in record.same_as(truth)}
 
 
 def has_extra(case: Case, document: Document) -> bool:
     """Whether a single effect was named, and something beside it."""
     causes = document["causes"]
-    found = case.stratum == "single" and any(is_named(true_candidates(case)[0], cause) for cause in causes)
+    found = case.stratum == "single" and any(is_named(case.causes[0], cause) for cause in causes)
     return found and (len(causes) > 1 or document["remainder"] is not None)
 
 
 def has_wrong_name(case: Case, document: Document) -> bool:
     """Whether a cause is named that is not there, under any name of its curve."""
-    true = true_candidates(case)
+    true = case.causes
     also = case.shape.also if case.shape else ""
     return any(
         cause["effect"] != also and not any(is_named(candidate, cause) for candidate in true)
@@ -194,7 +179,7 @@ def _meant(case: Case, cause: Mapping[str, Any]) -> list[Candidate]:
 def covered(case: Case, document: Document) -> dict[str, bool]:
     """Whether the 95 % interval of every unknown of a rightly named effect holds the true value."""
     found = {}
-    for candidate in true_candidates(case):
+    for candidate in case.causes:
         for cause in document["causes"]:
             if cause["effect"] != candidate.effect or not is_named(candidate, cause):
                 continue
@@ -226,14 +211,15 @@ def gains(case: Case, document: Document, predicted: Array) -> dict[str, dict[st
 
     Whoever knew the truth would state the gain of the record without error (``sampled``); another one differs still.
     """
-    many, rows = len(case.results), case.record.rows
-    base = calibrated(case, DOUBTS)
+    rows, base = case.record.rows, calibrated(case, DOUBTS)
     readings = stacked(case.readings, case.results)
-    sampled_before = np.split(readings - stacked(shown(rows, base, {}), case.results), many)
-    sampled_after = np.split(readings - case.true_readings(rows), many)
     measured = judged(case, stacked(case.held_readings, case.results))
-    before = np.split(measured - judged(case, stacked(shown(case.held, base, {}), case.results)), many)
-    after = np.split(measured - predicted, many)
+    residuals = {
+        "held_before": measured - judged(case, stacked(shown(case.held, base, {}), case.results)),
+        "held_after": measured - predicted,
+        "sampled_before": readings - stacked(shown(rows, base, {}), case.results),
+        "sampled_after": readings - case.true_readings(rows),
+    }
     found = {}
     for at, result in enumerate(case.results):
         said = document["gain"].get(result)
@@ -241,8 +227,7 @@ def gains(case: Case, document: Document, predicted: Array) -> dict[str, dict[st
             continue
         found[result] = {
             "nested_before": said["rmse_before"]["value"], "nested_after": said["rmse_after"]["value"],
-            "held_before": rms(before[at]), "held_after": rms(after[at]),
-            "sampled_before": rms(sampled_before[at]), "sampled_after": rms(sampled_after[at]),
+            **{name: rms(np.split(values, len(case.results))[at]) for name, values in residuals.items()},
             "p_value": said["p_value"], "removed": said["reducible_removed"], "log_score": said["log_score_gain"],
             "coverage90": said["coverage90"],
         }  # fmt: skip

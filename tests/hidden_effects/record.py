@@ -131,6 +131,10 @@ class Record:
         both = self.contained[place] & self.contained[:, place]
         return frozenset(self.candidates[other].name for other in np.flatnonzero(both)) | {name}
 
+    def effects_of(self, name: str) -> set[str]:
+        """Every effect that is the same curve as a candidate."""
+        return {self.candidates[self.place(other)].effect for other in self.same_as(name)}
+
     def place(self, name: str) -> int:
         """Where a candidate stands."""
         return next(place for place, candidate in enumerate(self.candidates) if candidate.name == name)

@@ -1,13 +1,12 @@
 """Reducers with something wrong, or nothing: how they were measured, with what noise, and what a user would have."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from functools import partial
 from typing import Literal, TypeAlias
 
 import numpy as np
 
-from hidden_effects.plugin_asking import Rig
-from hidden_effects.rig_cases import RigCases, RigWish
+from hidden_effects.rigs import Bench, Rig, Wish
 from hidden_effects.rv_machine import LIFE, RATED, ROUGHNESS_SCATTER, SPEED, ZONES, Array, Rows, shown
 
 Design: TypeAlias = Literal["endurance", "fleet"]
@@ -15,16 +14,7 @@ BACKLASH, WEAR = "backlash", "max_wear"
 UNIT = {BACKLASH: "arcmin", WEAR: "um"}
 
 
-@dataclass(frozen=True, kw_only=True)
-class Wish(RigWish):
-    """What a case is to be like."""
-
-    design: Design = "endurance"
-    results: tuple[str, ...] = (BACKLASH,)
-    count: int = 100
-
-
-def machine(_: Wish, rng: np.random.Generator) -> Mapping[str, float]:
+def machine(rng: np.random.Generator) -> Mapping[str, float]:
     """Draw a reducer within its zones."""
     off = {name: float(width / 6 * rng.standard_normal()) for name, width in ZONES.items()}
     return {**off, "roughness": float(ROUGHNESS_SCATTER * rng.standard_normal())}
@@ -57,15 +47,19 @@ def measured(design: Design, count: int, rng: np.random.Generator) -> Rows:
     )
 
 
-CASES = RigCases(
-    stream=74, held=300, measured=measured, machine=machine, shown=shown,
-    spread=lambda rows: 0.4 + 1.6 * rows.working_time / LIFE, noise={BACKLASH: 0.01, WEAR: 0.1},
+REDUCER = Rig(
+    plugin="rv_wear",
+    inputs='plugin = "rv_wear"\n',
+    written={
+        "time": "h", "working_time": "h", "output_torque": "N*m", "output_speed": "r/min",
+        "housing_temperature": "degC", "disc_temperature": "degC", "oil_temperature": "degC", "output_angle": "deg",
+        "crank_angle": "deg", "measuring_torque": "N*m", "direction": "1",
+    },
+    measured=UNIT,
+    make=Bench(
+        stream=74, held=300, measured=measured, machine=machine, shown=shown,
+        spread=lambda rows: 0.4 + 1.6 * rows.working_time / LIFE, noise={BACKLASH: 0.01, WEAR: 0.1},
+    ),
 )  # fmt: skip
-make_case = CASES.made
-WRITTEN = {
-    "time": "h", "working_time": "h", "output_torque": "N*m", "output_speed": "r/min", "housing_temperature": "degC",
-    "disc_temperature": "degC", "oil_temperature": "degC", "output_angle": "deg", "crank_angle": "deg",
-    "measuring_torque": "N*m", "direction": "1",
-}  # fmt: skip
-REDUCER = Rig(plugin="rv_wear", inputs='plugin = "rv_wear"\n', written=WRITTEN, measured=UNIT)
-diagnosed = REDUCER.diagnosed
+reducer = partial(Wish, rig=REDUCER, design="endurance", results=(BACKLASH,), count=100)
+"""What a reducer is to be like."""

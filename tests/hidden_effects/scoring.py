@@ -1,223 +1,149 @@
 """The table of metrics over many outcomes: what was asked, what was measured with its interval, and over how many."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import log, sqrt
+from math import log, nan, sqrt
 from typing import Any
 
 import numpy as np
+from scipy.stats import binomtest
+
+from hidden_effects.cases import APART, VISIBLE
+from hidden_effects.designs import DESIGNS
+from hidden_effects.rigs import KINDS
 
 Outcome = Mapping[str, Any]
-Chosen = Callable[[Outcome], bool]
-VISIBLE = 25.0
-APART = 10.0
 NOTHING = ("none", "undecided")
-KINDS = ("gaussian", "heavy", "autocorrelated", "growing")
 
 
 @dataclass(frozen=True)
 class Metric:
-    """One line of the table: the measured value with its 95 % interval, how many cases, and what is asked."""
+    """One line of the table: ``what`` (one fact or several) of the cases where all that ``where`` names is true.
+
+    A share of hits in percent, or the quantile ``at`` of numbers; what is required of it, and what is wanted.
+    """
 
     name: str
-    value: float
-    low: float
-    high: float
-    count: int
+    where: str
+    what: str
     required: str = ""
     wanted: str = ""
-    unit: str = "%"
+    at: float | None = None
 
-    def line(self) -> str:
+    def line(self, cases: Sequence[Mapping[str, Any]]) -> str:
         """The line as printed."""
-        digits = 1 if self.unit == "%" else 3
-        nothing = self.count == 0 or not np.isfinite(self.value)
-        interval = "" if np.isnan(self.low) else f"[{self.low:.{digits}f}, {self.high:.{digits}f}]"
-        shown = "-" if nothing else f"{self.value:.{digits}f} {interval}"
-        return f"| {self.name:<66} | {shown:<22} | {self.count:>5} | {self.required:<8} | {self.wanted:<8} |"
+        chosen = [facts for facts in cases if all(facts[name] for name in self.where.split())]
+        values = np.concatenate([[], *(np.ravel(facts[self.what]) for facts in chosen)])
+        digits = 1 if self.at is None else 3
+        value, low, high = (f"{number:.{digits}f}" for number in self._measured(values))
+        shown = f"{value} [{low}, {high}]" if len(values) else "-"
+        return f"| {self.name:<66} | {shown:<22} | {len(values):>5} | {self.required:<8} | {self.wanted:<8} |"
+
+    def _measured(self, values: np.ndarray[Any, Any]) -> tuple[float, float, float]:
+        """The value with its 95 % interval: of a share that of Wilson, of a quantile from the order statistics."""
+        count = len(values)
+        if not count:
+            return nan, nan, nan
+        if self.at is None:
+            return 100 * float(np.mean(values)), *wilson(round(np.sum(values)), count)
+        spread = 1.96 * sqrt(count * self.at * (1 - self.at))
+        ends = np.clip(count * self.at + spread * np.array([-1.0, 1.0]), 0, count - 1).astype(int)
+        low, high = np.sort(values)[ends].tolist()
+        return float(np.quantile(values, self.at)), low, high
 
 
-def wilson(hits: int, count: int, z: float = 1.959964) -> tuple[float, float]:
-    """The interval of Wilson of a rate, in percent."""
-    if count == 0:
-        return float("nan"), float("nan")
-    share = hits / count
-    middle = (share + z * z / (2 * count)) / (1 + z * z / count)
-    half = z * sqrt(share * (1 - share) / count + z * z / (4 * count * count)) / (1 + z * z / count)
-    return 100 * max(middle - half, 0.0), 100 * min(middle + half, 1.0)
+def wilson(hits: int, count: int) -> tuple[float, float]:
+    """The interval of Wilson of a share (95 %), in percent."""
+    found = binomtest(hits, count).proportion_ci(method="wilson")
+    return 100 * float(found.low), 100 * float(found.high)
 
 
-def rate(name: str, hits: Sequence[bool], required: str = "", wanted: str = "") -> Metric:
-    """A share with its interval."""
-    low, high = wilson(sum(hits), len(hits))
-    return Metric(name, 100 * float(np.mean(hits)) if hits else float("nan"), low, high, len(hits), required, wanted)
+def facts_of(one: Outcome) -> dict[str, Any]:
+    """What the lines of the table ask of a case: which it is, and what is to be counted."""
+    is_hidden, is_said, held = one["stratum"] != "none", one["verdict"] not in NOTHING, one["held_out"]
+    is_wrong = one["unique"] and not one["exact"] and one["to_truth"] is not None and one["to_truth"] >= APART
+    points = one.get("next_points")
+    gains = _gains(one) if is_hidden and is_said else []
+    return {
+        **dict.fromkeys(("none", "single", "double", "unknown", "beside", *KINDS, *DESIGNS), False),
+        one["stratum"]: True, one["noise"]: True, one["design"]: True,
+        **{name: one[name] for name in ("exact", "in_set", "extra", "visible", "separable", "seconds")},
+        "any": True, "hidden": is_hidden, "alarm": not one["exact"],
+        "both": one["visible"] and one["halves"] and min(one["halves"]) > VISIBLE,
+        "both_by_curve": one["visible"] and one["halves_beside_curve"] and min(one["halves_beside_curve"]) > VISIBLE,
+        "stated": is_hidden and is_said and one["unique"],
+        "wrong": is_wrong, "wrong_name": is_wrong and one["wrong_name"], "in_doubt": one["verdict"] == "in doubt",
+        "covered": list(one["covered"].values()),
+        "open": is_said and one["alternative_count"] > 0, "alternatives": one["alternative_count"],
+        "over_oracle": held["rmse"] / held["oracle"],
+        "removed": 1 - held["mse"] / held["mse_base"], "by_oracle": 1 - held["mse_oracle"] / held["mse_base"],
+        "nested": [abs(nested - had) for nested, had, _ in gains],
+        "sampled": [abs(sampled - had) for _, had, sampled in gains],
+        "between": [abs(nested - sampled) for nested, _, sampled in gains],
+        "false_gain": any((gain["p_value"] or 1) < 0.05 and (gain["log_score"] or 0) > 0
+                          for gain in one["gain"].values()),
+        "pair": bool(points), "parted": bool(points) and points["best"] > APART,
+        **({"pointed": points["points"] > 0, "chance": points["random_share"],
+            "by_chance": points["best_random"] > APART, "resolved": points["proposed"] > APART} if points else {}),
+    }  # fmt: skip
 
 
-def quantile(
-    name: str, values: Sequence[float], at: float, required: str = "", wanted: str = "", *, unit: str = ""
-) -> Metric:
-    """A quantile; its interval from the order statistics."""
-    if not values:
-        return Metric(name, float("nan"), float("nan"), float("nan"), 0, required, wanted, unit)
-    ordered = np.sort(np.asarray(values, dtype=float))
-    spread = 1.96 * sqrt(len(ordered) * at * (1 - at))
-    low, high = (int(np.clip(at * len(ordered) + way * spread, 0, len(ordered) - 1)) for way in (-1, 1))
-    value = float(np.quantile(ordered, at))
-    return Metric(name, value, float(ordered[low]), float(ordered[high]), len(ordered), required, wanted, unit)
+def _gains(one: Outcome) -> list[tuple[float, float, float]]:
+    """Logarithms of the gains of a case in percent: as stated, as had on rows held out, and by the truth."""
+    found = []
+    for gain in one["gain"].values():
+        had = 100 * log(gain["held_after"] / gain["held_before"])
+        if gain["nested_before"] and gain["nested_after"] and abs(had) > 1:
+            nested, sampled = (100 * log(gain[f"{way}_after"] / gain[f"{way}_before"]) for way in ("nested", "sampled"))
+            found.append((nested, had, sampled))
+    return found
 
 
-def of(outcomes: Sequence[Outcome], *strata: str) -> list[Outcome]:
-    """The outcomes of some strata."""
-    return [one for one in outcomes if one["stratum"] in strata]
-
-
-def are_both_visible(one: Outcome) -> bool:
-    """Whether both halves of a pair can be seen beside each other."""
-    return bool(one["visible"] and one["halves"] and min(one["halves"]) > VISIBLE)
-
-
-def is_unique_and_wrong(one: Outcome) -> bool:
-    """Whether something false was stated without a doubt, where the data tell it from the truth."""
-    return bool(one["unique"] and not one["exact"] and one["to_truth"] is not None and one["to_truth"] >= APART)
-
-
-def false_alarms(outcomes: Sequence[Outcome]) -> Iterator[Metric]:
-    """How often something is found where nothing is."""
-    nothing = of(outcomes, "none")
-    alarms = {kind: [not one["exact"] for one in nothing if one["noise"] == kind] for kind in KINDS}
-    yield rate("false alarms, all", [not one["exact"] for one in nothing], "<= 4", "<= 3")
-    worst = max(KINDS, key=lambda kind: np.mean(alarms[kind]) if alarms[kind] else -1.0)
-    yield rate(f"false alarms, worst noise ({worst})", alarms[worst], "<= 7", "<= 5")
-    for kind in KINDS:
-        yield rate(f"  of {kind}", alarms[kind])
-
-
-def names(outcomes: Sequence[Outcome]) -> Iterator[Metric]:
-    """How often what is hidden is named."""
-    single, double = of(outcomes, "single"), of(outcomes, "double")
-    unknown, beside = of(outcomes, "unknown"), of(outcomes, "beside")
-    seen, both = [one for one in single if one["visible"]], [one for one in double if are_both_visible(one)]
-    yield rate("single, separable: exact name", _exact(single, "separable"), ">= 96", ">= 99")
-    yield rate("single, visible: exact name", [one["exact"] for one in seen], ">= 85", ">= 92")
-    yield rate("single, visible: verdict or first four", [one["in_set"] for one in seen], ">= 96", ">= 99")
-    yield rate("double, separable: exact", _exact(double, "separable"), ">= 95", ">= 98")
-    yield rate("double, both halves visible: exact", [one["exact"] for one in both], ">= 70", ">= 80")
-    yield rate("double, both halves visible: in set", [one["in_set"] for one in both], ">= 88", ">= 95")
-    yield rate("unknown, separable: unknown, right covariates", _exact(unknown, "separable"), ">= 92", ">= 97")
-    right = [one["exact"] for one in beside if are_both_visible(one)]
-    yield rate("registered beside unregistered, both visible: both right", right, ">= 50", ">= 70")
-    known = [one["exact"] for one in beside if one["visible"] and min(one["halves_beside_curve"]) > VISIBLE]
-    yield rate("  both visible if the very curve of the shape were known", known)
-    yield rate("  of those that are separable", _exact(beside, "separable"))
-    yield rate("  of all, visible or not", [one["exact"] for one in beside])
-    for kind in KINDS:
-        yield rate(f"  all separable, {kind}", _exact([one for one in outcomes if one["noise"] == kind], "separable"))
-    for design in ("wide", "narrow", "warm-up"):
-        chosen = [one for one in outcomes if one["design"] == design]
-        yield rate(f"  all separable, {design}", _exact(chosen, "separable"))
-
-
-def _exact(outcomes: Sequence[Outcome], which: str) -> list[bool]:
-    return [one["exact"] for one in outcomes if one[which] and one["stratum"] != "none"]
-
-
-def honesty(outcomes: Sequence[Outcome]) -> Iterator[Metric]:
-    """How often something false is stated, and how many explanations are left open."""
-    stated = [one for one in outcomes if one["unique"] and one["verdict"] not in NOTHING and one["stratum"] != "none"]
-    wrong = [is_unique_and_wrong(one) for one in stated]
-    yield rate("stated unique and wrong (lambda to the truth >= 10)", wrong, "<= 1.5", "<= 0.7")
-    named = [is_unique_and_wrong(one) and one["wrong_name"] for one in stated]
-    yield rate("  of these, a cause is named that is not there", named)
-    right = [one for one in outcomes if one["exact"] and one["stratum"] != "none"]
-    yield rate("right, but in doubt", [one["verdict"] == "in doubt" for one in right])
-    yield rate("an extra second name on a single", [one["extra"] for one in of(outcomes, "single")], "<= 2.5", "<= 1")
-    for kind in KINDS:
-        held = [hit for one in outcomes if one["noise"] == kind for hit in one["covered"].values()]
-        yield rate(f"95 % intervals cover, {kind}", held, "90-98", "93-97")
-    open_ones = [one for one in outcomes if one["verdict"] not in NOTHING and one["alternative_count"]]
-    counts = [float(one["alternative_count"]) for one in open_ones]
-    yield quantile("alternatives of an ambiguous verdict, median", counts, 0.5, "<= 3", "<= 2")
-
-
-def prediction(outcomes: Sequence[Outcome]) -> Iterator[Metric]:
-    """How well the extended model predicts rows that were held out."""
-    hidden = [one for one in outcomes if one["stratum"] != "none"]
-    for text, chosen in (("", hidden), ("  of zero-effect cases: ", of(outcomes, "none"))):
-        ratios = [one["held_out"]["rmse"] / one["held_out"]["oracle"] for one in chosen]
-        asked = (("<= 1.005", "<= 1.002"), ("<= 1.09", "<= 1.05")) if not text else (("", ""), ("", ""))
-        yield quantile(f"{text}held-out RMSE over the oracle's, median", ratios, 0.5, *asked[0])
-        yield quantile(f"{text}held-out RMSE over the oracle's, 90th percentile", ratios, 0.9, *asked[1])
-    seen = [one["held_out"] for one in hidden if one["visible"]]
-    removed = [1 - one["mse"] / one["mse_base"] for one in seen]
-    yield quantile("reducible error removed (visible), median", removed, 0.5, ">= .98", ">= .99")
-    yield quantile("reducible error removed (visible), 10th percentile", removed, 0.1, ">= .75", ">= .85")
-    best = [1 - one["mse_oracle"] / one["mse_base"] for one in seen]
-    yield quantile("  by the oracle, median", best, 0.5)
-    yield quantile("  by the oracle, 10th percentile", best, 0.1)
-
-
-def gain(outcomes: Sequence[Outcome]) -> Iterator[Metric]:
-    """Whether the gain that is stated is the gain that is had."""
-    stated = [
-        one
-        for case in outcomes
-        if case["verdict"] not in NOTHING and case["stratum"] != "none"
-        for one in case["gain"].values()
-        if one["nested_before"] and one["nested_after"] and abs(log(one["held_after"] / one["held_before"])) > 0.01
-    ]
-    apart = [_apart(one, "nested") for one in stated]
-    yield quantile("nested gain against held-out, median |log difference|", apart, 0.5, "<= 5", "<= 4", unit="%")
-    least = [_apart(one, "sampled") for one in stated]
-    yield quantile("  of one who knows truth and noise of the record", least, 0.5, unit="%")
-    ratios = [
-        (one["nested_after"] / one["nested_before"], one["sampled_after"] / one["sampled_before"]) for one in stated
-    ]
-    between = [100 * abs(log(nested / sampled)) for nested, sampled in ratios]
-    yield quantile("  between the two", between, 0.5, unit="%")
-    false = [_has_false_gain(one) for one in of(outcomes, "none")]
-    yield rate("false gain on zero-effect cases (p < 0.05, above 0)", false, "0 of 50", "0 of 100")
-
-
-def _apart(one: Mapping[str, float], way: str) -> float:
-    """Difference of two gains in percent."""
-    return 100 * abs(log(one[f"{way}_after"] / one[f"{way}_before"]) - log(one["held_after"] / one["held_before"]))
-
-
-def _has_false_gain(one: Outcome) -> bool:
-    said = [item for item in one["gain"].values() if item["p_value"] is not None and item["log_score"] is not None]
-    return any(item["p_value"] < 0.05 and item["log_score"] > 0 for item in said)
-
-
-def next_points(outcomes: Sequence[Outcome]) -> Iterator[Metric]:
-    """How often the measurement that is proposed separates a pair that four points can separate."""
-    tried = [one["next_points"] for one in outcomes if one.get("next_points")]
-    can = [one for one in tried if one["best"] > APART]
-    resolved = [one["proposed"] > APART for one in can]
-    yield rate("next measurement: pairs that the proposed points resolve", resolved, "half way", ">= 80")
-    chance = [one["random_share"] for one in can]
-    mean = 100 * float(np.mean(chance)) if chance else float("nan")
-    yield Metric("  a random set of four (baseline)", mean, float("nan"), float("nan"), len(can))
-    yield rate("  the best of 200 random sets (ceiling)", [one["best_random"] > APART for one in can])
-    proposed = [one["proposed"] > APART for one in can if one["points"]]
-    yield rate("  where points were proposed", proposed)
-    nothing = float("nan")
-    yield Metric("  pairs that no four points separate", nothing, nothing, nothing, len(tried) - len(can))
-
-
-def speed(outcomes: Sequence[Outcome]) -> Iterator[Metric]:
-    """Seconds per diagnosis; only to see, they depend on the machine."""
-    yield quantile("seconds per diagnosis, median", [one["seconds"] for one in outcomes], 0.5)
-    yield quantile("seconds per diagnosis, 95th percentile", [one["seconds"] for one in outcomes], 0.95)
-
-
-def metrics(outcomes: Sequence[Outcome]) -> list[Metric]:
-    """Every line of the table."""
-    parts = (false_alarms, names, honesty, prediction, gain, next_points, speed)
-    return [metric for part in parts for metric in part(outcomes)]
+METRICS = [
+    Metric("false alarms, all", "none", "alarm", "<= 4", "<= 3"),
+    *(Metric(f"  of {kind}", f"none {kind}", "alarm", "<= 7", "<= 5") for kind in KINDS),
+    Metric("single, separable: exact name", "single separable", "exact", ">= 96", ">= 99"),
+    Metric("single, visible: exact name", "single visible", "exact", ">= 85", ">= 92"),
+    Metric("single, visible: verdict or first four", "single visible", "in_set", ">= 96", ">= 99"),
+    Metric("double, separable: exact", "double separable", "exact", ">= 95", ">= 98"),
+    Metric("double, both halves visible: exact", "double both", "exact", ">= 70", ">= 80"),
+    Metric("double, both halves visible: in set", "double both", "in_set", ">= 88", ">= 95"),
+    Metric("unknown, separable: unknown, right covariates", "unknown separable", "exact", ">= 92", ">= 97"),
+    Metric("registered beside unregistered, both visible: both right", "beside both", "exact", ">= 50", ">= 70"),
+    Metric("  both visible if the very curve of the shape were known", "beside both_by_curve", "exact"),
+    Metric("  of those that are separable", "beside separable", "exact"),
+    Metric("  of all, visible or not", "beside", "exact"),
+    *(Metric(f"  all separable, {name}", f"hidden separable {name}", "exact") for name in (*KINDS, *DESIGNS)),
+    Metric("stated unique and wrong (lambda to the truth >= 10)", "stated", "wrong", "<= 1.5", "<= 0.7"),
+    Metric("  of these, a cause is named that is not there", "stated", "wrong_name"),
+    Metric("right, but in doubt", "hidden exact", "in_doubt"),
+    Metric("an extra second name on a single", "single", "extra", "<= 2.5", "<= 1"),
+    *(Metric(f"95 % intervals cover, {kind}", kind, "covered", "90-98", "93-97") for kind in KINDS),
+    Metric("alternatives of an ambiguous verdict, median", "open", "alternatives", "<= 3", "<= 2", 0.5),
+    Metric("held-out RMSE over the oracle's, median", "hidden", "over_oracle", "<= 1.005", "<= 1.002", 0.5),
+    Metric("held-out RMSE over the oracle's, 90th percentile", "hidden", "over_oracle", "<= 1.09", "<= 1.05", 0.9),
+    Metric("  of zero-effect cases, median", "none", "over_oracle", at=0.5),
+    Metric("  of zero-effect cases, 90th percentile", "none", "over_oracle", at=0.9),
+    Metric("reducible error removed (visible), median", "hidden visible", "removed", ">= .98", ">= .99", 0.5),
+    Metric("reducible error removed (visible), 10th percentile", "hidden visible", "removed", ">= .75", ">= .85", 0.1),
+    Metric("  by the oracle, median", "hidden visible", "by_oracle", at=0.5),
+    Metric("  by the oracle, 10th percentile", "hidden visible", "by_oracle", at=0.1),
+    Metric("nested gain against held-out, median |log difference|, %", "any", "nested", "<= 5", "<= 4", 0.5),
+    Metric("  of one who knows truth and noise of the record", "any", "sampled", at=0.5),
+    Metric("  between the two", "any", "between", at=0.5),
+    Metric("false gain on zero-effect cases (p < 0.05, above 0)", "none", "false_gain", "0 of 50", "0 of 100"),
+    Metric("next measurement: pairs that the proposed points resolve", "parted", "resolved", "half way", ">= 80"),
+    Metric("  a random set of four (baseline)", "parted", "chance"),
+    Metric("  the best of 200 random sets (ceiling)", "parted", "by_chance"),
+    Metric("  where points were proposed", "parted pointed", "resolved"),
+    Metric("  pairs that some four points separate", "pair", "parted"),
+    Metric("seconds per diagnosis, median", "any", "seconds", at=0.5),
+    Metric("seconds per diagnosis, 95th percentile", "any", "seconds", at=0.95),
+]
 
 
 def table(outcomes: Sequence[Outcome], title: str) -> str:
     """The table as text."""
     columns = f"| {'metric':<66} | {'measured [95 %]':<22} | {'n':>5} | required | wanted   |"
-    lines = [metric.line() for metric in metrics(outcomes)]
-    return "\n".join([f"\n{title}: {len(outcomes)} cases", columns, *lines])
+    cases = [facts_of(one) for one in outcomes]
+    return "\n".join([f"\n{title}: {len(outcomes)} cases", columns, *(metric.line(cases) for metric in METRICS)])

@@ -1,13 +1,12 @@
 """Roller screws with something wrong, or nothing: how they were measured, and with what noise."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from functools import partial
 from typing import Literal, TypeAlias
 
 import numpy as np
 
-from hidden_effects.plugin_asking import Rig
-from hidden_effects.rig_cases import RigCases, RigWish
+from hidden_effects.rigs import Bench, Rig, Wish
 from hidden_effects.screw_machine import WIDTHS, Rows, shown
 
 Design: TypeAlias = Literal["bench", "loaded", "endurance"]
@@ -19,16 +18,7 @@ NOISE = {ROLLER: 1.5, RING: 2.0, ERROR: 0.5, WEAR: 0.1, AXIAL: 2.0, TORQUE: 5e-4
 LOADS: Mapping[Design, tuple[float, float]] = {"bench": (2.0, 20.0), "loaded": (12.0, 20.0), "endurance": (5.0, 20.0)}
 
 
-@dataclass(frozen=True, kw_only=True)
-class Wish(RigWish):
-    """What a case is to be like."""
-
-    design: Design = "bench"
-    results: tuple[str, ...] = STRESSES
-    count: int = 80
-
-
-def machine(_: Wish, rng: np.random.Generator) -> Mapping[str, float]:
+def machine(rng: np.random.Generator) -> Mapping[str, float]:
     """Draw a screw within its tolerances."""
     return {name: float(width / 6 * rng.standard_normal()) for name, width in WIDTHS.items()}
 
@@ -57,18 +47,18 @@ def measured(design: Design, count: int, rng: np.random.Generator) -> Rows:
     )
 
 
-CASES = RigCases(
-    stream=58, held=200, measured=measured, machine=machine, shown=shown,
-    spread=lambda rows: 0.4 + rows.axial_load / 12, noise=NOISE,
+SCREW = Rig(
+    plugin="roller_screw_shift",
+    inputs='plugin = "roller_screw_shift"\n\n[studies.diagnose]\nbox = { axial_load = "1..25 kN" }\n',
+    written={
+        "time": "h", "axial_load": "kN", "screw_speed": "r/min", "temperature": "degC", "screw_angle": "deg",
+        "cycles": "1",
+    },
+    measured=UNIT,
+    make=Bench(
+        stream=58, held=200, measured=measured, machine=machine, shown=shown,
+        spread=lambda rows: 0.4 + rows.axial_load / 12, noise=NOISE,
+    ),
 )  # fmt: skip
-make_case = CASES.made
-INPUTS = """plugin = "roller_screw_shift"
-
-[studies.diagnose]
-box = { axial_load = "1..25 kN" }
-"""
-WRITTEN = {
-    "time": "h", "axial_load": "kN", "screw_speed": "r/min", "temperature": "degC", "screw_angle": "deg", "cycles": "1",
-}  # fmt: skip
-SCREW = Rig(plugin="roller_screw_shift", inputs=INPUTS, written=WRITTEN, measured=UNIT)
-diagnosed = SCREW.diagnosed
+screw = partial(Wish, rig=SCREW, design="bench", results=STRESSES, count=80)
+"""What a roller screw is to be like."""

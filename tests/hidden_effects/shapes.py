@@ -53,18 +53,18 @@ def _between(name: str, rows: Rows, start: Rows) -> Array:
     return np.asarray(2 * (getattr(rows, name) - span.min()) / np.ptp(span) - 1)
 
 
+def waves(angle: Array) -> Array:
+    """A wave of any phase, beside an offset."""
+    return np.column_stack([np.ones(len(angle)), np.cos(angle), np.sin(angle)])
+
+
 def order(rows: Rows, rng: np.random.Generator) -> Shape:
     """A waviness of order 3 to 9 of the crank angle."""
     number, phase = int(rng.integers(3, 10)), rng.uniform(0, 2 * pi)
-
-    def curve(at: Rows) -> Array:
-        return np.cos(number * at.crank_angle + phase)
-
-    def family(at: Rows) -> Array:
-        return np.column_stack([np.ones(len(at)), np.cos(number * at.crank_angle), np.sin(number * at.crank_angle)])
-
-    also = "periodic_order" if number == 3 else ""
-    return Shape(f"order {number} of crank_angle", ("crank_angle",), curve, also=also, family=family)
+    return Shape(
+        f"order {number} of crank_angle", ("crank_angle",), lambda at: np.cos(number * at.crank_angle + phase),
+        also="periodic_order" if number == 3 else "", family=lambda at: waves(number * at.crank_angle),
+    )  # fmt: skip
 
 
 def step_at(after: float) -> Shape:
@@ -89,22 +89,16 @@ def product_of_two(rows: Rows, rng: np.random.Generator) -> Shape:
     pairs = [("forming_force", "link_temperature"), ("speed", "link_temperature"), ("forming_force", "speed"),
              ("crank_angle", "link_temperature"), ("speed", "time"), ("forming_force", "strokes")]  # fmt: skip
     one, two = pairs[int(rng.integers(len(pairs)))]
-
-    def curve(at: Rows) -> Array:
-        return _between(one, at, rows) * _between(two, at, rows)
-
-    return Shape(f"product of {one} and {two}", (one, two), curve)
+    return Shape(
+        f"product of {one} and {two}", (one, two), lambda at: _between(one, at, rows) * _between(two, at, rows)
+    )
 
 
 def valley(rows: Rows, rng: np.random.Generator) -> Shape:
     """Best in the middle of a range, worse on both sides of it."""
     name = SMOOTH[int(rng.integers(len(SMOOTH)))]
     middle = rng.uniform(-0.4, 0.4)
-
-    def curve(at: Rows) -> Array:
-        return (_between(name, at, rows) - middle) ** 2
-
-    return Shape(f"quadratic in {name}", (name,), curve)
+    return Shape(f"quadratic in {name}", (name,), lambda at: (_between(name, at, rows) - middle) ** 2)
 
 
 def bend(rows: Rows, rng: np.random.Generator) -> Shape:
@@ -123,14 +117,11 @@ def hum(rows: Rows, rng: np.random.Generator) -> Shape:
     cycles, phase = rng.uniform(2.0, 6.0), rng.uniform(0, 2 * pi)
     length = float(rows.time[-1])
 
-    def curve(at: Rows) -> Array:
-        return np.sin(2 * pi * cycles * at.time / length + phase)
+    def angle(at: Rows) -> Array:
+        return 2 * pi * cycles * at.time / length
 
-    def family(at: Rows) -> Array:
-        angle = 2 * pi * cycles * at.time / length
-        return np.column_stack([np.ones(len(at)), np.sin(angle), np.cos(angle)])
-
-    return Shape(f"{cycles:.1f} cycles in time", ("time",), curve, family=family)
+    text = f"{cycles:.1f} cycles in time"
+    return Shape(text, ("time",), lambda at: np.sin(angle(at) + phase), family=lambda at: waves(angle(at)))
 
 
 MAKERS = (order, order, late_step, product_of_two, product_of_two, valley, bend, hum)
@@ -147,17 +138,6 @@ def pair_group(one: str, two: str, rows: Rows) -> Array:
     return np.column_stack([np.ones(len(rows)), a, a**2, b, b**2, a * b, a**2 * b, a * b**2])
 
 
-def waves_group(number: int, rows: Rows) -> Array:
-    """One order of the crank angle."""
-    return np.column_stack([np.ones(len(rows)), np.cos(number * rows.crank_angle), np.sin(number * rows.crank_angle)])
-
-
-def slow_group(cycles: float, rows: Rows) -> Array:
-    """An oscillation of so many cycles over the record."""
-    angle = 2 * pi * cycles * rows.time / rows.time[-1]
-    return np.column_stack([np.ones(len(rows)), np.cos(angle), np.sin(angle)])
-
-
 def groups(rows: Rows) -> Iterator[tuple[frozenset[str], Array]]:
     """Give every smooth family with what it depends on."""
     for name in COVARIATES:
@@ -165,12 +145,11 @@ def groups(rows: Rows) -> Iterator[tuple[frozenset[str], Array]]:
     for one, two in combinations(COVARIATES, 2):
         yield frozenset([one, two]), pair_group(one, two, rows)
     for number in range(3, 17):
-        yield frozenset(["crank_angle"]), waves_group(number, rows)
+        yield frozenset(["crank_angle"]), waves(number * rows.crank_angle)
     for cycles in range(2, 13):
-        yield frozenset(["time"]), slow_group(float(cycles), rows)
+        yield frozenset(["time"]), waves(2 * pi * cycles * rows.time / rows.time[-1])
     for place in np.linspace(0.02, 0.98, 49):
-        late = np.where(rows.time >= place * rows.time[-1], 1.0, 0.0)
-        yield frozenset(["time"]), np.column_stack([np.ones(len(rows)), late])
+        yield frozenset(["time"]), family_of(step_at(place * rows.time[-1]), rows)
 
 
 def family_of(shape: Shape, rows: Rows) -> Array:

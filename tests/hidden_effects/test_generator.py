@@ -12,8 +12,8 @@ from hidden_effects.cases import Case
 from hidden_effects.designs import DESIGNS, Design, Noise, covariance, measured
 from hidden_effects.information import Lens, rivals
 from hidden_effects.making import SCHEDULE, Wish, make_case
-from hidden_effects.noises import KINDS, Kind
 from hidden_effects.press_machine import BOTTOM, POSITION, SCATTER, TILT, Array, Rows, built, shown, slider
+from hidden_effects.rigs import KINDS, Kind
 from published import press_by_hand as by_hand
 from truing.evaluate import evaluate_rows
 from truing.inputs_file import setup_from_settings

@@ -16,9 +16,9 @@ from hidden_effects.candidates import stacked
 from hidden_effects.cases import Case
 from hidden_effects.designs import measured
 from hidden_effects.making import Wish, make_case
-from hidden_effects.outcome import is_in_set, names_of, outcome
-from hidden_effects.plugin_asking import demand_named
+from hidden_effects.outcome import is_in_set, outcome
 from hidden_effects.press_machine import POSITION, TILT, Array, Rows, shown
+from hidden_effects.rigs import demand_named
 from truing.testing import recorded
 
 POSITION_ALONE, BOTH = (POSITION,), (POSITION, TILT)
@@ -86,7 +86,7 @@ def test_nothing_is_found_where_nothing_is_wrong(seed: int, wish: Wish) -> None:
 @each(NAMED)
 def test_the_cause_is_named(seed: int, wish: Wish) -> None:
     case, document, _ = answered(seed, wish)
-    demand_named(document, [names_of(case, truth) for truth in case.truth])
+    demand_named(document, [case.record.effects_of(truth) for truth in case.truth])
     assert document["remainder"] is None
     assert sorted(cause["effect"] for cause in document["causes"]) == sorted(wish.effects)
 

@@ -1,12 +1,11 @@
 """The machines in which effects of the plugins are hidden: right in themselves, by figures from outside."""
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
 
-from hidden_effects import gearing_cases, harmonic_cases, rv_cases, screw_cases
+from hidden_effects import rv_cases, screw_cases
 from hidden_effects.clear import DRIVES, REDUCERS, SCREWS, SHAPES, STAGES
 from hidden_effects.gearing_cases import CONTACT, PLANET_ROOT, SUN_ROOT
 from hidden_effects.gearing_machine import Rows as StageRows
@@ -14,8 +13,8 @@ from hidden_effects.gearing_machine import shown as shown_by_stage
 from hidden_effects.gearing_stage import Stage
 from hidden_effects.gearing_stress import spread
 from hidden_effects.harmonic_contact import Flanks, table
-from hidden_effects.harmonic_surface import SurfaceWish, lines, structure, true_structure
-from hidden_effects.plugin_asking import model_of
+from hidden_effects.harmonic_surface import lines, structure, surface, true_structure
+from hidden_effects.rigs import Wish, model_of
 from hidden_effects.rv_machine import RATED, ROUGHNESS, Wearing, wear_after
 from hidden_effects.rv_machine import Rows as ReducerRows
 from hidden_effects.rv_machine import shown as shown_by_reducer
@@ -23,37 +22,24 @@ from hidden_effects.screw_machine import ROLLER_FACTOR
 from hidden_effects.screw_machine import Rows as ScrewRows
 from hidden_effects.screw_machine import shown as shown_by_screw
 
-HELD = 40
-MAKERS: dict[str, Any] = {
-    "rv_gearing": replace(gearing_cases.CASES, held=HELD).made,
-    "rv_wear": replace(rv_cases.CASES, held=HELD).made,
-    "roller_screw_shift": replace(screw_cases.CASES, held=HELD).made,
-    "harmonic_fractal": harmonic_cases.make_case,
-}
+REDUCED = [rv_cases.reducer(hidden={name: unknowns}, design="fleet") for name, unknowns in REDUCERS.items()]
+CLEAR = [*STAGES, *REDUCED, *SCREWS, *DRIVES]
 
 
-CLEAR: list[tuple[str, Any]] = [
-    *(("rv_gearing", wish) for wish in STAGES),
-    *(("rv_wear", rv_cases.Wish(hidden={name: unknowns}, design="fleet")) for name, unknowns in REDUCERS.items()),
-    *(("roller_screw_shift", wish) for wish in SCREWS),
-    *(("harmonic_fractal", wish) for wish in DRIVES),
-]
-
-
-@pytest.mark.parametrize("plugin", MAKERS)
+@pytest.mark.parametrize("plugin", sorted({wish.rig.plugin for wish in CLEAR}))
 def test_every_effect_is_hidden_by_the_benchmark(plugin: str) -> None:
-    hidden = {name for owner, wish in CLEAR if owner == plugin for name in wish.hidden}
+    hidden = {name for wish in CLEAR if wish.rig.plugin == plugin for name in wish.hidden}
     assert hidden == set(model_of(plugin).effects)
 
 
-@pytest.mark.parametrize(("plugin", "wish"), CLEAR, ids=[f"{plugin}-{wish.title}" for plugin, wish in CLEAR])
-def test_what_is_hidden_is_hidden_and_zero_hides_nothing(plugin: str, wish: Any) -> None:
+@pytest.mark.parametrize("wish", CLEAR, ids=[f"{wish.rig.plugin}-{wish.title}" for wish in CLEAR])
+def test_what_is_hidden_is_hidden_and_zero_hides_nothing(wish: Wish) -> None:
     """The same seed is the same machine and noise: a change as large as the noise makes an error of its root of 2."""
     ((effect, unknowns),) = wish.hidden.items()
     shapes = SHAPES - {"exponent"} if effect == "load_exponent" else SHAPES
     nothing = {effect: {name: value if name in shapes else 0.0 for name, value in unknowns.items()}}
     changed, none, plain = (
-        MAKERS[plugin](replace(wish, hidden=hidden, count=20)) for hidden in (wish.hidden, nothing, {})
+        replace(wish, hidden=hidden, count=20, held=40).case for hidden in (wish.hidden, nothing, {})
     )
     assert max(changed.left_over_noise(plain.held_true, name) for name in wish.results) > 2**0.5
     for name in wish.results:
@@ -119,7 +105,7 @@ def test_the_mesh_has_the_stiffness_of_its_design() -> None:
 
 
 def test_lines_have_the_structure_function_of_a_power_law() -> None:
-    wish = SurfaceWish(seed=0)
+    wish = surface(seed=0)
     heights = lines(np.random.default_rng(1), wish, 400)
     for step in (2, 10, 50):
         each_line = structure(heights, step)

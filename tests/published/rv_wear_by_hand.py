@@ -95,17 +95,16 @@ PRICE_OF = {  # kind of its function, and number of the factor
     "pin_circle_error": ("size", 6), "pin_radius_error": ("size", 7), "modification_error": ("size", 12),
     "pin_position_error": ("place", 10), "disc_pitch_error": ("place", 11), "disc_runout": ("runout", 9),
 }  # fmt: skip
-SIZE = (16.140, 0.324, 0.217, 0.013, 2.845)
-PLACE = (4.862, 0.483, 0.877, 1.020)
-RUNOUT = (23.729, 0.682)
+FALLING = {"size": (16.140, 0.324), "place": (4.862, 0.483), "runout": (23.729, 0.682)}
+REST = {"size": (0.217, 0.013, 2.845), "place": (0.877, 1.020, 0.0)}
 
 
-def by_power(kind: str, width: float) -> float:
-    """Yuan for a zone of this full width in mm, by the power form."""
-    if kind == "size":
-        a1, a2, a3, a4, a5 = SIZE
-        return a1 * width**-a2 + a3 * exp(-a4 * width) + a5
-    if kind == "place":
-        b1, b2, b3, b4 = PLACE
-        return b1 * width**-b2 + b3 * exp(-b4 * width)
-    return RUNOUT[0] * width ** -RUNOUT[1]
+def price_by_hand(kind: str, width: float, form: str = "power") -> float:
+    """Yuan for a zone of this full width in mm, in a form of the cost functions: power, exponential or process."""
+    most, falls = FALLING[kind]
+    paid = most * (width**-falls if form == "power" else exp(-falls * width))
+    if kind not in REST:
+        return paid
+    more, slower, always = REST[kind]
+    machined = width / (more * width + slower) if form == "process" else more * exp(-slower * width)
+    return paid + machined + always

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from gear_geometry.roots import Arm, Cutter, Root, cut_ring_arm, cut_ring_root
+from gear_geometry.roots import Cutter, cut_ring_arm, cut_ring_root
 
 ALPHA = np.radians(20.0)
 CASES = [
@@ -120,14 +120,3 @@ def test_all_rings_of_a_wide_range_have_a_section_of_their_size_or_none() -> Non
     assert chord[made].min() > 1.5
     assert chord[made].max() < 4.0
     assert fillet[made].min() > 0.0
-
-
-def test_a_batch_is_the_same_as_one_by_one() -> None:
-    cutter, shifts = Cutter(teeth=25.0, shift=0.0, addendum=1.1, fillet=0.15), np.linspace(-0.5, 0.5, 5)
-    root = cut_ring_root(cutter, 100.0, shifts, ALPHA)
-    arm = cut_ring_arm(root, 100.0, shifts, 50.0 - 0.8 + shifts, ALPHA)
-    for place, shift in enumerate(shifts):
-        one: Root = cut_ring_root(cutter, 100.0, float(shift), ALPHA)
-        lever: Arm = cut_ring_arm(one, 100.0, float(shift), 49.2 + float(shift), ALPHA)
-        assert np.asarray(root.chord)[place] == pytest.approx(float(one.chord), rel=1e-13)
-        assert np.asarray(arm.height)[place] == pytest.approx(float(lever.height), rel=1e-13)

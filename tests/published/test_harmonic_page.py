@@ -10,8 +10,7 @@ import pytest
 from scipy.special import gamma
 
 from harmonic_fractal.calculation import TABLE, harmonic_fractal, polyline_of
-from harmonic_fractal.clearance import patch_rms
-from harmonic_fractal.contact import Rough
+from harmonic_fractal.contact import Rough, patch_rms
 from harmonic_fractal.estimate import noise_fit, straight_fit
 from harmonic_fractal.flank import read_flank
 from harmonic_fractal.generators import Waves, brownian_profiles, profile_sum

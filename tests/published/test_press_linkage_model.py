@@ -85,15 +85,6 @@ def test_groups_of_variance_add_up() -> None:
     assert answers["tilt_sd"] == pytest.approx(15.81e-6, abs=6e-9)
 
 
-def test_dead_centres() -> None:
-    answers = ran(reading="printed").answers
-    assert answers["bdc_position"] == pytest.approx(3.55760, abs=5e-6)
-    assert answers["tdc_position"] == pytest.approx(2.39436, abs=5e-6)
-    assert answers["stroke"] == pytest.approx(1.16324, abs=5e-6)
-    assert np.degrees(answers["tdc_crank_angle"]) == pytest.approx(-140.30, abs=5e-3)
-    assert np.degrees(answers["bdc_direction"]) == pytest.approx(122.743, abs=5e-4)
-
-
 def test_dead_centres_do_not_depend_on_where_one_looks() -> None:
     here, there = ran(reading="printed").answers, ran(reading="printed", crank_angle="70 deg").answers
     assert there["slider_position"] != here["slider_position"]
@@ -142,22 +133,6 @@ def test_heat_moves_the_press_out_of_the_middle_of_its_limits() -> None:
     assert ran(reading="printed").answers["position_offset"] == 0.0
 
 
-BAD = [
-    ({"rod_length": "0.8 m", "crank_angle": "-140 deg"}, "the rod cannot reach"),
-    ({"rod_length": "1.2 m"}, "does not close over a full turn of the crank"),
-    ({"knee_drive_length": "0.3 m"}, "loop II, side 1 does not close: the knee drive is open"),
-    ({"lower_knee_length": "0.5 m"}, "loop III, side 1 does not close"),
-    ({"crank_pivot_radius": "0.2 m"}, "crank_pivot_radius > platform_half_width"),
-    ({"lower_knee_length_deviation_2": "-900 mm"}, "loop IV, side 2 does not close"),
-]
-
-
-@pytest.mark.parametrize(("inputs", "words"), BAD)
-def test_impossible_mechanisms_are_named(inputs: dict[str, str], words: str) -> None:
-    with pytest.raises(InfeasibleError, match=re.escape(words)):
-        calculate(default_setup(PRESS_LINKAGE, **inputs))
-
-
 @pytest.mark.parametrize("text", ["rod_length_deviation_1 = '10.1 mm'", "crank_angle_deviation_2 = '-11 mrad'"])
 def test_a_deviation_that_is_no_deviation_is_refused(text: str) -> None:
     """Ten millimetres or milliradians off is another part, or a unit mistaken by a thousand."""
@@ -196,7 +171,8 @@ def test_every_commented_line_of_the_example_can_be_uncommented() -> None:
     named = {item.name for item in PRESS_LINKAGE.tolerances.values()}
     stated = set(re.findall(r"(?m)^([a-z_]+) = ", text[text.index("[tolerances]") : text.index("[conditions]")]))
     assert stated == named
-    assert np.isfinite(calculate(setup).answers["position_reliability"])
+    few = tuple(study for study in setup.studies if study.name == "sensitivity")
+    assert np.isfinite(calculate(replace(setup, studies=few)).answers["position_sd"])
 
 
 def test_both_readings_stand_on_the_sheet() -> None:

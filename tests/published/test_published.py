@@ -5,12 +5,11 @@ The tables of others are by programs written apart from these calculations, from
 
 from dataclasses import replace
 from functools import cache
-from itertools import pairwise
 from math import isfinite
 
 import pytest
 
-from rv_gearing.published import EXAMPLE, HANDBOOK, ISO_ROWS, TEXTBOOK
+from rv_gearing.published import EXAMPLE, HANDBOOK, TEXTBOOK
 from truing import Kernel
 from truing.calculation import calculate
 from truing.published import ComparedRow, compare_published
@@ -21,7 +20,7 @@ from truing.runs.provenance import provenance_of
 from truing.setup import default_setup
 
 OFFERS = Kernel.installed(strict=True).offers
-PRINTED = {"press_linkage": 34, "roller_screw_shift": 25, "rv_gearing": 49, "rv_wear": 38, "harmonic_fractal": 42}
+PRINTED = {"press_linkage": 34, "roller_screw_shift": 25, "rv_gearing": 49, "harmonic_fractal": 42}
 """How many printed numbers each calculation compares."""
 STEP = 0.0025
 """Of the shifts that the reconstruction of the roller screw tried; its ends are up to one step short."""
@@ -42,26 +41,6 @@ def test_every_row_is_as_stated_and_what_differs_says_why(plugin: str) -> None:
 
 
 # The first stage of a reducer
-
-
-ISO_RECONSTRUCTED = {  # from the inputs of the example, for the rows that print more digits
-    "tangential force": 127352.4, "virtual teeth of the pinion": 18.9051, "virtual teeth of the wheel": 114.5428,
-    "zone factor": 2.39533, "elasticity factor": 189.8117, "contact ratio factor": 0.80339, "helix factor": 1.01944,
-    "nominal contact stress": 1206.484, "permissible stress of the pinion": 1338.784,
-    "permissible stress of the wheel": 1414.658, "contact stress": 1301.371, "lubricant factor": 1.04739,
-    "velocity factor": 0.96911, "roughness factor": 0.96599, "life factor of the pinion": 0.9103,
-    "life factor of the wheel": 0.9619, "mean mesh stiffness": 17.46719, "dynamic factor": 1.00328,
-    "face load factor for bending": 1.12804, "safety of the pinion, pitting": 1.02875,
-    "safety of the wheel, pitting": 1.08705,
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("name", [row[0] for row in ISO_ROWS])
-def test_the_example_of_the_standard_comes_within_a_thousandth(name: str) -> None:
-    row = rows("rv_gearing")[name]
-    assert (row.published.where, row.published.rule) == (EXAMPLE, "worked")
-    assert row.value == pytest.approx(row.published.value, rel=1e-3)
-    assert row.value == pytest.approx(ISO_RECONSTRUCTED.get(name, row.value), rel=5e-4)
 
 
 def test_handbook_and_textbook_are_met_as_far_as_they_are_printed() -> None:
@@ -119,69 +98,3 @@ SCREW_RECONSTRUCTED = {
 def test_rows_of_the_screw_are_those_of_an_independent_reconstruction(name: str) -> None:
     value, close = SCREW_RECONSTRUCTED[name]
     assert rows("roller_screw_shift")[name].value == pytest.approx(value, abs=close)
-
-
-# The wear of a reducer
-
-
-WEAR_REFERENCE = {  # the reference reproduction of the paper: largest distance of the ratio from 1
-    **{f"sensitivity index {number}": 0.0095 for number in range(1, 17)},
-    "largest equidistant modification": 0.0096,
-    "smallest equidistant modification": 0.0143,
-    "deepest wear after 6000 h": 0.001,
-    "deepest wear at optimum 1": 0.001,
-    "deepest wear at optimum 2": 0.0012,
-    "force falls with the modification": 0.0,
-    "contact widens with the modification": 0.0,
-    "wear falls with the modification": 0.0,
-    "wear to 3000 h within the 95 % band": 0.0,
-    "mean backlash, unworn": 0.0025,
-    "share below 1 arcmin, unworn": 0.0,
-    "cost before optimisation": 0.001,
-    "least cost at optimum 1": 0.0355,
-    # The wear scatters by 1.3 % here, by 2 % in the reference, which has 1.007.
-    "reliability after 6000 h": 0.0078,
-}
-
-
-@pytest.mark.parametrize("name", WEAR_REFERENCE)
-def test_no_row_of_the_wear_is_farther_from_the_paper_than_the_reference(name: str) -> None:
-    ratio = rows("rv_wear")[name].ratio
-    assert ratio is not None
-    assert abs(ratio - 1) <= WEAR_REFERENCE[name] + 1e-9
-
-
-def test_the_knee_is_shown_as_not_reproduced() -> None:
-    """With zones up to twice as wide the knee is cheaper and wears more than the paper's choice."""
-    knees = {name: row for name, row in rows("rv_wear").items() if "knee" in name}
-    assert len(knees) == 4
-    for name, row in knees.items():
-        assert not row.matches
-        assert "not reproduced" in row.published.why
-        assert row.ratio is not None
-        assert (row.ratio < 0.9) if name.startswith("cost") else (1.02 < row.ratio < 1.03)
-
-
-def test_the_two_optima_cost_more_here_than_printed() -> None:
-    for number, most in ((1, 1.0355), (2, 1.06)):
-        row = rows("rv_wear")[f"least cost at optimum {number}"]
-        assert not row.matches
-        assert row.ratio is not None
-        assert 1.03 < row.ratio < most
-
-
-def test_the_reliability_falls_visibly_only_after_4000_h() -> None:
-    shares = [rows("rv_wear")[f"reliability after {hours} h"].value for hours in (3000, 4000, 6000)]
-    assert shares[0] == pytest.approx(99.98, abs=0.02)
-    assert shares[1] == pytest.approx(99.7, abs=0.1)
-    assert all(later < earlier for earlier, later in pairwise(shares))
-
-
-def test_what_was_chosen_to_fit_the_wear_is_marked() -> None:
-    calibrated = {name: row for name, row in rows("rv_wear").items() if row.published.obtained == "calibrated"}
-    assert set(calibrated) == {
-        "deepest wear after 6000 h", "mean backlash, unworn", "reliability after 6000 h", "cost before optimisation",
-        "deepest wear at optimum 1", "deepest wear at optimum 2", "smallest equidistant modification",
-        *(f"sensitivity index {number}" for number in (1, 2, 4, 14, 16)),
-    }  # fmt: skip
-    assert all(row.published.why for row in calibrated.values())

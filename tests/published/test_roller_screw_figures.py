@@ -12,7 +12,7 @@ import pytest
 from numpy.typing import NDArray
 
 from roller_screw_shift import sheet
-from roller_screw_shift.figures import MARKS, SIDES, path_of, ring_half, roller_half, toothing, triangle
+from roller_screw_shift.figures import MARKS, SIDES, path_of, ring_half, roller_half, triangle
 from roller_screw_shift.geometry import geometry_of
 from roller_screw_shift.model import MARGINS, ROLLER_SCREW_SHIFT
 from roller_screw_shift.optimum import ChosenShift
@@ -60,15 +60,6 @@ def test_teeth_are_as_thick_as_their_shift_makes_them(shift: float) -> None:
 
 
 @pytest.mark.parametrize("shift", SHIFTS)
-def test_tooth_and_gap_are_alike_at_the_pitch_circles_so_there_is_no_backlash(shift: float) -> None:
-    pair = pair_at(shift)
-    pitch = float(np.asarray(pair.centre_distance)) * 20 / 80
-    tooth = half_angle(roller_half(pair), pitch) * pitch
-    gap = (pi / 100 - half_angle(ring_half(pair), 5 * pitch)) * 5 * pitch
-    assert tooth == pytest.approx(gap, abs=3e-8)
-
-
-@pytest.mark.parametrize("shift", SHIFTS)
 def test_outlines_run_from_tip_to_root_without_a_gap(shift: float) -> None:
     pair = pair_at(shift)
     geometry = geometry_of(pair)
@@ -101,14 +92,6 @@ def test_the_fillet_of_the_ring_is_round_and_touches_flank_and_root() -> None:
     flank = ring_half(pair)[:72]
     before, after = flank[-1] - flank[-2], outline[1] - outline[0]
     assert np.angle(after / before) == pytest.approx(0.0, abs=0.03)
-
-
-def test_a_toothing_repeats_the_tooth_a_pitch_apart() -> None:
-    half = roller_half(pair_at(0.21))
-    outline = toothing(half, 20, range(-1, 2))
-    tooth = len(outline) // 3
-    assert outline[:tooth] * np.exp(-2j * pi / 20) == pytest.approx(outline[tooth : 2 * tooth])
-    assert np.angle(outline[:tooth]).mean() == pytest.approx(0.5 * pi + 2 * pi / 20)
 
 
 @pytest.mark.parametrize("shift", SHIFTS)

@@ -1,15 +1,20 @@
 """The numbers on the theory page of the roller screw are those that the calculation gives."""
 
 import re
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from gear_geometry.pairs import clear_of_base, internal_sliding, involute, working_angle
-from roller_screw_shift.calculation import roller_screw_shift
+from roller_screw_shift.calculation import meshing_of, roller_screw_shift
 from roller_screw_shift.model import ROLLER_SCREW_SHIFT
-from roller_screw_shift.objectives import margins_of, objectives_of
+from truing.calculation import calculate
+from truing.setup import default_setup
 
 PAGE = (Path(__file__).parents[2] / "docs" / "explanation" / "roller_screw_shift.md").read_text(encoding="utf-8")
 WORDS = " ".join(PAGE.split())
@@ -81,7 +86,7 @@ def test_the_printed_pair_with_teeth_of_full_depth(start: str) -> None:
 def test_the_difference_by_roots_folds_as_the_page_says() -> None:
     shifts = np.linspace(0.3, 1.5, 24_001)
     pair = ROLLER_SCREW_SHIFT.inputs(roller_shift=shifts, sliding_reading="roots")
-    by_roots = np.asarray(objectives_of(pair).sliding_difference)
+    by_roots = np.asarray(meshing_of(pair).sliding_difference)
     assert f"from $x_E$ = {shifts[np.argmax(by_roots)]:.3f} on" in WORDS
     there = roller_screw_shift(ROLLER_SCREW_SHIFT.inputs(roller_shift=0.9))
     told = f"it says {there.root_sliding_roller:.3f} for the roller while its tip slides by {there.sliding_roller:.3f}"
@@ -125,71 +130,24 @@ def test_the_rounded_weight_leaves_the_lower_end_of_f2_open() -> None:
     assert f"anything from {ends[0]:.1f} to {ends[1]:.1f} serves" in WORDS
 
 
-def test_the_normalising_curve() -> None:
-    turn = 2 * np.pi * np.array([0.25, 0.5])
-    quarter, half = (turn - np.sin(turn)) / (2 * np.pi)
-    assert f"At a quarter of the range it is {quarter:.4f}, at half {half:.1f}." in WORDS
-
-
-def kept(shifts: np.ndarray, least_contact_ratio: float, reading: str) -> np.ndarray:
-    """Those that keep all limits."""
-    pair = ROLLER_SCREW_SHIFT.inputs(
-        roller_shift=shifts, least_contact_ratio=least_contact_ratio, sliding_reading=reading
-    )
-    margins = margins_of(pair)
-    return np.asarray(shifts[np.logical_and.reduce([np.asarray(value) >= 0 for value in vars(margins).values()])])
-
-
-def feasible_shifts(least_contact_ratio: float, reading: str = "path") -> np.ndarray:
-    """Shifts of the roller that keep all limits, from a fine grid, and from a finer one at its ends."""
-    coarse = kept(np.linspace(-0.5, 1.5, 50_001), least_contact_ratio, reading)
-    ends = [
-        kept(end + np.linspace(-4e-5, 4e-5, 8_001), least_contact_ratio, reading) for end in (coarse[0], coarse[-1])
-    ]
-    return np.unique(np.concatenate([coarse, *ends]))
+@cache
+def chosen(reading: str = "path", **inputs: float) -> tuple[Any, Mapping[str, Any]]:
+    """The study of the shift with these inputs, and the results of its run."""
+    shifting = replace(ROLLER_SCREW_SHIFT.studies[0], points=4001, ratios=(1.2, 1.42, 1.423))  # type: ignore[type-var]
+    setup = default_setup(ROLLER_SCREW_SHIFT, sliding_reading=reading, **inputs)
+    done = calculate(replace(setup, studies=(shifting,)))
+    return done.outcomes["shift"], done.answers
 
 
 def test_the_ranges_of_the_objectives() -> None:
-    shifts = feasible_shifts(1.4)
-    goals = objectives_of(ROLLER_SCREW_SHIFT.inputs(roller_shift=shifts))
-    for start, values, digits in (
-        ("range of f1", goals.shift_sum, 3),
-        ("range of f2", np.asarray(goals.stress_difference) * 1e-6, 2),
-        ("range of f3", goals.sliding_difference, 3),
-    ):
+    answers = chosen()[1]
+    for start, name, scale, digits in (
+        ("range of f1", "sum", 1.0, 3), ("range of f2", "stress_difference", 1e-6, 2),
+        ("range of f3", "sliding", 1.0, 3),
+    ):  # fmt: skip
         ends = row(start)[1].replace("−", "-").split(" to ")
-        assert ends == [f"{float(np.min(values)):.{digits}f}", f"{float(np.max(values)):.{digits}f}"]
-    lowest = number(float(np.min(np.asarray(goals.stress_difference))) * 1e-6, 2)
-    assert f"The lower end of f2 found here, {lowest} MPa" in WORDS
-
-
-NEAR = 5e-6  # of the end of the range the curve that normalises is level
-PRINTED = ((2.68, 5.38), (0.0, 33.2), (0.0, 3.08))
-
-
-def weighed_best(shifts: np.ndarray, weights: str = "own_ranges", reading: str = "path") -> float:
-    """The shift of least total objective by the formulas of the page."""
-    goals = objectives_of(ROLLER_SCREW_SHIFT.inputs(roller_shift=shifts, sliding_reading=reading))
-    values = [np.asarray(goals.shift_sum), np.asarray(goals.stress_difference) * 1e-6,
-              np.asarray(goals.sliding_difference)]  # fmt: skip
-    total = np.zeros(len(shifts))
-    for place, (sense, value) in enumerate(zip((-1, 1, 1), values, strict=True)):
-        low, high = value.min(), value.max()
-        turn = 2 * np.pi * (value - low) / (high - low)
-        first, last = PRINTED[place] if weights == "printed_ranges" else (low, high)
-        weight = (0.35, 0.01, 0.81)[place] if weights == "printed" else 4 / (last - first) ** 2
-        total += sense * weight * (turn - np.sin(turn)) / (2 * np.pi)
-    return float(shifts[np.argmin(total)])
-
-
-@pytest.mark.parametrize("weights", ["own_ranges", "printed_ranges", "printed"])
-@pytest.mark.parametrize("limit", [1.4, 1.42])
-def test_every_weighing_ends_at_the_contact_ratio(limit: float, weights: str) -> None:
-    shifts = feasible_shifts(limit)
-    assert weighed_best(shifts, weights) == pytest.approx(shifts[-1], abs=NEAR)
-    best = float(shifts[-1])
-    contact = roller_screw_shift(ROLLER_SCREW_SHIFT.inputs(roller_shift=best)).contact_ratio
-    assert float(contact) == pytest.approx(limit, abs=1e-5)
+        assert ends == [f"{scale * float(answers[f'{end}_{name}']):.{digits}f}" for end in ("least", "most")]
+    assert f"The lower end of f2 found here, {row('range of f2')[1].split()[0]} MPa" in WORDS
 
 
 @pytest.mark.parametrize(
@@ -198,36 +156,30 @@ def test_every_weighing_ends_at_the_contact_ratio(limit: float, weights: str) ->
      (r"the same, $\varepsilon_{\min} = 1.423$", 1.423, 3), (r"the same, $\varepsilon_{\min} = 1.2$", 1.2, 3)],
 )  # fmt: skip
 def test_the_lost_limit_decides(start: str, limit: float, digits: int) -> None:
-    shifts = feasible_shifts(limit)
-    best = weighed_best(shifts)
-    best = float(shifts[-1]) if shifts[-1] - best < NEAR else best
-    ring = best + float(FOUND.shift_difference)
-    assert row(start)[1] == f"{number(best, digits)} / {number(ring, digits)}"
+    variants = chosen()[0].variants
+    best = next(each.shift for each in variants if (each.least_contact_ratio, each.weights) == (limit, "own_ranges"))
+    assert row(start)[1] == f"{number(best, digits)} / {number(best + float(FOUND.shift_difference), digits)}"
 
 
 def test_the_weights_lead_elsewhere_where_no_limit_holds_the_optimum() -> None:
     for reading in ("path", "roots"):
-        shifts = feasible_shifts(1.2, reading)
-        found = [weighed_best(shifts, name, reading) for name in ("own_ranges", "printed_ranges", "printed")]
+        found = [each.shift for each in chosen(reading)[0].variants if each.least_contact_ratio == 1.2]
         assert "{:.3f} (own ranges), {:.3f} (printed ranges) and {:.3f} (printed weights)".format(*found) in WORDS
     assert f"The contact ratio of its pair is {float(FOUND.contact_ratio):.3f}." in WORDS
 
 
 def test_a_cutter_makes_the_range_of_f2_begin_at_0() -> None:
-    shifts = feasible_shifts(1.4)
-    rack = objectives_of(ROLLER_SCREW_SHIFT.inputs(roller_shift=shifts))
-    cut = objectives_of(ROLLER_SCREW_SHIFT.inputs(roller_shift=shifts, cutter_teeth=25))
-    assert np.min(rack.stress_difference) > 27e6
+    """Which the substitute rack cannot give."""
+    rack, cut = (chosen(**cutter)[0].field.course for cutter in ({}, {"cutter_teeth": 25.0}))
+    assert rack.objectives[1].min() > 27
     assert "keeps it above 27 MPa" in WORDS
-    assert np.min(cut.stress_difference) < 1e-3 * np.max(cut.stress_difference)
-    assert f"are equal at $x_E = {shifts[np.argmin(cut.stress_difference)]:.3f}$" in WORDS
+    assert cut.objectives[1].min() < 0.02
+    assert f"are equal at $x_E = {cut.shifts[np.argmin(cut.objectives[1])]:.3f}$" in WORDS
 
 
 def test_equal_sliding_alone() -> None:
-    shifts = feasible_shifts(1.2)
-    goals = objectives_of(ROLLER_SCREW_SHIFT.inputs(roller_shift=shifts))
-    best = float(shifts[np.argmin(goals.sliding_difference)])
-    assert row("equal sliding alone")[1] == f"{number(best, 4)} / {number(best + float(FOUND.shift_difference), 4)}"
+    shifts = [number(float(chosen()[1][f"equal_sliding_{gear}"]), 4) for gear in ("roller", "ring")]
+    assert row("equal sliding alone")[1] == " / ".join(shifts)
 
 
 def test_orders_of_carrier_and_roller() -> None:

@@ -6,6 +6,7 @@ an independent reconstruction that tried shifts in steps of 0.0025.
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 from math import acos, cos, isnan, pi, radians, sqrt, tan
 from statistics import NormalDist
 from typing import Any
@@ -60,6 +61,7 @@ def shift_at(ratio: float) -> float:
     return float(brentq(lambda shift: by_hand(shift)["ratio"] - ratio, -0.2, 1.0, xtol=1e-14))
 
 
+@cache
 def run(*, seed: int = 0, study: Shifting | None = None, **values: Any) -> Calculation:
     """A run in which the shift is chosen and nothing else asked."""
     chosen = study or Shifting(points=POINTS, ratios=(), gives=GIVES)
@@ -136,7 +138,7 @@ def test_equal_sliding_is_found_whatever_the_limits(pair: Pair) -> None:
 @pytest.fixture(scope="module")
 def field(pair: Pair) -> Field:
     """With a contact ratio of 1.2 the optimum lies within."""
-    found = field_of(replace(pair, least_contact_ratio=1.2), SPAN, 20_001)
+    found = field_of(replace(pair, least_contact_ratio=1.2), SPAN, 4001)
     assert found is not None
     return found
 
@@ -145,7 +147,7 @@ def field(pair: Pair) -> Field:
 def test_box_from_every_seed_agrees_with_the_grid(field: Field, reading: str) -> None:
     weights = weights_of(reading, field.ranges)
     grid = grid_optimum(field, weights)
-    for seed in range(3):
+    for seed in range(2):
         found = box_optimum(field, weights, SPAN, np.random.default_rng(seed), Plan())
         assert found.settled
         assert found.point[0] == pytest.approx(grid, abs=2e-7)
@@ -190,7 +192,8 @@ def test_results_of_a_run_by_hand() -> None:
 
 
 def test_a_seed_tells_the_run_and_every_seed_the_same_optimum() -> None:
-    documents = [run(seed=seed).outcomes["shift"].as_json() for seed in (0, 0, 1)]
+    again = run.__wrapped__(seed=0)
+    documents = [done.outcomes["shift"].as_json() for done in (run(), again, run(seed=1))]
     assert documents[0] == documents[1]
     assert documents[0]["box"] != documents[2]["box"]
     assert documents[0]["box"]["shift"] == pytest.approx(documents[2]["box"]["shift"], abs=2e-6)

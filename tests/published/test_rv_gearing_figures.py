@@ -16,7 +16,7 @@ import pytest
 
 from gear_geometry.roots import Rack, external_root
 from rv_gearing import sheet
-from rv_gearing.figures import groups_figure, mesh_figure, meshing_of, notched_of, stresses_figure
+from rv_gearing.figures import groups_figure, meshing_of, notched_of, stresses_figure
 from rv_gearing.geometry import half_space, tooth, trochoid, undercut
 from rv_gearing.groups import MEETING, SIZES, STRENGTH, FoundGroups, GroupColumn, GroupSearch, listed
 from rv_gearing.model import RV_GEARING
@@ -25,7 +25,6 @@ from truing import Drawing, Kernel, Swept, Table, TruingError, Words
 from truing.calculation import Calculation, calculate
 from truing.inputs_file import setup_from_text
 from truing.report.figures import draw
-from truing.report.sheet import check_rows
 from truing.setup import default_setup
 
 RACK = Rack(dedendum=1.25, fillet=0.38, pressure_angle=np.radians(20.0))
@@ -201,14 +200,6 @@ def test_a_stage_that_is_too_weak_at_any_load_says_so() -> None:
     assert "always below" in table.rows[0]
 
 
-def test_an_idle_stage_has_a_capacity_too() -> None:
-    reserve = run(Capacity(gives=rating), load_torque=0.0).outcomes["capacity"]
-    loaded = run(Capacity(), load_torque=500.0).outcomes["capacity"]
-    assert isinstance(reserve, Reserve)
-    assert isinstance(loaded, Reserve)
-    assert reserve.torque == pytest.approx(loaded.torque, rel=1e-9)
-
-
 def test_courses_hold_the_four_safeties_and_fall_with_the_load(whole: Calculation) -> None:
     for name, sign in (("load", -1.0), ("face_width", 1.0)):
         swept = whole.outcomes[name]
@@ -369,18 +360,6 @@ def test_every_figure_is_drawn_without_a_complaint(inputs: dict[str, Any], figur
                     count += 1
                     assert draw(block.draw, title=block.title, ident=f"f{count}").startswith("<svg")
     assert count == figures
-
-
-def test_a_figure_of_the_mesh_shows_as_many_planets_as_there_are() -> None:
-    calculation = run(group=25, planets=3)
-    panel = mesh_figure(meshing_of(calculation.record, calculation.record.inputs)).axes[0]
-    assert len(panel.patches) == 1 + 3 + 1  # sun, planets, circle of the cranks
-
-
-def test_a_limit_that_is_a_result_is_printed_as_one(whole: Calculation) -> None:
-    """The permitted contact stress of the sun, 1093.394 MPa, with as many digits as a stress has."""
-    printed = {row.check.name: row.limit.text for row in check_rows(whole)}
-    assert printed["contact_stress_sun"] == "1093.4"
 
 
 def test_every_result_stands_in_a_section() -> None:

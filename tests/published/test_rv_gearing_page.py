@@ -92,8 +92,8 @@ def test_efficiency_and_torque() -> None:
 
 
 def test_the_load_of_the_example() -> None:
-    load = load_of(PAPER)
-    assert f"$n_1 = {60 * load.input_speed:.0f}$ r/min" in WORDS
+    load = load_of(PAPER).duty
+    assert f"$n_1 = {60 * load.sun_speed:.0f}$ r/min" in WORDS
     assert f"$T_1 = {load.sun_torque:.2f}$ N·m" in WORDS
     assert f"$F_t = {load.tangential_force:.1f}$ N" in WORDS
     order = 1.0 - 1.0 / load.ratio

@@ -1,11 +1,11 @@
 """Wear of the cycloid disc: the paper's numbers, limits, and the similarity that the calculation relies on.
 
-Tables of wear over time, load, width, oil and modification were computed from the same equations by an independent
-program; the digits that it printed are demanded. A plain loop solves the whole history again.
+A plain loop solves the whole history again. Tables of wear over time, load, width and oil stand on the theory page and
+are held by its test; those of other modifications are from an independent program, to the digits that it printed.
 """
 
 from dataclasses import replace
-from math import degrees, pi, radians
+from math import pi
 from typing import Any
 
 import numpy as np
@@ -26,6 +26,11 @@ CONDITION = 10.0
 MODULUS = 2.06e11 / (1 - 0.3**2)
 
 
+def coefficient(line_load: Any, radius: Any, oil: float, roughness: float) -> Any:
+    """The wear coefficient by both of its parts, 1/Pa."""
+    return wear.lubricant_part(MODULUS, oil, roughness) * wear.contact_part(MODULUS, line_load, radius)
+
+
 def of(**changes: Any) -> Any:
     """Deepest wear in um."""
     return worn(replace(PAPER, **changes))["max_wear"] * 1e6
@@ -39,39 +44,9 @@ def ground(modification: Any) -> dict[str, Any]:
 # The printed numbers
 
 
-def test_wear_of_the_paper() -> None:
-    found = worn(PAPER)
-    assert found["max_wear"] * 1e6 == pytest.approx(3.127, abs=0.002501)  # printed; ours is 3.129
-    assert found["max_wear"] * 1e6 == pytest.approx(3.129, abs=5.01e-4)
-    assert degrees(found["wear_angle"]) == pytest.approx(58, abs=0.501)
-    assert found["backlash_wear"] == found["max_wear"]
-    assert found["mesh_period"] == pytest.approx(0.1, rel=1e-14)
-
-
-@pytest.mark.parametrize(
-    ("hours", "wear"), [(1000, 0.788), (2000, 1.419), (3000, 1.943), (4000, 2.391), (5000, 2.783), (6000, 3.129)]
-)
-def test_wear_over_time(hours: float, wear: float) -> None:
-    assert of(working_time=hours * HOUR) == pytest.approx(wear, abs=5.01e-4)
-
-
 @pytest.mark.parametrize(
     ("changes", "wear", "half_digit"),
     [
-        ({"output_torque": 1000.0}, 0.513, 5e-4),
-        ({"output_torque": 2000.0}, 1.607, 5e-4),
-        ({"output_torque": 4500.0}, 5.217, 5e-4),
-        ({"disc_width": 0.016}, 4.29, 5e-3),
-        ({"disc_width": 0.025}, 2.27, 5e-3),
-        ({"pressure_viscosity": 2.0e-8}, 4.66, 5e-3),
-        ({"pressure_viscosity": 2.1e-8}, 3.84, 5e-3),
-        ({"pressure_viscosity": 2.3e-8}, 2.52, 5e-3),
-        ({"torque_share": 0.5}, 2.73, 5e-3),
-        ({"torque_share": 0.6}, 3.54, 5e-3),
-        ({"reconstruction_depth": 0.15e-6}, 3.155, 5e-4),
-        ({"reconstruction_depth": 0.1e-6}, 3.142, 5e-4),
-        ({"reconstruction_depth": 0.02e-6}, 3.121, 5e-4),
-        ({"reconstruction_depth": 0.01e-6}, 3.118, 5e-4),
         ({"working_time": 100 * HOUR, **ground(-53e-6)}, 0.105, 5e-4),
         ({"working_time": 100 * HOUR, **ground(-40e-6)}, 0.098, 5e-4),
         ({"working_time": 100 * HOUR, **ground(-26e-6)}, 0.088, 5e-4),
@@ -97,12 +72,12 @@ def test_wear_is_that_of_the_plain_iteration(modification: float, hours: float) 
 
 def test_coefficient_written_out_and_its_size() -> None:
     group = 3.981e29 * (1.5e5 / (MODULUS * 4.5e-3)) ** 1.219 * (2.2e-8 * MODULUS) ** -7.377 * (0.7e-6 / 4.5e-3) ** 1.589
-    written = wear.wear_coefficient(MODULUS, 1.5e5, 4.5e-3, 2.2e-8, 0.7e-6)
+    written = coefficient(1.5e5, 4.5e-3, 2.2e-8, 0.7e-6)
     assert written == pytest.approx(group / MODULUS, rel=1e-13)
     short = 2.2 * 40 / 114.5
     path = 114.5e-3 * (1 - short**2) ** 1.5 / (41 * short**2 - 1 - 40 * short**2)  # G2 at the longest arm
     radius = abs((path + 5e-3) * 5e-3 / path)
-    here = wear.wear_coefficient(MODULUS, worn(PAPER)["max_force"] / 20e-3, radius, 2.2e-8, 0.694e-6)
+    here = coefficient(worn(PAPER)["max_force"] / 20e-3, radius, 2.2e-8, 0.694e-6)
     assert worn(PAPER)["coefficient"] == pytest.approx(here, rel=1e-12)
 
 
@@ -126,7 +101,7 @@ def test_the_first_step_is_equation_13() -> None:
     new = discs.flank(PAPER)
     force, mesh = new.force[0], mesh_of(PAPER)
     radius = np.asarray(geometry.relative_radius(mesh, new.angle))
-    k = wear.wear_coefficient(MODULUS, force / 0.02, radius, 2.2e-8, 0.694e-6)
+    k = coefficient(force / 0.02, radius, 2.2e-8, 0.694e-6)
     rate = k * force / 0.02 * np.asarray(geometry.sliding_ratio(mesh, new.angle)) / 0.1  # per second
     assert of(working_time=10 * HOUR) == pytest.approx(rate.max() * 10 * HOUR * 1e6, rel=1e-12)
     assert discs.flank(PAPER, 10 * HOUR).wear[0] == pytest.approx(rate * 10 * HOUR, rel=1e-11, abs=1e-22)
@@ -162,7 +137,6 @@ def test_order_of_questions_does_not_matter(designs: int) -> None:
     discs = ground(np.linspace(-40e-6, 5e-6, designs))
 
     def asked(times: list[float]) -> list[Any]:
-        wear.history_of_one.cache_clear()
         wear.history_of_group.cache_clear()
         return [of(working_time=time * HOUR, **discs).tolist() for time in times]
 
@@ -178,21 +152,6 @@ def test_oil_roughness_and_factors_only_stretch_time() -> None:
     assert of(sliding_factor=0.0) == 0
     assert of(composite_roughness=0.8e-6) == pytest.approx(of(wear_rate_factor=(0.8 / 0.694) ** 1.589), rel=1e-13)
     assert of(pressure_viscosity=2.4e-8) == pytest.approx(of(wear_rate_factor=(2.4 / 2.2) ** -7.377), rel=1e-13)
-
-
-def test_ageing_is_the_integral_of_the_momentary_coefficient() -> None:
-    rate, time = 1 / (4000 * HOUR), 6000 * HOUR
-    instants = np.linspace(0, time, 200_001)
-    stretched = np.trapezoid(1 + rate * instants, instants)
-    assert of(ageing_rate=rate) == pytest.approx(of(working_time=stretched), rel=1e-12)
-
-
-def test_what_is_felt_of_the_wear() -> None:
-    felt = worn(replace(PAPER, loaded_share=0.5, lost_motion_share=0.3, pin_wear_ratio=0.2, extra_wear=0.4e-6))
-    half = worn(replace(PAPER, working_time=3000 * HOUR))["max_wear"]
-    assert felt["max_wear"] == pytest.approx(half + 0.4e-6, rel=1e-14)
-    assert felt["backlash_wear"] == pytest.approx(0.3 * 1.2 * (half + 0.4e-6), rel=1e-14)
-    assert of(depth_factor=1.5) == pytest.approx(1.5 * of(), rel=1e-14)
 
 
 # The film
@@ -219,14 +178,6 @@ def test_film_leaves_the_share_that_its_ratio_says() -> None:
         for place in np.flatnonzero(new.force[0] > 0):
             ratio = film_ratio(new.angle[place], new.force[0, place], factor)
             assert wet[place] == pytest.approx(dry[place] * np.clip((3 - ratio) / 2.5, 0, 1), rel=1e-9)
-
-
-def test_film_does_not_lift_where_the_surfaces_run_against_each_other() -> None:
-    assert film_ratio(radians(58), 2800.0, 1.0) < 0.05
-    assert of(film_factor=1.0) == pytest.approx(of(), rel=1e-5)
-    assert np.all(np.diff(of(film_factor=np.array([0.0, 5.0, 50.0, 150.0]))) < 1e-9)
-    assert of(film_factor=150.0) > 0.8 * of()
-    assert of(film_factor=1e9) < 1e-3 * of()
 
 
 def test_only_with_a_film_its_oil_counts() -> None:
@@ -289,9 +240,3 @@ def test_a_row_that_cannot_be_leaves_the_others_alone() -> None:
     alike = evaluate_rows(setup, {"pin_radius": 9.2e-3}, 3)
     assert alike.failed.all()
     assert "undercut" in alike.reasons[2]
-
-
-def test_many_designs_in_one_call_share_the_work() -> None:
-    many = np.linspace(-45e-6, 9e-6, 700)
-    together = of(**ground(many))
-    assert together[::100] == pytest.approx([of(**ground(value)) for value in many[::100]], rel=1e-14)

@@ -165,23 +165,32 @@ class Bench:
         """The columns of a file of measurements."""
         return {**vars(self), "deflection": deflection}
 
+    def shown(self, error: Array | float = 0.0, **machine: float) -> dict[str, Array]:
+        """The columns where the gauge is off by this much, um; ``machine`` holds what is not as drawn."""
+        return self.columns(gauge(self.load, self.travel, **machine) + error)
 
-def wide(n: int = 150, *, seed: int = 0, hours: float = 10.0) -> Bench:
-    """Everything varied independently of everything else."""
+    @property
+    def contact(self) -> Array:
+        """What the deflection of the contact is in proportion to."""
+        return np.asarray(np.sign(self.load) * np.cbrt(self.load) ** 2)
+
+
+def wide(n: int = 150, *, seed: int = 0, hours: float = 10.0, turning: bool = False) -> Bench:
+    """Everything varied independently of everything else; the screw turns where that is asked for: it costs time."""
     rng = np.random.default_rng([seed, n])
     return Bench(
         load=rng.uniform(-20, 20, n),
         travel=rng.uniform(0, 300, n),
-        rotation=rng.uniform(0, 360, n),
+        rotation=rng.uniform(0, 360, n) * turning,
         temperature=rng.uniform(15, 45, n),
         time=np.linspace(0, hours, n),
     )
 
 
-def warming(n: int = 150, *, seed: int = 0, hours: float = 10.0) -> Bench:
+def warming(n: int = 150, *, seed: int = 0, hours: float = 10.0, turning: bool = False) -> Bench:
     """The temperature follows the time: 25 K with three hours."""
-    time = np.linspace(0, hours, n)
-    return replace(wide(n, seed=seed, hours=hours), temperature=20 + 25 * (1 - np.exp(-time / 3)))
+    bench = wide(n, seed=seed, hours=hours, turning=turning)
+    return replace(bench, temperature=20 + 25 * (1 - np.exp(-bench.time / 3)))
 
 
 def wander(rng: np.random.Generator, n: int, rho: float) -> Array:
@@ -222,6 +231,12 @@ class Asked:
         """Write the columns to a file in a folder and read it as records."""
         file = write_csv(path / "measured.csv", columns, self.units, runs)
         return read_records([file], offer_of(self.model), self.setup)
+
+    def competing(
+        self, path: Path, columns: Mapping[str, Array], runs: Sequence[str] = (), *, scale: float = UM
+    ) -> Competition:
+        """Write, read, and lay out what competes in white noise of a known standard deviation (SI)."""
+        return plain_competition(self, self.records(path, columns, runs), scale)
 
     def diagnosed(self, path: Path, columns: Mapping[str, Array], runs: Sequence[str] = ()) -> DiagnosisResult:
         """Write, read and diagnose."""

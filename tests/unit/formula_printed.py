@@ -8,11 +8,6 @@ from truing.formulas.layout import substituted, symbolic
 from truing.formulas.write_latex import LATEX, symbol_latex
 from truing.formulas.write_mathml import MATHML
 
-__all__ = ["block_mathml", "latex", "mathml", "substituted_latex", "substituted_mathml", "symbol_latex"]
+__all__ = ["latex", "mathml", "substituted_latex", "substituted_mathml", "symbol_latex"]
 mathml, latex = partial(symbolic, MATHML), partial(symbolic, LATEX)
 substituted_mathml, substituted_latex = partial(substituted, MATHML), partial(substituted, LATEX)
-
-
-def block_mathml(*inner: str) -> str:
-    """Join "symbol", "expression", "numbers", "result" by equals signs into one displayed formula."""
-    return f'<math display="block"><mrow>{"<mo>=</mo>".join(inner)}</mrow></math>'

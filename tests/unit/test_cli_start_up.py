@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-import inspect
 import json
 import subprocess
 import sys
-from importlib import import_module
 
 import pytest
-import typer.main
 
-from truing.cli.app import app
 from truing.cli.console import out, out_json, say
-
-app_module = sys.modules["truing.cli.app"]
 
 # typer brings pydantic, whatever is imported here
 HEAVY = {"numpy", "scipy", "pint", "matplotlib", "jinja2", "sklearn", "pymoo", "press_linkage", "pluggy", "tomlkit"}
@@ -63,20 +57,6 @@ def test_importing_truing_costs_nothing() -> None:
         [sys.executable, "-c", "import sys, truing; print(*sys.modules)"], capture_output=True, text=True, check=True
     )
     assert {name.partition(".")[0] for name in done.stdout.split()} & HEAVY == set()
-
-
-@pytest.mark.parametrize("verb", [name for name in typer.main.get_command(app).commands if name != "plugins"])  # type: ignore[attr-defined]
-def test_the_table_of_verbs_hands_on_what_the_function_takes(verb: str) -> None:
-    declared = inspect.signature(getattr(app_module, verb)).parameters
-    work = inspect.signature(getattr(import_module(f"truing.cli.{verb}"), verb)).parameters
-    assert [name for name in declared if name != "context"] == [name for name in work if name != "settings"]
-    assert all(parameter.default is parameter.empty for parameter in work.values())
-
-
-@pytest.mark.parametrize("verb", list(typer.main.get_command(app).commands))  # type: ignore[attr-defined]
-def test_a_verb_says_the_same_in_the_table_and_in_its_module(verb: str) -> None:
-    work = getattr(import_module(f"truing.cli.{verb}"), verb)
-    assert inspect.getdoc(getattr(app_module, verb)) == inspect.getdoc(work)
 
 
 # What is printed: a terminal shows it and obeys none of it.

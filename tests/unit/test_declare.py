@@ -38,7 +38,7 @@ from truing import (
 )
 from truing.declare.fields import input_fields, result_fields
 from truing.declare.spreads import Band, Spread, Target, read_spread, with_width
-from truing.errors import DeclarationError, TruingError, UnitError, UsageError
+from truing.errors import DeclarationError, UnitError, UsageError
 from truing.fits import tolerance
 from truing.setup import default_setup
 
@@ -237,46 +237,6 @@ def test_near_miss_of_an_input() -> None:
 # Classes that are refused
 
 
-def test_a_flat_name_twice_is_refused() -> None:
-    @inputs
-    class Twice:
-        teeth_sun: Float = given(3.0, "")
-        sun: Gear = part(Gear)
-
-    with pytest.raises(DeclarationError, match="the flat name 'teeth_sun' occurs twice"):
-        input_fields(Twice)
-
-
-def test_a_field_without_declaration_is_refused() -> None:
-    with pytest.raises(DeclarationError, match=r"Plain: field 'load' is not declared: write given"):
-
-        @inputs
-        class Plain:
-            load: Float = 3.0
-
-
-def test_a_field_without_annotation_is_refused() -> None:
-    with pytest.raises(DeclarationError, match="'load' is a field but has no type annotation"):
-
-        @inputs
-        class Bare:
-            load = given(3.0, "N")
-
-
-def test_inputs_and_results_do_not_mix() -> None:
-    with pytest.raises(DeclarationError, match="'load' is declared with the wrong word; results come from found"):
-
-        @results
-        class Mixed:
-            load: Float = given(3.0, "N")
-
-    with pytest.raises(DeclarationError, match="the part 'gear' of Gear mixes inputs and results"):
-
-        @results
-        class MixedPart:
-            gear: Gear = part(Gear)
-
-
 def test_a_part_replaces_only_what_exists() -> None:
     with pytest.raises(DeclarationError, match=r"part\(Gear\): it has no input 'tooth'\. Did you mean 'teeth'\?"):
         part(Gear, tooth=3)
@@ -286,24 +246,26 @@ def test_a_part_replaces_only_what_exists() -> None:
         part(dict)
 
 
-def one_field(annotation: Any, *arguments: Any) -> type[Any]:
-    made = type("One", (), {"__annotations__": {"it": annotation}, "it": given(*arguments)})
-    return inputs(made)
-
-
-WRONG_FIELDS = [
-    (Float, (3.0,), "input 'it' has no unit"),
-    (int, (3, "mm"), "has the unit 'mm', but its annotation allows none"),
-    (Literal["a", "b"], ("c",), "is by default none of a, b"),
-    (dict[str, float], ({},), "write Float, int, bool, str"),
-    ("Nowhere", (3.0, ""), "annotations must name what the module itself imports"),
+WRONG_CLASSES: list[tuple[Any, dict[str, tuple[Any, Any]], str]] = [
+    (inputs, {"it": (Float, given(3.0))}, "input 'it' has no unit"),
+    (inputs, {"it": (int, given(3, "mm"))}, "has the unit 'mm', but its annotation allows none"),
+    (inputs, {"it": (Literal["a", "b"], given("c"))}, "is by default none of a, b"),
+    (inputs, {"it": (dict[str, float], given({}))}, "write Float, int, bool, str"),
+    (inputs, {"it": ("Nowhere", given(3.0, ""))}, "annotations must name what the module itself imports"),
+    (inputs, {"teeth_sun": (Float, given(3.0, "")), "sun": (Gear, part(Gear))}, "the flat name 'teeth_sun' occurs"),
+    (inputs, {"load": (Float, 3.0)}, r"Made: field 'load' is not declared: write given"),
+    (inputs, {"load": (None, given(3.0, "N"))}, "'load' is a field but has no type annotation"),
+    (results, {"load": (Float, given(3.0, "N"))}, "'load' is declared with the wrong word; results come from found"),
+    (results, {"gear": (Gear, part(Gear))}, "the part 'gear' of Gear mixes inputs and results"),
 ]
 
 
-@pytest.mark.parametrize(("annotation", "arguments", "sentence"), WRONG_FIELDS)
-def test_wrong_fields_are_refused(annotation: Any, arguments: tuple[Any, ...], sentence: str) -> None:
+@pytest.mark.parametrize(("word", "fields", "sentence"), WRONG_CLASSES)
+def test_wrong_classes_are_refused(word: Any, fields: dict[str, tuple[Any, Any]], sentence: str) -> None:
+    annotations = {name: annotation for name, (annotation, _) in fields.items() if annotation is not None}
+    made = type("Made", (), {"__annotations__": annotations, **{name: each for name, (_, each) in fields.items()}})
     with pytest.raises(DeclarationError, match=sentence):
-        input_fields(one_field(annotation, *arguments))
+        input_fields(word(made))
 
 
 # Spreads: each resolved to the standard deviation that its words mean
@@ -448,6 +410,10 @@ def heated(bar: Bar, base: Stress, *, slope: Float, room: Float) -> Stress:
     return replace(base, stress=base.stress + slope * (room - 293.15))
 
 
+def hotter(bar: Bar, base: Stress, *, slope: Float, warm: Float) -> Stress:
+    return base
+
+
 def any_keyword(bar: Bar, **values: Float) -> Bar:
     return bar
 
@@ -478,6 +444,7 @@ def test_bounds_tell_amplitude_from_shape() -> None:
             Unknown("a", low, high)
 
 
+PLACE = Unknown("place", 0, 9, along="room")
 WRONG_EFFECTS: list[tuple[dict[str, Any], str]] = [
     ({"unknowns": [EXTRA]}, "acts at one place"),
     ({"on_inputs": wider, "on_results": heated, "unknowns": [EXTRA]}, "acts at one place"),
@@ -492,7 +459,6 @@ WRONG_EFFECTS: list[tuple[dict[str, Any], str]] = [
 ]
 
 
-PLACE = Unknown("place", 0, 9, along="room")
 WRONG_EFFECTS += [
     ({"on_inputs": wider, "unknowns": [EXTRA], "parts": [["etxra"]]}, "a part of effect 'it' names 'etxra'"),
     ({"on_inputs": wider, "unknowns": [EXTRA], "parts": [["extra"], ["extra"]]}, "'extra' stands in two parts"),
@@ -507,8 +473,6 @@ WRONG_EFFECTS += [
 def test_places_lie_along_what_an_effect_sees() -> None:
     assert Effect("it", on_inputs=any_keyword, unknowns=[EXTRA, PLACE], needs=[ROOM]).unknowns[1] is PLACE
     assert Effect("it", on_inputs=any_keyword, unknowns=[EXTRA, PLACE], reads=["room"]).reads == ("room",)
-    with pytest.raises(DeclarationError, match="effect 'it' reads 'room', which is neither input nor axis"):
-        bar_model(errors=[Effect("it", on_inputs=any_keyword, unknowns=[EXTRA, PLACE], reads=["room"])])
 
 
 def test_whole_unknowns_have_whole_bounds_and_are_no_amplitudes() -> None:
@@ -590,6 +554,34 @@ WRONG_MODELS: list[tuple[dict[str, Any], str]] = [
     ({"objectives": [Require("stress", at_most="1 MPa", reliability="goal")]}, "takes its reliability from 'goal'"),
     ({"objectives": ["stress"]}, "'stress' is no objective"),
     ({"sheet": [Section("Strength", "strss")]}, "section 'Strength' names 'strss', which is no result. Did you mean"),
+    (
+        {
+            "errors": [
+                Effect(
+                    name,
+                    on_reading=heated,
+                    needs=[Condition("room", "degC", reference=place)],
+                    unknowns=[Unknown("slope", -1, 1)],
+                )
+                for name, place in (("one", 20), ("two", 25))
+            ]
+        },
+        "the condition 'room' is declared in two ways",
+    ),
+    (
+        {
+            "errors": [
+                Effect("it", on_results=hotter, needs=[Condition("warm", "degC")], unknowns=[Unknown("slope", -1, 1)])
+            ]
+        },
+        "the condition 'warm' has the name of an input",
+    ),
+    (
+        {"errors": [Effect("it", on_inputs=any_keyword, unknowns=[EXTRA, PLACE], reads=["room"])]},
+        "effect 'it' reads 'room', which is neither input nor axis",
+    ),
+    ({"errors": [Tolerance("widht", off())], "sheet": [Section("Strength", "strss")]}, "'widht', which is no input"),
+    ({"errors": [Tolerance("widht", off())], "sheet": [Section("Strength", "strss")]}, "'strss', which is no result"),
     ({"name": "my bar"}, "may hold letters, digits and underscores only"),
     ({"name": "a.b"}, "may hold letters, digits and underscores only"),
 ]
@@ -600,33 +592,6 @@ def test_models_that_name_what_does_not_exist(changes: dict[str, Any], sentence:
     with pytest.raises(DeclarationError) as caught:
         Model(**{"name": "bar", "title": "", "function": stretch, **changes})
     assert sentence in str(caught.value)
-
-
-def test_all_faults_of_a_model_at_once() -> None:
-    with pytest.raises(DeclarationError) as caught:
-        bar_model(errors=[Tolerance("widht", off())], sheet=[Section("Strength", "strss")])
-    assert "'widht'" in str(caught.value)
-    assert "'strss'" in str(caught.value)
-
-
-def test_a_condition_declared_in_two_ways() -> None:
-    other = replace(ROOM, reference=25)
-    first, second = (
-        Effect(name, on_reading=heated, needs=[need], unknowns=[Unknown("slope", -1, 1)])
-        for name, need in (("one", ROOM), ("two", other))
-    )
-    with pytest.raises(DeclarationError, match="the condition 'room' is declared in two ways"):
-        bar_model(errors=[first, second])
-
-
-def hotter(bar: Bar, base: Stress, *, slope: Float, warm: Float) -> Stress:
-    return base
-
-
-def test_a_condition_with_the_name_of_an_input() -> None:
-    effect = Effect("it", on_results=hotter, needs=[Condition("warm", "degC")], unknowns=[Unknown("slope", -1, 1)])
-    with pytest.raises(DeclarationError, match="the condition 'warm' has the name of an input"):
-        bar_model(errors=[effect])
 
 
 def model_with_result(**found_arguments: Any) -> Model[Any, Any]:
@@ -718,40 +683,19 @@ WIDTHS: list[tuple[Spread, Target, float]] = [
 ]
 
 
-def width_of(spread: Spread, target: Target) -> float:
-    """Return the full band of a spread, SI."""
-    resolved = spread.resolve(target)
-    assert resolved is not None
-    return float(resolved.width)
-
-
 @pytest.mark.parametrize(("spread", "target", "width"), WIDTHS)
-def test_the_width_is_the_full_band(spread: Spread, target: Target, width: float) -> None:
-    assert width_of(spread, target) == pytest.approx(width, rel=1e-14)
-
-
-@pytest.mark.parametrize("times", [1.0, 1.37, 2.0, 0.123456789012345])
-@pytest.mark.parametrize(("spread", "target", "width"), WIDTHS)
-def test_the_new_width_is_the_one_asked_for(spread: Spread, target: Target, width: float, times: float) -> None:
-    changed = with_width(spread, target, times * width)
-    assert width_of(changed, target) == pytest.approx(times * width, rel=4e-15)
-
-
-@pytest.mark.parametrize(("spread", "target", "width"), WIDTHS)
-def test_read_again_it_is_the_same_to_the_last_bit(spread: Spread, target: Target, width: float) -> None:
-    changed = with_width(spread, target, width * 1.2345678901234567)
-    again = read_spread(changed.text, changed)
-    assert again == changed
-    assert again.resolve(target) == changed.resolve(target)
-
-
-@pytest.mark.parametrize(("spread", "target", "width"), WIDTHS)
-def test_shape_and_words_stay(spread: Spread, target: Target, width: float) -> None:
-    before, after = spread.resolve(target), with_width(spread, target, 3 * width).resolve(target)
+def test_a_spread_of_another_width_keeps_its_shape_and_reads_back(spread: Spread, target: Target, width: float) -> None:
+    before = spread.resolve(target)
     assert before is not None
-    assert after is not None
-    assert after.shape == before.shape
-    assert after.sd == pytest.approx(3 * before.sd, rel=1e-14)
+    assert before.width == pytest.approx(width, rel=1e-14)
+    for times in (1.0, 1.37, 2.0, 1.2345678901234567, 0.123456789012345):
+        changed = with_width(spread, target, times * width)
+        after = changed.resolve(target)
+        assert after is not None
+        assert after.width == pytest.approx(times * width, rel=4e-15)
+        assert (after.shape, after.sd) == (before.shape, pytest.approx(times * before.sd, rel=1e-14))
+        again = read_spread(changed.text, changed)
+        assert (again, again.resolve(target)) == (changed, after)
 
 
 @pytest.mark.parametrize(
@@ -806,10 +750,3 @@ def test_what_has_no_width_is_refused_by_name(spread: Spread) -> None:
 def test_a_width_that_is_none_is_refused(width: float) -> None:
     with pytest.raises(UsageError, match="the width of the tolerance of 'length' must lie above zero"):
         with_width(normal(sd="1 um"), LENGTH, width)
-
-
-def test_a_width_of_another_kind_is_refused() -> None:
-    with pytest.raises(TruingError, match="IT7 is a grade for lengths"):
-        width_of(grade("IT7"), ANGLE)
-    with pytest.raises(UnitError, match="must lie above its start"):
-        width_of(zone("2 um", "1 um"), LENGTH)

@@ -24,7 +24,6 @@ from diagnosis_models import (
     write_csv,
 )
 from numpy.testing import assert_allclose, assert_array_equal
-from scipy.integrate import quad
 from scipy.optimize import minimize, minimize_scalar
 from scipy.stats import norm
 
@@ -32,63 +31,16 @@ from truing.diagnosis.engine import laid_out
 from truing.diagnosis.exact import EXACTLY
 from truing.diagnosis.learning import learnt
 from truing.diagnosis.machine import calibration_of
-from truing.diagnosis.noise import beyond, difference, expected, scale_of, shares, worth
+from truing.diagnosis.noise import difference
 from truing.diagnosis.reading import read_records
 from truing.diagnosis.records import Records
 from truing.diagnosis.sample import errors_of, sample_of
 from truing.errors import InputError
 from truing.setup import DiagnoseOptions
 
-LEFT = np.array([-6.0, -1.3, 0.0, 0.4, 2.5, 9.0])
-ABOVE = np.ones(6, dtype=np.int8)
 BENCH = wide(60, seed=41)
 TRUE = gauge(BENCH.load, BENCH.travel) + 0.4 * (BENCH.temperature - 20) + np.random.default_rng(41).normal(0, 2, 60)
 END = 8.0
-
-
-# One row
-
-
-def test_what_a_censored_row_leaves_is_its_likelihood() -> None:
-    assert_allclose(beyond(LEFT, ABOVE) ** 2, -2 * norm.logsf(LEFT), rtol=1e-9)
-    assert_allclose(beyond(LEFT, -ABOVE) ** 2, -2 * norm.logcdf(LEFT), rtol=1e-9)
-    assert (beyond(LEFT, ABOVE) >= 0).all()
-    assert (beyond(LEFT, -ABOVE) <= 0).all()
-    assert_array_equal(beyond(LEFT, 0 * ABOVE), LEFT)
-    assert_allclose(beyond(np.array([LEFT, LEFT + 1]), ABOVE)[1], beyond(LEFT + 1, ABOVE))
-
-
-def test_it_follows_the_prediction_by_its_derivative() -> None:
-    for sides in (ABOVE, -ABOVE, 0 * ABOVE):
-        slope = (beyond(LEFT + 1e-5, sides) - beyond(LEFT - 1e-5, sides)) / 2e-5
-        assert_allclose(shares(LEFT, sides), slope, rtol=1e-6, atol=1e-9)
-    assert_allclose(shares(np.array([-80.0, 80.0]), ABOVE[:2]), [0, 1], atol=1e-3)
-
-
-def test_its_error_is_the_one_to_expect_beyond_the_end() -> None:
-    def second_moment(end: float) -> float:
-        return float(quad(lambda x: x**2 * norm.pdf(x), end, np.inf)[0] / norm.sf(end))
-
-    for end in (-2.0, 0.0, 1.5):
-        assert_allclose(expected(np.array([end]), ABOVE[:1]) ** 2, second_moment(end), rtol=1e-7)
-        assert_allclose(expected(np.array([-end]), -ABOVE[:1]) ** 2, second_moment(end), rtol=1e-7)
-
-
-def test_the_size_of_the_noise_is_the_likeliest_and_what_is_left_then_has_the_squares_that_rows_are_worth() -> None:
-    rng = np.random.default_rng(3)
-    left = rng.normal(0, 3, 40)
-    short = np.array([-4.0, -1.0, 0.5, 3.0, 7.0])
-
-    def cost(log_sd: float) -> float:
-        sd = np.exp(log_sd)
-        return -float(norm.logpdf(left, scale=sd).sum() + norm.logsf(short / sd).sum())
-
-    sd = scale_of(left, short, 0)
-    assert_allclose(sd, np.exp(minimize_scalar(cost, bracket=(0, 2), tol=1e-12).x), rtol=1e-6)
-    sides = np.append(np.zeros(40, dtype=np.int8), np.ones(5, dtype=np.int8))
-    rows = np.append(left, short) / sd
-    assert_allclose(worth(rows, sides), np.sum(beyond(rows, sides) ** 2), rtol=1e-9)
-    assert_allclose(worth(np.append(left, -9 * np.ones(5)), sides), 40, atol=1e-9)  # far beyond: nothing
 
 
 # Fits
@@ -97,23 +49,25 @@ def test_the_size_of_the_noise_is_the_likeliest_and_what_is_left_then_has_the_sq
 def clipped_record(folder: Path, **asked: Any) -> tuple[Asked, Records]:
     """60 readings of a gauge that ends at END um, of a drive without tolerances that grows with its temperature."""
     one = Asked(drive_model(("thermal_growth",), {}), diagnose=DiagnoseOptions(**asked))
-    return one, one.records(folder, BENCH.columns(np.minimum(TRUE, END)))
+    return one, one.records(folder, BENCH.columns(TRUE))
 
 
-def tobit() -> tuple[float, float]:
+def tobit(lowest: float) -> tuple[float, float]:
     """Growth (um/K) and noise (um) that are likeliest, by hand."""
-    drive, warm, is_cut = gauge(BENCH.load, BENCH.travel), BENCH.temperature - 20, TRUE >= END
+    drive, warm, above, below = gauge(BENCH.load, BENCH.travel), BENCH.temperature - 20, TRUE >= END, lowest >= TRUE
 
     def cost(x: Array) -> float:
-        left, sd = np.minimum(TRUE, END) - drive - x[0] * warm, np.exp(x[1])
-        return -float(norm.logpdf(left[~is_cut], scale=sd).sum() + norm.logsf(left[is_cut] / sd).sum())
+        left = (np.clip(TRUE, lowest, END) - drive - x[0] * warm) / np.exp(x[1])
+        read = norm.logpdf(left[~above & ~below]) - x[1]
+        return -float(read.sum() + norm.logsf(left[above]).sum() + norm.logcdf(left[below]).sum())
 
     found = minimize(cost, [0.1, 0.0], method="Nelder-Mead", options={"xatol": 1e-9, "fatol": 1e-12, "maxiter": 9999})
     return float(found.x[0]), float(np.exp(found.x[1]))
 
 
-def test_a_fit_and_its_noise_are_those_of_the_tobit_likelihood(tmp_path: Path) -> None:
-    one, records = clipped_record(tmp_path, clipped={"deflection": (-np.inf, END * UM)})
+@pytest.mark.parametrize("lowest", [-np.inf, -END])
+def test_a_fit_and_its_noise_are_those_of_the_tobit_likelihood(tmp_path: Path, lowest: float) -> None:
+    one, records = clipped_record(tmp_path, clipped={"deflection": (lowest * UM, END * UM)})
     made = laid_out(calibration_of(one.setup, records))
     found = fit_of(made, "thermal_growth")
     for _ in range(20):
@@ -122,7 +76,7 @@ def test_a_fit_and_its_noise_are_those_of_the_tobit_likelihood(tmp_path: Path) -
         made.known = {key: each.in_sample(made.sample) for key, each in made.known.items()}
         made.again([made.known[found.key]], EXACTLY)
         found = made.known[found.key]
-    growth, sd = tobit()
+    growth, sd = tobit(lowest)
     assert_allclose(size_of(found, "growth"), growth * UM, rtol=2e-3)
     assert_allclose(made.sample.noise["deflection"].scale, sd * UM, rtol=2e-3)
     (square,) = made.sample.squares(found.left)
@@ -137,7 +91,7 @@ def test_a_diagnosis_of_a_clipped_gauge_names_the_cause_with_its_size(tmp_path: 
     true = gauge(bench.load, bench.travel) + 0.4 * (bench.temperature - 20)
     true += np.random.default_rng(43).normal(0, 1, 150)
     options = DiagnoseOptions(clipped={"deflection": (-10 * UM, 10 * UM)})
-    one = Asked(drive_model(), diagnose=options)
+    one = Asked(drive_model(["thermal_growth", "clearance"]), diagnose=options)
     found = one.diagnosed(tmp_path, bench.columns(np.clip(true, -10, 10)))
     (cause,) = found.causes
     assert names_in(found) == {"thermal_growth", "thermal_drift"}  # of the gauge: one curve

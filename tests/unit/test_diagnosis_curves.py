@@ -12,6 +12,7 @@ import pytest
 from diagnosis_models import (
     KN,
     SKEWED,
+    TOLERANCES,
     UM,
     Array,
     Asked,
@@ -23,7 +24,6 @@ from diagnosis_models import (
     fit_of,
     gauge,
     offer_of,
-    plain_competition,
     wide,
     write_csv,
 )
@@ -59,7 +59,6 @@ OWN = {
     ),
     "rubbing": Effect("rubbing", on_results=rubbing, unknowns=[Unknown("drag", -2, 4, "um/mm")]),
 }
-TOLERANCES = {"contact": "3 %", "shaft": "3 %"}
 
 
 def made_of(
@@ -75,8 +74,7 @@ def made_of(
     errors = [*model.errors, *(OWN[name] for name in effects if name in OWN)]
     noise = np.random.default_rng(3).normal(0, 1, len(bench))
     asked = Asked(replace(model, errors=errors))
-    records = asked.records(folder, bench.columns(gauge(bench.load, bench.travel) + error + noise))
-    return plain_competition(asked, records, UM)
+    return asked.competing(folder, bench.shown(error + noise))
 
 
 def alone(made: Competition, name: str) -> Bundle:
@@ -205,7 +203,7 @@ def test_curves_over_several_numbers_count_by_the_spectrum_of_their_inner_produc
 
 def machine(folder: Path, bench: Bench, effects: Sequence[str] = ()) -> Calibration:
     one = Asked(drive_model(effects, {}))
-    return calibration_of(one.setup, one.records(folder, bench.columns(gauge(bench.load, bench.travel))))
+    return calibration_of(one.setup, one.records(folder, bench.shown()))
 
 
 def of_kind(found: Sequence[Candidate], kind: str, *on: str) -> list[Candidate]:
@@ -235,9 +233,9 @@ def test_orders_are_named_up_to_half_the_places_per_turn(degrees: Array, highest
 
 
 def test_orders_above_the_sampling_are_not_looked_for(tmp_path: Path) -> None:
-    bench = replace(wide(96), rotation=np.tile(np.arange(0.0, 360, 30), 8))
+    bench = replace(wide(96, turning=True), rotation=np.tile(np.arange(0.0, 360, 30), 8))
     ends = []
-    for each in (bench, wide(96)):
+    for each in (bench, wide(96, turning=True)):
         there = machine(tmp_path, each)
         (order,) = of_kind(shapes_of(there.records, {"rotation": (1, 2, 3)}, has_steps=True), "order")
         assert order.numbers[-1].whole
@@ -245,8 +243,11 @@ def test_orders_above_the_sampling_are_not_looked_for(tmp_path: Path) -> None:
     assert ends == [(4, 5), (4, 16)]
 
 
+TURNING = wide(80, turning=True)
+
+
 def test_every_shape_over_what_moved_and_nothing_over_what_stood_still(tmp_path: Path) -> None:
-    bench = replace(wide(80), temperature=np.full(80, 23.0))
+    bench = replace(TURNING, temperature=np.full(80, 23.0))
     found = shapes_of(machine(tmp_path, bench).records, {}, has_steps=False)
     kinds = {(each.shape.kind, each.shape.depends_on) for each in found if each.shape}
     moved = {("load",), ("travel",), ("rotation",), ("time",)}
@@ -261,7 +262,7 @@ def test_every_shape_over_what_moved_and_nothing_over_what_stood_still(tmp_path:
 
 
 def test_printed_terms_are_what_is_calculated(tmp_path: Path) -> None:
-    there = machine(tmp_path, wide(80))
+    there = machine(tmp_path, TURNING)
     covariates = there.records.covariates
     values = {name: item.values for name, item in covariates.items()}
     for each in shapes_of(there.records, {}, has_steps=False):
@@ -276,7 +277,7 @@ def test_printed_terms_are_what_is_calculated(tmp_path: Path) -> None:
                 assert_allclose(eval(term.expression, {"np": np, **values}) * np.ones(80), term.values, atol=1e-12)
 
 
-LOAD, TIME, ROTATION = wide(80).load, wide(80).time, np.radians(wide(80).rotation)
+LOAD, TIME, ROTATION = TURNING.load, TURNING.time, np.radians(TURNING.rotation)
 
 
 @pytest.mark.parametrize(
@@ -290,7 +291,7 @@ LOAD, TIME, ROTATION = wide(80).load, wide(80).time, np.radians(wide(80).rotatio
         ("kink", "load", [], [np.abs(LOAD)]),
         ("dead zone", "load", [4e3], [np.sign(LOAD) * np.maximum(np.abs(LOAD) - 4, 0)]),
         ("trend", "load", [], [np.ones(80), LOAD, LOAD**2]),
-        ("product", "load travel", [], [np.ones(80), LOAD, wide(80).travel, LOAD * wide(80).travel]),
+        ("product", "load travel", [], [np.ones(80), LOAD, TURNING.travel, LOAD * TURNING.travel]),
     ],
     ids=lambda value: value if isinstance(value, str) else "",
 )
@@ -298,7 +299,7 @@ def test_a_shape_draws_what_its_kind_says(
     tmp_path: Path, kind: str, on: str, shape: list[float], columns: list[Array]
 ) -> None:
     """The columns by hand, in kN, h and mm, span what the terms of the smallest shape of the kind do."""
-    there = machine(tmp_path, wide(80))
+    there = machine(tmp_path, TURNING)
     smallest = min(
         of_kind(shapes_of(there.records, {}, has_steps=False), kind, *on.split()), key=lambda each: each.size
     )
@@ -341,7 +342,7 @@ def asked(effects: Sequence[str] = (), more: Sequence[str] = (), tolerances: Map
 
 
 def calibration(one: Asked, folder: Path, bench: Bench) -> Calibration:
-    return calibration_of(one.setup, one.records(folder, bench.columns(gauge(bench.load, bench.travel))))
+    return calibration_of(one.setup, one.records(folder, bench.shown()))
 
 
 def effect_of(there: Calibration, name: str) -> Candidate:
@@ -351,10 +352,7 @@ def effect_of(there: Calibration, name: str) -> Candidate:
 
 def two_files(folder: Path, one: Asked) -> tuple[Records, Array]:
     benches = [wide(40, seed=1), wide(30, seed=2)]
-    paths = [
-        write_csv(folder / f"day {number}.csv", bench.columns(gauge(bench.load, bench.travel)))
-        for number, bench in enumerate(benches)
-    ]
+    paths = [write_csv(folder / f"day {number}.csv", bench.shown()) for number, bench in enumerate(benches)]
     return read_records(paths, offer_of(one.model), one.setup), np.concatenate([bench.travel for bench in benches])
 
 
@@ -402,16 +400,6 @@ def test_an_input_of_every_file_is_a_machine_for_each(tmp_path: Path) -> None:
     assert_allclose(made["deflection"] - there.base["deflection"], 2 * slopes[:, 1], rtol=1e-6, atol=1e-15)
 
 
-def test_the_prior_of_an_input_lies_at_its_nominal_with_its_deviation(tmp_path: Path) -> None:
-    bench = wide(50)
-    there = calibration(asked(tolerances={"contact": "3 %", "zero": "5 um"}), tmp_path, bench)
-    assert [(item.name, item.mean) for item in there.inputs] == [("contact", 0.0), ("zero", 0.0)]
-    assert_allclose([item.sd for item in there.inputs], [0.09 * UM, 5 * UM])
-    contact = np.sign(bench.load) * np.abs(bench.load) ** (2 / 3)
-    assert_allclose(there.slopes["deflection"] / UM, np.column_stack([0.09 * contact, np.full(50, 5.0)]), rtol=1e-6)
-    assert_allclose(there.shifts["deflection"], 0)
-
-
 def test_an_input_that_moves_nothing_is_no_cause(tmp_path: Path) -> None:
     there = calibration(
         asked(tolerances={"contact": "3 %", "zero": "5 um"}), tmp_path, replace(wide(30), load=np.zeros(30))
@@ -436,7 +424,7 @@ def test_causes_are_the_models_first_then_the_kernels_and_their_tags_differ(tmp_
 def named(one: Asked, folder: Path, bench: Bench, error: Array) -> list[set[str]]:
     """The causes that are named, each with what draws the same, of a record with 1 um of noise."""
     noise = np.random.default_rng(3).normal(0, 1, len(bench))
-    found = one.diagnosed(folder, bench.columns(gauge(bench.load, bench.travel) + error + noise))
+    found = one.diagnosed(folder, bench.shown(error + noise))
     return [{f"first: {cause.effect}", *cause.same_as} for cause in found.causes]
 
 
@@ -461,7 +449,7 @@ def test_curves_that_differ_only_by_what_is_tolerated_are_one(tmp_path: Path) ->
 
 def test_the_first_order_of_a_gauge_goes_by_the_name_of_the_models_own(tmp_path: Path) -> None:
     """Two numbers and no order claim less than an order that could have been another; orders 2 and 3 stay apart."""
-    bench, one = wide(150), asked(["lead_error"], more=["eccentricity"])
+    bench, one = wide(150, turning=True), asked(["lead_error"], more=["eccentricity"])
     first = 8 * np.sin(np.radians(bench.rotation) + 0.7)
     assert named(one, tmp_path, bench, first) == [{"first: eccentricity", "periodic_order_of_rotation"}]
     second = 8 * np.sin(2 * np.radians(bench.rotation) + 0.7)

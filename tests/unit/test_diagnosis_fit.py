@@ -21,7 +21,6 @@ from diagnosis_models import (
     cause_of,
     drive_model,
     fit_of,
-    gauge,
     plain_competition,
     size_of,
     twist_model,
@@ -62,7 +61,7 @@ def drive_competition(folder: Path, error: Array, **more: object) -> Competition
     """All causes of a drive that is off by this much (um), in white noise."""
     bench = wide(len(error), seed=21)
     asked = Asked(drive_model(**more))  # type: ignore[arg-type]
-    return plain_competition(asked, asked.records(folder, bench.columns(gauge(bench.load, bench.travel) + error)), UM)
+    return asked.competing(folder, bench.shown(error))
 
 
 def drive_fit(folder: Path, error: Array, names: Sequence[str], **more: object) -> tuple[Competition, Fit]:
@@ -126,7 +125,7 @@ def test_inputs_are_calibrated_by_their_prior_in_the_noise_that_is_left(tmp_path
     """-2 log likelihood with its noise free, n ln(mean square), plus the square of the input: made least by scipy."""
     rng = np.random.default_rng(22)
     bench = wide(40, seed=21)
-    contact = np.sign(bench.load) * np.abs(bench.load) ** (2 / 3)
+    contact = bench.contact
     error = 0.15 * contact + 0.03 * bench.travel + rng.normal(0, 1, 40)
     _, best = drive_fit(tmp_path, error, ["lead_error"], tolerances={"contact": "3 %"})
     design = np.column_stack([bench.travel, 0.09 * contact])  # the second counts standard deviations
@@ -157,7 +156,7 @@ def test_an_input_in_which_the_model_bends_is_fitted_with_the_model_itself(tmp_p
     first = np.linspace(-1, 1, 50)
     reading = 16 * (1 + 2 * stretched) ** 2 + 2 * first + np.random.default_rng(29).normal(0, 0.5, 50)
     asked = Asked(model, units=TWIST)
-    made = plain_competition(asked, asked.records(tmp_path, {"first": first, "reading": reading}), 1.0)
+    made = asked.competing(tmp_path, {"first": first, "reading": reading}, scale=1.0)
     best = fit_of(made, "along_first")
 
     def said(x: Array) -> Array:
@@ -179,11 +178,11 @@ def test_an_input_in_which_the_model_bends_is_fitted_with_the_model_itself(tmp_p
 def test_an_earlier_calibration_is_no_nominal_of_the_extended_model(tmp_path: Path) -> None:
     """A machine diagnosed again keeps the contact of its drawing; what was fitted stays a calibration."""
     bench = wide(40, seed=21)
-    contact = np.sign(bench.load) * np.abs(bench.load) ** (2 / 3)
+    contact = bench.contact
     error = 0.15 * contact + 0.03 * bench.travel + np.random.default_rng(22).normal(0, 1, 40)
-    asked = Asked(drive_model(tolerances={"contact": "3 %"}))
+    asked = Asked(drive_model(["lead_error"], {"contact": "3 %"}))
     again = replace(asked.setup, calibrated={"contact": 3.1 * UM})
-    done = diagnose(again, asked.records(tmp_path, bench.columns(gauge(bench.load, bench.travel) + error)))
+    done = diagnose(again, asked.records(tmp_path, bench.shown(error)))
     assert done.extended is not None
     assert done.setup.inputs.contact == done.extended.inputs.contact == again.inputs.contact != 3.1 * UM
     assert_allclose(done.extended.calibrated["contact"] / UM, 3.15, atol=0.06)
@@ -322,8 +321,7 @@ def fitted(folder: Path, name: str, error: np.ndarray, seed: int) -> tuple[Compe
     model = replace(model, errors=[*model.errors, WAVED])
     beyond = error + np.random.default_rng(seed).normal(0, 1, ROWS)
     asked = Asked(model)
-    records = asked.records(folder, BENCH.columns(gauge(BENCH.load, BENCH.travel) + beyond))
-    made = plain_competition(asked, records, UM)
+    made = asked.competing(folder, BENCH.shown(beyond))
     best = fit_of(made, name)
     return made, best, certainty_of(best, made.extended), beyond
 

@@ -21,8 +21,6 @@ from diagnosis_models import (
     fit_of,
     gauge,
     of_size_one,
-    plain_competition,
-    size_of,
     twist_model,
     wander,
     warming,
@@ -33,17 +31,15 @@ from numpy.testing import assert_allclose, assert_array_equal
 from numpy.typing import NDArray
 from scipy.integrate import quad
 from scipy.linalg import subspace_angles, toeplitz
-from scipy.stats import binom, multivariate_normal, norm
+from scipy.stats import binom, norm
 
 from truing.diagnosis.choice import Chosen
 from truing.diagnosis.competition import Competition
-from truing.diagnosis.conditional import conditional_on
 from truing.diagnosis.design import MOST_POINTS, POINTS, NextPoints, next_points
-from truing.diagnosis.engine import diagnose
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.folds import FOLDS, SHORTEST_BLOCK, Folds, carries_over, errors_left_out, folds_of
 from truing.diagnosis.gain import _log_density, nested, sign_flip_p
-from truing.diagnosis.noise import Autocorrelation, whiten
+from truing.diagnosis.noise import Autocorrelation
 from truing.diagnosis.result import APART
 from truing.diagnosis.sample import Sample, sample_of
 from truing.diagnosis.visibility import inseparable, needed, separation, smallest_visible
@@ -96,8 +92,7 @@ def ready(folder: Path, error: Array, runs: list[str] | None = None, **more: Any
     bench = wide(len(error), seed=33)
     options = more.pop("diagnose", DiagnoseOptions())
     asked = Asked(drive_model(**more), diagnose=options)
-    records = asked.records(folder, bench.columns(gauge(bench.load, bench.travel) + error), runs or [])
-    return plain_competition(asked, records, UM)
+    return asked.competing(folder, bench.shown(error), runs or [])
 
 
 def remembering(sample: Sample, rho: float, *, held: NDArray[np.bool_] | None = None) -> Sample:
@@ -208,10 +203,9 @@ def test_what_is_chosen_without_a_fold_is_counted(tmp_path: Path) -> None:
 def test_a_gain_is_held_against_the_calibrated_model_and_the_noise_floor(tmp_path: Path) -> None:
     rng = np.random.default_rng(35)
     bench = wide(200, seed=35)
-    contact = np.sign(bench.load) * np.abs(bench.load) ** (2 / 3)
+    contact = bench.contact
     error = 0.12 * contact + 0.02 * bench.travel + rng.normal(0, 1, 200)  # 0.12 lies inside the tolerance
-    asked = Asked(drive_model())
-    found = diagnose(asked.setup, asked.records(tmp_path, bench.columns(gauge(bench.load, bench.travel) + error)))
+    found = Asked(drive_model(["lead_error"])).diagnosed(tmp_path, bench.shown(error))
     (gain,) = found.gain
     design = np.column_stack([contact, bench.load * bench.travel])
     free = error - design @ np.linalg.lstsq(design, error)[0]
@@ -252,7 +246,7 @@ def test_the_smallest_visible_size_by_dense_algebra(tmp_path: Path, tolerances: 
     made = ready(tmp_path, error, tolerances=tolerances, effects=("lead_error", "clearance"))
     made.sample = remembering(made.sample, rho)
     seen = {item.name: item for item in smallest_visible(unmoved(made))}
-    contact = np.sign(bench.load) * np.abs(bench.load) ** (2 / 3)
+    contact = bench.contact
     if tolerances:
         noise = noise + np.outer(0.09 * contact, 0.09 * contact) + 25.0
     for name, curve, unit in (("lead_error", bench.travel, UM / 1e-3), ("clearance", np.sign(bench.load), UM)):
@@ -290,8 +284,8 @@ def one_sign(folder: Path, box: dict[str, tuple[float, float]], noise: float, *,
     bench = wide(40, seed=36)
     bench = replace(bench, load=np.abs(bench.load) + 1)
     asked = Asked(drive_model(("clearance",), {}), diagnose=DiagnoseOptions(box=box))
-    columns = bench.columns(gauge(bench.load, bench.travel) + 3 + noise * np.resize([1, -1], 40))
-    made = plain_competition(asked, asked.records(folder, columns), UM)
+    columns = bench.shown(3 + noise * np.resize([1, -1], 40))
+    made = asked.competing(folder, columns)
     best = fit_of(made, "sensor_offset")
     if is_named:
         return chosen_as(made, best, same={best.causes[0].tag: ("clearance",)})
@@ -324,8 +318,7 @@ def test_rivals_are_separated_inside_the_box(tmp_path: Path) -> None:
     narrow = replace(bench, travel=140 + bench.travel / 15)
     asked = Asked(drive_model(("lead_error",), {}), diagnose=DiagnoseOptions(box={"travel": (0.0, 0.3)}))
     error = 0.01 * narrow.travel + np.random.default_rng(37).normal(0, 0.5, 80)
-    records = asked.records(tmp_path, narrow.columns(gauge(narrow.load, narrow.travel) + error))
-    made = plain_competition(asked, records, UM)
+    made = asked.competing(tmp_path, narrow.shown(error))
     points = next_points(chosen_as(made, fit_of(made, "lead_error"), fit_of(made, "sensor_offset"))).points
     assert points
     travel = [point.settings["travel"].value for point in points]
@@ -350,24 +343,6 @@ def test_it_is_said_how_many_points_would_be_needed(tmp_path: Path, size: float)
 # Known answers of the algebra of a diagnosis: likelihood, angles, separation, updates, profiles.
 
 
-def one_run(n: int) -> NDArray[np.bool_]:
-    starts = np.zeros(n, dtype=bool)
-    starts[0] = True
-    return starts
-
-
-def seen_angle(made: Competition, first: str, second: str) -> float:
-    """The angle in degrees between two curves as the search sees them: without what is tolerated, nearly at zero."""
-    beside = conditional_on(made.null, made.extended)
-    drawn = []
-    for name in (first, second):
-        bundle = made.curves.of(cause_of(made, name), made.null)
-        smallest = int(np.argmin(np.linalg.norm(bundle.curves, axis=-1)[:, 0]))
-        drawn.append(beside.beyond(beside.drawn(bundle.curves[smallest : smallest + 1]))[0, 0])
-    one, other = (each / np.linalg.norm(each) for each in drawn)
-    return float(np.degrees(np.arccos(abs(one @ other))))
-
-
 def believed(made: Competition, name: str, *numbers: float) -> Fit:
     """An explanation with numbers of its own (SI), as if it had been found."""
     cause, values, still = cause_of(made, name), np.array(numbers), np.zeros_like(made.null.inputs)
@@ -376,56 +351,20 @@ def believed(made: Competition, name: str, *numbers: float) -> Fit:
     return Fit((cause,), (values,), still, predicted, left, made.sample.cost(left, still), made.sample)
 
 
-def test_the_exact_likelihood_of_six_values_of_an_autoregression() -> None:
-    values = np.array([0.3, -0.1, 0.4, 1.2, 0.7, -0.5])
-    ours = norm.logpdf(whiten(values, one_run(6), Autocorrelation(0.6)), scale=0.8).sum() + np.log(1 - 0.6**2) / 2
-    lag = np.abs(np.subtract.outer(np.arange(6), np.arange(6)))
-    dense = multivariate_normal(cov=0.8**2 / (1 - 0.6**2) * 0.6**lag).logpdf(values)
-    assert_allclose(ours, dense, rtol=0, atol=1e-9)
-    assert_allclose(ours, -6.0510384427, rtol=0, atol=1e-10)
+@pytest.mark.parametrize(("length", "apart"), [(1.0, 16.0), (1.5, 36 + (12 * np.sqrt(0.75) - 9) ** 2)])
+def test_two_curves_at_thirty_degrees(tmp_path: Path, length: float, apart: float) -> None:
+    """A curve of 8 leaves 8 sin 30; of 12 the rival would need 10.4 and has 9: it leaves 6 across and 1.39 along.
 
-
-def test_two_unit_vectors_at_thirty_degrees(tmp_path: Path) -> None:
-    """Ten rows beside them hold noise of mean square one over all twelve, so that a curve of 8 leaves 8 sin 30."""
-    half = np.radians(30)
+    Ten rows beside them hold noise of mean square one over all twelve.
+    """
     first, second, noise = np.zeros(12), np.zeros(12), np.zeros(12)
-    first[0], second[:2] = 1.0, (np.cos(half), np.sin(half))
+    first[0], second[:2] = length, (np.sqrt(0.75), 0.5)
     noise[2:] = np.sqrt(1.2) * np.resize([1, -1], 10)
     columns = {"first": first, "second": second, "reading": 8 * first + noise}
-    asked = Asked(twist_model(), units=dict.fromkeys(columns, "-"))
-    made = plain_competition(asked, asked.records(tmp_path, columns), 1.0)
-    assert_allclose(seen_angle(made, "along_first", "along_second"), 30, rtol=1e-9)
+    made = Asked(twist_model(), units=dict.fromkeys(columns, "-")).competing(tmp_path, columns, scale=1.0)
     true, rival = fit_of(made, "along_first"), fit_of(made, "along_second")
-    assert_allclose(size_of(true, "one"), 8, rtol=1e-6)
-    assert_allclose(separation(true, rival, made.extended), 16, rtol=1e-6)
+    assert_allclose(separation(true, rival, made.extended), apart, rtol=1e-6)
     assert_allclose(separation(true, true, made.extended), 0, rtol=0, atol=1e-9)
-
-
-def test_a_rival_refits_within_its_bounds(tmp_path: Path) -> None:
-    """It would need 10.4 of a curve at 30 degrees and has 9: what it leaves of 12 is 6 across and 1.39 along."""
-    first, second, noise = np.zeros(12), np.zeros(12), np.zeros(12)
-    first[0], second[:2] = 1.5, (np.sqrt(0.75), 0.5)
-    noise[2:] = np.sqrt(1.2) * np.resize([1, -1], 10)
-    columns = {"first": first, "second": second, "reading": 8 * first + noise}
-    asked = Asked(twist_model(), units=dict.fromkeys(columns, "-"))
-    made = plain_competition(asked, asked.records(tmp_path, columns), 1.0)
-    true, rival = fit_of(made, "along_first"), fit_of(made, "along_second")
-    assert_allclose(separation(true, rival, made.extended), 36 + (12 * np.sqrt(0.75) - 9) ** 2, rtol=1e-6)
-
-
-@pytest.mark.parametrize(("tolerances", "angle"), [({}, 13.75), ({"zero": "1 m"}, 22.65)])
-def test_a_warm_up_and_a_drift_are_fourteen_degrees_apart(
-    tmp_path: Path, tolerances: dict[str, str], angle: float
-) -> None:
-    bench = warming()
-    asked = Asked(drive_model(tolerances=tolerances))
-    noise = of_size_one(np.random.default_rng(41), len(bench))
-    made = plain_competition(asked, asked.records(tmp_path, bench.columns(gauge(bench.load, bench.travel) + noise)), UM)
-    ours = seen_angle(made, "thermal_growth", "sensor_drift")
-    free = np.column_stack([bench.temperature - 20, bench.time])
-    free = free - free.mean(axis=0) if tolerances else free
-    assert_allclose(ours, np.degrees(subspace_angles(free[:, :1], free[:, 1:])[0]), rtol=1e-6)
-    assert_allclose(ours, angle, rtol=0, atol=0.005)
 
 
 def test_growth_in_a_warm_up_is_visible_but_not_separable_from_a_drift(tmp_path: Path) -> None:
@@ -433,8 +372,8 @@ def test_growth_in_a_warm_up_is_visible_but_not_separable_from_a_drift(tmp_path:
     asked = Asked(drive_model(tolerances={}))
     curve = 0.05 * (bench.temperature - 20)
     noise = of_size_one(np.random.default_rng(42), len(bench))
-    columns = bench.columns(gauge(bench.load, bench.travel) + curve + noise)
-    made = plain_competition(asked, asked.records(tmp_path, columns), UM)
+    columns = bench.shown(curve + noise)
+    made = asked.competing(tmp_path, columns)
     true = believed(made, "thermal_growth", 0.05 * UM)
 
     def left(*columns: Array) -> float:
@@ -458,12 +397,10 @@ def test_a_gain_and_a_loss_of_stiffness_are_three_degrees_apart(tmp_path: Path) 
     bench = replace(wide(len(load)), load=load, travel=travel)
     asked = Asked(drive_model(tolerances={}))
     noise = of_size_one(np.random.default_rng(43), len(bench))
-    made = plain_competition(asked, asked.records(tmp_path, bench.columns(gauge(load, travel) + noise)), UM)
+    made = asked.competing(tmp_path, bench.columns(gauge(load, travel) + noise))
     contact = np.sign(load) * np.abs(load) ** (2 / 3)
     linear = 0.5 * load * travel / STROKE
     dense = np.degrees(subspace_angles((3 * contact + linear)[:, None], (2 * contact + linear)[:, None])[0])
-    ours = seen_angle(made, "sensor_gain", "stiffness_loss")
-    assert_allclose(ours, dense, rtol=1e-3)
     assert_allclose(dense, 3.32, rtol=0, atol=0.005)
     said = [
         text for text in inseparable(chosen_as(made, made.null)) if {"sensor_gain", "stiffness_loss"} <= {*text.split()}

@@ -29,11 +29,10 @@ from diagnosis_models import (
 from numpy.testing import assert_allclose
 
 from truing import Effect, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
-from truing.diagnosis import competition, engine, machine
+from truing.diagnosis import engine, machine
 from truing.diagnosis import extended as under_test
 from truing.diagnosis.causes import Candidate, effects_of
-from truing.diagnosis.choice import choose
-from truing.diagnosis.engine import diagnose, laid_out
+from truing.diagnosis.engine import diagnose
 from truing.diagnosis.exact import Asking, alone, fitting, held_without, together
 from truing.diagnosis.extended import Extended, Request
 from truing.diagnosis.learning import first_noise
@@ -52,12 +51,12 @@ def test_many_rows_times_a_vector_are_summed_in_double_precision() -> None:
 def test_the_first_idea_of_the_noise_is_what_least_squares_leave(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    bench, rng = wide(400), np.random.default_rng(5)
+    bench, rng = wide(400, turning=True), np.random.default_rng(5)
     measured = gauge(bench.load, bench.travel, 3.3) + 0.01 * bench.temperature**2 + rng.normal(0, 2, 400)
     asked = Asked(drive_model())
     there = machine.calibration_of(asked.setup, asked.records(tmp_path, bench.columns(measured)))
     powers = [np.asarray(values) ** power for values in vars(bench).values() for power in (1, 2)]
-    loads = [np.sign(bench.load) * np.cbrt(bench.load) ** 2, bench.load * bench.travel]
+    loads = [bench.contact, bench.load * bench.travel]
     design = np.column_stack([np.ones(400), *powers, *loads])
     design /= np.sqrt(np.mean(design**2, axis=0))
     left = measured - gauge(bench.load, bench.travel)
@@ -93,35 +92,11 @@ def test_a_record_along_an_axis_of_the_model_is_searched_whole(tmp_path: Path, m
     assert engine.searched(along, seed=1) is along
 
 
-def test_a_decision_on_some_rows_is_kept_and_its_rivals_are_fitted_to_all(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Growth and a drift of the gauge draw one curve: both, and what is ranked, are those of all rows."""
-    monkeypatch.setattr(engine, "LONG", 100)
-    bench, asked = wide(400), Asked(drive_model(("lead_error", "thermal_growth"), {}))
-    error = 0.3 * (bench.temperature - 20) + np.random.default_rng(9).normal(size=400)
-    records = asked.records(tmp_path, bench.columns(gauge(bench.load, bench.travel) + error))
-    whole = machine.calibration_of(asked.setup, records)
-    few = laid_out(machine.calibration_of(asked.setup, engine.searched(records, seed=1)))
-    competition.search(few)
-    chosen = choose(few, seed=1)
-    assert few.sample.rows == 100
-    found = engine.on_all_rows(chosen, whole)
-    assert found.best.key == chosen.best.key
-    assert found.competition.sample.rows == found.best.sample.rows == found.null.sample.rows == 400
-    assert all(rival.fit.sample.rows == 400 and rival.behind >= 0 for rival in found.rivals)
-    assert {rival.fit.key for rival in found.rivals} <= {rival.fit.key for rival in chosen.rivals}
-    wanted = {each.key for each in few.ranked()[: engine.RANKED]}
-    assert wanted <= set(found.competition.known)
-    assert found.law is chosen.law
-    assert engine.on_all_rows(found, whole) is found
-
-
 def test_what_a_search_of_some_rows_came_to_is_fitted_to_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(engine, "LONG", 80)
     bench, asked = wide(300), Asked(drive_model(("lead_error",), {}))
     error = 0.03 * bench.travel + np.random.default_rng(9).normal(size=300)
-    found = asked.diagnosed(tmp_path, bench.columns(gauge(bench.load, bench.travel) + error))
+    found = asked.diagnosed(tmp_path, bench.shown(error))
     assert name_sets(found) == [{"lead_error"}]
     exact = bench.travel @ error / (bench.travel @ bench.travel)  # by all rows
     (size,) = found.causes[0].unknowns
@@ -129,17 +104,6 @@ def test_what_a_search_of_some_rows_came_to_is_fitted_to_all(tmp_path: Path, mon
     low, high = ends(size)
     wide_apart = 2 * 1.97e-3 / np.sqrt(bench.travel @ bench.travel)  # of a slope through zero in noise of 1 um
     assert_allclose(high - low, wide_apart, rtol=0.1)
-
-
-class Slow:
-    """The screw drive, counting how often it is called."""
-
-    def __init__(self) -> None:
-        self.calls = 0
-
-    def __call__(self, screw: Drive) -> Deflection:
-        self.calls += 1
-        return drive(screw)
 
 
 def ripple(order: int) -> Effect[Any, Any]:
@@ -153,37 +117,34 @@ def ripple(order: int) -> Effect[Any, Any]:
 
 def calls_of(tmp_path: Path, extra: int, tolerances: Mapping[str, str]) -> int:
     """How often the model is called where so many effects are looked for beside the true one."""
-    slow = Slow()
+    calls = []
 
     def counting(screw: Drive) -> Deflection:
         """The screw drive."""
-        return slow(screw)
+        calls.append(screw)
+        return drive(screw)
 
     spreads = [Tolerance(name, normal(sd=sd), why="drawing") for name, sd in tolerances.items()]
     errors: list[Any] = [*spreads, EFFECTS["lead_error"], *(ripple(order) for order in range(1, extra + 1))]
     asked = Asked(Model(name="drive", title="Deflection of a screw drive", function=counting, errors=errors))
     bench = wide(80)
     error = 0.03 * bench.travel + np.random.default_rng(8).normal(size=80)
-    records = asked.records(tmp_path, bench.columns(gauge(bench.load, bench.travel) + error))
-    slow.calls = 0
+    records = asked.records(tmp_path, bench.shown(error))
+    calls.clear()
     found = diagnose(asked.setup, records)
     assert [cause.effect for cause in found.causes] == ["lead_error"]
     assert found.unique
-    return slow.calls
+    return len(calls)
 
 
-def test_effects_on_results_cost_no_call_of_a_slow_model_however_many_pairs_there_are(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """What acts after the model needs it for the rows alone, whatever the size of the effect.
+def test_effects_on_results_cost_no_call_of_a_slow_model_however_many_pairs_there_are(tmp_path: Path) -> None:
+    """What acts after the model needs it for the rows alone, whatever the size of the effect: of 21 pairs none.
 
     Of an effect that was not fitted the model is asked twice whether it fails with it.
     """
     none, six = (calls_of(tmp_path, extra, {}) for extra in (0, 6))
     assert none == 1
     assert six <= 1 + 2 * 6
-    monkeypatch.setattr(competition, "_pairs", lambda made: None)
-    assert calls_of(tmp_path, 6, {}) == six
 
 
 def test_where_inputs_have_tolerances_a_further_effect_costs_a_few_calls(tmp_path: Path) -> None:

@@ -569,12 +569,8 @@ Columns = Mapping[str, NDArray[np.float64]]
 HEATED = '[effects.link_heating]\nexpansion = "11 um/(m*K)"\n'
 
 
-def offer_of_model(model: Model[Any, Any]) -> Offer:
-    return Offer(model.name, model, Origin(model.name, "", "", "", f"module:{model.name}"))
-
-
 def read_columns(folder: Path, model: Model[Any, Any], columns: Columns, text: str = "[inputs]\n") -> Records:
-    path, offer = folder / "a.csv", offer_of_model(model)
+    path, offer = folder / "a.csv", offer_of(model)
     rows = zip(*(values.tolist() for values in columns.values()), strict=True)
     lines = [",".join(columns), *(",".join(map(repr, row)) for row in rows)]
     path.write_text("\n".join(lines) + "\n")
@@ -594,40 +590,64 @@ def unit_errors(records: Records) -> list[tuple[str, float]]:
     return [(unit_error.column, unit_error.factor) for unit_error in records.unit_errors]
 
 
-ANGLE, HEIGHT = "crank_angle [deg]", "slider_position [mm]"
+ANGLE, HEIGHT, TILT = "crank_angle [deg]", "slider_position [mm]", "slider_tilt [urad]"
+WARMTH = "link_temperature [degC]"
+
+
+FORCE = np.linspace(5, 900, ROWS)
+WILD = 1e7 * (np.arange(ROWS) % 11 == 0)
+FAR_OFF = 9e9 * (np.arange(ROWS) % 15 == 0)
 
 
 @pytest.mark.parametrize(
-    ("angle", "height", "scale", "expected"),
+    ("made", "expected", "words"),
     [
-        (ANGLE, HEIGHT, (1, 1), []),
-        (ANGLE, "slider_position [m]", (1, 1), [("slider_position", 1e-3)]),
-        (ANGLE, "slider_position [um]", (1, 1), [("slider_position", 1e3)]),
-        (ANGLE, HEIGHT, (1, 1e-6), [("slider_position", 1e6)]),
-        (ANGLE, HEIGHT, (1, 1e6), [("slider_position", 1e-6)]),
-        (ANGLE, HEIGHT, (1, 1 / 25.4), [("slider_position", 25.4)]),
-        (ANGLE, "slider_position [in]", (1, 1), [("slider_position", 1 / 25.4)]),
-        ("crank_angle [rad]", HEIGHT, (1, 1), [("crank_angle", math.pi / 180)]),
-        (ANGLE, HEIGHT, (math.pi / 180, 1), [("crank_angle", 180 / math.pi)]),
-        (ANGLE, HEIGHT, (1e-3, 1), [("crank_angle", 1e3)]),
+        (lambda angle, height: {ANGLE: angle, HEIGHT: height}, {}, ""),
+        (lambda angle, height: {ANGLE: angle, "slider_position [m]": height}, {"slider_position": 1e-3}, ""),
+        (lambda angle, height: {ANGLE: angle, "slider_position [um]": height}, {"slider_position": 1e3}, ""),
+        (lambda angle, height: {ANGLE: angle, HEIGHT: height * 1e-6}, {"slider_position": 1e6}, ""),
+        (lambda angle, height: {ANGLE: angle, HEIGHT: height * 1e6}, {"slider_position": 1e-6}, ""),
+        (lambda angle, height: {ANGLE: angle, HEIGHT: height / 25.4}, {"slider_position": 25.4}, ""),
+        (lambda angle, height: {ANGLE: angle, "slider_position [in]": height}, {"slider_position": 1 / 25.4}, ""),
+        (
+            lambda angle, height: {"crank_angle [rad]": angle, HEIGHT: height}, {"crank_angle": math.pi / 180},
+            "'crank_angle [rad]' is probably wrong: multiply it by pi/180 (degrees, not radians)",
+        ),
+        (lambda angle, height: {ANGLE: np.radians(angle), HEIGHT: height}, {"crank_angle": 180 / math.pi}, ""),
+        (
+            lambda angle, height: {ANGLE: angle * 1e-3, HEIGHT: height}, {"crank_angle": 1e3},
+            "mm off 'slider_position' instead of",
+        ),
+        # a gauge that was set to zero somewhere
+        (lambda angle, height: {ANGLE: angle, HEIGHT: height - height.mean()}, {}, ""),
+        (
+            lambda angle, height: {ANGLE: angle, "slider_position [um]": height - height.mean()},
+            {"slider_position": 1e3}, "about its middle",
+        ),
+        # what is merely wrong: an offset, a tilt where the drawing has none, wild readings
+        (lambda angle, height: {ANGLE: angle, HEIGHT: height + WILD + 5, TILT: 3000 + 0.1 * angle}, {}, ""),
+        (lambda angle, height: {ANGLE: angle, HEIGHT: height + WILD + 300, TILT: 3000 + 0.1 * angle}, {}, ""),
+        (lambda angle, height: {ANGLE: angle, "slider_position [m]": height + FAR_OFF}, {"slider_position": 1e-3}, ""),
+        # the forming force can be set from -200 to 2000 kN; newtons under kilonewtons lie far outside
+        (lambda angle, height: {ANGLE: angle, HEIGHT: height, "forming_force [kN]": FORCE}, {}, ""),
+        (
+            lambda angle, height: {ANGLE: angle, HEIGHT: height, "forming_force [kN]": FORCE * 1e3},
+            {"forming_force": 1e-3}, "it can be set from -200 to 2000 kN",
+        ),
+        # beyond its range and with an effect on, yet a thousand times 20 degrees is no other unit of the same
+        (lambda angle, height: {ANGLE: angle, HEIGHT: height, WARMTH: np.full(ROWS, 2e4)}, {}, ""),
     ],
-)
+)  # fmt: skip
 def test_slips_of_a_press(
-    tmp_path: Path, angle: str, height: str, scale: tuple[float, float], expected: list[tuple[str, float]]
+    tmp_path: Path, made: Callable[..., Columns], expected: Mapping[str, float], words: str
 ) -> None:
-    _, angles, heights = strokes_of_a_press()
-    found = unit_errors(read_columns(tmp_path, PRESS, {angle: angles * scale[0], height: heights * scale[1]}))
-    assert [name for name, _ in found] == [name for name, _ in expected]
-    np.testing.assert_allclose([factor for _, factor in found], [factor for _, factor in expected], rtol=1e-12)
-
-
-def test_a_slip_is_named_in_words_and_nothing_is_changed(tmp_path: Path) -> None:
-    _, angles, heights = strokes_of_a_press()
-    records = read_columns(tmp_path, PRESS, {"crank_angle [rad]": angles, HEIGHT: heights})
-    np.testing.assert_allclose(records.rows.columns["crank_angle"], angles)
-    (unit_error,) = records.unit_errors
-    assert "'crank_angle [rad]' is probably wrong: multiply it by pi/180 (degrees, not radians)" in unit_error.text
-    assert "mm off 'slider_position' instead of" in unit_error.text
+    """They are named in words, and nothing is changed."""
+    columns = made(*strokes_of_a_press()[1:])
+    records = read_columns(tmp_path, PRESS, columns, HEATED if WARMTH in columns else "[inputs]\n")
+    assert dict(unit_errors(records)) == pytest.approx(expected, rel=1e-12)
+    assert all(words in unit_error.text for unit_error in records.unit_errors)
+    if ANGLE in columns:
+        np.testing.assert_allclose(records.rows.columns["crank_angle"], np.radians(columns[ANGLE]), rtol=1e-12)
 
 
 def test_a_sweep_in_degrees_under_radians_is_not_joined(tmp_path: Path) -> None:
@@ -639,44 +659,6 @@ def test_a_sweep_in_degrees_under_radians_is_not_joined(tmp_path: Path) -> None:
     records = read_columns(tmp_path, PRESS, {"crank_angle [rad]": angles, HEIGHT: heights})
     np.testing.assert_allclose(records.rows.columns["crank_angle"], angles)
     assert unit_errors(records) == [("crank_angle", pytest.approx(math.pi / 180))]
-
-
-def test_a_gauge_that_was_set_to_zero_somewhere(tmp_path: Path) -> None:
-    _, angles, heights = strokes_of_a_press()
-    zeroed = heights - heights.mean()
-    assert not read_columns(tmp_path, PRESS, {ANGLE: angles, HEIGHT: zeroed}).unit_errors
-    (unit_error,) = read_columns(tmp_path, PRESS, {ANGLE: angles, "slider_position [um]": zeroed}).unit_errors
-    assert (unit_error.column, unit_error.factor) == ("slider_position", 1e3)
-    assert "about its middle" in unit_error.text
-
-
-@pytest.mark.parametrize("off", [5.0, 300.0])
-def test_what_is_merely_wrong_is_no_slip(tmp_path: Path, off: float) -> None:
-    """A large offset, a tilt where the drawing has none, wild readings."""
-    rng = np.random.default_rng(3)
-    _, angles, heights = strokes_of_a_press()
-    heights[::11] += 1e7
-    columns = {ANGLE: angles, HEIGHT: heights + off, "slider_tilt [urad]": 3000 + rng.normal(0, 50, ROWS)}
-    assert not read_columns(tmp_path, PRESS, columns).unit_errors
-
-
-def test_wild_readings_hide_no_slip(tmp_path: Path) -> None:
-    _, angles, heights = strokes_of_a_press()
-    heights[::15] = 9e9
-    assert unit_errors(read_columns(tmp_path, PRESS, {ANGLE: angles, "slider_position [m]": heights})) == [
-        ("slider_position", 1e-3)
-    ]
-
-
-def test_a_condition_beyond_its_range(tmp_path: Path) -> None:
-    """The forming force can be set from -200 to 2000 kN; newtons under kilonewtons lie far outside."""
-    _, angles, heights = strokes_of_a_press()
-    force = np.linspace(5, 900, ROWS)
-    columns = {ANGLE: angles, HEIGHT: heights}
-    assert not read_columns(tmp_path, PRESS, {**columns, "forming_force [kN]": force}).unit_errors
-    records = read_columns(tmp_path, PRESS, {**columns, "forming_force [kN]": force * 1e3})
-    assert unit_errors(records) == [("forming_force", 1e-3)]
-    assert "it can be set from -200 to 2000 kN" in records.unit_errors[0].text
 
 
 def pins() -> dict[str, NDArray[np.float64]]:
@@ -705,10 +687,3 @@ def test_one_slip_that_explains_two_results_is_that_of_the_input(
     tmp_path: Path, old: str, new: str, expected: list[tuple[str, float]]
 ) -> None:
     assert unit_errors(read_columns(tmp_path, PIN_WEAR, renamed(pins(), old, new))) == expected
-
-
-def test_a_temperature_level_has_no_factor(tmp_path: Path) -> None:
-    """Beyond its range and with an effect on, yet a thousand times 20 degrees is no other unit of the same."""
-    _, angles, heights = strokes_of_a_press()
-    columns = {ANGLE: angles, HEIGHT: heights, "link_temperature [degC]": np.full(ROWS, 2e4)}
-    assert not read_columns(tmp_path, PRESS, columns, HEATED).unit_errors

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from diagnosis_models import UM, Array, Asked, drive_model, gauge, wander, white_noise, wide
+from diagnosis_models import TOLERANCES, UM, Array, Asked, drive_model, gauge, wander, white_noise, wide
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.linalg import block_diag, solve_triangular, toeplitz
 from scipy.optimize import approx_fprime, minimize_scalar
@@ -24,7 +24,6 @@ from truing.diagnosis.noise import (
     Autocorrelation,
     SpreadTrend,
     Tails,
-    clipped,
     colour,
     robust_sd,
     spread_of,
@@ -109,16 +108,6 @@ def test_tails_are_recovered_from_two_thousand_innovations(freedom: float, expec
     assert ("heavy" in found.words) == (found.freedom < inf)
 
 
-def test_what_is_clipped_lies_beyond_the_limit() -> None:
-    values = innovations(3.0, 5)
-    found = tails_of(values)
-    sd = robust_sd(values)
-    kept = clipped(values, found)
-    assert np.abs(kept).max() <= found.limit * sd * (1 + 1e-12)
-    inside = np.abs(values) <= found.limit * sd
-    assert_array_equal(kept[inside], values[inside])
-
-
 def test_the_robust_deviation_is_that_of_a_normal_law_and_ignores_spikes() -> None:
     values = np.random.default_rng(7).normal(2.0, 0.3, 20_000)
     assert_allclose(robust_sd(values), 0.3, rtol=0.03)
@@ -193,7 +182,6 @@ def test_weights_undo_the_spread_they_were_learnt_from() -> None:
 
 # The rows as a fit sees them: their noise, its memory and tails, how many count, and what the inputs draw.
 
-TOLERANCES = {"contact": "3 %", "shaft": "3 %"}
 BENCH = wide(150, seed=31)
 
 
@@ -202,7 +190,7 @@ def machine(
 ) -> Calibration:
     """A record of BENCH with an error in um."""
     one = Asked(drive_model((), tolerances))
-    columns = BENCH.columns(gauge(BENCH.load, BENCH.travel) + error)
+    columns = BENCH.shown(error)
     return calibration_of(one.setup, one.records(folder, columns, runs))
 
 
@@ -233,7 +221,7 @@ def test_what_is_left_is_measured_minus_predicted_in_units_of_the_noise(tmp_path
     weights = np.linspace(0.5, 2, 150)
     made = sample(there, scale=0.4 * UM, weights=weights)
     assert_allclose(made.left(there.base), noise() * weights / 0.4, atol=1e-6)
-    contact = 0.09 * np.sign(BENCH.load) * np.cbrt(BENCH.load) ** 2
+    contact = 0.09 * BENCH.contact
     shaft = 0.015 * BENCH.load * BENCH.travel / 150
     slopes = np.column_stack([contact, shaft]) * (weights / 0.4)[:, None]
     assert_allclose(made.drawn @ made.drawn.T, slopes @ slopes.T, rtol=1e-6, atol=1e-6)  # whatever the directions

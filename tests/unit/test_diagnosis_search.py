@@ -68,12 +68,10 @@ LINE = (BENCH.travel - 150) / 150
 WAVE = 2 * np.pi * 9 * np.arange(ROWS) / ROWS
 
 
-def competing(folder: Path, error: Array) -> Competition:
-    """The effects of a drive on a record of BENCH with an error (um) and noise of 1 um; nothing searched."""
-    one = Asked(drive_model(tolerances={}))
-    return plain_competition(
-        one, one.records(folder, BENCH.columns(gauge(BENCH.load, BENCH.travel) + error + NOISE)), UM
-    )
+def competing(folder: Path, error: Array, bench: Bench = BENCH, seed: int = 51) -> Competition:
+    """The effects of a drive on a record with an error (um) and noise of 1 um; nothing searched."""
+    noise = np.random.default_rng(seed).normal(0, 1, len(bench))
+    return Asked(drive_model(tolerances={})).competing(folder, bench.shown(error + noise))
 
 
 def shape_of(made: Competition, tag: str) -> Candidate:
@@ -238,7 +236,7 @@ def test_a_further_wave_must_carry_over_to_the_ends_of_the_record(
 
 def test_the_ends_are_the_first_and_the_last_quarter_of_every_run(tmp_path: Path) -> None:
     one = Asked(drive_model(tolerances={}))
-    columns = BENCH.columns(gauge(BENCH.load, BENCH.travel))
+    columns = BENCH.shown()
     records = one.records(tmp_path, columns, ["a"] * 40 + ["b"] * 110)
     ends = ends_of(plain_competition(one, records, UM).sample).block_of
     edges = [0, 10, 30, 40, 67, 123, 150]
@@ -273,12 +271,12 @@ def test_the_order_of_a_file_without_an_order_leaves_the_folds_as_they_are(tmp_p
     order = np.random.default_rng(9).permutation(ROWS)
     marked = []
     for place, rows in enumerate((np.arange(ROWS), order)):
-        columns = BENCH.columns(gauge(BENCH.load, BENCH.travel) + NOISE)
+        columns = BENCH.shown(NOISE)
         columns = {name: values[rows] for name, values in columns.items() if name != "time"}
         folder = tmp_path / str(place)
         folder.mkdir()
         one = Asked(drive_model(tolerances={}))
-        made = plain_competition(one, one.records(folder, columns), UM)
+        made = one.competing(folder, columns)
         folds = folds_of(made.sample)
         marked.append({float(columns["travel"][row]): int(folds.block_of[row]) % folds.count for row in range(ROWS)})
     assert marked[0] == marked[1]
@@ -287,56 +285,22 @@ def test_the_order_of_a_file_without_an_order_leaves_the_folds_as_they_are(tmp_p
 
 # What is not excluded beside the winner: scores of exact fits, and when their difference decides.
 
-FEW_ROWS = 90
-PLAIN = Asked(drive_model(tolerances={}))
-
-
-def gauge_competing(folder: Path, error: Array, asked: Asked = PLAIN, *, load: Array | None = None) -> Competition:
-    """All causes of a gauge that is off by this much (um), with noise of 1 um; only the model as it is is fitted."""
-    bench = wide(FEW_ROWS, seed=21)
-    bench = bench if load is None else replace(bench, load=load)
-    noise = np.random.default_rng(3).normal(0, 1, FEW_ROWS)
-    columns = bench.columns(gauge(bench.load, bench.travel) + error + noise)
-    return plain_competition(asked, asked.records(folder, columns), UM)
+FEW = wide(90, seed=21)
 
 
 def searched(folder: Path, error: Array) -> Competition:
     """Every single effect that promises anything, fitted."""
-    made = gauge_competing(folder, error)
+    made = competing(folder, error, FEW, 3)
     made.forward(made.null, len(made.causes), lambda cause: cause.effect is not None)
     return made
 
 
-@pytest.mark.parametrize(("name", "curve"), [("lead_error", "travel"), ("clearance", "sign")])
-def test_the_score_of_a_cause_that_acts_in_proportion_is_worked_out_by_hand(
-    tmp_path: Path, name: str, curve: str
-) -> None:
-    """n ln(mean square) left, ln n for its number, 2 ln N for the choice of one of N causes."""
-    bench = wide(FEW_ROWS, seed=21)
-    error = 0.03 * bench.travel + 2 * np.sign(bench.load)
-    made = gauge_competing(tmp_path, error)
-    values = error + np.random.default_rng(3).normal(0, 1, FEW_ROWS)
-    column = {"travel": bench.travel, "sign": np.sign(bench.load)}[curve]
-    left = values - column * (column @ values) / (column @ column)
-    expected = FEW_ROWS * np.log(np.mean(left**2)) + np.log(FEW_ROWS) + 2 * np.log(len(made.causes))
-    assert_allclose(made.score(fit_of(made, name)), expected, rtol=0, atol=1e-3)
-    assert_allclose(made.score(made.null), FEW_ROWS * np.log(np.mean(values**2)), rtol=1e-9)
-    both = fit_of(made, "lead_error", "clearance")
-    design = np.column_stack([bench.travel, np.sign(bench.load)])
-    rest = values - design @ np.linalg.lstsq(design, values)[0]
-    chosen = 2 * np.log(comb(len(made.causes), 2))
-    assert_allclose(
-        made.score(both), FEW_ROWS * np.log(np.mean(rest**2)) + 2 * np.log(FEW_ROWS) + chosen, rtol=0, atol=1e-3
-    )
-
-
 def test_a_number_at_its_bound_costs_as_much_as_a_sign_of_a_wrong_cause(tmp_path: Path) -> None:
     """700 um of a clearance where 500 were declared: score and cost differ by the price and one margin."""
-    bench = wide(FEW_ROWS, seed=21)
-    made = gauge_competing(tmp_path, 700 * np.sign(bench.load))
+    made = competing(tmp_path, 700 * np.sign(FEW.load), FEW, 3)
     found = fit_of(made, "clearance")
-    left = 200 * np.sign(bench.load) + np.random.default_rng(3).normal(0, 1, FEW_ROWS)
-    expected = FEW_ROWS * np.log(np.mean(left**2)) + np.log(FEW_ROWS) + 2 * np.log(len(made.causes)) + MARGIN
+    left = 200 * np.sign(FEW.load) + np.random.default_rng(3).normal(0, 1, len(FEW))
+    expected = len(FEW) * np.log(np.mean(left**2)) + np.log(len(FEW)) + 2 * np.log(len(made.causes)) + MARGIN
     assert_allclose(made.score(found), expected, rtol=0, atol=1e-3)
 
 
@@ -351,7 +315,7 @@ def test_where_what_is_left_is_noise_a_difference_d_is_unsure_by_two_roots_of_d(
     """
     bench = wide(4000, seed=21)
     asked = Asked(drive_model(("clearance",), {}))
-    made = plain_competition(asked, asked.records(tmp_path, bench.columns(gauge(bench.load, bench.travel))), UM)
+    made = asked.competing(tmp_path, bench.shown())
     noise = {name: replace(own, memory=Autocorrelation(rho)) for name, own in made.sample.noise.items()}
     sample = sample_of(made.sample.machine, noise, made.sample.mask)
     curve = np.sin(np.arange(4000) / 50)
@@ -364,32 +328,20 @@ def test_where_what_is_left_is_noise_a_difference_d_is_unsure_by_two_roots_of_d(
     assert SURE * 2 * np.sqrt(CLOSE) == pytest.approx(CLOSE)
 
 
-# What may as well be zero
-
-
 # Vaguer words
-
-
-def shaped(made: Competition, tag: str) -> Fit:
-    """One shape that nobody registered, fitted."""
-    (cause,) = (each for each in made.causes if each.tag == f"unknown:{tag}:deflection")
-    *_, found = made.fit_each(beside(made.null, cause, made.look(made.null, [cause])[cause.tag].starts))
-    assert found is not None
-    return found
 
 
 def test_a_shape_is_vaguer_that_draws_98_percent_of_what_the_winner_has(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A parabola holds a line and no jump of the same covariate; how much of the jump it draws is a projection."""
-    bench = wide(FEW_ROWS, seed=21)
-    made = gauge_competing(tmp_path, 0.05 * bench.travel + 5 * np.sign(bench.load))
+    made = competing(tmp_path, 0.05 * FEW.travel + 5 * np.sign(FEW.load), FEW, 3)
     lead, jump = fit_of(made, "lead_error"), fit_of(made, "clearance")
-    travel, load = shaped(made, "trend.3:travel"), shaped(made, "trend.3:load")
+    travel, load = shape(made, "trend.3:travel"), shape(made, "trend.3:load")
     assert _is_vaguer(made, lead, travel)
     assert not _is_vaguer(made, lead, load)
     assert not _is_vaguer(made, jump, load)
-    sign, powers = np.sign(bench.load), np.column_stack([bench.load**power for power in range(3)])
+    sign, powers = np.sign(FEW.load), np.column_stack([FEW.load**power for power in range(3)])
     rest = sign - powers @ np.linalg.lstsq(powers, sign)[0]
     share = 1 - float(rest @ rest / (sign @ sign))
     assert share < TWIN
@@ -424,8 +376,7 @@ def named_competing(
     """These causes alone on a record of WARMING with an error (um) and noise of 1 um, in white noise."""
     own = [name for name in names if not name.startswith(("sensor", "input", "unknown", "step"))]
     one = Asked(drive_model(own, {"contact": "3 %", "shaft": "3 %"} if tolerated else {}))
-    records = one.records(folder, WARMING.columns(gauge(WARMING.load, WARMING.travel) + error + WARMING_NOISE))
-    made = plain_competition(one, records, UM)
+    made = one.competing(folder, WARMING.shown(error + WARMING_NOISE))
     made.causes = tuple(cause for cause in made.causes if cause.name in names)
     return made
 
@@ -437,7 +388,7 @@ def named_competing(
 def test_an_effect_without_which_much_is_lost_stays_although_its_interval_holds_zero(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, worth: float, stays: bool
 ) -> None:
-    made = gauge_competing(tmp_path, 0.05 * wide(FEW_ROWS, seed=21).travel + 1)
+    made = competing(tmp_path, 0.05 * FEW.travel + 1, FEW, 3)
     best = fit_of(made, "lead_error", "sensor_offset")
     scores = {best.key: 0.0, best.key - {best.causes[1].tag}: worth, best.key - {best.causes[0].tag}: 1e3}
     monkeypatch.setattr(made, "score", lambda found: scores.get(found.key, 2e3))
@@ -454,8 +405,7 @@ def test_one_more_cause_may_be_there_where_chance_seldom_gives_as_much(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, above: float, carried: float, is_told: bool
 ) -> None:
     """``above`` is the share of simulated searches that gain more from noise."""
-    bench = wide(FEW_ROWS, seed=21)
-    made = searched(tmp_path, 0.012 * bench.travel)
+    made = searched(tmp_path, 0.012 * FEW.travel)
     best, more = fit_of(made, "lead_error"), fit_of(made, "lead_error", "wear")
     gain = made.score(best) - made.score(more)
     simulated = gain + np.where(np.arange(100) < 100 * above, 1.0, -1.0)
@@ -470,8 +420,7 @@ def test_what_explains_as_much_in_the_place_of_the_winner_is_not_told_beside_it(
 ) -> None:
     monkeypatch.setattr(choice, "law_of", lambda *_, seed: Law(np.full(100, -1e9), 0.01))
     monkeypatch.setattr(choice, "carries_over", lambda *_: 9.0)
-    bench = wide(FEW_ROWS, seed=21)
-    made = searched(tmp_path, 0.012 * bench.travel + 1.6 * np.sign(bench.load))
+    made = searched(tmp_path, 0.012 * FEW.travel + 1.6 * np.sign(FEW.load))
     best, _, both = (fit_of(made, *names) for names in (["lead_error"], ["clearance"], ["lead_error", "clearance"]))
     assert both.key in {rival.fit.key for rival in _rivals(made, best, 1)}
     monkeypatch.setattr(choice, "CLOSE", 1e6)
@@ -483,16 +432,9 @@ def test_of_shapes_that_say_the_same_the_one_stands_that_leaves_a_name_most(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A parabola over the travel takes a lead, a wave over it does not; both draw what was hidden beside it."""
-    bench = wide(FEW_ROWS, seed=21)
-    made = searched(tmp_path, 0.02 * bench.travel + 3 * np.sin(bench.travel / 40))
+    made = searched(tmp_path, 0.02 * FEW.travel + 3 * np.sin(FEW.travel / 40))
     lead = fit_of(made, "lead_error")
-    both = {}
-    for cause in made.causes:
-        if cause.tag in {"unknown:trend.3:travel:deflection", "unknown:wave:travel:deflection"}:
-            *_, joined = made.fit_each(beside(lead, cause, made.look(lead, [cause])[cause.tag].starts))
-            assert joined is not None
-            assert cause.shape is not None
-            both[cause.shape.kind] = joined
+    both = {kind: shape(made, f"{tag}:travel", at=lead) for kind, tag in (("trend", "trend.3"), ("wave", "wave"))}
     assert choice._worth_of_names(made, both["wave"]) > choice._worth_of_names(made, both["trend"])
     near = {found.key: 0.0 for found in both.values()}
     score = made.score
@@ -505,7 +447,7 @@ def test_of_shapes_that_say_the_same_the_one_stands_that_leaves_a_name_most(
 def test_a_rival_stays_open_where_the_rows_contradict_one_another(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    made = searched(tmp_path, 0.012 * wide(FEW_ROWS, seed=21).travel)
+    made = searched(tmp_path, 0.012 * FEW.travel)
     best = fit_of(made, "lead_error")
     behind = sorted(made.score(found) - made.score(best) for found in made.ranked(lambda each: len(each.causes) == 1))
     assert behind[0] == 0
@@ -596,7 +538,7 @@ def test_an_input_far_outside_of_its_tolerance_is_a_sign_unless_it_is_the_cause(
     """The contact gives way 30 % more, ten standard deviations: the prior alone holds it where it is calibrated."""
     error = gauge(WARMING.load, WARMING.travel, 3.9) - gauge(WARMING.load, WARMING.travel)
     made = named_competing(tmp_path, error, ["input:contact", "input:shaft"], tolerated=True)
-    cube = np.sign(WARMING.load) * np.cbrt(WARMING.load) ** 2
+    cube = WARMING.contact
     slopes, weight, moved = (
         np.column_stack([0.09 * cube, 0.015 * WARMING.load * WARMING.travel / 150]),
         1.0,

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from diagnosis_models import Array, Asked, assert_sized, ends, plain_competition
+from diagnosis_models import Array, Asked, assert_sized, ends
 
 from truing import (
     Condition,
@@ -30,8 +30,7 @@ from truing import (
     results,
 )
 from truing.diagnosis import exact
-from truing.diagnosis.causes import Candidate, effects_of
-from truing.diagnosis.competition import Competition
+from truing.diagnosis.causes import effects_of
 from truing.diagnosis.engine import diagnose
 from truing.diagnosis.exact import EXACTLY, alone, fitting
 from truing.diagnosis.extended import Extended
@@ -130,12 +129,14 @@ def named(answer: DiagnosisResult) -> set[str]:
     return {cause.effect, *cause.same_as}
 
 
-@pytest.mark.parametrize("truth", ["tilted", "ahead"])
-@pytest.mark.parametrize("most_kept", [exact.MOST_KEPT, -1], ids=["", "too long to keep what inputs draw"])
+@pytest.mark.parametrize(("truth", "most_kept"), [("tilted", exact.MOST_KEPT), ("ahead", -1)])
 def test_small_ones_are_one_cause_and_small_forces_would_part_them(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, truth: str, most_kept: int
 ) -> None:
-    """Under 4 N and more a tilt of 1 N adds 1 MPa at any force, as a lead of 1 N does and an offset of the gauge."""
+    """Under 4 N and more a tilt of 1 N adds 1 MPa at any force, as a lead of 1 N does and an offset of the gauge.
+
+    Of a record that is too long what inputs draw is not kept, and calculated anew.
+    """
     monkeypatch.setattr(exact, "MOST_KEPT", most_kept)
     answer = asked(tmp_path, truth, 1.0, low=4.0)
     assert {"tilted", "ahead"} <= named(answer)
@@ -279,52 +280,6 @@ def test_a_cause_far_below_the_smallest_size_looked_at_is_fitted(tmp_path: Path)
 def test_a_film_that_is_not_there_is_not_found(tmp_path: Path) -> None:
     answer = bearing_asked().diagnosed(tmp_path, record())
     assert (answer.causes, answer.remainder) == ((), None)
-
-
-def laid_out(folder: Path, film: float = 0.0) -> tuple[dict[str, Candidate], Competition, Array, Array]:
-    """The effects by name, what competes, and path and speed of every row, SI."""
-    records = bearing_asked().records(folder, record(film))
-    made = plain_competition(bearing_asked(), records, 1e-6)
-    path, speed = (np.asarray(records.rows.columns[name], dtype=float) for name in ("path", "speed"))
-    return (
-        {cause.name: cause for cause in made.causes if cause.is_registered and not cause.is_kernel},
-        made,
-        path,
-        speed,
-    )
-
-
-def test_curves_of_what_bends_are_those_of_the_model_at_sizes_up_to_the_bound(tmp_path: Path) -> None:
-    """Of what goes in proportion there is one, per unit of its amplitude: a share takes the path away, 1 um per km."""
-    causes, made, path, speed = laid_out(tmp_path)
-    plain = worn(path / 1e3, speed, 0.0, 0.0)
-    film, growth, share = (made.curves.of(causes[name], made.null) for name in ("filmed", "hastened", "slowed"))
-    assert (film.is_straight, growth.is_straight, share.is_straight) == (False, False, True)
-    films = [worn(path / 1e3, speed, size, 0.0) for size in film.points[:, 0]]
-    growths = [worn(path / 1e3, speed, 0.0, size * 1e3) for size in growth.points[:, 0]]
-    for bundle, bent in ((film, films), (growth, growths), (share, [0.0 * plain])):
-        np.testing.assert_allclose(bundle.curves[:, 0], 1e-6 * (np.array(bent) - plain), rtol=1e-9, atol=1e-15)
-    assert film.points.max() == pytest.approx(20.0)
-    assert growth.points.max() == pytest.approx(0.5e-3)
-    assert np.sum(film.points * speed.max() > FIRST_FELT) >= 2  # below nothing is felt: a fit cannot begin there
-
-
-def test_a_fit_of_a_film_begins_with_a_size_at_which_it_is_felt(tmp_path: Path) -> None:
-    """Of the sizes bearing_asked for, each stretched as a line: the best by plain least squares is the first start."""
-    causes, made, *_ = laid_out(tmp_path, film=8.0)
-    null = made.null
-    starts = made.look(null, list(causes.values()))["filmed"].starts
-    bundle = made.curves.of(causes["filmed"], null)
-    left = null.left * null.sample.channels[0].scale
-    drawn = bundle.curves[:, 0]
-    inner, square = drawn @ left, np.maximum(np.sum(drawn**2, axis=1), 1e-300)
-    stretched = np.clip(inner / square, 0.5, 2.0)
-    gain = 2 * stretched * inner - stretched**2 * square
-    best = int(np.argmax(gain))
-    (worth, (size,)) = starts[0]
-    assert size == pytest.approx(min(bundle.points[best, 0] * stretched[best], 20.0), rel=1e-6)
-    rows = null.sample.rows
-    assert worth == pytest.approx(-rows * np.log(1 - gain[best] / (left @ left)), rel=1e-6)
 
 
 # A model that cannot go everywhere: a start beyond what is feasible is moved inside, and what fails is named.

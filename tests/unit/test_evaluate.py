@@ -482,126 +482,86 @@ def test_alone_and_in_a_batch_numbers_behave_alike() -> None:
     assert evaluate_rows(setup, {"extra": np.array([0.0, 1.0])}, 2).reasons == {0: "the result 'hold' is not finite"}
 
 
-# What importing costs
-
-
 # Rows that come again and again cost the model one call, whatever acts after it; answers are those of all rows.
 
 ROWS, COPIES = 5, 4
+FORCES = np.array([-1.0, 10.0, 20.0, 30.0, 2000.0])
+"""Without a force there is no torque; the last breaks the lever."""
 
 
-@inputs
-class Beam:
-    """A beam under a load."""
-
-    load: Float = given(1.0, "N")
-    length: Float = given(2.0, "m", at_most=10.0)
-    spare: Float = given(float("nan"), "m")
-
-
-@results
-class Bent:
-    """How far it bends."""
-
-    sag: Float = found("m")
-    slope: Float = found("m")
-
-
-def bend(beam: Beam) -> Bent:
-    CALLS.append(np.size(beam.load))
-    feasible(beam.load < 4.5, "too much load")
-    feasible(beam.load < 3.5, "no slope under such a load", only=["slope"])
-    return Bent(sag=beam.load * beam.length**3, slope=beam.load * beam.length**2)
-
-
-def offset(beam: Beam, bent: Bent, *, size: Float) -> Bent:
-    return replace(bent, sag=bent.sag + size)
-
-
-def softer(beam: Beam, *, share: Float) -> Beam:
-    return replace(beam, load=beam.load * (1 + share))
-
-
-BENDING = Model(
-    name="bending",
-    title="Bending of a beam",
-    function=bend,
-    errors=[
-        Effect("offset", on_results=offset, unknowns=[Unknown("size", -1, 1, "m")], looks_like="a constant"),
-        Effect("softer", on_inputs=softer, unknowns=[Unknown("share", 0, 1)], looks_like="a larger load"),
-    ],
-)
-
-
-def asked(effect: str, unknown: str, values: Any, *, repeats: int) -> Any:
-    """The answers to rows that come in copies, each with another unknown."""
-    setup: Setup = default_setup(BENDING)
-    setup = setup.with_effects([SwitchedOn(BENDING.effects[effect], {unknown: 0.0})])
+def asked(active: SwitchedOn, values: Any, *, repeats: int, function: Any = swung) -> Any:
+    """The answers to rows that come in copies, each with another value of the one unknown."""
+    model = Model(name="lever", title="", function=function, errors=[active.effect])
+    rows_ = ROWS * COPIES
     columns = {
-        "load": np.tile(np.arange(1.0, ROWS + 1), COPIES),
-        "spare": np.full(ROWS * COPIES, np.nan),
-        effect_column(effect, unknown): np.repeat(values, ROWS),
+        "force": np.tile(FORCES, COPIES),
+        "measured": np.full(rows_, np.nan),
+        effect_column(active.effect.name, *active.values): np.repeat(values, ROWS),
     }
     CALLS.clear()
-    return evaluate_rows(setup, columns, ROWS * COPIES, repeats=repeats)
+    return evaluate_rows(default_setup(model).with_effects([active]), columns, rows_, repeats=repeats)
+
+
+SHARED = Model(name="lever", title="", function=swung)
+RUBS, PUSHES = SwitchedOn(RUBBING, {"rub": 0.0}), SwitchedOn(PUSHED, {"push": 0.0})
 
 
 def test_the_model_is_called_for_one_copy_where_effects_act_after_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(repeated, "_ANSWERS", OrderedDict())
-    sizes = np.array([0.0, 0.1, 0.2, 0.3])
-    answer = asked("offset", "size", sizes, repeats=COPIES)
+    rubs = np.array([0.0, 0.1, 0.2, 0.3])
+    answer = asked(RUBS, rubs, repeats=COPIES)
     assert CALLS == [ROWS]
-    sag = np.tile(8.0 * np.arange(1, 6), COPIES) + np.repeat(sizes, ROWS)
-    fails = np.tile([False] * 4 + [True], COPIES)
-    np.testing.assert_allclose(answer.results["sag"], np.where(fails, np.nan, sag))
-    np.testing.assert_array_equal(answer.failed, fails)
+    hold = np.tile(2 * FORCES, COPIES) + np.repeat(rubs, ROWS)
+    breaks = np.tile(FORCES > 1000, COPIES)
+    np.testing.assert_allclose(answer.results["hold"], np.where(breaks, np.nan, hold))
+    np.testing.assert_array_equal(answer.failed, breaks)
 
 
-def test_what_is_known_is_not_calculated_again() -> None:
-    asked("offset", "size", np.zeros(COPIES), repeats=COPIES)
-    asked("offset", "size", np.full(COPIES, 0.7), repeats=COPIES)
+def test_what_is_known_is_not_calculated_again_and_copies_that_differ_are_all_calculated() -> None:
+    model = replace(SHARED, errors=[RUBBING])
+    setup = default_setup(model).with_effects([RUBS])
+    columns = {"force": np.tile(FORCES, 2), "effects.rubbing.rub": np.repeat([0.0, 0.7], ROWS)}
+    for _ in range(2):
+        CALLS.clear()
+        evaluate_rows(setup, columns, ROWS * 2, repeats=2)
     assert CALLS == []
-
-
-@pytest.mark.parametrize(("effect", "unknown"), [("offset", "size"), ("softer", "share")])
-def test_answers_reasons_and_gaps_are_those_of_all_rows(effect: str, unknown: str) -> None:
-    values = np.array([0.0, 0.05, 0.1, 0.2])
-    together, plain = (asked(effect, unknown, values, repeats=count) for count in (COPIES, 0))
-    for name in ("sag", "slope"):
-        np.testing.assert_array_equal(together.results[name], plain.results[name])
-    assert together.reasons == plain.reasons
-    assert together.absent == plain.absent
-    assert plain.absent["slope"]
-
-
-def test_copies_that_differ_are_all_calculated() -> None:
-    asked("softer", "share", np.array([0.0, 0.05, 0.1, 0.2]), repeats=COPIES)
+    asked(PUSHES, np.array([0.0, 0.05, 0.1, 0.2]), repeats=COPIES)
     assert CALLS == [ROWS * COPIES]
 
 
-def heavy(beam: Beam) -> Bent:
-    return Bent(sag=beam.load, slope=beam.load)
+@pytest.mark.parametrize("active", [RUBS, PUSHES], ids=["after the model", "before it"])
+def test_answers_reasons_and_gaps_are_those_of_all_rows(active: SwitchedOn) -> None:
+    values = np.array([0.0, 0.05, 0.1, 0.2])
+    together, plain = (asked(active, values, repeats=count) for count in (COPIES, 0))
+    for name in ("hold", "torque"):
+        np.testing.assert_array_equal(together.results[name], plain.results[name])
+    assert (together.reasons, together.absent) == (plain.reasons, plain.absent)
+    assert plain.absent["torque"]
+
+
+def heavy(lever: Lever) -> Balance:
+    return Balance(hold=lever.force, torque=lever.force)
 
 
 def test_another_model_of_the_same_inputs_is_asked_itself() -> None:
-    load = {"load": np.tile(np.arange(1.0, 4.0), 2)}
-    for function, factor in ((bend, 8.0), (heavy, 1.0), (bend, 8.0)):
-        answer = evaluate_rows(default_setup(replace(BENDING, function=function)), load, 6, repeats=2)
-        np.testing.assert_allclose(answer.results["sag"], factor * load["load"])
+    for function, factor in ((swung, 2.0), (heavy, 1.0), (swung, 2.0)):
+        answer = asked(RUBS, np.zeros(COPIES), repeats=COPIES, function=function)
+        np.testing.assert_allclose(answer.results["hold"][:4], factor * FORCES[:4])
 
 
-def worn(beam: Beam, bent: Bent, *, size: Float) -> Bent:
-    sag: Any = bent.sag
-    sag += size  # in place, as a careless effect does
-    return bent
+def worn(lever: Lever, base: Balance, *, size: Float) -> Balance:
+    hold: Any = base.hold
+    hold += size  # in place, as a careless effect does
+    return base
 
 
 def test_an_effect_that_changes_an_array_in_place_changes_nothing_that_is_remembered() -> None:
-    effect = Effect("worn", on_results=worn, unknowns=[Unknown("size", -1, 1, "m")], looks_like="a constant")
-    setup = default_setup(replace(BENDING, errors=[effect])).with_effects([SwitchedOn(effect, {"size": 0.5})])
-    load = {"load": np.array([1.0, 2.0, 3.0])}
+    effect = Effect("worn", on_results=worn, unknowns=[Unknown("size", -1, 1, "N")], looks_like="a constant")
+    setup = default_setup(replace(SHARED, errors=[effect])).with_effects([SwitchedOn(effect, {"size": 0.5})])
+    force = {"force": np.array([10.0, 20.0, 30.0])}
     for _ in range(3):
-        np.testing.assert_allclose(evaluate_rows(setup, load, 3, repeats=1).results["sag"], 8.0 * load["load"] + 0.5)
+        answer = evaluate_rows(setup, force, 3, repeats=1)
+        np.testing.assert_allclose(answer.results["hold"], 2.0 * force["force"] + 0.5)
 
 
 def test_inputs_that_differ_are_told_apart() -> None:

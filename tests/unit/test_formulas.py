@@ -16,12 +16,9 @@ from truing.formulas.tree import children, source
 
 REFUSED = [
     ("", "is empty"),
-    ("   ", "is empty"),
     ("load /", "cannot be read"),
-    ("load area", "cannot be read"),
     ("load.area", "a dot between names"),
     ("load[0]", "an index in brackets"),
-    ("(lambda: 1)()", "a lambda"),
     ("lambda x: x", "a lambda"),
     ("[load]", "a list"),
     ("load, area", "a comma outside a function"),
@@ -33,7 +30,6 @@ REFUSED = [
     ("load # area", "character '#'"),
     ("__import__(load)", "no function '__import__'"),
     ("sine(load)", "did you mean sin"),
-    ("eval(load)", "no function 'eval'"),
     ("sin(*load)", "a star"),
     ("sin(x=load)", "keyword"),
     ("sin(load)(area)", "not allowed: 'sin(load)'".replace("(", r"\(").replace(")", r"\)")),
@@ -43,7 +39,6 @@ REFUSED = [
     ("atan2(load)", "atan2 takes 2 arguments, here it has 1"),
     ("hypot(load)", "hypot takes at least 2 arguments"),
     ("cases(load, area)", "an odd number, at least three"),
-    ("cases(load, load > 1, area, area > 1)", "an odd number"),
     ("cases(load, area, 3)", "needs a condition, such as x > 1"),
     ("cases(load > 1, load > 2, 3)", "a comparison outside"),
     ("cases(load, not load > 1, 3)", "needs a condition"),
@@ -53,16 +48,11 @@ REFUSED = [
     ("load + (area == 3)", "a comparison outside"),
     ("load and area", "and/or outside"),
     ("load % area", "an operator other than"),
-    ("load // area", "an operator other than"),
-    ("load @ area", "an operator other than"),
     ("load ^ area", "an operator other than"),
     ("+load", "an operator other than"),
-    ("~load", "an operator other than"),
     ("not load", "an operator other than"),
     ("1j", "not a real number"),
     ("True", "not a real number"),
-    ("None", "not a real number"),
-    ("...", "not a real number"),
     ("1e999", "not finite"),
     ("9" * 400, "not finite"),
     ("load\x00", "not allowed"),
@@ -180,6 +170,14 @@ def test_involute_against_the_printed_table(degrees: float, table: float) -> Non
     assert evaluate(parse("inv(angle * pi / 180)"), {"angle": degrees}) == pytest.approx(table, abs=5.1e-7)
 
 
+# Any handbook of statistics
+@pytest.mark.parametrize(
+    ("argument", "chance"), [(0, 0.5), (1, 0.8413), (1.645, 0.95), (1.96, 0.975), (2.576, 0.995), (-1, 0.1587)]
+)
+def test_the_normal_probability_against_the_printed_table(argument: float, chance: float) -> None:
+    assert evaluate(parse("Phi(x)"), {"x": argument}) == pytest.approx(chance, abs=5e-5)
+
+
 def test_whole_numbers_compute_like_real_ones() -> None:
     assert evaluate(parse("teeth**-1"), {"teeth": 2}) == 0.5
     assert evaluate(parse("teeth / 4"), {"teeth": np.int64(2)}) == 0.5
@@ -258,6 +256,9 @@ PROVEN = [
     ("sqrt(area)", "mm", math.sqrt(28)),
     ("area**0.5 * width**-1", "", math.sqrt(28) / 3),
     ("cbrt(area * width)", "mm", 84 ** (1 / 3)),
+    ("cbrt(-area * width)", "mm", -(84 ** (1 / 3))),
+    ("width**0.1 * width**0.2 + width**0.3", "mm^0.3", 2 * 3**0.3),
+    ("width * asin(share) + depth", "mm", 3 * math.asin(0.05) + 2e-3),
     ("area**(3 / 2)", "mm^3", 28**1.5),
     ("hypot(width, depth)", "mm", math.hypot(3, 2e-3)),
     ("sin(angle) * width", "mm", 3 * math.sin(math.radians(20))),
@@ -283,35 +284,37 @@ def test_quantities_prove_the_dimension(text: str, unit: str, expected: float) -
 
 
 UNLIKE = [
-    (
-        "load + area",
-        "'load [+] area': what is added .* but 'load' is a force and 'area' is an area",
-    ),
-    ("width - 2", "'width - 2': what is subtracted .* and '2' is a pure number"),
-    ("1 + width * (load - area)", "'load - area': what is subtracted"),
-    ("exp(width)", r"'exp\(width\)': exp needs a pure number, not a length"),
-    ("log(load / area)", "log needs a pure number, not a (pressure|stress)"),
-    ("sin(width)", r"'sin\(width\)': sin needs an angle or a pure number, not a length"),
-    ("max(width, load)", "what max takes must have one dimension"),
-    ("max(width, 1)", "'1' is a pure number"),
-    ("atan2(width, load)", "what atan2 takes"),
-    ("hypot(width, time)", "what hypot takes"),
-    ("either(missing, load)", "what either takes"),
-    ("cases(width, depth > 0, load)", "what is chosen from"),
-    ("cases(width, depth > load, width)", "'depth > load': what is compared"),
-    ("cases(width, share > 0 and depth > 1, width)", "'depth > 1': what is compared"),
-    ("width**width", "an exponent must be a pure number, not a length"),
-    ("power == torque", "the two sides of the equation must have one dimension"),
-    ("2 * (width + time) == torque", "'width [+] time'"),
+    ("load + area", "'load + area'", {"a force", "an area"}),
+    ("width - 2", "'width - 2'", {"a length", "a pure number"}),
+    ("1 + width * (load - area)", "'load - area'", {"a force", "an area"}),
+    ("exp(width)", "'exp(width)'", {"a length", "a pure number"}),
+    ("Phi(width)", "'Phi(width)'", {"a length", "a pure number"}),
+    ("log(load / area)", "'log(load / area)'", {"a pressure or stress", "a pure number"}),
+    ("sin(width)", "'sin(width)'", {"a length", "an angle"}),
+    ("max(width, load)", "'max(width, load)'", {"a length", "a force"}),
+    ("max(width, 1)", "'max(width, 1)'", {"a length", "a pure number"}),
+    ("atan2(width, load)", "'atan2(width, load)'", {"a length", "a force"}),
+    ("hypot(width, time)", "'hypot(width, time)'", {"a length", "a time"}),
+    ("either(missing, load)", "'either(missing, load)'", {"a length", "a force"}),
+    ("cases(width, depth > 0, load)", "'cases(width, depth > 0, load)'", {"a length", "a force"}),
+    ("cases(width, depth > load, width)", "'depth > load'", {"a length", "a force"}),
+    ("cases(width, depth == load, width)", "'depth == load'", {"a length", "a force"}),
+    ("cases(width, share > 0 and depth > 1, width)", "'depth > 1'", {"a length", "a pure number"}),
+    ("width**width", "'width**width'", {"a length", "a pure number"}),
+    ("asin(share) + width", "'asin(share) + width'", {"an angle", "a length"}),
+    ("power == torque", "the two sides of the equation", {"a power", "a torque"}),
+    ("2 * (width + time) == torque", "'width + time'", {"a length", "a time"}),
 ]
 
 
-@pytest.mark.parametrize(("text", "sentence"), UNLIKE)
-def test_unlike_dimensions_are_named_by_their_part(text: str, sentence: str) -> None:
+@pytest.mark.parametrize(("text", "part", "kinds"), UNLIKE)
+def test_unlike_dimensions_are_named_by_their_part(text: str, part: str, kinds: set[str]) -> None:
     formula = parse(text)
-    with pytest.raises(UnitError, match=sentence) as caught:
+    with pytest.raises(UnitError) as caught:
         evaluate_quantities(formula, {name: quantity(name) for name in formula.names})  # type: ignore[misc]
-    assert str(caught.value).startswith(f"formula {text!r}: ")
+    words = str(caught.value)
+    assert words.startswith(f"formula {text!r}: {part}: ")
+    assert set(words.removeprefix(f"formula {text!r}: {part}: ").split(" does not go with ")) == kinds
 
 
 def test_one_power_for_all_points() -> None:

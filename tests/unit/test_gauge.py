@@ -84,21 +84,6 @@ WALL = Model(
 )
 
 
-@results
-class Curve:
-    """A curve alone."""
-
-    depth: Float = axis("mm", note="place")
-    warmth: Float = found("degC", note="temperature", along="depth")
-
-
-def curve(given_: Wall) -> Curve:
-    """Return a straight line."""
-    points = np.linspace(0.0, 0.1, 3)
-    return Curve(depth=points, warmth=column(given_.outside) + 0 * points)
-
-
-CURVE = Model(name="curve", title="Curve", function=curve)
 Gauge = Callable[..., Shown]
 
 
@@ -157,11 +142,6 @@ def test_the_rows_of_a_run_are_one_record(gauge: Gauge) -> None:
 def test_a_record_has_one_value_of_everything_else(gauge: Gauge) -> None:
     with pytest.raises(UsageError, match=r"rows\.csv:3: flux changes within a run, but a record is one calculation"):
         gauge(WALL, "depth [mm],pressing [N],flux [W/m^2]\n0,1,10\n50,1,11\n")
-
-
-def test_a_model_of_curves_only_asks_for_the_axis(gauge: Gauge) -> None:
-    with pytest.raises(UsageError, match="every result of curve runs along depth: give that column"):
-        gauge(CURVE, "flux [W/m^2]\n10\n")
 
 
 # As the engine asks: one machine, chosen results, SI
@@ -634,21 +614,6 @@ def test_a_wrong_meaning_is_one_fault_and_not_two() -> None:
     assert len(str(caught.value).splitlines()) == 1
 
 
-@inputs
-class Misspelt:
-    """The companion is not there."""
-
-    load: Float = given(10.0, "N", stated_with="loadcase")
-    load_case: str = given("middle")
-
-
-@inputs
-class Alone:
-    """It explains itself."""
-
-    load: Float = given(10.0, "N", stated_with="load")
-
-
 @results
 class Lost:
     """An axis of what is no series."""
@@ -656,25 +621,28 @@ class Lost:
     place: Float = axis("m", follows="load")
 
 
-def of_misspelt(given_: Misspelt) -> Lost:
-    return Lost(place=np.zeros(1))
-
-
-def of_alone(given_: Alone) -> Lost:
-    return Lost(place=np.zeros(1))
-
-
 @pytest.mark.parametrize(
-    ("function", "sentence"),
+    ("other", "sentence"),
     [
-        (of_misspelt, "'load' is stated with 'loadcase', which is no other input"),
-        (of_alone, "'load' is stated with 'load', which is no other input"),
-        (of_alone, "the axis 'place' follows 'load', which is no input series"),
+        ("loadcase", "'load' is stated with 'loadcase', which is no other input"),
+        ("load", "'load' is stated with 'load', which is no other input"),
+        ("", "the axis 'place' follows 'load', which is no input series"),
     ],
 )
-def test_what_goes_together_must_be_there(function: Any, sentence: str) -> None:
+def test_what_goes_together_must_be_there(other: str, sentence: str) -> None:
+    fields = {"__annotations__": {"load": Float}, "load": given(10.0, "N", stated_with=other)}
+
+    def of_one(given_: Any) -> Lost:
+        return Lost(place=np.zeros(1))
+
+    of_one.__annotations__["given_"] = inputs(type("One", (), fields))
     with pytest.raises(DeclarationError, match=sentence):
-        Model(name="lost", title="Lost", function=function)
+        Model(name="lost", title="Lost", function=of_one)
+
+
+def test_a_model_of_curves_only_asks_for_the_axis(gauge: Gauge) -> None:
+    with pytest.raises(UsageError, match="every result of beam runs along place: give that column"):
+        gauge(BEAM, "load [N]\n10\n")
 
 
 def test_a_result_is_calculated_where_it_was_measured(tmp_path: Path) -> None:

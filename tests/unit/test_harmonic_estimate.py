@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.optimize import least_squares
-from scipy.special import gammaln
 
 from harmonic_fractal.estimate import (
     Estimate,
@@ -14,8 +13,6 @@ from harmonic_fractal.estimate import (
     estimate_of,
     noise_fit,
     roughness_length_of,
-    straight_fit,
-    window_sizes,
 )
 from harmonic_fractal.generators import brownian_profiles, brownian_surface
 from harmonic_fractal.surface import Lines
@@ -144,8 +141,8 @@ def test_the_reason_names_the_span_of_the_local_slopes() -> None:
 
 @pytest.mark.parametrize("dimension", [1.3, 1.5, 1.7])
 def test_true_fractals_of_many_lines_are_accepted(dimension: float) -> None:
-    """All of twenty surfaces of a hundred lines, over the whole lag range."""
-    for seed in range(20):
+    """All of eight surfaces of a hundred lines, over the whole lag range."""
+    for seed in range(8):
         found = estimated(rough(dimension, seed=seed))
         assert found.is_accepted, found.reason
         assert found.range[0] == pytest.approx(SPACING)
@@ -226,14 +223,6 @@ def test_the_fit_keeps_to_the_self_affine_range() -> None:
     assert over_all.dimension < within.dimension - 0.03
 
 
-def test_values_are_the_structure_function_at_the_lags() -> None:
-    """Of all lines together, by the definition."""
-    heights = rough(lines=20)
-    found = estimated(heights)
-    for lag, value in zip(np.rint(found.lags / SPACING).astype(int), found.values, strict=True):
-        assert value == pytest.approx(np.mean((heights[:, lag:] - heights[:, :-lag]) ** 2), rel=1e-12)
-
-
 def test_each_line_fitted_alone() -> None:
     """The mean of D_s and of ln G of straight lines through each line's own ln S; and their scatter."""
     heights = rough(lines=30)
@@ -287,14 +276,6 @@ def test_the_least_squares_are_those_of_scipy(seed: int) -> None:
     model = np.exp(found.intercept) * LAGS**found.slope + 2.0 * found.noise**2
     ours = float(np.sum(np.log(values / model) ** 2))
     assert ours <= reference(values) * (1 + 1e-4) + 1e-12
-
-
-def test_a_straight_fit_is_that_of_a_polynomial_of_first_degree() -> None:
-    """numpy.polyfit, and R^2 by the correlation of both logarithms."""
-    values = law(1e-16, 0.9, 5e-9)
-    found, x, y = straight_fit(LAGS, values), np.log(LAGS), np.log(values)
-    np.testing.assert_allclose([found.slope, found.intercept], np.polyfit(x, y, 1), rtol=1e-9)
-    assert float(found.r_squared) == pytest.approx(np.corrcoef(x, y)[0, 1] ** 2, rel=1e-9)
 
 
 def test_a_noisy_fractal_is_accepted_with_its_noise_taken_off() -> None:
@@ -357,13 +338,6 @@ def test_a_plain_fit_of_a_noisy_surface_warns() -> None:
 # The roughness-length method: windows and the roughness in them, and the dimension of lines of known truth.
 
 
-def test_windows_run_from_eight_points_to_a_tenth_of_the_line() -> None:
-    """None where a line is too short for one."""
-    sizes = window_sizes(500)
-    assert (sizes[0], sizes[-1], len(sizes)) == (8, 50, 12)
-    assert window_sizes(79).size == 0
-
-
 def test_roughness_in_a_window_is_that_about_its_own_line() -> None:
     """Window by window with numpy.polyfit; those that hold a hole are left out."""
     heights = brownian_profiles(1.5, 1.0, (3, 200), np.random.default_rng(1))
@@ -386,16 +360,6 @@ def test_dimension_of_long_lines(dimension: float) -> None:
     """Within 0.04: windows of few points see too little of the long waves, so it comes out a little high."""
     heights = brownian_profiles(dimension, 1.0, (50, 4000), np.random.default_rng(2))
     assert roughness_length_of(heights, 1.0).dimension == pytest.approx(dimension, abs=0.04)
-
-
-def test_white_noise_is_nearly_as_rough_in_any_window() -> None:
-    """The mean standard deviation of w - 2 free values: sqrt(2/(w-2)) Gamma((w-1)/2)/Gamma((w-2)/2) of theirs."""
-    heights = np.random.default_rng(2).standard_normal((50, 4000))
-    found = roughness_length_of(heights, 1.0)
-    free = found.windows - 2.0
-    expected = np.sqrt(2.0 / free) * np.exp(gammaln((free + 1.0) / 2.0) - gammaln(free / 2.0))
-    np.testing.assert_allclose(found.roughness, expected, rtol=0.005)
-    assert found.dimension == pytest.approx(2.0, abs=0.02)
 
 
 def test_straight_lines_are_not_rough() -> None:
@@ -458,15 +422,6 @@ def test_pieces_see_most_of_the_scatter(shape: tuple[int, int]) -> None:
     told = np.sqrt(np.mean([found.resampled.var(axis=0, ddof=1) for found in surfaces if found.is_accepted], axis=0))
     assert (told / true > 0.65).all()
     assert (told / true < 1.1).all()
-
-
-def test_lines_that_repeat_their_neighbours_say_nothing_more() -> None:
-    """Each line ten times over: ten times as many lines, but no smaller scatter."""
-    heights = brownian_profiles(1.5, STEP, (30, 500), np.random.default_rng(9))
-    single, repeated = resampled_of(heights), resampled_of(np.repeat(heights, 10, axis=0))
-    ratio = repeated.resampled.std(axis=0) / single.resampled.std(axis=0)
-    assert (ratio > 0.6).all()
-    assert (ratio < 1.7).all()
 
 
 def test_the_size_of_the_blocks_can_be_stated() -> None:

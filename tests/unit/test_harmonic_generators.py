@@ -8,14 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
-from scipy.special import gamma
 
 from harmonic_fractal.flank import read_flank
 from harmonic_fractal.generators import (
     Array,
-    Instrument,
     Waves,
-    as_measured,
     brownian_profiles,
     brownian_surface,
     levelled_structure,
@@ -24,11 +21,21 @@ from harmonic_fractal.generators import (
     weierstrass_profile,
     weierstrass_surface,
 )
-from harmonic_fractal.made_flank import FlankFile, Made, flank_text, made_flank, surface_of, truth_of, waves_of
+from harmonic_fractal.made_flank import (
+    FlankFile,
+    Made,
+    as_measured,
+    flank_text,
+    made_flank,
+    margin_of,
+    surface_of,
+    truth_of,
+    waves_of,
+)
 from harmonic_fractal.made_sheet import MADE_FLANK, SECTIONS
 from harmonic_fractal.structure import structure_function
 from shared import Calc
-from truing import Drawing, Record, Table, TruingError, Words
+from truing import Drawing, Record, Table, Words
 from truing.errors import InfeasibleError
 
 SPACING = 0.4e-6
@@ -46,11 +53,6 @@ def squares(heights: Array, step: int) -> Array:
     return np.asarray(np.mean((heights[:, step:] - heights[:, :-step]) ** 2, axis=1))
 
 
-def integral(exponent: complex) -> complex:
-    """Of (1 - cos u) u^(-1-a) du over u > 0: Gamma(1-a) cos(pi a/2)/a, tables; not at a = 1."""
-    return complex(gamma(1.0 - exponent) * np.cos(np.pi * exponent / 2.0) / exponent)
-
-
 @pytest.mark.parametrize("dimension", [1.3, 1.4, 1.55, 1.7])
 def test_lines_of_random_phases_have_the_exact_structure_function(dimension: float) -> None:
     made = waves(dimension)
@@ -61,19 +63,6 @@ def test_lines_of_random_phases_have_the_exact_structure_function(dimension: flo
         each = squares(lines, step)
         exact = profile_sum(made, np.array([step * SPACING]))[0]
         assert abs(each.mean() - exact) < 3.0 * each.std(ddof=1) / np.sqrt(200)
-
-
-@pytest.mark.parametrize("dimension", [1.2, 1.4, 1.5 + 1e-9, 1.6, 1.8])
-def test_the_exact_sum_of_a_profile_is_the_power_law_with_its_ripple(dimension: float) -> None:
-    made = Waves(dimension=dimension, roughness=1e-10, lowest=1e-8, highest=1e20)  # a band without ends
-    lags = 1e-6 * 1.5 ** np.linspace(0.0, 1.0, 4000, endpoint=False)  # one period of the ripple
-    exponent, turns = 4.0 - 2.0 * dimension, 2.0 * np.pi / np.log(1.5)
-    constant = (2.0 * np.pi) ** exponent * integral(exponent).real / np.log(1.5)
-    ratio = profile_sum(made, lags) / (constant * 1e-10 ** (2.0 - exponent) * lags**exponent)
-    assert ratio.mean() == pytest.approx(1.0, abs=1e-3)
-    ripple = 2.0 * abs(np.mean(ratio * np.exp(-1j * turns * np.log(lags))))  # its first harmonic
-    expected = 2.0 * abs(integral(exponent + 1j * turns)) / abs(integral(exponent))
-    assert ripple == pytest.approx(expected, rel=2e-3)
 
 
 def test_the_sum_over_many_directions_is_the_areal_law_along_any_trace() -> None:
@@ -138,7 +127,7 @@ def test_lines_made_together_know_nothing_of_one_another() -> None:
 
 @pytest.mark.parametrize("dimension", [1.15, 1.6])
 def test_brownian_patches_have_their_law_in_every_direction(dimension: float) -> None:
-    exponent, count, step = 4.0 - 2.0 * dimension, 1500, 2.0
+    exponent, count, step = 4.0 - 2.0 * dimension, 500, 2.0
     pairs = (((0, 0), (0, 1)), ((0, 0), (1, 0)), ((3, 2), (9, 25)), ((0, 29), (19, 0)), ((19, 0), (0, 0)))
     differences = np.empty((count, len(pairs)))
     for row in range(count):
@@ -163,31 +152,6 @@ def test_levelled_lines_have_the_structure_function_of_their_covariance(dimensio
     np.testing.assert_allclose(levelled_structure(every), exact, rtol=0.0, atol=1e-11 * every[-1])
 
 
-def test_the_lateral_filter_halves_its_wave_and_spares_long_ones() -> None:
-    x = 0.5e-6 * np.arange(4000)
-    instrument = Instrument(cutoff=20e-6)
-    for wave, passed in ((20e-6, 0.5), (10e-6, 2.0**-4), (40e-6, 2.0**-0.25)):  # 2^-(cutoff/wave)^2, ISO 16610-21
-        line = np.sin(2.0 * np.pi * x / wave)[None, :]
-        seen = as_measured(line, 0.5e-6, instrument, np.random.default_rng(0), across=False)
-        margin = instrument.margin(0.5e-6)
-        assert seen.shape == (1, 4000 - 2 * margin)
-        expected = passed * line[:, margin:-margin]
-        np.testing.assert_allclose(seen, expected, atol=2e-3)
-
-
-def test_an_instrument_adds_what_it_says() -> None:
-    flat, rng = np.zeros((200, 300)), np.random.default_rng(2)
-    noisy = as_measured(flat, 1e-6, Instrument(noise=3e-9), rng)
-    assert noisy.std() == pytest.approx(3e-9, rel=0.01)
-    seen = as_measured(flat, 1e-6, Instrument(spikes=0.01, spike_height=1e-7, holes=0.03), rng)
-    assert np.isnan(seen).sum() == 1800
-    assert (np.abs(seen) == 1e-7).sum() == 600
-    told = as_measured(noisy, 1e-6, Instrument(step=1e-9), rng) / 1e-9
-    np.testing.assert_allclose(told, np.round(told), atol=1e-6)
-    assert np.abs(told * 1e-9 - noisy).max() <= 0.5e-9 * (1 + 1e-6)
-    np.testing.assert_array_equal(flat, 0.0)
-
-
 # The calculation harmonic_fractal.made_flank: its truth, its file, and the way back through harmonic_fractal.
 
 SMALL = {"length": "60 um", "width": "20 um"}
@@ -195,6 +159,31 @@ SMALL = {"length": "60 um", "width": "20 um"}
 
 def made(**values: Any) -> Made:
     return MADE_FLANK.inputs(**{**SMALL, **values})
+
+
+def test_the_lateral_filter_halves_its_wave_and_spares_long_ones() -> None:
+    x = 0.5e-6 * np.arange(4000)
+    values = made(spacing="0.5 um", filter_cutoff="20 um")
+    for wave, passed in ((20e-6, 0.5), (10e-6, 2.0**-4), (40e-6, 2.0**-0.25)):  # 2^-(cutoff/wave)^2, ISO 16610-21
+        line = np.sin(2.0 * np.pi * x / wave)[None, :]
+        seen = as_measured(line, values, np.random.default_rng(0), across=False)
+        margin = margin_of(values)
+        assert seen.shape == (1, 4000 - 2 * margin)
+        expected = passed * line[:, margin:-margin]
+        np.testing.assert_allclose(seen, expected, atol=2e-3)
+
+
+def test_an_instrument_adds_what_it_says() -> None:
+    flat, rng = np.zeros((200, 300)), np.random.default_rng(2)
+    noisy = as_measured(flat, made(noise="3 nm"), rng)
+    assert noisy.std() == pytest.approx(3e-9, rel=0.01)
+    seen = as_measured(flat, made(spikes="1 %", spike_height="100 nm", holes="3 %"), rng)
+    assert np.isnan(seen).sum() == 1800
+    assert (np.abs(seen) == 1e-7).sum() == 600
+    told = as_measured(noisy, made(height_step="1 nm"), rng) / 1e-9
+    np.testing.assert_allclose(told, np.round(told), atol=1e-6)
+    assert np.abs(told * 1e-9 - noisy).max() <= 0.5e-9 * (1 + 1e-6)
+    np.testing.assert_array_equal(flat, 0.0)
 
 
 def mean_square(heights: Array, step: int) -> float:
@@ -306,12 +295,6 @@ def test_what_cannot_be_made_is_refused_by_name(values: dict[str, Any], sentence
         made_flank(made(**values))
 
 
-@pytest.mark.parametrize(("options", "word"), [({"height_unit": "inch"}, "height_unit"), ({"file": "a.txt"}, ".csv")])
-def test_a_file_that_nobody_reads_is_refused(options: dict[str, str], word: str) -> None:
-    with pytest.raises(TruingError, match=word):
-        FlankFile(**options)  # type: ignore[arg-type]
-
-
 @pytest.mark.parametrize("unit", ["m", "mm", "um", "nm"])
 def test_a_written_flank_is_read_as_it_was(unit: str, tmp_path: Path) -> None:
     surface = surface_of(made(kind="brownian", holes="2 %", spacing="0.37 um"))
@@ -354,7 +337,7 @@ def test_a_made_flank_is_written_by_one_run_and_found_again_by_the_next(calc: Ca
     """Seed 0 and the length of the lines are those of the shipped example; the kind is another, the lines are fewer."""
     assert calc("init", "harmonic_fractal.made_flank", "-o", "made.toml").code == 0
     told = calc("run", "harmonic_fractal.made_flank", "--inputs", "made.toml", "--set", "kind=brownian",
-                "--set", "width=50 um", "--output", "runs/made", "--json")  # fmt: skip
+                "--set", "width=30 um", "--output", "runs/made", "--json")  # fmt: skip
     assert told.code == 0, told.err
     results = json.loads(told.out)["results"]
     assert results["accepted"]["value"] == 1

@@ -52,13 +52,6 @@ def test_the_sum_over_every_pair(pairs: int, around: dict[str, Any]) -> None:
     assert normal_stiffness(25.0, mesh(drive)) == pytest.approx(np.sum(1.0 / compliance), rel=1e-11)
 
 
-def test_soft_teeth_make_a_soft_mesh() -> None:
-    """Towards teeth without stiffness only their own remains: that of one tooth times the pairs."""
-    for tooth in (1e3, 1.0, 1e-3):
-        found = normal_stiffness(25.0, mesh(drive_of(tooth_stiffness=tooth)))
-        assert found == pytest.approx(60 * tooth, rel=2e-5)
-
-
 @pytest.mark.parametrize("factor", [0.5, 1.37, 2.0])
 def test_more_pairs_each_carry_less(factor: float) -> None:
     """As many times the pairs, each with its part of the load: at this torque that of a part of it, so many times."""

@@ -163,33 +163,30 @@ def test_a_refused_mating_flank_leaves_that_flank_smooth(good: Flank, bad: Flank
     assert table(interface(found.record), "Both flanks").rows[1][-1] == "smooth"
 
 
-def test_one_direction_is_said(good: Flank) -> None:
-    along = replace(good, chosen="y", warnings=("the direction y alone is used; along x: no self-affine range",))
-    found = run(surface=along, reference_torque="1 N*m")
-    said = words(flanks(found.record))
-    assert "It is taken along y only" in said
-    assert any("the direction y alone is used" in text for text in found.warnings)
-    assert table(interface(found.record), "Both flanks").rows[0][-1] == "measured, along y only"
-
-
-def test_one_direction_that_was_asked_for_is_a_warning_too(good: Flank) -> None:
-    found = run(surface=replace(good, chosen="x"), reference_torque="1 N*m")
-    assert any(text.endswith("surface is taken along x only") for text in found.warnings)
-
-
-def test_warnings_of_the_file_reach_sheet_and_terminal(good: Flank) -> None:
-    found = run(
-        surface=replace(good, warnings=("7.0% of the points are missing, more than 5%",)), reference_torque="1 N*m"
-    )
-    assert "7.0% of the points are missing" in words(flanks(found.record), "warning")
-    assert any("7.0% of the points are missing" in text for text in found.warnings)
-
-
-def test_noise_has_a_column(good: Flank) -> None:
-    noisy = replace(good, estimates=tuple(replace(each, noise=3e-9) for each in good.estimates))
-    found = table(flanks(run(surface=noisy, reference_torque="1 N*m").record), "what each direction says")
-    assert found.columns[-2:] == ("noise", "verdict")
-    assert [row[-2] for row in found.rows] == pytest.approx([3.0, 3.0, 3.0])
+@pytest.mark.parametrize(
+    ("changed", "on_the_sheet", "warned"),
+    [
+        ({"chosen": "y", "warnings": ("the direction y alone is used; along x: too smooth",)},
+         "It is taken along y only", "the direction y alone is used"),
+        ({"chosen": "x"}, "It is taken along x only", "surface is taken along x only"),
+        ({"warnings": ("7.0% of the points are missing, more than 5%",)}, "7.0% of the points are missing",
+         "7.0% of the points are missing"),
+    ],
+    ids=["one direction", "one direction that was asked for", "holes"],
+)  # fmt: skip
+def test_what_is_said_of_a_flank_reaches_sheet_and_terminal(
+    good: Flank, changed: dict[str, Any], on_the_sheet: str, warned: str
+) -> None:
+    noisy = tuple(replace(each, noise=3e-9) for each in good.estimates)
+    found = run(surface=replace(good, estimates=noisy, **changed), reference_torque="1 N*m")
+    blocks = flanks(found.record)
+    assert on_the_sheet in words(blocks)
+    assert any(warned in text for text in found.warnings)
+    chosen = {"both": "x and y"}.get(changed.get("chosen", "both"), f"along {changed.get('chosen')} only")
+    assert table(interface(found.record), "Both flanks").rows[0][-1] == f"measured, {chosen}"
+    said = table(blocks, "what each direction says")
+    assert said.columns[-2:] == ("noise", "verdict")
+    assert [row[-2] for row in said.rows] == pytest.approx([3.0, 3.0, 3.0])
 
 
 def test_map_shows_the_heights_with_the_longer_side_across(good: Flank) -> None:
@@ -244,14 +241,6 @@ def test_structure_figure_of_a_refused_surface_is_for_comparison(bad: Flank) -> 
 
 
 # D and G
-
-
-def test_both_flanks_stand_beside_their_sum() -> None:
-    found = run(mating_dimension=2.4, mating_roughness="1e-11 m")
-    rows = table(interface(found.record), "Both flanks").rows
-    assert rows[0][1:3] == pytest.approx((2.4, 1e-11))
-    assert rows[2][2] == pytest.approx(1e-11 * 2 ** (1 / 0.8))
-    assert rows[2][-1] == "sum of the structure functions"
 
 
 # One pair

@@ -141,12 +141,6 @@ def test_lines_at_the_top_that_look_like_numbers_are_skipped(tmp_path: Path) -> 
     assert heights(tmp_path, text, layout) == pytest.approx(HEIGHTS)
 
 
-def test_a_million_numbers_with_a_header_of_words(tmp_path: Path) -> None:
-    many = np.arange(1e6).reshape(1000, 1000)
-    text = "h w\n" + "\n".join(" ".join(f"{value:.0f}" for value in row) for row in many.tolist())
-    assert np.array_equal(heights(tmp_path, text, FileLayout(spacing_x=1, spacing_y=1, height_unit="m")) * 1e-6, many)
-
-
 @pytest.mark.parametrize(
     ("text", "words"),
     [
@@ -265,34 +259,6 @@ def test_spacing_may_differ_by_one_per_cent(tmp_path: Path) -> None:
 # Real files, read by the layouts of their formats
 
 
-def metropro(file: Path) -> NDArray[np.float64]:
-    """Heights (480, 640) in m by the layout of the format: factor S lambda O / R, R = 32768 for resolution 1."""
-    counts = np.frombuffer(file.read_bytes(), dtype=">i4", offset=834 + 640 * 480 * 2).reshape(480, 640)
-    return np.where(counts >= 2147483640, np.nan, counts * (0.5 * 5.6999999742402e-07 / 32768))
-
-
-def al3d(file: Path) -> NDArray[np.float64]:
-    """Heights (296, 200) in m: little-endian float32 from byte 1261, 800 bytes a row."""
-    found = np.frombuffer(file.read_bytes(), dtype="<f4", offset=1261, count=296 * 200).reshape(296, 200)
-    return np.where(found == np.float32(3.000000028082e15), np.nan, found)
-
-
-def test_interferogram_against_the_layout_of_its_format() -> None:
-    pytest.importorskip("SurfaceTopography")
-    found = read_surface(SURFACES / "metropro-1.dat", FileLayout()).surface
-    np.testing.assert_allclose(found.heights, metropro(SURFACES / "metropro-1.dat"), rtol=1e-12)
-    assert (found.spacing_x, found.spacing_y) == pytest.approx((1.0982520e-6, 1.0982520e-6), rel=1e-7)
-    assert np.std(found.heights) == pytest.approx(0.07529e-6, rel=5e-4)  # and not eight times as much
-
-
-def test_focus_variation_against_the_layout_of_its_format() -> None:
-    pytest.importorskip("SurfaceTopography")
-    found = read_surface(SURFACES / "al3d-1.al3d", FileLayout())
-    np.testing.assert_allclose(found.surface.heights, al3d(SURFACES / "al3d-1.al3d"), rtol=1e-12)
-    assert (found.surface.spacing_x, found.surface.spacing_y) == pytest.approx((0.438027e-6, 0.438027e-6), rel=1e-9)
-    assert found.filter_width == pytest.approx(0.606e-6)
-
-
 @pytest.mark.parametrize(
     ("name", "place", "hole"),
     [
@@ -307,19 +273,6 @@ def test_holes_of_profilometer_formats(name: str, place: int, hole: bytes, tmp_p
     (tmp_path / name).write_bytes(content)
     found = read_surface(tmp_path / name, FileLayout()).surface
     assert np.argwhere(np.isnan(found.heights)).tolist() == [[7, 5]]
-
-
-def test_text_exports_of_instruments() -> None:
-    layout = FileLayout(spacing_x=0.369862e-6, spacing_y=0.369862e-6, height_unit="2.91818e-8 m")
-    phase = read_surface(SURFACES / "matrix-4.txt", layout).surface
-    assert phase.heights.shape == (305, 75)
-    assert phase.heights[0, :2] == pytest.approx([-4.448661 * 2.91818e-8, -4.596037 * 2.91818e-8])
-    contour = read_surface(SURFACES / "hfm-1.hfm", FileLayout()).surface
-    assert contour.heights.shape == (1, 9600)
-    assert contour.spacing_x == pytest.approx(0.5e-6)
-    assert contour.heights[0, [0, -1]] == pytest.approx([106.606853e-3, 106.609048e-3], rel=1e-12)
-    with pytest.raises(ValueError, match="height_unit"):
-        read_surface(SURFACES / "matrix-4.txt", FileLayout(spacing_x=1e-6, spacing_y=1e-6))
 
 
 # The optional library
@@ -433,20 +386,6 @@ def holed(heights: Array, share: float, seed: int = 8) -> Array:
 def second_order(rows: int, points: int) -> Array:
     x, y = np.arange(points)[None, :] * 1.0, np.arange(rows)[:, None] * 1.0
     return 7.0 - 0.3 * x + 0.5 * y + 0.02 * x**2 - 0.013 * x * y + 0.04 * y**2
-
-
-@pytest.mark.parametrize("share", [0.0, 0.3])
-def test_second_order_form_goes_entirely(share: float) -> None:
-    form = holed(second_order(*SHAPE), share)
-    assert np.nanmax(np.abs(without_form(form, "second_order"))) < 1e-10
-    assert np.array_equal(np.isnan(without_form(form, "second_order")), np.isnan(form))
-
-
-def test_plane_goes_entirely_and_none_leaves_all() -> None:
-    x, y = np.arange(90.0)[None, :], np.arange(70.0)[:, None]
-    assert np.abs(without_form(4.0 + 2.0 * x - 3.0 * y, "plane")).max() < 1e-10
-    assert np.array_equal(without_form(4.0 + 2.0 * x - 3.0 * y, "none"), 4.0 + 2.0 * x - 3.0 * y)
-    assert np.abs(without_form(4.0 + 2.0 * x - 3.0 * y + 0.01 * x * y, "plane")).max() > 1.0  # the cross term stays
 
 
 def test_the_form_of_one_line_is_a_parabola() -> None:

@@ -33,13 +33,13 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def stage(text: str, folder: Path) -> Setup:
-    return setup_from_text(text, STAGE_OFFER, file="stage.toml", folder=folder)
+def stage(text: str, folder: Path, *overrides: str) -> Setup:
+    return setup_from_text(text, STAGE_OFFER, file="stage.toml", folder=folder, overrides=overrides)
 
 
-def stage_faults(text: str, folder: Path) -> list[str]:
+def stage_faults(text: str, folder: Path, *overrides: str) -> list[str]:
     with pytest.raises(InputError) as caught:
-        stage(text, folder)
+        stage(text, folder, *overrides)
     return str(caught.value).splitlines()
 
 
@@ -195,13 +195,7 @@ def test_old_names_answer_with_a_warning() -> None:
         ('load = "120"', "load: '120' has no unit; expected a force such as '120 N'"),
         ("load = 120", "load = 120 has no unit; it is a force: write load = \"120 N\""),
         ("load = 1.5", "load = 1.5 has no unit; it is a force: write load = \"1.5 N\""),
-        ('load = "9**9**9 kN"', "load: '9**9**9 kN' is not a number followed by a unit"),
-        ('load = "nan N"', "load: 'nan N' is not a finite number"),
-        ('load = "inf"', "load: 'inf' is not a finite number"),
         ("rate = nan", "rate is nan, which is not a finite number"),
-        ("rate = -inf", "rate is -inf, which is not a finite number"),
-        ("load = +inf", "load is inf, which is not a finite number"),
-        ('load = "0,36 N"', "load: '0,36 N' has a decimal comma; write '0.36 N'"),
         (
             'load = "360 ± 0.05 N"',
             "load: '360 ± 0.05 N' holds a tolerance; write the nominal value here, the rest under [tolerances]",
@@ -213,7 +207,6 @@ def test_old_names_answer_with_a_warning() -> None:
         ("load = [1, 2]", "load = a list is no quantity; write load = \"1 N\""),
         ("load = 2024-01-01", "load = '2024-01-01' is no quantity; write load = \"1 N\""),
         ("load = 10 mm", 'load = 10 mm needs quotation marks; write load = "10 mm"'),
-        ('load = "1e400 N"', "load: '1e400 N' is too large for a number"),
     ],
 )  # fmt: skip
 def test_a_wrong_value_of_an_input(line: str, sentence: str) -> None:
@@ -284,10 +277,6 @@ def test_misspelt_missing_and_extra_names_in_one_answer(folder: Path) -> None:
         "stage.toml:4: stage has no input 'lubricant'. (there are: teeth_sun, bore_sun, teeth_planet, bore_planet, "
         "reading, planets, is_hardened, face_factor, oil, profile, orders, surface)",
     ]
-
-
-def test_a_missing_file_without_any_section(folder: Path) -> None:
-    assert stage_faults("# nothing\n", folder)[0].startswith("stage.toml:1: stage needs the input 'surface'")
 
 
 @pytest.mark.parametrize(
@@ -407,11 +396,10 @@ def test_overrides_replace_what_the_file_says(tmp_path: Path) -> None:
     assert setup.source.file == str(path)
 
 
-def test_an_effect_is_switched_off(tmp_path: Path) -> None:
-    path = tmp_path / "wear.toml"
-    path.write_text('[effects.warm_probe]\nslope = "1 um/K"\n')
-    assert len(read_setup(path, PIN_OFFER).effects) == 1
-    assert read_setup(path, PIN_OFFER, overrides=["effects.warm_probe=off"]).effects == ()
+def test_an_effect_is_switched_off() -> None:
+    text = '[effects.warm_probe]\nslope = "1 um/K"\n'
+    assert len(setup_of(text).effects) == 1
+    assert setup_of(text, "effects.warm_probe=off").effects == ()
 
 
 def test_faults_of_overrides_come_after_those_of_the_file(tmp_path: Path) -> None:
@@ -436,50 +424,33 @@ def test_settings_of_published_numbers() -> None:
         setup_from_settings(PIN_OFFER, {"area": "1 N"})
 
 
-@pytest.mark.parametrize(("text", "expected"), [("true", True), ("false", False)])
-def test_switches_counts_and_files_on_the_command_line(tmp_path: Path, text: str, expected: bool) -> None:
-    (tmp_path / "flank.txt").write_text("1\n2\n4\n")
-    path = tmp_path / "stage.toml"
-    path.write_text("[inputs]\n")
-    overrides = [f"is_hardened={text}", "planets=5", "reading=printed", SET_SURFACE, "orders=[4]"]
-    setup = read_setup(path, STAGE_OFFER, overrides=[*overrides, 'profile=["1 um"]'])
-    assert setup.inputs.is_hardened is expected
+def test_switches_counts_and_files_on_the_command_line(folder: Path) -> None:
+    overrides = ["planets=5", "reading=printed", SET_SURFACE, "orders=[4]", 'profile=["1 um"]']
+    for text, expected in (("true", True), ("false", False)):
+        setup = stage("[inputs]\n", folder, f"is_hardened={text}", *overrides)
+        assert setup.inputs.is_hardened is expected
     assert (setup.inputs.planets, setup.inputs.reading, setup.inputs.orders) == (5, "printed", (4,))
     assert setup.inputs.surface.heights == (1.0, 2.0, 4.0)
 
 
-@pytest.mark.parametrize(
-    "stated", ['surface = { file = "flank.txt", spacing = "0.4 um" }', 'surface = "flank.txt"'], ids=["table", "file"]
-)
-def test_an_option_of_a_data_file_on_the_command_line(tmp_path: Path, stated: str) -> None:
-    (tmp_path / "flank.txt").write_text("1\n2\n4\n")
-    (tmp_path / "stage.toml").write_text(f"[inputs]\n{stated}\n")
-    setup = read_setup(tmp_path / "stage.toml", STAGE_OFFER, overrides=['surface.spacing="0.5 um"'])
-    assert setup.inputs.surface.spacing == "0.5 um"
-    assert setup.inputs.surface.heights == (1.0, 2.0, 4.0)
+@pytest.mark.parametrize("stated", [SURFACE, 'surface = "flank.txt"'], ids=["table", "file"])
+def test_an_option_of_a_data_file_on_the_command_line(folder: Path, stated: str) -> None:
+    setup = stage(f"[inputs]\n{stated}\n", folder, 'surface.spacing="0.5 um"')
+    assert (setup.inputs.surface.spacing, setup.inputs.surface.heights) == ("0.5 um", (1.0, 2.0, 4.0))
 
 
 @pytest.mark.parametrize(
-    ("option", "words"),
+    ("stated", "option", "words"),
     [
-        ("surface.spacng=1 um", "the reader takes no 'spacng'; beside file it takes: spacing, height_unit."),
-        ("surface.file=none.txt", "there is no file 'none.txt'"),
+        (SURFACE, "surface.spacng=1 um", "the reader takes no 'spacng'; beside file it takes: spacing, height_unit."),
+        (SURFACE, "surface.file=none.txt", "there is no file 'none.txt'"),
+        ("", "surface.spacing=1 um", "surface is read from a data file"),
     ],
 )
-def test_an_option_that_is_none_is_named_with_the_override(tmp_path: Path, option: str, words: str) -> None:
-    (tmp_path / "flank.txt").write_text("1\n2\n4\n")
-    (tmp_path / "stage.toml").write_text(f"[inputs]\n{SET_SURFACE.replace('=', ' = ', 1)}\n")
-    with pytest.raises(InputError) as caught:
-        read_setup(tmp_path / "stage.toml", STAGE_OFFER, overrides=[option])
-    (line,) = str(caught.value).splitlines()
-    assert line.startswith(f"--set {option}: surface: ")
+def test_an_option_that_is_none_is_named_with_the_override(folder: Path, stated: str, option: str, words: str) -> None:
+    (line,) = stage_faults(f"[inputs]\n{stated}\n", folder, option)
+    assert line.startswith(f"--set {option}: surface")
     assert words in line
-
-
-def test_an_option_without_its_file_asks_for_the_file(tmp_path: Path) -> None:
-    (tmp_path / "stage.toml").write_text("[inputs]\n")
-    with pytest.raises(InputError, match=r"--set surface\.spacing=1 um: surface is read from a data file"):
-        read_setup(tmp_path / "stage.toml", STAGE_OFFER, overrides=["surface.spacing=1 um"])
 
 
 # The JSON Schema by which editors complete an inputs file.
@@ -511,6 +482,8 @@ def test_the_schema_of_studies_and_effects() -> None:
     assert census["draws"] == {"type": "integer", "default": 1000}
     assert census["method"]["enum"] == ["plain", "quasi"]
     assert schema["$defs"]["Effect_running_in"]["required"] == ["extra", "length"]
+    assert "required" not in schema["$defs"]["Effect_sensor_offset"]
+    assert "time" not in schema["$defs"]["Conditions"]["properties"]
     assert schema["$defs"]["Tolerances"]["properties"]["hardness"]["default"] == "lognormal sd 6 %"
 
 
@@ -616,7 +589,7 @@ def test_a_shipped_example_is_handed_out_as_it_is(tmp_path: Path) -> None:
 TEXT = """[studies.diagnose]
 per_file = ["sensor_offset", "running_in.extra", "load"]
 hold_out = "record = validation"
-box = { probe_temperature = "15..40 degC", load = "0.05..0.2 kN", rate = "1e-8..5e-8", speed = "10 mm/s..2 m/s" }
+box = { probe_temperature = "15..40 degC", load = "0.05..0.2 kN", rate = "1e-8..5e-8", angle = "-90..90 deg" }
 budget = 1500
 at_least = { depth = "outcome = runout" }
 at_most = { distance = "flag = 0" }
@@ -633,11 +606,11 @@ def test_the_options_in_si() -> None:
     options = setup_of(TEXT).diagnose
     assert options.per_file == ("sensor_offset", "running_in.extra", "load")
     assert options.held_out == ("record", "validation")
-    assert set(options.box) == {"probe_temperature", "load", "rate", "speed"}
+    assert set(options.box) == {"probe_temperature", "load", "rate", "angle"}
     assert options.box["probe_temperature"] == pytest.approx((288.15, 313.15))
     assert options.box["load"] == pytest.approx((50, 200))
     assert options.box["rate"] == pytest.approx((1e-8, 5e-8))
-    assert options.box["speed"] == pytest.approx((0.01, 2))
+    assert options.box["angle"] == pytest.approx((-math.pi / 2, math.pi / 2))  # a condition of the kernel
     assert options.budget == 1500
     assert (options.at_least, options.at_most) == ({"depth": "outcome = runout"}, {"distance": "flag = 0"})
     assert options.flags == {"outcome", "flag"}
@@ -657,13 +630,6 @@ def test_they_are_written_back_as_they_are() -> None:
     assert again.diagnose == options
 
 
-def test_conditions_of_the_kernel_have_a_range_too() -> None:
-    text = '[studies.diagnose]\nbox = { angle = "-90..90 deg" }\n'
-    options = setup_of(text).diagnose
-    assert options.box["angle"] == pytest.approx((-math.pi / 2, math.pi / 2))
-    assert setup_of(complete_inputs(setup_of(text))).diagnose == options
-
-
 def test_they_can_be_set_on_the_command_line() -> None:
     setup = setup_of("", 'studies.diagnose.per_file=["load"]', "studies.diagnose.hold_out=run = b")
     assert setup.diagnose == DiagnoseOptions(per_file=("load",), hold_out="run = b")
@@ -674,42 +640,29 @@ def test_they_can_be_set_on_the_command_line() -> None:
     [
         ("per_fil = []", "study 'diagnose' has no option 'per_fil'. Did you mean 'per_file'?"),
         ('per_file = "load"', "study 'diagnose': per_file = 'load' is no list of names"),
-        ('per_file = ["runing_in"]', "per_file names 'runing_in', which is no effect, unknown or number"),
         ('per_file = ["runing_in"]', "Did you mean 'running_in'?"),
         ('per_file = ["running_in.extras"]', "Did you mean 'running_in.extra'?"),
         ('per_file = ["load", "load"]', "per_file names 'load' twice"),
-        ("hold_out = 3", "hold_out = 3 is no text"),
-        ('hold_out = "validation"', "hold_out = 'validation' names no rows; write a column and the word"),
-        ('hold_out = "= validation"', "names no rows"),
+        ("hold_out = 3", "hold_out = 3 marks no rows"),
+        ('hold_out = "validation"', "hold_out = 'validation' marks no rows; write a column and its word"),
         ("box = 3", "box = 3 is no table"),
         ("budget = -1", "budget = -1 is no number of calls; write budget = 1000"),
-        ('budget = "10 min"', "budget = '10 min' is no number of calls"),
         ("budget = 1e3", "budget = 1000.0 is no number of calls"),
-        ("budget = true", "is no number of calls"),
         ('box = { lod = "1..2 N" }', "box names 'lod', which is no condition and no number"),
-        ('box = { depth = "1..2 um" }', "box names 'depth', which is no condition and no number"),
         ('box = { load = "1 N" }', "box: load = '1 N' is no range; write load = \"0..10 N\""),
-        ("box = { load = 5 }", "box: load = 5 is no range"),
         ('box = { load = "1..2 mm" }', "expected a force"),
-        ('box = { load = "1..2" }', "load: '1' has no unit"),
-        ('box = { load = "a..2 N" }', "box: "),
         ('box = { load = "2..1 N" }', "goes from its higher end; lower first"),
         ('box = { load = "-5..1 N" }', "load is -5 N; it must be above 0 N"),
-        ("clipped = 3", 'clipped = 3 is no table; write clipped = { RESULT = "0..10 kN" }'),
-        ('clipped = { dept = "0..5 um" }', "clipped names 'dept', which is no result of pin_wear"),
+        ("clipped = 3", 'clipped = 3 is no table; write clipped = { NAME = "..." }'),
         ('clipped = { dept = "0..5 um" }', "Did you mean 'depth'?"),
         ('clipped = { load = "0..5 N" }', "clipped names 'load', which is no result"),
         ('clipped = { depth = "0..5" }', "depth: '0' has no unit"),
         ('clipped = { depth = "..5" }', "depth: '5' has no unit"),
         ('clipped = { depth = ".." }', "clipped: depth = '..' is no range; write depth = \"0..10 um\""),
-        ('clipped = { depth = "5 um" }', "is no range"),
-        ('clipped = { depth = "5..1 um" }', "goes from its higher end; lower first"),
-        ('clipped = { depth = "..5 N" }', "expected a length"),
-        ('at_least = "outcome = runout"', "at_least = 'outcome = runout' is no table; write at_least = { RESULT ="),
-        ('at_least = { depth = "runout" }', "at_least: depth = 'runout' marks no rows; write a column and the word"),
+        ('at_least = "outcome = runout"', "at_least = 'outcome = runout' is no table; write at_least = { NAME ="),
+        ('at_least = { depth = "runout" }', "at_least: depth = 'runout' marks no rows; write a column and its word"),
         ("at_most = { depth = true }", "at_most: depth = true marks no rows"),
-        ('at_most = { life = "outcome = runout" }', "at_most names 'life', which is no result of pin_wear"),
-        ('lognormal = "depth"', "lognormal = 'depth' is no list of results"),
+        ('lognormal = "depth"', "lognormal = 'depth' is no list of names"),
         ('lognormal = ["load"]', "lognormal names 'load', which is no result"),
     ],
 )
@@ -721,28 +674,13 @@ def test_what_cannot_be_asked(line: str, expected: str) -> None:
     assert fault.line == 2
 
 
-def test_all_faults_are_said_at_once() -> None:
-    with pytest.raises(InputError) as caught:
-        setup_of("[studies.diagnose]\nper_file = 1\nhold_out = 2\nbox = 3\nmore = 4\n[inputs]\nload = 5\n")
-    assert [fault.line for fault in caught.value.faults] == [2, 3, 4, 5, 7]
-
-
-def test_a_misspelt_section() -> None:
-    with pytest.raises(InputError, match=r"no study 'diagnos'\. Did you mean 'diagnose'\?"):
-        setup_of("[studies.diagnos]\n")
-
-
 @pytest.mark.parametrize(
     ("asked", "fits"),
     [
         ({"per_file": ["load"], "hold_out": "a = b", "box": {"load": "1..2 N"}}, True),
         ({}, True),
         ({"per_file": "load"}, False),
-        ({"box": {"lod": "1..2 N"}}, False),
-        ({"budget": 1000}, True),
-        ({"budget": "10 min"}, False),
         ({"at_least": {"depth": "a = b"}, "clipped": {"depth": "..1 um"}, "lognormal": ["depth"]}, True),
-        ({"at_most": {"load": "a = b"}}, False),
         ({"lognormal": ["load"]}, False),
         ({"more": 1}, False),
     ],

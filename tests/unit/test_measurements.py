@@ -420,36 +420,3 @@ def test_what_is_written() -> None:
 def test_columns_that_are_not_alike_are_no_table() -> None:
     with pytest.raises(ValueError, match="shorter"):
         table_text(["a", "b"], [[1.0, 2.0], [1.0]])
-
-
-# Anything at all
-
-CELLS = st.one_of(
-    st.text(max_size=8), st.sampled_from(["1", "1,5", "nan", "", '"', "#", ";", "time [h]", "depth [um]"])
-)
-
-
-@drawing(max_examples=150, deadline=2000)
-@drawn(
-    st.one_of(
-        st.text(),
-        st.builds(
-            lambda rows, mark: "time [h],depth [um]\n" + "\n".join(mark.join(row) for row in rows),
-            st.lists(st.lists(CELLS, max_size=4), max_size=6),
-            st.sampled_from([",", ";"]),
-        ),
-    )
-)
-def test_any_text_is_a_table_or_an_input_error(tmp_path_factory: pytest.TempPathFactory, text: str) -> None:
-    path = tmp_path_factory.getbasetemp() / "any.csv"
-    path.write_text(text, encoding="utf-8", newline="")
-    setup = pin_setup()
-    for table_of in (lambda: read(path), lambda: read_cases(path, PIN_OFFER, setup)):
-        try:
-            found = table_of()
-        except InputError:
-            continue
-        lines = found.lines if isinstance(found, DataTable) else [case.line for case in found.cases]
-        assert len(lines) == found.count.used > 0
-        if isinstance(found, DataTable):
-            assert all(len(values) == len(found) for values in found.columns.values())

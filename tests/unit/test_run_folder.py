@@ -21,7 +21,16 @@ from truing.errors import OutputError, PluginError, UnknownPluginError
 from truing.inputs_file import read_setup, setup_from_text
 from truing.kernel import Kernel, Offer
 from truing.runs.documents import clean, results_document
-from truing.runs.folder import demand_place, is_ours, json_text, load_either, npz_bytes, write_folder, write_run
+from truing.runs.folder import (
+    demand_place,
+    is_ours,
+    json_text,
+    load_either,
+    npz_bytes,
+    run_files,
+    write_folder,
+    write_outcome,
+)
 from truing.runs.inputs_written import complete_inputs, exact, input_hash
 from truing.runs.provenance import provenance_of
 from truing.units import read_quantity, to_si
@@ -41,15 +50,13 @@ def calculation(offer: Offer) -> Calculation:
     return calculate(read_setup(DATA / "hostile_pin.toml", offer))
 
 
-def write(folder: Path, calculation: Calculation, **more: Any) -> dict[str, Any]:
-    return write_run(
-        folder,
-        calculation,
-        provenance=provenance_of(calculation.setup, date="2026-11-21"),
-        run_info={"date": "2026-11-21T10:00:00+0000", "duration_s": 1.5},
-        sheets={"sheet.html": "<p>sheet</p>", "sheet.md": "# sheet\n"},
-        **more,
-    )
+def write(folder: Path, calculation: Calculation) -> dict[str, Any]:
+    provenance = provenance_of(calculation.setup, date="2026-11-21")
+    document = results_document(calculation, provenance)
+    info = {"date": "2026-11-21T10:00:00+0000", "duration_s": 1.5}
+    files = run_files(calculation, document, {"sheet.html": "<p>sheet</p>", "sheet.md": "# sheet\n"})
+    write_outcome(folder, "run", calculation.setup, document, provenance=provenance, run_info=info, files=files)
+    return document
 
 
 def leftovers(folder: Path) -> list[str]:
@@ -228,19 +235,23 @@ def test_a_folder_that_is_no_run_of_ours_is_left_alone(tmp_path: Path, content: 
     assert leftovers(tmp_path) == ["folder"]
 
 
-def test_a_place_below_a_file_is_refused_in_one_sentence(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("place", "sentence"),
+    [
+        ("file/runs/one", "file is a file, so there can be no folder below it; name another place"),
+        ("file", "is a file; a run is a folder, name another place"),
+        pytest.param(
+            "link", "link: is a link that leads nowhere; name another place or remove this one",
+            marks=pytest.mark.skipif(sys.platform == "win32", reason="links need a privilege there"),
+        ),
+    ],
+)  # fmt: skip
+def test_a_place_that_is_none_is_refused_in_one_sentence(tmp_path: Path, place: str, sentence: str) -> None:
     (tmp_path / "file").write_text("x")
-    with pytest.raises(OutputError, match=r"file is a file, so there can be no folder below it; name another place$"):
-        demand_place(tmp_path / "file" / "runs" / "one")
-    with pytest.raises(OutputError, match=r"is a file; a run is a folder"):
-        demand_place(tmp_path / "file")
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="links need a privilege there")
-def test_a_link_that_leads_nowhere_is_no_place(tmp_path: Path) -> None:
-    (tmp_path / "link").symlink_to(tmp_path / "nowhere")
-    with pytest.raises(OutputError, match=r"link: is a link that leads nowhere; name another place"):
-        demand_place(tmp_path / "link")
+    if place == "link":
+        (tmp_path / "link").symlink_to(tmp_path / "nowhere")
+    with pytest.raises(OutputError, match=f"{sentence}$"):
+        demand_place(tmp_path / place)
 
 
 def test_a_place_that_is_free_is_not_touched_by_asking(tmp_path: Path) -> None:
@@ -278,57 +289,21 @@ def test_what_guests_added_is_listed(calculation: Calculation) -> None:
 
 def test_data_files_are_named_as_seen_from_the_run_folder(tmp_path: Path) -> None:
     """With --set, too: what was read last is what the inputs of the run name."""
-    (tmp_path / "plugin.py").write_text(PROFILED, encoding="utf-8")
-    (tmp_path / "data").mkdir()
-    (tmp_path / "data" / "flank.txt").write_text("1 2 3")
-    (tmp_path / "data" / "other.txt").write_text("4 5 6")
-    (tmp_path / "logo.svg").write_text("<svg/>")
-    inputs = '[sheet]\nlogo = "logo.svg"\n[inputs]\nprofile = { file = "data/flank.txt", factor = 2.0 }\n'
-    (tmp_path / "in.toml").write_text(inputs)
     kernel = Kernel(strict=True)
-    kernel.add_file(tmp_path / "plugin.py")
-    offer = kernel.offer("profiled")
+    kernel.add_file(DATA / "worn_surface.py")
+    offer = kernel.offer("worn_surface")
+    (tmp_path / "data").mkdir()
+    (tmp_path / "data" / "flank.txt").write_text("1\n2\n3")
+    (tmp_path / "data" / "other.txt").write_text("4\n5\n9")
+    (tmp_path / "logo.svg").write_text("<svg/>")
+    inputs = '[sheet]\nlogo = "logo.svg"\n[inputs]\nsurface = { file = "data/flank.txt", factor = 2.0 }\n'
+    (tmp_path / "in.toml").write_text(inputs)
     stated = '{ file = "data/other.txt", factor = 3.0 }'
-    for overrides, mean in (([], 4.0), ([f"profile={stated}"], 15.0)):
+    for overrides, depths in (([], [2, 4, 6]), ([f"surface={stated}"], [12, 15, 27])):
         calculation = calculate(read_setup(tmp_path / "in.toml", offer, overrides=overrides))
         document = write(tmp_path / "runs" / "one", calculation)
-        assert document["results"]["mean"]["value"] == mean
+        assert document["results"]["share"]["value"] == pytest.approx(3 / np.std(depths), rel=1e-12)
         again = read_setup(tmp_path / "runs" / "one" / "inputs.toml", offer)
-        assert calculate(again).answers["mean"] == mean
+        assert calculate(again).answers["share"] == calculation.answers["share"]
         assert input_hash(again) == document["input_hash"]
         assert (Path(again.source.file).parent / again.sheet.head["logo"]).read_text() == "<svg/>"
-
-
-PROFILED = """
-from dataclasses import dataclass
-from pathlib import Path
-from truing import Float, Model, found, hookimpl, inputs, loaded, results
-
-
-@dataclass(frozen=True)
-class Profile:
-    heights: tuple[float, ...]
-
-
-def read_profile(path: Path, factor: float = 1.0) -> Profile:
-    return Profile(tuple(factor * float(word) for word in path.read_text().split()))
-
-
-@inputs
-class Flank:
-    profile: Profile = loaded(read_profile, note="heights along the flank")
-
-
-@results
-class Answer:
-    mean: Float = found("", note="mean height")
-
-
-def average(flank: Flank) -> Answer:
-    return Answer(mean=sum(flank.profile.heights) / len(flank.profile.heights))
-
-
-@hookimpl
-def truing_models() -> list[Model[Flank, Answer]]:
-    return [Model(name="profiled", title="Mean of a profile", function=average)]
-"""

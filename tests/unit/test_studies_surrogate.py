@@ -306,7 +306,7 @@ def test_ranges_can_stand_in_a_file() -> None:
                 ({"rate": "1..2 um/h", "load - working_time": "1..2 N"}, "one input must be left to follow"),
                 ({"rate": "1..2 um/h", "rate * 2": "1..2 um/h"}, "it is none"),
                 ({"rate": "1..2 um/h", "rate * load": "1..2 kg"}, "another dimension"),
-                ({"rate": "1..2 um/h", "rate + load": "1..2 um/h"}, "must have one dimension"),
+                ({"rate": "1..2 um/h", "rate + load": "1..2 um/h"}, "does not go with"),
                 ({"rate": "1..2 um/h", "rate * load * load": "1..900 um/h*N^2"}, "is not straight in 'load'"),
                 ({"1 + ": "1..2 mm"}, "formula"),
             ]

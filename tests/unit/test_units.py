@@ -13,7 +13,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from truing import units
-from truing.errors import TruingError, UnitError
+from truing.errors import UnitError
 from truing.numbers import format_difference, format_number, format_value, pretty, with_unit
 from truing.units import names
 from truing.units.meaning import _suggestions
@@ -24,13 +24,10 @@ IN_SI = [
     ("360 mm", "mm", 0.36),
     ("0.36 m", "mm", 0.36),
     ("1 in", "mm", 0.0254),
-    ("1 ft", "m", 0.3048),
-    ("1 mil", "um", 25.4e-6),
     ("30 µm", "mm", 30e-6),
     ("30 μm", "mm", 30e-6),
     ("30 um", "mm", 30e-6),
     ("30 micron", "mm", 30e-6),
-    ("5 nm", "mm", 5e-9),
     ("28 mm^2", "mm^2", 28e-6),
     ("28 mm²", "mm^2", 28e-6),
     ("28 mm**2", "mm^2", 28e-6),
@@ -39,13 +36,7 @@ IN_SI = [
     ("4 cm4", "mm4", 4e-8),
     ("4 cm^4", "m^4", 4e-8),
     ("210 N/mm²", "MPa", 210e6),
-    ("210 N/mm2", "MPa", 210e6),
-    ("206 GPa", "N/mm^2", 206e9),
     ("1 bar", "Pa", 1e5),
-    ("1 psi", "Pa", 6894.757293168361),
-    ("1 atm", "Pa", 101325.0),
-    ("1 kgf", "N", 9.80665),
-    ("1 lbf", "N", 4.4482216152605),
     ("5 Nm", "N*m", 5.0),
     ("5 Nmm", "N*m", 5e-3),
     ("5 kNm", "N*m", 5e3),
@@ -55,7 +46,6 @@ IN_SI = [
     ("5 N⋅m", "N*m", 5.0),
     ("3000 rpm", "1/s", 50.0),
     ("3000 r/min", "rpm", 50.0),
-    ("3000 rev/min", "rpm", 50.0),
     ("3000 1/min", "rpm", 50.0),
     ("3000 /min", "rpm", 50.0),
     ("3000 min^-1", "rpm", 50.0),
@@ -67,16 +57,11 @@ IN_SI = [
     ("180 deg", "rad", math.pi),
     ("180°", "rad", math.pi),
     ("60'", "deg", math.pi / 180),
-    ("60 arcmin", "deg", math.pi / 180),
     ("3600''", "deg", math.pi / 180),
     ('3600"', "deg", math.pi / 180),
-    ("3600 arcsec", "deg", math.pi / 180),
     ("30 urad", "rad", 30e-6),
-    ("30 µrad", "rad", 30e-6),
-    ("3 mrad", "deg", 3e-3),
     ("5 %", "", 0.05),
     ("5 ‰", "", 0.005),
-    ("5 ppm", "", 5e-6),
     ("5 [-]", "", 5.0),
     ("5 -", "", 5.0),
     ("5 [1]", "%", 5.0),
@@ -89,7 +74,7 @@ IN_SI = [
     ("12 1e-6/K", "1/K", 12e-6),
     ("12 10^-6 1/K", "1/K", 12e-6),
     ("12 10⁻⁶/K", "1/K", 12e-6),
-    ("12 um/(m*K)", "1/K", 12e-6),
+    ("12 10^(-6)/K", "1/K", 12e-6),
     ("12 um/(m·°C)", "1/K", 12e-6),
     ("1.2×10^-5 1/K", "1/K", 1.2e-5),
     ("1.2x10^-5 1/K", "1/K", 1.2e-5),
@@ -101,14 +86,9 @@ IN_SI = [
     ("5*mm", "mm", 5e-3),
     ("−5 mm", "mm", -5e-3),
     ("5 mm", "mm", 5e-3),
-    ("1 h", "s", 3600.0),
-    ("1 min", "s", 60.0),
-    ("1 d", "h", 86400.0),
     ("1 year", "d", 365.25 * 86400),
     ("5 g", "kg", 5e-3),
-    ("5 t", "kg", 5e3),
     ("1 kWh", "J", 3.6e6),
-    ("1 PS", "W", 735.49875),
     ("1 cSt", "m^2/s", 1e-6),
     ("1 mPa*s", "Pa*s", 1e-3),
     ("5 kg m-3", "kg/m^3", 5.0),
@@ -119,7 +99,6 @@ IN_SI = [
     ("90 N*m/deg", "N*m/rad", 90 * 180 / math.pi),
     ("16.14 yuan", "CNY", 16.14),
     ("5 €", "EUR", 5.0),
-    ("5 $", "USD", 5.0),
     ("2 meters", "m", 2.0),
     ("20 degC", "degC", 293.15),
     ("20 °C", "degC", 293.15),
@@ -136,7 +115,6 @@ IN_SI = [
 
 REFUSED = [
     ("", "mm", "the text is empty; expected a length such as '1 mm'"),
-    ("   ", "mm", "the text is empty; expected a length such as '1 mm'"),
     ("360", "mm", "'360' has no unit; expected a length such as '360 mm'"),
     ("0.3", "rad", "'0.3' has no unit; expected an angle such as '0.3 rad'"),
     ("20", "degC", "'20' has no unit; expected a temperature level such as '20 degC'"),
@@ -146,11 +124,8 @@ REFUSED = [
     ("5 mm", "", "'5 mm' is a length (mm), expected a pure number"),
     ("5 deg", "", "'5 deg' is an angle (°), expected a pure number"),
     ("5 %", "deg", "'5 %' is a pure number (%), expected an angle (°)"),
-    ("5 EUR", "USD", "'5 EUR' is an amount of money (EUR), expected an amount of money (USD)"),
     ("5 mms", "mm", "unknown unit 'mms'; did you mean 'mm'?"),
     ("5 MM", "mm", "unknown unit 'MM'; did you mean 'mm'?"),
-    ("5 KN", "N", "unknown unit 'KN'; did you mean 'kN'?"),
-    ("5 mpa", "MPa", "unknown unit 'mpa'; did you mean 'MPa'?"),
     ("5 nmm", "N*m", "unknown unit 'nmm'; did you mean 'Nmm'?"),
     ("5 newtn", "N", "unknown unit 'newtn'; did you mean 'newtons'?"),
     ("5 foo", "N", "unknown unit 'foo'"),
@@ -179,13 +154,9 @@ REFUSED = [
     ("5 delta_degC", "degC", "'5 delta_degC' is a temperature difference; a level is written 5 degC"),
     ("-300 degC", "degC", "'-300 degC' lies below absolute zero"),
     ("9**9**9 kN", "kN", "'9**9**9 kN' is not a number followed by a unit"),
-    ("9^9 kN", "kN", "'9^9 kN' is not a number followed by a unit"),
     ("10^9^9 kN", "kN", "'10^9^9 kN' is not a number followed by a unit"),
     ("5*3 mm", "mm", "'5*3 mm' is not a number followed by a unit"),
     ("nan mm", "mm", "'nan mm' is not a finite number"),
-    ("NaN", "mm", "'NaN' is not a finite number"),
-    ("-inf mm", "mm", "'-inf mm' is not a finite number"),
-    ("Infinity", "mm", "'Infinity' is not a finite number"),
     ("∞ mm", "mm", "'∞ mm' is not a finite number"),
     ("1e400 mm", "mm", "'1e400 mm' is too large for a number"),
     ("1e-400 mm", "mm", "'1e-400 mm' is too small for a number"),
@@ -196,22 +167,18 @@ REFUSED = [
     ("1,234.5 mm", "mm", "'1,234.5 mm' holds commas; write '1234.5 mm'"),
     ("5_000 mm", "mm", "'5_000 mm' holds an underscore; write the number with digits alone"),
     ("1 000 mm", "mm", "'1 000 mm' holds a second number; write one number, without blanks, and then its unit"),
-    ("2 100 mm", "mm", "'2 100 mm' holds a second number; write one number, without blanks, and then its unit"),
     ("five mm", "mm", "'five mm' does not begin with a number; write it like '5 mm'"),
     ("mm", "mm", "'mm' does not begin with a number; write it like '5 mm'"),
     ("5 W/m·K", "W/(m*K)", "'W/m·K' is ambiguous; put what is below the '/' in parentheses, as in 'W/(m*K)'"),
-    ("5 J/kg K", "J/(kg*K)", "'J/kg K' is ambiguous; put what is below the '/' in parentheses, as in 'W/(m*K)'"),
     ("5 Nmm²", "N*mm^2", "'Nmm²' is ambiguous; write 'Nmm' as 'N*mm' with its exponents"),
     ("5 60 s", "s", "'5 60 s' holds a second number; write one number, without blanks, and then its unit"),
     ("5 N*3", "N", "the unit 'N*3' holds the number '3'; only a power of ten may stand in a unit, at its beginning"),
     ("5 m^13", "m", "the unit 'm^13' has an exponent beyond 12"),
     ("5 (m^9)^9", "m", "the unit '(m^9)^9' has an exponent beyond 12"),
-    ("5 m^999999999", "m", "the unit 'm^999999999' has an exponent beyond 12"),
     ("5 m^(1/0)", "m", "'m^(1/0)' is not a unit: an exponent divides by zero"),
     ("5 1e-99 m", "m", "the unit '1e-99 m' carries too large a power of ten"),
     ("5 m**", "m", "'m^' is not a unit; write it like 'N*m', 'mm^2' or 'W/(m*K)'"),
     ("5 (m", "m", "'(m' is not a unit; write it like 'N*m', 'mm^2' or 'W/(m*K)'"),
-    ("5 m)", "m", "'m)' is not a unit; write it like 'N*m', 'mm^2' or 'W/(m*K)'"),
     ("5 m//s", "m/s", "'m//s' is not a unit; write it like 'N*m', 'mm^2' or 'W/(m*K)'"),
     ("5 __import__('os')", "m", "unknown unit '__import__'"),
     ("5 m; 6", "m", "'5 m; 6' holds ';', which stands in no number or unit"),
@@ -226,9 +193,7 @@ REFUSED = [
         "the unit 'm - 10' holds the number '10'; only a power of ten may stand in a unit, at its beginning",
     ),
     ("5 m/10", "m", "the unit 'm/10' holds the number '10'; only a power of ten may stand in a unit, at its beginning"),
-    ("5 % 10", "", "the unit '% 10' holds the number '10'; only a power of ten may stand in a unit, at its beginning"),
     ("5 m+2", "m", "the unit 'm+2' holds the number '2'; only a power of ten may stand in a unit, at its beginning"),
-    ("5 m12", "m", "the unit 'm12' holds the number '12'; only a power of ten may stand in a unit, at its beginning"),
     ("5 rev2", "", "'rev2' is not a unit; write it like 'N*m', 'mm^2' or 'W/(m*K)'"),
     ("5 m0", "", "the unit 'm0' has the exponent 0"),
     ("5 N - m", "N*m", "'N - m' is not a unit; write it like 'N*m', 'mm^2' or 'W/(m*K)'"),
@@ -237,9 +202,7 @@ REFUSED = [
     ("5 degC*m/m", "K", "'degC*m/m' may be a temperature level or a difference; write degC alone, or K"),
     ("5 K*m/m", "degC", "'5 K*m/m' is a temperature difference; a level is written 5 degC"),
     ("5 kcycles", "", "unknown unit 'kcycles'; 'cycles' takes no prefix 'k': write '10^3 cycles'"),
-    ("5 Mlbf", "N", "unknown unit 'Mlbf'; 'lbf' takes no prefix 'M': write '10^6 lbf'"),
     ("5 byte", "", "unknown unit 'byte'"),
-    ("5 alpha", "", "unknown unit 'alpha'"),
     ("1,050 mm", "mm", "'1,050 mm' holds a comma; write '1.050 mm' or '1050 mm'"),
     ("\u0661\u0662 mm", "mm", "'\u0661\u0662 mm' holds '\u0661', which stands in no number or unit"),
     ("\uff15,\uff15 mm", "mm", "'\uff15,\uff15 mm' holds '\uff15', which stands in no number or unit"),
@@ -272,12 +235,6 @@ def test_a_long_text_is_refused_and_cut_in_the_sentence():
     assert len(str(caught.value)) < 150
 
 
-def test_errors_are_of_the_family_and_value_errors():
-    for family in (TruingError, ValueError):
-        with pytest.raises(family):
-            units.check_unit("mms")
-
-
 def test_one_literal_is_one_number():
     """A text, a default in code and the SI number agree to the last digit, so that input hashes agree."""
     for number in (0.36, 28.0, 1.25e-3, 7.1):
@@ -304,14 +261,6 @@ def test_the_kind_of_number_is_kept():
     assert units.from_si(np.array([1, 2]), "mm").dtype == np.float64
 
 
-@pytest.mark.parametrize(
-    ("unit", "factor"),
-    [("mm", 1e-3), ("degC", 1.0), ("degF", 5 / 9), ("deg", math.pi / 180), ("rpm", 1 / 60), ("MPa", 1e6), ("", 1.0)],
-)
-def test_the_size_of_one_step(unit, factor):
-    assert units.unit_factor(unit) == factor
-
-
 def test_powers_of_ten_in_a_header():
     assert units.to_si(11.5, "1e-6/K") == pytest.approx(11.5e-6, rel=1e-15)
     assert units.to_si(11.5, "10^-6 1/K") == pytest.approx(11.5e-6, rel=1e-15)
@@ -334,13 +283,6 @@ def test_powers_of_ten_in_a_header():
 def test_the_unit_of_a_column(given_unit, unit, words):
     with pytest.raises(UnitError, match=f"^{re.escape(words)}$"):
         units.demand_dimension(given_unit, unit)
-
-
-@pytest.mark.parametrize(
-    ("given_unit", "unit"), [("K", "degC"), ("degF", "degC"), ("[-]", "%"), ("um", "mm"), ("J", "Nm")]
-)
-def test_the_unit_of_a_column_that_fits(given_unit, unit):
-    units.demand_dimension(given_unit, unit)
 
 
 @pytest.mark.parametrize(
@@ -369,21 +311,12 @@ def test_same_dimension(left, right, same):
 @pytest.mark.parametrize(
     ("unit", "words"),
     [
-        ("mm", "a length"),
-        ("kN", "a force"),
-        ("N*m", "a torque"),
         ("kWh", "an energy or work"),
-        ("deg", "an angle"),
         ("N/mm^2", "a pressure or stress"),
         ("degC", "a temperature level"),
-        ("K", "a temperature difference"),
-        ("", "a pure number"),
         ("%", "a pure number"),
         ("rpm", "a rotational speed"),
         ("Hz", "a frequency"),
-        ("rad/s", "an angular speed"),
-        ("um/K", "a length per kelvin"),
-        ("N*m/rad", "a torsional stiffness"),
         ("yuan", "an amount of money"),
         ("m^5/s", "[length]**5/[time]"),
         ("rad^3/m^0.5", "[angle]**3/[length]**0.5"),
@@ -607,11 +540,6 @@ def test_what_is_written_is_the_number_to_its_digits_and_sign(value: float, digi
 )
 def test_a_value_is_written_in_its_unit(si: float | None, unit: str, written: tuple[str, str]) -> None:
     assert format_value(si, unit) == written
-
-
-def test_a_value_in_no_known_unit_is_refused() -> None:
-    with pytest.raises(UnitError, match="mms"):
-        format_value(1.0, "mms")
 
 
 @pytest.mark.parametrize(

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from truing import Model
+from truing import Condition, Effect, Model, Unknown
 from truing.diagnosis.result import UNKNOWN, DiagnosisResult, explanations_of
 from truing.measurements import table_text
 from truing.testing import Hidden, recorded
@@ -57,6 +57,20 @@ class Rig(Protocol):
     @property
     def HIDDEN(self) -> Mapping[str, tuple[str, ...]]: ...  # noqa: N802  # a constant of the module
     def measure(self, hidden: str | None, generator: np.random.Generator, rows: int) -> Measured: ...
+
+
+def hideable(**effects: str) -> dict[str, tuple[str, ...]]:
+    """What can be hidden: two effects by names of their own, each alone, and both."""
+    singles = {name: (effect,) for name, effect in effects.items()}
+    return {**singles, "_and_".join(effects): tuple(effects.values())}
+
+
+def acting(
+    function: Callable[..., Any], *unknowns: Unknown, needs: Sequence[Condition] = (), on: str = "inputs", **more: Any
+) -> Effect[Any, Any]:
+    """An effect by its function: its name, the reason that it states, and what it acts on."""
+    why = (function.__doc__ or "").strip()
+    return Effect(function.__name__, **{f"on_{on}": function}, unknowns=unknowns, needs=needs, why=why, **more)
 
 
 def drawn_size(generator: np.random.Generator) -> float:

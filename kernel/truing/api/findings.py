@@ -9,8 +9,7 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from truing.api.notebook import plotted, table_html
-from truing.api.tables import frame_of
-from truing.api.values import quantity_of
+from truing.api.tables import frame_of, quantity_of
 from truing.diagnosis import result as found
 from truing.errors import UsageError
 from truing.report.diagnosis_figures import (

@@ -18,8 +18,7 @@ from truing.api.notebook import bullets, fold, heading, html_table, joined, para
 from truing.api.records import MeasuredRecord
 from truing.api.run import Differences, Run, comparison_of, performed
 from truing.api.study import StudyResult
-from truing.api.tables import LABEL, beside, frame_text
-from truing.api.values import settings_of, text_of
+from truing.api.tables import LABEL, beside, frame_text, settings_of, text_of
 from truing.declare.model import Study
 from truing.declare.near_miss import near_miss
 from truing.describe import description, sections
@@ -42,7 +41,7 @@ from truing.report.diagnosis_words import headline, verdict_word
 from truing.report.run import run_info, sheets_of, write_sheet
 from truing.runs.diagnosis_document import diagnosis_document
 from truing.runs.extension import extended_text
-from truing.runs.folder import demand_place, write_diagnosis
+from truing.runs.folder import demand_place, diagnosis_files, write_outcome
 from truing.setup import Setup
 from truing.studies.bench import Progress
 from truing.studies.sweep import Sweep
@@ -348,8 +347,11 @@ class Diagnosis:
         """Write the folder and return what became of the PDF."""
         sheet = diagnosis_sheet_of(self.result, self.started)
         sheets, note = sheets_of(sheet, folder, pdf=pdf)
-        info = run_info(self.started)
-        write_diagnosis(folder, self.result, provenance=sheet.provenance, run_info=info, sheets=sheets)
+        info = {**run_info(self.started), "data": dict(self.result.records.digests)}
+        write_outcome(
+            folder, "diagnosis", self.result.setup, self.document, provenance=sheet.provenance, run_info=info,
+            files=diagnosis_files(self.result, sheets, folder),
+        )  # fmt: skip
         return note
 
     def compare(self, before: Diagnosis) -> Differences:

@@ -14,8 +14,7 @@ from typing import Any
 
 from truing.api.notebook import MOST_ROWS, fold, heading, html_table, joined, paragraphs, table_html
 from truing.api.study import StudyResult
-from truing.api.tables import frame_of, frame_text
-from truing.api.values import quantity_of
+from truing.api.tables import frame_of, frame_text, quantity_of
 from truing.calculation import Calculation, calculate
 from truing.cases import CasesTable, run_cases
 from truing.declare.near_miss import near_miss
@@ -32,7 +31,7 @@ from truing.report.run import run_info, sheet_of, sheets_of, write_sheet
 from truing.report.sheet import banner_of, cases_table, check_table
 from truing.runs.comparison import Change, compared, in_order, words_of
 from truing.runs.documents import results_document
-from truing.runs.folder import demand_place, write_run
+from truing.runs.folder import demand_place, run_files, write_outcome
 from truing.runs.partial import code_of, identity_of, kept_batches
 from truing.runs.provenance import provenance_of
 from truing.setup import Setup
@@ -152,10 +151,11 @@ class Run:
         if pdf:
             progress("printing", 0, 0)
         sheets, note = sheets_of(sheet, folder, pdf=pdf)
-        write_run(
-            folder, self.calculation, provenance=sheet.provenance, sheets=sheets,
-            run_info={**run_info(self.started), **self.computed}, cases=self.cases, excel=excel,
-        )  # fmt: skip
+        files = run_files(self.calculation, self.document, sheets, excel=excel)
+        info = {**run_info(self.started), **self.computed}
+        write_outcome(
+            folder, "run", self._setup, self.document, provenance=sheet.provenance, run_info=info, files=files
+        )
         return note
 
     def compare(self, before: Run) -> Differences:

@@ -1,7 +1,7 @@
 """The command ``calc`` and the table of its verbs: what each takes, and the module that is loaded when it is called.
 
-A verb is declared here with its arguments and its help; the function of the same name in the module of the same name
-does the work. So help, names and completion load nothing else.
+A verb is declared here with its arguments and its help; a function of the same name in another module does the work. So
+help, names and completion load nothing else.
 """
 
 from __future__ import annotations
@@ -10,7 +10,8 @@ import functools
 from collections.abc import Callable
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Any, ParamSpec, TypeAlias
+from types import SimpleNamespace
+from typing import Annotated, ParamSpec, TypeAlias
 
 import typer
 
@@ -48,19 +49,21 @@ def _common(
     """Engineering calculations as plugins: checked units, studies, and a sheet to sign."""
 
 
-def _loaded(declared: Callable[P, None]) -> Callable[P, None]:
-    """Make a verb of a declaration: the function of its name, in the module of its name, is called with the same.
+def _loaded(module: str) -> Callable[[Callable[P, None]], Callable[P, None]]:
+    """Make a verb of a declaration: the function of its name in a module does the work.
 
-    In place of typer's context it takes the settings that hold for every verb.
+    It takes the settings that hold for every verb, and what was asked for by the names of the declaration.
     """
 
-    @functools.wraps(declared)
-    def call(*args: P.args, **kwargs: P.kwargs) -> int:
-        taken: dict[str, Any] = {**kwargs, "settings": settings_of(kwargs["context"])}
-        del taken["context"]
-        return int(getattr(Later(f"truing.cli.{declared.__name__}"), declared.__name__)(**taken))
+    def made(declared: Callable[P, None]) -> Callable[P, None]:
+        @functools.wraps(declared)
+        def call(*args: P.args, **kwargs: P.kwargs) -> int:
+            asked = SimpleNamespace(**kwargs)
+            return int(getattr(Later(f"truing.cli.{module}"), declared.__name__)(settings_of(asked.context), asked))
 
-    return app.command(declared.__name__)(verb(call))
+        return app.command(declared.__name__)(verb(call))
+
+    return made
 
 
 @app.command("plugins")
@@ -73,13 +76,13 @@ def plugins(
 ) -> int:
     """List what is installed, from where, which version, and what broke while loading."""
     if not names:
-        return int(Later("truing.cli.plugins").plugins(settings=settings_of(context), as_json=as_json, strict=strict))
+        return int(Later("truing.cli.models").plugins(settings_of(context), as_json=as_json, strict=strict))
     for name in Later("truing.entry_points").plugin_names():
         out(name)
     return 0
 
 
-@_loaded
+@_loaded("models")
 def describe(
     context: typer.Context,
     plugin: Plugin,
@@ -91,7 +94,7 @@ def describe(
     """Show inputs, results, error sources and objectives: symbols, units, bounds, sources."""
 
 
-@_loaded
+@_loaded("models")
 def init(
     context: typer.Context,
     plugin: Plugin,
@@ -102,7 +105,7 @@ def init(
     """Write a commented inputs file that holds the shipped example."""
 
 
-@_loaded
+@_loaded("explain")
 def explain(
     context: typer.Context,
     what: Annotated[
@@ -119,7 +122,7 @@ def explain(
     """Explain a result: formula, what it is made from, what moves it; or an input, an effect, a tolerance."""
 
 
-@_loaded
+@_loaded("run")
 def run(
     context: typer.Context,
     plugin: Plugin,
@@ -141,7 +144,7 @@ def run(
     """Run the calculation and its studies and write the calculation sheet."""
 
 
-@_loaded
+@_loaded("watch")
 def watch(
     context: typer.Context,
     plugin: Plugin,
@@ -157,7 +160,7 @@ def watch(
     """Run, or with --data diagnose, again whenever inputs, data files or the plugin's code change; Ctrl-C ends it."""
 
 
-@_loaded
+@_loaded("table")
 def table(
     context: typer.Context,
     plugin: Plugin,
@@ -170,7 +173,7 @@ def table(
     """Print what the gauge would show at every row: the file's columns, then the results, units in the header."""
 
 
-@_loaded
+@_loaded("diagnose")
 def diagnose(
     context: typer.Context,
     plugin: Plugin,
@@ -187,12 +190,12 @@ def diagnose(
     """Find what the simulation gets wrong, name the cause, extend the model and measure the gain."""
 
 
-@_loaded
+@_loaded("models")
 def verify(context: typer.Context, plugin: Plugin, as_json: AsJson = False) -> None:
     """Print every number that the source prints beside ours; exit 0 if every row matches its stated verdict."""
 
 
-@_loaded
+@_loaded("folders")
 def compare(
     context: typer.Context,
     first: Annotated[Path, typer.Argument(help="A run folder, or that of a diagnosis.", autocompletion=runs)],
@@ -202,7 +205,7 @@ def compare(
     """Show inputs, results and checks that changed: exit 0 when equal, 1 when different."""
 
 
-@_loaded
+@_loaded("folders")
 def index(
     context: typer.Context,
     folder: Annotated[Path, typer.Argument(help="The folder that holds runs and diagnoses, however deep.")] = Path(
@@ -216,7 +219,7 @@ def index(
     """Write one page that lists the runs and diagnoses of a folder, to sort and to filter, offline."""
 
 
-@_loaded
+@_loaded("new")
 def new(
     context: typer.Context,
     name: Annotated[str, typer.Argument(help="The plugin's name: lower-case words joined by _.")],
@@ -229,7 +232,7 @@ def new(
     """Write a plugin of your own: package, tests, entry point, CI; it works as written."""
 
 
-@_loaded
+@_loaded("completion")
 def completion(
     context: typer.Context,
     shell: Annotated[Shell | None, typer.Argument(help="The shell (default: the one you are in).")] = None,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from importlib import import_module
 from pathlib import Path
+from types import SimpleNamespace
 
 from truing.atomic import write_files
 from truing.cli.app import Shell
@@ -15,11 +16,11 @@ from truing.templating import template_folder
 FILES = {Shell.bash: "calc.bash", Shell.zsh: "calc.zsh", Shell.fish: "calc.fish", Shell.powershell: "calc.ps1"}
 
 
-def completion(settings: Settings, *, shell: Shell | None, install: bool) -> int:
+def completion(settings: Settings, asked: SimpleNamespace) -> int:
     """Print the script by which your shell completes plugins, inputs and results, or install it."""
-    wanted = shell or _present_shell()
+    wanted: Shell = asked.shell or _present_shell()
     text = (template_folder() / "completion" / FILES[wanted]).read_text(encoding="utf-8")
-    if not install:
+    if not asked.install:
         out(text.rstrip("\n"))
         return 0
     for line in _installed(wanted, text):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 
 from truing.api.model import Diagnosis
 from truing.api.records import MeasuredRecord
@@ -20,28 +21,18 @@ MISSPELT = "Did you mean"
 """A note that must be seen: a column that may be misspelt changes what is found."""
 
 
-def diagnose(
-    settings: Settings,
-    *,
-    plugin: str,
-    files: list[Path] | None,
-    inputs: Path | None,
-    data: list[Path] | None,
-    changed: list[str] | None,
-    output: Path | None,
-    pdf: bool,
-    as_json: bool,
-) -> int:
+def diagnose(settings: Settings, asked: SimpleNamespace) -> int:
     """Find what the simulation gets wrong, name the cause, extend the model and measure the gain."""
-    measured = (*(data or ()), *(files or ()))
+    measured = (*(asked.data or ()), *(asked.files or ()))
     if not measured:
         raise UsageError("nothing to diagnose: name the measured rows with --data FILE.csv")
-    model = find_model(plugin, settings, changed)
-    say_example(inputs, plugin, settings)
-    folder = output or Path("runs") / measured[0].stem
-    done = model.diagnose(MeasuredRecord(measured), inputs, output=folder, pdf=pdf, progress=not settings.quiet)
+    model = find_model(asked.plugin, settings, asked.changed)
+    say_example(asked.inputs, asked.plugin, settings)
+    folder = asked.output or Path("runs") / measured[0].stem
+    record, progress = MeasuredRecord(measured), not settings.quiet
+    done = model.diagnose(record, asked.inputs, output=folder, pdf=asked.pdf, progress=progress)
     _say_beside(done, settings)
-    if as_json:
+    if asked.as_json:
         out_json(done.document)
     else:
         out("\n".join(lines_of(done.result, folder)))

@@ -6,7 +6,7 @@ import shutil
 import sys
 import textwrap
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, TypeAlias
 
 from truing.api.model import LoadedModel
@@ -24,23 +24,21 @@ from truing.texts import one_line
 from truing.units import unit_text
 
 
-def explain(
-    settings: Settings, *, what: str, name: str, inputs: Path | None, changed: list[str] | None, as_json: bool
-) -> int:
+def explain(settings: Settings, asked: SimpleNamespace) -> int:
     """Explain a result: formula, what it is made from, what moves it; or an input, an effect, a tolerance."""
-    offer, wanted = _asked(what, name, settings)
-    say_example(inputs, offer.name, settings)
-    setup = LoadedModel(offer, tuple(changed or ()), label=LABEL).setup(inputs)
+    offer, wanted = _meant(asked.what, asked.name, settings)
+    say_example(asked.inputs, offer.name, settings)
+    setup = LoadedModel(offer, tuple(asked.changed or ()), label=LABEL).setup(asked.inputs)
     with progress_bar(not settings.quiet) as progress, told_by_line(setup):
         document = told(setup, offer, wanted, progress=progress)
-    if as_json:
+    if asked.as_json:
         out_json(document)
     else:
         out("\n".join(lines_of(document, width_of_page())))
     return 0
 
 
-def _asked(what: str, name: str, settings: Settings) -> tuple[Offer, str]:
+def _meant(what: str, name: str, settings: Settings) -> tuple[Offer, str]:
     """Return the calculation and the name that the words mean."""
     if name:
         return find_offer(what, settings), name

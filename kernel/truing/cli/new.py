@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shlex
 from pathlib import Path
+from types import SimpleNamespace
 
 from truing.cli.console import Settings
 from truing.errors import UsageError
@@ -20,13 +21,13 @@ from truing.new_project import (
 )
 
 
-def new(settings: Settings, *, name: str, title: str | None, output: Path | None, single: bool) -> int:
+def new(settings: Settings, asked: SimpleNamespace) -> int:
     """Write a plugin of your own: package, tests, entry point, CI; it works as written."""
-    check_name(name)
-    if title is not None:
-        check_title(title)
-    plan = NewPlugin(name, title.strip() if title is not None else title_of(name))
-    steps = _file(plan, output) if single else _project(plan, output)
+    check_name(asked.name)
+    if asked.title is not None:
+        check_title(asked.title)
+    plan = NewPlugin(asked.name, asked.title.strip() if asked.title is not None else title_of(asked.name))
+    steps = _file(plan, asked.output) if asked.single else _project(plan, asked.output)
     settings.say("\n".join([*steps, "the physics in it is a placeholder, a clamped bar: replace it by your own"]))
     return 0
 

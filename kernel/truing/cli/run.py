@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from itertools import islice
 from pathlib import Path
+from types import SimpleNamespace
 
 from truing.api.run import Run
 from truing.atomic import writings, written
@@ -26,34 +27,18 @@ from truing.studies.verdicts import change_words, sentence_of
 from truing.texts import one_line
 
 
-def run(
-    settings: Settings,
-    *,
-    plugin: str,
-    inputs: Path | None,
-    changed: list[str] | None,
-    cases: Path | None,
-    output: Path | None,
-    workers: int | None,
-    cluster: str,
-    resume: bool,
-    pdf: bool,
-    excel: bool,
-    as_json: bool,
-) -> int:
+def run(settings: Settings, asked: SimpleNamespace) -> int:
     """Run the calculation and its studies and write the calculation sheet."""
-    if cluster and workers is not None:
+    if asked.cluster and asked.workers is not None:
         raise UsageError("--cluster and --workers exclude each other: a cluster has its own workers")
-    model = find_model(plugin, settings, changed)
-    say_example(inputs, plugin, settings)
-    folder = output or Path("runs") / (inputs.stem if inputs else model.name)
-    with _told_what_is_kept(folder, resume, settings):
-        done = model.run(
-            inputs, cases=cases, workers=workers, cluster=cluster, output=folder, resume=resume, pdf=pdf, excel=excel,
-            progress=not settings.quiet,
-        )  # fmt: skip
-    _say_beside(done, folder if excel else None, settings)
-    if as_json:
+    model = find_model(asked.plugin, settings, asked.changed)
+    say_example(asked.inputs, asked.plugin, settings)
+    folder = asked.output or Path("runs") / (asked.inputs.stem if asked.inputs else model.name)
+    how = {name: getattr(asked, name) for name in ("cases", "workers", "cluster", "resume", "pdf", "excel")}
+    with _told_what_is_kept(folder, asked.resume, settings):
+        done = model.run(asked.inputs, output=folder, progress=not settings.quiet, **how)
+    _say_beside(done, folder if asked.excel else None, settings)
+    if asked.as_json:
         out_json(done.document)
     else:
         out("\n".join(lines_of(done, folder, with_titles=not settings.quiet)))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
+from types import SimpleNamespace
 
 from truing.api.tables import name_in
 from truing.atomic import write_files
@@ -21,24 +21,16 @@ from truing.setup import Setup
 from truing.texts import one_line
 
 
-def table(
-    settings: Settings,
-    *,
-    plugin: str,
-    inputs: Path,
-    rows: Path,
-    output: Path | None,
-    changed: list[str] | None,
-    excel: bool,
-) -> int:
+def table(settings: Settings, asked: SimpleNamespace) -> int:
     """Print what the gauge would show at every row: the file's columns, then the results, units in the header."""
+    inputs, rows, output, excel = asked.inputs, asked.rows, asked.output, asked.excel
     if excel and output is None:
         raise UsageError("--excel writes a file for a spreadsheet; name it with -o")
     for path in (inputs, rows):
         if output is not None and output.exists() and path.exists() and output.samefile(path):
             raise OutputError(f"{output} is read by this command; name another file for the output")
-    offer = find_offer(plugin, settings)
-    setup = read_setup(inputs, offer, overrides=changed or ())
+    offer = find_offer(asked.plugin, settings)
+    setup = read_setup(inputs, offer, overrides=asked.changed or ())
     read = read_rows(rows, offer, setup)
     _say_unused(read, setup, settings)
     with told_by_line(setup):

@@ -8,6 +8,7 @@ import traceback
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 from truing.api.model import Diagnosis, LoadedModel
@@ -32,32 +33,21 @@ MOST = 4
 LOOKS = 2
 
 
-def watch(
-    settings: Settings,
-    *,
-    plugin: str,
-    inputs: Path,
-    data: list[Path] | None,
-    changed: list[str] | None,
-    cases: Path | None,
-    output: Path | None,
-    excel: bool,
-    workers: int,
-    every: float,
-) -> int:
+def watch(settings: Settings, asked: SimpleNamespace) -> int:
     """Run, or with --data diagnose, again whenever inputs, data files or the plugin's code change; Ctrl-C ends it."""
     sys.dont_write_bytecode = True  # two savings within one second would otherwise be one to Python
-    offer = find_offer(plugin, settings)
-    measured = tuple(data or ())
-    if measured and (cases or excel or workers > 1):
+    inputs: Path = asked.inputs
+    offer = find_offer(asked.plugin, settings)
+    measured = tuple(asked.data or ())
+    if measured and (asked.cases or asked.excel or asked.workers > 1):
         raise UsageError("--cases, --excel and --workers are for runs; a diagnosis (--data) has none of them")
     for file in (path for path in (inputs, *measured) if not path.is_file()):
         refuse_file(file, largest=0, instead="", is_table=False)
-    folder = output or Path("runs") / (measured or (inputs,))[0].stem
-    how = {} if measured else {"cases": cases, "workers": workers, "excel": excel}
-    watcher = _Watcher(plugin, inputs, measured, tuple(changed or ()), folder, how, settings)
+    folder = asked.output or Path("runs") / (measured or (inputs,))[0].stem
+    how = {} if measured else {"cases": asked.cases, "workers": asked.workers, "excel": asked.excel}
+    watcher = _Watcher(asked.plugin, inputs, measured, tuple(asked.changed or ()), folder, how, settings)
     demand_place(folder, watcher.kind)
-    watched = WatchedFiles(every)
+    watched = WatchedFiles(asked.every)
     settings.say(f"watching {inputs} and the code of {offer.name}; Ctrl-C ends it")
     try:
         while True:

@@ -22,13 +22,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Literal, Protocol
+from typing import Any, Literal
 
 import numpy as np
 
 from truing.declare.batch import column
-from truing.declare.fields import Axis, Float, Given, InputField, ResultField, read, with_values
-from truing.declare.sources import SINCE_START, Condition, Effect, ErrorSource, Tolerance, Unknown
+from truing.declare.fields import Axis, Float, Given, ResultField, read, with_values
+from truing.declare.sources import SINCE_START, Condition, Effect, Tolerance, Unknown
 from truing.units import difference_unit, same_dimension, to_si
 from truing.units.names import LEVELS, PURE
 
@@ -36,27 +36,6 @@ WIDE = 1e6
 LONGEST = 1e6
 """Hours: how late a step may come."""
 HIGHEST_ORDER = 3
-
-
-class Declared(Protocol):
-    """What is seen here of a model (see ``declare.model.Model``)."""
-
-    @property
-    def errors(self) -> Sequence[ErrorSource[Any, Any]]: ...  # noqa: D102
-    @property
-    def studies(self) -> Sequence[Any]: ...  # noqa: D102
-    @property
-    def input_fields(self) -> dict[str, InputField]: ...  # noqa: D102
-    @property
-    def own_result_fields(self) -> dict[str, ResultField]: ...  # noqa: D102
-    @property
-    def result_fields(self) -> dict[str, ResultField]: ...  # noqa: D102
-    @property
-    def measurable(self) -> list[str]: ...  # noqa: D102
-    @property
-    def effects(self) -> dict[str, Effect[Any, Any]]: ...  # noqa: D102
-    @property
-    def conditions(self) -> dict[str, Condition]: ...  # noqa: D102
 
 
 @dataclass(frozen=True)
@@ -109,8 +88,8 @@ class BuiltinReading:
         return observed - self.seen.zero if self.kind.is_from_zero and self.seen.zero else observed
 
 
-def builtin_effects(model: Declared) -> dict[str, Effect[Any, Any]]:
-    """Return the kernel's effects on the readings of this model, by name, without those whose name it has taken."""
+def builtin_effects(model: Any) -> dict[str, Effect[Any, Any]]:
+    """Return the kernel's effects on the readings of a ``Model``, by name, without those whose name it has taken."""
     results = [model.own_result_fields[name] for name in model.measurable]
     effects = [
         *_made(_OFFSET, results, [None]),
@@ -280,7 +259,7 @@ def _axes_of(result: ResultField) -> set[str]:
     return {result.along, f"{result.along}_{result.scope}"} - {""}
 
 
-def time_of(model: Declared) -> list[Observed]:
+def time_of(model: Any) -> list[Observed]:
     """Return the time: what the model calls so (condition, input or axis), else the kernel's condition.
 
     Nothing where the model calls something else by that name.
@@ -290,7 +269,7 @@ def time_of(model: Declared) -> list[Observed]:
     return [seen for seen in named if seen.name == TIME.name] or _own(model, TIME)
 
 
-def temperatures(model: Declared) -> list[Observed]:
+def temperatures(model: Any) -> list[Observed]:
     """Return the temperatures: conditions first, then inputs (about their default), else the kernel's condition.
 
     Of an input in a unit of differences (K: a temperature, or a rise) only a record can say that it is one.
@@ -301,7 +280,7 @@ def temperatures(model: Declared) -> list[Observed]:
     return [*known, *(replace(seen, may_stand=True) for seen in numbers if seen not in levels)]
 
 
-def angles(model: Declared) -> list[Observed]:
+def angles(model: Any) -> list[Observed]:
     """Return the angles, the likeliest to turn first.
 
     That is what a study of the model runs over, then conditions, then series and axes of results; the kernel's
@@ -319,7 +298,7 @@ def angles(model: Declared) -> list[Observed]:
     return [*{seen.name: seen for seen in turning}.values(), *(replace(seen, may_stand=True) for seen in free)]
 
 
-def _own(model: Declared, condition: Condition) -> list[Observed]:
+def _own(model: Any, condition: Condition) -> list[Observed]:
     """Return a condition of the kernel, unless the model uses its name for something else."""
     if condition.name in {*model.conditions, *model.input_fields, *model.result_fields}:
         return []
@@ -330,11 +309,11 @@ def _condition(condition: Condition) -> Observed:
     return Observed(condition.name, "condition", zero=condition.zero, condition=condition)
 
 
-def _conditions(model: Declared, unit: str) -> Iterator[Observed]:
+def _conditions(model: Any, unit: str) -> Iterator[Observed]:
     return (_condition(condition) for condition in model.conditions.values() if _is_like(condition.unit, unit))
 
 
-def _inputs(model: Declared, unit: str) -> Iterator[Observed]:
+def _inputs(model: Any, unit: str) -> Iterator[Observed]:
     """Give the inputs of a dimension that are always given: numbers, and series along an axis."""
     for name, field in model.input_fields.items():
         if field.is_optional or not _is_like(field.unit, unit):
@@ -345,7 +324,7 @@ def _inputs(model: Declared, unit: str) -> Iterator[Observed]:
             yield Observed(name, "series", field.path, axes=frozenset({name, field.spec.along} - {""}))
 
 
-def _result_axes(model: Declared, unit: str) -> Iterator[Observed]:
+def _result_axes(model: Any, unit: str) -> Iterator[Observed]:
     for name, result in model.own_result_fields.items():
         if isinstance(result.spec, Axis) and not result.spec.is_table and _is_like(result.unit, unit):
             yield Observed(name, "axis", result.path, axes=frozenset({name}))

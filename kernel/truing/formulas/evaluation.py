@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import ast
-import operator
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
 from fractions import Fraction
-from functools import reduce
-from typing import Any, NoReturn
+from functools import partial, reduce
+from typing import Any
 
 import numpy as np
 import pint
@@ -42,11 +40,15 @@ def evaluate(formula: Formula, values: Mapping[str, Any]) -> Any:
     return result.item() if result.ndim == 0 else result
 
 
-def _as_number(formula: Formula, name: str, values: Mapping[str, Any]) -> Any:
+def _held(formula: Formula, name: str, values: Mapping[str, Any]) -> Any:
     if name not in values:
         known = ", ".join(sorted(values)) or "nothing"
         raise DeclarationError(f"formula {formula.text!r} names {name!r}, which has no value here (known: {known})")
-    array = np.asarray(values[name])
+    return values[name]
+
+
+def _as_number(formula: Formula, name: str, values: Mapping[str, Any]) -> Any:
+    array = np.asarray(_held(formula, name, values))
     if array.dtype.kind in "biu":
         return array.astype(np.float64)
     if array.dtype.kind not in "fc":
@@ -54,8 +56,23 @@ def _as_number(formula: Formula, name: str, values: Mapping[str, Any]) -> Any:
     return array
 
 
+class _UnlikeError(Exception):
+    """Quantities that do not go together, and the part of a formula in which they meet."""
+
+    def __init__(self, node: Node, error: pint.DimensionalityError) -> None:
+        super().__init__(f"{_spoken(error.units1)} does not go with {_spoken(error.units2)}")
+        self.node = node
+
+
 def value_of(node: Node, values: Mapping[str, Any]) -> Any:
-    """Compute one node from arrays; ``evaluate`` is the door for callers."""
+    """Compute one node from arrays or quantities; ``evaluate`` is the door for callers."""
+    try:
+        return _value_of(node, values)
+    except pint.DimensionalityError as error:
+        raise _UnlikeError(node, error) from None
+
+
+def _value_of(node: Node, values: Mapping[str, Any]) -> Any:
     match node:
         case ast.Constant(float() as number):
             return np.float64(number)
@@ -82,12 +99,40 @@ def value_of(node: Node, values: Mapping[str, Any]) -> Any:
     raise AssertionError("parsing lets nothing else through")
 
 
+def _power(base: Any, exponent: Any) -> Any:
+    """Raise numbers or a quantity; one with a dimension needs one exponent for all points."""
+    power = exponent.m_as("") if hasattr(exponent, "m_as") else exponent
+    if not hasattr(base, "m_as") or base.dimensionless:
+        return np.power(base.m_as("") if hasattr(base, "m_as") else base, power)
+    one = np.unique(np.asarray(power, dtype=float))
+    if one.size != 1 or not np.isfinite(one[0]):
+        raise pint.DimensionalityError(base.units, "a power that is not one finite number")
+    return _raised(base, float(one[0]), np.power(base.magnitude, one[0]))
+
+
+def _raised(base: Any, power: float, magnitude: Any) -> Any:
+    """Return a quantity whose dimension is that of the base to an exact power."""
+    exact = {unit: own * _exact(power) for unit, own in base.unit_items()}
+    return base._REGISTRY.Quantity(magnitude, UnitsContainer(exact, non_int_type=Fraction))
+
+
+def _root(function: Callable[..., Any], degree: int, values: Any) -> Any:
+    is_quantity = hasattr(values, "m_as")
+    return _raised(values, 1 / degree, function(values.magnitude)) if is_quantity else function(values)
+
+
+def _normal_probability(x: Any) -> Any:
+    return ndtr(x.m_as("") if hasattr(x, "m_as") else x)
+
+
 OPERATORS: Mapping[str, Callable[..., Any]] = {
-    "+": np.add, "-": np.subtract, "*": np.multiply, "/": np.divide, "**": np.power,
-    "<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge, "==": operator.eq, "!=": operator.ne,
+    "+": np.add, "-": np.subtract, "*": np.multiply, "/": np.divide, "**": _power,
+    "<": np.less, "<=": np.less_equal, ">": np.greater, ">=": np.greater_equal, "==": np.equal, "!=": np.not_equal,
 }  # fmt: skip
 FUNCTIONS: Mapping[str, Callable[..., Any]] = {
-    **{name: getattr(np, name) for name in ("sqrt", "cbrt", "exp", "log", "log10", "abs", "sign", "sin", "cos")},
+    **{name: getattr(np, name) for name in ("exp", "log", "log10", "abs", "sign", "sin", "cos")},
+    "sqrt": partial(_root, np.sqrt, 2),
+    "cbrt": partial(_root, np.cbrt, 3),
     **{name: getattr(np, name) for name in ("tan", "sinh", "cosh", "tanh")},
     "cot": lambda x: 1 / np.tan(x),
     "asin": np.arcsin,
@@ -98,7 +143,7 @@ FUNCTIONS: Mapping[str, Callable[..., Any]] = {
     "hypot": lambda *sides: reduce(np.hypot, sides),
     "min": lambda *given: reduce(np.minimum, given) if len(given) > 1 else _over_last_axis(np.min, given[0]),
     "max": lambda *given: reduce(np.maximum, given) if len(given) > 1 else _over_last_axis(np.max, given[0]),
-    "Phi": ndtr,
+    "Phi": _normal_probability,
     "sum": lambda x: _over_last_axis(np.sum, x),
     "mean": lambda x: _over_last_axis(np.mean, x),
     "either": lambda first, second: np.where(np.isnan(first), second, first),
@@ -112,11 +157,6 @@ def _over_last_axis(function: Callable[..., Any], values: Any) -> Any:
 # The proof of dimensions: a formula evaluated with pint quantities
 
 
-KEEPS_DIMENSION = frozenset({"abs", "sum", "mean"})
-OF_LIKES = frozenset({"min", "max", "hypot", "either"})
-OF_ANGLE = frozenset({"sin", "cos", "tan", "cot", "inv"})
-
-
 def evaluate_quantities(formula: Formula, values: Mapping[str, pint.Quantity[Any]]) -> pint.Quantity[Any]:
     """Evaluate a formula with units and prove its dimensions; the quantity comes back in base units.
 
@@ -125,45 +165,48 @@ def evaluate_quantities(formula: Formula, values: Mapping[str, pint.Quantity[Any
     An equation gives left minus right, after both sides were found to agree.
 
     Raises:
-        UnitError: unlike dimensions are added, compared or offered as alternatives, or a function that needs a pure
-            number got something else; the sentence names the part of the formula.
+        UnitError: unlike dimensions meet, or a function that needs a pure number got something else; the sentence names
+            the part of the formula.
         DeclarationError: a name of the formula has no value.
     """
     registries = (getattr(value, "_REGISTRY", None) for value in values.values())
     registry: Any = next(filter(None, registries), None) or shared_registry()
-    magnitudes: dict[str, Any] = {}
-    dimensions: dict[str, UnitsContainer] = {}
-    for name in formula.names & values.keys():
-        quantity = registry.Quantity(values[name]).to_base_units()
-        magnitudes[name] = np.asarray(quantity.magnitude, dtype=float)
-        powers = {unit: power for unit, power in quantity.unit_items() if not registry.Unit(unit).dimensionless}
-        exact = {unit: _exact(power) for unit, power in powers.items()}  # without radians and counts
-        dimensions[name] = UnitsContainer(exact, non_int_type=Fraction)
-    magnitude = evaluate(formula, magnitudes)
-    proof = _Proof(formula, dimensions, magnitudes)
-    dimension = proof.of(formula.right)
-    if formula.left is not None:
-        dimension = proof.alike((formula.left, formula.right), "the two sides of the equation")
-    exponents = {unit: _exact(power) for unit, power in (dimension or {}).items()}
-    units = {unit: int(power) if power.denominator == 1 else float(power) for unit, power in exponents.items()}
-    result: pint.Quantity[Any] = registry.Quantity(magnitude, registry.UnitsContainer(units))
+    held: dict[str, Any] = {}
+    for name in formula.names:
+        quantity = registry.Quantity(_held(formula, name, values)).to_base_units()
+        exact = UnitsContainer(_powers(quantity), non_int_type=Fraction)
+        held[name] = registry.Quantity(np.asarray(quantity.magnitude, dtype=float), exact)
+    equation = None if formula.left is None else ast.BinOp(formula.left, ast.Sub(), formula.right)
+    try:
+        with np.errstate(all="ignore"):
+            found = registry.Quantity(value_of(equation or formula.right, held))
+    except _UnlikeError as error:
+        where = "the two sides of the equation" if error.node is equation else f"'{source(formula, error.node)}'"
+        raise UnitError(f"formula {formula.text!r}: {where}: {error}") from None
+    powers = _powers(found)
+    units = {unit: int(power) if power.denominator == 1 else float(power) for unit, power in powers.items()}
+    result: pint.Quantity[Any] = registry.Quantity(found.magnitude, registry.UnitsContainer(units))
     return result
+
+
+def _powers(quantity: Any) -> dict[str, Fraction]:
+    """Return the exponents of the units of a quantity, without radians and counts."""
+    units = quantity._REGISTRY.Unit
+    return {unit: _exact(power) for unit, power in quantity.unit_items() if not units(unit).dimensionless}
 
 
 def _exact(exponent: Any) -> Fraction:
     return Fraction(exponent).limit_denominator(10**6)
 
 
-def _power(base: UnitsContainer, exponent: Fraction) -> UnitsContainer:
-    return base**exponent if exponent else PURE_NUMBER
-
-
-PURE_NUMBER = UnitsContainer({}, non_int_type=Fraction)
 _SHORT = {"meter": "m", "kilogram": "kg", "second": "s", "ampere": "A", "kelvin": "K", "mole": "mol", "candela": "cd"}
 
 
-def _spoken(dimension: UnitsContainer | None) -> str:
-    """Say a dimension in the engineer's words: "a force", "a pure number"."""
+def _spoken(units: Any) -> str:
+    """Say units, or what stands in their place, in the engineer's words: "a force", "a pure number"."""
+    if isinstance(units, str):
+        return "a pure number" if units == "dimensionless" else units
+    dimension = getattr(units, "_units", units)
     if not dimension:
         return "a pure number"
     exponents = {_SHORT.get(unit, unit): _exact(power) for unit, power in sorted(dimension.items())}
@@ -172,96 +215,3 @@ def _spoken(dimension: UnitsContainer | None) -> str:
         return human_dimension(unit)
     except UnitError:
         return unit
-
-
-@dataclass(frozen=True)
-class _Proof:
-    """Walks a formula and finds the dimension of each part (None: a literal 0), or the sentence why there is none."""
-
-    formula: Formula
-    dimensions: Mapping[str, UnitsContainer]
-    magnitudes: Mapping[str, Any]
-
-    def of(self, node: Node) -> UnitsContainer | None:
-        match node:
-            case ast.Constant(0.0):
-                return None
-            case ast.Name(name) if name not in CONSTANTS:
-                return self.dimensions[name]
-            case ast.UnaryOp(_, operand):
-                return self.of(operand)
-            case ast.BinOp(left, (ast.Add() | ast.Sub()) as sign, right):
-                verb = "added" if isinstance(sign, ast.Add) else "subtracted"
-                return self.alike((left, right), f"'{self.quoted(node)}': what is {verb}")
-            case ast.BinOp(base, ast.Pow(), exponent):
-                return self.power(node, base, exponent)
-            case ast.BinOp(left, sign, right):
-                above, below = self.of(left), self.of(right)
-                if above is None:
-                    return None
-                power = Fraction(1 if isinstance(sign, ast.Mult) else -1)
-                product: UnitsContainer = above * _power(below or PURE_NUMBER, power)
-                return product
-            case ast.Call(ast.Name(function), arguments):
-                return self.call(node, function, arguments)
-            case ast.Compare(first, _, others):
-                self.alike((first, *others), f"'{self.quoted(node)}': what is compared")
-            case ast.BoolOp(_, operands):
-                for operand in operands:
-                    self.of(operand)
-        return PURE_NUMBER
-
-    def call(self, node: Node, function: str, arguments: Sequence[Node]) -> UnitsContainer | None:
-        where = f"'{self.quoted(node)}'"
-        if function == "cases":
-            for condition in arguments[1::2]:
-                self.of(condition)
-            return self.alike((*arguments[:-1:2], arguments[-1]), f"{where}: what is chosen from")
-        if function in OF_LIKES:
-            return self.alike(arguments, f"{where}: what {function} takes")
-        if function in KEEPS_DIMENSION:
-            return self.of(arguments[0])
-        if function in ("sqrt", "cbrt"):
-            base = self.of(arguments[0])
-            return None if base is None else _power(base, Fraction(1, 2 if function == "sqrt" else 3))
-        if function == "atan2":
-            self.alike(arguments, f"{where}: what atan2 takes")
-        elif function == "sign":
-            self.of(arguments[0])
-        else:
-            wanted = "an angle or a pure number" if function in OF_ANGLE else "a pure number"
-            self.pure(arguments[0], f"{where}: {function} needs {wanted}")
-        return PURE_NUMBER
-
-    def quoted(self, node: Node) -> str:
-        return source(self.formula, node)
-
-    def pure(self, node: Node, sentence: str) -> None:
-        if dimension := self.of(node):
-            self.fail(f"{sentence}, not {_spoken(dimension)} ('{self.quoted(node)}')")
-
-    def power(self, node: Node, base: Node, exponent: Node) -> UnitsContainer | None:
-        self.pure(exponent, f"'{self.quoted(node)}': an exponent must be a pure number")
-        dimension = self.of(base)
-        if not dimension:
-            return dimension
-        with np.errstate(all="ignore"):
-            value = np.unique(np.asarray(value_of(exponent, self.magnitudes)))
-        if value.size != 1 or not np.isfinite(value[0]):
-            self.fail(f"'{self.quoted(node)}': {_spoken(dimension)} is raised to a power that is not one finite number")
-        return _power(dimension, _exact(float(value[0])))
-
-    def alike(self, nodes: Sequence[Node], sentence: str) -> UnitsContainer | None:
-        """Return the dimension all nodes share; a literal zero shares any."""
-        known = ((node, dimension) for node in nodes if (dimension := self.of(node)) is not None)
-        first, shared = next(known, (None, None))
-        for node, dimension in known:
-            if first is not None and dimension != shared:
-                self.fail(
-                    f"{sentence} must have one dimension, but '{self.quoted(first)}' is {_spoken(shared)} "
-                    f"and '{self.quoted(node)}' is {_spoken(dimension)}"
-                )
-        return shared
-
-    def fail(self, sentence: str) -> NoReturn:
-        raise UnitError(f"formula {self.formula.text!r}: {sentence}")

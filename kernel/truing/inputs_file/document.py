@@ -1,7 +1,7 @@
 """TOML text to data, with the line of every name; a broken line does not hide the faults of the others.
 
-``tomllib`` has the last word on what is valid. Only when it refuses a text is every statement read on its own, so that
-all broken lines are named at once and the rest is still checked.
+Every statement is read on its own, so that its line is known, all broken ones are named at once and the rest is still
+checked. ``tomllib`` has the last word on what is valid and what it says.
 """
 
 from __future__ import annotations
@@ -85,14 +85,12 @@ def read_document(text: str, file: str) -> InputsDocument:
         many = f"holds {len(stated)} names and headings; at most {MOST_STATEMENTS} are read"
         document.faults.append(Fault(many, file, stated[MOST_STATEMENTS].line))
         return document
+    _Reader(document).run(stated)
     try:
-        document.data = tomllib.loads(text)
+        document.data, document.faults = tomllib.loads(text), []
     except (ValueError, RecursionError) as error:
-        _Repair(document).run(stated)
         if not document.faults:
             document.faults.append(Fault(_sentence(error), file, _line(error) or text.count("\n") + 1))
-        return document
-    _note_places(document, stated)
     return document
 
 
@@ -171,27 +169,13 @@ def _parts(key: str) -> KeyPath:
     return tuple(path)
 
 
-def _note_places(document: InputsDocument, stated: list[Statement]) -> None:
-    section: KeyPath = ()
-    for statement in stated:
-        header = _HEADER.fullmatch(statement.text)
-        assignment = None if header else _ASSIGNMENT.match(statement.text)
-        if header:
-            section = path = _parts(header[2])
-        elif assignment:
-            path = (*section, *_parts(assignment[1]))
-        else:
-            continue
-        _note(document, path, statement.line)
-
-
 def _note(document: InputsDocument, path: KeyPath, line: int) -> None:
     for length in range(1, len(path) + 1):
         document.places.setdefault(path[:length], (document.file, line))
 
 
-class _Repair:
-    """Reads a broken text statement by statement, naming every broken one and keeping what was meant."""
+class _Reader:
+    """Reads a text statement by statement, noting where each stands, naming broken ones and keeping what was meant."""
 
     def __init__(self, document: InputsDocument) -> None:
         self.document = document

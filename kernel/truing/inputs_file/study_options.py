@@ -128,37 +128,61 @@ def diagnose_options(model: Model[Any, Any], values: StatedValues) -> DiagnoseOp
     return DiagnoseOptions(**{path[2]: value for path, value in values.items() if path[:2] == ("studies", DIAGNOSE)})
 
 
+@dataclasses.dataclass(frozen=True)
+class _Known:
+    """The names that an option may hold, with the unit of each, and what a sentence calls one of them."""
+
+    kind: str
+    units: Mapping[str, str]
+
+    def demand(self, option: str, name: str) -> None:
+        """Raise with a sentence where a name is none of them."""
+        if name not in self.units:
+            hint = near_miss(name[:80], self.units) or f" (there are: {', '.join(self.units) or 'none'})"
+            raise SentenceError(f"{option} names {shown(name)}, which is no {self.kind}.{hint}")
+
+
 def diagnose_section(model: Model[Any, Any]) -> FileSection:
     """Return what may be asked of a diagnosis."""
-    ranges = {name: f"0..10 {unit}".strip() for name, unit in _settable(model).items()}
-    results = model.measurable
+    effects, of_model = model.known_effects, f"of {model.name}"
+    numbers = {name: field.unit for name, field in model.input_fields.items() if field.varies}
+    unknowns = [f"{name}.{unknown.name}" for name, effect in effects.items() for unknown in effect.unknowns]
+    own = _Known(
+        f"effect, unknown or number among the inputs {of_model}",
+        {**dict.fromkeys([*effects, *unknowns], ""), **numbers},
+    )
+    conditions = {name: condition.unit for name, condition in model.known_conditions.items()}
+    settable = _Known(f"condition and no number among the inputs {of_model}", {**numbers, **conditions})
+    units = {name: model.own_result_fields[name].unit for name in model.measurable}
+    results = _Known(f"result {of_model} that can be measured in rows", units)
     beyond = "Rows whose true value lies {} what was read, by result: a column of the data and the word it holds there."
-    words = {
-        "per_file": "Effects, single unknowns (effect.unknown) and inputs that every file has for itself.",
-        "hold_out": "Rows that only judge, by a column of the data and the word it holds there.",
-        "box": "Where an input or condition can be set, for the next measurement.",
-        "clipped": "The ends of a gauge, by result, with a unit; one of them may be left out.",
-        "lognormal": "Results whose errors are in proportion: they are compared as logarithms.",
-        "at_least": beyond.format("above"),
-        "at_most": beyond.format("below"),
-        "budget": "How many calls of the model on all rows the search may make; 0 leaves it to how long one takes.",
-    }
-    effects = {"items": {"type": "string"}, "examples": [list(model.known_effects)[:1]]}
-    kinds: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
-        "per_file": (_per_file, {"type": "array", "default": [], **effects}),
-        "hold_out": (_hold_out, {"type": "string", "default": "", "examples": ["record = validation"]}),
-        "box": (_box, _texts(ranges)),
-        "clipped": (_clipped, _texts(dict.fromkeys(results, "0..10"))),
-        "lognormal": (_lognormal, {"type": "array", "default": [], "items": {"enum": results}}),
-        "at_least": (partial(_marks, "at_least"), _texts(dict.fromkeys(results, "outcome = runout"))),
-        "at_most": (partial(_marks, "at_most"), _texts(dict.fromkeys(results, "outcome = below detection"))),
-        "budget": (_budget, {"type": "integer", "minimum": 0, "default": 0, "examples": [1000]}),
-    }
+    options: dict[str, tuple[str, Callable[[str, Any], Any], dict[str, Any]]] = {
+        "per_file": ("Effects, single unknowns (effect.unknown) and inputs that every file has for itself.",
+                     partial(_names, own), {**_LIST, "items": {"type": "string"}, "examples": [list(effects)[:1]]}),
+        "hold_out": ("Rows that only judge, by a column of the data and the word it holds there.",
+                     _marked, {"type": "string", "default": "", "examples": ["record = validation"]}),
+        "box": ("Where an input or condition can be set, for the next measurement.",
+                partial(_by_name, settable, partial(_range, model)),
+                _texts({name: f"0..10 {unit}".strip() for name, unit in settable.units.items()})),
+        "clipped": ("The ends of a gauge, by result, with a unit; one of them may be left out.",
+                    partial(_by_name, results, _ends), _texts(dict.fromkeys(units, "0..10"))),
+        "lognormal": ("Results whose errors are in proportion: they are compared as logarithms.",
+                      partial(_names, results), {**_LIST, "items": {"enum": list(units)}}),
+        "at_least": (beyond.format("above"), partial(_by_name, results, _mark),
+                     _texts(dict.fromkeys(units, "outcome = runout"))),
+        "at_most": (beyond.format("below"), partial(_by_name, results, _mark),
+                    _texts(dict.fromkeys(units, "outcome = below detection"))),
+        "budget": ("How many calls of the model on all rows the search may make; 0 leaves it to how long one takes.",
+                   _count, {"type": "integer", "minimum": 0, "default": 0, "examples": [1000]}),
+    }  # fmt: skip
     entries = {
-        name: FileEntry(partial(read, model), {**schema, "description": words[name]})
-        for name, (read, schema) in kinds.items()
+        name: FileEntry(partial(_read_asked, name, read), {**schema, "description": words})
+        for name, (words, read, schema) in options.items()
     }
     return FileSection("", "What is asked of a diagnosis.", entries)
+
+
+_LIST = {"type": "array", "default": []}
 
 
 def _texts(examples: Mapping[str, str]) -> dict[str, Any]:
@@ -166,71 +190,61 @@ def _texts(examples: Mapping[str, str]) -> dict[str, Any]:
     return {"type": "object", "properties": texts, "additionalProperties": False}
 
 
-def _settable(model: Model[Any, Any]) -> dict[str, str]:
-    """Return the units of what can be set for a measurement: numbers among the inputs, and conditions."""
-    inputs = {name: field.unit for name, field in model.input_fields.items() if field.varies}
-    return {**inputs, **{name: known.unit for name, known in model.known_conditions.items()}}
+def _read_asked(option: str, read: Callable[[str, Any], Any], raw: Any, _: InputsRead) -> Any:
+    return read(option, raw)
 
 
-def _per_file(model: Model[Any, Any], raw: Any, _: InputsRead) -> tuple[str, ...]:
+def _names(known: _Known, option: str, raw: Any) -> tuple[str, ...]:
+    """Take a list of names, each once."""
     if not isinstance(raw, list) or not all(isinstance(name, str) for name in raw):
-        raise SentenceError(f'per_file = {written(raw)} is no list of names; write ["sensor_offset"]')
-    effects = model.known_effects
-    unknowns = [f"{name}.{unknown.name}" for name, effect in effects.items() for unknown in effect.unknowns]
-    known = [*effects, *unknowns, *(name for name, field in model.input_fields.items() if field.varies)]
+        raise SentenceError(f'{option} = {written(raw)} is no list of names; write {option} = ["NAME"]')
     for index, name in enumerate(raw):
-        if name not in known:
-            near = near_miss(name[:80], known)
-            hint = near or f" (effects: {', '.join(effects) or 'none'})"
-            raise SentenceError(
-                f"per_file names {shown(name)}, which is no effect, unknown or number among the "
-                f"inputs of {model.name}.{hint}"
-            )
+        known.demand(option, name)
         if name in raw[:index]:
-            raise SentenceError(f"per_file names '{name}' twice")
+            raise SentenceError(f"{option} names '{name}' twice")
     return tuple(raw)
 
 
-def _hold_out(model: Model[Any, Any], raw: Any, _: InputsRead) -> str:
-    """Take "column = word"; nothing holds no row out."""
-    if not isinstance(raw, str):
-        raise SentenceError(f'hold_out = {written(raw)} is no text; write "record = validation"')
-    if raw.strip() and not all(DiagnoseOptions(hold_out=raw).held_out):
-        raise SentenceError(
-            f"hold_out = {shown(raw)} names no rows; write a column and the word it holds, "
-            'such as "record = validation"'
-        )
+def _by_name(known: _Known, read: Callable[[str, str, Any, str], Any], option: str, raw: Any) -> dict[str, Any]:
+    """Take a table, each name with what ``read(option, name, text, unit)`` makes of its text."""
+    if not isinstance(raw, dict):
+        raise SentenceError(f'{option} = {written(raw)} is no table; write {option} = {{ NAME = "..." }}')
+    for name in raw:
+        known.demand(option, name)
+    return {name: read(option, name, text, known.units[name]) for name, text in raw.items()}
+
+
+def _marked(option: str, raw: Any) -> str:
+    """Take "column = word"; nothing marks no row."""
+    return "" if isinstance(raw, str) and not raw.strip() else _mark("", option, raw, "")
+
+
+def _mark(option: str, name: str, raw: Any, _: str) -> str:
+    """Take the column and the word by which rows are marked, "column = word"."""
+    if not isinstance(raw, str) or not all(column_and_word(raw)):
+        owner = f"{option}: " if option else ""
+        like = f'{name} = "outcome = runout"'
+        raise SentenceError(f"{owner}{name} = {written(raw)} marks no rows; write a column and its word, as in {like}")
     return raw.strip()
 
 
-def _budget(model: Model[Any, Any], raw: Any, _: InputsRead) -> int:
+def _count(option: str, raw: Any) -> int:
     if not isinstance(raw, int) or isinstance(raw, bool) or raw < 0:
-        raise SentenceError(f"budget = {written(raw)} is no number of calls; write budget = 1000")
+        raise SentenceError(f"{option} = {written(raw)} is no number of calls; write {option} = 1000")
     return raw
 
 
-def _box(model: Model[Any, Any], raw: Any, _: InputsRead) -> dict[str, tuple[float, float]]:
-    """Take ranges of inputs and conditions, in SI."""
-    if not isinstance(raw, dict):
-        raise SentenceError(f'box = {written(raw)} is no table; write box = {{ NAME = "0..10 kN" }}')
-    known = _settable(model)
-    for name in raw:
-        if name not in known:
-            raise SentenceError(
-                f"box names {shown(name)}, which is no condition and no number among the inputs of "
-                f"{model.name}.{near_miss(name[:80], known)}"
-            )
-    box = {}
-    for name, text in raw.items():
-        box[name] = low, high = _ends("box", name, text, known[name])
-        field = model.input_fields.get(name)
-        sentence = "" if field is None else broken_bound(field, low) or broken_bound(field, high)
-        if sentence:
-            raise SentenceError(f"box: {sentence}")
-    return box
+def _range(model: Model[Any, Any], option: str, name: str, raw: Any, unit: str) -> tuple[float, float]:
+    """Take the range of an input or condition, in SI, both ends of which keep its bounds."""
+    low, high = _ends(option, name, raw, unit, may_be_open=False)
+    field = model.input_fields.get(name)
+    sentence = "" if field is None else broken_bound(field, low) or broken_bound(field, high)
+    if sentence:
+        raise SentenceError(f"{option}: {sentence}")
+    return low, high
 
 
-def _ends(option: str, name: str, raw: Any, unit: str, *, may_be_open: bool = False) -> tuple[float, float]:
+def _ends(option: str, name: str, raw: Any, unit: str, *, may_be_open: bool = True) -> tuple[float, float]:
     """Return "low..high unit" in SI, infinite where an end may be, and is, left out.
 
     The unit of the upper end holds for a lower one without.
@@ -250,44 +264,3 @@ def _ends(option: str, name: str, raw: Any, unit: str, *, may_be_open: bool = Fa
     if low >= high:
         raise SentenceError(f"{option}: {name} = {written(raw)} goes from its higher end; lower first")
     return low, high
-
-
-def _by_result(option: str, raw: Any, model: Model[Any, Any], like: str) -> dict[str, Any]:
-    if not isinstance(raw, dict):
-        raise SentenceError(f'{option} = {written(raw)} is no table; write {option} = {{ RESULT = "{like}" }}')
-    for name in raw:
-        _demand_measurable(option, name, model)
-    return raw
-
-
-def _demand_measurable(option: str, name: str, model: Model[Any, Any]) -> None:
-    known = model.measurable
-    if name not in known:
-        hint = near_miss(name[:80], known) or f" (results: {', '.join(known)})"
-        said = f"{option} names {shown(name)}, which is no result of {model.name} that can be measured in rows"
-        raise SentenceError(f"{said}.{hint}")
-
-
-def _marks(option: str, model: Model[Any, Any], raw: Any, _: InputsRead) -> dict[str, str]:
-    """Take the columns that mark censored readings, "column = word" by result."""
-    for name, text in _by_result(option, raw, model, "outcome = runout").items():
-        if not isinstance(text, str) or not all(column_and_word(text)):
-            raise SentenceError(
-                f"{option}: {name} = {written(text)} marks no rows; write a column and the word it "
-                f'holds, such as {name} = "outcome = runout"'
-            )
-    return {name: text.strip() for name, text in raw.items()}
-
-
-def _clipped(model: Model[Any, Any], raw: Any, _: InputsRead) -> dict[str, tuple[float, float]]:
-    fields = model.own_result_fields
-    ends = _by_result("clipped", raw, model, "0..10 kN")
-    return {name: _ends("clipped", name, text, fields[name].unit, may_be_open=True) for name, text in ends.items()}
-
-
-def _lognormal(model: Model[Any, Any], raw: Any, _: InputsRead) -> tuple[str, ...]:
-    if not isinstance(raw, list) or not all(isinstance(name, str) for name in raw):
-        raise SentenceError(f'lognormal = {written(raw)} is no list of results; write ["life"]')
-    for name in raw:
-        _demand_measurable("lognormal", name, model)
-    return tuple(dict.fromkeys(raw))

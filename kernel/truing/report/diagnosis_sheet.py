@@ -12,7 +12,6 @@ import numpy as np
 
 from truing.diagnosis.result import (
     APART,
-    UNKNOWN,
     Alternative,
     Amount,
     DiagnosisResult,
@@ -146,6 +145,13 @@ def diagnosis_chapters(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[C
         yield Chapter(title, tuple(part for part in said if not isinstance(part, str)), ident, lines=lines)
 
 
+def _both(line: str) -> ChapterParts:
+    """Say a line on the terminal, and on the sheet as a sentence."""
+    sentence = line.strip().rstrip(".")
+    yield line
+    yield Paragraph(f"{sentence[:1].upper()}{sentence[1:]}.")
+
+
 # What is wrong
 
 
@@ -205,8 +211,7 @@ def _measured(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[BlockView]
 
 
 def _cause(diagnosis: DiagnosisResult, drawn: Figures) -> ChapterParts:
-    yield _verdict_line(diagnosis)
-    yield Paragraph(" ".join(_significance(diagnosis)))
+    yield from _both(_verdict_line(diagnosis))
     if diagnosis.causes:
         yield from _named(diagnosis)
     yield from _near(diagnosis)
@@ -221,12 +226,9 @@ def _cause(diagnosis: DiagnosisResult, drawn: Figures) -> ChapterParts:
             title = f"Residuals of {spoken(curves.result)} over {spoken(covariate.name)}{when}"
             caption = f"{title}. The grey band is the noise floor.{figures.thinning_words(diagnosis, curves)}"
             yield drawn.view(title, partial(figures.over_covariate, diagnosis, curves, covariate), caption)
-    sentences = list(map(prose, diagnosis.inseparable))
-    yield from sentences
+    for sentence in diagnosis.inseparable:
+        yield from _both(prose(sentence))
     yield from _sight(diagnosis)
-    if sentences:
-        rows = [(sentence.rstrip("."),) for sentence in sentences]
-        yield table_of("What this experiment can hardly tell apart", ("Because of its design",), rows)
 
 
 def _verdict_line(diagnosis: DiagnosisResult) -> str:
@@ -278,33 +280,6 @@ def _near(diagnosis: DiagnosisResult) -> Iterator[str]:
     for word, rival in rivals:
         distance = f"{rival.behind:.1f} score units behind, λ {score_text(rival.separation)}"
         yield f"{word}: {explanation(rival)}, {distance}"
-
-
-def _significance(diagnosis: DiagnosisResult) -> Iterator[str]:
-    if not explanations_of(diagnosis):
-        yield f"Nothing is named: the best of all explanations may be chance ({p_text(diagnosis.p_any)})."
-        if diagnosis.verdict == "undecided":
-            yield f"It is undecided whether anything is wrong: {reasons(diagnosis)}."
-        return
-    yield f"That anything is wrong is {certainty(diagnosis.p_any)}, every explanation that was tried paid for."
-    if diagnosis.p_second is not None:
-        yield f"A second cause: {certainty(diagnosis.p_second)}."
-    if diagnosis.remainder is not None:
-        remainder = diagnosis.remainder
-        over = listed([spoken(name) for name in remainder.depends_on])
-        beside = "beside it " if diagnosis.causes else ""
-        yield (
-            f"What {beside}no registered effect explains depends on {over}: {prose(remainder.shape)}, in "
-            f"{listed([spoken(name) for name in remainder.results])} ({p_text(remainder.p_value)})."
-        )
-    if diagnosis.verdict == "undecided":
-        yield f"The verdict is undecided: {'; '.join([reasons(diagnosis), *shared_words(diagnosis)])}."
-    if diagnosis.verdict == "named":
-        yield "The verdict is unique: no other explanation is near."
-    if diagnosis.verdict == "one_of":
-        names = [together(names) for names in explanations_of(diagnosis)]
-        which = "; ".join([listed(names, "or"), *shared_words(diagnosis)])
-        yield f"The verdict is one of {len(names)}, and this record cannot say which: {which}."
 
 
 def ranking_table(diagnosis: DiagnosisResult) -> TableView:
@@ -373,15 +348,6 @@ def _model(diagnosis: DiagnosisResult) -> ChapterParts:
     fitted = fitted_table(diagnosis)
     if fitted.rows:
         yield fitted
-    else:
-        yield Paragraph("Nothing was named, so no effect is switched on.")
-    others = []
-    for alternative in diagnosis.alternatives:
-        for effect, unknowns in alternative.unknowns.items():
-            name = f"{explanation(alternative)}: " * (len(alternative.causes) > 1) + spoken(effect)
-            others += [row for unknown in unknowns for row in _fitted(name, unknown) if effect != UNKNOWN]
-    if others:
-        yield table_of("The same for the explanations that are not excluded", ("Instead", *HEADS[1:]), others, (2, 3))
     if diagnosis.calibrated:
         note = "Within its tolerance an input may move freely; what matters is how far, in standard deviations."
         yield table_of(
@@ -399,15 +365,15 @@ def _model(diagnosis: DiagnosisResult) -> ChapterParts:
         )
 
 
-def _sizes(diagnosis: DiagnosisResult) -> Iterator[str]:
+def _sizes(diagnosis: DiagnosisResult) -> ChapterParts:
     if not diagnosis.causes:
-        yield "nothing was named: the model stands as it is"
+        yield from _both("nothing was named: the model stands as it is")
     for cause in diagnosis.causes:
         yield cause_text(cause)
     for alternative in diagnosis.alternatives:
         sizes = [fitted_text(unknown) for unknowns in alternative.unknowns.values() for unknown in unknowns]
         if sizes:
-            yield f"or {explanation(alternative)}, {'; '.join(sizes)}"
+            yield from _both(f"or {explanation(alternative)}, {'; '.join(sizes)}")
     moved = sorted(diagnosis.calibrated, key=lambda calibrated: -abs(calibrated.of_its_sd))[:MOST_MOVED]
     if moved:
         shifts = ", ".join(f"{spoken(calibrated.name)} by {score_text(calibrated.of_its_sd)}" for calibrated in moved)
@@ -469,8 +435,7 @@ def _gain(diagnosis: DiagnosisResult, drawn: Figures) -> ChapterParts:
     )
     yield table_of("What the extension is worth", heads, rows, tuple(range(1, 8)), note)
     if diagnosis.causes:
-        yield f"the same causes in {percent(diagnosis.stability)} of the folds"
-        yield Paragraph(f"The same causes were named in {percent(diagnosis.stability)} of the folds.")
+        yield from _both(f"the same causes in {percent(diagnosis.stability)} of the folds")
     if held:
         yield table_of("On the rows that were held out on request", ("Result", "Before", "After"), held, (1, 2))
     title = "Error before and after, and the noise floor"
@@ -482,27 +447,20 @@ def _gain(diagnosis: DiagnosisResult, drawn: Figures) -> ChapterParts:
 
 def _next(diagnosis: DiagnosisResult) -> ChapterParts:
     """Write the chapter on the next measurement."""
-    if not diagnosis.next and diagnosis.verdict == "one_of":
-        yield Paragraph("No setting can be proposed that tells the explanations apart.")
-    elif not diagnosis.next:
-        can_be_more = any(visible.sight == "not excited" for visible in diagnosis.seen) or diagnosis.not_measured
-        yield Paragraph(
-            ("More readings would decide." if diagnosis.verdict == "undecided" else "There is nothing to separate.")
-            + (" Of what was not excited or not measured (chapter 2) this data says nothing." if can_be_more else "")
-        )
-    else:
+    if diagnosis.next:
         yield from _points(diagnosis)
-    yield from (tie_text(tie).rstrip(".") for tie in diagnosis.ties)
+    for tie in diagnosis.ties:
+        yield from _both(tie_text(tie).rstrip("."))
     if not diagnosis.next and not diagnosis.ties:
-        yield "nothing to separate" if diagnosis.unique else "no setting is proposed"
-    yield from _ties(diagnosis)
+        yield from _both("nothing to separate" if diagnosis.unique else "no setting is proposed")
 
 
 def _points(diagnosis: DiagnosisResult) -> ChapterParts:
     reasons = list(dict.fromkeys(point.why for point in diagnosis.next if point.why))
     for index, point in enumerate(diagnosis.next, start=1):
         yield f"{index}. {settings_text(point)}: {pair_text(point)} (λ then {score_text(point.separation)})"
-    yield from (f"   {reason}" for reason in reasons)
+    for reason in reasons:
+        yield from _both(f"   {reason}")
     names = list(dict.fromkeys(name for point in diagnosis.next for name in (*point.measure, *point.settings)))
     rows = []
     for index, point in enumerate(diagnosis.next, start=1):
@@ -515,22 +473,6 @@ def _points(diagnosis: DiagnosisResult) -> ChapterParts:
         f"{APART:.0f} on the two are apart."
     )
     yield table_of("Settings to measure", heads, rows, (*range(1, len(names) + 1), len(names) + 2), note)
-    for reason in reasons:
-        yield Paragraph(f"{reason[:1].upper()}{reason[1:].rstrip('.')}.")
-
-
-def _ties(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
-    """Say which facts decide between explanations that no measurement proposed here tells apart."""
-    for tie in diagnosis.ties:
-        names = listed([together([name]) for name in tie.explanations])
-        yield Paragraph(f"No measurement proposed here tells {names} apart; a fact from elsewhere does.")
-        facts = []
-        for fact in tie.facts:
-            what, size = spoken(fact.quantity.removeprefix("input:")), amount_text(readable(fact.value))
-            facts.append((together([fact.explanation]), what, fact.note or ABSENT, size))
-        if facts:
-            heads = ("If it is", "then this quantity", "that is", "has this value")
-            yield table_of("Facts that decide", heads, facts, (3,))
 
 
 # Data

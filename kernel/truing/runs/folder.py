@@ -15,11 +15,10 @@ import numpy as np
 
 from truing.atomic import place_folder, recover
 from truing.calculation import Calculation
-from truing.cases import CasesTable
 from truing.diagnosis.result import DiagnosisResult
 from truing.errors import OutputError, PluginError, UnknownPluginError
-from truing.runs.diagnosis_document import diagnosis_document, file_labels
-from truing.runs.documents import SCHEMA, large_arrays, results_document
+from truing.runs.diagnosis_document import file_labels
+from truing.runs.documents import SCHEMA, large_arrays
 from truing.runs.extension import extended_text
 from truing.runs.inputs_written import complete_inputs
 from truing.runs.new_effect import new_effect_source
@@ -43,31 +42,6 @@ def json_text(document: Any) -> str:
     return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
-def write_run(
-    folder: Path,
-    calculation: Calculation,
-    *,
-    provenance: Provenance,
-    run_info: Mapping[str, Any],
-    sheets: Mapping[str, str | bytes],
-    cases: CasesTable | None = None,
-    excel: bool = False,
-) -> dict[str, Any]:
-    """Write a run folder and return results.json as data.
-
-    ``sheets`` holds files by name ("sheet.html", "sheet.md", "sheet.pdf"), ``run_info`` what run.json says of this one
-    run (date, duration, machine, workers); ``excel`` adds tables for a spreadsheet. Files of studies stand beside them.
-    Raises OutputError as ``write_outcome`` does.
-    """
-    document = results_document(calculation, provenance, cases=cases)
-    files = {**sheets, **(spreadsheets(document, calculation.setup.model) if excel else {})}
-    if large := large_arrays(calculation):
-        files["arrays.npz"] = npz_bytes(large)
-    files |= study_files(calculation.outcomes, files)
-    write_outcome(folder, "run", calculation.setup, document, provenance=provenance, run_info=run_info, files=files)
-    return document
-
-
 def write_outcome(
     folder: Path,
     kind: FolderKind,
@@ -80,8 +54,9 @@ def write_outcome(
 ) -> None:
     """Write the folder of a run or a diagnosis: its document, inputs.toml, run.json and further files, all or nothing.
 
-    A folder that is there already is replaced whole if it is one of ours of this kind. Raises OutputError where it is
-    not, or where nothing can be written.
+    ``run_info`` holds what run.json says of this one run: date, duration, machine, workers. A folder that is there
+    already is replaced whole if it is one of ours of this kind. Raises OutputError where it is not, or where nothing
+    can be written.
     """
     origin = setup.origin
     run = {
@@ -181,7 +156,26 @@ def _loaded(folder: Path, kind: FolderKind) -> dict[str, Any]:
     return document
 
 
-# The files that studies leave in a run folder beside the sheet: a made surface, a table to work on with
+# What stands beside the documents: arrays, tables for a spreadsheet, the extended model, files that studies leave
+
+
+def run_files(
+    calculation: Calculation, document: Mapping[str, Any], sheets: Mapping[str, str | bytes], *, excel: bool = False
+) -> dict[str, str | bytes]:
+    """Return the files of a run by name: its sheets, large arrays, with ``excel`` tables, and those of its studies."""
+    files = {**sheets, **(spreadsheets(document, calculation.setup.model) if excel else {})}
+    if large := large_arrays(calculation):
+        files["arrays.npz"] = npz_bytes(large)
+    return files | study_files(calculation.outcomes, files)
+
+
+def diagnosis_files(
+    diagnosis: DiagnosisResult, sheets: Mapping[str, str | bytes], folder: Path
+) -> dict[str, str | bytes]:
+    """Return the files of a diagnosis by name: its sheets and curves, and the extension where there is one."""
+    extension = {"extended.toml": extended_text(diagnosis, folder), "new_effect.py": new_effect_source(diagnosis)}
+    curves = npz_bytes(curve_arrays(diagnosis))
+    return {"arrays.npz": curves, **sheets, **{name: text for name, text in extension.items() if text}}
 
 
 NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,99}", re.ASCII)
@@ -213,33 +207,6 @@ KEPT = (
     "cases.csv",
 )  # fmt: skip
 """Names that a run folder uses itself, or may use."""
-
-
-# The folder of a diagnosis: its document, its sheets, and the extended model, complete or absent
-
-
-def write_diagnosis(
-    folder: Path,
-    diagnosis: DiagnosisResult,
-    *,
-    provenance: Provenance,
-    run_info: Mapping[str, Any],
-    sheets: Mapping[str, str | bytes],
-) -> dict[str, Any]:
-    """Write the folder of a diagnosis and return diagnosis.json as data.
-
-    ``sheets`` holds files by name, ``run_info`` what run.json says of this one run. A folder that is there already is
-    replaced whole if it is a diagnosis of ours. Raises OutputError where it is not, or where nothing can be written.
-    """
-    document = diagnosis_document(diagnosis)
-    extension = {"extended.toml": extended_text(diagnosis, folder), "new_effect.py": new_effect_source(diagnosis)}
-    files = {"arrays.npz": npz_bytes(curve_arrays(diagnosis)), **sheets}
-    files |= {name: text for name, text in extension.items() if text}
-    write_outcome(
-        folder, "diagnosis", diagnosis.setup, document, provenance=provenance, files=files,
-        run_info={**run_info, "data": dict(diagnosis.records.digests)},
-    )  # fmt: skip
-    return document
 
 
 def data_digests(diagnosis: DiagnosisResult) -> dict[str, str]:

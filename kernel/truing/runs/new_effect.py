@@ -11,7 +11,7 @@ import ast
 import keyword
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from math import isfinite
 from typing import Any
 
@@ -23,16 +23,13 @@ from truing.runs.inputs_written import comment_lines
 from truing.templating import rendered
 
 NAME = "remainder"
-FUNCTIONS = frozenset({
-    "abs", "arctan", "clip", "cos", "cosh", "exp", "expm1", "floor", "heaviside", "log", "log1p", "maximum", "minimum",
-    "power", "sign", "sin", "sinh", "sqrt", "square", "tan", "tanh", "where",
+OF_NUMPY = frozenset({
+    "abs", "arctan", "clip", "cos", "cosh", "e", "exp", "expm1", "floor", "heaviside", "log", "log1p", "maximum",
+    "minimum", "pi", "power", "sign", "sin", "sinh", "sqrt", "square", "tan", "tanh", "where",
 })  # fmt: skip
-CONSTANTS = frozenset({"pi", "e"})
 TAKEN = frozenset({"np", "inputs", "results", "factor", "truing", "model", "replace", "Any", "Float", NAME})
-_NODES = (
-    ast.Expression, ast.BinOp, ast.UnaryOp, ast.Compare, ast.Load, ast.Add, ast.Sub, ast.Mult, ast.Div, ast.Pow,
-    ast.Mod, ast.FloorDiv, ast.USub, ast.UAdd, ast.BitAnd, ast.BitOr, ast.Invert, ast.Lt, ast.LtE, ast.Gt, ast.GtE,
-    ast.Eq, ast.NotEq,
+ARITHMETIC = (
+    ast.Expression, ast.BinOp, ast.UnaryOp, ast.Compare, ast.operator, ast.unaryop, ast.cmpop, ast.Load,
 )  # fmt: skip
 
 
@@ -64,8 +61,8 @@ def new_effect_source(diagnosis: DiagnosisResult) -> str:
         "shapes": [_shape(diagnosis, result, terms, sources) for result, terms in _terms(diagnosis).items()],
         "measured": "".join(f", {code}: Float" for code in made),
         "needs": ", ".join(code.upper() for code in made),
-        "looks_like": _quoted(remainder.shape),
-        "model": _quoted(diagnosis.setup.model.name),
+        "looks_like": ascii(printable(remainder.shape)),
+        "model": ascii(diagnosis.setup.model.name),
     })  # fmt: skip
 
 
@@ -130,30 +127,20 @@ def safe_expression(text: str, names: Mapping[str, str]) -> str | None:
         tree = ast.parse(text.strip(), mode="eval")
     except (SyntaxError, ValueError, MemoryError, RecursionError):
         return None
-    called = [node.func for node in ast.walk(tree) if isinstance(node, ast.Call)]
-    allowed = set(names.values())
-    return ast.unparse(tree) if all(_is_harmless(node, allowed, called) for node in ast.walk(tree)) else None
+    return ast.unparse(tree) if all(_is_harmless(node, set(names.values())) for node in ast.walk(tree)) else None
 
 
-def _is_harmless(node: ast.AST, names: set[str], called: Sequence[ast.expr]) -> bool:
+def _is_harmless(node: ast.AST, names: set[str]) -> bool:
     match node:
         case ast.Constant(value=number):
             return type(number) in {int, float}
         case ast.Name(id=name):
             return name in names or name == "np"
         case ast.Attribute(value=ast.Name(id="np"), attr=name):
-            return name in (FUNCTIONS if node in called else CONSTANTS)
+            return name in OF_NUMPY
         case ast.Call(func=ast.Attribute(), keywords=[]):
             return True
-        case ast.BinOp(op=ast.Pow(), right=ast.Constant(value=power) | ast.UnaryOp(operand=ast.Constant(value=power))):
-            return isinstance(power, (int, float)) and abs(power) <= 64
-    return isinstance(node, _NODES) and not (isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow))
-
-
-def _quoted(text: str) -> str:
-    """Write a text as a string of code, in ASCII."""
-    inner = ascii(printable(text))[1:-1].replace("\\'", "'").replace('"', '\\"')
-    return f'"{inner}"'
+    return isinstance(node, ARITHMETIC)
 
 
 def _about(diagnosis: DiagnosisResult, remainder: Remainder) -> list[str]:
@@ -190,12 +177,9 @@ def _conditions(sources: Sequence[_Source]) -> list[str]:
 
 
 def _condition(condition: Condition) -> str:
-    more = [f"reference={condition.reference!r}"] if condition.reference else []
-    for key in ("note", "derived"):
-        more += [f"{key}={_quoted(getattr(condition, key))}"] if getattr(condition, key) else []
-    for key in ("low", "high"):
-        more += [f"{key}={getattr(condition, key)!r}"] if getattr(condition, key) is not None else []
-    return f"Condition({', '.join([_quoted(condition.name), _quoted(condition.unit), *more])})"
+    stated = {field.name: getattr(condition, field.name) for field in fields(condition)}
+    other = [field.name for field in fields(condition) if stated[field.name] != field.default]
+    return f"Condition({', '.join(f'{name}={stated[name]!a}' for name in other)})"
 
 
 def _shape(

@@ -23,7 +23,7 @@ if os.name == "nt":
 else:
     import fcntl
 
-PARTIAL_SCHEMA = "truing.partial/2"
+PARTIAL_SCHEMA = "truing.partial/3"
 HEADER, FRESH, BATCHES, LOCK = OURS = ("partial.json", "partial.json.new", "batches.log", "lock")
 
 
@@ -61,22 +61,23 @@ def _file(module: Any) -> Path:
 
 
 def identity_of(setup: Setup, code: tuple[str, ...]) -> dict[str, Any]:
-    """Say what a batch may depend on: inputs, seed, versions, and the source of these packages or files."""
+    """Say what a batch may depend on, the most telling first: versions, and the source of these packages or files."""
     origin = provenance_of(setup)
+    versions = {
+        "truing": origin.kernel,
+        "python": origin.python,
+        **origin.packages,
+        **{name: version for _, name, version in origin.added},
+        origin.plugin: origin.plugin_version,
+    }
     return {
         "schema": PARTIAL_SCHEMA,
         "plugin": origin.plugin,
-        "model": setup.model.name,
-        "input_hash": origin.input_hash,
+        "calculation": setup.model.name,
         "seed": origin.seed,
-        "versions": {
-            "truing": origin.kernel,
-            "python": origin.python,
-            **origin.packages,
-            **{name: version for _, name, version in origin.added},
-            origin.plugin: origin.plugin_version,
-        },
-        "code": {Path(source).name: code_hash(source) for source in code},
+        "inputs": origin.input_hash,
+        **{f"version of {name}": version for name, version in versions.items()},
+        **{f"code of {Path(source).name}": code_hash(source) for source in code},
     }
 
 
@@ -155,17 +156,8 @@ def _demand_same(batch_folder: Path, identity: Mapping[str, Any]) -> None:
 
 
 def _difference(stated: Mapping[str, Any], wanted: Mapping[str, Any]) -> str:
-    """Say in what two runs differ, the most telling first."""
-    for name, words in (("plugin", "plugin"), ("model", "calculation"), ("seed", "seed")):
-        if stated.get(name) != wanted[name]:
-            return f"another {words} ({stated.get(name)}, now {wanted[name]})"
-    if stated.get("input_hash") != wanted["input_hash"]:
-        return "other inputs"
-    for kind in ("versions", "code"):
-        then, now = dict(stated.get(kind) or {}), wanted[kind]
-        for name in sorted({*then, *now}):
-            if then.get(name) != now.get(name):
-                if kind == "code":
-                    return f"other code of {name}"
-                return f"another version of {name} ({then.get(name) or 'none'}, now {now.get(name) or 'none'})"
-    return "other contents"
+    """Say what differs first; of what is known by its hash alone nothing more."""
+    name = next(name for name in {**wanted, **stated} if stated.get(name) != wanted.get(name))
+    if name == "inputs" or name.startswith("code of "):
+        return f"other {name}"
+    return f"another {name} ({stated.get(name, 'none')}, now {wanted.get(name, 'none')})"

@@ -1625,7 +1625,7 @@ def _variance(designs: Designs, slopes: Mapping[str, Any]) -> Any:
     """Return the first-order variance of a response of every design from its slopes (m, ...) by column."""
     variance: Any = 0.0
     for cause in designs.causes:
-        gradient = [slopes[column] for column in cause.columns]
+        gradient = np.array([slopes[column] for column in cause.columns])
         if cause.mixing is not None:
             variance = variance + (gradient * np.tensordot(cause.covariance(), gradient, axes=1)).sum(axis=0)
             continue

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from truing.declare.blocks import Block, Drawing, Table, Words
 from truing.errors import UsageError
-from truing.evaluate import acting_inputs, evaluate_in_parts
+from truing.evaluate import acting_inputs, evaluate_rows
 from truing.setup import Setup
 from truing.studies.bench import Bench, Outcome
 from truing.studies.drawings import BLUE, WIDTH, labelled
@@ -48,7 +48,7 @@ class Sweep:
         over = scattering_name(setup, self.over, self.name)
         axis = _points(setup, over, self.at, self.points)
         done = bench.part(self.name, 0.0, 1.0)
-        rows = evaluate_in_parts(setup, {over: _values(setup, over, axis)}, len(axis), size=TOGETHER, done=done)
+        rows = evaluate_rows(setup, {over: _values(setup, over, axis)}, len(axis), size=TOGETHER, done=done)
         fields = setup.model.own_result_fields
         return Swept(
             name=self.name,

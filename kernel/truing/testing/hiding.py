@@ -73,79 +73,107 @@ def hide(
 
     Raises InputError with every fault of the call, a sentence each.
     """
-    return _hidden(
-        effect, model, size=size, noise=noise, over=over, measure=measure, rows=rows, runs=runs, seed=seed, by=by,
-        settings=settings or {}, machine=machine, correlation=correlation,
-    )  # fmt: skip
-
-
-def _hidden(
-    name: str | None, model: Model[Any, Any], *, size: Size | None, noise: Size | None,
-    over: Mapping[str, str | Sequence[Any]] | None, measure: str | Sequence[str] | None, rows: int, runs: int,
-    seed: int, by: Strange | None, settings: Mapping[str, str], machine: int | None, correlation: float,
-) -> Hidden:  # fmt: skip
-    """Check everything that was asked for, then draw the record."""
     faults: list[str] = []
-    setup = Subject(model).setup
+    setup = _set(model, settings or {}, faults)
+    made = effect_of(model, effect, faults)
+    noises = noise_of(setup, noise, measure, faults)
+    truth = truth_of(made, size, list(noises), faults)
+    check_by(by, made, model, faults)
+    columns = columns_of(setup, made, list(noises), over, faults)
+    return _Plan(setup, made, truth, by, noises, columns, rows, runs, seed, correlation, machine).hidden(faults)
+
+
+def _set(model: Model[Any, Any], settings: Mapping[str, str], faults: list[str]) -> Setup:
+    """Return what is known of the machine: the defaults of the model with these settings."""
+    subject = Subject(model)
     if settings:
         try:
-            setup = setup_from_settings(Subject(model).offer, settings)
+            return setup_from_settings(subject.offer, settings)
         except TruingError as error:
             faults.append(str(error))
-    effect = effect_of(model, name, faults)
-    noises = noise_of(setup, noise, measure, faults)
-    truth = truth_of(effect, size, list(noises), faults)
-    check_by(by, effect, model, faults)
-    faults += [f"{what} is {count}; at least one" for what, count in {"rows": rows, "runs": runs}.items() if count < 1]
-    if not -1 < correlation < 1:
-        faults.append(f"correlation is {correlation:g}; it lies between -1 and 1")
-    columns, wrong = columns_of(setup, effect, list(noises), over)
-    _raise(model, [*faults, *wrong])
-    design = RecordDesign(tuple(columns), rows, runs)
-    drawn = {} if machine is None else scatter_of(setup).draw(machine, 0, 1)
-    off = {drawn_input: float(values[0]) for drawn_input, values in drawn.items()}
-    known = {column.name: setup.nominal(column.name) for column in columns if column.name in model.known_conditions}
-    setup = replace(setup, conditions={**setup.conditions, **known})
-    plan = _Plan(setup, wrong_machine(setup.changed(off), effect, truth, by), noises, correlation, seed)
-    measured, _ = plan.recorded(design, 0)
-    held, left = plan.recorded(design if runs > 1 or design.is_record else replace(design, rows=HELD_OUT_ROWS), 1)
-    return Hidden(
-        setup=setup, measured=measured, held_out=held, effect=name, truth=truth, machine=off, noise=left,
-        is_strange=effect is None and by is not None,
-    )  # fmt: skip
+    return subject.setup
 
 
 @dataclass(frozen=True)
 class _Plan:
-    """What is known, what is true, and how it is read off."""
+    """What is known of a machine, what is wrong with it, and how it is read off, as ``hide`` was asked for it."""
 
     setup: Setup
-    true: Setup
+    effect: Effect[Any, Any] | None
+    truth: Mapping[str, float]
+    by: Strange | None
     noises: Mapping[str, RecordNoise]
-    correlation: float
+    columns: Sequence[DesignColumn]
+    rows: int
+    runs: int
     seed: int
+    correlation: float
+    machine: int | None
 
-    def recorded(self, design: RecordDesign, part: int) -> tuple[str, dict[str, float]]:
+    def hidden(self, faults: list[str]) -> Hidden:
+        """Draw the record, and rows to judge with. Raises InputError where there are faults, with them all."""
+        counts = {"rows": self.rows, "runs": self.runs}
+        faults += [f"{what} is {count}; at least one" for what, count in counts.items() if count < 1]
+        if not -1 < self.correlation < 1:
+            faults.append(f"correlation is {self.correlation:g}; it lies between -1 and 1")
+        _raise(self.setup.model, faults)
+        drawn = {} if self.machine is None else scatter_of(self.setup).draw(self.machine, 0, 1)
+        off = {drawn_input: float(values[0]) for drawn_input, values in drawn.items()}
+        known = {column.name for column in self.columns} & set(self.setup.model.known_conditions)
+        conditions = {**self.setup.conditions, **{name: self.setup.nominal(name) for name in known}}
+        setup = replace(self.setup, conditions=conditions)
+        true = wrong_machine(setup.changed(off), self.effect, self.truth, self.by)
+        measured, _ = self._recorded(true, self.rows, 0)
+        held, left = self._recorded(true, self.rows if self.runs > 1 or self._is_record else HELD_OUT_ROWS, 1)
+        return Hidden(
+            setup=setup, measured=measured, held_out=held, effect=self.effect and self.effect.name, truth=self.truth,
+            machine=off, noise=left, is_strange=self.effect is None and self.by is not None,
+        )  # fmt: skip
+
+    @property
+    def _is_record(self) -> bool:
+        """Whether the rows of a run are places on an axis."""
+        return any(column.places for column in self.columns)
+
+    def _recorded(self, true: Setup, rows: int, part: int) -> tuple[str, dict[str, float]]:
         """Return a record as CSV, and the root mean square of the noise in it by result, SI."""
-        columns = design.drawn(generator(self.seed, part, "design"))
-        true = self._shown(columns)
+        columns = self._drawn(rows, generator(self.seed, part, "design"))
+        readings = self._shown(true, columns)
         left: dict[str, float] = {}
         for name, noise in self.noises.items():
             rng = generator(self.seed, part, f"noise of {name}")
-            size = noise.size(true[name])
-            added = size * _correlated(rng, design, self.correlation)
+            size = noise.size(readings[name])
+            added = size * with_memory(rng.standard_normal((self.runs, rows)), self.correlation).ravel()
             unit = self.setup.print_unit(name)
             step = size / unit_factor(difference_unit(unit)) / 1000
-            read = from_si(true[name] + added, unit)
+            read = from_si(readings[name] + added, unit)
             columns[f"{name} [{unit or '1'}]"] = np.round(read, -math.floor(math.log10(step))) if step else read
             left[name] = float(np.sqrt(np.mean(added**2)))
-        return _csv(columns), left
+        return csv_of(columns), left
 
-    def _shown(self, columns: Mapping[str, Any]) -> Mapping[str, NDArray[np.float64]]:
+    def _drawn(self, rows: int, rng: np.random.Generator) -> dict[str, Any]:
+        """Return the columns by header, as they are written: space-filling, and in the order of the clock.
+
+        Where a result runs along an axis every run is a record.
+        """
+        count = rows * self.runs
+        spread = [column for column in self.columns if not (column.rises or column.places)]
+        shares = qmc.Halton(max(len(spread), 1), seed=rng).random(self.runs if self._is_record else count)
+        shares = np.repeat(shares, rows, axis=0) if self._is_record else shares
+        columns: dict[str, Any] = {RUN: np.repeat(np.arange(1, self.runs + 1), rows)} if self.runs > 1 else {}
+        clock = (np.arange(count) + rng.random(count)) / count
+        for column in self.columns:
+            if column.places:
+                own = np.tile(np.linspace(0.0, 1.0, rows), self.runs)
+            else:
+                own = clock if column.rises else shares[:, spread.index(column)]
+            columns[column.header] = column.at(own)
+        return columns
+
+    def _shown(self, true: Setup, columns: Mapping[str, Any]) -> Mapping[str, NDArray[np.float64]]:
         """Return what the gauges would show without noise, SI. Raises InputError where the model has no answer."""
-        table = TableText(MEASURED, _csv(columns))
-        rows = read_rows(table, Offer(self.true.model.name, self.true.model, self.true.origin), self.true)
-        reading = read_by_gauge(self.true, rows, list(self.noises))
+        rows = read_rows(TableText(MEASURED, csv_of(columns)), Offer(true.model.name, true.model, true.origin), true)
+        reading = read_by_gauge(true, rows, list(self.noises))
         if reading.failed.any():
             row, reason = next(iter(reading.reasons.items()))
             at = ", ".join(f"{name} = {values[row]}" for name, values in columns.items())
@@ -154,16 +182,17 @@ class _Plan:
         return reading.results
 
 
-def _csv(columns: Mapping[str, Any]) -> str:
+def csv_of(columns: Mapping[str, Any]) -> str:
+    """Return columns by header as CSV, every digit kept."""
     return table_text(list(columns), list(columns.values()))
 
 
-def _correlated(rng: np.random.Generator, design: RecordDesign, correlation: float) -> NDArray[np.float64]:
-    """Draw noise of unit variance for every row; that of neighbours in a run is correlated."""
-    drawn = rng.standard_normal((design.runs, design.rows))
-    for row in range(1, design.rows if correlation else 0):
-        drawn[:, row] = correlation * drawn[:, row - 1] + math.sqrt(1 - correlation**2) * drawn[:, row]
-    return np.asarray(drawn.ravel())
+def with_memory(drawn: NDArray[np.float64], correlation: float) -> NDArray[np.float64]:
+    """Return noise of unit variance (runs, rows) in which that of neighbours in a run is correlated."""
+    noise = drawn.copy()
+    for row in range(1, noise.shape[1] if correlation else 0):
+        noise[:, row] = correlation * noise[:, row - 1] + math.sqrt(1 - correlation**2) * noise[:, row]
+    return noise
 
 
 def _raise(model: Model[Any, Any], faults: Sequence[str]) -> None:
@@ -539,41 +568,11 @@ class DesignColumn:
         return np.clip(np.round(values, decimals), self.low, self.high)
 
 
-@dataclass(frozen=True)
-class RecordDesign:
-    """How many rows in how many runs, and what varies. Where a result runs along an axis every run is a record."""
-
-    columns: tuple[DesignColumn, ...]
-    rows: int
-    runs: int
-
-    @property
-    def is_record(self) -> bool:
-        """Whether the rows of a run are places on an axis."""
-        return any(column.places for column in self.columns)
-
-    def drawn(self, rng: np.random.Generator) -> dict[str, Any]:
-        """Return the columns by header, as they are written: space-filling, and in the order of the clock."""
-        count = self.rows * self.runs
-        spread = [column for column in self.columns if not (column.rises or column.places)]
-        points = self.runs if self.is_record else count
-        shares = qmc.Halton(max(len(spread), 1), seed=rng).random(points)
-        shares = np.repeat(shares, self.rows, axis=0) if self.is_record else shares
-        columns: dict[str, Any] = {RUN: np.repeat(np.arange(1, self.runs + 1), self.rows)} if self.runs > 1 else {}
-        clock = (np.arange(count) + rng.random(count)) / count
-        for column in self.columns:
-            if column.places:
-                own = np.tile(np.linspace(0.0, 1.0, self.rows), self.runs)
-            else:
-                own = clock if column.rises else shares[:, spread.index(column)]
-            columns[column.header] = column.at(own)
-        return columns
-
-
 def columns_of(
-    setup: Setup, effect: Effect[Any, Any] | None, measured: Sequence[str], over: Mapping[str, Any] | None
-) -> tuple[list[DesignColumn], list[str]]:
-    """Return the columns that vary, and what is wrong with what was asked for, a sentence each.
+    setup: Setup, effect: Effect[Any, Any] | None, measured: Sequence[str], over: Mapping[str, Any] | None,
+    faults: list[str],
+) -> list[DesignColumn]:  # fmt: skip
+    """Return the columns that vary; what is wrong with what was asked for is added to ``faults``, a sentence each.
 
     ``over`` names them all; without it they are what the effect needs and what is declared to vary. The axis of a
     measured result is a column in any case.
@@ -583,16 +582,17 @@ def columns_of(
         unit = setup.model.own_result_fields[axis].unit  # its range is that at the defaults
         places = from_si(np.asarray(setup.model.read_results(evaluate(setup))[axis], dtype=float), unit)
         asked.setdefault(axis, f"{float(np.min(places))!r}..{float(np.max(places))!r} {unit}".strip())
-    columns, faults = [], []
+    columns, wrong = [], []
     for name, said in asked.items():
         try:
             columns.append(_column(setup, name, said, measured))
         except TruingError as error:
-            faults.append(f"over, '{name}': {error}")
-    faults += _not_varied(setup, effect, set(asked), is_stated=over is not None)
-    if not columns and not faults:
-        faults.append('nothing varies: say what is set from row to row, over={"load": "10..90 N"}')
-    return columns, faults
+            wrong.append(f"over, '{name}': {error}")
+    wrong += _not_varied(setup, effect, set(asked), is_stated=over is not None)
+    if not columns and not wrong:
+        wrong.append('nothing varies: say what is set from row to row, over={"load": "10..90 N"}')
+    faults += wrong
+    return columns
 
 
 def _by_default(setup: Setup, effect: Effect[Any, Any] | None) -> Iterator[tuple[str, str]]:

@@ -40,13 +40,10 @@ _ALLOWED = re.compile(r"[A-Za-z0-9_ .+\-*/^()\[\]·°′″%‰€$£元ΩÅΔ�
 _NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?")
 _TIMES_TEN = re.compile(r"\s*[*·x]\s*10(?:\^\s*([+-]?\d{1,3})(?![\d.])|([⁻⁺]?[⁰¹²³⁴⁵⁶⁷⁸⁹]{1,3}))")
 _BEGINS_NUMBER = re.compile(r"[+-]?\.?[0-9]")
-_TEN_TO = re.compile(r"([+-]?)10(?:\^\s*([+-]?\d{1,3})(?![\d.])|([⁻⁺]?[⁰¹²³⁴⁵⁶⁷⁸⁹]{1,3}))")
+_TEN_TO = re.compile(r"([+-]?)10(?:\^\s*\(?([+-]?\d{1,3})(?![\d.])\)?|([⁻⁺]?[⁰¹²³⁴⁵⁶⁷⁸⁹]{1,3}))")
 _UNIT_WITH_NUMBER = re.compile(r"[+-]|1\s*/|1[eE]|10[\^⁻⁺⁰¹²³⁴⁵⁶⁷⁸⁹]")
 _NOT_FINITE = re.compile(r"[+-]?\s*(?:nan|inf|infinity|∞)(?![A-Za-z])", re.IGNORECASE)
 _BAND = re.compile(r"±|\+\s?/?\s?-")
-_POWER = re.compile(
-    r"(?:10\^\(?(?P<ten>[+-]?\d{1,4})\)?(?![\d.^])|10(?P<small>[⁻⁺]?[⁰¹²³⁴⁵⁶⁷⁸⁹]+)|(?P<digits>\d+(?:\.\d*)?(?:[eE][+-]?\d+)?))\s*[*·]?"
-)
 _ONE_OVER = re.compile(r"\s*1\s*/")
 _RAISED = r"\^(?:[+-]?\d+(?:\.\d+)?(?![\d.eE^])|\(\s*[+-]?\d+(?:\.\d+)?\s*(?:/\s*\d+\s*)?\))|[⁻⁺]?[⁰¹²³⁴⁵⁶⁷⁸⁹]+"
 _TOKEN = re.compile(
@@ -197,13 +194,18 @@ def parse(unit: str) -> Product:
 
 def _leading_power(unit: str, plain: str) -> tuple[int, str]:
     """Take the power of ten off a unit text; "1/" is the beginning of a quotient."""
-    match = None if _ONE_OVER.match(plain) else _POWER.match(plain)
-    if match is None:
+    if _ONE_OVER.match(plain) or not plain[:1].isdigit():
         return 0, plain
-    rest = plain[match.end() :].lstrip()
-    if match[0][-1:] in "*·" and (not rest or rest[:1] == "/"):
-        raise _no_unit(unit)
-    return _power_of_ten(unit, match), "1" + rest if rest[:1] == "/" else rest
+    value, end = _leading_number(unit, plain)
+    power = round(math.log10(value)) if value else 0
+    if value != float(f"1e{power}"):
+        raise UnitError(f"the unit {shown(unit)} may carry a power of ten, but not the number {shown(plain[:end])}")
+    rest = plain[end:].lstrip()
+    if rest[:1] in ("*", "·"):
+        rest = rest[1:].lstrip()
+        if not rest or rest[:1] == "/":
+            raise _no_unit(unit)
+    return power, "1" + rest if rest[:1] == "/" else rest
 
 
 def _no_unit(unit: str) -> UnitError:
@@ -298,19 +300,6 @@ def _exponent_of(unit: str, text: str | None) -> Fraction:
         raise UnitError(f"{shown(unit)} is not a unit: an exponent divides by zero") from None
     except ValueError:
         raise _no_unit(unit) from None
-
-
-def _power_of_ten(unit: str, match: re.Match[str]) -> int:
-    if match["ten"]:
-        return int(match["ten"])
-    if match["small"]:
-        return int(match["small"].translate(_SUPERSCRIPTS))
-    digits, _, exponent = match["digits"].lower().partition("e")
-    ten = re.fullmatch(r"(1)(0*)(?:\.0*)?|0\.(0*)1", digits)
-    if not ten:
-        number = shown(match["digits"])
-        raise UnitError(f"the unit {shown(unit)} may carry a power of ten, but not the number {number}")
-    return (len(ten[2]) if ten[1] else -len(ten[3]) - 1) + int(exponent or 0)
 
 
 def _raised(

@@ -2,7 +2,8 @@
 
 from dataclasses import replace
 
-from truing import Condition, Effect, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
+from truing import Condition, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
+from zoo.zoo import acting
 
 
 @inputs
@@ -99,42 +100,11 @@ BEARING_TORQUE = Model(
     errors=[
         Tolerance("lubricant_factor", normal(sd="8 %"), why="the table gives a range"),
         Tolerance("friction_factor", normal(sd="8 %"), why="the table gives a range"),
-        Effect(
-            "bent_load_law",
-            on_inputs=bent_load_law,
-            looks_like="high and low loads err to opposite sides",
-            unknowns=[Unknown("exponent", -0.5, 0.8)],
-        ),
-        Effect(
-            "starvation",
-            on_inputs=starvation,
-            looks_like="less torque at high speed in thick oil",
-            unknowns=[Unknown("loss", 0, 1000, "s^2/m^2")],
-        ),
-        Effect(
-            "seal_drag",
-            on_inputs=seal_drag,
-            looks_like="the same torque too much everywhere",
-            unknowns=[Unknown("torque", 0, 2, "N*m")],
-        ),
-        Effect(
-            "churning",
-            on_inputs=churning,
-            looks_like="too much torque at high speed, whatever the load",
-            unknowns=[Unknown("torque", 0, 2, "N*m")],
-        ),
-        Effect(
-            "wrong_oil",
-            on_inputs=wrong_oil,
-            looks_like="less torque where the lubricant counts",
-            unknowns=[Unknown("thinner", -0.6, 0.6)],
-        ),
-        Effect(
-            "tight_fit",
-            on_inputs=tight_fit,
-            needs=[OIL],
-            looks_like="too much torque in the warm",
-            unknowns=[Unknown("rise", 0, 0.2, "kN/K")],
-        ),
+        acting(bent_load_law, Unknown("exponent", -0.5, 0.8)),
+        acting(starvation, Unknown("loss", 0, 1000, "s^2/m^2")),
+        acting(seal_drag, Unknown("torque", 0, 2, "N*m")),
+        acting(churning, Unknown("torque", 0, 2, "N*m")),
+        acting(wrong_oil, Unknown("thinner", -0.6, 0.6)),
+        acting(tight_fit, Unknown("rise", 0, 0.2, "kN/K"), needs=[OIL]),
     ],
 )

@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from truing import Condition, Effect, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
+from truing import Condition, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
+from zoo.zoo import acting
 
 
 @inputs
@@ -78,40 +79,14 @@ BELT_DRIVE = Model(
     errors=[
         Tolerance("driver_diameter", normal(sd="0.08 mm"), why="turned; and the belt is not equally thick"),
         Tolerance("driven_diameter", normal(sd="0.15 mm"), why="turned; and the belt is not equally thick"),
-        Effect(
-            "creep",
-            on_inputs=creep,
-            looks_like="the shaft is late in proportion to the load",
-            unknowns=[Unknown("compliance", 0, 0.05, "1/kN", note="one over the stiffness EA of the belt")],
+        acting(creep, Unknown("compliance", 0, 0.05, "1/kN", note="one over the stiffness EA of the belt")),
+        acting(
+            belt_slip,
+            Unknown("softness", 0, 0.2, "1/kN", note="slip per pull beyond the grip"),
+            Unknown("grip", 100, 1000, "N", note="pull that friction can carry"),
         ),
-        Effect(
-            "belt_slip",
-            on_inputs=belt_slip,
-            looks_like="nothing up to some load, then more and more",
-            unknowns=[
-                Unknown("softness", 0, 0.2, "1/kN", note="slip per pull beyond the grip"),
-                Unknown("grip", 100, 1000, "N", note="pull that friction can carry"),
-            ],
-        ),
-        Effect(
-            "worn_groove",
-            on_inputs=worn_groove,
-            needs=[TIME],
-            looks_like="slower from hour to hour",
-            unknowns=[Unknown("rate", 0, 2, "mm/h")],
-        ),
-        Effect(
-            "warm_pulley",
-            on_inputs=warm_pulley,
-            needs=[BELT],
-            looks_like="follows the temperature",
-            unknowns=[Unknown("expansion", -2e-4, 2e-4, "1/K")],
-        ),
-        Effect(
-            "lift_off",
-            on_inputs=lift_off,
-            looks_like="slower at high speed",
-            unknowns=[Unknown("share", 0, 0.05, "", note="loss at 3000 rpm")],
-        ),
+        acting(worn_groove, Unknown("rate", 0, 2, "mm/h"), needs=[TIME]),
+        acting(warm_pulley, Unknown("expansion", -2e-4, 2e-4, "1/K"), needs=[BELT]),
+        acting(lift_off, Unknown("share", 0, 0.05, "", note="loss at 3000 rpm")),
     ],
 )

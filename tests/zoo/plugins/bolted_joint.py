@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from truing import Condition, Effect, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
+from truing import Condition, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
+from zoo.zoo import acting
 
 
 @inputs
@@ -88,43 +89,11 @@ BOLTED_JOINT = Model(
     errors=[
         Tolerance("elasticity", normal(sd="1 %"), why="scatter of steels"),
         Tolerance("plate_share", normal(sd="0.02"), why="the cone of pressure is a guess"),
-        Effect(
-            "embedding",
-            on_inputs=embedding,
-            needs=[INTERFACES],
-            looks_like="force is missing, most with many interfaces and a short clamped length",
-            unknowns=[Unknown("depth", 0, 20, "um", note="lost in each interface")],
-        ),
-        Effect(
-            "yielding",
-            on_results=yielding,
-            looks_like="large forces stay behind",
-            unknowns=[Unknown("inverse_limit", 0, 0.04, "1/kN"), Unknown("sharpness", 2, 40)],
-        ),
-        Effect(
-            "lost_angle",
-            on_inputs=lost_angle,
-            looks_like="the same angle is missing everywhere",
-            unknowns=[Unknown("angle", -10, 10, "deg")],
-        ),
-        Effect(
-            "twisted_shank",
-            on_inputs=twisted_shank,
-            looks_like="force is missing in proportion",
-            unknowns=[Unknown("share", 0, 0.2)],
-        ),
-        Effect(
-            "warm_bolt",
-            on_inputs=warm_bolt,
-            needs=[WARMER],
-            looks_like="force is missing in warm bolts",
-            unknowns=[Unknown("expansion", 0, 3e-5, "1/K")],
-        ),
-        Effect(
-            "soft_washer",
-            on_inputs=soft_washer,
-            looks_like="short joints are softer than they should be",
-            unknowns=[Unknown("compliance", 0, 2, "um/kN")],
-        ),
+        acting(embedding, Unknown("depth", 0, 20, "um", note="lost in each interface"), needs=[INTERFACES]),
+        acting(yielding, Unknown("inverse_limit", 0, 0.04, "1/kN"), Unknown("sharpness", 2, 40), on="results"),
+        acting(lost_angle, Unknown("angle", -10, 10, "deg")),
+        acting(twisted_shank, Unknown("share", 0, 0.2)),
+        acting(warm_bolt, Unknown("expansion", 0, 3e-5, "1/K"), needs=[WARMER]),
+        acting(soft_washer, Unknown("compliance", 0, 2, "um/kN")),
     ],
 )

@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from truing import Condition, Effect, Float, Model, Tolerance, Unknown, feasible, found, given, inputs, normal, results
+from truing import Condition, Float, Model, Tolerance, Unknown, feasible, found, given, inputs, normal, results
+from zoo.zoo import acting
 
 TWO_PI = 6.283185307179586
 SPEED, WARM, FEED = 1000.0 / 60, 333.15, 5e-3 / 60
@@ -109,42 +110,11 @@ CLUTCH_DRAG = Model(
     errors=[
         Tolerance("gap", normal(sd="3 %"), why="stack of plates, measured with feelers"),
         Tolerance("viscosity_40", normal(sd="2 %"), why="batch of oil"),
-        Effect(
-            "film_rupture",
-            on_inputs=film_rupture,
-            looks_like="the torque bends down at high speed, sooner with little oil",
-            unknowns=[Unknown("demand", 0, 5, "", note="oil needed over oil fed at 1000 rpm, 60 °C, 5 l/min")],
-        ),
-        Effect(
-            "gap_warming",
-            on_inputs=gap_warming,
-            needs=[TIME],
-            looks_like="the torque falls from sweep to sweep, until it settles",
-            unknowns=[Unknown("rise", -10, 60, "K"), Unknown("time_constant", 60, 3600, "s")],
-        ),
-        Effect(
-            "plate_contact",
-            on_inputs=plate_contact,
-            looks_like="too much torque at low speed",
-            unknowns=[Unknown("torque", 0, 5, "N*m"), Unknown("fading", 20, 1000, "rpm")],
-        ),
-        Effect(
-            "churning",
-            on_inputs=churning,
-            looks_like="too much torque at high speed",
-            unknowns=[Unknown("torque", 0, 2, "N*m", note="at 1000 rpm")],
-        ),
-        Effect(
-            "shear_thinning",
-            on_inputs=shear_thinning,
-            looks_like="the torque grows less than in proportion to speed",
-            unknowns=[Unknown("time_constant", 0, 50, "us")],
-        ),
-        Effect(
-            "lining_swell",
-            on_inputs=lining_swell,
-            looks_like="the torque falls less with temperature than the oil thins",
-            unknowns=[Unknown("swelling", -0.01, 0.01, "1/K")],
-        ),
+        acting(film_rupture, Unknown("demand", 0, 5, "", note="oil needed over oil fed at 1000 rpm, 60 °C, 5 l/min")),
+        acting(gap_warming, Unknown("rise", -10, 60, "K"), Unknown("time_constant", 60, 3600, "s"), needs=[TIME]),
+        acting(plate_contact, Unknown("torque", 0, 5, "N*m"), Unknown("fading", 20, 1000, "rpm")),
+        acting(churning, Unknown("torque", 0, 2, "N*m", note="at 1000 rpm")),
+        acting(shear_thinning, Unknown("time_constant", 0, 50, "us")),
+        acting(lining_swell, Unknown("swelling", -0.01, 0.01, "1/K")),
     ],
 )

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from truing import Condition, Effect, Float, Model, Tolerance, Unknown, feasible, found, given, inputs, normal, results
+from truing import Condition, Float, Model, Tolerance, Unknown, feasible, found, given, inputs, normal, results
+from zoo.zoo import acting
 
 TWO_PI = 6.283185307179586
 RATED = 5e5
@@ -120,52 +121,17 @@ FILTER_RESONANCE = Model(
         Tolerance("inductance", normal(sd="3 %"), why="wound by hand"),
         Tolerance("capacitance", normal(sd="2 %"), why="class of the part"),
         Tolerance("level", normal(sd="1 %"), why="calibrated with a filter bridged"),
-        Effect(
-            "core_hysteresis",
-            on_inputs=core_hysteresis,
-            looks_like="the peak moves down and becomes lower with the drive",
-            unknowns=[Unknown("rayleigh", 0, 60, "1/A")],
+        acting(core_hysteresis, Unknown("rayleigh", 0, 60, "1/A")),
+        acting(
+            cable_echo,
+            Unknown("sine", -0.3, 0.3),
+            Unknown("cosine", -0.3, 0.3),
+            Unknown("delay", 0.5, 10, "us", note="both ways; 10 ns per metre of cable"),
         ),
-        Effect(
-            "cable_echo",
-            on_inputs=cable_echo,
-            looks_like="a wave over the frequency",
-            unknowns=[
-                Unknown("sine", -0.3, 0.3),
-                Unknown("cosine", -0.3, 0.3),
-                Unknown("delay", 0.5, 10, "us", note="both ways; 10 ns per metre of cable"),
-            ],
-        ),
-        Effect(
-            "skin_effect",
-            on_inputs=skin_effect,
-            looks_like="the peak is too low",
-            unknowns=[Unknown("resistance", 0, 60, "ohm", note="at 500 kHz")],
-        ),
-        Effect(
-            "winding_capacitance",
-            on_inputs=winding_capacitance,
-            looks_like="too much passes far above the peak",
-            unknowns=[Unknown("capacitance", 0, 200, "pF")],
-        ),
-        Effect(
-            "lossy_dielectric",
-            on_inputs=lossy_dielectric,
-            looks_like="the peak is too low",
-            unknowns=[Unknown("loss_factor", 0, 0.2)],
-        ),
-        Effect(
-            "warming_capacitor",
-            on_inputs=warming_capacitor,
-            needs=[TIME],
-            looks_like="the peak moves up in the first minutes",
-            unknowns=[Unknown("loss", 0, 0.2), Unknown("time_constant", 0.5, 30, "min")],
-        ),
-        Effect(
-            "compression",
-            on_reading=compression,
-            looks_like="large amplitudes are read too small",
-            unknowns=[Unknown("per_square", 0, 0.1, "1/V^2")],
-        ),
+        acting(skin_effect, Unknown("resistance", 0, 60, "ohm", note="at 500 kHz")),
+        acting(winding_capacitance, Unknown("capacitance", 0, 200, "pF")),
+        acting(lossy_dielectric, Unknown("loss_factor", 0, 0.2)),
+        acting(warming_capacitor, Unknown("loss", 0, 0.2), Unknown("time_constant", 0.5, 30, "min"), needs=[TIME]),
+        acting(compression, Unknown("per_square", 0, 0.1, "1/V^2"), on="reading"),
     ],
 )

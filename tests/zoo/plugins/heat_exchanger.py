@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from truing import Effect, Float, Model, Tolerance, Unknown, feasible, found, given, inputs, normal, results
+from truing import Float, Model, Tolerance, Unknown, feasible, found, given, inputs, normal, results
+from zoo.zoo import acting
 
 ROOM = 293.15
 """Temperature of the test hall, K."""
@@ -124,47 +125,12 @@ HEAT_EXCHANGER = Model(
     errors=[
         Tolerance("hot_film", normal(sd="4 %"), why="rating of the maker"),
         Tolerance("cold_film", normal(sd="4 %"), why="rating of the maker"),
-        Effect(
-            "gasket_bypass",
-            on_inputs=gasket_bypass,
-            looks_like="leaves too warm, by a share of the whole cooling",
-            unknowns=[Unknown("share", 0, 0.4)],
-        ),
-        Effect(
-            "hot_flow_exponent",
-            on_inputs=hot_flow_exponent,
-            looks_like="too cold at small hot flow, too warm at large",
-            unknowns=[Unknown("less", -0.3, 0.6)],
-        ),
-        Effect(
-            "cold_flow_exponent",
-            on_inputs=cold_flow_exponent,
-            looks_like="too cold at small cold flow, too warm at large",
-            unknowns=[Unknown("less", -0.3, 0.6)],
-        ),
-        Effect(
-            "deposits",
-            on_inputs=deposits,
-            looks_like="too warm, most where both flows are large",
-            unknowns=[Unknown("resistance", 0, 0.05, "K/kW")],
-        ),
-        Effect(
-            "heat_to_the_hall",
-            on_inputs=heat_to_the_hall,
-            looks_like="too cold at small hot flow",
-            unknowns=[Unknown("conductance", 0, 0.5, "kW/K")],
-        ),
-        Effect(
-            "trapped_air",
-            on_inputs=trapped_air,
-            looks_like="too warm at small cold flow",
-            unknowns=[Unknown("share", 0, 0.8), Unknown("flow", 0.2, 5, "kg/s")],
-        ),
-        Effect(
-            "short_pocket",
-            on_reading=short_pocket,
-            looks_like="too cold in proportion to how warm it is",
-            unknowns=[Unknown("share", 0, 0.2)],
-        ),
+        acting(gasket_bypass, Unknown("share", 0, 0.4)),
+        acting(hot_flow_exponent, Unknown("less", -0.3, 0.6)),
+        acting(cold_flow_exponent, Unknown("less", -0.3, 0.6)),
+        acting(deposits, Unknown("resistance", 0, 0.05, "K/kW")),
+        acting(heat_to_the_hall, Unknown("conductance", 0, 0.5, "kW/K")),
+        acting(trapped_air, Unknown("share", 0, 0.8), Unknown("flow", 0.2, 5, "kg/s")),
+        acting(short_pocket, Unknown("share", 0, 0.2), on="reading"),
     ],
 )

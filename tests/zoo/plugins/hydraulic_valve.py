@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from truing import Condition, Effect, Float, Model, Tolerance, Unknown, feasible, found, given, inputs, normal, results
+from truing import Condition, Float, Model, Tolerance, Unknown, feasible, found, given, inputs, normal, results
+from zoo.zoo import acting
 
 FULL = 10.0
 """Command at which the spool stands at its full stroke, V."""
@@ -99,49 +100,14 @@ HYDRAULIC_VALVE = Model(
     errors=[
         Tolerance("discharge", normal(sd="2 %"), why="edges are not equally sharp"),
         Tolerance("null_bias", normal(sd="0.05 V"), why="adjusted by hand"),
-        Effect(
-            "spool_friction",
-            on_inputs=spool_friction,
-            needs=[RISING, TURNED_AT],
-            looks_like="a loop; the flow stands still after a turn",
-            unknowns=[Unknown("width", 0, 3, "V", note="half the width of the loop")],
+        acting(
+            spool_friction, Unknown("width", 0, 3, "V", note="half the width of the loop"), needs=[RISING, TURNED_AT]
         ),
-        Effect(
-            "worn_land",
-            on_inputs=worn_land,
-            looks_like="more flow either way of the command, following the pressure",
-            unknowns=[Unknown("leak", 0, 1, "l/(min*bar)")],
-        ),
-        Effect(
-            "overlapped",
-            on_inputs=overlapped,
-            looks_like="no flow around the middle, and less everywhere",
-            unknowns=[Unknown("dead", 0, 2, "V")],
-        ),
-        Effect(
-            "flow_force",
-            on_inputs=flow_force,
-            looks_like="too little flow at large command and pressure",
-            unknowns=[Unknown("share", 0, 0.4, "", note="of the full stroke at 70 bar")],
-        ),
-        Effect(
-            "round_edges",
-            on_inputs=round_edges,
-            looks_like="the flow follows the pressure more than its root",
-            unknowns=[Unknown("more", 0, 0.5)],
-        ),
-        Effect(
-            "warming_coil",
-            on_inputs=warming_coil,
-            needs=[TIME],
-            looks_like="the flow falls in the first minutes",
-            unknowns=[Unknown("loss", 0, 0.3), Unknown("time_constant", 10, 600, "s")],
-        ),
-        Effect(
-            "sensor_gain",
-            on_reading=sensor_gain,
-            looks_like="all flows are too large or too small in proportion",
-            unknowns=[Unknown("flow", -0.2, 0.2)],
-        ),
+        acting(worn_land, Unknown("leak", 0, 1, "l/(min*bar)")),
+        acting(overlapped, Unknown("dead", 0, 2, "V")),
+        acting(flow_force, Unknown("share", 0, 0.4, "", note="of the full stroke at 70 bar")),
+        acting(round_edges, Unknown("more", 0, 0.5)),
+        acting(warming_coil, Unknown("loss", 0, 0.3), Unknown("time_constant", 10, 600, "s"), needs=[TIME]),
+        acting(sensor_gain, Unknown("flow", -0.2, 0.2), on="reading"),
     ],
 )

@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from truing import Condition, Effect, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
+from truing import Condition, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
+from zoo.zoo import acting
 
 
 @inputs
@@ -87,47 +88,16 @@ LEAF_SPRING = Model(
     errors=[
         Tolerance("rate", normal(sd="3 %"), why="thickness of the leaves goes in with its third power"),
         Tolerance("free_height_error", normal(sd="0.7 mm"), why="the zero of the ram is set by hand"),
-        Effect(
-            "interleaf_friction",
-            on_inputs=interleaf_friction,
+        acting(
+            interleaf_friction,
+            Unknown("force", 0, 1500, "N", note="half the height of the loop"),
+            Unknown("reach", 0.5, 30, "mm", note="way in which it changes its side"),
             needs=[LOADING, TURNED_AT],
-            looks_like="a loop with round corners",
-            unknowns=[
-                Unknown("force", 0, 1500, "N", note="half the height of the loop"),
-                Unknown("reach", 0.5, 30, "mm", note="way in which it changes its side"),
-            ],
         ),
-        Effect(
-            "helper_leaf",
-            on_inputs=helper_leaf,
-            looks_like="a kink, then steeper",
-            unknowns=[Unknown("rate", 0, 200, "N/mm"), Unknown("gap", 10, 70, "mm")],
-        ),
-        Effect(
-            "shackle_angle",
-            on_inputs=shackle_angle,
-            looks_like="bends upward ever more",
-            unknowns=[Unknown("hardening", -1e-4, 1e-4, "1/mm^2")],
-        ),
-        Effect(
-            "settling",
-            on_inputs=settling,
-            needs=[TIME],
-            looks_like="less force from cycle to cycle",
-            unknowns=[Unknown("speed", 0, 2, "mm/min")],
-        ),
-        Effect(
-            "rubber_bushings",
-            on_inputs=rubber_bushings,
-            looks_like="a loop that is wide where the ram is fast",
-            unknowns=[Unknown("damping", 0, 500, "N*s/mm")],
-        ),
-        Effect(
-            "stuck_ram",
-            on_inputs=stuck_ram,
-            needs=[LOADING],
-            looks_like="a loop with sharp corners",
-            unknowns=[Unknown("force", 0, 1500, "N")],
-        ),
+        acting(helper_leaf, Unknown("rate", 0, 200, "N/mm"), Unknown("gap", 10, 70, "mm")),
+        acting(shackle_angle, Unknown("hardening", -1e-4, 1e-4, "1/mm^2")),
+        acting(settling, Unknown("speed", 0, 2, "mm/min"), needs=[TIME]),
+        acting(rubber_bushings, Unknown("damping", 0, 500, "N*s/mm")),
+        acting(stuck_ram, Unknown("force", 0, 1500, "N"), needs=[LOADING]),
     ],
 )

@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from truing import Effect, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
+from truing import Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
+from zoo.zoo import acting
 
 RATED_SPEED, RATED_FLOW = 2900.0 / 60, 60.0 / 3600
 """Speed in 1/s and flow in m³/s of the acceptance test."""
@@ -95,44 +96,15 @@ PUMP_CURVE = Model(
     errors=[
         Tolerance("shutoff_head", normal(sd="1.5 %"), why="cast impellers differ"),
         Tolerance("fall", normal(sd="5 %"), why="cast casings differ"),
-        Effect(
-            "worn_ring",
-            on_inputs=worn_ring,
-            looks_like="the curve is shifted to smaller flow, and falls short most where it is steep",
-            unknowns=[Unknown("flow", 0, 20, "m^3/h", note="at the shutoff head")],
+        acting(worn_ring, Unknown("flow", 0, 20, "m^3/h", note="at the shutoff head")),
+        acting(
+            cavitation,
+            Unknown("steepness", 0, 10, "", note="head lost per metre that lacks"),
+            Unknown("need", 0.4, 4, "", note="suction head needed over that of the maker"),
         ),
-        Effect(
-            "cavitation",
-            on_inputs=cavitation,
-            looks_like="falls short where the suction head is small",
-            unknowns=[
-                Unknown("steepness", 0, 10, "", note="head lost per metre that lacks"),
-                Unknown("need", 0.4, 4, "", note="suction head needed over that of the maker"),
-            ],
-        ),
-        Effect(
-            "inlet_swirl",
-            on_inputs=inlet_swirl,
-            looks_like="falls short at part load",
-            unknowns=[Unknown("head", -10, 10, "m", note="lost at shutoff")],
-        ),
-        Effect(
-            "entrained_air",
-            on_inputs=entrained_air,
-            looks_like="falls short at small flow",
-            unknowns=[Unknown("share", 0, 0.5), Unknown("flow", 2, 60, "m^3/h")],
-        ),
-        Effect(
-            "coupling_slip",
-            on_inputs=coupling_slip,
-            looks_like="falls short with the flow, more at high speed",
-            unknowns=[Unknown("share", 0, 0.1, "", note="at 60 m³/h")],
-        ),
-        Effect(
-            "pipe_loss",
-            on_reading=pipe_loss,
-            looks_like="falls short as the square of the flow",
-            unknowns=[Unknown("head", 0, 10, "m", note="at 60 m³/h")],
-        ),
+        acting(inlet_swirl, Unknown("head", -10, 10, "m", note="lost at shutoff")),
+        acting(entrained_air, Unknown("share", 0, 0.5), Unknown("flow", 2, 60, "m^3/h")),
+        acting(coupling_slip, Unknown("share", 0, 0.1, "", note="at 60 m³/h")),
+        acting(pipe_loss, Unknown("head", 0, 10, "m", note="at 60 m³/h"), on="reading"),
     ],
 )

@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from truing import Condition, Effect, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
+from truing import Condition, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
+from zoo.zoo import acting
 
 
 @inputs
@@ -92,46 +93,11 @@ ROPE_WINCH = Model(
     errors=[
         Tolerance("drum_radius", normal(sd="0.1 mm"), why="the diameter of the rope scatters"),
         Tolerance("stiffness", normal(sd="5 %"), why="from the catalogue of the rope"),
-        Effect(
-            "bedding",
-            on_inputs=bedding,
-            needs=[LARGEST],
-            looks_like="lower after every load that is the largest so far",
-            unknowns=[Unknown("elongation", 0, 5, "mm/m"), Unknown("scale", 2, 60, "kN")],
-        ),
-        Effect(
-            "second_layer",
-            on_inputs=second_layer,
-            looks_like="too fast down to some turn of the drum",
-            unknowns=[Unknown("radius", 0, 20, "mm"), Unknown("until", 5, 100, "rad")],
-        ),
-        Effect(
-            "drum_wear",
-            on_inputs=drum_wear,
-            needs=[TIME],
-            looks_like="less way for a turn from hour to hour",
-            unknowns=[Unknown("rate", 0, 1, "mm/h")],
-        ),
-        Effect(
-            "warm_rope",
-            on_inputs=warm_rope,
-            needs=[ROPE],
-            looks_like="lower in the warm",
-            unknowns=[Unknown("expansion", 0, 5e-5, "1/K")],
-        ),
-        Effect(
-            "rope_creep",
-            on_inputs=rope_creep,
-            needs=[TIME],
-            looks_like="lower with time, ever more slowly",
-            unknowns=[Unknown("per_decade", 0, 2, "mm/m")],
-        ),
-        Effect(
-            "sheave_friction",
-            on_inputs=sheave_friction,
-            needs=[LOWERING],
-            looks_like="lower while it lifts than while it lowers",
-            unknowns=[Unknown("share", 0, 0.3)],
-        ),
+        acting(bedding, Unknown("elongation", 0, 5, "mm/m"), Unknown("scale", 2, 60, "kN"), needs=[LARGEST]),
+        acting(second_layer, Unknown("radius", 0, 20, "mm"), Unknown("until", 5, 100, "rad")),
+        acting(drum_wear, Unknown("rate", 0, 1, "mm/h"), needs=[TIME]),
+        acting(warm_rope, Unknown("expansion", 0, 5e-5, "1/K"), needs=[ROPE]),
+        acting(rope_creep, Unknown("per_decade", 0, 2, "mm/m"), needs=[TIME]),
+        acting(sheave_friction, Unknown("share", 0, 0.3), needs=[LOWERING]),
     ],
 )

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from truing import Effect, Float, Model, Tolerance, Unknown, axis, column, found, given, inputs, normal, results
+from truing import Float, Model, Tolerance, Unknown, axis, column, found, given, inputs, normal, results
+from zoo.zoo import acting
 
 TIMES = tuple(2.0 * step for step in range(61))
 SPEEDS = tuple(3000.0 if step < 30 else 1500.0 for step in range(61))
@@ -101,35 +102,10 @@ THERMAL_GROWTH = Model(
     errors=[
         Tolerance("full_rise", normal(sd="8 %"), why="preload of the bearings scatters"),
         Tolerance("time_constant", normal(sd="6 %"), why="from another spindle of the series"),
-        Effect(
-            "housing_growth",
-            on_inputs=housing_growth,
-            looks_like="growth falls back after it was largest",
-            unknowns=[Unknown("share", 0, 1), Unknown("constant", 30, 400, "min")],
-        ),
-        Effect(
-            "churning",
-            on_inputs=churning,
-            looks_like="slow and fast stages err to opposite sides",
-            unknowns=[Unknown("more", -0.6, 1, "")],
-        ),
-        Effect(
-            "blown_cool",
-            on_inputs=blown_cool,
-            looks_like="fast stages reach less, and sooner",
-            unknowns=[Unknown("cooling", 0, 1)],
-        ),
-        Effect(
-            "drawn_thin",
-            on_inputs=drawn_thin,
-            looks_like="jumps with every change of speed",
-            unknowns=[Unknown("pull", 0, 30, "um")],
-        ),
-        Effect(
-            "warm_hall",
-            on_inputs=warm_hall,
-            looks_like="follows the hall",
-            unknowns=[Unknown("growth", -5, 5, "um/K")],
-        ),
+        acting(housing_growth, Unknown("share", 0, 1), Unknown("constant", 30, 400, "min")),
+        acting(churning, Unknown("more", -0.6, 1, "")),
+        acting(blown_cool, Unknown("cooling", 0, 1)),
+        acting(drawn_thin, Unknown("pull", 0, 30, "um")),
+        acting(warm_hall, Unknown("growth", -5, 5, "um/K")),
     ],
 )

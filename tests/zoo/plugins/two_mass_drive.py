@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from truing import Condition, Effect, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
+from truing import Condition, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
+from zoo.zoo import acting
 
 
 @inputs
@@ -94,52 +95,17 @@ TWO_MASS_DRIVE = Model(
     errors=[
         Tolerance("inertia", normal(sd="3 %"), why="from the drawing, without screws"),
         Tolerance("stiffness", normal(sd="6 %"), why="from the catalogue of the gear"),
-        Effect(
-            "backlash",
-            on_inputs=backlash,
-            looks_like="a step where the torque changes its sign",
-            unknowns=[Unknown("play", 0, 3, "mrad"), Unknown("play_torque", 0.05, 5, "N*m")],
+        acting(backlash, Unknown("play", 0, 3, "mrad"), Unknown("play_torque", 0.05, 5, "N*m")),
+        acting(
+            gear_wave,
+            Unknown("sine", -1, 1, "mrad"),
+            Unknown("cosine", -1, 1, "mrad"),
+            Unknown("order", 4, 24, note="waves in a turn", whole=True),
         ),
-        Effect(
-            "gear_wave",
-            on_inputs=gear_wave,
-            looks_like="a wave over the angle",
-            unknowns=[
-                Unknown("sine", -1, 1, "mrad"),
-                Unknown("cosine", -1, 1, "mrad"),
-                Unknown("order", 4, 24, note="waves in a turn", whole=True),
-            ],
-        ),
-        Effect(
-            "dry_friction",
-            on_inputs=dry_friction,
-            looks_like="a step where the speed changes its sign",
-            unknowns=[Unknown("torque", 0, 10, "N*m")],
-        ),
-        Effect(
-            "viscous_friction",
-            on_inputs=viscous_friction,
-            looks_like="follows the speed",
-            unknowns=[Unknown("damping", 0, 3, "N*m*s/rad")],
-        ),
-        Effect(
-            "stiffening",
-            on_inputs=stiffening,
-            looks_like="large torques twist it less than in proportion",
-            unknowns=[Unknown("hardening", 0, 0.2, "1/(N*m)")],
-        ),
-        Effect(
-            "unbalance",
-            on_inputs=unbalance,
-            looks_like="once in a turn",
-            unknowns=[Unknown("sine", -5, 5, "N*m"), Unknown("cosine", -5, 5, "N*m")],
-        ),
-        Effect(
-            "warming",
-            on_inputs=warming,
-            needs=[TIME],
-            looks_like="wanders with time",
-            unknowns=[Unknown("rate", -0.5, 0.5, "mrad/s")],
-        ),
+        acting(dry_friction, Unknown("torque", 0, 10, "N*m")),
+        acting(viscous_friction, Unknown("damping", 0, 3, "N*m*s/rad")),
+        acting(stiffening, Unknown("hardening", 0, 0.2, "1/(N*m)")),
+        acting(unbalance, Unknown("sine", -5, 5, "N*m"), Unknown("cosine", -5, 5, "N*m")),
+        acting(warming, Unknown("rate", -0.5, 0.5, "mrad/s"), needs=[TIME]),
     ],
 )

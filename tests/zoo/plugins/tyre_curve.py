@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from truing import Condition, Effect, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
+from truing import Condition, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
+from zoo.zoo import acting
 
 RATED_LOAD = 4000.0
 """Load at which friction is stated, N."""
@@ -103,56 +104,13 @@ TYRE_CURVE = Model(
     errors=[
         Tolerance("stiffness", normal(sd="4 %"), why="inflation and age"),
         Tolerance("friction", normal(sd="3 %"), why="drum and tread of the day"),
-        Effect(
-            "relaxation",
-            on_inputs=relaxation,
-            needs=[RATE],
-            looks_like="a loop over the angle, wide while the drum is slow",
-            unknowns=[Unknown("length", 0, 2, "m")],
-        ),
-        Effect(
-            "load_sensitivity",
-            on_inputs=load_sensitivity,
-            looks_like="at large angles too little force under a large load, too much under a small one",
-            unknowns=[Unknown("exponent", -0.3, 0.6)],
-        ),
-        Effect(
-            "ply_steer",
-            on_inputs=ply_steer,
-            looks_like="the curve is shifted along the angle",
-            unknowns=[Unknown("angle", -2, 2, "deg")],
-        ),
-        Effect(
-            "conicity",
-            on_inputs=conicity,
-            looks_like="the curve is shifted along the force, more under load",
-            unknowns=[Unknown("thrust", -0.1, 0.1)],
-        ),
-        Effect(
-            "hot_tread",
-            on_inputs=hot_tread,
-            needs=[TREAD],
-            looks_like="less force while the tread is hot",
-            unknowns=[Unknown("loss", -0.005, 0.01, "1/K")],
-        ),
-        Effect(
-            "polished_drum",
-            on_inputs=polished_drum,
-            needs=[TIME],
-            looks_like="less force from sweep to sweep, until it settles",
-            unknowns=[Unknown("loss", 0, 0.4), Unknown("time_constant", 5, 300, "s")],
-        ),
-        Effect(
-            "fast_sliding",
-            on_inputs=fast_sliding,
-            looks_like="the force falls again at large angles",
-            unknowns=[Unknown("loss", 0, 0.4, "", note="at 60 km/h and 10°")],
-        ),
-        Effect(
-            "cross_talk",
-            on_reading=cross_talk,
-            looks_like="follows the load whatever the angle",
-            unknowns=[Unknown("share", -0.1, 0.1)],
-        ),
+        acting(relaxation, Unknown("length", 0, 2, "m"), needs=[RATE]),
+        acting(load_sensitivity, Unknown("exponent", -0.3, 0.6)),
+        acting(ply_steer, Unknown("angle", -2, 2, "deg")),
+        acting(conicity, Unknown("thrust", -0.1, 0.1)),
+        acting(hot_tread, Unknown("loss", -0.005, 0.01, "1/K"), needs=[TREAD]),
+        acting(polished_drum, Unknown("loss", 0, 0.4), Unknown("time_constant", 5, 300, "s"), needs=[TIME]),
+        acting(fast_sliding, Unknown("loss", 0, 0.4, "", note="at 60 km/h and 10°")),
+        acting(cross_talk, Unknown("share", -0.1, 0.1), on="reading"),
     ],
 )

@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from truing import Condition, Effect, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
+from truing import Condition, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
+from zoo.zoo import acting
 
 CAPACITY = 100.0
 """Largest load, kg."""
@@ -111,52 +112,18 @@ WEIGHING_SCALE = Model(
     errors=[
         Tolerance("gauge_factor", normal(sd="0.3 %"), why="batch of gauges"),
         Tolerance("zero", normal(sd="0.03 kg"), why="set before each test"),
-        Effect(
-            "creep",
-            on_inputs=creep,
+        acting(
+            creep,
+            Unknown("share", -0.03, 0.03),
+            Unknown("time_constant", 3, 300, "s"),
             needs=[HELD, PREVIOUS],
             acts_at_reference=True,
-            looks_like="after each change the display runs on in its direction",
-            unknowns=[Unknown("share", -0.03, 0.03), Unknown("time_constant", 3, 300, "s")],
         ),
-        Effect(
-            "touching_stop",
-            on_inputs=touching_stop,
-            looks_like="too little above some load",
-            unknowns=[Unknown("share", 0, 0.2), Unknown("touch", 10, 95, "kg")],
-        ),
-        Effect(
-            "rubbing_guide",
-            on_inputs=rubbing_guide,
-            needs=[RISING],
-            looks_like="too little after a rise, too much after a fall",
-            unknowns=[Unknown("mass", 0, 1, "kg")],
-        ),
-        Effect(
-            "corner_load",
-            on_inputs=corner_load,
-            needs=[OFF_CENTRE],
-            looks_like="follows the place of the load",
-            unknowns=[Unknown("per_length", -2e-4, 2e-4, "1/mm")],
-        ),
-        Effect(
-            "curved_span",
-            on_inputs=curved_span,
-            looks_like="off in the middle of the range",
-            unknowns=[Unknown("share", -0.02, 0.02)],
-        ),
-        Effect(
-            "warm_span",
-            on_inputs=warm_span,
-            needs=[PLACE],
-            looks_like="shows more as it warms up, in proportion to the load",
-            unknowns=[Unknown("per_kelvin", -2e-3, 2e-3, "1/K")],
-        ),
-        Effect(
-            "sensor_offset",
-            on_reading=sensor_offset,
-            looks_like="the same everywhere",
-            unknowns=[Unknown("reading", -2, 2, "kg")],
-        ),
+        acting(touching_stop, Unknown("share", 0, 0.2), Unknown("touch", 10, 95, "kg")),
+        acting(rubbing_guide, Unknown("mass", 0, 1, "kg"), needs=[RISING]),
+        acting(corner_load, Unknown("per_length", -2e-4, 2e-4, "1/mm"), needs=[OFF_CENTRE]),
+        acting(curved_span, Unknown("share", -0.02, 0.02)),
+        acting(warm_span, Unknown("per_kelvin", -2e-3, 2e-3, "1/K"), needs=[PLACE]),
+        acting(sensor_offset, Unknown("reading", -2, 2, "kg"), on="reading"),
     ],
 )

@@ -5,17 +5,11 @@ under its own load; each drags the film that the one before it has left.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from zoo.zoo import Measured, drawn_size
+from zoo.zoo import Array, Measured, drawn_size, hideable
 
-HIDDEN = {
-    "load_law": ("bent_load_law",),
-    "starvation": ("starvation",),
-    "load_law_and_starvation": ("bent_load_law", "starvation"),
-}
-Array = NDArray[np.float64]
+HIDDEN = hideable(load_law="bent_load_law", starvation="starvation")
 NOISE = 0.02
 """Standard deviation of the torque flange, N m."""
 ROLLERS, CONTACT = 16, 10 / 9

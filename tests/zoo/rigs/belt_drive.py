@@ -5,13 +5,11 @@ slip ratio from a friction that rises with it (rubber), the speeds from the cons
 """
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from zoo.zoo import Measured, drawn_size
+from zoo.zoo import Array, Measured, drawn_size, hideable
 
-HIDDEN = {"slip": ("belt_slip",), "creep": ("creep",), "slip_and_creep": ("belt_slip", "creep")}
-Array = NDArray[np.float64]
+HIDDEN = hideable(slip="belt_slip", creep="creep")
 NOISE = 0.5
 """Standard deviation of the tachometer, rpm."""
 WRAP, MASS = 2.9, 0.12

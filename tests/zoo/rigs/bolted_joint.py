@@ -6,13 +6,11 @@ NACA TN 902 (1943).
 """
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from zoo.zoo import Measured, drawn_size
+from zoo.zoo import Array, Measured, drawn_size, hideable
 
-HIDDEN = {"embedding": ("embedding",), "yielding": ("yielding",), "embedding_and_yielding": ("embedding", "yielding")}
-Array = NDArray[np.float64]
+HIDDEN = hideable(embedding="embedding", yielding="yielding")
 NOISE = 0.5
 """Standard deviation of the force washer, kN."""
 LEAD, AREA = 1.75, 84.3

@@ -8,16 +8,10 @@ The housing warms up by a heat balance that is integrated in small steps.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from zoo.zoo import Measured, drawn_size, sized
+from zoo.zoo import Array, Measured, drawn_size, hideable, sized
 
-HIDDEN = {
-    "rupture": ("film_rupture",),
-    "warming": ("gap_warming",),
-    "rupture_and_warming": ("film_rupture", "gap_warming"),
-}
-Array = NDArray[np.float64]
+HIDDEN = hideable(rupture="film_rupture", warming="gap_warming")
 NOISE = 0.05
 """Standard deviation of the torque meter, N m."""
 INNER, OUTER, GAPS, RINGS = 0.060, 0.080, 10, 40

@@ -10,14 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from zoo.zoo import Measured, drawn_size, sized
+from zoo.zoo import Array, Measured, drawn_size, hideable, sized
 
-HIDDEN = {
-    "hysteresis": ("core_hysteresis",),
-    "echo": ("cable_echo",),
-    "hysteresis_and_echo": ("core_hysteresis", "cable_echo"),
-}
-Array = NDArray[np.float64]
+HIDDEN = hideable(hysteresis="core_hysteresis", echo="cable_echo")
 Complex = NDArray[np.complex128]
 NOISE = 0.01
 """Standard deviation of the analyser, of a gain of about 1."""

@@ -7,16 +7,10 @@ orifice beside the plates: how much it takes follows from equal losses of pressu
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from zoo.zoo import Measured, drawn_size, sized
+from zoo.zoo import Array, Measured, drawn_size, hideable, sized
 
-HIDDEN = {
-    "bypass": ("gasket_bypass",),
-    "exponent": ("hot_flow_exponent",),
-    "bypass_and_exponent": ("gasket_bypass", "hot_flow_exponent"),
-}
-Array = NDArray[np.float64]
+HIDDEN = hideable(bypass="gasket_bypass", exponent="hot_flow_exponent")
 NOISE = 0.12
 """Standard deviation of the thermometer, K."""
 MOST = 15.0

@@ -7,12 +7,10 @@ magnet. A worn land leaks through a gap in which part of the loss is laminar and
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from zoo.zoo import Measured, drawn_size, sized
+from zoo.zoo import Array, Measured, drawn_size, hideable, sized
 
-HIDDEN = {"friction": ("spool_friction",), "leak": ("worn_land",), "friction_and_leak": ("spool_friction", "worn_land")}
-Array = NDArray[np.float64]
+HIDDEN = hideable(friction="spool_friction", leak="worn_land")
 NOISE = 0.6
 """Standard deviation of the flow meter, l/min."""
 EDGE, STROKE, DENSITY = 20e-3, 1e-3, 860.0

@@ -5,17 +5,11 @@ Iwan, A distributed-element model for hysteresis and its steady-state dynamic re
 """
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from zoo.zoo import Measured, drawn_size
+from zoo.zoo import Array, Measured, drawn_size, hideable
 
-HIDDEN = {
-    "friction": ("interleaf_friction",),
-    "helper": ("helper_leaf",),
-    "friction_and_helper": ("interleaf_friction", "helper_leaf"),
-}
-Array = NDArray[np.float64]
+HIDDEN = hideable(friction="interleaf_friction", helper="helper_leaf")
 NOISE = 15.0
 """Standard deviation of the load cell, N."""
 DEEPEST = 78.0

@@ -7,12 +7,10 @@ begins to cavitate at a suction head of its own.
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from zoo.zoo import Measured, drawn_size, sized
+from zoo.zoo import Array, Measured, drawn_size, hideable, sized
 
-HIDDEN = {"leak": ("worn_ring",), "cavitation": ("cavitation",), "leak_and_cavitation": ("worn_ring", "cavitation")}
-Array = NDArray[np.float64]
+HIDDEN = hideable(leak="worn_ring", cavitation="cavitation")
 NOISE = 0.2
 """Standard deviation of the two pressure gauges together, m."""
 GRAVITY = 9.81

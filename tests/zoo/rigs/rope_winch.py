@@ -6,12 +6,10 @@ felt.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
-from zoo.zoo import Measured, drawn_size
+from zoo.zoo import Array, Measured, drawn_size, hideable
 
-HIDDEN = {"bedding": ("bedding",), "layer": ("second_layer",), "bedding_and_layer": ("bedding", "second_layer")}
-Array = NDArray[np.float64]
+HIDDEN = hideable(bedding="bedding", layer="second_layer")
 NOISE = 3.0
 """Standard deviation of the laser below the hook, mm."""
 FREE, ELEMENT = 60.0, 0.1

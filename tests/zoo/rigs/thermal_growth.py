@@ -5,16 +5,10 @@ housing. The air takes a little more heat from what is hotter (natural convectio
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
-from zoo.zoo import Measured, drawn_size
+from zoo.zoo import Array, Measured, drawn_size, hideable
 
-HIDDEN = {
-    "housing": ("housing_growth",),
-    "churning": ("churning",),
-    "housing_and_churning": ("housing_growth", "churning"),
-}
-Array = NDArray[np.float64]
+HIDDEN = hideable(housing="housing_growth", churning="churning")
 NOISE = 0.5
 """Standard deviation of the probe, um."""
 CELLS, HOUSING_CELLS, STEP = 12, 8, 2.0

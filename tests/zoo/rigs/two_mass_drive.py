@@ -5,12 +5,10 @@ free between the flanks. Teeth are unevenly spaced: one order of the angle, with
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
-from zoo.zoo import Measured, drawn_size
+from zoo.zoo import Array, Measured, drawn_size, hideable
 
-HIDDEN = {"backlash": ("backlash",), "wave": ("gear_wave",), "backlash_and_wave": ("backlash", "gear_wave")}
-Array = NDArray[np.float64]
+HIDDEN = hideable(backlash="backlash", wave="gear_wave")
 NOISE = 0.01
 """Standard deviation of the difference of both encoders, mrad."""
 STEP, SECONDS = 5e-4, 60.0

@@ -8,16 +8,10 @@ loses friction with the load. The tread follows the wheel by an equation of the 
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from zoo.zoo import Measured, drawn_size, sized
+from zoo.zoo import Array, Measured, drawn_size, hideable, sized
 
-HIDDEN = {
-    "relaxation": ("relaxation",),
-    "load": ("load_sensitivity",),
-    "relaxation_and_load": ("relaxation", "load_sensitivity"),
-}
-Array = NDArray[np.float64]
+HIDDEN = hideable(relaxation="relaxation", load="load_sensitivity")
 NOISE = 0.03
 """Standard deviation of the hub, kN."""
 ELEMENTS = 200

@@ -10,10 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from zoo.zoo import Measured, drawn_size, sized
+from zoo.zoo import Array, Measured, drawn_size, hideable, sized
 
-HIDDEN = {"creep": ("creep",), "stop": ("touching_stop",), "creep_and_stop": ("creep", "touching_stop")}
-Array = NDArray[np.float64]
+HIDDEN = hideable(creep="creep", stop="touching_stop")
 NOISE = 0.015
 """Standard deviation of the display, kg."""
 GRAVITY, MODULUS, WIDTH, THICKNESS, ARM = 9.81, 71e9, 0.030, 0.012, 0.040

@@ -1,4 +1,4 @@
-"""calc compare: what changed between two runs, or two diagnoses."""
+"""calc compare and calc index: what changed between two runs, or two diagnoses; one page over a folder of them."""
 
 from __future__ import annotations
 
@@ -8,28 +8,47 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from itertools import accumulate
 from pathlib import Path
+from types import SimpleNamespace
 
 from rich.console import Console
 from rich.text import Text
 
 from truing.cli.console import GAP, Settings, aligned, harmless, out, out_json, put
+from truing.report.index_page import listing_document, summary_of, write_index
 from truing.runs.comparison import Change, compared, in_order, words_of
 from truing.runs.folder import load_either
+from truing.runs.index import list_folder
 from truing.studies.checks import EXIT_CODES
 from truing.texts import one_line
 
 
-def compare(settings: Settings, *, first: Path, second: Path, as_json: bool) -> int:
+def index(settings: Settings, asked: SimpleNamespace) -> int:
+    """Write one page that lists the runs and diagnoses of a folder, to sort and to filter, offline."""
+    folder: Path = asked.folder
+    listing = list_folder(folder)
+    page = asked.output or folder / "index.html"
+    if asked.output is not None or not asked.as_json:
+        write_index(page, listing)
+    for other in listing.others:
+        settings.say(f"note: {one_line(folder / other.name)}: {one_line(other.sentence)}")
+    if asked.as_json:
+        out_json(listing_document(listing))
+    else:
+        out(f"{summary_of(listing)}\nindex: {page}")
+    return 0
+
+
+def compare(settings: Settings, asked: SimpleNamespace) -> int:
     """Show inputs, results and checks that changed: exit 0 when equal, 1 when different."""
-    changes = compared(load_either(first), load_either(second))
-    if as_json:
+    changes = compared(load_either(asked.first), load_either(asked.second))
+    if asked.as_json:
         out_json({"equal": not changes, "changes": [asdict(change) for change in changes]})
     elif not changes:
         out("equal")
     else:
         ordered = in_order(changes)
-        rows = [("what", "name", one_line(first), one_line(second), "change"), *map(words_of, ordered)]
-        out_table(rows, [("",) * 5, *map(styles_of, ordered)])
+        head = ("what", "name", one_line(asked.first), one_line(asked.second), "change")
+        out_table([head, *map(words_of, ordered)], [("",) * 5, *map(styles_of, ordered)])
     return 1 if changes else 0
 
 

@@ -3,13 +3,15 @@
 import numpy as np
 import pytest
 
-from hidden_effects.noises import KINDS, MEMORY, Array, Kind, held_out, noise_of
+from hidden_effects.rigs import KINDS, MEMORY, Kind, grown, held_out, noise_of
+from hidden_effects.rows import Array
 
 SPREAD = np.repeat([0.4, 2.0], 4000)
 
 
 def drawn(kind: Kind) -> Array:
-    return noise_of(kind, SPREAD, 0.01, np.random.default_rng(1))
+    noise = noise_of(kind, len(SPREAD), np.random.default_rng(1), size=0.01)
+    return grown(noise, SPREAD) if kind == "growing" else noise
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -1,4 +1,4 @@
-"""What the reducer's figures show is what holds: their lines, bars and arrows are read back and compared.
+"""A run of the reducer: its figures are read back and compared, its results, and the printed numbers beside ours.
 
 Expected numbers are geometry, closed forms and equations written a second time, the paper's prints, or the tables of an
 independent program.
@@ -6,23 +6,26 @@ independent program.
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from math import acos, cos, degrees, erf, log, pi, radians, sin, sqrt
+from functools import partial
+from math import acos, cos, degrees, isfinite, log, pi, radians, sin, sqrt
+from pathlib import Path
+from statistics import NormalDist
 from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.patches import Circle
 from numpy.typing import NDArray
-from rv_wear_by_hand import PRICE_OF, by_power
-from scipy.optimize import minimize
+from rv_wear_by_hand import PRICE_OF, price_by_hand
 
 from rv_wear import sheet
 from rv_wear.discs import Modifications
 from rv_wear.figures import mesh_figure
 from rv_wear.machines import NewMachines
-from rv_wear.model import RV_WEAR
 from rv_wear.optimum import Fronts, LeastCosts
-from truing import Drawing, Reliability, TruingError, Words
+from truing import Drawing, Kernel, Reliability, TruingError, Words
 from truing.calculation import Calculation, calculate
+from truing.published import compare_published
 from truing.report.figures import draw
 from truing.setup import default_setup
 
@@ -46,21 +49,40 @@ UNPRICED = (  # arcmin: coefficient times width over 6 of the errors 1, 2, 3, 8 
     1.6 / 6 * PER_MICROMETRE,
     (1.2e-3 / 6) / 63 / ARCMIN,
 )
-SMALL = {
+OFFER = Kernel.installed(strict=True).offer("rv_wear")
+RV_WEAR = OFFER.model
+SMALL: dict[str, dict[str, Any]] = {
     "reliability": {"draws": 20_000, "points": 7},
     "new_machines": {"draws": 2000},
-    "least_costs": {},
     "optimise": {"population": 16, "generations": 6, "draws": 512, "verify": 2000},
 }
-WANTED = {"validity", "modifications", "sweep", "sensitivity", "costs", *SMALL}
+RATIOS = {  # our number over the printed one: how far from 1, in the reference reproduction of the paper or known here
+    **{f"sensitivity index {number}": (-0.0095, 0.0095) for number in range(1, 17)},
+    **dict.fromkeys(
+        ("force falls with the modification", "contact widens with the modification",
+         "wear falls with the modification", "wear to 3000 h within the 95 % band", "share below 1 arcmin, unworn"),
+        (0.0, 0.0),
+    ),
+    "largest equidistant modification": (-0.0096, 0.0096), "smallest equidistant modification": (-0.0143, 0.0143),
+    "deepest wear after 6000 h": (-0.001, 0.001), "deepest wear at optimum 1": (-0.001, 0.001),
+    "deepest wear at optimum 2": (-0.0012, 0.0012), "mean backlash, unworn": (-0.0025, 0.0025),
+    "cost before optimisation": (-0.001, 0.001), "least cost at optimum 1": (0.03, 0.0355),
+    "least cost at optimum 2": (0.03, 0.06),
+    # The wear scatters by 1.3 % here, by 2 % in the reference, which has 1.007.
+    "reliability after 6000 h": (-0.0078, 0.0078), "reliability after 4000 h": (-0.004, -0.002),
+    "reliability after 3000 h": (-0.0004, 0.0),
+    # With zones up to twice as wide the knee is cheaper and wears more than the paper's choice.
+    "cost at optimum 1, knee of the front": (-1.0, -0.1), "cost at optimum 2, knee of the front": (-1.0, -0.1),
+    "wear at optimum 1, knee of the front": (0.02, 0.03), "wear at optimum 2, knee of the front": (0.02, 0.03),
+}  # fmt: skip
 
 
 @pytest.fixture(scope="module")
 def run() -> Calculation:
-    """The paper's reducer with small budgets."""
-    chosen: list[Any] = [study for study in RV_WEAR.studies if study.name in WANTED]
-    studies = [replace(study, **SMALL.get(study.name, {})) for study in chosen]
-    return calculate(replace(default_setup(RV_WEAR), studies=tuple(studies)))
+    """The paper's reducer with small budgets: all studies but the allocation."""
+    chosen: list[Any] = [study for study in RV_WEAR.studies if study.name != "allocation"]
+    studies = tuple(replace(study, **SMALL.get(study.name, {})) for study in chosen)
+    return calculate(replace(default_setup(OFFER.model, OFFER.origin), studies=studies))
 
 
 def figures(run: Calculation, section: Callable[[Any], Any]) -> dict[str, Any]:
@@ -72,10 +94,6 @@ def line(panel: Any, label: str) -> tuple[NDArray[np.float64], NDArray[np.float6
     """The line with this label."""
     found = next(item for item in panel.get_lines() if item.get_label() == label)
     return np.asarray(found.get_xdata(), dtype=float), np.asarray(found.get_ydata(), dtype=float)
-
-
-def phi(z: float) -> float:
-    return 0.5 * (1 + erf(z / sqrt(2)))
 
 
 def normal_mean(hours: float) -> float:
@@ -94,19 +112,13 @@ def spread(widths: Mapping[str, float], wear: float) -> float:
 # The mesh
 
 
-@pytest.fixture(scope="module")
-def mesh() -> Any:
-    return mesh_figure(RV_WEAR.inputs()).axes[0]
-
-
 def circles(panel: Any) -> list[Any]:
-    from matplotlib.patches import Circle
-
     return [item for item in panel.patches if isinstance(item, Circle) and item.get_radius() == pytest.approx(RADIUS)]
 
 
-def test_every_pin_stands_on_its_circle_and_touches_the_disc(mesh: Any) -> None:
+def test_every_pin_stands_on_its_circle_and_touches_the_disc() -> None:
     """All pins but for what grinding takes off, before the disc is turned; the outline has a point every 0.2 mm."""
+    mesh = mesh_figure(RV_WEAR.inputs()).axes[0]
     pins = np.array([complex(*item.center) for item in circles(mesh)])
     assert len(pins) == PINS
     assert np.abs(pins) == pytest.approx(CIRCLE)
@@ -118,8 +130,9 @@ def test_every_pin_stands_on_its_circle_and_touches_the_disc(mesh: Any) -> None:
     assert gaps == pytest.approx(ground, abs=2e-3)
 
 
-def test_the_arrows_balance_the_torque_and_point_to_the_pitch_point(mesh: Any) -> None:
+def test_the_arrows_balance_the_torque_and_point_to_the_pitch_point() -> None:
     """Moments about the middle of the disc, from the arrows alone; the longest is the force that is written."""
+    mesh = mesh_figure(RV_WEAR.inputs()).axes[0]
     arrows = [item for item in mesh.texts if item.get_text() == "" and item.arrow_patch is not None]
     assert 9 <= len(arrows) <= 12
     tails = np.array([complex(*item.xyann) for item in arrows])
@@ -130,12 +143,7 @@ def test_the_arrows_balance_the_torque_and_point_to_the_pitch_point(mesh: Any) -
     force = (tips - tails) / np.abs(tips - tails).max() * written
     moments = ((tails - E).conjugate() * force).imag * 1e-3
     assert abs(moments.sum()) == pytest.approx(TORQUE, rel=1e-3)
-
-
-def test_filled_pins_are_those_with_an_arrow(mesh: Any) -> None:
-    filled = [item for item in circles(mesh) if item.get_facecolor()[:3] != (1.0, 1.0, 1.0)]
-    arrows = [item for item in mesh.texts if item.get_text() == "" and item.arrow_patch is not None]
-    assert len(filled) == len(arrows)
+    assert len([item for item in circles(mesh) if item.get_facecolor()[:3] != (1.0, 1.0, 1.0)]) == len(arrows)
 
 
 # Along the flank
@@ -228,7 +236,7 @@ def test_the_reliability_is_the_closed_form(run: Calculation) -> None:
     hours, counted = line(panel, "counted among the machines drawn")
     widths = {name: width for name, (_, width) in PRICED.items()}
     for at in WEAR:
-        expected = phi((1 - normal_mean(at)) / spread(widths, WEAR[at]))
+        expected = NormalDist().cdf((1 - normal_mean(at)) / spread(widths, WEAR[at]))
         found = counted[np.abs(hours - at).argmin()] / 100
         assert found == pytest.approx(expected, abs=4 * sqrt(max(expected * (1 - expected), 1e-5) / 20_000))
     printed, share = line(panel, "the paper, 88.7 % at 6000 h")
@@ -239,9 +247,7 @@ def test_the_indices_stand_beside_table_2(run: Calculation) -> None:
     panel = figures(run, sheet.influence)["How much backlash each error gives"].axes[0]
     bars = [item.get_width() for item in panel.containers[0]]
     printed, _ = line(panel, "the paper, Table 2")
-    assert printed.tolist() == [
-        -0.037, 0.025, 0.025, 1.56, -1.0, 1.0, -1.56, 0.78, 0.39, 1.20, -0.60, 1.56, -1.0, 0.00016, 1.56, 1.06,
-    ]  # fmt: skip
+    assert len(bars) == 16
     for bar, value in zip(bars, printed, strict=True):
         assert bar == pytest.approx(value, rel=1e-2)
 
@@ -251,7 +257,7 @@ def test_the_indices_stand_beside_table_2(run: Calculation) -> None:
 
 def by_hand(name: str, width: float) -> float:
     """The price of a zone of this full width in um, yuan."""
-    return by_power(PRICE_OF[name][0], width / 1000)
+    return price_by_hand(PRICE_OF[name][0], width / 1000)
 
 
 def test_the_prices_are_those_of_the_cost_functions(run: Calculation) -> None:
@@ -263,53 +269,6 @@ def test_the_prices_are_those_of_the_cost_functions(run: Calculation) -> None:
     )
     shares, paid = line(right, "disc runout, now 6.55 µm")
     assert paid == pytest.approx([by_hand("disc_runout", 6.55 * share) for share in shares])
-
-
-def cheapest(goal: float, nominal: float, wear: float) -> float:
-    """The least cost that reaches the goal, by another method: widths in um from one to two times those now."""
-    names = list(PRICED)
-    start = np.array([PRICED[name][1] for name in names])
-    z = -np.sqrt(2) * _inverse_erfc(2 * goal)
-
-    def left(widths: NDArray[np.float64]) -> float:
-        chosen = dict(zip(names, widths, strict=True))
-        grown = sum(
-            PRICED[name][0] * (chosen[name] - PRICED[name][1]) / 2 * PER_MICROMETRE
-            for name in ("disc_runout", "pin_position_error")
-        )
-        return (1 - nominal - grown) / spread(chosen, wear) - float(z)
-
-    def cost(widths: NDArray[np.float64]) -> float:
-        return sum(by_hand(name, width) for name, width in zip(names, widths, strict=True))
-
-    found = minimize(
-        lambda shares: cost(shares * start) / 1000, np.full(len(names), 1.01), bounds=[(1, 2)] * len(names),
-        constraints=[{"type": "ineq", "fun": lambda shares: left(shares * start)}], method="SLSQP",
-        options={"ftol": 1e-12, "maxiter": 300},
-    )  # fmt: skip
-    assert found.success
-    return 1000 * float(found.fun)
-
-
-def _inverse_erfc(value: float) -> float:
-    from scipy.special import erfcinv
-
-    return float(erfcinv(value))
-
-
-@pytest.mark.parametrize("goal", [0.95, 0.999])
-def test_the_fronts_are_least_costs(run: Calculation, goal: float) -> None:
-    """The same front from equations written here and another optimiser, at three places."""
-    panel = figures(run, sheet.better_tolerances)["Cost and wear"].axes[0]
-    cost, wear = line(panel, f"least cost for {100 * goal:g} %")
-    fronts: Fronts = run.outcomes["least_costs"]
-    designs = next(front.designs for front in fronts.fronts if front.goal == goal)
-    assert np.all(np.diff(cost) < 0)
-    assert np.all(np.diff(wear) > 0)
-    for place in (1, 3, 5):
-        equidistant = designs[place].modification * 1e6
-        nominal = 0.6985 + (2 - 2 * Q) * (equidistant + 26) * PER_MICROMETRE + 2 * wear[place] * PER_MICROMETRE
-        assert cost[place] == pytest.approx(cheapest(goal, nominal, wear[place]), rel=2e-3)
 
 
 def test_the_front_shows_the_start_and_what_the_paper_prints(run: Calculation) -> None:
@@ -333,8 +292,6 @@ def test_no_design_of_the_search_beats_the_front(run: Calculation) -> None:
 
 def test_the_numbers_on_the_theory_page_are_those_of_the_fronts(run: Calculation) -> None:
     """Smallest wear, knee, and the cost at the paper's wear."""
-    from pathlib import Path
-
     page = (Path(__file__).parents[2] / "docs" / "explanation" / "rv_wear.md").read_text(encoding="utf-8")
     fronts: Fronts = run.outcomes["least_costs"]
     for front in fronts.fronts:
@@ -354,6 +311,48 @@ def test_the_better_reducers_reach_their_goal_at_the_end(run: Calculation) -> No
     assert reached == {"95 %": pytest.approx(95.0, abs=1e-3), "99.9 %": pytest.approx(99.9, abs=1e-3)}
 
 
+# Results and printed numbers
+
+
+def test_the_paper_finds_one_check_that_fails(run: Calculation) -> None:
+    """88.7 % stay within one arc minute after 6000 h: not enough."""
+    assert run.verdict == "fails"
+    (failing,) = [check for check in run.checks if not check.passed]
+    assert (failing.name, failing.limit) == ("backlash", 0.95)
+
+
+def test_what_runs_along_an_axis_reaches_the_results(run: Calculation) -> None:
+    axes = {
+        "phase_angle": ("normal_force", "worn_force", "wear_depth"),
+        "history_time": ("wear_history", "backlash_history"),
+        "reliability_time": ("reliability_history",),
+        "front_cost": ("front_wear", "front_equidistant"),
+    }
+    found = run.answers
+    for axis, names in axes.items():
+        assert len(found[axis]) > 2
+        assert [len(found[name]) for name in names] == [len(found[axis])] * len(names)
+    assert found["normal_force"].max() == pytest.approx(found["largest_force"], rel=1e-12)
+    assert found["wear_depth"].max() == pytest.approx(found["max_wear"], rel=1e-9)
+    assert found["wear_history"][0] == 0
+    assert found["wear_history"][-1] == pytest.approx(found["max_wear"], rel=1e-12)
+    assert found["reliability_history"][-1] == pytest.approx(found["accuracy_reliability"], rel=1e-12)
+    assert np.all(np.diff(found["front_wear"]) < 0)  # in the order of cost
+    assert all(design.feasible for design in run.outcomes["optimise"].front)
+    assert 0.85 <= found["surrogate_coverage"] <= 1
+
+
+def test_every_printed_number_is_as_stated_and_as_near_as_in_the_reference(run: Calculation) -> None:
+    rows = {row.published.name: row for row in compare_published(OFFER, known=run)}
+    apart = {name: row.ratio - 1 for name, row in rows.items() if row.ratio is not None}
+    assert len(rows) == 38
+    assert set(RATIOS) == set(rows) - {"place of the deepest wear"}
+    for name, (low, high) in RATIOS.items():
+        assert low - 1e-9 <= apart[name] <= high + 1e-9, name
+    assert all(row.as_stated and isfinite(row.value) for row in rows.values())
+    assert all(row.published.why for row in rows.values() if not row.matches)
+
+
 # All of them
 
 
@@ -366,8 +365,9 @@ def test_every_figure_can_be_drawn_and_names_its_axes(run: Calculation, section:
     assert blocks
     for block in blocks:
         assert block.caption
-        assert "<svg" in draw(block.draw, title=block.title, ident="f")
-        panels = block.draw().axes
+        figure = block.draw()
+        assert "<svg" in draw(partial(lambda made: made, figure), title=block.title, ident="f")
+        panels = figure.axes
         assert all(panel.get_ylabel() or panel.get_yticklabels() or panel.get_shared_y_axes() for panel in panels)
         assert panels[-1].get_xlabel()
 
@@ -397,7 +397,7 @@ def test_an_unusual_reducer_is_drawn_too(inputs: dict[str, Any]) -> None:
         assert section.blocks is not None
         for block in section.blocks(found.record):
             if isinstance(block, Drawing):
-                assert "<svg" in draw(block.draw, title=block.title, ident="f")
+                assert block.draw().axes
 
 
 # The studies that are there for the figures

@@ -1,0 +1,192 @@
+"""What each effect of press, gearing and reducer does, against a machine that was written apart from the plugin.
+
+The machines of the benchmark import nothing of a plugin, and most of what they do is not the formula of the effect:
+links move on complex numbers, load is spread strip by strip, wear and heat are summed step by step. The last number of
+a case says how far both may be apart, as a share of the largest change: what those sums leave, and not more.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from hidden_effects import gearing_cases, press_machine, rv_cases
+from hidden_effects.gearing_stage import Stage
+from hidden_effects.plugin_asking import model_of
+from hidden_effects.rows import Array
+from truing.evaluate import evaluate_rows
+from truing.setup import SwitchedOn, default_setup
+from truing.units import from_si, to_si
+
+Unknowns = Mapping[str, Mapping[str, float]]
+SI = ""
+COUNT = 60
+
+
+def press_rows(_: str) -> press_machine.Rows:
+    """All round the turn, in either direction, some without load, over some hours and strokes."""
+    rng = np.random.default_rng(11)
+    return press_machine.Rows(
+        time=np.sort(rng.uniform(0, 3e4, COUNT)),
+        crank_angle=np.radians(rng.uniform(-175, 175, COUNT)),
+        forming_force=np.where(np.arange(COUNT) % 6 == 0, 0.0, rng.uniform(-3e5, 1.5e6, COUNT)),
+        link_temperature=rng.uniform(15, 50, COUNT),
+        strokes=np.sort(rng.uniform(0, 1e6, COUNT)),
+        speed=rng.uniform(0.1, 0.9, COUNT),
+        direction=rng.choice([-1.0, 1.0], COUNT),
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Machine:
+    """A machine with its plugin: rows of a design, what its gauges show, and the units of columns and results.
+
+    ``unit`` is that of the unknowns of the press, which are SI; those of the others have the units of the registry.
+    """
+
+    plugin: str
+    rows: Callable[[Any], Any]
+    shown: Callable[[Any, Unknowns], Mapping[str, Array]]
+    columns: Mapping[str, str]
+    results: Mapping[str, str]
+    inputs: Mapping[str, Any]
+    unit: str | None = None
+
+    def change(self, design: str, hidden: Unknowns, stated: Mapping[str, Any]) -> dict[str, tuple[Array, Array]]:
+        """What the effects do to each result: by the plugin and by the machine, in the units of the results."""
+        model, rows = model_of(self.plugin), self.rows(design)
+        setup = default_setup(model, **{**self.inputs, **stated})
+        columns = {name: np.asarray(to_si(getattr(rows, name), unit)) for name, unit in self.columns.items()}
+        on = tuple(SwitchedOn(model.effects[name], self.si(name, unknowns)) for name, unknowns in hidden.items())
+        known = {*model.input_fields, *(need.name for effect in on for need in effect.effect.needs)}
+        given = {name: values for name, values in columns.items() if name in known}
+        bare = {name: values for name, values in given.items() if name in model.input_fields}
+        with_it, without = (
+            evaluate_rows(each, named, len(rows), reading=True)
+            for each, named in ((replace(setup, effects=on), given), (setup, bare))
+        )
+        assert not with_it.failed.any()
+        hanging = {"hanging": stated_of_machine(stated)} if stated else {}
+        there, before = self.shown(rows, {**hidden, **hanging}), self.shown(rows, {})
+        return {
+            name: (np.asarray(from_si(with_it.results[name], unit)) - from_si(without.results[name], unit),
+                   there[name] - before[name])
+            for name, unit in self.results.items()
+        }  # fmt: skip
+
+    def si(self, effect: str, unknowns: Mapping[str, float]) -> dict[str, float]:
+        """All unknowns of an effect in SI; those that a case leaves out are 0."""
+        declared = model_of(self.plugin).effects[effect].unknowns
+        return {
+            each.name: float(to_si(unknowns.get(each.name, 0.0), each.unit if self.unit is None else self.unit))
+            for each in declared
+        }
+
+
+def stated_of_machine(stated: Mapping[str, Any]) -> dict[str, float]:
+    """What hangs on the slider, kg, and what lifts it, N."""
+    return {
+        "mass": 1e3 * float(stated["slider_mass"].split()[0]),
+        "lift": 1e3 * float(stated["counterbalance"].split()[0]),
+    }
+
+
+PRESS = Machine(
+    plugin="press_linkage", rows=press_rows, shown=lambda rows, hidden: press_machine.shown(rows, {}, hidden),
+    columns={"time": SI, "crank_angle": SI, "forming_force": SI, "link_temperature": "degC", "strokes": SI,
+             "speed": SI, "direction": SI},
+    results={"slider_position": SI, "slider_tilt": SI}, inputs={}, unit=SI,
+)  # fmt: skip
+GEARING = Machine(
+    plugin="rv_gearing", rows=lambda design: gearing_cases.measured(design, COUNT, np.random.default_rng(3)),
+    shown=lambda rows, hidden: gearing_cases.shown(rows, Stage(), hidden), columns=gearing_cases.WRITTEN,
+    results=gearing_cases.UNIT, inputs={"sun_teeth": 20, "planet_teeth": 55},
+)  # fmt: skip
+REDUCER = Machine(
+    plugin="rv_wear", rows=lambda design: rv_cases.measured(design, COUNT, np.random.default_rng(3)),
+    shown=lambda rows, hidden: rv_cases.shown(rows, {}, hidden), columns=rv_cases.WRITTEN, results=rv_cases.UNIT,
+    inputs={},
+)  # fmt: skip
+HEAT = {"link_heating": {"expansion": 1.15e-5}}
+HANGING = {"slider_mass": "20 t", "counterbalance": "150 kN"}
+LOOSE = {"joint_clearance": {"clearance": 2e-5}}
+SOFT = {"elastic_deflection": {"compliance": 1e-9}}
+AHEAD = {"encoder_eccentricity": {"sine": 0.003, "cosine": -0.007}}
+EXACT, SLOPE, SUMMED, WORN, WAVE = 1e-9, 1e-5, 1e-3, 0.01, 0.045
+PRESSES: list[tuple[Unknowns, float, dict[str, str]]] = [
+    (HEAT, EXACT, {}),
+    ({"side_heating": {"expansion_1": 1.4e-5, "expansion_2": -3e-6}}, EXACT, {}),
+    ({"warm_up": {"rise": 4e-4, "time_constant": 7200.0}}, EXACT, {}),
+    ({"crank_phase": {"phase": 0.012}}, EXACT, {}),
+    (AHEAD, EXACT, {}),
+    ({"drive_backlash": {"play_before": 0.004, "play_after": 0.009}}, EXACT, {}),
+    (SOFT, SLOPE, {}),
+    (SOFT, SLOPE, HANGING),
+    (LOOSE, SLOPE, {}),
+    (LOOSE, SLOPE, HANGING),
+    ({"joint_wear": {"wear": 3e-4}}, SLOPE, HANGING),
+    ({"slider_inertia": {"mass_compliance": 5e-6}}, SLOPE, {}),
+    ({"die_inclination": {"inclination": 7e-5, "height": -3e-5}}, EXACT, {}),
+    (HEAT | AHEAD | SOFT, 2e-4, {}),  # the plugin shortens links of their nominal length
+]
+STAGES: list[tuple[Unknowns, float, str]] = [
+    ({"face_misalignment": {"misalignment": 9.0}}, SUMMED, "rig"),
+    ({"face_misalignment": {"misalignment": 2.0, "per_load": 8.0}}, SUMMED, "one_way"),
+    ({"structural_resonance": {"strength": 0.06, "resonance_speed": 900, "damping": 0.1}}, SUMMED, "rig"),
+    ({"planet_load_sharing": {"lead": 0.2}}, SUMMED, "rig"),
+    ({"crowned_contact": {"full_line_load": 25.0}}, SUMMED, "rig"),
+    ({"relief_error": {"missing": -0.4}}, SUMMED, "rig"),
+    ({"centre_distance_growth": {"expansion": 12.0}}, SUMMED, "rig"),
+    ({"sun_runout": {"cosine": 1.5, "sine": -1.2}}, WAVE, "rig"),
+    ({"planet_runout": {"cosine": -1.2, "sine": 1.5}}, WAVE, "rig"),
+    ({"mesh_ripple": {"cosine": 1.0, "sine": 1.0}}, WAVE, "rig"),
+    ({"mesh_ripple": {"second_cosine": 1.2, "second_sine": -0.8}}, WAVE, "rig"),
+    ({"output_eccentricity": {"cosine": 2.5, "sine": 1.5}}, WAVE, "rig"),
+    ({"output_eccentricity": {"tooth_cosine": 1.2, "tooth_sine": -0.8}}, WAVE, "rig"),
+    ({"speed_dependent_loss": {"constant": 0.4, "viscous": 0.4}}, WORN, "one_way"),
+    ({"flash_temperature": {"friction": 0.06}}, WORN, "rig"),
+    ({"wind_up": {"compliance": 0.6}}, SUMMED, "rig"),
+    ({"lost_motion": {"play": 15.0, "torque_scale": 60}}, 0.02, "sweep"),
+    ({"wear_drift": {"rate": 2.0}}, SUMMED, "rig"),
+    ({"ratio_drift": {"miscount": 1e-6}}, SUMMED, "rig"),
+    ({"mesh_stiffening": {"share": 1.4}}, SUMMED, "sweep"),
+]
+REDUCERS: list[tuple[Unknowns, float]] = [
+    ({"thermal_clearance": {"expansion": 11.5}}, WORN),
+    ({"running_in": {"depth": 0.9, "run_in_time": 300}}, EXACT),
+    ({"wear_temperature": {"softening": 0.006}}, WORN),
+    ({"film_lubrication": {"film_factor": 140}}, WAVE),
+    ({"pin_rolling": {"rolling": 0.5}}, WORN),
+    ({"pin_wear": {"ratio": 0.7}}, WORN),
+    ({"lost_motion_share": {"loss": 0.6}}, WORN),
+    ({"bearing_wear": {"wear": 0.6}}, EXACT),
+    ({"lubricant_ageing": {"rate": 0.3}}, WORN),
+    ({"load_exponent": {"exponent": 0.5}}, WORN),
+    ({"duty_share": {"idle": 0.45}}, WORN),
+    ({"wind_up": {"compliance": 1.0}}, EXACT),
+    ({"stiffening": {"twist": 0.2, "torque_scale": 120}}, EXACT),
+    ({"pin_pass_ripple": {"disc_cosine": 0.03, "disc_sine": -0.02}}, EXACT),
+    ({"pin_pass_ripple": {"pin_cosine": -0.02, "pin_sine": 0.03}}, EXACT),
+    ({"friction_hysteresis": {"lag": 0.02}}, EXACT),
+]
+CASES: list[tuple[Machine, Unknowns, float, str, dict[str, str]]] = [
+    *((PRESS, hidden, within, "", stated) for hidden, within, stated in PRESSES),
+    *((GEARING, hidden, within, design, {}) for hidden, within, design in STAGES),
+    *((REDUCER, hidden, within, "fleet", {}) for hidden, within in REDUCERS),
+]
+
+
+@pytest.mark.parametrize(
+    ("machine", "hidden", "within", "design", "stated"), CASES, ids=["+".join(case[1]) for case in CASES]
+)
+def test_an_effect_does_what_the_machine_shows(
+    machine: Machine, hidden: Unknowns, within: float, design: str, stated: dict[str, str]
+) -> None:
+    moved = False
+    for name, (ours, theirs) in machine.change(design, hidden, stated).items():
+        most = float(np.max(np.abs(theirs)))
+        moved = moved or most > 0
+        assert ours == pytest.approx(theirs, rel=0, abs=max(within * most, 1e-12)), name
+    assert moved
