@@ -15,7 +15,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, permutations
-from math import pi, sqrt
+from math import log1p, pi, sqrt
 from typing import Any
 
 import numpy as np
@@ -59,8 +59,8 @@ ROWS = 40
 """So many rows of the record are asked what the rivals differ in."""
 CLEAR = sqrt(APART)
 """Beyond this many standard deviations of machines within their tolerances a difference tells explanations apart."""
-ROUNDED = 1e-3
-"""Share by which separations may differ that are one: explanations of one curve are told apart from a third alike."""
+SEPARATION_DIGITS = 3
+"""Decimal places of the logarithm of a separation that count: two names of one curve are told from a third alike."""
 NEARLY = 0.95
 """Of several rows that tell as clearly the one is told in which the difference is largest."""
 LEAST_SHARE = 1e-3
@@ -287,7 +287,7 @@ def _points(chosen: Chosen, settings: Mapping[str, Matrix], live: Sequence[_Duel
     taken, start = _greedy(live), chosen.competition.sample.machine.start
     needed = max((duel.needed(taken) or MOST_POINTS for duel in live), default=0)
     for count, index in enumerate(taken, start=1):
-        weakest = _weakest(live)
+        weakest = min(live, key=lambda duel: round(log1p(duel.separation), SEPARATION_DIGITS))
         why = _why(chosen, settings, index, weakest)
         for duel in live:
             duel.measure(index)
@@ -296,12 +296,6 @@ def _points(chosen: Chosen, settings: Mapping[str, Matrix], live: Sequence[_Duel
         least = min(duel.separation for duel in live)
         amounts = {name: Amount(float(values[index]), start.print_unit(name)) for name, values in settings.items()}
         yield NextPoint(amounts, weakest.names, why, least, needed=needed)
-
-
-def _weakest(live: Sequence[_Duel]) -> _Duel:
-    """Return the pair that is told apart least; of several the first, whatever rounding makes of them."""
-    least = min(duel.separation for duel in live)
-    return next(duel for duel in live if duel.separation <= (1 + ROUNDED) * least)
 
 
 @dataclass(frozen=True)

@@ -85,7 +85,8 @@ def shape_in_words(machine: Calibration, cause: Candidate, values: Matrix, added
     """Describe a fitted curve by its numbers (SI) and what it adds to a result, SI, (n,): see ``drawn_by``."""
     kind, *names = drawn_by(cause)
     covariate, spanned = machine.records.covariates[names[0]], float(np.ptp(added))
-    size, amplitude, change = in_unit(spanned, unit), in_unit(spanned / 2, unit), _change(covariate, added, unit)
+    size, amplitude = in_unit(spanned, unit), in_unit(spanned / 2, unit)
+    change = in_unit(float(added[np.nanargmax(covariate.values)] - added[np.nanargmin(covariate.values)]), unit)
     number = float(values[cause.shapes[0]]) if cause.shapes else 0.0
     if kind == "order":
         return f"order {number:g} of {covariate.name}, amplitude {amplitude}"
@@ -104,11 +105,6 @@ def shape_in_words(machine: Calibration, cause: Candidate, values: Matrix, added
     if kind == "product":
         return f"depends on {' and '.join(names)} together, range {size}"
     return _trend(covariate, added, unit)
-
-
-def _change(covariate: Covariate, added: Matrix, unit: str) -> str:
-    """Write by how much a curve differs between the smallest and the largest value of a covariate."""
-    return in_unit(float(added[np.nanargmax(covariate.values)] - added[np.nanargmin(covariate.values)]), unit)
 
 
 def _place(covariate: Covariate, at: float) -> str:
