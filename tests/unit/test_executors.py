@@ -24,6 +24,7 @@ from truing.executors import (
     in_order,
     open_executor,
     processes,
+    stays_here,
 )
 from truing.executors.cluster import differences
 from truing.executors.kept import HEAD, MAGIC, answer_of, key_of, text_of
@@ -275,7 +276,10 @@ def test_answers_come_back_to_the_last_bit():
 
 def test_an_answer_that_is_no_data_is_said_and_not_kept(tmp_path):
     log = BatchLog(tmp_path / "log")
-    assert list(in_order(kept_here(log), Path, ["a"])) == [Path("a")]
+    place = kept_here(log)
+    assert stays_here(SerialExecutor())
+    assert not stays_here(place)  # what is kept is asked for as plain data
+    assert list(in_order(place, Path, ["a"])) == [Path("a")]
     assert len(log) == 0
     assert log.remarks() == [
         f"some finished batches are not kept for --resume: a {type(Path()).__name__} is no plain data"
