@@ -9,7 +9,7 @@ import ast
 import itertools
 import math
 import time
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Literal, TypeAlias
@@ -55,11 +55,11 @@ def told(setup: Setup, offer: Offer, name: str, *, progress: Progress = silent) 
     model = setup.model
     kind = kind_of(model, name)
     name = name.rpartition(".")[2]
-    tell = {
+    tell: dict[Topic, Callable[[Setup, str], dict[str, Any]]] = {
         "result": partial(of_result, offer=offer, progress=progress), "input": of_input, "effect": of_effect,
         "tolerance": of_tolerance, "condition": of_condition, "study": of_study,
-    }[kind]  # fmt: skip
-    return {"model": offer.name, "title": model.title, "name": name, "kind": kind, **tell(setup, name)}
+    }  # fmt: skip
+    return {"model": offer.name, "title": model.title, "name": name, "kind": kind, **tell[kind](setup, name)}
 
 
 # Which thing of a model a name means: a result, an input, an effect, a tolerance, a condition or a study

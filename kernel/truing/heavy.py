@@ -10,14 +10,15 @@ from typing import Any
 
 
 class Later:
-    """A module by its name, imported when something of it is first asked for."""
+    """A module by its name, imported when something of it is first asked for; ``homes`` say where some names are."""
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, **homes: str) -> None:
         self._name = name
+        self._homes = homes
 
     def __getattr__(self, name: str) -> Any:
         """Return what the module calls so. Raises ImportError where it is not installed."""
-        return getattr(import_module(self._name), name)
+        return getattr(import_module(self._homes.get(name, self._name)), name)
 
 
 gaussian_process: Any = Later("sklearn.gaussian_process")
@@ -25,11 +26,14 @@ gaussian_kernels: Any = Later("sklearn.gaussian_process.kernels")
 learning_exceptions: Any = Later("sklearn.exceptions")
 stats: Any = Later("scipy.stats")
 ipython_display: Any = Later("IPython.display")
-pymoo_config: Any = Later("pymoo.config")
-pymoo_evaluator: Any = Later("pymoo.core.evaluator")
-pymoo_hypervolume: Any = Later("pymoo.indicators.hv")
-pymoo_mutation: Any = Later("pymoo.operators.mutation.pm")
-pymoo_nsga2: Any = Later("pymoo.algorithms.moo.nsga2")
-pymoo_problem: Any = Later("pymoo.core.problem")
-pymoo_repair: Any = Later("pymoo.core.repair")
-pymoo_static: Any = Later("pymoo.problems.static")
+pymoo: Any = Later(
+    "pymoo",
+    Config="pymoo.config",
+    Evaluator="pymoo.core.evaluator",
+    HV="pymoo.indicators.hv",
+    NSGA2="pymoo.algorithms.moo.nsga2",
+    PM="pymoo.operators.mutation.pm",
+    Problem="pymoo.core.problem",
+    Repair="pymoo.core.repair",
+    StaticProblem="pymoo.problems.static",
+)

@@ -200,16 +200,7 @@ WINDOW_SHARE = 0.1  # of a line: the longest window
 COUNT = 12
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class RoughnessLength:
-    """Windows (k,) in m, mean roughness in them (k,) in m, and the profile dimension that their power law says."""
-
-    windows: Array
-    roughness: Array
-    dimension: float
-
-
-def roughness_length_of(heights: Array, spacing: float) -> RoughnessLength:
+def roughness_length_of(heights: Array, spacing: float) -> float:
     """Read the profile dimension from lines (lines, points), m, by the roughness-length method.
 
     Of every window of w points the straight line is removed, rho = sqrt(sum r^2/(w-2)); its mean over all windows
@@ -220,11 +211,11 @@ def roughness_length_of(heights: Array, spacing: float) -> RoughnessLength:
     sizes = window_sizes(heights.shape[1])
     roughness = np.array([_mean_roughness(heights, int(size)) for size in sizes])
     known = np.isfinite(roughness) & (roughness > 0)
-    windows = np.asarray(sizes[known] * spacing, dtype=float)
-    dimension = float("nan")
-    if known.sum() > 1:
-        dimension = 2.0 - float(np.polyfit(np.log(windows), np.log(roughness[known]), 1)[0])
-    return RoughnessLength(windows=windows, roughness=roughness[known], dimension=dimension)
+    if known.sum() < 2:
+        return float("nan")
+    return 2.0 - float(
+        np.polyfit(np.log(np.asarray(sizes[known] * spacing, dtype=float)), np.log(roughness[known]), 1)[0]
+    )
 
 
 def window_sizes(points: int) -> Steps:
@@ -455,7 +446,7 @@ def estimate_of(lines: Lines, direction: Direction, settings: Estimation) -> Est
         spacing=lines.spacing,
         all_lags=np.concatenate([coarse.lags, curve.lags])[whole],
         all_values=np.concatenate([coarse.pooled, curve.pooled])[whole],
-        window_dimension=roughness_length_of(lines.heights, lines.spacing).dimension,
+        window_dimension=roughness_length_of(lines.heights, lines.spacing),
         noise_dimension=noise_dimension,
         noise_share=noise_share,
     )

@@ -1,6 +1,6 @@
 """All engaged pairs of teeth together: who carries how much, how stiff the mesh is, and its torsion."""
 
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -23,9 +23,9 @@ def _taken(value: Any, index: NDArray[np.intp], rows: int, axes: int) -> Any:
 
     Of a pair, or of an engagement, the same with all its numbers taken.
     """
-    if is_dataclass(value):
+    if is_dataclass(value) and not isinstance(value, type):
         taken = {each.name: _taken(getattr(value, each.name), index, rows, axes) for each in fields(value)}
-        return type(value)(**taken)
+        return replace(value, **taken)
     if np.ndim(value) == 0:
         return value
     many = np.broadcast_to(np.asarray(value, dtype=float), (rows,))[index]

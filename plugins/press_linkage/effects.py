@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from press_linkage.errors import face_sensitivities
+from press_linkage.errors import KINDS, face_sensitivities
 from press_linkage.kinematics import Position, slider_motion, solve
 from press_linkage.quantities import Press, PressSide, Slider
 from truing import Condition, Effect, Float, Unknown
@@ -30,7 +30,7 @@ DIRECTION = Condition("direction", "", reference=0, low=-1, high=1,
 
 # Links that lengthen with heat. Frame, platform width and slider keep their size
 
-HEATED = ("crank_radius", "rod_length", "knee_drive_length", "upper_knee_length", "lower_knee_length")
+HEATED = KINDS[:5]  # crank, rod and knee links
 
 
 def longer(side: PressSide, by: Mapping[str, Float]) -> PressSide:
@@ -116,7 +116,7 @@ def drive_backlash(press: Press, *, play_before: Float, play_after: Float, direc
 # A central force F on the slider presses each link with N = F dS/dL (virtual work), dS/dL being the exact derivative of
 # the slider position by the length of that link, in the position that the press is in: F/2 times the paper's xi.
 
-KNEE = ("knee_drive_length", "upper_knee_length", "lower_knee_length")
+KNEE = KINDS[2:5]
 JOINTS = 2  # per link
 MILLION = 1e6
 GRAVITY = 9.80665  # m/s2

@@ -9,8 +9,8 @@ from matplotlib.patches import Polygon, Rectangle
 from matplotlib.patheffects import withStroke
 
 from gear_geometry.drawing import BLUE, GREEN, INK, ORANGE, panels, quiet
-from press_linkage.answers import KEY_POSITION, KEY_TILT
-from press_linkage.errors import ARM, KINDS, PASSIVE, SOURCES, derivatives, salience, side_sensitivities, source
+from press_linkage.answers import EVERY, KEY_POSITION, KEY_TILT, sources_of
+from press_linkage.errors import PASSIVE, SOURCES, derivatives, salience, side_sensitivities
 from press_linkage.kinematics import Half, Position, nominal, solve, top_crank_angle
 from press_linkage.quantities import Press, Slider
 from truing import Allotted, Record, Sensitivities
@@ -241,11 +241,19 @@ def over_the_turn(record: "PressRun") -> "Figure":
     found = derivatives(press, turn)
     for of, key, colour, name in (
         (found.position, KEY_POSITION, BLUE, "position, 12 key errors"),
-        ({name: found.tilt[name] for kind in PASSIVE for name in _both(kind)}, KEY_TILT, ORANGE, "tilt, 10 key errors"),
+        (
+            {name: found.tilt[name] for kind in PASSIVE for name in sources_of((kind,))},
+            KEY_TILT,
+            ORANGE,
+            "tilt, 10 key errors",
+        ),
     ):
         shares = salience(of)
         lower.plot(
-            np.degrees(TURN), sum(shares[item] for kind in key for item in _both(kind)), color=colour, label=name
+            np.degrees(TURN),
+            sum(shares[item] for kind in key for item in sources_of((kind,))),
+            color=colour,
+            label=name,
         )
     lower.legend(loc="lower right")
     lower.set_ylim(0, 1)
@@ -255,31 +263,27 @@ def over_the_turn(record: "PressRun") -> "Figure":
     return figure
 
 
-def _both(kind: str) -> list[str]:
-    return [ARM] if kind == "platform_arm" else [source(kind, side) for side in (1, 2)]
-
-
 def salience_bars(found: "Sensitivities") -> "Figure":
     """Draw the salience of every kind of error for position and tilt; the key errors stand out."""
     figure, (left, right) = panels(1, 4.0, 2, width_ratios=(1, 1))
     position, tilt = found.derivatives["slider_position"], found.derivatives["slider_tilt"]
-    passive = {name: tilt[name] for kind in PASSIVE for name in _both(kind)}
+    passive = {name: tilt[name] for name in sources_of(PASSIVE)}
     _bars(left, salience({name: position[name] for name in SOURCES}), KEY_POSITION, "slider position")
     _bars(right, salience(passive), KEY_TILT, "slider tilt")
     return figure
 
 
-def _bars(panel: Any, shares: Mapping[str, Any], key: Sequence[str], title: str) -> None:
+def _bars(panel: Any, shares: Mapping[str, Any], key: tuple[str, ...], title: str) -> None:
     """Bars of one result, the largest on top; each bar is one of the two equal errors of its kind."""
-    kinds = [kind for kind in (*KINDS, "platform_arm") if _both(kind)[0] in shares]
-    size = {kind: float(max(shares[name] for name in _both(kind))) for kind in kinds}
+    kinds = [kind for kind in EVERY if sources_of((kind,))[0] in shares]
+    size = {kind: float(max(shares[name] for name in sources_of((kind,)))) for kind in kinds}
     ranked = sorted((kind for kind in kinds if size[kind] > NOTHING), key=lambda kind: size[kind])
     colours = [BLUE if kind in key else GREY for kind in ranked]
     panel.barh(range(len(ranked)), [size[kind] for kind in ranked], color=colours, height=0.66)
     panel.set_yticks(range(len(ranked)), [rf"$\delta {SYMBOLS[kind]}$" for kind in ranked], fontsize=9)
     for place, kind in enumerate(ranked):
         panel.text(size[kind], place, f" {size[kind]:.4f}", va="center", fontsize=7.5, color=INK)
-    whole = sum(float(shares[name]) for kind in key for name in _both(kind))
+    whole = sum(float(shares[name]) for name in sources_of(key))
     panel.set_title(f"{title}: {2 * len(key)} key errors, together {whole:.4f}", fontsize=8.5, color=BLUE, loc="left")
     panel.set_xlim(0, 1.22 * max(size.values()))
     panel.tick_params(axis="y", length=0)

@@ -6,8 +6,8 @@ from functools import partial
 from math import degrees, isfinite
 from typing import TypeGuard
 
-from press_linkage.answers import LINKS, sources_of
-from press_linkage.errors import KINDS, POLAR_ANGLES, SOURCES
+from press_linkage.answers import EVERY, LINKS, sources_of
+from press_linkage.errors import POLAR_ANGLES, SOURCES
 from press_linkage.figures import PressRun, along_the_synthesis, mechanism, over_the_turn, salience_bars, way
 from press_linkage.kinematics import top_crank_angle
 from press_linkage.published import WHERE
@@ -54,7 +54,7 @@ def variances(record: "PressRun") -> Sequence[Block]:
     if not knows_every_error(found):
         return []
     rows: list[tuple[str | float, ...]] = []
-    for kind in (*KINDS, "platform_arm"):
+    for kind in EVERY:
         parts = [
             found.sd[result] ** 2 * sum(found.share[result].get(name, 0.0) for name in sources_of((kind,))) / square
             for result, square in (("slider_position", MICROMETRE_2), ("slider_tilt", MICRORADIAN_2))

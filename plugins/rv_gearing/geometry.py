@@ -61,7 +61,8 @@ class Duty:
 class ToothLoad:
     """What one mesh of sun and planet carries: the duty as it is printed, and what else the calculation needs of it.
 
-    The direction is the sign of the load torque, +1 where there is none.
+    The force is nominal; the line load is that of the width that carries, with the application factor, and never 0. The
+    direction is the sign of the load torque, +1 where there is none.
     """
 
     duty: Duty
@@ -73,20 +74,16 @@ class ToothLoad:
 
 
 def load_of(stage: Gearing) -> ToothLoad:
-    """Return the load of a stage: by torque and speed where they are given, else by power and output speed.
-
-    The force is nominal, without any load factor. The line load is that of the width that carries, with the application
-    factor, and never 0.
-    """
+    """Return the load of a stage: by torque and speed where they are given, else by power and output speed."""
     teeth = chosen_teeth(stage)
     ratio = ratio_of(teeth.sun, teeth.planet, teeth.pins)
     efficiency = efficiency_of(stage, teeth.sun, teeth.planet, teeth.pins)
     speed = either(stage.input_speed, stage.output_speed * ratio)
     mesh_speed = either(stage.stated_mesh_speed, speed * (1.0 - 1.0 / ratio))
-    reduction = ratio * efficiency
-    asked = np.abs(either(stage.load_torque, torque_of(stage.power, speed) * reduction))
-    torque = either(stage.stated_sun_torque, asked / reduction)
-    half = 0.5 * stage.module / np.cos(stage.helix_angle)
+    asked = np.abs(either(stage.load_torque, torque_of(stage.power, speed) * (ratio * efficiency)))
+    torque = either(stage.stated_sun_torque, asked / (ratio * efficiency))
+    cosine = np.cos(stage.helix_angle)
+    half = 0.5 * stage.module / cosine
     radii = half * teeth.sun, half * teeth.planet
     force, width = torque / (stage.planets * radii[0]), stage.carrying_share * stage.face_width
     inward = np.cos(transverse_angle(stage.pressure_angle, stage.helix_angle))
@@ -101,7 +98,7 @@ def load_of(stage: Gearing) -> ToothLoad:
         sun_torque=torque,
         output_torque=torque * ratio * efficiency,
         tangential_force=force,
-        pitch_line_velocity=np.pi * (teeth.sun * stage.module / np.cos(stage.helix_angle)) * mesh_speed,
+        pitch_line_velocity=np.pi * (teeth.sun * stage.module / cosine) * mesh_speed,
         carrying_width=width,
         line_load=np.maximum(force * stage.application_factor / width, LEAST_LINE_LOAD),
     )

@@ -114,7 +114,7 @@ def columns_of(mesh: Mesh) -> list[Float]:
 
 def with_columns(mesh: Mesh, columns: list[Float]) -> Mesh:
     """The same choices with other numbers, in the order of ``columns_of``."""
-    return Mesh(*columns, choices=mesh.choices)
+    return Mesh(**dict(zip(NUMBERS, columns, strict=True)), choices=mesh.choices)
 
 
 def distinct(mesh: Mesh) -> tuple[Mesh, NDArray[np.intp] | None]:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from rv_wear import geometry
 from rv_wear.forces import Loads, holding, refuse, shared, start_scale
 from rv_wear.geometry import (
+    NUMBERS,
     Choices,
     Mesh,
     Teeth,
@@ -272,7 +273,8 @@ def key_of(mesh: Mesh, places: NDArray[np.intp]) -> HistoryKey:
 
 def mesh_from(key: HistoryKey) -> Mesh:
     """The meshes of a key."""
-    return Mesh(*np.frombuffer(key.numbers).reshape(-1, key.count), choices=key.choices)
+    columns: list[Float] = list(np.frombuffer(key.numbers).reshape(-1, key.count))
+    return Mesh(**dict(zip(NUMBERS, columns, strict=True)), choices=key.choices)
 
 
 def unworn(mesh: Mesh) -> Unworn:
@@ -305,18 +307,15 @@ class GrowingHistory:
 
     def __init__(self, teeth: Teeth) -> None:
         self._more = nodes_of(teeth)
-        self._nodes: list[Node] = []
-        self._told: Histories | None = None
+        self._nodes = [next(self._more)]
+        self._told = Histories(*(values[None] for values in self._nodes[0]))
         self._lock = Lock()
 
     def up_to(self, exposure: Array) -> Histories:
         """Return the histories to at least an exposure (m,) each, or over the most steps."""
         with self._lock:
-            while self._told is None or (self._nodes[-1][0] < exposure).any():
-                before = len(self._nodes)
+            if (self._nodes[-1][0] < exposure).any():
                 self._nodes.extend(self._until(exposure))
-                if len(self._nodes) == before:
-                    break
                 self._told = Histories(*(np.array(column) for column in zip(*self._nodes, strict=True)))
             return self._told
 

@@ -25,7 +25,7 @@ from hidden_effects.harmonic_surface import FLANK, surface
 from hidden_effects.rigs import KINDS, Wish
 from hidden_effects.rows import Array, Hidden
 
-OF_STAGES: list[tuple[tuple[str, ...], gearing_cases.Design]] = [
+OF_STAGES: list[tuple[tuple[str, ...], str]] = [
     (STAGE_STRESSES, "rig"),
     ((gearing_cases.ERROR, gearing_cases.PLAY), "sweep"),
     ((gearing_cases.LOSS, gearing_cases.WARMTH), "one_way"),
@@ -80,7 +80,7 @@ def reducer(_: int, seed: int) -> Wish:
     rng = np.random.default_rng([seed, 9])
     name = "" if seed % 3 == 0 else list(REDUCERS)[int(rng.integers(len(REDUCERS)))]
     hidden = sized({name: REDUCERS[name]} if name else {}, rng, without=("exponent",))
-    design: rv_cases.Design = "fleet" if name in FLEETS or rng.random() < 0.5 else "endurance"
+    design = "fleet" if name in FLEETS or rng.random() < 0.5 else "endurance"
     results = (rv_cases.BACKLASH, rv_cases.WEAR) if rng.random() < 0.5 else (rv_cases.BACKLASH,)
     kind = KINDS[int(rng.integers(len(KINDS)))]
     return rv_cases.reducer(seed=seed, hidden=hidden, design=design, kind=kind, results=results)
@@ -92,7 +92,7 @@ def screw(_: int, seed: int) -> Wish:
     kind = KINDS[int(rng.integers(len(KINDS)))]
     if seed % 3 == 0:
         results = tuple(rng.choice(OF_SCREWS, 2, replace=False).tolist())
-        design: screw_cases.Design = "endurance" if rng.random() < 0.5 else "bench"
+        design = "endurance" if rng.random() < 0.5 else "bench"
         return screw_cases.screw(seed=seed, design=design, kind=kind, results=results)
     clear = SCREWS[int(rng.integers(len(SCREWS)))]
     hidden, results = sized(clear.hidden, rng), clear.results

@@ -108,16 +108,6 @@ def test_a_value_is_a_text_a_number_or_a_quantity(pin: truing.LoadedModel, load:
     assert pin.run(load=load).si["pressure"] == pytest.approx(84 / 28e-6)
 
 
-def test_draws_are_those_of_the_studies_that_draw(pin: truing.LoadedModel) -> None:
-    studies = pin.setup(draws=4096).studies
-    assert [study.draws for study in studies if hasattr(study, "draws")] == [4096]
-
-
-def test_names_that_are_no_keyword_stand_in_a_mapping(pin: truing.LoadedModel) -> None:
-    assert pin.setup(set={"tolerances.load": "off"}).spread_of("load").text == "off"
-    assert pin.given(set={"load": "84 N"}).run().si["pressure"] == pytest.approx(84 / 28e-6)
-
-
 TAKEN = """
 from truing import Float, Model, found, given, hookimpl, inputs, results
 

@@ -174,15 +174,6 @@ def test_an_output_below_an_ordinary_file(refused: Refused, tmp_path: Path) -> N
         assert found.endswith("cannot be written: file is a file and no folder")
 
 
-def test_an_existing_folder_that_is_no_run_of_ours(refused: Refused, tmp_path: Path) -> None:
-    (tmp_path / "press.toml").write_text("[inputs]\n")
-    (tmp_path / "holiday").mkdir()
-    (tmp_path / "holiday" / "beach.jpg").write_bytes(b"dear")
-    (found,) = refused("run", "press_linkage", "-i", "press.toml", "-o", "holiday")
-    left = "so it is left alone; name another folder or remove this one"
-    assert found == f"calc: holiday: is an existing folder but no run of ours, {left}"
-
-
 def test_a_table_that_would_replace_what_it_reads(refused: Refused, tmp_path: Path) -> None:
     (tmp_path / "press.toml").write_text("[inputs]\n")
     (tmp_path / "rows.csv").write_text("crank_angle [deg]\n1\n")

@@ -9,7 +9,6 @@ from typing import Any
 
 import pytest
 
-import truing
 from shared import Calc
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
@@ -59,25 +58,6 @@ def test_no_case_is_possible(calc: Calc, tmp_path: Path) -> None:
     sentence = "the contact flows: load exceeds hardness times area"
     assert answer.err == f"cases.csv:2: {sentence}\ncases.csv:3: {sentence}\n"
     assert not (tmp_path / "runs").exists()
-
-
-def test_all_cases_pass(calc: Calc, tmp_path: Path) -> None:
-    (tmp_path / "cases.csv").write_text("load [N]\n140\n150\n")
-    answer = calc("run", PIN, "--cases", "cases.csv", "-q", *QUICK)
-    assert answer.code == 0
-    assert "FAILS" not in answer.out
-
-
-def test_the_press_in_both_readings_as_cases(tmp_path: Path) -> None:
-    """The complete reading governs: it misses both goals by more than the printed one keeps them."""
-    (tmp_path / "readings.csv").write_text("case,reading\na,printed\nb,complete\n")
-    studies = {"studies.run": ["sensitivity", "reliability", "allocation"], "studies.reliability.draws": 2000}
-    found = truing.load("press_linkage").run(cases=tmp_path / "readings.csv", set=studies).document
-    assert found["verdict"] == "fails"
-    assert [case["governing"] for case in found["cases"]] == [False, True]
-    finals = [case["results"]["position_reliability_final"]["value"] for case in found["cases"]]
-    assert finals == pytest.approx([0.887, 0.669], abs=5e-4)
-    assert found["inputs"]["reading"]["value"] == "complete"
 
 
 @pytest.fixture

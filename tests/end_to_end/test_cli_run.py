@@ -105,13 +105,6 @@ def test_quiet_does_not_silence_errors(calc: Calc) -> None:
     assert answer.err == "--set load=3 kg: load: '3 kg' is a mass (kg), expected a force (N)\n"
 
 
-def test_what_is_said_goes_to_stderr_and_what_is_found_to_stdout(calc_process: Calc) -> None:
-    answer = calc_process("run", PIN, "--json", "--set", "conditions.probe_temperature=25 degC")
-    assert answer.code == 0
-    assert json.loads(answer.out)["conditions"] == {"probe_temperature": {"value": 25.0, "unit": "degC"}}
-    assert answer.err.startswith("no --inputs")
-
-
 def test_without_a_verb_the_help_is_shown(calc: Calc) -> None:
     answer = calc()
     assert "Usage: calc" in answer.out + answer.err

@@ -75,17 +75,6 @@ def test_different_runs_as_json(runs: Calc) -> None:
     }
 
 
-@pytest.mark.parametrize("content", [None, "{}", "{", '{"schema": "truing.results/9"}'])
-def test_what_is_no_run_is_refused(runs: Calc, tmp_path: Path, content: str | None) -> None:
-    (tmp_path / "other").mkdir()
-    if content is not None:
-        (tmp_path / "other/results.json").write_text(content)
-    answer = runs("compare", "first", tmp_path / "other")
-    assert (answer.code, answer.out) == (2, "")
-    assert answer.err.startswith(f"calc: {tmp_path / 'other'}")
-    assert answer.err.count("\n") == 1
-
-
 def test_a_name_that_one_run_lacks() -> None:
     before = {"results": {"a": {"value": 1.0, "unit": ""}}, "checks": [], "seed": 1}
     after = {"results": {"b": {"value": 1.0, "unit": ""}}, "checks": [{"name": "c", "state": "passes"}], "seed": 1}

@@ -65,6 +65,23 @@ def test_dry_friction_is_in_every_explanation(desk: Path) -> None:
     assert held_out["rmse_after"]["value"] == pytest.approx(error, abs=0.03)
 
 
+def test_the_viscous_part_is_calibrated_to_what_is_left(desk: Path) -> None:
+    sizes, _ = fitted(table_of(desk / "measured.csv"), inertia=False)
+    viscosity = EXAMPLE.diagnosed(desk, "measured")["calibrated"]["viscosity"]["value"]
+    assert viscosity == pytest.approx(sizes[1], abs=0.02)
+
+
+@pytest.mark.parametrize("first", [0, 1])
+def test_every_second_row_says_the_same(desk: Path, first: int) -> None:
+    head, *rows = table_of(desk / "measured.csv")
+    write(desk / f"half_{first}.csv", [head, *rows[first::2]])
+    document = EXAMPLE.diagnosed(desk, f"half_{first}")
+    assert document["verdict"] in {"named", "one_of"}
+    assert all("dry_friction" in names for names in document["explanations"])
+    sizes, _ = fitted(table_of(desk / f"half_{first}.csv"), inertia=False)
+    assert dry_friction(document)["value"] == pytest.approx(sizes[0], abs=0.2)
+
+
 def test_one_way_alone_dry_friction_is_not_taken_for_an_offset(desk: Path) -> None:
     """Where the speed never changes its sign, dry friction is one curve with whatever adds a constant torque."""
     head, *rows = table_of(desk / "measured.csv")

@@ -97,12 +97,6 @@ def test_anything_reads_back_as_it_was(tmp_path_factory: pytest.TempPathFactory,
             assert math.isfinite(float(cell.replace(",", ".", 1)))  # a number with its sign, no formula
 
 
-def test_a_single_column_keeps_its_commas(tmp_path: Path) -> None:
-    values = [0.5, 1 / 3, -2e-7]
-    write_files({tmp_path / "one.csv": table_text(["x"], [values], form=EXCEL)})
-    assert list(read_table(tmp_path / "one.csv", {})[0].columns["x"]) == values
-
-
 def test_every_number_of_a_run_stands_in_its_table(calc: Calc, tmp_path: Path) -> None:
     assert calc("run", PIN, "--excel", *QUICK).code == 0
     folder = tmp_path / "runs" / "pin_wear"

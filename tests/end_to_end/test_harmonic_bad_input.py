@@ -51,17 +51,6 @@ def test_a_surface_that_cannot_be_read(
         assert word in found
 
 
-@pytest.mark.parametrize(
-    ("file", "words"),
-    [("nowhere.csv", ["nowhere.csv"]), (".", ["."]), ("inputs.toml", ["no line of the file holds numbers"])],
-)
-def test_a_file_that_is_none(refused: Refused, file: str, words: list[str]) -> None:
-    (found,) = refused(f'surface = {{ file = "{file}", {STATED} }}')
-    assert found.startswith("inputs.toml:3: surface: ")
-    for word in words:
-        assert word in found
-
-
 HOSTILE = "<script>alert(1)</script>, {{7*7}}, [a](javascript:b), =cmd()|'x'!A0, \x1b[31mred\n"
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 import json
-import os
 import re
 import sys
 from pathlib import Path
@@ -135,19 +134,6 @@ def test_what_is_refused_leaves_nothing(calc: Calc, tmp_path: Path, words: list[
     assert answer.err.count("\n") == 1
     assert sorted(path.name for path in tmp_path.rglob("*")) == ["folder.py", "there.py"]
     assert (tmp_path / "there.py").read_text(encoding="utf-8") == "mine\n"
-
-
-@pytest.mark.parametrize("words", [["--output", "locked/belt"], ["--single-file", "--output", "locked/belt.py"]])
-def test_a_folder_that_may_not_be_written_to(calc: Calc, tmp_path: Path, words: list[str]) -> None:
-    folder = tmp_path / "locked"
-    folder.mkdir(mode=0o555)
-    if os.access(folder, os.W_OK):
-        pytest.skip("this user may write everywhere")
-    answer = calc("new", "belt", *words)
-    folder.chmod(0o755)
-    assert answer.code == 2
-    assert "cannot be written: Permission denied" in answer.err
-    assert list(folder.iterdir()) == []
 
 
 def test_a_single_file_runs_and_is_diagnosed(calc: Calc, tmp_path: Path) -> None:

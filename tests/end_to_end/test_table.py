@@ -6,7 +6,6 @@ import csv
 import io
 import json
 import math
-import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -132,14 +131,6 @@ def test_words_and_empty_cells(table: Table) -> None:
     answer = table("reading\nprintd\n", plugin="press_linkage")
     assert answer.code == 2
     assert answer.err.startswith("rows.csv:2: reading = 'printd' is not offered; choose 'complete' or 'printed'.")
-
-
-def test_many_rows_are_one_call(table: Table) -> None:
-    rows = "load [N]\n" + "".join(f"{100 + k / 1000}\n" for k in range(50_000))
-    begin = time.perf_counter()
-    answer = table(rows)
-    assert time.perf_counter() - begin < 20
-    assert answer.out.count("\n") == 50_001
 
 
 def test_decimal_commas_come_back_as_points(table: Table, tmp_path: Path) -> None:

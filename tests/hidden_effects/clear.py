@@ -29,11 +29,6 @@ def mesh(tooth: float = inf, **hidden: dict[str, float]) -> Wish:
     return harmonic_cases.drive(tooth, hidden=hidden, results=(MESH,), design="points")
 
 
-def flank(**hidden: dict[str, float]) -> Wish:
-    """A flank under an instrument."""
-    return surface(hidden=hidden)
-
-
 STAGES = [
     stage(STAGE_STRESSES, face_misalignment={"misalignment": 2.0}),
     stage(STAGE_STRESSES, face_misalignment={"misalignment": 9.0}),
@@ -100,9 +95,9 @@ DRIVES = [
     drive(flank_wear={"rate": 1.0, "torque_scale": 0.08}),
     drive(thermal_preload={"expansion": 3}),
     drive(rig_drift={"rate": 6}),
-    flank(waviness={"square": 0.01, "wavelength": 25}),
-    flank(instrument_noise={"variance": 100}),
-    flank(lateral_filter={"width": 0.8}),
+    surface(hidden={"waviness": {"square": 0.01, "wavelength": 25}}),
+    surface(hidden={"instrument_noise": {"variance": 100}}),
+    surface(hidden={"lateral_filter": {"width": 0.8}}),
 ]
 SHAPES = {
     "resonance_speed", "damping", "phase", "torque_scale", "run_in_time", "direction", "thinning", "exponent",

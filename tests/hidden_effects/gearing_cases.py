@@ -1,7 +1,6 @@
 """First stages with something wrong, or nothing: how they were measured, with what noise, and what a user has."""
 
 from functools import partial
-from typing import Literal, TypeAlias
 
 import numpy as np
 
@@ -9,7 +8,6 @@ from hidden_effects.gearing_machine import Rows, shown
 from hidden_effects.gearing_stage import Stage
 from hidden_effects.rigs import Bench, Rig, Wish
 
-Design: TypeAlias = Literal["rig", "sweep", "one_way"]
 SUN_ROOT, PLANET_ROOT, CONTACT = "root_stress_sun", "root_stress_planet", "contact_stress"
 ERROR, PLAY, LOSS, WARMTH = "transmission_error", "backlash", "efficiency", "flank_temperature"
 UNIT = {SUN_ROOT: "MPa", PLANET_ROOT: "MPa", CONTACT: "MPa", ERROR: "um", PLAY: "um", LOSS: "1", WARMTH: "degC"}
@@ -23,7 +21,7 @@ def built(rng: np.random.Generator) -> Stage:
     return Stage(12.0 + width, sun, planet, 0.99 + bearing)
 
 
-def measured(design: Design, count: int, rng: np.random.Generator) -> Rows:
+def measured(design: str, count: int, rng: np.random.Generator) -> Rows:
     """Rows in the order of the clock. Rig: loads of either sign; sweep: small, through zero; one way: large."""
     load = {
         "rig": rng.choice([-1.0, 1.0], count) * rng.uniform(120, 1300, count),

@@ -7,12 +7,10 @@ two teeth leave of a pitch, and the root is rolled by the rounding of the rack, 
 from dataclasses import dataclass
 from functools import lru_cache
 from math import acos, cos, pi, radians, sin, sqrt, tan
-from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array: TypeAlias = NDArray[np.float64]
+from hidden_effects.rows import Array
 
 SUN, PLANET, PINS = 20, 55, 40
 MODULE, ANGLE, WIDTH = 1.25, radians(20), 12.0

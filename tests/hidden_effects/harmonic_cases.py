@@ -1,14 +1,13 @@
 """Harmonic drives with something wrong, or nothing: how they were measured, and with what noise."""
 
 from math import inf, isfinite
-from typing import Any, Literal, TypeAlias
+from typing import Any
 
 import numpy as np
 
 from hidden_effects.harmonic_machine import MESH, TORSION, Array, Rows, shown
 from hidden_effects.rigs import Bench, Places, Rig, Wish, parted
 
-Design: TypeAlias = Literal["loops", "points"]
 UNIT = {TORSION: "urad", MESH: "N*m/rad"}
 INPUTS = """plugin = "harmonic_fractal"
 
@@ -55,7 +54,7 @@ def of_both(count: int, held: int, rng: np.random.Generator) -> tuple[Places, Pl
     return parted(count, np.array([1, *rng.permutation(np.arange(2, count))[: held - 1]]))
 
 
-def measured(design: Design, count: int, rng: np.random.Generator) -> Rows:
+def measured(design: str, count: int, rng: np.random.Generator) -> Rows:
     """Rows in the order of the clock.
 
     Loops: from rest up and down between growing and smaller peaks, each leg at its own speed and temperature. Points:

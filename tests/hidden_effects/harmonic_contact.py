@@ -6,14 +6,12 @@ off tables, the torsion is the area below the compliance. Lengths m, forces N, a
 
 from dataclasses import dataclass
 from functools import cache
-from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 from scipy.optimize import brentq
 
-Array: TypeAlias = NDArray[np.float64]
+from hidden_effects.rows import Array
 
 DENSITY, HARDNESS, MODULUS, POISSON = 1.5, 3e9, 206e9, 0.3
 RADIUS = 25.4e-3 * np.cos(np.radians(20))  # lever of the normal forces

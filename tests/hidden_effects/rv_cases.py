@@ -2,14 +2,12 @@
 
 from collections.abc import Mapping
 from functools import partial
-from typing import Literal, TypeAlias
 
 import numpy as np
 
 from hidden_effects.rigs import Bench, Rig, Wish
 from hidden_effects.rv_machine import LIFE, RATED, ROUGHNESS_SCATTER, SPEED, ZONES, Array, Rows, shown
 
-Design: TypeAlias = Literal["endurance", "fleet"]
 BACKLASH, WEAR = "backlash", "max_wear"
 UNIT = {BACKLASH: "arcmin", WEAR: "um"}
 
@@ -20,7 +18,7 @@ def machine(rng: np.random.Generator) -> Mapping[str, float]:
     return {**off, "roughness": float(ROUGHNESS_SCATTER * rng.standard_normal())}
 
 
-def measured(design: Design, count: int, rng: np.random.Generator) -> Rows:
+def measured(design: str, count: int, rng: np.random.Generator) -> Rows:
     """Rows in the order of the clock. Endurance: one set of discs at the rating; fleet: four sets, each at its own."""
     sets = {"endurance": 1, "fleet": 4}[design]
     set_of = np.sort(np.arange(count) % sets)

@@ -6,12 +6,11 @@ it, and the difference of both radii. Lengths are mm, angles rad.
 """
 
 from dataclasses import dataclass
-from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array: TypeAlias = NDArray[np.float64]
+from hidden_effects.rows import Array
+
 SHORT_ARM = 0.5  # of the longest; the gap of a pin with less is wide, and the path there is too sharp for a first guess
 
 

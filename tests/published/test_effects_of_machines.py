@@ -14,7 +14,7 @@ import pytest
 
 from hidden_effects import gearing_cases, press_machine, rv_cases
 from hidden_effects.gearing_stage import Stage
-from hidden_effects.plugin_asking import model_of
+from hidden_effects.rigs import model_of
 from hidden_effects.rows import Array
 from truing.evaluate import evaluate_rows
 from truing.setup import SwitchedOn, default_setup
@@ -101,13 +101,13 @@ PRESS = Machine(
 )  # fmt: skip
 GEARING = Machine(
     plugin="rv_gearing", rows=lambda design: gearing_cases.measured(design, COUNT, np.random.default_rng(3)),
-    shown=lambda rows, hidden: gearing_cases.shown(rows, Stage(), hidden), columns=gearing_cases.WRITTEN,
+    shown=lambda rows, hidden: gearing_cases.shown(rows, Stage(), hidden), columns=gearing_cases.STAGE.written,
     results=gearing_cases.UNIT, inputs={"sun_teeth": 20, "planet_teeth": 55},
 )  # fmt: skip
 REDUCER = Machine(
     plugin="rv_wear", rows=lambda design: rv_cases.measured(design, COUNT, np.random.default_rng(3)),
-    shown=lambda rows, hidden: rv_cases.shown(rows, {}, hidden), columns=rv_cases.WRITTEN, results=rv_cases.UNIT,
-    inputs={},
+    shown=lambda rows, hidden: rv_cases.shown(rows, {}, hidden), columns=rv_cases.REDUCER.written,
+    results=rv_cases.UNIT, inputs={},
 )  # fmt: skip
 HEAT = {"link_heating": {"expansion": 1.15e-5}}
 HANGING = {"slider_mass": "20 t", "counterbalance": "150 kN"}

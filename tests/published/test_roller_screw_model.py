@@ -138,7 +138,6 @@ def test_no_load_gives_no_stress_and_all_else_as_before() -> None:
 def test_a_load_the_other_way_stresses_alike() -> None:
     pair = pair_of(axial_load=np.array([-10e3, 0.0, 10e3]))
     answer, load = answer_of(pair), load_of(pair)
-    assert list(np.asarray(load.direction)) == [-1.0, 1.0, 1.0]
     assert np.asarray(load.tangential_force) == pytest.approx([51.943, 0.0, 51.943])
     stress = np.asarray(answer.root_stress_roller)
     assert stress[0] == stress[2] > stress[1] == 0.0

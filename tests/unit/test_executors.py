@@ -19,12 +19,12 @@ from truing.declare.spreads import Off
 from truing.errors import LostWorkersError, PluginError, UsageError
 from truing.executors import (
     BatchLog,
-    KeptExecutor,
     SerialExecutor,
     WorkerPool,
     in_order,
     open_executor,
     processes,
+    stays_here,
 )
 from truing.executors.cluster import differences
 from truing.executors.kept import HEAD, MAGIC, answer_of, key_of, text_of
@@ -134,15 +134,11 @@ class Travel(WorkerPool):
         self.seconds = seconds
         self.together: list[int] = []
 
-    def submit_together(self, function, jobs):
+    def submit(self, together: Callable, function: Callable, jobs: list) -> Future:
         self.together.append(len(jobs))
-        timed = super().submit_together(function, jobs)
-        if timed.exception() is None:
-            timed._result = replace(timed.result(), seconds=self.seconds * len(timed.result().answers))
+        timed: Future = Future()
+        timed.set_result(replace(together(function, jobs), seconds=self.seconds * len(jobs)))
         return timed
-
-    def submit(self, function: Callable, /, *args, **kwargs) -> Future:
-        return SerialExecutor().submit(function, *args, **kwargs)
 
 
 def test_short_jobs_travel_together_and_long_ones_alone():
@@ -158,6 +154,13 @@ def test_short_jobs_travel_together_and_long_ones_alone():
 # ---- batches that are kept ----------------------------------------------------------------------------------------
 
 
+def kept_here(log: BatchLog) -> WorkerPool:
+    """Return a place to compute, this process, where answers are kept."""
+    place = SerialExecutor()
+    place.log = log
+    return place
+
+
 def counted(job: tuple[int, str]) -> int:
     """Note that it was called."""
     number, marker = job
@@ -166,17 +169,16 @@ def counted(job: tuple[int, str]) -> int:
     return number * 10
 
 
-def test_what_was_answered_is_not_asked_again(tmp_path, two_processes):
+def test_what_was_answered_is_not_asked_again(tmp_path, monkeypatch, two_processes):
     marker = tmp_path / "calls"
     jobs = [(number, str(marker)) for number in range(12)]
     for finished, count in ((5, 5), (12, 12), (12, 12)):
         log = BatchLog(tmp_path / "log")
-        kept = KeptExecutor(two_processes, log)
-        assert list(in_order(kept, counted, jobs[:finished])) == [number * 10 for number in range(finished)]
-        assert kept.where == two_processes.where
+        monkeypatch.setattr(two_processes, "log", log)
+        assert list(in_order(two_processes, counted, jobs[:finished])) == [number * 10 for number in range(finished)]
         log.close()
         assert len(marker.read_text()) == count
-    assert kept.resumed == 12
+    assert log.resumed == 12
 
 
 def test_a_torn_or_spoilt_end_is_cut_off(tmp_path):
@@ -191,8 +193,7 @@ def test_a_torn_or_spoilt_end_is_cut_off(tmp_path):
         path.write_bytes(whole[: 2 * length + cut])
         log = BatchLog(path)
         assert len(log) == 2
-        assert log.get(key_of(abs, 1)) == {"answer": 1}
-        assert key_of(abs, 2) not in log
+        assert [log.kept(key_of(abs, number)) for number in (1, 2)] == [[{"answer": 1}], []]
         log.put(key_of(abs, 2), {"answer": 2})
         log.close()
         assert path.read_bytes() == whole
@@ -211,9 +212,8 @@ def test_a_full_disk_ends_the_keeping_and_not_the_run(tmp_path, monkeypatch):
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(log, "_append", full)
-    kept = KeptExecutor(SerialExecutor(), log)
-    assert list(in_order(kept, abs, range(4))) == [0, 1, 2, 3]
-    assert kept.remarks() == ["finished batches are no longer kept for --resume: No space left on device"]
+    assert list(in_order(kept_here(log), abs, range(4))) == [0, 1, 2, 3]
+    assert log.remarks() == ["finished batches are no longer kept for --resume: No space left on device"]
     assert len(log) == 0
 
 
@@ -245,13 +245,12 @@ def test_a_planted_record_runs_no_code_and_is_computed_again(tmp_path, monkeypat
     (tmp_path / "log").write_bytes(record)
     log = BatchLog(tmp_path / "log")
     assert len(log) == 1
-    kept = KeptExecutor(SerialExecutor(), log)
-    assert list(in_order(kept, abs, [-3])) == [3]
-    assert kept.resumed == 0
+    assert list(in_order(kept_here(log), abs, [-3])) == [3]
+    assert log.resumed == 0
     assert not (tmp_path / "ran").exists()
     log.close()
-    again = KeptExecutor(SerialExecutor(), BatchLog(tmp_path / "log"))  # what was computed has taken its place
-    assert list(in_order(again, abs, [-3])) == [3]
+    again = BatchLog(tmp_path / "log")  # what was computed has taken its place
+    assert list(in_order(kept_here(again), abs, [-3])) == [3]
     assert again.resumed == 1
 
 
@@ -277,10 +276,12 @@ def test_answers_come_back_to_the_last_bit():
 
 def test_an_answer_that_is_no_data_is_said_and_not_kept(tmp_path):
     log = BatchLog(tmp_path / "log")
-    kept = KeptExecutor(SerialExecutor(), log)
-    assert list(in_order(kept, Path, ["a"])) == [Path("a")]
+    place = kept_here(log)
+    assert stays_here(SerialExecutor())
+    assert not stays_here(place)  # what is kept is asked for as plain data
+    assert list(in_order(place, Path, ["a"])) == [Path("a")]
     assert len(log) == 0
-    assert kept.remarks() == [
+    assert log.remarks() == [
         f"some finished batches are not kept for --resume: a {type(Path()).__name__} is no plain data"
     ]
 

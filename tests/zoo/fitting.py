@@ -13,7 +13,7 @@ from truing.diagnosis.records import Records
 from truing.gauge import read_by_gauge
 from truing.setup import Setup, SwitchedOn
 from truing.testing import recorded
-from truing.testing.hiding import MEASURED, records_of
+from truing.testing.hiding import MEASURED, csv_of, records_of
 from truing.units import to_si
 from zoo.zoo import Array, Measured, model_of
 
@@ -122,13 +122,6 @@ class Fitting:
         return Fitted(error=float(np.sqrt(np.mean((read - shown) ** 2))), moved=float(np.max(np.abs(shown - without))))
 
 
-def csv_of(measured: Measured) -> str:
-    """The record as a file, without noise."""
-    lines = [",".join(measured.columns)]
-    lines += [",".join(repr(float(cell)) for cell in row) for row in zip(*measured.columns.values(), strict=True)]
-    return "\n".join(lines) + "\n"
-
-
 def fitting(family: str, measured: Measured, effects: Sequence[str] = ()) -> Fitting:
     """Read a record without noise by the calculation of its family, with these effects on."""
     model = model_of(family)
@@ -138,7 +131,7 @@ def fitting(family: str, measured: Measured, effects: Sequence[str] = ()) -> Fit
     inner = [item for spread in setup.distributions().values() for item in spread.items()]
     return Fitting(
         setup=setup,
-        records=records_of(setup, csv_of(measured), MEASURED, with_unit_errors=False),
+        records=records_of(setup, csv_of(measured.columns), MEASURED, with_unit_errors=False),
         result=result,
         noise=to_si(measured.noise, unit) - to_si(0.0, unit),
         spreads={name: one.sd for name, one in inner if name in model.input_fields},

@@ -22,8 +22,8 @@ from scipy.optimize import brentq
 
 from truing import Condition, Effect, Model, Unknown
 from truing.diagnosis.result import UNKNOWN, DiagnosisResult, explanations_of
-from truing.measurements import table_text
 from truing.testing import Hidden, recorded
+from truing.testing.hiding import csv_of
 
 Array: TypeAlias = NDArray[np.float64]
 Half: TypeAlias = Literal["open", "sealed"]
@@ -214,7 +214,7 @@ def record_of(case: Case, rows: int = ROWS) -> str:
     shown = READINGS[case.noise](measured.columns[measured.result], measured.noise, generator)
     columns = {**measured.columns, measured.result: shown}
     kept = _kept(case.noise, rows, generator)
-    return table_text(list(columns), [values[kept] for values in columns.values()])
+    return csv_of({name: values[kept] for name, values in columns.items()})
 
 
 def hidden_of(case: Case, rows: int = ROWS) -> Hidden:

@@ -19,7 +19,7 @@ from truing.calculation import Calculation, calculate
 from truing.cases import CasesTable, run_cases
 from truing.declare.near_miss import near_miss
 from truing.errors import UsageError
-from truing.executors import BatchLog, KeptExecutor, open_executor
+from truing.executors import BatchLog, open_executor
 from truing.formulas import symbol_text
 from truing.inputs_file.sentences import told_by_line
 from truing.kernel import Offer
@@ -235,19 +235,19 @@ def _calculated(setup: Setup, offer: Offer, cases: Any, *, place: str, progress:
     with open_executor(place) as pool:
         if place.startswith("dask:"):
             pool.compare(code_of(setup))
-        executor = pool if log is None else KeptExecutor(pool, log)
+        pool.log = log
         table = None
         if cases is None:
-            calculation = calculate(setup, executor=executor, progress=progress)
+            calculation = calculate(setup, executor=pool, progress=progress)
         else:
             source = Path(cases) if isinstance(cases, (str, Path)) else frame_text(cases, {})
             stated = read_cases(source, offer, setup)
-            calculation, table = run_cases(setup, stated, executor=executor, progress=progress)
+            calculation, table = run_cases(setup, stated, executor=pool, progress=progress)
         pool.settle()
         computed = {
-            "workers": {"count": executor.workers, "lost": executor.losses, "where": executor.where},
-            "resumed": executor.resumed if isinstance(executor, KeptExecutor) else 0,
-            "warnings": executor.remarks(),
+            "workers": {"count": pool.workers, "lost": pool.losses, "where": pool.where},
+            "resumed": 0 if log is None else log.resumed,
+            "warnings": [*pool.remarks(), *(() if log is None else log.remarks())],
         }
     return Run(offer, calculation, started, table, computed)
 

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from truing.errors import UsageError
 from truing.executors.cluster import ClusterExecutor
-from truing.executors.kept import BatchLog, KeptExecutor, keepable
-from truing.executors.places import SerialExecutor, WorkerPool, in_order
+from truing.executors.kept import BatchLog, keepable
+from truing.executors.places import SerialExecutor, WorkerPool, in_order, stays_here
 from truing.executors.processes import ProcessExecutor
 
 __all__ = [
     "BatchLog",
-    "KeptExecutor",
     "ProcessExecutor",
     "SerialExecutor",
     "WorkerPool",
     "in_order",
     "keepable",
     "open_executor",
+    "stays_here",
 ]
 
 

@@ -12,18 +12,13 @@ import threading
 import time
 import zlib
 from base64 import b64decode, b64encode
-from collections.abc import Callable, Sequence
-from concurrent.futures import Future
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import fields, is_dataclass
-from functools import partial
-from operator import attrgetter
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
-
-from truing.executors.places import Timed, WorkerPool, answered
 
 J = TypeVar("J")
 A = TypeVar("A")
@@ -50,28 +45,33 @@ class BatchLog:
         self.strange = ""
         """Why some batches are not kept (answers that are no plain data), or nothing."""
         self._read()
+        self._earlier = frozenset(self._places)
+        self._taken: set[bytes] = set()
 
     def __len__(self) -> int:
         return len(self._places)
 
-    def __contains__(self, key: bytes) -> bool:
-        return key in self._places
+    @property
+    def resumed(self) -> int:
+        """How many answers of an earlier run were taken up."""
+        return len(self._taken)
 
-    def keys(self) -> frozenset[bytes]:
-        """Return the keys of all answers."""
-        return frozenset(self._places)
-
-    def get(self, key: bytes) -> Any:
-        """Return the answer kept under a key. Raises NoDataError, and forgets it, where what is kept is no answer."""
+    def kept(self, key: bytes) -> list[Any]:
+        """Return what is kept under a key: one answer, or none; what turns out to be no answer is forgotten."""
+        if key not in self._places:
+            return []
         start, length = self._places[key]
         try:
             with self._lock:
                 self._file.seek(start)
                 content = self._file.read(length)
-            return answer_of(content.decode("ascii"))
-        except (OSError, ValueError) as error:
+            answers = [answer_of(content.decode("ascii"))]
+        except (OSError, ValueError):
             del self._places[key]
-            raise NoDataError(str(error)) from None
+            return []
+        if key in self._earlier:
+            self._taken.add(key)
+        return answers
 
     def put(self, key: bytes, answer: Any) -> None:
         """Keep an answer. Where that fails, say so in ``fault`` and keep no more: the run itself goes on."""
@@ -91,6 +91,15 @@ class BatchLog:
                 return
             self._places[key] = (self._end + HEAD.size, len(content))
             self._end += len(record)
+
+    def remarks(self) -> list[str]:
+        """Say where answers could not be kept."""
+        words = []
+        if self.fault:
+            words.append(f"finished batches are no longer kept for --resume: {self.fault}")
+        if self.strange:
+            words.append(f"some finished batches are not kept for --resume: {self.strange}")
+        return words
 
     def close(self) -> None:
         """Write everything to the disk and close the file."""
@@ -121,69 +130,6 @@ class BatchLog:
             self._places[key] = (self._end + HEAD.size, length)
             self._end += HEAD.size + length
         self._file.truncate(self._end)
-
-
-class KeptExecutor(WorkerPool):
-    """Takes answers from a log where it holds them, else computes them elsewhere and keeps them."""
-
-    where = property(attrgetter("_inner.where"))
-    workers = property(attrgetter("_inner.workers"))
-    slots = property(attrgetter("_inner.slots"))
-    losses = property(attrgetter("_inner.losses"))
-    patience = property(attrgetter("_inner.patience"))
-    moment = property(attrgetter("_inner.moment"))
-    is_loss = property(attrgetter("_inner.is_loss"))
-    renew = property(attrgetter("_inner.renew"))
-    look_after = property(attrgetter("_inner.look_after"))
-
-    def __init__(self, inner: WorkerPool, log: BatchLog) -> None:
-        self._inner = inner
-        self._log = log
-        self._earlier = log.keys()
-        self._taken: set[bytes] = set()
-
-    @property
-    def resumed(self) -> int:
-        """How many batches of an earlier run were taken up."""
-        return len(self._taken)
-
-    def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Compute elsewhere, without keeping."""
-        return self._inner.submit(function, *args, **kwargs)
-
-    def known(self, function: Callable[[J], A], job: J) -> Future[Timed[A]] | None:
-        """Return the answer that is kept, or None."""
-        key = key_of(function, job)
-        if key not in self._log:
-            return None
-        future: Future[Timed[A]] = Future()
-        try:
-            future.set_result(Timed([self._log.get(key)], 0.0))
-        except NoDataError:
-            return None  # it is computed again
-        if key in self._earlier:
-            self._taken.add(key)
-        return future
-
-    def submit_together(self, function: Callable[[J], A], jobs: Sequence[J]) -> Future[Timed[A]]:
-        """Compute elsewhere and keep each answer as soon as it is there."""
-        future = self._inner.submit_together(function, jobs)
-        future.add_done_callback(partial(self._keep, [key_of(function, job) for job in jobs]))
-        return future
-
-    def _keep(self, keys: list[bytes], future: Future[Timed[Any]]) -> None:
-        if answered(future):
-            for key, answer in zip(keys, future.result().answers, strict=False):
-                self._log.put(key, answer)
-
-    def remarks(self) -> list[str]:
-        """Say what befell the workers, and where batches could not be kept."""
-        words = self._inner.remarks()
-        if self._log.fault:
-            words.append(f"finished batches are no longer kept for --resume: {self._log.fault}")
-        if self._log.strange:
-            words.append(f"some finished batches are not kept for --resume: {self._log.strange}")
-        return words
 
 
 def key_of(function: Callable[[J], Any], job: J) -> bytes:

@@ -9,6 +9,8 @@ from concurrent.futures import Executor, Future
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
+from truing.executors.kept import BatchLog, key_of
+
 J = TypeVar("J")
 A = TypeVar("A")
 
@@ -56,14 +58,8 @@ class WorkerPool(Executor):
 
     moment: float = 0.0
     """How many seconds of work travel together, because each journey costs."""
-
-    def known(self, function: Callable[[J], A], job: J) -> Future[Timed[A]] | None:
-        """Return the answer of a job that need not be computed, or None."""
-        return None
-
-    def submit_together(self, function: Callable[[J], A], jobs: Sequence[J]) -> Future[Timed[A]]:
-        """Hand out several jobs at once."""
-        return self.submit(answer_all, function, jobs)
+    log: BatchLog | None = None
+    """Where answers are kept, and looked for before they are computed."""
 
     def is_loss(self, error: BaseException) -> bool:
         """Tell whether an error says that a worker was lost, and not that the job failed."""
@@ -101,6 +97,11 @@ class SerialExecutor(WorkerPool):
         except Exception as error:
             future.set_exception(error)
         return future
+
+
+def stays_here(executor: Executor) -> bool:
+    """Tell whether work stays in this process and is not kept, so that nothing has to travel as plain data."""
+    return isinstance(executor, SerialExecutor) and executor.log is None
 
 
 # Jobs handed out, answers taken in the order of the jobs, and what was lost handed out again
@@ -159,10 +160,13 @@ class _Work(Generic[J, A]):
 
     def after(self, job: J) -> Iterator[A]:
         """Take one more job, and yield the answers that must come before further ones are taken."""
-        known = self._place.known(self._function, job)
-        if known is not None:
+        log = self._place.log
+        kept = [] if log is None else log.kept(key_of(self._function, job))
+        if kept:
             self._hand_out()
-            self._pending.append(_Part([job], known))
+            done: Future[Timed[A]] = Future()
+            done.set_result(Timed(kept, 0.0))
+            self._pending.append(_Part([job], done))
         else:
             self._waiting.append(job)
             if len(self._waiting) >= self._together:
@@ -224,9 +228,24 @@ class _Work(Generic[J, A]):
             try:
                 for part in self._pending:
                     if part.future is None or (loss is not None and not answered(part.future)):
-                        part.future = self._place.submit_together(self._function, part.jobs)
+                        part.future = self._place.submit(answer_all, self._function, part.jobs)
+                        self._keep(part)
                 return
             except Exception as error:
                 if not self._place.is_loss(error):
                     raise
                 loss = error
+
+    def _keep(self, part: _Part[J, A]) -> None:
+        """Keep each answer of a part as soon as it is there."""
+        log = self._place.log
+        if log is None or part.future is None:
+            return
+        keys = [key_of(self._function, job) for job in part.jobs]
+
+        def put(future: Future[Timed[A]]) -> None:
+            if answered(future):
+                for key, answer in zip(keys, future.result().answers, strict=False):
+                    log.put(key, answer)
+
+        part.future.add_done_callback(put)

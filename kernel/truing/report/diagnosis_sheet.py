@@ -211,7 +211,9 @@ def _measured(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[BlockView]
 
 
 def _cause(diagnosis: DiagnosisResult, drawn: Figures) -> ChapterParts:
-    yield from _both(_verdict_line(diagnosis))
+    verdict = _verdict_line(diagnosis)
+    yield verdict
+    yield Paragraph(f"Verdict: {verdict}. Its p-value pays for every explanation that was tried.")
     if diagnosis.causes:
         yield from _named(diagnosis)
     yield from _near(diagnosis)

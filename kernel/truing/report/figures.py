@@ -17,13 +17,14 @@ from typing import Any
 import matplotlib as mpl
 from matplotlib.backends.backend_mixed import MixedModeRenderer
 from matplotlib.backends.backend_svg import FigureCanvasSVG, RendererSVG
+from matplotlib.font_manager import FontProperties, findfont, get_font
 from matplotlib.mathtext import MathTextParser
 from matplotlib.text import Text
-from matplotlib.transforms import Bbox
 
 from truing.errors import PluginError
 from truing.formulas.symbols import printable
 from truing.kernel.blame import spoken_place
+from truing.report.figure_layout import arranged
 
 STYLE = {
     "svg.hashsalt": "truing",
@@ -105,24 +106,37 @@ def _saved(figure: Any) -> str:
     return _svg(figure)
 
 
-def _svg(figure: Any) -> str:
-    """Write a figure as an SVG document whose ``viewBox`` shows all that is drawn, and no more.
+class _Writer(RendererSVG):
+    """Writes SVG and asks each font for its height once; matplotlib finds and opens the font anew for every text."""
 
-    ``savefig`` would draw the figure once more without output, only to lay it out and to measure it.
-    """
+    def __init__(self, *arguments: Any, **options: Any) -> None:
+        super().__init__(*arguments, **options)  # type: ignore[no-untyped-call]
+        self._heights: dict[FontProperties, tuple[float, float, float]] = {}
+
+    def _get_font_height_metrics(self, properties: FontProperties) -> tuple[float | None, float | None, float | None]:
+        """Return ascent, descent and line gap in pixels. Matplotlib asks a renderer that has this before it looks."""
+        if properties not in self._heights:
+            font = get_font(findfont(properties))
+            table = font.get_sfnt_table("OS/2")
+            if table is None:
+                return None, None, None
+            scale = properties.get_size_in_points() / font.units_per_EM
+            ascent, descent = scale * table["sTypoAscender"], -scale * table["sTypoDescender"]
+            self._heights[properties.copy()] = (ascent, descent, scale * table["sTypoLineGap"])
+        return self._heights[properties]
+
+
+def _svg(figure: Any) -> str:
+    """Write a figure as an SVG document whose ``viewBox`` shows all that is drawn, and no more."""
     stream = StringIO()
     FigureCanvasSVG(figure)  # a layout engine asks the canvas how large texts are
     resolution, figure.dpi = figure.dpi, POINTS_PER_INCH
     inches, (width, height) = figure.get_size_inches(), figure.bbox.size
-    writer: Any = RendererSVG(width, height, stream, image_dpi=resolution, metadata={"Date": None})  # type: ignore[no-untyped-call]
+    writer = _Writer(width, height, stream, image_dpi=resolution, metadata={"Date": None})
     renderer: Any = MixedModeRenderer(figure, inches[0], inches[1], resolution, writer)  # type: ignore[no-untyped-call]
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Glyph .* missing")  # a box stands in its place
-        warnings.filterwarnings("ignore", message="constrained_layout not applied")  # labels take all the room
-        if figure.get_layout_engine() is not None:
-            figure.get_layout_engine().execute(figure)
-            figure.set_layout_engine("none")
-        box = Bbox(POINTS_PER_INCH * figure.get_tightbbox(renderer).get_points()).padded(EDGE)
+        box = arranged(figure, renderer).padded(EDGE)
         figure.patch.set(facecolor="white", bounds=box.transformed(figure.transFigure.inverted()).bounds)
         figure.draw(renderer)
     renderer.finalize()

@@ -8,6 +8,7 @@ comment on one line.
 from __future__ import annotations
 
 import ast
+import json
 import keyword
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -61,8 +62,8 @@ def new_effect_source(diagnosis: DiagnosisResult) -> str:
         "shapes": [_shape(diagnosis, result, terms, sources) for result, terms in _terms(diagnosis).items()],
         "measured": "".join(f", {code}: Float" for code in made),
         "needs": ", ".join(code.upper() for code in made),
-        "looks_like": ascii(printable(remainder.shape)),
-        "model": ascii(diagnosis.setup.model.name),
+        "looks_like": _quoted(remainder.shape),
+        "model": _quoted(diagnosis.setup.model.name),
     })  # fmt: skip
 
 
@@ -178,8 +179,14 @@ def _conditions(sources: Sequence[_Source]) -> list[str]:
 
 def _condition(condition: Condition) -> str:
     stated = {field.name: getattr(condition, field.name) for field in fields(condition)}
-    other = [field.name for field in fields(condition) if stated[field.name] != field.default]
-    return f"Condition({', '.join(f'{name}={stated[name]!a}' for name in other)})"
+    other = {field.name: stated[field.name] for field in fields(condition) if stated[field.name] != field.default}
+    said = [f"{name}={_quoted(value) if isinstance(value, str) else repr(value)}" for name, value in other.items()]
+    return f"Condition({', '.join(said)})"
+
+
+def _quoted(text: str) -> str:
+    """Write a text as a string of code, in ASCII: JSON's strings are Python's."""
+    return json.dumps(printable(text))
 
 
 def _shape(

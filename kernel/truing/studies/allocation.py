@@ -638,20 +638,6 @@ def _variable(
     return ToleranceVariable(tolerance.name, width, span[0] * width, span[1] * width, price, variances, pulls)
 
 
-def prices_at(variables: Sequence[ToleranceVariable], widths: Matrix) -> tuple[Matrix, Matrix]:
-    """Return what these full widths (n,) in SI cost, and the exact derivatives: the formulas with an imaginary step.
-
-    Every formula is computed once, for all widths that it prices.
-    Source: W. Squire, G. Trapp, Using complex variables to estimate derivatives, SIAM Rev. 40 (1998) 110.
-    """
-    paid = np.empty(len(variables), dtype=complex)
-    prices = [variable.price for variable in variables]
-    for price in set(prices):
-        own = [index for index, other in enumerate(prices) if other == price]
-        paid[own] = price.evaluated(widths[own] * (1 + 1j * COMPLEX_STEP))
-    return paid.real, paid.imag / (COMPLEX_STEP * widths)
-
-
 # Which grades? The paper's rule, one grade at a time, and the least cost there is, by mixed-integer programming
 
 
@@ -853,11 +839,17 @@ class AllocationSearch:
         return low, np.log([variable.high / variable.start for variable in variables])
 
     def cost(self, x: Matrix) -> tuple[float, Matrix]:
-        """Return the price of the widths and its gradient, both over the price of those in force."""
-        chosen, variables = self.chosen(x), tuple(self.problem.variables.values())
-        widths = np.array([chosen[variable.name] for variable in variables])
-        prices, slopes = prices_at(variables, widths)
-        return float(prices.sum()) / self._whole, slopes * widths / self._whole
+        """Return the price of the widths and its gradient, both over the price of those in force.
+
+        The derivatives are exact: the formulas with an imaginary step. Source: W. Squire, G. Trapp, Using complex
+        variables to estimate derivatives, SIAM Rev. 40 (1998) 110.
+        """
+        chosen, variables = self.chosen(x), self.problem.variables
+        widths = np.array([chosen[name] for name in variables])
+        turned = widths * (1 + 1j * COMPLEX_STEP)
+        paid = np.array([own.price.evaluated(width) for own, width in zip(variables.values(), turned, strict=True)])
+        slopes = paid.imag / (COMPLEX_STEP * widths)
+        return float(paid.real.sum()) / self._whole, slopes * widths / self._whole
 
     @cached_property
     def _whole(self) -> float:

@@ -33,20 +33,11 @@ from truing.declare.spreads import (
 )
 from truing.errors import InfeasibleError, TruingError, UnitError, UsageError
 from truing.evaluate import acting_inputs, evaluate, evaluate_rows
-from truing.executors import SerialExecutor, in_order, keepable
+from truing.executors import in_order, keepable, stays_here
 from truing.fits import GRADES
 from truing.formulas import Formula, parse
 from truing.formulas import evaluate as evaluate_formula
-from truing.heavy import (
-    pymoo_config,
-    pymoo_evaluator,
-    pymoo_hypervolume,
-    pymoo_mutation,
-    pymoo_nsga2,
-    pymoo_problem,
-    pymoo_repair,
-    pymoo_static,
-)
+from truing.heavy import pymoo
 from truing.inputs_file.values import broken_bound
 from truing.packed import Packed, pack, unpack
 from truing.prices import price_answers, price_of, prices_at
@@ -767,16 +758,16 @@ def _tell(algorithm: Any, asked: Any, problem: Problem, answers: Answers) -> Non
     objectives = np.where(answers.failed[:, None], FAILED, answers.objectives * signs)
     missing = np.where(answers.failed, FAILED, -1.0)
     limits = np.where(answers.failed[:, None], FAILED, -answers.margins)
-    shell = pymoo_static.StaticProblem(algorithm.problem, F=objectives, G=np.column_stack([limits, missing]))
-    pymoo_evaluator.Evaluator().eval(shell, asked)
+    shell = pymoo.StaticProblem(algorithm.problem, F=objectives, G=np.column_stack([limits, missing]))
+    pymoo.Evaluator().eval(shell, asked)
     algorithm.tell(infills=asked)
 
 
 def _algorithm(problem: Problem) -> Any:
     """Set up the algorithm of the literature with the first population."""
-    pymoo_config.Config.warnings["not_compiled"] = False
+    pymoo.Config.warnings["not_compiled"] = False
     count = len(problem.space.variables)
-    shell = pymoo_problem.Problem(
+    shell = pymoo.Problem(
         n_var=count,
         n_obj=len(problem.aims),
         n_ieq_constr=len(problem.bounds) + 1,
@@ -784,7 +775,7 @@ def _algorithm(problem: Problem) -> Any:
         xu=np.ones(count),
     )
     mutation, repair = _operators(problem)
-    algorithm = pymoo_nsga2.NSGA2(
+    algorithm = pymoo.NSGA2(
         pop_size=problem.study.population, sampling=_first(problem), mutation=mutation, repair=repair
     )
     termination = ("n_gen", problem.study.generations)
@@ -810,7 +801,7 @@ def _operators(problem: Problem) -> tuple[Any, Any]:
     space = problem.space
     discrete = np.flatnonzero([variable.discrete for variable in space.variables])
 
-    class Mutation(pymoo_mutation.PM):  # type: ignore[misc]  # pymoo has no types
+    class Mutation(pymoo.PM):  # type: ignore[misc]  # pymoo has no types
         def _do(self, shell: Any, places: Any, *args: Any, random_state: Any = None, **kwargs: Any) -> Any:
             changed = super()._do(shell, places, *args, random_state=random_state, **kwargs)
             if len(discrete):
@@ -819,7 +810,7 @@ def _operators(problem: Problem) -> tuple[Any, Any]:
                 changed[:, discrete] = np.where(jumps, anywhere, changed[:, discrete])
             return changed
 
-    class ToSteps(pymoo_repair.Repair):  # type: ignore[misc]
+    class ToSteps(pymoo.Repair):  # type: ignore[misc]
         def _do(self, shell: Any, places: Any, **kwargs: Any) -> Any:
             return space.units(space.designs(np.asarray(places, dtype=float)))
 
@@ -884,7 +875,7 @@ def _hypervolume(values: Matrix) -> float:
     if values.shape[1] == 1:
         return float(REFERENCE - inside.min())
     if values.shape[1] > 2:
-        return float(pymoo_hypervolume.HV(ref_point=np.full(values.shape[1], REFERENCE))(inside))
+        return float(pymoo.HV(ref_point=np.full(values.shape[1], REFERENCE))(inside))
     order = inside[np.lexsort(inside.T[::-1])]
     below = np.minimum.accumulate(np.concatenate([[REFERENCE], order[:, 1]]))
     return float(((REFERENCE - order[:, 0]) * (below[:-1] - below[1:])).sum())
@@ -1115,7 +1106,7 @@ def answered(problem: Problem, designs: Matrix, executor: Executor) -> Answers:
         rows = 1 + 2 * len(problem.scatter.columns)
     size = max(1, min(ROWS // rows, -(-len(designs) // problem.study.parts)))
     parts = [designs[start : start + size] for start in range(0, len(designs), size)]
-    if isinstance(executor, SerialExecutor) or problem.stand_in is not None:
+    if stays_here(executor) or problem.stand_in is not None:
         return joined([answers_of(problem, part) for part in parts])
     study = replace(problem.study, vary=tuple(problem.study.vary), gives=None)
     run = partial(run_job, pack(problem.setup), study, problem.known)
@@ -1634,9 +1625,9 @@ def _variance(designs: Designs, slopes: Mapping[str, Any]) -> Any:
     """Return the first-order variance of a response of every design from its slopes (m, ...) by column."""
     variance: Any = 0.0
     for cause in designs.causes:
-        gradient = [slopes[column] for column in cause.columns]
+        gradient = np.array([slopes[column] for column in cause.columns])
         if cause.mixing is not None:
-            variance = variance + (gradient * np.tensordot(cause.covariance(), gradient, axes=1)).sum(axis=0)
+            variance = variance + np.sum(gradient * np.tensordot(cause.covariance(), gradient, axes=1), axis=0)
             continue
         for slope, distribution in zip(gradient, cause.distributions, strict=True):
             variance = variance + (slope * beside(designs.each(distribution.sd), slope)) ** 2

@@ -21,7 +21,7 @@ from truing.arrays import Matrix
 from truing.declare.spreads import FIXED_DRAWS, Distribution, Drawn, Grade, Spread, with_width
 from truing.errors import UsageError
 from truing.evaluate import Rows, evaluate_rows
-from truing.executors import SerialExecutor, in_order, keepable
+from truing.executors import in_order, keepable, stays_here
 from truing.packed import Packed, pack, unpack
 from truing.setup import Setup, SwitchedOn, effect_column
 from truing.studies.checks import Check, Demand, chance_check, results_needed, wilson, worst
@@ -96,7 +96,7 @@ def sample(
     done: Callable[[int, int], None],
 ) -> Tally:
     """Draw machines in batches and count which of them meet each demand; ``answers`` are the nominal results in SI."""
-    carried: Scatter | Packed = scatter if isinstance(executor, SerialExecutor) else pack(scatter.setup)
+    carried: Scatter | Packed = scatter if stays_here(executor) else pack(scatter.setup)
     centres = {name: answers[name] for name in results_needed(scatter.setup, wanted)}
     run = partial(run_batch, carried, tuple(wanted), centres)
     total: Tally | None = None

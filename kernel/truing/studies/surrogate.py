@@ -25,7 +25,7 @@ from truing.declare.blocks import Block, Drawing, Table, Words
 from truing.declare.near_miss import near_miss
 from truing.errors import DeclarationError, UnitError, UsageError
 from truing.evaluate import Rows, acting_inputs, evaluate_rows
-from truing.executors import SerialExecutor, in_order, keepable
+from truing.executors import in_order, keepable, stays_here
 from truing.formulas import Formula, evaluate, evaluate_quantities, parse
 from truing.heavy import gaussian_kernels, gaussian_process, learning_exceptions, stats
 from truing.packed import Packed, pack, unpack
@@ -151,7 +151,7 @@ class Surrogate:
         setup, batch, executor = bench.setup, self.batch, bench.executor
         points = (self.design, self.held_out)[stage]
         columns = designed(setup, box, stage, points, self.name)
-        carried: Setup | Packed = setup if isinstance(executor, SerialExecutor) else pack(setup)
+        carried: Setup | Packed = setup if stays_here(executor) else pack(setup)
         answers = []
         for answer in in_order(executor, partial(run_points, carried, names), _parts(columns, points, batch)):
             answers.append(answer)

@@ -126,8 +126,9 @@ class _Plan:
         measured, _ = self._recorded(true, self.rows, 0)
         held, left = self._recorded(true, self.rows if self.runs > 1 or self._is_record else HELD_OUT_ROWS, 1)
         return Hidden(
-            setup=setup, measured=measured, held_out=held, effect=self.effect and self.effect.name, truth=self.truth,
-            machine=off, noise=left, is_strange=self.effect is None and self.by is not None,
+            setup=setup, measured=measured, held_out=held, truth=self.truth, machine=off, noise=left,
+            effect=self.effect.name if self.effect is not None else None,
+            is_strange=self.effect is None and self.by is not None,
         )  # fmt: skip
 
     @property
@@ -403,25 +404,25 @@ def _value(unknown: Unknown, said: str | float) -> float:
 
 
 def check_by(by: Strange | None, effect: Effect[Any, Any] | None, model: Model[Any, Any], faults: list[str]) -> None:
-    """Say where a function of the author's own does not take what the effect has."""
+    """Say where a function of the author's own does not take what the effect has, or what is no condition."""
     if by is None:
         return
-    parameters = list(inspect.signature(by).parameters.values())
-    if any(parameter.kind is inspect.Parameter.VAR_KEYWORD for parameter in parameters):
-        return
-    named = {parameter.name for parameter in parameters[2:]}
-    if effect is None:
-        unknown = sorted(named - set(model.known_conditions))
-        if unknown:
-            faults.append(f"by takes {', '.join(unknown)}, which is no condition of the model")
-        return
-    wanted = {unknown.name for unknown in effect.unknowns} | {need.name for need in effect.needs}
-    needed = {parameter.name for parameter in parameters[2:] if parameter.default is inspect.Parameter.empty}
-    if len(parameters) < 2 or not needed <= wanted <= named:
+    signature = inspect.signature(by)
+    wanted = _conditions_of(by, model)
+    if effect is not None:
+        wanted = sorted({unknown.name for unknown in effect.unknowns} | {need.name for need in effect.needs})
+    try:
+        signature.bind("inputs", "results", **dict.fromkeys(wanted))
+    except TypeError:
         faults.append(
-            f"by takes {', '.join(parameter.name for parameter in parameters) or 'nothing'}; "
-            f"it is called with inputs, results and the keywords {', '.join(sorted(wanted))}"
+            f"by takes {', '.join(signature.parameters) or 'nothing'}; it is called with inputs, results and the "
+            f"keywords {', '.join(wanted) or 'of conditions of the model'}"
         )
+
+
+def _conditions_of(by: Strange, model: Model[Any, Any]) -> list[str]:
+    """Return the conditions of the model that a function names."""
+    return [name for name in [*inspect.signature(by).parameters][2:] if name in model.known_conditions]
 
 
 def wrong_machine(
@@ -442,8 +443,8 @@ def _by_hand(by: Strange, effect: Effect[Any, Any] | None, model: Model[Any, Any
     """Make an effect on the reading of the author's own function."""
     if effect is not None:
         return Effect(effect.name, on_reading=by, unknowns=effect.unknowns, needs=effect.needs, parts=effect.parts)
-    named = [*inspect.signature(by).parameters][2:]
-    needs = [model.known_conditions[name] for name in named if name in model.known_conditions]
+    named = _conditions_of(by, model)
+    needs = [model.known_conditions[name] for name in named]
 
     def function(inputs: Any, results: Any, **known: Any) -> Any:
         return by(inputs, results, **{name: known[name] for name in named})
