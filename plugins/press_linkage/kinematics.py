@@ -257,7 +257,7 @@ SINGULAR = 1e-6  # sine of an angle between two links below which the position i
 Holds = bool | NDArray[np.bool_]
 
 
-Demand = tuple[Holds, str]
+ClosingDemand = tuple[Holds, str]
 """Where something holds that must, and the sentence for the engineer where it does not."""
 LOOPS = (  # names on side 1 and 2, what the loop needs, and where it is singular
     (
@@ -301,7 +301,7 @@ def smallest_sine(position: Position) -> Float:
     return least
 
 
-def rotation_demand(press: Press) -> Demand:
+def rotation_demand(press: Press) -> ClosingDemand:
     """What a full turn of the crank needs, and with it the upper dead centre and the stroke."""
     offset = np.abs(press.crank_pivot_radius - press.platform_half_width)
     return (
@@ -311,7 +311,7 @@ def rotation_demand(press: Press) -> Demand:
     )
 
 
-def demands(press: Press, position: Position) -> Iterator[Demand]:
+def demands(press: Press, position: Position) -> Iterator[ClosingDemand]:
     """What must hold in this position with these deviations: nominal sizes, then loop by loop, side by side.
 
     They come in the order of the chain, so the first one that fails names the cause and not a consequence.
@@ -351,7 +351,7 @@ def _sizes(half: Half) -> Holds:
     return holds
 
 
-def _loop(number: int, half: Half, side: int) -> Iterator[Demand]:
+def _loop(number: int, half: Half, side: int) -> Iterator[ClosingDemand]:
     """A loop closes, and not in a singular position."""
     parts, names = half.parts, LOOPS[number][0]
     links = parts.drive * parts.upper
@@ -365,7 +365,7 @@ def _loop(number: int, half: Half, side: int) -> Iterator[Demand]:
     yield regular, f"{name} is singular: {LOOPS[number][2].format(side)}"
 
 
-def cycle_demands(press: Press, samples: int = 721) -> Iterator[Demand]:
+def cycle_demands(press: Press, samples: int = 721) -> Iterator[ClosingDemand]:
     """What a full turn of the crank demands of one nominal mechanism (plain numbers): every loop, at every angle.
 
     The loops are tried at *samples* equally spaced crank angles; none of the roots may vanish on the way, so the

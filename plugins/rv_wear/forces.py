@@ -150,11 +150,11 @@ ROUNDING = 1e-12  # m; interference below it is rounding of the inputs
 LINE = 5.0  # depth number over the logarithm of the force above which the contact is narrow
 
 
-Demand = tuple[NDArray[np.bool_], str]
+MeshDemand = tuple[NDArray[np.bool_], str]
 """Where something holds that must, one truth value per mesh, and the sentence for the engineer where it does not."""
 
 
-def demands(mesh: Mesh) -> Iterator[Demand]:
+def demands(mesh: Mesh) -> Iterator[MeshDemand]:
     """What the geometry must satisfy, in the order in which it builds up; NaN does not hold."""
     yield (
         _all_positive(mesh),
@@ -202,7 +202,7 @@ def _all_positive(mesh: Mesh) -> NDArray[np.bool_]:
     return good
 
 
-def holding(mesh: Mesh) -> tuple[NDArray[np.bool_], list[Demand]]:
+def holding(mesh: Mesh) -> tuple[NDArray[np.bool_], list[MeshDemand]]:
     """Which meshes (m,) can be calculated, and the demands that some of them do not meet."""
     good: NDArray[np.bool_] = np.ones(1, dtype=bool)
     broken = []
@@ -214,7 +214,7 @@ def holding(mesh: Mesh) -> tuple[NDArray[np.bool_], list[Demand]]:
     return good, broken
 
 
-def refuse(broken: list[Demand], mesh_of_row: NDArray[np.intp] | None) -> None:
+def refuse(broken: list[MeshDemand], mesh_of_row: NDArray[np.intp] | None) -> None:
     """Refuse the rows whose mesh cannot be calculated, each with the first sentence that applies."""
     for holds, sentence in broken:
         feasible(bool(holds[0]) if mesh_of_row is None else holds[mesh_of_row], sentence)

@@ -77,7 +77,7 @@ SLIGHT = 1e-6  # N; a smaller force does not wear
 NEVER = 1e200  # exposure of a step in which nothing wears
 
 Rate = Callable[[Array], Array]
-Node = tuple[Array, Array, Array]
+WearNode = tuple[Array, Array, Array]
 
 
 @dataclass(frozen=True)
@@ -184,7 +184,7 @@ def _lasts(teeth: Teeth, rate: Array) -> Array:
     return np.where(fastest > 0.0, teeth.mesh.threshold / np.maximum(fastest, 1.0 / NEVER), NEVER)
 
 
-def nodes_of(teeth: Teeth) -> Iterator[Node]:
+def nodes_of(teeth: Teeth) -> Iterator[WearNode]:
     """Exposure (m,), largest wear and phase angle of its place: of the new disc, then twice in every step."""
     angle = teeth.angle.reshape(-1)
     deepest: NDArray[np.intp] | None = None
@@ -200,7 +200,7 @@ def _flat(values: Array) -> Array:
     return values.reshape(-1, values.shape[-1])
 
 
-def _step(state: WearState, leader: NDArray[np.intp], angle: Array) -> tuple[NDArray[np.intp], list[Node]]:
+def _step(state: WearState, leader: NDArray[np.intp], angle: Array) -> tuple[NDArray[np.intp], list[WearNode]]:
     """The deepest point after a step, and the nodes where it is overtaken (else half way) and at the end of the step.
 
     Points are counted over all pins and positions.
@@ -319,7 +319,7 @@ class GrowingHistory:
                 self._told = Histories(*(np.array(column) for column in zip(*self._nodes, strict=True)))
             return self._told
 
-    def _until(self, exposure: Array) -> Iterator[Node]:
+    def _until(self, exposure: Array) -> Iterator[WearNode]:
         for node in self._more:
             yield node
             if (node[0] >= exposure).all():
