@@ -27,7 +27,7 @@ PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
 SMALL = ("run", PIN, "-q", "--set", 'studies.run=["reliability"]', "--set", "studies.reliability.draws=60000")
 
 
-def test_a_killed_run_goes_on_where_it_was(calc: Calc, tmp_path: Path) -> None:
+def test_a_killed_run_goes_on_where_it_was(calc: Calc, calc_process: Calc, tmp_path: Path) -> None:
     """Killed with two processes, interrupted with one, completed with one: no finished batch is computed twice."""
     pin = Gated.in_folder(tmp_path)
     process = pin.start("-o", "run", "--resume", "--workers", "2")
@@ -50,7 +50,7 @@ def test_a_killed_run_goes_on_where_it_was(calc: Calc, tmp_path: Path) -> None:
 
     pin.open()
     before = pin.calls
-    answer = calc(*pin.words, "-q", "-o", "run", "--resume")
+    answer = calc_process(*pin.words, "-q", "-o", "run", "--resume")
     assert answer.code == 0, answer.err
     assert run_of(tmp_path / "run")["resumed"] == FREE
     assert pin.calls - before == BATCHES - FREE

@@ -1,19 +1,18 @@
-"""The press linkage a second time, from a machine that imports nothing of the plugin, for any sizes.
+"""The press linkage a second time, from its vector loops alone: nothing of the plugin is imported here.
 
-The machine of the benchmark closes the loops on complex numbers, side 2 with its own angles and no mirror. Derivatives
-are differences of it, and everything that follows (scatter, chances, synthesis, cost) is written again from formulas.
+The six loops stand as the paper writes them, complex numbers y + jz, side 2 with its own angles and no mirror. They are
+solved as twelve simultaneous equations by scipy, differentiated by the implicit function theorem, and everything that
+follows (scatter, chances, synthesis, cost) is written again from the formulas.
 """
 
 from collections.abc import Iterator, Mapping
 from itertools import product
-from math import acos
 from statistics import NormalDist
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-
-from hidden_effects import press_machine
+from scipy.optimize import brentq, root
 
 Values = Mapping[str, Any]
 
@@ -27,39 +26,111 @@ CHANGED = {
     "upper_knee_length": 1.6, "lower_knee_length": 1.5, "slider_half_width": 1.45, "crank_pivot_radius": 1.1,
     "platform_half_width": 0.35, "ground_pivot_radius": 1.3, "ground_pivot_angle": 0.33,
 }  # fmt: skip
-KINDS = tuple(press_machine.NOMINAL)
+KINDS = (
+    "crank_radius", "rod_length", "knee_drive_length", "upper_knee_length", "lower_knee_length", "slider_half_width",
+    "slider_joint_angle", "crank_pivot_radius", "crank_pivot_angle", "platform_half_width", "platform_joint_angle",
+    "ground_pivot_radius", "ground_pivot_angle", "crank_angle",
+)  # fmt: skip
 SOURCES = (*(f"{kind}_deviation_{side}" for side in (1, 2) for kind in KINDS), "platform_arm_deviation")
-STEP = 1e-4
-CLOSE = 3e-11
-"""Of a derivative: rounding of positions of some metres over the step."""
+DIGITS = np.finfo(float).eps
 
 
-def slider(press: Values, crank_angle: float, off: Values) -> tuple[Any, Any]:
-    """Position and tilt at a crank angle from the dead centre of these sizes, off as the inputs have it.
+def loops(unknown: Any, press: Values, crank: float, off: Values) -> list[Any]:
+    """What is left of the loops I, II, III and VI, V, IV, real and imaginary part each; zero where all close.
 
-    Sizes of another press are the paper's, off by what is between them; angles of the frame count from pi on side 2.
+    Unknowns of each side: its own platform height, the directions of rod, knee drive, upper and lower link, its face.
     """
-    beside = {kind: press.get(kind, 0.0) - PAPER.get(kind, 0.0) for kind in KINDS}
-    more = {f"{kind}_deviation_{side}": size for kind, size in beside.items() for side in (1, 2)}
-    more["ground_pivot_angle_deviation_2"] *= -1
-    more["platform_arm_deviation"] = press["platform_arm"] - PAPER["platform_arm"]
-    sizes = press_machine.built({name: size + off.get(name, 0.0) for name, size in more.items()})
-    across = press["platform_half_width"] - press["crank_pivot_radius"]
-    lowest = acos(across / (press["crank_radius"] + press["rod_length"]))
-    found = press_machine.slider(np.asarray(crank_angle + lowest - press_machine.BOTTOM), sizes)
-    span = PAPER["slider_half_width"] / press["slider_half_width"]
-    return found[press_machine.POSITION], found[press_machine.TILT] * span
+    platform = (unknown[0] + unknown[6]) / 2
+    left: list[Any] = []
+    for side in (1, 2):
+        own, rod, drive, upper, lower, face = unknown[6 * (side - 1) : 6 * side]
+        outward, turn = (0.0, 1.0) if side == 1 else (np.pi, -1.0)
+
+        def d(kind: str, side: int = side) -> Any:
+            return off.get(f"{kind}_deviation_{side}", 0.0)
+
+        a, k_r = press["crank_radius"] + d("crank_radius"), press["rod_length"] + d("rod_length")
+        l_g, l_m = press["knee_drive_length"] + d("knee_drive_length"), press["upper_knee_length"]
+        l_m, l_h = l_m + d("upper_knee_length"), press["lower_knee_length"] + d("lower_knee_length")
+        k = press["platform_arm"] + off.get("platform_arm_deviation", 0.0)
+        r_a, alpha_1 = press["crank_pivot_radius"] + d("crank_pivot_radius"), outward + d("crank_pivot_angle")
+        e, beta_1 = press["platform_half_width"] + d("platform_half_width"), outward + d("platform_joint_angle")
+        r_m = press["ground_pivot_radius"] + d("ground_pivot_radius")
+        alpha_2 = outward + turn * press["ground_pivot_angle"] + d("ground_pivot_angle")
+        l, beta_2 = press["slider_half_width"] + d("slider_half_width"), outward + d("slider_joint_angle")  # noqa: E741
+        theta_1 = outward + turn * (crank + d("crank_angle"))
+        left += [
+            e * np.cos(beta_1) - r_a * np.cos(alpha_1) - a * np.cos(theta_1) - k_r * np.cos(rod),
+            own + e * np.sin(beta_1) - r_a * np.sin(alpha_1) - a * np.sin(theta_1) - k_r * np.sin(rod),
+            l_g * np.cos(drive) - r_m * np.cos(alpha_2) - l_m * np.cos(upper),
+            platform + k + l_g * np.sin(drive) - r_m * np.sin(alpha_2) - l_m * np.sin(upper),
+            l * np.cos(beta_2) - r_m * np.cos(alpha_2) - l_m * np.cos(upper) - l_h * np.cos(lower),
+            face + l * np.sin(beta_2) - r_m * np.sin(alpha_2) - l_m * np.sin(upper) - l_h * np.sin(lower),
+        ]
+    return left
+
+
+def dead_centre(press: Values) -> float:
+    """The crank direction at which the platform is lowest: where its height over the crank angle has no slope."""
+
+    def slope(crank: float) -> float:
+        y = press["crank_pivot_radius"] + press["crank_radius"] * np.cos(crank) - press["platform_half_width"]
+        across = press["crank_radius"] * np.sin(crank)
+        return float(press["crank_radius"] * np.cos(crank) + y * across / np.sqrt(press["rod_length"] ** 2 - y * y))
+
+    return float(brentq(slope, np.pi / 2, np.pi, xtol=1e-15, rtol=4 * DIGITS))
+
+
+def closed(press: Values, crank_angle: float, off: Values | None = None) -> NDArray[np.float64]:
+    """The twelve unknowns at a crank angle from the dead centre, followed from there in small steps of the crank."""
+    bottom = dead_centre(press)
+    drive, upper, lower = np.radians([10.0, 105.0, 62.0])
+    guess = [
+        1.4,
+        bottom,
+        drive,
+        upper,
+        lower,
+        3.5,
+        1.4,
+        np.pi - bottom,
+        np.pi - drive,
+        np.pi - upper,
+        np.pi - lower,
+        3.5,
+    ]
+    for part in np.linspace(0.0, 1.0, 2 + int(abs(crank_angle) / 0.1)):
+        crank = bottom + part * crank_angle
+        found = root(loops, guess, args=(press, crank, off or {}), method="hybr", options={"xtol": 1e-14})
+        guess = found.x
+    for _ in range(2):  # Newton, to the last digits
+        guess = guess - np.linalg.solve(by(guess, press, crank, off or {}, None), loops(guess, press, crank, off or {}))
+    assert np.abs(loops(guess, press, crank, off or {})).max() < 1e-14
+    return np.asarray(guess)
+
+
+def by(unknown: Any, press: Values, crank: float, off: Values, source: str | None) -> NDArray[np.float64]:
+    """Derivatives of the loops by their unknowns (12, 12), or by one source (12,), from a step along i."""
+    step = 1e-30
+    if source is not None:
+        moved = loops(unknown, press, crank, {**off, source: off.get(source, 0.0) + 1j * step})
+        return np.array([np.imag(value) for value in moved]) / step
+    columns = np.asarray(unknown, dtype=complex) + 1j * step * np.eye(12)
+    return np.array([np.imag(loops(list(column), press, crank, off)) for column in columns]).T / step
+
+
+def slider(unknown: Any, press: Values) -> tuple[Any, Any]:
+    """Position and tilt from the faces of both sides."""
+    return (unknown[5] + unknown[11]) / 2, (unknown[5] - unknown[11]) / (2 * press["slider_half_width"])
 
 
 def derivatives(press: Values, crank_angle: float, off: Values | None = None) -> dict[str, tuple[float, float]]:
-    """Change of position and tilt per metre or radian of each of the 29 sources, by five points."""
-    known = off or {}
-
-    def at(name: str, steps: int) -> NDArray[np.float64]:
-        return np.array(slider(press, crank_angle, {**known, name: known.get(name, 0.0) + steps * STEP}))
-
-    found = {name: (8 * (at(name, 1) - at(name, -1)) - at(name, 2) + at(name, -2)) / (12 * STEP) for name in SOURCES}
-    return {name: (float(position), float(tilt)) for name, (position, tilt) in found.items()}
+    """Change of position and tilt per metre or radian of each of the 29 sources."""
+    crank, unknown = dead_centre(press) + crank_angle, closed(press, crank_angle, off)
+    matrix = by(unknown, press, crank, off or {}, None)
+    return {
+        name: slider(np.linalg.solve(matrix, -by(unknown, press, crank, off or {}, name)), press) for name in SOURCES
+    }
 
 
 LINKS = {  # ISO 286-1, Table 1, IT5 IT6 IT7 at the size of the link, m
@@ -147,9 +218,15 @@ def cheapest(slopes: Mapping[str, tuple[float, float]], reading: str) -> tuple[f
 
 
 def drawn(reading: str, machines: int, seed: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Position less its nominal, and tilt, of machines drawn at the dead centre."""
+    """Position less its nominal, and tilt, of machines drawn at the dead centre; all loops by Newton's method."""
     rng = np.random.default_rng(seed)
     scatter = deviations(reading, dict.fromkeys(LINKS, "IT7"))
     off = {name: size * rng.standard_normal(machines) for name, size in scatter.items()}
-    position, tilt = slider(PAPER, 0.0, off)
-    return position - slider(PAPER, 0.0, {})[0], tilt
+    start, crank = closed(PAPER, 0.0), dead_centre(PAPER)
+    inverse = np.linalg.inv(by(start, PAPER, crank, {}, None))
+    unknown = np.repeat(start[:, None], machines, axis=1)
+    for _ in range(8):  # with the matrix of the nominal machine: each step gains three digits or more
+        unknown = unknown - inverse @ np.array(loops(unknown, PAPER, crank, off))
+    assert np.abs(loops(unknown, PAPER, crank, off)).max() < 1e-13
+    position, tilt = slider(unknown, PAPER)
+    return position - slider(start, PAPER)[0], tilt
