@@ -1,6 +1,6 @@
 """What do help, names and completion cost: against a bare typer program that does the same with as many commands.
 
-Run it: ``python -m pytest tests/benchmarks/bench_start_up.py --benchmark-enable -s``. Both are started in turn, as
+Run it: ``python -m pytest tests/benchmarks/bench_start_up.py -s``. Both are started in turn, as
 processes of their own; of the rounds the least processor time counts.
 """
 
