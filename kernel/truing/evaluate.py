@@ -114,8 +114,8 @@ def evaluate_rows(
     rows are NaN in every result and keep their reason; a table shorter than the longest is filled up with NaN. A row
     that lacks a result keeps the others: see ``Rows.absent`` and ``Rows.complete``.
     ``done`` hears of rows that are done where they take several calls: one call has at most ``size`` rows, if that is
-    given. Rows that come in so many ``repeats``, one copy
-    of all behind another, cost no more than one of them where they differ in what acts after the model: see repeated.
+    given. Rows that come in so many ``repeats``, one copy of all behind another, cost no more than one of them where
+    they differ in what acts after the model: see repeated.
     Raises UsageError for a column that nobody knows or that has another length.
     """
     names = [name for name in case.model.own_result_fields if wanted is None or name in wanted]

@@ -99,11 +99,16 @@ def _value_of(node: Node, values: Mapping[str, Any]) -> Any:
     raise AssertionError("parsing lets nothing else through")
 
 
+def _pure(values: Any) -> Any:
+    """Return numbers as they are, and those of a quantity that has no dimension."""
+    return values.m_as("") if hasattr(values, "m_as") else values
+
+
 def _power(base: Any, exponent: Any) -> Any:
     """Raise numbers or a quantity; one with a dimension needs one exponent for all points."""
-    power = exponent.m_as("") if hasattr(exponent, "m_as") else exponent
+    power = _pure(exponent)
     if not hasattr(base, "m_as") or base.dimensionless:
-        return np.power(base.m_as("") if hasattr(base, "m_as") else base, power)
+        return np.power(_pure(base), power)
     one = np.unique(np.asarray(power, dtype=float))
     if one.size != 1 or not np.isfinite(one[0]):
         raise pint.DimensionalityError(base.units, "a power that is not one finite number")
@@ -122,7 +127,7 @@ def _root(function: Callable[..., Any], degree: int, values: Any) -> Any:
 
 
 def _normal_probability(x: Any) -> Any:
-    return ndtr(x.m_as("") if hasattr(x, "m_as") else x)
+    return ndtr(_pure(x))
 
 
 OPERATORS: Mapping[str, Callable[..., Any]] = {
