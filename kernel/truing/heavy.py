@@ -26,6 +26,7 @@ gaussian_kernels: Any = Later("sklearn.gaussian_process.kernels")
 learning_exceptions: Any = Later("sklearn.exceptions")
 stats: Any = Later("scipy.stats")
 ipython_display: Any = Later("IPython.display")
+integrate: Any = Later("scipy.integrate")
 pymoo: Any = Later(
     "pymoo",
     Config="pymoo.config",

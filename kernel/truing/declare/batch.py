@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from truing.declare.fields import Float
-from truing.errors import InfeasibleError
+from truing.errors import InfeasibleError, TruingError
 
 
 class FailedRows:
@@ -61,14 +61,17 @@ def watching(rows: int, *, is_single: bool = False) -> Iterator[FailedRows]:
         _WATCH.reset(token)
 
 
-def feasible(holds: Any, sentence: str, *, only: Sequence[str] = ()) -> None:
+def feasible(
+    holds: Any, sentence: str, *, only: Sequence[str] = (), error: type[TruingError] = InfeasibleError
+) -> None:
     """State what must hold; NaN does not hold.
 
     A single calculation ends with ``InfeasibleError`` and the sentence; in a batch the row keeps its reason and
     the others go on. ``holds`` is a bool or an array (n,) or (n, k): a row fails if any of its values does.
 
     ``only`` names results (flat names): where it does not hold these alone have no answer, with the sentence as the
-    reason, and all others stand. The function returns any number for them, which nobody sees.
+    reason, and all others stand. The function returns any number for them, which nobody sees. ``error`` is raised in
+    place of InfeasibleError: ConvergenceError where an iteration did not arrive.
     """
     values = np.asarray(holds, dtype=bool)
     if values.all():
@@ -80,7 +83,7 @@ def feasible(holds: Any, sentence: str, *, only: Sequence[str] = ()) -> None:
     elif failed is not None and not failed.is_single:
         failed.add(np.logical_not(values), sentence)
     elif not only:
-        raise InfeasibleError(sentence)
+        raise error(sentence)
 
 
 def either(value: Float, otherwise: Float) -> Float:

@@ -23,6 +23,7 @@ else:
     Float = Annotated[float, "a number or an array: may vary inside a batch"]
 
 KEY = "truing"
+Between = Literal["linear", "hold"]
 InputKind = Literal["float", "whole", "integer", "switch", "choice", "text", "series", "file"]
 
 
@@ -41,6 +42,7 @@ class Given:
     at_most: float | None = None
     whole: bool = False
     along: str = ""
+    between: Between = "linear"
     stated_with: str = ""
     halving: float | None = None
     halving_but: Mapping[str, str] = field(default_factory=dict)
@@ -134,20 +136,22 @@ def given(
     at_most: float | None = None,
     whole: bool = False,
     along: str = "",
+    between: Between = "linear",
     stated_with: str = "",
     halving: float | None = None,
     halving_but: Mapping[str, str] | None = None,
 ) -> Any:
     """Declare an input with its default and unit; ``None`` makes it optional (NaN inside).
 
-    Bounds are in ``unit``. ``whole`` asks for whole numbers. ``along`` names the axis of an input that is a series.
+    Bounds are in ``unit``. ``whole`` asks for whole numbers. ``along`` names the axis of an input that is a series,
+    ``between`` what a motion sees between its points: "linear", or "hold" where each is held until the next.
     ``stated_with`` names the input that tells what this one means: a file that states one must state the other too.
     ``halving`` makes it a numerical step, tolerance or grid: the share of a result that halving it (doubling a count)
     changes at the most wherever the model answers; ``halving_but`` gives quantities for results that move otherwise.
     """
     spec = Given(
         default=default, unit=unit, symbol=symbol, note=note, source=source, above=above, below=below,
-        at_least=at_least, at_most=at_most, whole=whole, along=along, stated_with=stated_with,
+        at_least=at_least, at_most=at_most, whole=whole, along=along, between=between, stated_with=stated_with,
         halving=halving, halving_but=halving_but or {},
     )  # fmt: skip
     return field(default_factory=spec.initial, metadata={KEY: spec})

@@ -14,6 +14,7 @@ import numpy as np
 
 from truing.declare.blocks import Block
 from truing.declare.builtin import builtin_effects
+from truing.declare.dynamics import Dynamics
 from truing.declare.fields import (
     Axis,
     Found,
@@ -166,6 +167,11 @@ class Model(Generic[I, R]):
         """What was calculated of this model alone, by the name of who asked: it holds as long as the model lives."""
         return {}
 
+    @property
+    def dynamics(self) -> Dynamics[Any, I, R] | None:
+        """The state equation of a model that moves, None of any other."""
+        return self.function if isinstance(self.function, Dynamics) else None
+
     @cached_property
     def input_type(self) -> type[I]:
         """The dataclass of inputs."""
@@ -177,6 +183,8 @@ class Model(Generic[I, R]):
         return self._annotated()[1]
 
     def _annotated(self) -> tuple[type[Any], type[Any]]:
+        if self.dynamics is not None:
+            return self.dynamics.input_type, self.dynamics.result_type
         hints = hints_of(self.function)
         answer = hints.pop("return", None)
         if len(hints) != 1 or answer is None:

@@ -1,0 +1,341 @@
+"""State equations: what changes by itself, how fast, from where on, and what a record of it answers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import KW_ONLY, dataclass, field, fields, replace
+from functools import cached_property
+from typing import Any, Generic, Literal, TypeVar, cast, dataclass_transform
+
+import numpy as np
+
+from truing.arrays import Indices, Matrix
+from truing.declare.batch import feasible
+from truing.declare.fields import KEY, Float, InputField, hints_of, in_si, input_fields, read, with_values
+from truing.declare.near_miss import near_miss
+from truing.errors import ConvergenceError, DeclarationError, InfeasibleError
+from truing.integration import GROWS, STEP_LIMIT, EventRule, Problem, Solution, solve
+from truing.units import difference_unit
+
+I = TypeVar("I")  # noqa: E741  # inputs, as in Model[I, R]
+R = TypeVar("R")
+S = TypeVar("S")
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, kw_only=True)
+class StateSpec:
+    """One state as declared; ``start`` names an input or is a quantity, ``size`` is in ``unit``."""
+
+    unit: str
+    start: str | float
+    symbol: str = ""
+    note: str = ""
+    rate: str = ""
+    size: float = 1.0
+
+
+def state(
+    unit: str, *, start: str | float, symbol: str = "", note: str = "", rate: str = "", size: float = 1.0
+) -> Any:  # fmt: skip
+    """Declare a state with its unit: something that has a value at every time and changes at a rate.
+
+    ``start`` is where it begins: the name of an input, a text with a unit, or a number in ``unit``. ``rate`` is the
+    formula of its change that the sheet prints, in names of states, inputs and ``time``; a test holds it against the
+    function. ``size`` (in ``unit``) is a value that counts as small: below it the error is held absolutely.
+    """
+    spec = StateSpec(unit=unit, start=start, symbol=symbol, note=note, rate=rate, size=size)
+    return field(metadata={KEY: spec})
+
+
+@dataclass_transform(frozen_default=True, kw_only_default=True, field_specifiers=(state,))
+def states(cls: type[T]) -> type[T]:
+    """Make a frozen, keyword-only dataclass of states; every field comes from ``state``."""
+    declared = dataclass(frozen=True, kw_only=True)(cls)
+    for each in fields(cast(Any, declared)):
+        spec = each.metadata.get(KEY)
+        if not isinstance(spec, StateSpec):
+            raise DeclarationError(f"{cls.__qualname__}: '{each.name}' is no state: write state(...)")
+        if not (math.isfinite(spec.size) and spec.size > 0):
+            raise DeclarationError(f"{cls.__qualname__}: the size of '{each.name}' is {spec.size}; it is above 0")
+    return declared
+
+
+@dataclass(frozen=True)
+class Event(Generic[S, I]):
+    """Something that happens when ``value(states, inputs, time)`` passes 0: a contact opens, a body sticks.
+
+    It counts where the value ``rises``, ``falls`` or does ``either``. ``then(states, inputs, time)`` returns the states
+    with which it goes on (as they are without it); with ``ends`` the machine stays as it is then.
+    """
+
+    name: str
+    value: Callable[[S, I, Float], Float]
+    _: KW_ONLY
+    when: Literal["rises", "falls", "either"] = "either"
+    then: Callable[[S, I, Float], S] | None = None
+    ends: bool = False
+
+    @property
+    def rule(self) -> EventRule:
+        """The rule as the integrator knows it."""
+        return EventRule({"rises": 1, "falls": -1, "either": 0}[self.when], self.ends, self.then is not None)
+
+
+@dataclass(frozen=True)
+class Motion(Generic[S]):
+    """A record that was integrated: ``time`` (k,), states (k,) of one machine or (n, k).
+
+    ``counts`` and ``first`` say by event how often and when first it happened, numbers or (n,); NaN where it never did.
+    """
+
+    time: Matrix
+    states: S
+    counts: Mapping[str, Float]
+    first: Mapping[str, Float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Dynamics(Generic[S, I, R]):
+    """The function of a model that moves: the states are followed from the first of ``times`` to the last.
+
+    ``rate(states, inputs, time)`` returns what every state gains per second, in the class of the states; each field is
+    a number or an array (n,). Inputs that are series have there the value of that moment. In place of it
+    ``step(states, inputs, time)`` returns the states at the next of ``times``. ``gives(inputs, motion)`` makes results.
+    ``times`` names the input series of the stamps at which the states are asked for, ``start(inputs)`` gives states in
+    place of the starts that are declared.
+
+    Errors per step are held below ``tolerance`` of each state; one tenth of it changes no result by more than the share
+    ``settled`` of its largest value, which the kit checks. ``most_steps`` are taken: then there is no answer.
+    """
+
+    gives: Callable[[I, Motion[S]], R]
+    rate: Callable[[S, I, Float], S] | None = None
+    step: Callable[[S, I, Float], S] | None = None
+    times: str = "times"
+    start: Callable[[I], S] | None = None
+    events: Sequence[Event[S, I]] = ()
+    tolerance: float = 1e-8
+    settled: float = 1e-5
+    most_steps: int = 100_000
+
+    def __post_init__(self) -> None:
+        if (self.rate is None) == (self.step is None):
+            raise DeclarationError("dynamics need one of rate(states, inputs, time) and step(states, inputs, time)")
+        object.__setattr__(self, "events", tuple(self.events))
+        object.__setattr__(self, "__wrapped__", self.law)  # where the calculation is written: for who looks for a fault
+        object.__setattr__(self, "__module__", self.law.__module__)
+        if self.step is not None and self.events:
+            raise DeclarationError("dynamics in steps have no events: they happen between the times")
+        if not 1e-13 <= self.tolerance <= 1e-2:
+            raise DeclarationError(f"the tolerance of dynamics is {self.tolerance:g}; it lies between 1e-13 and 0.01")
+        _ = self.state_type, self.input_type, self.result_type
+
+    @property
+    def law(self) -> Callable[[S, I, Float], S]:
+        """The rate or the step, whichever is given."""
+        return cast("Callable[[S, I, Float], S]", self.rate or self.step)
+
+    @cached_property
+    def state_type(self) -> type[S]:
+        """The dataclass of states, as the law is annotated."""
+        hints = hints_of(self.law)
+        kind = hints.get("return")
+        if kind is None or not any(isinstance(each.metadata.get(KEY), StateSpec) for each in _fields(kind)):
+            raise DeclarationError(f"{_name(self.law)} must say which @states class it takes and returns")
+        return cast("type[S]", kind)
+
+    @cached_property
+    def input_type(self) -> type[I]:
+        """The dataclass of inputs, as ``gives`` is annotated."""
+        hints = hints_of(self.gives)
+        hints.pop("return", None)
+        if len(hints) != 2:
+            raise DeclarationError(f"{_name(self.gives)} takes an annotated class of inputs and Motion[...]")
+        return cast("type[I]", next(iter(hints.values())))
+
+    @cached_property
+    def result_type(self) -> type[R]:
+        """The dataclass of results, as ``gives`` is annotated."""
+        answer = hints_of(self.gives).get("return")
+        if answer is None:
+            raise DeclarationError(f"{_name(self.gives)} must say which @results class it returns")
+        return cast("type[R]", answer)
+
+    @cached_property
+    def state_fields(self) -> dict[str, StateSpec]:
+        """Every state by name."""
+        return {each.name: each.metadata[KEY] for each in _fields(self.state_type)}
+
+    @cached_property
+    def input_fields(self) -> dict[str, InputField]:
+        """Every input by flat name."""
+        return input_fields(self.input_type)
+
+    @cached_property
+    def driving(self) -> dict[str, InputField]:
+        """The input series that the law sees at every moment, by flat name."""
+        along = self.input_fields[self.times].spec.along
+        return {
+            name: each for name, each in self.input_fields.items() if each.spec.along == along and name != self.times
+        }
+
+    def __call__(self, inputs: I) -> R:
+        """Follow the states, and make results: of one machine, or of n where inputs are arrays (n,)."""
+        machines = _machines(self, inputs)
+        known = self.state_fields
+        if self.step is not None:
+            solution = _in_steps(machines)
+        else:
+            stamps = machines.stamps
+            problem = Problem(
+                system=machines, start=machines.start(), stamps=stamps,
+                breaks=stamps if machines.drives else stamps[[0, -1]],
+                sizes=np.array([in_si(spec.size, difference_unit(spec.unit)) for spec in known.values()]),
+                events=[event.rule for event in self.events], tolerance=self.tolerance, most_steps=self.most_steps,
+            )  # fmt: skip
+            solution = solve(problem)
+        _say_why(solution, machines)
+        one: Any = 0 if machines.is_single else slice(None)
+        names = [event.name for event in self.events]
+        motion = Motion(
+            time=machines.stamps,
+            states=self.state_type(**{name: solution.states[place, one] for place, name in enumerate(known)}),
+            counts={name: solution.counts[place, one] for place, name in enumerate(names)},
+            first={name: solution.first[place, one] for place, name in enumerate(names)},
+        )
+        return self.gives(inputs, motion)
+
+
+@dataclass(frozen=True)
+class _Machines(Generic[S, I, R]):
+    """The state equation of ``count`` machines as the integrator calls it; ``drives`` by path (k,) or (n, k)."""
+
+    dynamics: Dynamics[S, I, R]
+    inputs: I
+    stamps: Matrix
+    count: int
+    is_single: bool
+    columns: Mapping[tuple[str, ...], Matrix]
+    drives: Mapping[tuple[str, ...], Matrix]
+    held: frozenset[tuple[str, ...]]
+
+    def start(self) -> Matrix:
+        """Return the states at the first stamp, (d, n)."""
+        dynamics = self.dynamics
+        if dynamics.start is not None:
+            return self._stacked(dynamics.start(self._inputs_at(*self._at_first())))
+        values = []
+        for spec in dynamics.state_fields.values():
+            source = dynamics.input_fields.get(str(spec.start))
+            values.append(in_si(spec.start, spec.unit) if source is None else read(self.inputs, source.path))
+        return np.array([np.broadcast_to(value, (self.count,)) for value in values], dtype=float)
+
+    def rate(self, t: Matrix, y: Matrix, interval: Indices) -> Matrix:
+        """Return what the law says, (d, n)."""
+        return self._stacked(self.dynamics.law(self._states(y), self._inputs_at(t, interval), t))
+
+    def crossing(self, event: int, t: Matrix, y: Matrix, interval: Indices) -> Matrix:
+        """Return what passes 0 when an event happens, (n,)."""
+        value = self.dynamics.events[event].value(self._states(y), self._inputs_at(t, interval), t)
+        return np.array(np.broadcast_to(value, t.shape), dtype=float)
+
+    def after(self, event: int, t: Matrix, y: Matrix, interval: Indices) -> Matrix:
+        """Return the state after an event, (d, n)."""
+        then = self.dynamics.events[event].then
+        return y if then is None else self._stacked(then(self._states(y), self._inputs_at(t, interval), t))
+
+    def part(self, machines: Indices) -> _Machines[S, I, R]:
+        """Return the equation of some of the machines."""
+        columns = {path: value[machines] for path, value in self.columns.items()}
+        drives = {path: value[machines] if value.ndim > 1 else value for path, value in self.drives.items()}
+        inputs = with_values(self.inputs, columns)
+        return replace(self, inputs=inputs, count=len(machines), columns=columns, drives=drives)
+
+    def _states(self, y: Matrix) -> S:
+        states: S = object.__new__(self.dynamics.state_type)
+        states.__dict__.update(zip(self.dynamics.state_fields, y, strict=True))
+        return states
+
+    def _stacked(self, states: S) -> Matrix:
+        stacked = np.empty((len(self.dynamics.state_fields), self.count))
+        for place, name in enumerate(self.dynamics.state_fields):
+            stacked[place] = getattr(states, name)
+        return stacked
+
+    def _at_first(self) -> tuple[Matrix, Indices]:
+        return np.full(self.count, self.stamps[0]), np.zeros(self.count, dtype=np.intp)
+
+    def _inputs_at(self, t: Matrix, interval: Indices) -> I:
+        """Return the inputs with every series at its value of the moment."""
+        if not self.drives:
+            return self.inputs
+        values: dict[tuple[str, ...], Any] = {}
+        for path, series in self.drives.items():
+            rows = (np.arange(len(t)),) if series.ndim > 1 else ()
+            begin = series[(*rows, interval)]
+            if path not in self.held:
+                low, high = self.stamps[interval], self.stamps[interval + 1]
+                begin = begin + (series[(*rows, interval + 1)] - begin) * (t - low) / (high - low)
+            values[path] = begin
+        return with_values(self.inputs, values)
+
+
+def _machines(dynamics: Dynamics[S, I, R], inputs: I) -> _Machines[S, I, R]:
+    """Take inputs apart: what is one machine, what differs between machines, what drives them."""
+    fields_of = dynamics.input_fields
+    stamps = np.atleast_1d(np.asarray(read(inputs, fields_of[dynamics.times].path), dtype=float))
+    feasible(len(stamps) > 1 and np.isfinite(stamps).all(), f"{dynamics.times}: a motion needs two times or more")
+    feasible(bool((np.diff(stamps) > 0).all()), f"{dynamics.times}: the times of a record rise; two are equal or fall")
+    drives = {each.path: np.asarray(read(inputs, each.path), dtype=float) for each in dynamics.driving.values()}
+    for name, each in dynamics.driving.items():
+        series = drives[each.path]
+        feasible(
+            series.ndim > 0 and series.shape[-1] == len(stamps),
+            f"{name} has {series.shape[-1] if series.ndim else 1} values at {len(stamps)} {dynamics.times}",
+        )
+        feasible(np.isfinite(series).all(axis=-1), f"{name} is missing at some of the {dynamics.times}")
+    numbers = {each.path: read(inputs, each.path) for each in fields_of.values() if each.varies}
+    columns = {path: value for path, value in numbers.items() if np.ndim(value) == 1}
+    sizes = {len(value) for value in columns.values()} | {len(value) for value in drives.values() if value.ndim > 1}
+    count = max(sizes, default=1)
+    columns = {path: np.broadcast_to(value, (count,)) for path, value in columns.items()}
+    held = frozenset(each.path for each in dynamics.driving.values() if getattr(each.spec, "between", "") == "hold")
+    return _Machines(dynamics, inputs, stamps, count, not sizes, columns, drives, held)
+
+
+def _in_steps(machines: _Machines[Any, Any, Any]) -> Solution:
+    """Follow the states from one stamp to the next by the step."""
+    y, stamps = machines.start(), machines.stamps
+    states = np.empty((*y.shape, len(stamps)))
+    states[:, :, 0] = y
+    interval = np.zeros(machines.count, dtype=np.intp)
+    with np.errstate(all="ignore"):
+        for place, t in enumerate(stamps[:-1]):
+            y = machines.rate(np.full(machines.count, t), y, interval + place)
+            states[:, :, place + 1] = y
+    bad = ~np.isfinite(y).all(axis=0)
+    ends = {int(at): float(stamps[np.isfinite(states[:, at]).all(axis=0)][-1]) for at in np.flatnonzero(bad)}
+    return Solution(states, np.zeros((0, machines.count)), np.zeros((0, machines.count)),
+                    {at: (GROWS, t) for at, t in ends.items()})  # fmt: skip
+
+
+def _say_why(solution: Solution, machines: _Machines[Any, Any, Any]) -> None:
+    """Let the machines that came to no end fail, each with its reason; a single one ends the calculation."""
+    for reason in sorted({reason for reason, _ in solution.reasons.values()}):
+        failed = {at: t for at, (why, t) in solution.reasons.items() if why == reason}
+        when = f"t = {min(failed.values()):.6g} s" + ("" if machines.is_single else " at the earliest")
+        holds = np.ones(machines.count, dtype=bool)
+        holds[list(failed)] = False
+        sentence = f"the motion cannot be followed beyond {when}: {reason}"
+        error = ConvergenceError if reason == STEP_LIMIT else InfeasibleError
+        feasible(holds[0] if machines.is_single else holds, sentence, error=error)
+
+
+def _fields(kind: Any) -> tuple[Any, ...]:
+    return fields(kind) if hasattr(kind, "__dataclass_fields__") else ()
+
+
+def _name(function: Callable[..., Any]) -> str:
+    return getattr(function, "__name__", repr(function))

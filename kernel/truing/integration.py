@@ -1,0 +1,535 @@
+"""State equations of many machines at once: each has its own step, its own error, its own events and its own end.
+
+The pair of Dormand and Prince of orders 8(5, 3) with the coefficients of ``scipy.integrate.DOP853``; what it cannot
+follow because the system is stiff goes to scipy's LSODA. n machines of d states are arrays (d, n).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+from typing import Any, Protocol
+
+import numpy as np
+
+from truing.arrays import Indices, Mask, Matrix
+from truing.heavy import integrate
+
+ORDER = 8
+STAGES = 12
+SAFETY, SHRINK, GROW = 0.9, 0.2, 10.0
+"""Of the next step: how careful it is, and how much shorter or longer than the last one it may be."""
+ROUNDING = 2.0**-52
+LEAST_STEP = 16 * ROUNDING
+"""Shortest step, as a share of the time that is reached."""
+LOOKS, MOST_ROUNDS = 8, 60
+"""How often a step is looked at for events, and in how many rounds at the most the time of one is found."""
+MOST_EVENTS = 10_000
+CLOSE, TINY = 1e-12, 1e-300
+"""More events of one machine in one record, or events so close (a share of the record), have no end. What has just
+passed 0 counts as being beyond it, by ``TINY`` at the least: it does not pass again."""
+STIFF, STIFF_STEPS = 6.1, 15
+"""Step times rate constant at the edge of stability, and how many steps on it make a machine stiff (Hairer, Wanner)."""
+
+GROWS = "a state grows beyond all bounds"
+STEP_LIMIT = "the step limit is reached"
+ENDLESS = "an event comes again and again without end"
+
+
+class System(Protocol):
+    """The state equation of n machines; t is (n,), y is (d, n), ``interval`` (n,) numbers the stretch between breaks."""
+
+    def rate(self, t: Matrix, y: Matrix, interval: Indices) -> Matrix:
+        """Return dy/dt, (d, n)."""
+
+    def crossing(self, event: int, t: Matrix, y: Matrix, interval: Indices) -> Matrix:
+        """Return what passes 0 when an event happens, (n,)."""
+
+    def after(self, event: int, t: Matrix, y: Matrix, interval: Indices) -> Matrix:
+        """Return the state after an event, (d, n)."""
+
+    def part(self, machines: Indices) -> System:
+        """Return the equation of some of the machines."""
+
+
+@dataclass(frozen=True)
+class EventRule:
+    """What makes an event: it counts where its value rises (1), falls (-1) or does either (0) through 0."""
+
+    direction: int
+    ends: bool = False
+    sets: bool = False
+    """Whether it sets the state anew."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Problem:
+    """What is to be integrated: from ``start`` (d, n) at the first of ``stamps`` (k,), which rise, to the last.
+
+    ``breaks`` rise and begin and end with the stamps: no step passes one. An error is held below ``tolerance`` times
+    the size of a state, of which ``sizes`` (d,) are the least.
+    """
+
+    system: System
+    start: Matrix
+    stamps: Matrix
+    breaks: Matrix
+    sizes: Matrix
+    events: Sequence[EventRule] = ()
+    tolerance: float = 1e-8
+    most_steps: int = 100_000
+
+
+@dataclass
+class Solution:
+    """States at the stamps, (d, n, k), NaN where a machine did not come to; ``reasons`` by machine, and when.
+
+    ``counts`` and ``first``, (events, n), say how often and when first each event happened, NaN where it never did.
+    """
+
+    states: Matrix
+    counts: Matrix
+    first: Matrix
+    reasons: dict[int, tuple[str, float]] = field(default_factory=dict)
+    steps: int = 0
+
+
+def solve(problem: Problem) -> Solution:
+    """Integrate every machine; one that comes to no end has NaN from there on, and a reason."""
+    events, machines = len(problem.events), problem.start.shape[1]
+    solution = Solution(
+        np.full((*problem.start.shape, len(problem.stamps)), np.nan),
+        np.zeros((events, machines)),
+        np.full((events, machines), np.nan),
+    )
+    solution.states[:, :, 0] = problem.start
+    with np.errstate(all="ignore"):
+        _stiff(problem, _march(problem, solution), solution)
+    return solution
+
+
+@lru_cache(maxsize=1)
+def _method() -> Any:
+    """Return the coefficients; scipy is loaded when they are first needed."""
+    return integrate.DOP853
+
+
+@dataclass
+class _Going:
+    """Machines on their way: number, time, state, rate and next step of each, and where each stands in its record."""
+
+    machine: Indices
+    t: Matrix
+    y: Matrix
+    rate: Matrix
+    step: Matrix
+    interval: Indices
+    stamp: Indices
+    value: Matrix
+    taken: Indices
+    at_edge: Indices
+    last_event: Matrix
+    is_stale: bool = False
+    """Whether the rates are those before a jump."""
+
+    def some(self, places: Indices) -> _Going:
+        """Return some of them."""
+        arrays = {name: value[..., places] for name, value in vars(self).items() if name != "is_stale"}
+        return _Going(**arrays)
+
+
+@dataclass(frozen=True)
+class _Step:
+    """A step that was taken, of some machines: from ``t`` and ``y`` by ``length`` to ``end`` and ``reached``."""
+
+    t: Matrix
+    y: Matrix
+    length: Matrix
+    end: Matrix
+    reached: Matrix
+    rate: Matrix
+    """That at the end."""
+
+
+def _march(problem: Problem, solution: Solution) -> Indices:
+    """Take steps until every machine has come to an end; return those that are left because they are stiff."""
+    system, going = problem.system, _begun(problem)
+    stiff: list[Indices] = []
+    while len(going.machine):
+        ended = _one_step(problem, system, going, solution)
+        at_edge = ~ended & (going.at_edge >= STIFF_STEPS)
+        stiff.append(going.machine[at_edge])
+        ended = ended | at_edge
+        if ended.any():
+            on = np.flatnonzero(~ended)
+            system, going = system.part(on), going.some(on)
+    return np.concatenate([np.zeros(0, dtype=np.intp), *stiff])
+
+
+def _begun(problem: Problem) -> _Going:
+    count, events = problem.start.shape[1], range(len(problem.events))
+    t, interval = np.full(count, problem.stamps[0]), np.zeros(count, dtype=np.intp)
+    y = np.array(problem.start)
+    rate = problem.system.rate(t, y, interval)
+    values = [problem.system.crossing(event, t, y, interval) for event in events]
+    return _Going(
+        machine=np.arange(count), t=t, y=y, rate=rate, step=_first_step(problem, t, y, rate), interval=interval,
+        stamp=interval + 1, value=np.array(values).reshape(len(events), count), taken=interval.copy(),
+        at_edge=interval.copy(), last_event=np.full(count, -np.inf),
+    )  # fmt: skip
+
+
+def _scale(problem: Problem, *states: Matrix) -> Matrix:
+    largest = problem.sizes[:, None]
+    for state in states:
+        largest = np.maximum(largest, np.abs(state))
+    return np.asarray(problem.tolerance * largest)
+
+
+def _mean_square(errors: Matrix) -> Matrix:
+    return np.asarray(np.mean(errors * errors, axis=0))
+
+
+def _first_step(problem: Problem, t: Matrix, y: Matrix, rate: Matrix) -> Matrix:
+    """Guess a first step from the rate and how fast it changes (Hairer, Norsett, Wanner, II.4)."""
+    scale, whole = _scale(problem, y), problem.stamps[-1] - problem.stamps[0]
+    size, slope = (np.sqrt(_mean_square(each / scale)) for each in (y, rate))
+    guess = np.where((size < 1e-5) | (slope < 1e-5), 1e-6 * whole, 0.01 * size / slope)
+    guess = np.minimum(guess, whole)
+    bent = problem.system.rate(t + guess, y + guess * rate, np.zeros(len(t), dtype=np.intp))
+    change = np.maximum(slope, np.sqrt(_mean_square((bent - rate) / scale)) / guess)
+    better = np.where(change <= 1e-15 / whole, np.maximum(1e-6 * whole, guess * 1e-3), (0.01 / change) ** (1 / ORDER))
+    step = np.minimum(np.minimum(100 * guess, better), whole)
+    return np.where(np.isfinite(step) & (step > 0), step, 1e-6 * whole)
+
+
+def _one_step(problem: Problem, system: System, going: _Going, solution: Solution) -> Mask:
+    """Try one step of every machine; return those that have come to an end, good or bad."""
+    until = problem.breaks[going.interval + 1]
+    is_last = going.step >= until - going.t
+    length = np.where(is_last, until - going.t, going.step)
+    end = np.where(is_last, until, going.t + length)
+    stages, last = _stages(system, going, length)
+    reached = going.y + length * _combined(_method().B, stages)
+    stages[STAGES] = system.rate(end, reached, going.interval)
+    constant = _mean_square(stages[STAGES] - stages[STAGES - 1]) / _mean_square(reached - last)
+    going.at_edge = np.where(length * np.sqrt(constant) > STIFF, going.at_edge + 1, np.maximum(going.at_edge - 1, 0))
+    error = _error(stages, length, _scale(problem, going.y, reached))
+    is_good = error < 1
+    factor = np.clip(np.where(error > 0, SAFETY * error ** (-1 / ORDER), GROW), SHRINK, GROW)
+    factor = np.where(np.isfinite(error), factor, SHRINK)
+    grown = np.where(is_last, np.maximum(going.step, length * factor), length * factor)
+    going.step = np.where(is_good, grown, length * np.minimum(factor, SAFETY))
+    going.taken += 1
+    solution.steps += 1
+    ended = _stopped(problem, going, is_good, solution)
+    good = np.flatnonzero(is_good & ~ended)
+    if len(good):
+        own = (going.t, going.y, length, end, reached, stages[STAGES])
+        step = _Step(*(each[..., good] for each in own))
+        dense = _OwnDense(system.part(good), going.interval[good], step, stages[..., good])
+        ended[good] |= _arrive(problem, going, good, dense, solution)
+        if going.is_stale:
+            going.rate, going.is_stale = system.rate(going.t, going.y, going.interval), False
+    return ended
+
+
+def _combined(weights: Matrix, stages: Matrix) -> Matrix:
+    """Return a weighted sum of stages, (d, n)."""
+    return np.asarray((weights @ stages[: len(weights)].reshape(len(weights), -1)).reshape(stages.shape[1:]))
+
+
+def _stages(system: System, going: _Going, length: Matrix) -> tuple[Matrix, Matrix]:
+    """Return the rates at the stages of a step, (16, d, n), the last four left empty; and the state at the last one."""
+    stages, y = np.empty((16, *going.y.shape)), going.y
+    stages[0] = going.rate
+    for stage in range(1, STAGES):
+        y = going.y + length * _combined(_method().A[stage, :stage], stages)
+        stages[stage] = system.rate(going.t + _method().C[stage] * length, y, going.interval)
+    return stages, y
+
+
+def _error(stages: Matrix, length: Matrix, scale: Matrix) -> Matrix:
+    """Return the error of a step in multiples of what is allowed, (n,): estimates of two orders in one."""
+    fifth = _mean_square(_combined(_method().E5, stages) / scale)
+    third = _mean_square(_combined(_method().E3, stages) / scale)
+    mixed = fifth + 0.01 * third
+    return np.asarray(np.where(mixed == 0, 0.0, np.abs(length) * fifth / np.sqrt(np.where(mixed == 0, 1.0, mixed))))
+
+
+def _stopped(problem: Problem, going: _Going, is_good: Mask, solution: Solution) -> Mask:
+    """Note the machines that can go no further, with the reason and the time; return them."""
+    tiny = ~is_good & (going.step < LEAST_STEP * np.maximum(np.abs(going.t), problem.stamps[-1] - problem.stamps[0]))
+    many = ~tiny & (going.taken >= problem.most_steps) & (problem.stamps[-1] > going.t)
+    for place in np.flatnonzero(tiny | many):
+        reason = GROWS if tiny[place] else STEP_LIMIT
+        solution.reasons[int(going.machine[place])] = (reason, float(going.t[place]))
+    return tiny | many
+
+
+def _arrive(problem: Problem, going: _Going, good: Indices, dense: _Dense, solution: Solution) -> Mask:
+    """Go where a step ends, or where an event stops it, and fill in the stamps on the way; return who is at the end."""
+    step = dense.step
+    event, t, y = _first_event(problem, dense, going, good)
+    _write(solution, problem, dense, going, good, t, y)
+    going.t[good], going.rate[:, good] = t, step.rate
+    going.y = np.array(going.y)
+    going.y[:, good] = y
+    happened = event >= 0
+    at_break = (t == problem.breaks[going.interval[good] + 1]) & ~happened
+    ended = at_break & (t == problem.stamps[-1])
+    going.interval[good] += at_break & ~ended
+    if happened.any():
+        ended |= _happen(problem, dense.system, going, good, event, solution)
+    going.is_stale = bool(happened.any() or (at_break & ~ended).any())
+    return ended
+
+
+def _write(
+    solution: Solution, problem: Problem, dense: _Dense, going: _Going, good: Indices, t: Matrix, y: Matrix
+) -> None:
+    """Fill in the states at the stamps up to ``t``."""
+    begin = going.stamp[good]
+    end = np.searchsorted(problem.stamps, t, side="right")
+    going.stamp[good] = end
+    exact = (end > begin) & (problem.stamps[end - 1] == t)
+    solution.states[:, going.machine[good[exact]], end[exact] - 1] = y[:, exact]
+    count = end - begin - exact
+    if not count.any():
+        return
+    place = np.repeat(np.arange(len(good)), count)
+    stamp = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count) + begin[place]
+    solution.states[:, going.machine[good[place]], stamp] = dense.at(problem.stamps[stamp], place)
+
+
+class _Dense:
+    """The states along a step of some machines."""
+
+    def __init__(self, system: System, interval: Indices, step: _Step) -> None:
+        self.system, self.interval, self.step = system, interval, step
+
+    def at(self, t: Matrix, place: Indices) -> Matrix:
+        """Return the states of the machines at these places of the step, each at a time of its own, (d, m)."""
+        raise NotImplementedError
+
+
+class _OwnDense(_Dense):
+    """Those of steps of Dormand and Prince, to the seventh order; calculated where they are asked for."""
+
+    def __init__(self, system: System, interval: Indices, step: _Step, stages: Matrix) -> None:
+        super().__init__(system, interval, step)
+        self._stages = stages
+        self._parts: Matrix | None = None
+
+    def at(self, t: Matrix, place: Indices) -> Matrix:
+        """Return the states of the machines at these places of the step, each at a time of its own, (d, m)."""
+        if self._parts is None:
+            self._parts = self._prepared()
+        share = (t - self.step.t[place]) / self.step.length[place]
+        parts = self._parts[:, :, place]
+        y = parts[-1] * share
+        for number in range(len(parts) - 2, -1, -1):
+            y += parts[number]
+            y *= share if number % 2 == 0 else 1 - share
+        y += self.step.y[:, place]
+        return np.asarray(y)
+
+    def _prepared(self) -> Matrix:
+        step, stages, method = self.step, self._stages, _method()
+        for stage, (weights, share) in enumerate(zip(method.A_EXTRA, method.C_EXTRA, strict=True), STAGES + 1):
+            y = step.y + step.length * _combined(weights[:stage], stages)
+            stages[stage] = self.system.rate(step.t + share * step.length, y, self.interval)
+        gone = step.reached - step.y
+        bend = step.length * stages[0] - gone
+        higher = [step.length * _combined(weights, stages) for weights in method.D]
+        return np.array([gone, bend, 2 * gone - step.length * (step.rate + stages[0]), *higher])
+
+
+# Events: what passes 0 within a step is bracketed and halved, the earliest of each machine ends its step there
+
+
+def _first_event(problem: Problem, dense: _Dense, going: _Going, good: Indices) -> tuple[Indices, Matrix, Matrix]:
+    """Return the earliest event of each machine in its step (-1: none), and where the machine then is."""
+    step = dense.step
+    event, t, y = np.full(len(good), -1), np.array(step.end), np.array(step.reached)
+    if not problem.events:
+        return event, t, y
+    times = np.linspace(step.t, step.end, LOOKS + 1)
+    several = np.tile(np.arange(len(good)), LOOKS - 1)
+    states = dense.at(times[1:-1].ravel(), several)
+    at = (times[1:].ravel(), np.concatenate([states, step.reached], axis=1))
+    several = np.tile(np.arange(len(good)), LOOKS)
+    system, interval = dense.system.part(several), dense.interval[several]
+    for number, rule in enumerate(problem.events):
+        values = np.array([going.value[number, good], *system.crossing(number, *at, interval).reshape(LOOKS, -1)])
+        going.value[number, good] = values[-1]
+        happens = _passes(values, rule)
+        places = np.flatnonzero(happens.any(axis=0))
+        if len(places):
+            look = happens[:, places].argmax(axis=0)
+            ends = [(times[each, places], values[each, places]) for each in (look, look + 1)]
+            when = _crossed(number, dense, places, ends)
+            sooner = (when < t[places]) | (event[places] < 0)
+            event[places[sooner]], t[places[sooner]] = number, when[sooner]
+    happened = np.flatnonzero(event >= 0)
+    if len(happened):
+        y[:, happened] = dense.at(t[happened], happened)
+    return event, t, y
+
+
+def _passes(values: Matrix, rule: EventRule) -> Mask:
+    """Mark between which of the values (m + 1, n) an event happens, (m, n); one that is known begins at 0 as well."""
+    before, after = values[:-1], values[1:]
+    if rule.direction == 0:
+        return np.asarray(before * after < 0)
+    signed = rule.direction
+    return np.asarray((signed * before <= 0) & (signed * after > 0))
+
+
+def _crossed(number: int, dense: _Dense, places: Indices, ends: Sequence[tuple[Matrix, Matrix]]) -> Matrix:
+    """Return when the value of an event is 0 between two ends (time, value): regula falsi after Illinois."""
+    (low, under), (high, over) = ends
+    system, interval, after = dense.system.part(places), dense.interval[places], np.sign(over)
+    close = 1e-14 * (high - low) + ROUNDING * np.abs(high)
+    when, is_found, has_passed = high, np.zeros(len(places), dtype=bool), np.ones(len(places), dtype=bool)
+    for _ in range(MOST_ROUNDS):
+        before, middle = when, (low + high) / 2
+        line = (low * over - high * under) / (over - under)
+        when = np.where(is_found, when, np.where((under == 0) | (over == under), middle, line))
+        value = system.crossing(number, when, dense.at(when, places), interval)
+        is_found |= (np.abs(when - before) <= close) | ((value == 0) & (under != 0))
+        if is_found.all():
+            break
+        again, has_passed = has_passed == (value * after > 0), value * after > 0
+        low, high = np.where(has_passed, low, when), np.where(has_passed, when, high)
+        under, over = (
+            np.where(has_passed, np.where(again, under / 2, under), value),
+            np.where(has_passed, value, np.where(again, over / 2, over)),
+        )
+    return np.asarray(when)
+
+
+def _happen(
+    problem: Problem, system: System, going: _Going, good: Indices, event: Indices, solution: Solution
+) -> Mask:
+    """Let events happen: count them, change the states, hold those that end. Return the machines that are ended."""
+    ended = np.zeros(len(good), dtype=bool)
+    for number, rule in enumerate(problem.events):
+        places = np.flatnonzero(event == number)
+        if not len(places):
+            continue
+        own, part = good[places], system.part(places)
+        t, interval = going.t[own], going.interval[own]
+        going.y[:, own] = part.after(number, t, going.y[:, own], interval)
+        ended[places] = _count(problem, solution, number, going.machine[own], (going.last_event[own], t))
+        going.last_event[own] = t
+        for place in places[~ended[places]] if rule.ends else ():
+            _hold(solution, int(going.machine[good[place]]), int(going.stamp[good[place]]), going.y[:, good[place]])
+        ended[places] |= rule.ends
+        after = going.value[number, own]
+        for other in range(len(problem.events)):
+            going.value[other, own] = part.crossing(other, t, going.y[:, own], interval)
+        going.value[number, own] = _beyond(going.value[number, own], after, is_set=rule.sets)
+    return ended
+
+
+def _beyond(value: Matrix, after: Matrix, *, is_set: bool) -> Matrix:
+    """Return the value of an event that has just happened: what rounding leaves of 0 lies on the side beyond it.
+
+    A state that is set (``is_set``) may well begin anew at 0.
+    """
+    is_rounding = (np.abs(value) <= 1e-9 * np.abs(after)) & ~(is_set & (value == 0))
+    return np.asarray(np.where(is_rounding, np.copysign(np.maximum(np.abs(value), TINY), after), value))
+
+
+def _count(
+    problem: Problem, solution: Solution, number: int, machine: Indices, times: tuple[Matrix, Matrix]
+) -> Mask:
+    """Count an event at the second of two times, the last one being at the first; return where they have no end."""
+    before, t = times
+    fresh = np.isnan(solution.first[number, machine])
+    solution.first[number, machine[fresh]] = t[fresh]
+    solution.counts[number, machine] += 1
+    whole = problem.stamps[-1] - problem.stamps[0]
+    endless = (t - before < CLOSE * whole) | (solution.counts[number, machine] > MOST_EVENTS)
+    for place in np.flatnonzero(endless):
+        solution.reasons[int(machine[place])] = (ENDLESS, float(t[place]))
+    return np.asarray(endless)
+
+
+def _hold(solution: Solution, machine: int, stamp: int, y: Matrix) -> None:
+    """Let a machine stay as it is from a stamp on."""
+    solution.states[:, machine, stamp:] = y[:, None]
+
+
+# Stiff machines: LSODA of scipy, which changes between stiff and other methods by itself
+
+
+def _stiff(problem: Problem, machines: Indices, solution: Solution) -> None:
+    """Integrate machines by LSODA: those with events alone, the others together, parted where they come to no end.
+
+    The largest error of all machines counts, so that each keeps the tolerance.
+    """
+    waiting = [np.array([machine]) for machine in machines] if problem.events else [machines] if len(machines) else []
+    while waiting:
+        group = waiting.pop()
+        solution.states[:, group, 1:] = np.nan
+        solution.counts[:, group], solution.first[:, group] = 0, np.nan
+        system = problem.system.part(group)
+        going = _begun(replace(problem, system=system, start=problem.start[:, group]))
+        going.machine = group
+        reason = _march_as_one(problem, system, going, solution)
+        if reason and len(group) > 1:
+            waiting += np.array_split(group, 2)
+        elif reason:
+            solution.reasons.setdefault(int(group[0]), (reason, float(going.t[0])))
+
+
+def _march_as_one(problem: Problem, system: System, going: _Going, solution: Solution) -> str:
+    """Take steps that all machines share until they have come to an end; return why they have not, or nothing."""
+    everyone, solver = np.arange(len(going.t)), _solver(problem, system, going)
+    while True:
+        y = going.y
+        solver.step()
+        going.taken += 1
+        solution.steps += 1
+        reached = solver.y.reshape(len(going.t), -1).T
+        if solver.status == "failed" or not np.isfinite(reached).all():
+            return GROWS
+        t, end = (np.full(len(going.t), each) for each in (solver.t_old, solver.t))
+        step = _Step(t, y, end - t, end, reached, going.rate)
+        ended = _arrive(problem, going, everyone, _SharedDense(system, going.interval, step, solver), solution)
+        if ended.all():
+            return ""
+        if going.taken[0] >= problem.most_steps:
+            return STEP_LIMIT
+        if solver.status == "finished" or going.t[0] != solver.t:
+            solver = _solver(problem, system, going)
+
+
+def _solver(problem: Problem, system: System, going: _Going) -> Any:
+    """Return LSODA for machines that stand at one time, up to the next break; their states are one behind another."""
+    states, machines = going.y.shape
+
+    def rate(t: float, y: Matrix) -> Matrix:
+        return system.rate(np.full(machines, t), y.reshape(machines, states).T, going.interval).T.ravel()
+
+    return integrate.LSODA(
+        rate, float(going.t[0]), going.y.T.ravel(), float(problem.breaks[going.interval[0] + 1]),
+        rtol=problem.tolerance, atol=problem.tolerance * np.tile(problem.sizes, machines),
+        lband=states - 1, uband=states - 1,
+    )  # fmt: skip
+
+
+class _SharedDense(_Dense):
+    """The states along a step that all machines share."""
+
+    def __init__(self, system: System, interval: Indices, step: _Step, solver: Any) -> None:
+        super().__init__(system, interval, step)
+        self._at = solver.dense_output()
+
+    def at(self, t: Matrix, place: Indices) -> Matrix:
+        """Return the states of the machines at these places, each at a time of its own, (d, m)."""
+        y = self._at(t).reshape(len(self.interval), -1, len(t))
+        return np.asarray(y[place, :, np.arange(len(t))].T)
