@@ -10,6 +10,7 @@ from typing import Any
 from truing.declare.builtin import may_stand
 from truing.declare.fields import Axis, Given, InputField, Loaded, ResultField
 from truing.declare.goals import Maximise, Minimise, Require, Vary
+from truing.declare.model import Model
 from truing.declare.published import Published
 from truing.declare.sources import Tolerance
 from truing.formulas import symbol_text
@@ -34,6 +35,7 @@ def description(offer: Offer) -> dict[str, Any]:
         "plugin": {"name": offer.origin.name, "version": offer.origin.version},
         "inputs": [_input(field) for field in model.input_fields.values()],
         "results": [_result(field) for field in model.result_fields.values()],
+        **_motion(model),
         "tolerances": [_tolerance(tolerance) for tolerance in model.tolerances.values()],
         "effects": [_effect(effect) for effect in model.effects.values()],
         "conditions": [_named(condition, CONDITION) for condition in model.conditions.values()],
@@ -55,6 +57,18 @@ def description(offer: Offer) -> dict[str, Any]:
         "cites": list(model.cites),
         "added": [dataclasses.asdict(addition) for addition in offer.added],
     }
+
+
+def _motion(model: Model[Any, Any]) -> dict[str, Any]:
+    """Return the states and events of a model that moves; nothing of any other."""
+    dynamics = model.dynamics
+    if dynamics is None:
+        return {}
+    states = [
+        {"name": name, **_named(spec, ("symbol", "unit", "start", "rate", "note"))}
+        for name, spec in dynamics.state_fields.items()
+    ]
+    return {"states": states, "events": [_named(event, ("name", "when", "ends", "note")) for event in dynamics.events]}
 
 
 def _input(field: InputField) -> dict[str, Any]:
@@ -144,6 +158,9 @@ def sections(said: Mapping[str, Any]) -> dict[str, list[Sequence[str]]]:
         "Inputs": [_input_row(entry) for entry in said["inputs"]],
         "Results": [
             (result["name"], _symbol(result), _unit(result["unit"]), result["note"]) for result in said["results"]
+        ],
+        "States": [
+            (state["name"], _symbol(state), _unit(state["unit"]), state["note"]) for state in said.get("states", ())
         ],
         "Tolerances": [
             (tolerance["name"], tolerance["spread"], "on " + ", ".join(tolerance["on"]), tolerance["why"])

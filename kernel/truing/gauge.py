@@ -89,13 +89,14 @@ def _seen_columns(machine: Setup, columns: Mapping[str, Any]) -> dict[str, Any]:
     return {name: values for name, values in columns.items() if name in machine.columns_looked_at}
 
 
-def _at_places(machine: Setup, rows: RowsFile) -> Setup:
-    """Put the places of the rows into the input series that an axis follows, unless a column holds that series."""
+def _at_places(machine: Setup, rows: RowsFile, record: NDArray[np.intp] | slice = slice(None)) -> Setup:
+    """Put the places of a record's rows into the input series that an axis follows, unless a column holds it."""
     changes: dict[str, Any] = {}
     for name, result in machine.model.own_result_fields.items():
         series = result.spec.follows if isinstance(result.spec, Axis) else ""
         if series and series not in rows.series and name in rows.axes:
-            places = np.unique(rows.axes[name][np.isfinite(rows.axes[name])])
+            places = rows.axes[name][record]
+            places = np.unique(places[np.isfinite(places)])
             changes |= {series: places} if len(places) else {}
     return machine.changed(changes) if changes else machine
 
@@ -145,15 +146,16 @@ def _read_each(machine: Setup, rows: RowsFile, trials: Sequence[Trial], wanted: 
     A trial changes columns, to one value or to (n,). Calculations of several trials are one call of the model.
     """
     along = {name: machine.model.axes[name] for name in _readable(machine, rows, wanted)}
-    asked, machine = {*along, *filter(None, along.values())}, _at_places(machine, rows)
+    asked = {*along, *filter(None, along.values())}
     parts: list[list[Rows]] = [[] for _ in trials]
     order: list[list[NDArray[np.intp]]] = [[] for _ in trials]
-    for record in _records(rows):
+    for record in _records(machine, rows):
+        of_record = _at_places(machine, rows, record)
         series = {name: column[record] for name, column in rows.series.items()}
         for several, repeats in _calls(record, machine, rows, trials):
             columns = {name: _one_or_each([alike.values[name] for alike in several]) for name in several[0].values}
             changed, size = columns | series, len(several)
-            computed = evaluate_rows(machine, changed, size, reading=True, wanted=asked, repeats=repeats)
+            computed = evaluate_rows(of_record, changed, size, reading=True, wanted=asked, repeats=repeats)
             for number, alike in enumerate(several):
                 parts[alike.trial].append(_for_rows(computed, number, alike.places, along=along, rows=rows))
                 order[alike.trial].append(alike.places)
@@ -198,9 +200,14 @@ def _one_or_each(values: list[Any]) -> Any:
     return np.array(values) if isinstance(values[0], float) else values
 
 
-def _records(rows: RowsFile) -> Sequence[NDArray[np.intp]]:
-    """Return the rows of each run; without input series, or a column "run", the file is one."""
-    return _places_by_run(rows.runs) if rows.series and rows.runs else (np.arange(len(rows)),)
+def _is_by_run(machine: Setup, rows: RowsFile) -> bool:
+    """Whether one calculation is the record of one run: where series drive it, and where it moves."""
+    return bool(rows.series) or machine.model.dynamics is not None
+
+
+def _records(machine: Setup, rows: RowsFile) -> Sequence[NDArray[np.intp]]:
+    """Return the rows of each run that is one calculation; else, and without a column "run", the file is one."""
+    return _places_by_run(rows.runs) if _is_by_run(machine, rows) and rows.runs else (np.arange(len(rows)),)
 
 
 @lru_cache(maxsize=8)
@@ -215,7 +222,7 @@ def _alike(
     """Give the rows of a record that share their values, and these. Raises UsageError for an input that changes."""
     columns = _seen_columns(machine, given)
     varying = [name for name, column in columns.items() if _varies(column, record)]
-    for name in varying if rows.series else ():
+    for name in varying if _is_by_run(machine, rows) else ():
         if name in machine.model.input_fields:
             column = columns[name]
             line = next(rows.lines[row] for row in record if column[row] != column[record[0]])

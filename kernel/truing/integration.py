@@ -29,8 +29,8 @@ MOST_EVENTS = 10_000
 CLOSE, TINY = 1e-12, 1e-300
 """More events of one machine in one record, or events so close (a share of the record), have no end. What has just
 passed 0 counts as being beyond it, by ``TINY`` at the least: it does not pass again."""
-STIFF, STIFF_STEPS = 6.1, 15
-"""Step times rate constant at the edge of stability, and how many steps on it make a machine stiff (Hairer, Wanner)."""
+STIFF, STIFF_STEPS = 5.0, 15
+"""Step times rate constant near the edge of stability, which is at 6, and how many steps on it make a machine stiff (Hairer, Wanner)."""
 
 GROWS = "a state grows beyond all bounds"
 STEP_LIMIT = "the step limit is reached"
@@ -170,7 +170,7 @@ def _march(problem: Problem, solution: Solution) -> Indices:
 def _begun(problem: Problem) -> _Going:
     count, events = problem.start.shape[1], range(len(problem.events))
     t, interval = np.full(count, problem.stamps[0]), np.zeros(count, dtype=np.intp)
-    y = np.array(problem.start)
+    y = np.array(problem.start, dtype=float)
     rate = problem.system.rate(t, y, interval)
     values = [problem.system.crossing(event, t, y, interval) for event in events]
     return _Going(
@@ -421,7 +421,8 @@ def _happen(
             continue
         own, part = good[places], system.part(places)
         t, interval = going.t[own], going.interval[own]
-        going.y[:, own] = part.after(number, t, going.y[:, own], interval)
+        if rule.sets:
+            going.y[:, own] = part.after(number, t, going.y[:, own], interval)
         ended[places] = _count(problem, solution, number, going.machine[own], (going.last_event[own], t))
         going.last_event[own] = t
         for place in places[~ended[places]] if rule.ends else ():

@@ -199,7 +199,7 @@ GEARED_PENDULUM = Model(
     title="Pendulum on a geared drive",
     summary="Swing of an arm with a tip mass after it is let go; the motor is off and turns with it.",
     function=Dynamics(
-        rate=law, start=let_go, gives=swung, events=[Event("turns", speed_of, then=turned)],
+        rate=law, start=let_go, gives=swung, events=[Event("turns", speed_of, then=turned, note="angular speed")],
     ),
     errors=[*TOLERANCES, *EFFECTS],
     sheet=[

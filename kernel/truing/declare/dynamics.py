@@ -76,6 +76,7 @@ class Event(Generic[S, I]):
     when: Literal["rises", "falls", "either"] = "either"
     then: Callable[[S, I, Float], S] | None = None
     ends: bool = False
+    note: str = ""
 
     @property
     def rule(self) -> EventRule:
@@ -183,29 +184,44 @@ class Dynamics(Generic[S, I, R]):
 
     def __call__(self, inputs: I) -> R:
         """Follow the states, and make results: of one machine, or of n where inputs are arrays (n,)."""
+        return self.gives(inputs, self.followed(inputs))
+
+    def followed(self, inputs: I) -> Motion[S]:
+        """Follow the states of one machine, or of n where inputs are arrays (n,).
+
+        Raises InfeasibleError or ConvergenceError, or lets a machine of a batch fail, where one cannot be followed.
+        """
         machines = _machines(self, inputs)
         known = self.state_fields
-        if self.step is not None:
-            solution = _in_steps(machines)
-        else:
-            stamps = machines.stamps
-            problem = Problem(
-                system=machines, start=machines.start(), stamps=stamps,
-                breaks=stamps if machines.drives else stamps[[0, -1]],
-                sizes=np.array([in_si(spec.size, difference_unit(spec.unit)) for spec in known.values()]),
-                events=[event.rule for event in self.events], tolerance=self.tolerance, most_steps=self.most_steps,
-            )  # fmt: skip
-            solution = solve(problem)
+        solution = _in_steps(machines) if self.step is not None else solve(_problem(machines))
         _say_why(solution, machines)
         one: Any = 0 if machines.is_single else slice(None)
         names = [event.name for event in self.events]
-        motion = Motion(
+        return Motion(
             time=machines.stamps,
             states=self.state_type(**{name: solution.states[place, one] for place, name in enumerate(known)}),
             counts={name: solution.counts[place, one] for place, name in enumerate(names)},
             first={name: solution.first[place, one] for place, name in enumerate(names)},
         )
-        return self.gives(inputs, motion)
+
+    def rates(self, inputs: I, motion: Motion[S]) -> dict[str, Matrix]:
+        """Return what the law says of one machine at every time of its motion, (k,) by state."""
+        machines, stamps = _machines(self, inputs), motion.time
+        interval = np.minimum(np.arange(len(stamps)), len(stamps) - 2)
+        along = replace(machines.part(np.zeros(len(stamps), dtype=np.intp)), stamps=stamps)
+        y = np.array([getattr(motion.states, name) for name in self.state_fields])
+        return dict(zip(self.state_fields, along.rate(stamps, y, interval), strict=True))
+
+
+def _problem(machines: _Machines[Any, Any, Any]) -> Problem:
+    dynamics, stamps = machines.dynamics, machines.stamps
+    sizes = [in_si(spec.size, difference_unit(spec.unit)) for spec in dynamics.state_fields.values()]
+    return Problem(
+        system=machines, start=machines.start(), stamps=stamps,
+        breaks=stamps if machines.drives else stamps[[0, -1]], sizes=np.array(sizes),
+        events=[event.rule for event in dynamics.events], tolerance=dynamics.tolerance,
+        most_steps=dynamics.most_steps,
+    )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -244,7 +260,8 @@ class _Machines(Generic[S, I, R]):
     def after(self, event: int, t: Matrix, y: Matrix, interval: Indices) -> Matrix:
         """Return the state after an event, (d, n)."""
         then = self.dynamics.events[event].then
-        return y if then is None else self._stacked(then(self._states(y), self._inputs_at(t, interval), t))
+        assert then is not None
+        return self._stacked(then(self._states(y), self._inputs_at(t, interval), t))
 
     def part(self, machines: Indices) -> _Machines[S, I, R]:
         """Return the equation of some of the machines."""

@@ -54,6 +54,7 @@ Promise = Literal[
     "formulas equal the function",
     "batch equals loop",
     "steps may be halved",
+    "motion is settled",
     "inputs untouched",
     "seeds decide",
     "serial equals parallel",
@@ -330,6 +331,7 @@ def check_model(model: Model[Any, Any]) -> None:
     faults = [
         *_of_names(model),
         *_of_axes(model),
+        *_of_dynamics(model),
         *_of_companions(model),
         *_of_halving(model),
         *_of_errors(model),
@@ -387,6 +389,29 @@ def _of_axes(model: Model[Any, Any]) -> Iterator[str]:
         followed = result.spec.follows if isinstance(result.spec, Axis) else ""
         if followed and followed not in series:
             yield f"the axis '{name}' follows '{followed}', which is no input series.{near_miss(followed, series)}"
+
+
+def _of_dynamics(model: Model[Any, Any]) -> Iterator[str]:
+    """Say what keeps a state equation from being followed: no times, starts that are nothing, formulas of nobody."""
+    dynamics = model.dynamics
+    if dynamics is None:
+        return
+    times = model.input_fields.get(dynamics.times)
+    if times is None or times.kind != "series" or not times.spec.along:
+        series = [name for name, each in model.input_fields.items() if each.kind == "series" and each.spec.along]
+        yield f"the times of the motion are '{dynamics.times}', which is no input series.{near_miss(dynamics.times, series)}"
+        return
+    for name in _twice(event.name for event in dynamics.events):
+        yield f"two events are called '{name}'"
+    for name, spec in dynamics.state_fields.items():
+        if isinstance(spec.start, str) and spec.start not in model.input_fields and not spec.start[:1].strip("+-.0123456789") == "":
+            yield f"state '{name}' starts at '{spec.start}', which is no input and no quantity.{near_miss(spec.start, model.input_fields)}"
+        if spec.rate:
+            names = _names_in(spec.rate)
+            known = rate_scope(model)
+            for missing in [names] if isinstance(names, str) else sorted(names - set(known)):
+                what = f"the rate of state '{name}'"
+                yield f"{what}: {missing}" if isinstance(names, str) else f"{what} names '{missing}', which is no state, input or result.{near_miss(missing, known)}"
 
 
 def _of_companions(model: Model[Any, Any]) -> Iterator[str]:
@@ -590,6 +615,20 @@ def _of_formulas(model: Model[Any, Any]) -> Iterator[str]:
 
 
 # Which quantity a name in a formula means: that of its own part first
+
+
+def rate_scope(model: Model[Any, Any]) -> dict[str, InputField | ResultField]:
+    """Return what each name means in the rate of a state: states and ``time`` first, then inputs and results.
+
+    A state is known as a result of the name ``state NAME``.
+    """
+    assert model.dynamics is not None
+    states = {
+        name: ResultField(name=f"state {name}", path=(name,), spec=Found(unit=spec.unit), symbol=spec.symbol)
+        for name, spec in model.dynamics.state_fields.items()
+    }
+    time = ResultField(name="state time", path=("time",), spec=Found(unit="s"), symbol="t")
+    return {**model.result_fields, **model.input_fields, "time": time, **states}
 
 
 def formula_scope(model: Model[Any, Any], result: ResultField) -> Mapping[str, InputField | ResultField]:

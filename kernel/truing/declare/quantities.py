@@ -54,6 +54,8 @@ def _declared_units(model: Model[Any, Any]) -> Iterator[tuple[str, str, Any]]:
     fields.pop(TOTAL_PRICE, None)  # in the unit of the prices
     for name, field in fields.items():
         yield name, f"'{name}'", field.spec.unit if field.spec.unit is not None else ""
+    for name, state in model.dynamics.state_fields.items() if model.dynamics is not None else ():
+        yield name, f"state '{name}'", state.unit
     for condition in model.conditions.values():
         yield condition.name, f"condition '{condition.name}'", condition.unit
     for effect in model.effects.values():

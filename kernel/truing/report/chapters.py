@@ -28,10 +28,11 @@ from truing.report.document import (
     Text,
     Value,
     label_of,
+    table_of,
     unit_as_said,
     with_source,
 )
-from truing.report.equations import equation_of
+from truing.report.equations import equation_of, state_equation
 from truing.report.figures import draw
 
 RANK = {"short": 0, "normal": 1, "full": 2}
@@ -78,6 +79,8 @@ class Writing:
 def result_chapters(writing: Writing) -> Iterator[Chapter]:
     """Write the model's sections at this level of detail, then the studies, then the rest."""
     rank = RANK.get(writing.detail, 1)
+    if rank:
+        yield from _state_equation(writing)
     named: set[str] = set()
     for section in writing.calculation.setup.model.sheet:
         named.update(section.names)
@@ -97,6 +100,36 @@ def result_chapters(writing: Writing) -> Iterator[Chapter]:
     ]
     if rest:
         yield Chapter("Further results", tuple(_results(writing, rest)))
+
+
+def _state_equation(writing: Writing) -> Iterator[Chapter]:
+    """Write what a model that moves follows: each state with its rate and where it starts, the events, the method."""
+    dynamics = writing.calculation.setup.model.dynamics
+    if dynamics is None:
+        return
+    model = writing.calculation.setup.model
+    entries: list[BlockView] = []
+    for name, spec in dynamics.state_fields.items():
+        symbol = (Marked("symbol", spec.symbol), " ") if spec.symbol else ()
+        start = str(spec.start) if isinstance(spec.start, str) else f"{spec.start:g} {spec.unit}".strip()
+        begins = "as the calculation sets it" if dynamics.start is not None else f"at {start.replace('_', ' ')}"
+        equation = state_equation(model, name)
+        entries.append(ResultEntry(name, label_of(spec.note, name), equation, (*symbol, f"begins {begins}")))
+    if dynamics.events:
+        when = {"rises": "rises through 0", "falls": "falls through 0", "either": "passes 0"}
+        rows = [
+            (event.name.replace("_", " "), label_of(event.note, event.name), when[event.when],
+             "it stays as it is then" if event.ends else "the states are set anew" if event.then else "it is counted")
+            for event in dynamics.events
+        ]  # fmt: skip
+        entries.append(table_of("Events", ("event", "what passes 0", "happens where it", "then"), rows))
+    if dynamics.step is None:
+        said = (
+            f"Every step keeps the relative error below {dynamics.tolerance:g}; a tenth of that changes no result by "
+            f"more than {format_number(100 * dynamics.settled, 2)} % of its largest value."
+        )
+        entries.append(Paragraph(said))
+    yield Chapter("State equation", tuple(entries))
 
 
 def _of_section(writing: Writing, section: Section) -> Chapter:

@@ -174,6 +174,8 @@ class Equation:
     symbols: Mapping[str, str]
     numbers: Mapping[str, tuple[str, str]] | None
     results: tuple[Value, ...]
+    change: str = ""
+    """Of a state: the formula is its "rate", or what it is at the "next" time."""
     departs: bool = False
     """Whether the calculation's own answer is another one than the formula's: an effect on the results is on."""
 

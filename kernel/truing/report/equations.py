@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from truing.declare.fields import Found, InputField, ResultField
-from truing.declare.model import formula_scope
+from truing.declare.model import Model, formula_scope, rate_scope
 from truing.errors import DeclarationError
 from truing.evaluate import acting_inputs
 from truing.formulas import Formula, evaluate, parse, symbol_text
@@ -62,6 +62,18 @@ def equation_of(setup: Setup, answers: Mapping[str, Any], result: ResultField) -
     )
 
 
+def state_equation(model: Model[Any, Any], name: str) -> Equation | None:
+    """Return the rate of a state in symbols, or what it is at the next time; None where no formula is declared."""
+    dynamics = model.dynamics
+    if dynamics is None or not dynamics.state_fields[name].rate:
+        return None
+    spec, scope = dynamics.state_fields[name], rate_scope(model)
+    formula = parse(spec.rate)
+    symbols = {each: scope[each].symbol for each in formula.names if scope[each].symbol}
+    change = "rate" if dynamics.step is None else "next"
+    return Equation(formula, name, spec.symbol, symbols, numbers=None, results=(), change=change)
+
+
 def _departing(
     formula: Formula, fields: Mapping[str, InputField | ResultField], values: Mapping[str, Any], answer: Any,
     result: ResultField,
@@ -105,7 +117,11 @@ def lines(writer: Writer, equation: Equation, *, limit: float = LINE) -> list[Eq
     """Set an equation: on one line if it fits, otherwise a line each for expression, numbers and result."""
     formula = equation.formula
     left = writer.symbol(equation.symbol, None) if equation.symbol else writer.word(equation.name)
-    name = EquationLine(left, _name_width(equation.symbol or equation.name))
+    if equation.change == "rate":
+        left = writer.fraction(writer.infix(writer.word("d"), "gap", left), writer.word("dt"))
+    elif equation.change == "next":
+        left = writer.applied(writer.word("next"), writer.parenthesised(left))
+    name = EquationLine(left, _name_width(equation.symbol or equation.name) + (1.5 if equation.change else 0))
     if formula.left is not None:
         return _solved(writer, equation, name)
     said = _broken(writer, formula, equation, None, limit - name.width)

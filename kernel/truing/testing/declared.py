@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -10,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from truing.declare.fields import Given, InputField, ResultField
+from truing.declare.fields import Found, Given, InputField, ResultField
 from truing.declare.goals import Vary
-from truing.declare.model import formula_scope
+from truing.declare.model import formula_scope, rate_scope
 from truing.declare.quantities import unread_goals, unread_units
 from truing.errors import DeclarationError, InputError, TruingError, UnitError
 from truing.evaluate import evaluate
@@ -22,8 +23,9 @@ from truing.formulas.evaluation import value_of
 from truing.inputs_file import setup_from_settings, setup_from_text
 from truing.inputs_file.values import broken_bound
 from truing.runs.inputs_written import complete_inputs
+from truing.setup import Setup
 from truing.testing.subject import Subject, fail
-from truing.units import from_si, pint_quantity, read_quantity, same_dimension
+from truing.units import difference_unit, from_si, pint_quantity, read_quantity, same_dimension
 
 SAME = 1e-12
 
@@ -139,11 +141,18 @@ Scope = Mapping[str, InputField | ResultField]
 
 
 def formulas_of(subject: Subject) -> Iterator[tuple[ResultField, Formula, bool, Scope]]:
-    """Yield each result that prints a formula, the formula, whether it is numeric, and what its names mean."""
+    """Yield each result and rate that prints a formula, the formula, whether it is numeric, and what its names mean."""
     for field in subject.model.own_result_fields.values():
         text = getattr(field.spec, "formula", "")
         if text:
             yield field, parse(text), bool(getattr(field.spec, "numeric", False)), formula_scope(subject.model, field)
+    dynamics = subject.model.dynamics
+    for name, spec in dynamics.state_fields.items() if dynamics is not None else ():
+        if spec.rate:
+            per_second = "" if dynamics is not None and dynamics.step is not None else "/s"
+            unit = f"{difference_unit(spec.unit) or '1'}{per_second}"
+            rate = ResultField(name=f"rate of {name}", path=(name,), spec=Found(unit=unit), symbol=spec.symbol)
+            yield rate, parse(spec.rate), False, rate_scope(subject.model)
 
 
 def formulas_have_the_unit(subject: Subject) -> None:
@@ -158,7 +167,8 @@ def formulas_have_the_unit(subject: Subject) -> None:
         except (UnitError, DeclarationError) as error:
             fail(f"{subject.model.name}: formula of '{result.name}': {error}")
         declared = pint_quantity(1.0, result.unit)
-        if formula.left is None and quantity.dimensionality != declared.dimensionality:
+        is_nothing = isinstance(formula.right, ast.Constant) and formula.right.value == 0
+        if formula.left is None and quantity.dimensionality != declared.dimensionality and not is_nothing:
             fail(
                 f"{subject.model.name}: the formula of '{result.name}' gives {quantity.dimensionality}, "
                 f"but the result is declared in '{result.unit}' ({declared.dimensionality})"
@@ -186,7 +196,18 @@ def _values(subject: Subject, point: Mapping[str, float]) -> dict[str, Any]:
     """Return every input and result at a point by flat name, SI."""
     setup = subject.at(point)
     results = subject.model.read_results(evaluate(setup))
-    return {**subject.model.read_inputs(setup.inputs), **results}
+    return {**subject.model.read_inputs(setup.inputs), **results, **_of_motion(subject, setup)}
+
+
+def _of_motion(subject: Subject, setup: Setup) -> dict[str, Any]:
+    """Return the states of a model that moves and their rates at every time, as ``formulas_of`` calls them."""
+    dynamics = subject.model.dynamics
+    if dynamics is None:
+        return {}
+    motion = dynamics.followed(setup.inputs)
+    rates = {f"rate of {name}": rate for name, rate in dynamics.rates(setup.inputs, motion).items()}
+    states = {f"state {name}": getattr(motion.states, name) for name in dynamics.state_fields}
+    return {**rates, **states, "state time": motion.time}
 
 
 def _difference(formula: Formula, given: Mapping[str, Any], expected: Any) -> str:

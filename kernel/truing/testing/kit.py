@@ -46,6 +46,7 @@ CHECKS: tuple[ConformanceCheck, ...] = (
     ConformanceCheck("formulas equal the function", declared.formulas_equal_the_function),
     ConformanceCheck("batch equals loop", running.batch_equals_loop),
     ConformanceCheck("steps may be halved", running.steps_may_be_halved),
+    ConformanceCheck("motion is settled", running.motion_is_settled),
     ConformanceCheck("inputs untouched", running.inputs_untouched),
     ConformanceCheck("seeds decide", running.seeds_decide),
     ConformanceCheck("serial equals parallel", running.serial_equals_parallel, needs_home=True),

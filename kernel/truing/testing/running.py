@@ -185,6 +185,23 @@ def steps_may_be_halved(subject: Subject) -> None:
                 fail(f"{subject.model.name}: {sentence}; refuse what is too coarse (feasible), or say what it changes")
 
 
+def motion_is_settled(subject: Subject) -> None:
+    """A tenth of the tolerance of a motion changes no result by more than the sheet says."""
+    dynamics = subject.model.dynamics
+    if dynamics is None or dynamics.step is not None:
+        return
+    finer = replace(dynamics, tolerance=dynamics.tolerance / 10)
+    for point in ({}, *subject.points(POINTS)):
+        inputs = subject.at(point).inputs
+        before, after = (subject.model.read_results(each(inputs)) for each in (dynamics, finer))
+        for name, value in before.items():
+            here, there = np.asarray(value, dtype=float), np.asarray(after[name], dtype=float)
+            moved, size = np.nanmax(np.abs(here - there), initial=0.0), np.nanmax(np.abs(there), initial=0.0)
+            if moved > dynamics.settled * size:
+                what = f"a tenth of the tolerance moves '{name}' by {moved / size:.1g} of its largest value"
+                fail(f"{subject.model.name}: {what}, not {dynamics.settled:g}; state a smaller tolerance, or settled")
+
+
 def numerical(subject: Subject) -> list[InputField]:
     """Return the inputs that are declared as numerical steps, tolerances or grids."""
     fields = subject.model.input_fields.values()
