@@ -27,6 +27,7 @@ learning_exceptions: Any = Later("sklearn.exceptions")
 stats: Any = Later("scipy.stats")
 ipython_display: Any = Later("IPython.display")
 integrate: Any = Later("scipy.integrate")
+sparse: Any = Later("scipy.sparse")
 pymoo: Any = Later(
     "pymoo",
     Config="pymoo.config",
