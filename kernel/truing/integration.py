@@ -6,7 +6,7 @@ follow because the system is stiff goes to scipy's BDF. n machines of d states a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Any, Protocol
@@ -31,7 +31,7 @@ CLOSE, TINY = 1e-12, 1e-300
 passed 0 counts as being beyond it, by ``TINY`` at the least: it does not pass again."""
 LEAST_TOLERANCE = 1e-13
 STIFF, STIFF_STEPS = 5.0, 15
-"""Step times rate constant near the edge of stability (6 is beyond it), and so many steps there make a machine stiff."""
+"""Step times rate constant near the edge of stability, which is at 6; so many steps there make a machine stiff."""
 
 GROWS = "a state grows beyond all bounds"
 STEP_LIMIT = "the step limit is reached"
@@ -39,7 +39,7 @@ ENDLESS = "an event comes again and again without end"
 
 
 class System(Protocol):
-    """The state equation of n machines; t is (n,), y is (d, n), ``interval`` (n,) numbers the stretch between breaks."""
+    """The state equation of n machines; t is (n,), y is (d, n), ``interval`` (n,) counts the stretch between breaks."""
 
     def rate(self, t: Matrix, y: Matrix, interval: Indices) -> Matrix:
         """Return dy/dt, (d, n)."""
@@ -269,57 +269,65 @@ def _stopped(problem: Problem, going: _Going, is_good: Mask, solution: Solution)
     return tiny | many
 
 
-def _arrive(problem: Problem, going: _Going, good: Indices, dense: _Dense, solution: Solution) -> Mask:
+@dataclass(frozen=True)
+class _Arrival:
+    """Where machines are after a step, by their ``places`` among those on their way; by which ``event`` (-1: none)."""
+
+    places: Indices
+    event: Indices
+    t: Matrix
+    y: Matrix
+
+
+def _arrive(problem: Problem, going: _Going, places: Indices, dense: _Dense, solution: Solution) -> Mask:
     """Go where a step ends, or where an event stops it, and fill in the stamps on the way; return who is at the end."""
-    step = dense.step
-    event, t, y = _first_event(problem, dense, going, good)
-    _write(solution, problem, dense, going, good, t, y)
-    going.t[good], going.rate[:, good] = t, step.rate
+    arrival = _first_event(problem, dense, going, places)
+    _write(problem, dense, going, arrival, solution)
+    t = arrival.t
+    going.t[places], going.rate[:, places] = t, dense.step.rate
     going.y = np.array(going.y)
-    going.y[:, good] = y
-    happened = event >= 0
-    at_break = (t == problem.breaks[going.interval[good] + 1]) & ~happened
+    going.y[:, places] = arrival.y
+    happened = arrival.event >= 0
+    at_break = (t == problem.breaks[going.interval[places] + 1]) & ~happened
     ended = at_break & (t == problem.stamps[-1])
-    going.interval[good] += at_break & ~ended
+    going.interval[places] += at_break & ~ended
     if happened.any():
-        ended |= _happen(problem, dense.system, going, good, event, solution)
+        ended |= _happen(problem, dense.system, going, arrival, solution)
     going.is_stale = bool(happened.any() or (at_break & ~ended).any())
     return ended
 
 
-def _write(
-    solution: Solution, problem: Problem, dense: _Dense, going: _Going, good: Indices, t: Matrix, y: Matrix
-) -> None:
-    """Fill in the states at the stamps up to ``t``."""
-    begin = going.stamp[good]
-    end = np.searchsorted(problem.stamps, t, side="right")
-    going.stamp[good] = end
-    exact = (end > begin) & (problem.stamps[end - 1] == t)
-    solution.states[:, going.machine[good[exact]], end[exact] - 1] = y[:, exact]
+def _write(problem: Problem, dense: _Dense, going: _Going, arrival: _Arrival, solution: Solution) -> None:
+    """Fill in the states at the stamps that were passed."""
+    machine, begin = going.machine[arrival.places], going.stamp[arrival.places]
+    end = np.searchsorted(problem.stamps, arrival.t, side="right")
+    going.stamp[arrival.places] = end
+    exact = (end > begin) & (problem.stamps[end - 1] == arrival.t)
+    solution.states[:, machine[exact], end[exact] - 1] = arrival.y[:, exact]
     count = end - begin - exact
     if not count.any():
         return
-    place = np.repeat(np.arange(len(good)), count)
+    place = np.repeat(np.arange(len(count)), count)
     stamp = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count) + begin[place]
-    solution.states[:, going.machine[good[place]], stamp] = dense.at(problem.stamps[stamp], place)
+    solution.states[:, machine[place], stamp] = dense.at(problem.stamps[stamp], place)
 
 
-class _Dense:
+class _Dense(Protocol):
     """The states along a step of some machines."""
 
-    def __init__(self, system: System, interval: Indices, step: _Step) -> None:
-        self.system, self.interval, self.step = system, interval, step
+    system: System
+    interval: Indices
+    step: _Step
 
     def at(self, t: Matrix, place: Indices) -> Matrix:
         """Return the states of the machines at these places of the step, each at a time of its own, (d, m)."""
-        raise NotImplementedError
 
 
-class _OwnDense(_Dense):
+class _OwnDense:
     """Those of steps of Dormand and Prince, to the seventh order; calculated where they are asked for."""
 
     def __init__(self, system: System, interval: Indices, step: _Step, stages: Matrix) -> None:
-        super().__init__(system, interval, step)
+        self.system, self.interval, self.step = system, interval, step
         self._stages = stages
         self._parts: Matrix | None = None
 
@@ -350,12 +358,12 @@ class _OwnDense(_Dense):
 # Events: what passes 0 within a step is bracketed and halved, the earliest of each machine ends its step there
 
 
-def _first_event(problem: Problem, dense: _Dense, going: _Going, good: Indices) -> tuple[Indices, Matrix, Matrix]:
-    """Return the earliest event of each machine in its step (-1: none), and where the machine then is."""
+def _first_event(problem: Problem, dense: _Dense, going: _Going, good: Indices) -> _Arrival:
+    """Return where machines are after their step, or at the earliest event in it."""
     step = dense.step
     event, t, y = np.full(len(good), -1), np.array(step.end), np.array(step.reached)
     if not problem.events:
-        return event, t, y
+        return _Arrival(good, event, t, y)
     times = np.linspace(step.t, step.end, LOOKS + 1)
     several = np.tile(np.arange(len(good)), LOOKS - 1)
     states = dense.at(times[1:-1].ravel(), several)
@@ -376,7 +384,7 @@ def _first_event(problem: Problem, dense: _Dense, going: _Going, good: Indices) 
     happened = np.flatnonzero(event >= 0)
     if len(happened):
         y[:, happened] = dense.at(t[happened], happened)
-    return event, t, y
+    return _Arrival(good, event, t, y)
 
 
 def _passes(values: Matrix, rule: EventRule) -> Mask:
@@ -411,23 +419,21 @@ def _crossed(number: int, dense: _Dense, places: Indices, ends: Sequence[tuple[M
     return np.asarray(when)
 
 
-def _happen(
-    problem: Problem, system: System, going: _Going, good: Indices, event: Indices, solution: Solution
-) -> Mask:
-    """Let events happen: count them, change the states, hold those that end. Return the machines that are ended."""
-    ended = np.zeros(len(good), dtype=bool)
+def _happen(problem: Problem, system: System, going: _Going, arrival: _Arrival, solution: Solution) -> Mask:
+    """Let events happen: count them, set the states, hold those that end. Return the machines that are ended."""
+    ended = np.zeros(len(arrival.t), dtype=bool)
     for number, rule in enumerate(problem.events):
-        places = np.flatnonzero(event == number)
+        places = np.flatnonzero(arrival.event == number)
         if not len(places):
             continue
-        own, part = good[places], system.part(places)
+        own, part = arrival.places[places], system.part(places)
         t, interval = going.t[own], going.interval[own]
         if rule.sets:
             going.y[:, own] = part.after(number, t, going.y[:, own], interval)
         ended[places] = _count(problem, solution, number, going.machine[own], (going.last_event[own], t))
         going.last_event[own] = t
-        for place in places[~ended[places]] if rule.ends else ():
-            _hold(solution, int(going.machine[good[place]]), int(going.stamp[good[place]]), going.y[:, good[place]])
+        for place in own[~ended[places]] if rule.ends else ():
+            solution.states[:, going.machine[place], going.stamp[place] :] = going.y[:, place, None]
         ended[places] |= rule.ends
         after = going.value[number, own]
         for other in range(len(problem.events)):
@@ -445,9 +451,7 @@ def _beyond(value: Matrix, after: Matrix, *, is_set: bool) -> Matrix:
     return np.asarray(np.where(is_rounding, np.copysign(np.maximum(np.abs(value), TINY), after), value))
 
 
-def _count(
-    problem: Problem, solution: Solution, number: int, machine: Indices, times: tuple[Matrix, Matrix]
-) -> Mask:
+def _count(problem: Problem, solution: Solution, number: int, machine: Indices, times: tuple[Matrix, Matrix]) -> Mask:
     """Count an event at the second of two times, the last one being at the first; return where they have no end."""
     before, t = times
     fresh = np.isnan(solution.first[number, machine])
@@ -458,11 +462,6 @@ def _count(
     for place in np.flatnonzero(endless):
         solution.reasons[int(machine[place])] = (ENDLESS, float(t[place]))
     return np.asarray(endless)
-
-
-def _hold(solution: Solution, machine: int, stamp: int, y: Matrix) -> None:
-    """Let a machine stay as it is from a stamp on."""
-    solution.states[:, machine, stamp:] = y[:, None]
 
 
 # Stiff machines: the backward differences of scipy
@@ -525,11 +524,11 @@ def _solver(problem: Problem, system: System, going: _Going) -> Any:
     )  # fmt: skip
 
 
-class _SharedDense(_Dense):
+class _SharedDense:
     """The states along a step that all machines share."""
 
     def __init__(self, system: System, interval: Indices, step: _Step, solver: Any) -> None:
-        super().__init__(system, interval, step)
+        self.system, self.interval, self.step = system, interval, step
         self._at = solver.dense_output()
 
     def at(self, t: Matrix, place: Indices) -> Matrix:

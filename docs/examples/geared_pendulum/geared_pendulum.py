@@ -69,7 +69,10 @@ class Swung:
     time: Float = axis("s", symbol="t", follows="times")
     angle: Float = found("deg", symbol="phi", along="time", note="angle of the arm as the gauge shows it")
     torque: Float = found(
-        "N*m", symbol="M", along="time", note="torque on the shaft",
+        "N*m",
+        symbol="M",
+        along="time",
+        note="torque on the shaft",
         method="weight, friction and drag; 0 at rest, where dry friction holds what pulls",
     )
     whole_inertia: Float = found(
@@ -135,7 +138,7 @@ def swung(pendulum: Pendulum, motion: Motion[Swing]) -> Swung:
         torque=torque(swing, in_columns(pendulum)),
         whole_inertia=whole_inertia(pendulum),
         period=2 * motion.first["turns"],
-        rest=angles[..., -1],
+        rest=np.asarray(angles)[..., -1],
     )
 
 

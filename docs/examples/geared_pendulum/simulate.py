@@ -1,7 +1,7 @@
 """Records of a pendulum on a geared drive from a program of its own: simulate.py writes swing_1.csv and swing_2.csv.
 
-It shares nothing with the calculation: small equal steps after Heun, dry friction that holds the arm by a test of its own, and a gauge
-with noise.
+It shares nothing with the calculation: small equal steps after Heun, dry friction that holds the arm by a test of its
+own, and a gauge with noise.
 """
 
 import csv

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field, fields, replace
 from functools import cached_property
 from typing import Any, Generic, Literal, TypeVar, cast, dataclass_transform
@@ -13,7 +13,6 @@ import numpy as np
 from truing.arrays import Indices, Matrix
 from truing.declare.batch import feasible
 from truing.declare.fields import KEY, Float, InputField, hints_of, in_si, input_fields, read, with_values
-from truing.declare.near_miss import near_miss
 from truing.errors import ConvergenceError, DeclarationError, InfeasibleError
 from truing.integration import GROWS, STEP_LIMIT, EventRule, Problem, Solution, solve
 from truing.units import difference_unit

@@ -396,22 +396,26 @@ def _of_dynamics(model: Model[Any, Any]) -> Iterator[str]:
     dynamics = model.dynamics
     if dynamics is None:
         return
-    times = model.input_fields.get(dynamics.times)
-    if times is None or times.kind != "series" or not times.spec.along:
-        series = [name for name, each in model.input_fields.items() if each.kind == "series" and each.spec.along]
-        yield f"the times of the motion are '{dynamics.times}', which is no input series.{near_miss(dynamics.times, series)}"
+    fields = model.input_fields
+    series = [name for name, each in fields.items() if each.kind == "series" and each.spec.along]
+    if dynamics.times not in series:
+        near = near_miss(dynamics.times, series)
+        yield f"the times of the motion are '{dynamics.times}', which is no input series.{near}"
         return
     for name in _twice(event.name for event in dynamics.events):
         yield f"two events are called '{name}'"
     for name, spec in dynamics.state_fields.items():
-        if isinstance(spec.start, str) and spec.start not in model.input_fields and not spec.start[:1].strip("+-.0123456789") == "":
-            yield f"state '{name}' starts at '{spec.start}', which is no input and no quantity.{near_miss(spec.start, model.input_fields)}"
-        if spec.rate:
-            names = _names_in(spec.rate)
-            known = rate_scope(model)
-            for missing in [names] if isinstance(names, str) else sorted(names - set(known)):
-                what = f"the rate of state '{name}'"
-                yield f"{what}: {missing}" if isinstance(names, str) else f"{what} names '{missing}', which is no state, input or result.{near_miss(missing, known)}"
+        if isinstance(spec.start, str) and spec.start.isidentifier() and spec.start not in fields:
+            near = near_miss(spec.start, fields)
+            yield f"state '{name}' starts at '{spec.start}', which is no input and no quantity.{near}"
+        names = _names_in(spec.rate) if spec.rate else frozenset()
+        if isinstance(names, str):
+            yield f"the rate of state '{name}': {names}"
+            continue
+        known = rate_scope(model)
+        for missing in sorted(names - set(known)):
+            near = near_miss(missing, known)
+            yield f"the rate of state '{name}' names '{missing}', which is no state, input or result.{near}"
 
 
 def _of_companions(model: Model[Any, Any]) -> Iterator[str]:
