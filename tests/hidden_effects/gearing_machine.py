@@ -2,23 +2,24 @@
 
 Nothing of the plugin is imported. Torques are N m, speeds r/min, angles degrees, temperatures degC, deviations along
 the line of action um. What an effect does is not the formula of the effect: another law of viscosity, heat summed over
-the contact, wear step by step, counts one by one, waves that are not quite round.
+the contact, counts one by one, waves that are not quite round.
 """
 
 from dataclasses import dataclass
-from math import cos, hypot, pi, sqrt
+from math import cos, hypot, pi, sqrt, tan
 
 import numpy as np
 from scipy.special import erf
 
-from hidden_effects.gearing_stage import ANGLE, BASE, MODULE, PINS, PLANET, SUN, Array, Stage, pair_of, play_between
-from hidden_effects.gearing_stress import POISSON, YOUNG, Loaded, Wrong, mesh_stiffness, stresses, swinging, touched
-from hidden_effects.rows import Hidden, MeasuredRows, of
+from hidden_effects.gearing_stage import ANGLE, MODULE, PINS, PLANET, POISSON, SUN, YOUNG, Stage, pair_of, play_between
+from hidden_effects.gearing_stress import Loaded, Wrong, stresses, swinging, touched
+from hidden_effects.rows import Array, Hidden, MeasuredRows, halved, of
+from published.rv_gearing_by_hand import stiffness
 
 RATIO, MESHES = 111.0, 0.920941
 VOGEL = 95  # degC, of mineral oils
 CONDUCTING = sqrt(50 * 3.8e6)  # of steel, N/(m s^0.5 K)
-STEPS = 2000
+BASE = MODULE * SUN / 2 * cos(ANGLE)  # radius of the base circle of the sun, mm
 
 
 @dataclass(frozen=True)
@@ -115,7 +116,8 @@ def flash(rows: Rows, stage: Stage, hidden: Hidden) -> Array:
         return np.zeros(len(rows))
     load = loaded(rows, stage, hidden)
     pair = pair_of(stage)
-    path, (sun, planet) = float(pair.path), pair.outer
+    path = sum(pair["db"]) / 2 * tan(pair["alpha_wt"])
+    sun, planet = (sqrt(tip**2 - base**2) / 2 for tip, base in zip(pair["da"], pair["db"], strict=True))
     ends = [(path - planet, planet), (sun, path - sun)]
     force, turning = load.line_load(stage) / cos(ANGLE), load.speed * 2 * pi / 60
     rise = [max(contact_heat(w, *end, t) for end in ends) for w, t in zip(force, turning, strict=True)]
@@ -146,33 +148,24 @@ def counted(rows: Rows, hidden: Hidden) -> Array:
     """What an encoder of 5000 marks loses that misses some marks, um."""
     lost = of(hidden, "ratio_drift", "miscount")
     marks = np.floor(rows.input_angle / 360 * 5000)
-    return np.asarray(lost * marks / 5000 * 2 * pi * BASE[0] * 1e3)
+    return np.asarray(lost * marks / 5000 * 2 * pi * BASE * 1e3)
 
 
 def given_way(rows: Rows, stage: Stage, hidden: Hidden) -> Array:
     """What teeth give way, um: pressed together until spring and load are in balance."""
     load = loaded(rows, stage, hidden).line_load(stage)
-    full = mesh_stiffness(stage, np.full(1, 100.0), pair_of(stage).overlap)  # at 100 N/mm
-    low, high = np.zeros(len(rows)), np.full(len(rows), 1000.0)
-    for _ in range(60):
-        way = (low + high) / 2
-        carried = np.where(full * way < 100, (full * way) ** (4 / 3) / 100 ** (1 / 3), full * way)
-        low, high = np.where(carried < load, way, low), np.where(carried < load, high, way)
-    return low
+    full = stiffness(stage.rated(), pair_of(stage), 100.0)[1]
 
+    def carries_more(way: Array) -> Array:
+        return np.where(full * way < 100, (full * way) ** (4 / 3) / 100 ** (1 / 3), full * way) > load
 
-def worn(rows: Rows, hidden: Hidden) -> Array:
-    """Depth that a flank has lost, um: hour by hour in steps."""
-    rate = of(hidden, "wear_drift", "rate") / 1000
-    clock = np.linspace(0, max(float(np.max(rows.time)), 1.0), STEPS)
-    depth = np.concatenate([[0.0], np.cumsum(rate * np.diff(clock))])
-    return np.asarray(np.interp(rows.time, clock, depth))
+    return halved(carries_more, np.zeros(len(rows)), np.full(len(rows), 1000.0))
 
 
 def shown(rows: Rows, stage: Stage, hidden: Hidden) -> dict[str, Array]:
     """What the gauges would show without noise."""
     play, scale = of(hidden, "lost_motion", "play"), of(hidden, "lost_motion", "torque_scale") or 1.0
-    depth, torque = worn(rows, hidden), sun_torque(rows, stage)
+    depth, torque = of(hidden, "wear_drift", "rate") / 1000 * rows.time, sun_torque(rows, stage)
     error = turning(rows, hidden) + counted(rows, hidden) + rows.side * depth
     error = error + play / 2 * erf(0.83 * rows.load_torque / scale)  # nowhere 0.02 from tanh
     error = error + rows.side * of(hidden, "wind_up", "compliance") * torque

@@ -1,129 +1,94 @@
-"""Sun and planet of a reducer as they come from the workshop: geometry of the pair, its play, and the tooth roots.
+"""Sun and planet of a reducer as they come from the workshop, and the standards' answer to them row by row.
 
-Nothing of the plugin is imported. Lengths are mm, angles rad, deviations along the line of action um. The play is what
-two teeth leave of a pitch, and the root is rolled by the rounding of the rack, point by point.
+Nothing of the plugin is imported: geometry and factors are those of ``published/rv_gearing_by_hand.py``, plain floats as
+the standards are written. Lengths are mm, deviations along the line of action um.
 """
 
 from dataclasses import dataclass
 from functools import lru_cache
-from math import acos, cos, pi, radians, sin, sqrt, tan
+from math import cos, radians, sqrt
 
 import numpy as np
 
 from hidden_effects.rows import Array
+from published import rv_gearing_by_hand as standards
 
 SUN, PLANET, PINS = 20, 55, 40
-MODULE, ANGLE, WIDTH = 1.25, radians(20), 12.0
-DEDENDUM, FILLET, BEARING = 1.25, 0.38, 0.99
+MODULE, ANGLE = 1.25, radians(20)
+APPLICATION, SHARING = 1.25, 1.10
+YOUNG, POISSON = 206e3, 0.3
+DRAWING: standards.Case = {
+    "m": MODULE, "beta": 0.0, "alpha": 20.0, "z": (SUN, PLANET), "ha": 1.0, "hf": 1.25, "rho_f": 0.38, "q": (0.0, 0.0),
+    "np": 2, "KA": APPLICATION, "KHp": SHARING, "Q": 6, "Ca": 0.0, "form": "crowned", "nu40": 100.0, "Rz": (3.0, 3.0),
+    "E": (YOUNG, YOUNG), "nu": (POISSON, POISSON), "rho": 7850.0, "sH": (1500.0, 1500.0), "material": "case_hardened",
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
 class Stage:
     """One machine: its face width (mm), shifts in modules and bearing efficiency, as they came from the workshop."""
 
-    width: float = WIDTH
+    width: float = 12.0
     shift_sun: float = 0.0
     shift_planet: float = 0.0
-    bearing: float = BEARING
+    bearing: float = 0.99
 
-    @property
-    def shifts(self) -> tuple[float, float]:
-        """Of sun and planet."""
-        return self.shift_sun, self.shift_planet
-
-
-TEETH = (SUN, PLANET)
-BASE = (MODULE * SUN / 2 * cos(ANGLE), MODULE * PLANET / 2 * cos(ANGLE))
+    def rated(self, apart: float = 0.0, speed: float = 0.0) -> standards.Case:
+        """The pair as the standards take it, its centres so many mm farther apart than without play."""
+        shifts = (self.shift_sun, self.shift_planet)
+        return {**DRAWING, "b": self.width, "x": shifts, "apart": max(apart, 0.0), "n_rel": speed}
 
 
-# Geometry
-
-
-def bisected(wanted: float) -> float:
-    """The angle of an involute."""
-    low, high = 1e-3, 1.2
-    for _ in range(60):
-        middle = (low + high) / 2
-        low, high = (middle, high) if tan(middle) - middle < wanted else (low, middle)
-    return low
-
-
-@lru_cache(maxsize=64)
-def tight_angle(stage: Stage) -> float:
-    """Where both gears touch on both flanks: their thicknesses fill the pitch of the working circles."""
-    thick = [MODULE * (pi / 2 + 2 * x * tan(ANGLE)) for x in stage.shifts]
-    filled = [s / (MODULE * z) + tan(ANGLE) - ANGLE for s, z in zip(thick, TEETH, strict=True)]  # at the base circle
-    return bisected((filled[0] * SUN + filled[1] * PLANET - pi) / (SUN + PLANET))
-
-
-@dataclass(frozen=True)
-class Pair:
-    """Sun and planet so far apart: working angle and contact ratio, arrays, and the radii of the tips."""
-
-    angle: Array
-    tips: tuple[float, float]
-    overlap: Array
-
-    @property
-    def path(self) -> Array:
-        """Between the points where the line of action leaves the base circles."""
-        return np.asarray((BASE[0] + BASE[1]) * np.tan(self.angle))
-
-    @property
-    def outer(self) -> tuple[float, float]:
-        """Radii of curvature of both tips."""
-        one, two = (sqrt(tip**2 - base**2) for tip, base in zip(self.tips, BASE, strict=True))
-        return one, two
-
-
-def pair_of(stage: Stage, apart: Array | float = 0.0) -> Pair:
-    """Sun and planet farther apart by so many mm than without play; never closer."""
-    centres = (BASE[0] + BASE[1]) / cos(tight_angle(stage)) + np.asarray(apart)
-    angle = np.arccos((BASE[0] + BASE[1]) / centres)
-    one, two = (MODULE * (z / 2 + 1 + x) for z, x in zip(TEETH, stage.shifts, strict=True))
-    inside = sqrt(one**2 - BASE[0] ** 2) + sqrt(two**2 - BASE[1] ** 2) - centres * np.sin(angle)
-    return Pair(angle, (one, two), np.asarray(inside / (pi * MODULE * cos(ANGLE))))
+@lru_cache(maxsize=1024)
+def pair_of(stage: Stage, apart: float = 0.0) -> standards.Case:
+    """Geometry of the pair."""
+    return standards.geometry(stage.rated(apart))
 
 
 def play_between(stage: Stage, apart: Array) -> Array:
-    """What the teeth leave of the pitch on the working circles, along the line of action, um; ``apart`` in mm."""
-    working = pair_of(stage, apart).angle
-    left = 2 * pi * BASE[0] / np.cos(working) / SUN
-    for base, z, x in zip(BASE, TEETH, stage.shifts, strict=True):
-        half = (pi / 2 + 2 * x * tan(ANGLE)) / z + tan(ANGLE) - ANGLE - (np.tan(working) - working)
-        left = left - 2 * base / np.cos(working) * half
-    return np.asarray(np.maximum(left * np.cos(working) * 1e3, 0.0))
+    """What the teeth leave of the pitch, along the line of action, um; ``apart`` in mm."""
+    return np.array([1e3 * pair_of(stage, float(each))["backlash"] for each in apart])
 
 
-# Tooth roots
+@dataclass(frozen=True)
+class Standard:
+    """What the standards say of every row, arrays (n,), um, N/(mm um).
+
+    Contact ratio, stiffness of a tooth and of the mesh, K_V, and the pressure in MPa per root of N/mm.
+    """
+
+    overlap: Array
+    tooth: Array
+    mesh: Array
+    dynamic: Array
+    pressure: Array
 
 
-def rolled(teeth: int, shift: float) -> tuple[Array, Array]:
-    """Fillet of a tooth from its bottom upward: half thickness, height above the middle of the gear, in modules."""
-    turned = np.linspace(0.0, 0.3, 30001)
-    deep = DEDENDUM - FILLET - shift
-    across = pi / 4 - DEDENDUM * tan(ANGLE) - FILLET * (1 - sin(ANGLE)) / cos(ANGLE) + teeth / 2 * turned
-    longer = 1 + FILLET / np.hypot(across, deep)
-    across, height = across * longer, teeth / 2 - deep * longer
-    beside = pi / teeth - np.arctan2(across, height) + turned  # from the middle of the tooth
-    away = np.hypot(across, height)
-    return np.asarray(away * np.sin(beside)), np.asarray(away * np.cos(beside))
+def standard(stage: Stage, line_load: Array, speed: Array, apart: Array) -> Standard:
+    """Ask the standards row by row: line loads in N/mm with the application factor, speeds in r/min."""
+    rows = []
+    for load, turning, gap in zip(line_load.tolist(), speed.tolist(), apart.tolist(), strict=True):
+        case, pair = stage.rated(gap, turning), pair_of(stage, gap)
+        stiff = standards.stiffness(case, pair, load)
+        dynamic = standards.dynamic(case, pair, load, stiff, (0.925 * PITCH, 0.925 * PROFILE))
+        z_eps = sqrt((4 - pair["eps_a"]) / 3)
+        z = standards.contact(case, pair, 1.0, z_eps)
+        ratio = (pair["u"] + 1) / pair["u"] / pair["d"][0]
+        rows.append((pair["eps_a"], *stiff, dynamic["K_V"], z["Z_B"] * z["Z_H"] * z["Z_E"] * z_eps * sqrt(ratio)))
+    return Standard(*np.array(rows).T)
+
+
+PITCH, PROFILE, _ = standards.deviations(Stage().rated(), MODULE * PLANET)
+PITCH *= cos(ANGLE)
 
 
 @lru_cache(maxsize=64)
-def root_factors(teeth: int, shift: float) -> tuple[float, float]:
-    """Y_Fa and Y_Sa, the load at the tip: at the place where a line inclined by 30 degrees touches the fillet."""
-    half, height = rolled(teeth, shift)
-    steep, climb = np.gradient(half), np.gradient(height)
-    at = int(np.argmin(np.abs(np.arctan2(-steep, climb) - pi / 6)))
-    bend = np.gradient(steep)[at] * climb[at] - np.gradient(climb)[at] * steep[at]
-    radius = float((steep[at] ** 2 + climb[at] ** 2) ** 1.5 / abs(bend))
-    tip = teeth / 2 + 1 + shift
-    at_tip = acos(teeth / 2 * cos(ANGLE) / tip)
-    narrow = (pi / 2 + 2 * shift * tan(ANGLE)) / teeth + tan(ANGLE) - ANGLE - (tan(at_tip) - at_tip)
-    leaning = at_tip - narrow
-    arm = tip * (cos(narrow) - sin(narrow) * tan(leaning)) - float(height[at])
-    thick = 2 * float(half[at])
-    form = 6 * arm * cos(leaning) / (thick**2 * cos(ANGLE))
-    notch = thick / (2 * radius)
-    return form, (1.2 + 0.13 * thick / arm) * notch ** (1 / (1.21 + 2.3 * arm / thick))
+def root_factor(stage: Stage, gear: int) -> float:
+    """Y_Fa Y_Sa of the sun (0) or the planet (1), the load at the tip."""
+    form, notch, _ = standards.root(stage.rated(), pair_of(stage), gear, tip=True)
+    return form * notch
+
+
+def slopes(stage: Stage) -> list[float]:
+    """Helix deviations of both gears, um."""
+    return [standards.deviations(stage.rated(), MODULE * teeth)[2] for teeth in (SUN, PLANET)]
