@@ -1,7 +1,7 @@
 """Sun and planet of a reducer as they come from the workshop, and the standards' answer to them row by row.
 
-Nothing of the plugin is imported: geometry and factors are those of ``published/rv_gearing_by_hand.py``, plain floats as
-the standards are written. Lengths are mm, deviations along the line of action um.
+Nothing of the plugin is imported: geometry and factors are those of ``published/rv_gearing_by_hand.py``, plain floats
+after the standards. Lengths are mm, deviations along the line of action um.
 """
 
 from dataclasses import dataclass
