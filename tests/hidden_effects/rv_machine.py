@@ -12,7 +12,7 @@ from math import acos, pi, sqrt
 
 import numpy as np
 
-from hidden_effects.rows import Array, Hidden, MeasuredRows, of
+from hidden_effects.rows import Array, Hidden, MeasuredRows, halved, of
 from hidden_effects.rv_play import Mesh, ends_of_play
 
 PINS, TEETH = 40, 39
@@ -106,13 +106,13 @@ def forces(torque: float, worn: Array) -> Array:
     """Force on every pin in every phase under the torque of one disc, N mm: rows of ``worn`` are turned to touch."""
     gap = NEW + worn
     gap = gap - ARM * np.min(gap / ARM, axis=1, keepdims=True)
-    low, high = np.full((PHASES, 1), 1.0), np.full((PHASES, 1), 1e6)
-    for _ in range(60):
-        middle = np.sqrt(low * high)
-        each = middle * np.maximum(ARM / LONGEST - gap / approach(middle), 0.0)
-        is_more = np.sum(each * ARM, axis=1, keepdims=True) > torque
-        high, low = np.where(is_more, middle, high), np.where(is_more, low, middle)
-    return np.asarray(each)
+
+    def each(logarithm: Array) -> Array:
+        force = np.exp(logarithm)
+        return np.asarray(force * np.maximum(ARM / LONGEST - gap / approach(force), 0.0))
+
+    ends = np.zeros((PHASES, 1)), np.full((PHASES, 1), np.log(1e6))
+    return each(halved(lambda logarithm: np.sum(each(logarithm) * ARM, axis=1, keepdims=True) > torque, *ends))
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from math import acos, cos, pi, radians, tan
 
 import numpy as np
 
-from hidden_effects.rows import Array, Hidden, MeasuredRows, of
+from hidden_effects.rows import Array, Hidden, MeasuredRows, halved, of
 
 TEETH, RING_TEETH, MODULE, ALPHA = 20, 100, 0.5, radians(20)
 CENTRES, ADDENDUM, SHIFT, RING_SHIFT = 19.80778, 0.8, 0.21, -0.16
@@ -48,16 +48,14 @@ def force(rows: Rows) -> Array:
     return np.asarray(SHARE * 1e3 * np.abs(rows.axial_load))
 
 
-def balanced(approach: Array, gaps: Array, stiffness: Array | float) -> Array:
-    """Forces of springs behind gaps (n, k), um, that share a load (n, 1) given as ``approach`` of all of them, N."""
-    low, high = np.full_like(approach, -1e3), np.full_like(approach, 1e3)
-    each = gaps * 0
-    for _ in range(50):
-        middle = (low + high) / 2
-        each = np.maximum(middle - gaps, 0) * stiffness
-        is_more = each.sum(axis=1, keepdims=True) > approach
-        high, low = np.where(is_more, middle, high), np.where(is_more, low, middle)
-    return np.asarray(each)
+def balanced(load: Array, gaps: Array, stiffness: Array | float) -> Array:
+    """Forces of springs behind gaps (n, k), um, that share a load (n, 1), N."""
+
+    def forces(way: Array) -> Array:
+        return np.asarray(np.maximum(way - gaps, 0) * stiffness)
+
+    ends = np.full_like(load, -1e3), np.full_like(load, 1e3)
+    return forces(halved(lambda way: forces(way).sum(axis=1, keepdims=True) > load, *ends, 50))
 
 
 def crowding(rows: Rows, width: float, hidden: Hidden) -> Array:
@@ -109,7 +107,7 @@ def mounted(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> tuple[Array
     return centres, np.arccos(MODULE * (RING_TEETH - TEETH) / 2 * cos(ALPHA) / centres)
 
 
-def width_at(radius: Array, teeth: int, shift: float) -> Array:
+def width_at(radius: Array, teeth: int, shift: float | Array) -> Array:
     """Tooth of a gear, or space of a ring, as an arc on a circle (the tooth of an external gear fills the space)."""
     reference = MODULE * teeth / 2
     half = (pi / 2 + 2 * shift * tan(ALPHA)) / teeth
@@ -122,12 +120,13 @@ def tight_ring_shift() -> float:
     working = acos(MODULE * (RING_TEETH - TEETH) / 2 * cos(ALPHA) / CENTRES)
     ring = np.array(MODULE * RING_TEETH / 2 * cos(ALPHA) / cos(working))
     roller = np.array(MODULE * TEETH / 2 * cos(ALPHA) / cos(working))
-    low, high = RING_SHIFT - 0.1, RING_SHIFT + 0.1
-    for _ in range(60):
-        middle = (low + high) / 2
-        is_loose = width_at(ring, RING_TEETH, middle) > width_at(roller, TEETH, SHIFT)
-        low, high = (low, middle) if is_loose else (middle, high)
-    return middle
+    return float(
+        halved(
+            lambda shift: width_at(ring, RING_TEETH, shift) > width_at(roller, TEETH, SHIFT),
+            np.array(RING_SHIFT - 0.1),
+            np.array(RING_SHIFT + 0.1),
+        )
+    )
 
 
 def play(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> Array:

@@ -1,6 +1,7 @@
 """The machines in which effects of the plugins are hidden: right in themselves, by figures from outside."""
 
 from dataclasses import replace
+from math import gamma, pi
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from hidden_effects.gearing_machine import shown as shown_by_stage
 from hidden_effects.gearing_stage import Stage
 from hidden_effects.gearing_stress import spread
 from hidden_effects.harmonic_contact import Flanks, table
-from hidden_effects.harmonic_surface import lines, structure, surface, true_structure
+from hidden_effects.harmonic_surface import power, surface, true_structure
 from hidden_effects.rigs import Wish, model_of
 from hidden_effects.rv_machine import RATED, ROUGHNESS, Wearing, wear_after
 from hidden_effects.rv_machine import Rows as ReducerRows
@@ -104,10 +105,14 @@ def test_the_mesh_has_the_stiffness_of_its_design() -> None:
     assert Flanks().stiffness(np.array([25.0]))[0] == pytest.approx(6.56e6, rel=2e-3)
 
 
-def test_lines_have_the_structure_function_of_a_power_law() -> None:
-    wish = surface(seed=0)
-    heights = lines(np.random.default_rng(1), wish, 400)
-    for step in (2, 10, 50):
-        each_line = structure(heights, step)
-        error = each_line.std(ddof=1) / len(each_line) ** 0.5
-        assert each_line.mean() == pytest.approx(true_structure(wish, np.array([0.2 * step]))[0], abs=4 * error)
+def test_a_surface_has_the_structure_function_of_its_power_law() -> None:
+    """D is 2.4: an exponent of 1.2; the mean of |cos|^1.2 over all directions is gamma(1.1) / (pi^0.5 gamma(1.6))."""
+    level = gamma(1.1) / (pi**0.5 * gamma(1.6)) * (2 * pi) ** 1.2 * (1e-5) ** 0.8
+    level *= pi / (2 * gamma(2.2) * np.sin(0.6 * pi))
+    assert power() == pytest.approx(level, rel=1e-6)
+    plain, blunt = (true_structure(surface(hidden=hidden), np.array([1.0, 10.0])) for hidden in ({}, BLUNT))
+    assert plain == pytest.approx([level, level * 10**1.2], rel=1e-6)
+    assert np.all(blunt < plain)
+
+
+BLUNT = {"lateral_filter": {"width": 0.8}}
