@@ -2,7 +2,7 @@
 
 from math import inf
 
-from hidden_effects import gearing_cases, harmonic_cases, screw_cases
+from hidden_effects import gearing_cases, harmonic_cases, rv_cases, screw_cases
 from hidden_effects.gearing_cases import CONTACT, ERROR, LOSS, PLAY, SUN_ROOT, WARMTH
 from hidden_effects.harmonic_machine import MESH
 from hidden_effects.harmonic_surface import surface
@@ -62,6 +62,7 @@ REDUCERS: dict[str, dict[str, float]] = {
     "friction_hysteresis": {"lag": 0.02}, "lubricant_ageing": {"rate": 0.3}, "load_exponent": {"exponent": 0.5},
     "duty_share": {"idle": 0.45},
 }  # fmt: skip
+REDUCED = [rv_cases.reducer(hidden={name: unknowns}, design="fleet") for name, unknowns in REDUCERS.items()]
 SCREWS = [
     screw(screw_cases.STRESSES, face_misalignment={"misalignment": 2.0}),
     screw(screw_cases.STRESSES, face_misalignment={"per_load": 0.1}),
@@ -99,6 +100,9 @@ DRIVES = [
     surface(hidden={"instrument_noise": {"variance": 100}}),
     surface(hidden={"lateral_filter": {"width": 0.8}}),
 ]
+CLEAR = {
+    "rv_gearing": STAGES, "rv_wear": REDUCED, "roller_screw_shift": SCREWS, "harmonic_fractal": DRIVES,
+}  # fmt: skip
 SHAPES = {
     "resonance_speed", "damping", "phase", "torque_scale", "run_in_time", "direction", "thinning", "exponent",
     "time_scale", "cycle_scale", "wavelength",

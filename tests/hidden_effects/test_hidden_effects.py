@@ -29,7 +29,6 @@ NOTHING = [
     (4, Wish("none", "wide", "growing", POSITION_ALONE, 150)),
 ]
 NAMED = [
-    (4, Wish("single", "wide", "gaussian", POSITION_ALONE, 150, ("link_heating",), 2.0)),
     (3, Wish("single", "wide", "autocorrelated", POSITION_ALONE, 300, ("elastic_deflection",), 2.0)),
     (1, Wish("single", "narrow", "growing", POSITION_ALONE, 80, ("slider_inertia",), 2.0)),
     (4, Wish("double", "wide", "gaussian", BOTH, 150, ("link_heating", "joint_clearance"), 2.0)),
