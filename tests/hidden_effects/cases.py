@@ -92,14 +92,6 @@ class Case:
         return tuple(self.lens.separation(self.change, [name]) for name in reversed(self.truth))
 
     @cached_property
-    def halves_beside_curve(self) -> tuple[float, ...]:
-        """The same, a shape being known as the very curve it is instead of as one of its family."""
-        if self.shape is None or not self.truth:
-            return self.halves
-        curves = [one for one in self.shape.columns(self.record.rows, self.results).T if np.any(one)]
-        return (Lens(self.record, np.column_stack(curves)).visibility(self.change), self.halves[1])
-
-    @cached_property
     def nearest_rival(self) -> Rival:
         """The explanation of at most the same size that is hardest to tell from the truth."""
         if not self.truth and self.shape is None:

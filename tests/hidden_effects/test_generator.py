@@ -42,12 +42,6 @@ def test_the_crank_is_at_its_dead_centre() -> None:
     assert pytest.approx(by_hand.dead_centre(by_hand.PAPER), abs=1e-8) == BOTTOM
 
 
-def test_the_scatter_of_the_parts_is_that_of_every_tolerance() -> None:
-    theirs = by_hand.deviations("complete", dict.fromkeys(by_hand.LINKS, "IT7"))
-    assert pytest.approx(theirs, rel=1e-12) == SCATTER
-    assert len(SCATTER) == 27
-
-
 # What the effects come to at the dead centre, from the closed forms of the paper's sensitivities: link heating
 # 46.2 um/K of the knee and 3.7 um/K of the driven chain at 11.5e-6/K, one side alone 14.4 urad/K; knee 3.953 m / (EA)
 # of elastic line and the rods besides; clearance 2 * (2.807 + 0.149) of it, one way.
