@@ -29,14 +29,14 @@ NOTHING = [
     (4, Wish("none", "wide", "growing", POSITION_ALONE, 150)),
 ]
 NAMED = [
-    (3, Wish("single", "wide", "autocorrelated", POSITION_ALONE, 300, ("elastic_deflection",), 2.0)),
+    (3, Wish("single", "wide", "autocorrelated", POSITION_ALONE, 150, ("elastic_deflection",), 2.0)),
     (1, Wish("single", "narrow", "growing", POSITION_ALONE, 80, ("slider_inertia",), 2.0)),
-    (4, Wish("double", "wide", "gaussian", BOTH, 150, ("link_heating", "joint_clearance"), 2.0)),
+    (4, Wish("double", "wide", "gaussian", POSITION_ALONE, 150, ("link_heating", "joint_clearance"), 2.0)),
 ]
 UNKNOWN = [
     (1, Wish("unknown", "wide", "gaussian", POSITION_ALONE, 150, (), 2.0, "order")),
 ]
-BESIDE = [(7, Wish("beside", "wide", "gaussian", POSITION_ALONE, 300, ("joint_clearance",), 2.5, "product_of_two"))]
+BESIDE = [(7, Wish("beside", "wide", "gaussian", POSITION_ALONE, 150, ("joint_clearance",), 2.5, "product_of_two"))]
 
 
 def said(case: tuple[int, Wish]) -> str:
