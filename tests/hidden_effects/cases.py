@@ -8,9 +8,8 @@ import numpy as np
 
 from hidden_effects.candidates import Candidate, columns, stacked
 from hidden_effects.designs import Design
-from hidden_effects.information import Lens, Rival, beside_groups, other_groups, over_results, rivals
 from hidden_effects.press_machine import Array, Hidden, Rows, shown
-from hidden_effects.record import Record
+from hidden_effects.record import Lens, Record, Rival, beside_groups, other_groups, over_results, rivals
 from hidden_effects.rigs import Kind
 from hidden_effects.shapes import Shape, family_of
 

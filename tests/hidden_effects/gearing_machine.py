@@ -11,8 +11,23 @@ from math import cos, hypot, pi, sqrt, tan
 import numpy as np
 from scipy.special import erf
 
-from hidden_effects.gearing_stage import ANGLE, MODULE, PINS, PLANET, POISSON, SUN, YOUNG, Stage, pair_of, play_between
-from hidden_effects.gearing_stress import Loaded, Wrong, stresses, swinging, touched
+from hidden_effects.gearing_stage import (
+    ANGLE,
+    MODULE,
+    PINS,
+    PLANET,
+    POISSON,
+    SUN,
+    YOUNG,
+    Loaded,
+    Stage,
+    Wrong,
+    pair_of,
+    play_between,
+    stresses,
+    swinging,
+    touched,
+)  # fmt: skip
 from hidden_effects.rows import Array, Hidden, MeasuredRows, halved, of
 from published.rv_gearing_by_hand import stiffness
 

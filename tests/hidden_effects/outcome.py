@@ -8,9 +8,9 @@ import numpy as np
 
 from hidden_effects.candidates import Candidate, stacked
 from hidden_effects.cases import Case
-from hidden_effects.information import Lens, beside_groups, over_results
 from hidden_effects.oracle import calibrated, judged, oracle, rms, scale
 from hidden_effects.press_machine import SCATTER, Array, shown
+from hidden_effects.record import Lens, beside_groups, over_results
 from hidden_effects.shapes import family_of, groups
 from truing.testing.hiding import Answered
 from truing.units import to_si

@@ -10,9 +10,9 @@ from hidden_effects.asking import write_case
 from hidden_effects.candidates import columns, registered, tolerance_columns
 from hidden_effects.cases import Case
 from hidden_effects.designs import DESIGNS, Design, Noise, covariance, measured
-from hidden_effects.information import Lens, rivals
 from hidden_effects.making import SCHEDULE, Wish, make_case
 from hidden_effects.press_machine import BOTTOM, POSITION, SCATTER, TILT, Array, Rows, built, shown, slider
+from hidden_effects.record import Lens, rivals
 from hidden_effects.rigs import KINDS, Kind, held_out, noise_of
 from published import press_by_hand as by_hand
 

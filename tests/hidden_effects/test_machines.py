@@ -11,8 +11,7 @@ from hidden_effects.clear import CLEAR
 from hidden_effects.gearing_cases import CONTACT, PLANET_ROOT, SUN_ROOT
 from hidden_effects.gearing_machine import Rows as StageRows
 from hidden_effects.gearing_machine import shown as shown_by_stage
-from hidden_effects.gearing_stage import Stage
-from hidden_effects.gearing_stress import spread
+from hidden_effects.gearing_stage import Stage, spread
 from hidden_effects.harmonic_contact import Flanks, table
 from hidden_effects.harmonic_surface import power, surface, true_structure
 from hidden_effects.rigs import Wish, model_of
