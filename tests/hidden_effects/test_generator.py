@@ -1,12 +1,10 @@
 """The generator of hidden effects is right in itself: its geometry, its noise, what it says is visible."""
 
 from math import radians
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-from hidden_effects.asking import write_case
 from hidden_effects.candidates import columns, registered, tolerance_columns
 from hidden_effects.cases import Case
 from hidden_effects.designs import DESIGNS, Design, Noise, covariance, measured
@@ -236,16 +234,3 @@ def test_sizes_are_half_the_noise_to_three_times() -> None:
     assert np.all(rest < strange * np.sqrt(2.001))
     assert 0 < np.mean(strange < 0.45) < 0.25
     assert {make_case(seed).stratum for seed in (0, 1, 2, 6, 9)} == set(SCHEDULE)
-
-
-def test_a_case_is_written_as_a_user_would_have_it(tmp_path: Path) -> None:
-    """Both files begin with the same row, so that time and strokes count from the same moment."""
-    case = make_case(3)
-    write_case(case, tmp_path)
-    record, held = (
-        (tmp_path / name).read_text(encoding="utf-8").splitlines() for name in ("measured.csv", "held_out.csv")
-    )
-    assert record[0].startswith("crank_angle [deg],forming_force [kN],link_temperature [degC],time [h],strokes [1],")
-    assert record[1].split(",")[:7] == held[1].split(",")[:7]
-    assert (len(record) - 1, len(held) - 1) == (len(case.record.rows), 1001)
-    assert float(record[1].split(",")[7]) * 1e-3 == pytest.approx(case.readings[POSITION][0], rel=1e-15)
