@@ -31,7 +31,6 @@ NOTHING = [
 ]
 NAMED = [
     (3, Wish("single", "wide", "autocorrelated", POSITION_ALONE, 150, ("elastic_deflection",), 2.0)),
-    (1, Wish("single", "narrow", "growing", POSITION_ALONE, 80, ("slider_inertia",), 2.0)),
     (4, Wish("double", "wide", "gaussian", POSITION_ALONE, 150, ("link_heating", "joint_clearance"), 2.0)),
 ]
 UNKNOWN = [
