@@ -6,12 +6,11 @@ from math import gamma, pi
 import numpy as np
 import pytest
 
-from hidden_effects import rv_cases, screw_cases
+from hidden_effects import rv_machine, screw_machine
 from hidden_effects.clear import CLEAR
-from hidden_effects.gearing_cases import CONTACT, PLANET_ROOT, SUN_ROOT
+from hidden_effects.gearing_machine import CONTACT, PLANET_ROOT, SUN_ROOT, Stage, spread
 from hidden_effects.gearing_machine import Rows as StageRows
 from hidden_effects.gearing_machine import shown as shown_by_stage
-from hidden_effects.gearing_stage import Stage, spread
 from hidden_effects.harmonic_contact import Flanks, table
 from hidden_effects.harmonic_surface import power, surface, true_structure
 from hidden_effects.rigs import Wish, model_of
@@ -65,9 +64,9 @@ def test_the_reducer_wears_as_the_paper_prints() -> None:
     depth = wear_after(Wearing(RATED, ROUGHNESS), np.array([0.0, 5.4e6]))
     assert depth[0] == 0
     assert depth[1] * 1e3 == pytest.approx(3.127, rel=5e-3)
-    rows = rv_cases.measured("endurance", 2, np.random.default_rng(0))
+    rows = rv_machine.measured("endurance", 2, np.random.default_rng(0))
     ends = ReducerRows(**{**vars(rows), "working_time": np.array([0.0, 6000.0])})
-    assert shown_by_reducer(ends, {}, {})[rv_cases.BACKLASH] == pytest.approx([0.698, 0.949], abs=1.5e-3)
+    assert shown_by_reducer(ends, {}, {})[rv_machine.BACKLASH] == pytest.approx([0.698, 0.949], abs=1.5e-3)
 
 
 def test_the_screw_has_the_root_stress_of_the_design() -> None:
@@ -76,8 +75,8 @@ def test_the_screw_has_the_root_stress_of_the_design() -> None:
     rest = dict.fromkeys(("time", "screw_speed", "screw_angle", "cycles"), zero)
     read = shown_by_screw(ScrewRows(axial_load=np.array([10.0, 20.0]), temperature=zero + 20, **rest), {}, {})
     nominal = 51.943 / (4 * 0.5) * ROLLER_FACTOR
-    assert read[screw_cases.ROLLER] == pytest.approx([nominal, 2 * nominal], rel=1e-5)
-    assert read[screw_cases.BACKLASH] == pytest.approx([0, 0], abs=1e-9)
+    assert read[screw_machine.ROLLER] == pytest.approx([nominal, 2 * nominal], rel=1e-5)
+    assert read[screw_machine.BACKLASH] == pytest.approx([0, 0], abs=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -13,15 +13,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hidden_effects import rv_cases, screw_cases
-from hidden_effects.gearing_cases import ERROR, PLAY, stage
-from hidden_effects.harmonic_cases import drive
-from hidden_effects.harmonic_machine import MESH, TORSION
+from hidden_effects import rv_machine, screw_machine
+from hidden_effects.gearing_machine import ERROR, PLAY, stage
+from hidden_effects.harmonic_machine import MESH, TORSION, drive
 from hidden_effects.harmonic_surface import STRUCTURE, surface
 from hidden_effects.rigs import Wish, demand_named
 from hidden_effects.rows import Array
-from hidden_effects.rv_cases import WEAR, reducer
-from hidden_effects.screw_cases import ROLLER, TORQUE, screw
+from hidden_effects.rv_machine import WEAR, reducer
+from hidden_effects.screw_machine import ROLLER, TORQUE, screw
 from truing.diagnosis.result import APART
 
 
@@ -45,7 +44,7 @@ RESONANCE = {"excitation": 0.06, "resonance_speed": 1800, "damping": 0.06}
 TILTED_ROLLER = screw(seed=5, hidden={"face_misalignment": {"misalignment": 1.5}}, kind="growing", count=60)
 NOTHING = [
     stage(seed=2, results=(ERROR, PLAY), kind="autocorrelated", count=70),
-    screw(seed=2, kind="heavy", results=(screw_cases.ERROR, screw_cases.BACKLASH)),
+    screw(seed=2, kind="heavy", results=(screw_machine.ERROR, screw_machine.BACKLASH)),
     drive(seed=43, kind="autocorrelated", logs=("time", "wave_angle"), **STIFF),
     surface(seed=2),
 ]
@@ -183,12 +182,12 @@ def test_it_asks_for_the_wear_where_the_wear_can_tell() -> None:
 
 def test_a_stated_duty_leaves_one_name() -> None:
     """The log says that the load reverses evenly; then pins that roll are the only name that is left."""
-    rig = replace(rv_cases.REDUCER, inputs='plugin = "rv_wear"\n[inputs]\nreversing = 1\n')
+    rig = replace(rv_machine.REDUCER, inputs='plugin = "rv_wear"\n[inputs]\nreversing = 1\n')
     wish = reducer(rig=rig, seed=20, hidden={"duty_share": {"idle": 0.4}}, count=40)
     assert not any("duty_share" in names for names in names_of(wish.answered.document))
 
 
-GROWN = screw(seed=32, hidden={"thermal_centre_distance": {"expansion": 11.5}}, results=(screw_cases.BACKLASH,))
+GROWN = screw(seed=32, hidden={"thermal_centre_distance": {"expansion": 11.5}}, results=(screw_machine.BACKLASH,))
 LOADED = screw(seed=35, hidden={"face_misalignment": {"misalignment": 0.6}}, design="loaded", count=60)
 ALIKE = [  # every name of the curve
     (GROWN, {"thermal_drift", "thermal_centre_distance"}),

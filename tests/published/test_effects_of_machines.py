@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hidden_effects import gearing_cases, press_machine, rv_cases
+from hidden_effects import gearing_machine, press_machine, rv_machine
 from hidden_effects.clear import REDUCED, STAGES
-from hidden_effects.gearing_stage import Stage
+from hidden_effects.gearing_machine import Stage
 from hidden_effects.rigs import model_of
 from hidden_effects.rows import Array
 from truing.evaluate import evaluate_rows
@@ -101,14 +101,14 @@ PRESS = Machine(
     results={"slider_position": SI, "slider_tilt": SI}, inputs={}, unit=SI,
 )  # fmt: skip
 GEARING = Machine(
-    plugin="rv_gearing", rows=lambda design: gearing_cases.measured(design, COUNT, np.random.default_rng(3)),
-    shown=lambda rows, hidden: gearing_cases.shown(rows, Stage(), hidden), columns=gearing_cases.STAGE.written,
-    results=gearing_cases.UNIT, inputs={"sun_teeth": 20, "planet_teeth": 55},
+    plugin="rv_gearing", rows=lambda design: gearing_machine.measured(design, COUNT, np.random.default_rng(3)),
+    shown=lambda rows, hidden: gearing_machine.shown(rows, Stage(), hidden), columns=gearing_machine.STAGE.written,
+    results=gearing_machine.UNIT, inputs={"sun_teeth": 20, "planet_teeth": 55},
 )  # fmt: skip
 REDUCER = Machine(
-    plugin="rv_wear", rows=lambda design: rv_cases.measured(design, COUNT, np.random.default_rng(3)),
-    shown=lambda rows, hidden: rv_cases.shown(rows, {}, hidden), columns=rv_cases.REDUCER.written,
-    results=rv_cases.UNIT, inputs={},
+    plugin="rv_wear", rows=lambda design: rv_machine.measured(design, COUNT, np.random.default_rng(3)),
+    shown=lambda rows, hidden: rv_machine.shown(rows, {}, hidden), columns=rv_machine.REDUCER.written,
+    results=rv_machine.UNIT, inputs={},
 )  # fmt: skip
 HEAT = {"link_heating": {"expansion": 1.15e-5}}
 HANGING = {"slider_mass": "20 t", "counterbalance": "150 kN"}
