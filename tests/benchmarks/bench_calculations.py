@@ -82,7 +82,7 @@ MAP[RNG.random(MAP.shape) < 0.03] = np.nan
 
 def structure_by_pairs() -> np.ndarray:
     """Of some lines, pair by pair: floats in lists, which is how such a loop is quick."""
-    found = []
+    means = []
     for line in MAP[:LOOPED].tolist():
         for step in STEPS.tolist():
             total, count = 0.0, 0
@@ -91,8 +91,8 @@ def structure_by_pairs() -> np.ndarray:
                 if difference == difference:
                     total += difference * difference
                     count += 1
-            found.append(total / count)
-    return np.array(found).reshape(LOOPED, len(STEPS))
+            means.append(total / count)
+    return np.array(means).reshape(LOOPED, len(STEPS))
 
 
 def structure() -> np.ndarray:

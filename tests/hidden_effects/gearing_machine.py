@@ -55,7 +55,7 @@ def pair_of(stage: Stage, apart: float = 0.0) -> standards.Case:
 
 def play_between(stage: Stage, apart: Array) -> Array:
     """What the teeth leave of the pitch, along the line of action, um; ``apart`` in mm."""
-    return np.array([1e3 * pair_of(stage, float(each))["backlash"] for each in apart])
+    return np.array([1e3 * pair_of(stage, gap)["backlash"] for gap in apart.tolist()])
 
 
 @dataclass(frozen=True)

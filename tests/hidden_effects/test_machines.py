@@ -11,7 +11,7 @@ from hidden_effects.clear import CLEAR
 from hidden_effects.gearing_machine import CONTACT, PLANET_ROOT, SUN_ROOT, Stage, spread
 from hidden_effects.gearing_machine import Rows as StageRows
 from hidden_effects.gearing_machine import shown as shown_by_stage
-from hidden_effects.harmonic_contact import Flanks, table
+from hidden_effects.harmonic_machine import Flanks, table
 from hidden_effects.harmonic_surface import power, surface, true_structure
 from hidden_effects.rigs import Wish, model_of
 from hidden_effects.rv_machine import RATED, ROUGHNESS, Wearing, wear_after
