@@ -13,7 +13,6 @@ import warnings
 from collections.abc import Mapping
 from functools import cache, partial
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from unittest.mock import Mock
 
 import numpy as np
@@ -30,9 +29,9 @@ from truing.diagnosis.machine import calibration_of, predict
 from truing.diagnosis.records import Covariate, Records, Role
 from truing.evaluate import evaluate_rows
 from truing.gauge import one_machine
-from truing.inputs_file import read_setup
 from truing.measurements import RowsFile
 from truing.setup import Setup
+from truing.testing import recorded
 
 ALONE, BOTH = (POSITION,), (POSITION, TILT)
 ALLOWED = 8.0
@@ -56,10 +55,7 @@ ROLES: Mapping[str, tuple[str, Role]] = {
 @cache
 def press_setup() -> Setup:
     """The press as the hidden cases have it: every tolerance in force."""
-    with TemporaryDirectory() as folder:
-        file = Path(folder) / "inputs.toml"
-        file.write_text(INPUTS, encoding="utf-8")
-        return read_setup(file, press_offer())
+    return recorded(press_offer().model, inputs=INPUTS, measured="").setup
 
 
 def measured(count: int, results: tuple[str, ...], seed: int = 1) -> tuple[Setting, dict[str, Array]]:
