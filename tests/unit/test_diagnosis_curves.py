@@ -356,16 +356,6 @@ def two_files(folder: Path, one: Asked) -> tuple[Records, Array]:
     return read_records(paths, offer_of(one.model), one.setup), np.concatenate([bench.travel for bench in benches])
 
 
-# Numbers
-
-
-def test_a_cause_has_the_numbers_of_its_effect_in_si(tmp_path: Path) -> None:
-    rise, constant = effect_of(calibration(asked(["warm_up"]), tmp_path, wide(60)), "warm_up").numbers
-    assert_allclose([rise.low, rise.high, constant.low, constant.high], [-1e-3, 1e-3, 360, 72_000])
-    assert (rise.is_amplitude, rise.is_free, rise.is_log) == (True, True, False)
-    assert (constant.is_amplitude, constant.is_free, constant.is_log) == (False, True, True)
-
-
 @pytest.mark.parametrize("per_file", [("lead_error",), ("lead_error.lead",)])
 def test_an_unknown_of_every_file_is_a_number_for_each(tmp_path: Path, per_file: tuple[str, ...]) -> None:
     one = asked(["lead_error"])
@@ -400,22 +390,21 @@ def test_an_input_of_every_file_is_a_machine_for_each(tmp_path: Path) -> None:
     assert_allclose(made["deflection"] - there.base["deflection"], 2 * slopes[:, 1], rtol=1e-6, atol=1e-15)
 
 
-def test_an_input_that_moves_nothing_is_no_cause(tmp_path: Path) -> None:
+def test_causes_are_the_models_first_then_the_kernels_with_their_numbers_in_si(tmp_path: Path) -> None:
     there = calibration(
-        asked(tolerances={"contact": "3 %", "zero": "5 um"}), tmp_path, replace(wide(30), load=np.zeros(30))
-    )
-    assert [cause.name for cause in inputs_of(there)] == ["input:zero"]
-
-
-# Which
-
-
-def test_causes_are_the_models_first_then_the_kernels_and_their_tags_differ(tmp_path: Path) -> None:
-    found = effects_of(calibration(asked(["wear", "lead_error"]), tmp_path, wide(60)))
-    assert [cause.name for cause in found][:2] == ["wear", "lead_error"]
+        asked(["wear", "warm_up"], tolerances={"contact": "3 %", "zero": "5 um"}), tmp_path,
+        replace(wide(60), load=np.zeros(60)),
+    )  # fmt: skip
+    found = effects_of(there)
+    assert [cause.name for cause in found][:2] == ["wear", "warm_up"]
     assert [cause.is_kernel for cause in found] == [False, False, *[True] * (len(found) - 2)]
     assert len({cause.tag for cause in found}) == len(found)
     assert [cause.order for cause in found] == sorted(cause.order for cause in found)
+    rise, constant = found[1].numbers
+    assert_allclose([rise.low, rise.high, constant.low, constant.high], [-1e-3, 1e-3, 360, 72_000])
+    assert (rise.is_amplitude, rise.is_free, rise.is_log) == (True, True, False)
+    assert (constant.is_amplitude, constant.is_free, constant.is_log) == (False, True, True)
+    assert [cause.name for cause in inputs_of(there)] == ["input:zero"]  # the contact moves nothing without a load
 
 
 # Names of one curve
@@ -429,7 +418,7 @@ def named(one: Asked, folder: Path, bench: Bench, error: Array) -> list[set[str]
 
 
 def test_of_two_of_the_model_the_first_declared_and_the_one_with_fewer_unknowns_goes_first(tmp_path: Path) -> None:
-    bench = wide(120)
+    bench = wide(60)
     error = 0.1 * bench.travel
     several = asked(["lead_error"], more=["skewed", "lead_again"])
     assert named(several, tmp_path, bench, error) == [{"first: lead_error", "lead_again", "skewed"}]
@@ -438,7 +427,7 @@ def test_of_two_of_the_model_the_first_declared_and_the_one_with_fewer_unknowns_
 
 
 def test_curves_that_differ_only_by_what_is_tolerated_are_one(tmp_path: Path) -> None:
-    bench = wide(120)
+    bench = wide(60)
     warmer = replace(bench, temperature=27 + 2.5 * bench.time)  # growth is a drift and an offset
     error = 4 * (warmer.temperature - 20)
     apart = named(asked(["thermal_growth"]), tmp_path, warmer, error)
@@ -447,10 +436,13 @@ def test_curves_that_differ_only_by_what_is_tolerated_are_one(tmp_path: Path) ->
     assert alike == [{"first: sensor_drift", "thermal_growth", "thermal_drift"}]
 
 
-def test_the_first_order_of_a_gauge_goes_by_the_name_of_the_models_own(tmp_path: Path) -> None:
+@pytest.mark.parametrize(("order", "names"), [
+    (1, {"first: eccentricity", "periodic_order_of_rotation"}), (2, {"first: periodic_order_of_rotation"}),
+])  # fmt: skip
+def test_the_first_order_of_a_gauge_goes_by_the_name_of_the_models_own(
+    tmp_path: Path, order: int, names: set[str]
+) -> None:
     """Two numbers and no order claim less than an order that could have been another; orders 2 and 3 stay apart."""
-    bench, one = wide(150, turning=True), asked(["lead_error"], more=["eccentricity"])
-    first = 8 * np.sin(np.radians(bench.rotation) + 0.7)
-    assert named(one, tmp_path, bench, first) == [{"first: eccentricity", "periodic_order_of_rotation"}]
-    second = 8 * np.sin(2 * np.radians(bench.rotation) + 0.7)
-    assert named(one, tmp_path, bench, second) == [{"first: periodic_order_of_rotation"}]
+    bench = wide(90, turning=True)
+    wave = 8 * np.sin(order * np.radians(bench.rotation) + 0.7)
+    assert named(asked(more=["eccentricity"]), tmp_path, bench, wave) == [names]

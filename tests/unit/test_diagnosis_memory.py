@@ -79,17 +79,8 @@ def test_a_search_looks_at_one_row_of_every_stretch(tmp_path: Path, monkeypatch:
     assert (few.lines == records.lines[taken]).all()
     assert len(np.unique(np.diff(taken))) > 3  # no regular step, which would fold a wave into another one
     assert engine.searched(few, seed=1) is few
-
-
-def test_a_record_along_an_axis_of_the_model_is_searched_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Its rows are one path: of some of them the model would draw another one."""
-    bench, asked = wide(130), Asked(drive_model(("lead_error",)))
-    records = asked.records(tmp_path, bench.columns(0.0 * bench.time))
-    assert engine.searched(records, seed=1) is records
-    monkeypatch.setattr(engine, "LONG", 40)
-    assert len(engine.searched(records, seed=1)) == 40
     along = replace(records, rows=replace(records.rows, series=("travel",)))
-    assert engine.searched(along, seed=1) is along
+    assert engine.searched(along, seed=1) is along  # its rows are one path: of some the model would draw another one
 
 
 def test_what_a_search_of_some_rows_came_to_is_fitted_to_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -137,21 +128,18 @@ def calls_of(tmp_path: Path, extra: int, tolerances: Mapping[str, str]) -> int:
     return len(calls)
 
 
-def test_effects_on_results_cost_no_call_of_a_slow_model_however_many_pairs_there_are(tmp_path: Path) -> None:
-    """What acts after the model needs it for the rows alone, whatever the size of the effect: of 21 pairs none.
+@pytest.mark.parametrize(("tolerances", "extra", "most", "most_more"), [({}, 6, 1, 2 * 6), (TOLERANCES, 8, 300, 5 * 8)])
+def test_effects_on_results_cost_few_calls_of_a_slow_model_however_many_pairs_there_are(
+    tmp_path: Path, tolerances: Mapping[str, str], extra: int, most: int, most_more: int
+) -> None:
+    """What acts after the model needs it for the rows alone, whose answer is known since they were read.
 
-    Of an effect that was not fitted the model is asked twice whether it fails with it.
+    Of an effect that was not fitted the model is asked twice whether it fails with it. Where inputs have tolerances
+    every explanation that is fitted has inputs of its own, and the model is called there; not for all of 28 pairs.
     """
-    none, six = (calls_of(tmp_path, extra, {}) for extra in (0, 6))
-    assert none <= 1  # the answer to the rows is known since they were read
-    assert six <= 1 + 2 * 6
-
-
-def test_where_inputs_have_tolerances_a_further_effect_costs_a_few_calls(tmp_path: Path) -> None:
-    """Every explanation that is fitted has inputs of its own, and the model is called there; not for every pair."""
-    none, ten = (calls_of(tmp_path, extra, TOLERANCES) for extra in (0, 10))
-    assert none < 300
-    assert ten - none <= 5 * 10  # of 45 pairs more
+    none, more = (calls_of(tmp_path, effects, tolerances) for effects in (0, extra))
+    assert none <= most
+    assert more - none <= most_more
 
 
 def test_every_linear_algebra_has_one_thread_in_a_fresh_process() -> None:

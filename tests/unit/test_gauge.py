@@ -179,17 +179,6 @@ def test_a_condition_may_change_within_a_record(tmp_path: Path) -> None:
 LOADS = "load [N],time [h]\n28,1\n56,2\n84,3\n"
 
 
-def counting() -> tuple[Model[Any, Any], list[int]]:
-    """The wall, and how many rows each call of it has had so far."""
-    calls: list[int] = []
-
-    def counted(given_: Wall) -> Course:
-        calls.append(np.size(given_.flux))
-        return wall(given_)
-
-    return replace(WALL, function=counted), calls
-
-
 def test_each_trial_is_the_machine_with_that_input(tmp_path: Path) -> None:
     """Pressure is load over 28 mm^2; a measured column is replaced row by row, another input for all rows."""
     setup, rows = rows_for(PIN_WEAR, tmp_path, LOADS)
@@ -218,62 +207,55 @@ def test_a_model_may_change_its_columns_in_place(tmp_path: Path, count: int) -> 
     assert value[0] == 11.0
 
 
-def test_trials_are_one_call_and_not_too_many_rows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    model, calls = counting()
-    setup, rows = rows_for(model, tmp_path, "flux [W/m^2]\n10\n20\n30\n")
-    changes = [{"outside": 273.15 + place} for place in range(5)]
-    answers = list(read_trials(setup, rows, changes, ["inside"]))
-    assert calls == [15]
-    monkeypatch.setattr("truing.gauge.AT_ONCE", 7)
-    in_parts = list(read_trials(setup, rows, changes, ["inside"]))
-    assert calls[1:] == [6, 6, 3]
-    for place, (at_once, part) in enumerate(zip(answers, in_parts, strict=True)):
-        np.testing.assert_allclose(at_once["inside"] - 273.15, place + np.array([1, 2, 3]))
-        np.testing.assert_allclose(part["inside"], at_once["inside"])
+PLAIN = "flux [W/m^2]\n10\n20\n30\n"
+ALIKE = "depth [mm],flux [W/m^2]\n0,10\n50,20\n100,10\n100,20\n"
+RECORD = "run,depth [mm],pressing [N]\na,0,1\na,50,2\na,100,3\n"
+DIRT = effect_column("dirt", "offset")
+WARMER = [273.15 + place for place in range(5)]
+RISES = [[place + rise for rise in (1, 2, 3)] for place in range(-20, -15)]
 
 
-@pytest.mark.parametrize("text", ["depth [mm]\n0\n50\n100\n", "depth [mm],pressing [N]\n0,1\n50,2\n100,3\n"])
-def test_a_curve_is_calculated_once_for_all_rows_of_a_trial(tmp_path: Path, text: str) -> None:
-    """10 W/m^2 through 100 mm of 1 W/(m K) are one kelvin: half of it in the middle. The trials are one call."""
-    model, calls = counting()
-    setup, rows = rows_for(model, tmp_path, text)
-    setup = setup.changed({"pressing": np.ones(3)})
-    answers = list(read_trials(setup, rows, [{"flux": 10.0}, {"flux": 20.0}], ["temperature"]))
-    np.testing.assert_allclose([each["temperature"] - 293.15 for each in answers], [[0, 0.5, 1], [0, 1, 2]], atol=1e-9)
-    assert calls == [2]
+@pytest.mark.parametrize(
+    ("text", "column", "values", "wanted", "answers", "calls"),
+    [
+        (PLAIN, "outside", WARMER, "inside", RISES, [15]),
+        (PLAIN, "outside", WARMER, "inside", RISES, [6, 6, 3]),
+        ("depth [mm]\n0\n50\n100\n", "flux", [10.0, 20.0], "temperature", [[0, 0.5, 1], [0, 1, 2]], [2]),
+        (RECORD, "flux", [10.0, 20.0], "temperature", [[0, 0.5, 1], [0, 1, 2]], [2]),
+        (PLAIN, "flux", [10.0, 20.0], "inside", [[1] * 3, [2] * 3], [2]),
+        (ALIKE, "outside", [293.15, 303.15], "temperature", [[0, 1, 1, 2], [10, 11, 11, 12]], [4]),
+        (
+            RECORD,
+            DIRT,
+            [np.full(3, float(size)) for size in range(40)],
+            "inside",
+            [[1 + k] * 3 for k in range(40)],
+            [1],
+        ),
+    ],
+    ids=["one call", "not too many rows", "a curve", "a record", "no column changes", "alike", "on the reading"],
+)
+def test_trials_are_few_calls(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, text: str, column: str, values: list[Any], wanted: str,
+    answers: list[list[float]], calls: list[int],
+) -> None:  # fmt: skip
+    """10 W/m^2 through 100 mm of 1 W/(m K) are one kelvin, half of it in the middle; beyond 20 degC."""
+    seen: list[int] = []
 
+    def counted(given_: Wall) -> Course:
+        seen.append(np.size(given_.flux))
+        return wall(given_)
 
-def test_what_no_column_changes_is_calculated_once_a_trial(tmp_path: Path) -> None:
-    model, calls = counting()
-    setup, rows = rows_for(model, tmp_path, "flux [W/m^2]\n10\n20\n30\n")
-    rows = replace(rows, columns={"of_another_effect": np.arange(3.0)})
-    answers = list(read_trials(setup, rows, [{"flux": 10.0}, {"flux": 20.0}], ["inside"]))
-    np.testing.assert_allclose([each["inside"] - 293.15 for each in answers], [[1] * 3, [2] * 3])
-    assert calls == [2]
-
-
-def test_rows_that_are_alike_are_one_calculation_along_an_axis(tmp_path: Path) -> None:
-    """Of 10 and 20 W/m^2 two kelvins are one third: four rows are two calculations, each read at its own places."""
-    model, calls = counting()
-    text = "depth [mm],flux [W/m^2]\n0,10\n50,20\n100,10\n100,20\n"
-    setup, rows = rows_for(model, tmp_path, text)
-    setup = setup.changed({"pressing": np.ones(3)})
-    plain, warm = read_trials(setup, rows, [{"outside": 293.15}, {"outside": 303.15}], ["temperature"])
-    np.testing.assert_allclose(plain["temperature"] - 293.15, [0, 1, 1, 2], atol=1e-9)
-    np.testing.assert_allclose(warm["temperature"] - 293.15, [10, 11, 11, 12], atol=1e-9)
-    assert calls == [4]
-
-
-def test_an_effect_on_the_reading_asks_for_no_record_again(tmp_path: Path) -> None:
-    """What dirt adds at 40 sizes is added to one record."""
-    model, calls = counting()
-    text = "run,depth [mm],pressing [N]\na,0,1\na,50,2\na,100,3\n"
-    setup, rows = rows_for(model, tmp_path, text)
-    on = setup.with_effects([SwitchedOn(WALL.known_effects["dirt"], {"offset": 0.0})])
-    changes = [{effect_column("dirt", "offset"): np.full(3, float(size))} for size in range(40)]
-    found = [each["inside"] for each in read_trials(on, rows, changes, ["inside"])]
-    np.testing.assert_allclose([each - found[0] for each in found], np.repeat(np.arange(40.0)[:, None], 3, axis=1))
-    assert calls == [1]
+    if len(calls) > 1:
+        monkeypatch.setattr("truing.gauge.AT_ONCE", 7)
+    setup, rows = rows_for(replace(WALL, function=counted), tmp_path, text)
+    others = {name: own for name, own in rows.columns.items() if name != column}
+    rows = replace(rows, columns={**others, "of_another_effect": np.arange(float(len(rows)))})
+    on = [SwitchedOn(WALL.known_effects["dirt"], {"offset": 0.0})] if column == DIRT else []
+    setup = (setup.changed({"pressing": np.ones(3)}) if "depth" in text else setup).with_effects(on)
+    told = [each[wanted] - 293.15 for each in read_trials(setup, rows, [{column: each} for each in values], [wanted])]
+    np.testing.assert_allclose(told, answers, atol=1e-9)
+    assert seen == calls
 
 
 def test_a_trial_in_which_the_model_fails_leaves_the_others(tmp_path: Path) -> None:
@@ -324,40 +306,40 @@ def test_what_has_been_whatever_the_order_of_the_rows(derived: str, values: list
     assert shuffled == [seen[row] for row in order]
 
 
-def test_history_begins_anew_with_every_run_but_the_start_is_that_of_the_file() -> None:
-    values, runs = [10.0, 1.0, 12.0, 3.0, 11.0, 2.0], [7, 3, 7, 3, 7, 3]
-    assert history("running_maximum of x", values, runs) == [10, 1, 12, 3, 12, 3]
-    assert history("cumulative of x", values, runs) == [0, 0, 2, 2, 3, 3]
-    assert history("direction of x", values, runs) == [1, 1, 1, 1, -1, -1]
-    assert history("last_reversal of x", values, runs) == [10, 1, 10, 1, 12, 3]
-    assert history("since_start", values, runs) == [0, -9, 2, -7, 1, -8]
-
-
-def test_the_earliest_row_of_the_file_is_the_start_and_rows_without_a_time_come_last() -> None:
-    assert history("since_start", [30, 10, 20], [1, 2, 2], [8.0, 6.0, 7.0]) == [20, 0, 10]
-    assert history("since_start", [30, NAN, 20], time=[8.0, 6.0, 7.0])[::2] == [10, 0]
-    assert history("since_start", [6.0, 8.0], time=[NAN, NAN]) == [0, 2]
-    assert history("cumulative of x", [1, 9, 2], time=[0.0, NAN, 1.0]) == [0, 8, 1]
+RUNS = ([10.0, 1.0, 12.0, 3.0, 11.0, 2.0], [7, 3, 7, 3, 7, 3], None)
+GAPS = ([NAN, 1, NAN, 4, 0], None, None)
+NEVER = ([NAN, NAN, 1.0], [1, 1, 2], None)
 
 
 @pytest.mark.parametrize(
-    ("derived", "seen"),
+    ("derived", "rows", "seen"),
     [
-        ("since_start", [NAN, 0, NAN, 3, -1]),
-        ("running_maximum of x", [NAN, 1, 1, 4, 4]),
-        ("cumulative of x", [NAN, 0, 0, 3, 7]),
-        ("direction of x", [1, 1, 1, 1, -1]),
-        ("last_reversal of x", [NAN, 1, 1, 1, 4]),
+        # history begins anew with every run, but the start is that of the file
+        ("running_maximum of x", RUNS, [10, 1, 12, 3, 12, 3]),
+        ("cumulative of x", RUNS, [0, 0, 2, 2, 3, 3]),
+        ("direction of x", RUNS, [1, 1, 1, 1, -1, -1]),
+        ("last_reversal of x", RUNS, [10, 1, 10, 1, 12, 3]),
+        ("since_start", RUNS, [0, -9, 2, -7, 1, -8]),
+        # the earliest row of the file is the start, and rows without a time come last
+        ("since_start", ([30, 10, 20], [1, 2, 2], [8.0, 6.0, 7.0]), [20, 0, 10]),
+        ("since_start", ([30, NAN, 20], None, [8.0, 6.0, 7.0]), [10, NAN, 0]),
+        ("since_start", ([6.0, 8.0], None, [NAN, NAN]), [0, 2]),
+        ("cumulative of x", ([1, 9, 2], None, [0.0, NAN, 1.0]), [0, 8, 1]),
+        # what is missing is passed over; where nothing is measured nothing is known
+        ("since_start", GAPS, [NAN, 0, NAN, 3, -1]),
+        ("running_maximum of x", GAPS, [NAN, 1, 1, 4, 4]),
+        ("cumulative of x", GAPS, [NAN, 0, 0, 3, 7]),
+        ("direction of x", GAPS, [1, 1, 1, 1, -1]),
+        ("last_reversal of x", GAPS, [NAN, 1, 1, 1, 4]),
+        ("since_start", ([NAN, NAN], None, None), [NAN, NAN]),
+        ("running_maximum of x", NEVER, [NAN, NAN, 1]),
+        ("cumulative of x", NEVER, [NAN, NAN, 0]),
+        ("direction of x", NEVER, [NAN, NAN, 0]),
+        ("last_reversal of x", NEVER, [NAN, NAN, 1]),
     ],
 )
-def test_what_is_missing_is_passed_over(derived: str, seen: list[float]) -> None:
-    np.testing.assert_array_equal(history(derived, [NAN, 1, NAN, 4, 0]), seen)
-
-
-@pytest.mark.parametrize("word", ["running_maximum", "cumulative", "direction", "last_reversal"])
-def test_where_nothing_is_measured_nothing_is_known(word: str) -> None:
-    assert np.isnan(history(f"{word} of x", [NAN, NAN, 1.0], [1, 1, 2])).tolist() == [True, True, False]
-    assert np.isnan(history("since_start", [NAN, NAN])).all()
+def test_runs_times_and_gaps(derived: str, rows: tuple[Any, ...], seen: list[float]) -> None:
+    np.testing.assert_array_equal(history(derived, *rows), seen)
 
 
 def test_a_column_that_is_not_there() -> None:
