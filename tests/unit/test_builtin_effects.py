@@ -148,27 +148,27 @@ def test_unknowns_have_the_unit_of_a_difference_of_their_result() -> None:
     assert (after.along, after.is_amplitude) == ("time", False)
 
 
-def test_an_angle_that_is_a_condition_comes_before_inputs_that_are_not_swept() -> None:
-    swash = Condition("swash", "rad")
-    bent = Effect("bent", on_inputs=_bent, unknowns=[Unknown("lift", -1, 1, "um")], needs=[swash])
-    model = replace(SHAFT, studies=[], errors=[*SHAFT.errors, bent])
-    orders = {name: effect for name, effect in model.known_effects.items() if name.startswith("periodic")}
-    assert list(orders) == ["periodic_order", "periodic_order_of_turn", "periodic_order_of_pitch"]
-    assert orders["periodic_order"].needs == (swash,)
+def _lifted_with(shaft: Shaft, *, lift: Float, it: Float) -> Shaft:
+    return replace(shaft, eccentricity=shaft.eccentricity + lift * it)
 
 
-def _bent(shaft: Shaft, *, lift: Float, swash: Float) -> Shaft:
-    return replace(shaft, eccentricity=shaft.eccentricity + lift * swash)
-
-
-def test_temperatures_are_conditions_first_and_then_inputs() -> None:
-    bearing = Condition("bearing", "degC", reference=30)
-    hot = Effect("hot", on_inputs=_hot, unknowns=[Unknown("lift", -1, 1, "um")], needs=[bearing])
-    model = replace(SHAFT, errors=[hot])
-    drifts = [name for name in model.known_effects if name.startswith("thermal")]
-    assert drifts == ["thermal_drift", "thermal_drift_of_oil"]
-    assert model.known_effects["thermal_drift"].needs == (bearing,)
-    assert "temperature" not in model.known_conditions
+@pytest.mark.parametrize(
+    ("condition", "name", "others"),
+    [
+        (Condition("it", "rad"), "periodic_order", ["turn", "pitch"]),
+        (Condition("it", "degC", reference=30), "thermal_drift", ["oil"]),
+    ],
+)
+def test_angles_and_temperatures_are_conditions_first_and_then_inputs(
+    condition: Condition, name: str, others: list[str]
+) -> None:
+    """Without a sweep no input is the angle before another one."""
+    own = Effect("own", on_inputs=_lifted_with, unknowns=[Unknown("lift", -1, 1, "um")], needs=[condition])
+    model = replace(SHAFT, studies=[], errors=[*SHAFT.errors, own])
+    effects = [effect for effect in model.known_effects if effect.startswith(name)]
+    assert effects == [name, *(f"{name}_of_{other}" for other in others)]
+    assert model.known_effects[name].needs == (condition,)
+    assert "temperature" not in model.known_conditions or condition.unit == "rad"
 
 
 @inputs
@@ -208,10 +208,6 @@ def test_the_wave_of_an_input_is_looked_for_where_a_record_turns_it_round(
     assert ("periodic_order_of_pitch" in names) is offered
     assert records.covariates["turn"].is_angle
     assert records.covariates["pitch"].is_angle is offered
-
-
-def _hot(shaft: Shaft, *, lift: Float, bearing: Float) -> Shaft:
-    return replace(shaft, eccentricity=shaft.eccentricity + lift * (bearing - 303.15))
 
 
 @inputs
@@ -584,9 +580,8 @@ def _lifted(bar: Bar, base: Pull, *, lift: Float, turn: Float) -> Pull:
 
 def test_an_effect_without_parts_needs_every_unknown() -> None:
     own = Effect("own", on_reading=_any, unknowns=[Unknown("zero", -1, 1, "N"), Unknown("other", -1, 1, "N")])
-    model = replace(BAR, errors=[own])
     with pytest.raises(UsageError, match="effect 'own' is on, so its unknown 'other' must be given"):
-        evaluate(replace(default_setup(model), effects=(SwitchedOn(own, {"zero": 0.1}),)), reading=True)
+        evaluate(replace(default_setup(replace(BAR, errors=[own])), effects=(SwitchedOn(own, {"zero": 0.1}),)))
 
 
 def _any(bar: Bar, base: Pull, **unknowns: Float) -> Pull:
