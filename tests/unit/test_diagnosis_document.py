@@ -32,13 +32,13 @@ from diagnosis_samples import (
     none_found,
     unknown,
 )
-from test_report_sheet import HOSTILE, Page
+from test_report_sheet import Page
 
 from truing.cli.diagnose import lines_of as report
 from truing.declare.fields import Float, axis, found, part, results
 from truing.declare.model import Model
 from truing.diagnosis.noise import SETTINGS
-from truing.diagnosis.records import Covariate, SuspectedUnit
+from truing.diagnosis.records import Covariate
 from truing.diagnosis.result import (
     Alternative,
     Amount,
@@ -47,7 +47,6 @@ from truing.diagnosis.result import (
     DiagnosisResult,
     FittedUnknown,
     Gain,
-    NextPoint,
     Remainder,
     ResidualFinding,
     ShapeTerm,
@@ -461,33 +460,6 @@ def test_a_unit_slip_stands_before_everything_else() -> None:
     text = page_of("ambiguous")[1]
     assert 0 < text.index("Suspected unit slip.") < text.index("<h2")
     assert "Suspected unit slip" not in page_of("remainder")[1]
-
-
-def test_hostile_texts_are_printed_and_do_nothing() -> None:
-    made = ambiguous()
-    covariates = {**made.records.covariates, HOSTILE: Covariate(HOSTILE, np.arange(160.0), "", "other")}
-    records = replace(
-        made.records, covariates=covariates, notes=(HOSTILE,), unit_errors=(SuspectedUnit(HOSTILE, 10.0, HOSTILE),),
-        files=(HOSTILE, "b.csv"),
-    )  # fmt: skip
-    wrong = replace(made.wrong[0], findings=(ResidualFinding("trend", HOSTILE, 0.01, HOSTILE),))
-    made = replace(
-        made, records=records, wrong=(wrong, made.wrong[1]), inseparable=(HOSTILE,),
-        alternatives=(Alternative((HOSTILE,), 1.0, 2.0, (HOSTILE,)),),
-        causes=(*made.causes, Cause(f"input:{HOSTILE}", (FittedUnknown(HOSTILE, 1.0, 0.5, 1.5, ""),), (), (HOSTILE,))),
-        next=(NextPoint({HOSTILE: Amount(1.0, "")}, (HOSTILE, HOSTILE), HOSTILE, 3.0),),
-        seen=(VisibleSize(HOSTILE, None, "not excited", HOSTILE),), not_measured={HOSTILE: (HOSTILE,)},
-    )  # fmt: skip
-    sheet = sheet_of(made)
-    html = html_of(sheet)
-    assert "<script" not in html
-    assert HOSTILE in plain(Page(html).text)
-    markdown = markdown_of(sheet)
-    assert "<script" not in markdown
-    assert "](https://evil" not in markdown
-    assert "**bold**" not in markdown
-    printed = "\n".join(report(made, Path("runs/x")))
-    assert "alert(1)" in printed
 
 
 # Words
