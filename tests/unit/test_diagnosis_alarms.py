@@ -31,6 +31,7 @@ from truing.diagnosis.gain import CONTRADICTING, FEWEST_PER_NUMBER, contradictio
 from truing.diagnosis.noise import SETTINGS, Autocorrelation
 from truing.diagnosis.result import Amount, Contradiction, DiagnosisResult, Thinned, Trade
 from truing.diagnosis.visibility import TRADED, trades_of
+from truing.report.diagnosis_words import headline
 from truing.runs.diagnosis_document import diagnosis_document
 from truing.setup import DiagnoseOptions
 from truing.studies.bench import silent
@@ -49,9 +50,11 @@ def asked(effects: Sequence[str] = ("lead_error",), tolerances: Mapping[str, str
     return Asked(drive_model(effects, tolerances or {}))
 
 
-def taken(folder: Path, one: Asked, columns: Mapping[str, Array], name: str, *others: str) -> Chosen:
+def taken(
+    folder: Path, one: Asked, columns: Mapping[str, Array], name: str, *others: str, runs: Sequence[str] = ()
+) -> Chosen:
     """One cause as if it had been chosen, others fitted beside it, in white noise of 1 um."""
-    made = one.competing(folder, columns)
+    made = one.competing(folder, columns, runs)
     for other in others:
         fit_of(made, other)
     return chosen_as(made, fit_of(made, name))
@@ -95,7 +98,7 @@ def test_an_alarm_sounds_alone(
     )  # fmt: skip
     error = np.where(np.arange(ROWS) < 120, lead, held_out) * BENCH.travel + noise * NOISE
     columns = COLD.shown(error, contact=3.0 * (1 + 0.03 * off)) | {"sigma_deflection": np.full(ROWS, stated)}
-    found = one.diagnosed(tmp_path, columns, ["a"] * 120 + ["b"] * 40)
+    found = answered(taken(tmp_path, one, columns, "lead_error", runs=["a"] * 120 + ["b"] * 40))
     assert is_told(found, words or "no warning has these words") is bool(words)
 
 
@@ -157,6 +160,7 @@ def test_a_wave_that_is_left(tmp_path: Path, size: float, sounds: bool) -> None:
     wave = size * np.sin(2 * np.pi * 12 * np.argsort(np.argsort(BENCH.travel)) / ROWS)
     found = answered(taken(tmp_path, asked(), COLD.shown(LEAD * BENCH.travel + wave + NOISE), "lead_error"))
     assert any("there are 12 waves over the range of travel" in each for each in found.warnings) is sounds
+    assert ("12 waves over the range of travel" in " ".join(headline(found))) is sounds
     assert found.verdict == "named"
 
 
@@ -338,7 +342,7 @@ def test_rows_without_an_order_are_parted_at_random(tmp_path: Path) -> None:
 
 def test_consistent_halves_leave_a_cause_its_name(tmp_path: Path) -> None:
     error = LEAD * BENCH.travel + NOISE
-    found = asked(["lead_error", "clearance"]).diagnosed(tmp_path, COLD.shown(error))
+    found = answered(taken(tmp_path, asked(["lead_error", "clearance"]), COLD.shown(error), "lead_error", "clearance"))
     assert (name_sets(found), found.contradictions, found.verdict) == ([{"lead_error"}], (), "named")
     (wrong,) = found.wrong  # of its mean square all but the noise can go
     assert_allclose(wrong.reducible_share, 1 - (NOISE @ NOISE) / (error @ error), rtol=0, atol=0.002)

@@ -87,11 +87,11 @@ def test_a_fit_and_its_noise_are_those_of_the_tobit_likelihood(tmp_path: Path, l
 
 
 def test_a_diagnosis_of_a_clipped_gauge_names_the_cause_with_its_size(tmp_path: Path) -> None:
-    bench = wide(150, seed=43)
+    bench = wide(90, seed=43)
     true = gauge(bench.load, bench.travel) + 0.4 * (bench.temperature - 20)
-    true += np.random.default_rng(43).normal(0, 1, 150)
+    true += np.random.default_rng(43).normal(0, 1, 90)
     options = DiagnoseOptions(clipped={"deflection": (-10 * UM, 10 * UM)})
-    one = Asked(drive_model(["thermal_growth", "clearance"]), diagnose=options)
+    one = Asked(drive_model(["thermal_growth"], {"contact": "3 %"}), diagnose=options)
     found = one.diagnosed(tmp_path, bench.columns(np.clip(true, -10, 10)))
     (cause,) = found.causes
     assert names_in(found) == {"thermal_growth", "thermal_drift"}  # of the gauge: one curve
@@ -101,7 +101,7 @@ def test_a_diagnosis_of_a_clipped_gauge_names_the_cause_with_its_size(tmp_path: 
     (wrong,) = found.wrong
     assert wrong.noise_floor.value == pytest.approx(1 * UM, rel=0.2)
     cut = int((np.abs(true) >= 10).sum())
-    words = f"{cut} of 150 readings of 'deflection' are censored: the true value lies beyond what was read"
+    words = f"{cut} of 90 readings of 'deflection' are censored: the true value lies beyond what was read"
     assert words in found.records.notes
 
 

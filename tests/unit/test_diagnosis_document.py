@@ -50,8 +50,6 @@ from truing.diagnosis.result import (
     Remainder,
     ResidualFinding,
     ShapeTerm,
-    Thinned,
-    Trade,
     VisibleSize,
     doubts,
     readable_unit,
@@ -815,14 +813,10 @@ def test_what_several_explanations_share_is_said(
 (UNKNOWN,) = HEATING.unknowns
 AT_END = replace(HEATING, unknowns=(replace(UNKNOWN, value=19.95e-6, low=18e-6, high=20e-6),))
 FIRST, OTHER = named().wrong
-GAINS = named().gain
 ALARMS = {
     "expansion of rod_heating was fitted at the bound declared for it (19.9 um/(m*K)): a wrong": {"causes": (AT_END,)},
     "radius had to move by -4.0 standard deviations of its tolerance to meet the measurement": {
         "calibrated": (replace(CALIBRATED[0], of_its_sd=-4.0),),
-    },
-    "on the rows held out the error of slide_position grows from 40 um to 55 um": {
-        "gain": (replace(GAINS[0], held_out=(40e-6, 55e-6)), GAINS[1]),
     },
     "on rows that were not fitted the error of slide_position grows from 6 um to 6.2 um": {
         "gain": gain_of(6.0e-6, 6.2e-6, 0.8),
@@ -830,20 +824,8 @@ ALARMS = {
     "expansion of rod_heating is 8 um/(m*K) in one half of the rows and 15 um/(m*K) in the other": {
         "contradictions": (APART,),
     },
-    "on every second row, from the first, sensor_drift explains more, by 7.5 in score": {
-        "thinned": (Thinned("every second row, from the first", ("sensor_drift",), 7.5),),
-    },
-    "expansion of rod_heating and rod trade against one another (correlation 0.970)": {
-        "trades": (Trade("rod_heating", "expansion", "rod", 0.97, 14.5),),
-    },
-    "what is left of slide_position, 6 um, is far below the standard deviation stated for it, 15 um": {
-        "wrong": (replace(FIRST, stated=Amount(15e-6, "um")), OTHER),
-    },
-    "the same causes are named in 40 % of the folds only": {"stability": 0.4},
-    "the noise of slide_position was taken as nearly a random walk (AR coefficient 0.92)": {
-        "wrong": (replace(FIRST, noise=replace(FIRST.noise, ar_coefficient=0.92)), OTHER),
-    },
 }
+"""The others sound in ``test_diagnosis_alarms``."""
 
 
 @pytest.mark.parametrize("words", ALARMS)
@@ -874,14 +856,6 @@ def test_the_largest_memory_that_is_tried_is_nearly_a_random_walk(place: int, ro
     made = replace(named(), wrong=(replace(FIRST, rows=rows, noise=noise), OTHER))
     assert bool(made.warnings) is is_alarm
     assert made.verdict == ("undecided" if is_alarm else "named")
-
-
-def test_a_wave_that_is_left_is_said_and_takes_no_name() -> None:
-    made = replace(named(), wrong=(replace(FIRST, findings=(*FIRST.findings, FINDINGS["wave"])), OTHER))
-    (warning,) = made.warnings
-    assert warning.startswith("in what is left of slide_position there are 12 waves over the range of crank_angle")
-    assert made.verdict == "named"
-    assert prose(warning)[1:] in " ".join(headline(made))
 
 
 @pytest.mark.parametrize(

@@ -118,8 +118,8 @@ def calls_of(tmp_path: Path, extra: int, tolerances: Mapping[str, str]) -> int:
     spreads = [Tolerance(name, normal(sd=sd), why="drawing") for name, sd in tolerances.items()]
     errors: list[Any] = [*spreads, EFFECTS["lead_error"], *(ripple(order) for order in range(1, extra + 1))]
     asked = Asked(Model(name="drive", title="Deflection of a screw drive", function=counting, errors=errors))
-    bench = wide(80)
-    error = 0.03 * bench.travel + np.random.default_rng(8).normal(size=80)
+    bench = wide(50)
+    error = 0.03 * bench.travel + np.random.default_rng(8).normal(size=50)
     records = asked.records(tmp_path, bench.shown(error))
     calls.clear()
     found = diagnose(asked.setup, records)
@@ -128,14 +128,14 @@ def calls_of(tmp_path: Path, extra: int, tolerances: Mapping[str, str]) -> int:
     return len(calls)
 
 
-@pytest.mark.parametrize(("tolerances", "extra", "most", "most_more"), [({}, 6, 1, 2 * 6), (TOLERANCES, 8, 300, 5 * 8)])
+@pytest.mark.parametrize(("tolerances", "extra", "most", "most_more"), [({}, 6, 1, 2 * 6), (TOLERANCES, 5, 300, 5 * 5)])
 def test_effects_on_results_cost_few_calls_of_a_slow_model_however_many_pairs_there_are(
     tmp_path: Path, tolerances: Mapping[str, str], extra: int, most: int, most_more: int
 ) -> None:
     """What acts after the model needs it for the rows alone, whose answer is known since they were read.
 
     Of an effect that was not fitted the model is asked twice whether it fails with it. Where inputs have tolerances
-    every explanation that is fitted has inputs of its own, and the model is called there; not for all of 28 pairs.
+    every explanation that is fitted has inputs of its own, and the model is called there; not for all of ten pairs.
     """
     none, more = (calls_of(tmp_path, effects, tolerances) for effects in (0, extra))
     assert none <= most
