@@ -257,47 +257,41 @@ def _own_offset(bar: Bar, base: Pull, *, zero: Float) -> Pull:
 # What they add to a reading, by hand
 
 
-def test_offset_and_gain() -> None:
-    """2 um and 4 um at the top; 70 degC. A gain of a level counts from 0 degC: 1 % of 70 degC is 0.7 K."""
-    base = shown(SHAFT, {})
-    assert [base["height_left"], base["height_right"], base["warmth"]] == pytest.approx([2e-6, 4e-6, 343.15])
-    moved = shown(SHAFT, {"sensor_offset": {"height_right": 3e-6, "warmth": -2.0}})
-    assert [moved["height_left"], moved["height_right"], moved["warmth"]] == pytest.approx([2e-6, 7e-6, 341.15])
-    scaled = shown(SHAFT, {"sensor_gain": {"height_left": 0.5, "warmth": 0.01}})
-    assert [scaled["height_left"], scaled["height_right"], scaled["warmth"]] == pytest.approx([3e-6, 4e-6, 343.85])
-
-
-def test_drift_counts_hours_and_the_offset_comes_before_the_gain() -> None:
-    """10 N + 0.5 N/h over 4 h; (10 N + 2 N) * 1.1."""
-    assert shown(BAR, {"sensor_drift": {"force": 0.5 / 3600}}, time=4 * 3600.0)["force"] == pytest.approx(12.0)
-    both = {"sensor_gain": {"force": 0.1}, "sensor_offset": {"force": 2.0}}
-    assert shown(BAR, both)["force"] == pytest.approx(13.2)
-
-
-def test_thermal_drift_vanishes_at_the_reference_of_a_condition_and_the_default_of_an_input() -> None:
-    """0.2 N/K: 5 K above 20 degC are 1 N. 3 um/K: the oil 2 K below its 60 degC takes 6 um off."""
-    drift = {"thermal_drift": {"force": 0.2}}
-    assert shown(BAR, drift)["force"] == pytest.approx(10.0)
-    assert shown(BAR, drift, temperature=298.15)["force"] == pytest.approx(11.0)
-    cooler = shown(SHAFT, {"thermal_drift": {"height_left": 3e-6}}, oil="58 degC")
-    assert cooler["height_left"] == pytest.approx(-4e-6)
-    assert cooler["warmth"] == pytest.approx(341.15)
+TOP = {"height_left": 2e-6, "height_right": 4e-6, "warmth": 343.15}
+WAVES = [(1, 0, 2.0), (1, 90, 1.0), (2, 45, 1.0), (2, 90, -2.0), (3, 30, 1.0), (3, 60, -2.0)]
+STEP = {"step": {"force": 3.0, "force_after": 2 * 3600.0}}
+WARMER = {"thermal_drift": {"force": 0.2}}
 
 
 @pytest.mark.parametrize(
-    ("order", "degrees", "added"),
-    [(1, 0, 2.0), (1, 90, 1.0), (2, 45, 1.0), (2, 90, -2.0), (3, 30, 1.0), (3, 60, -2.0)],
-)
-def test_a_wave_of_order_one_to_three(order: int, degrees: float, added: float) -> None:
-    """1 N of sine and 2 N of cosine, at a quarter of the wave and at its half."""
-    wave = {"periodic_order": {"force_sine": 1.0, "force_cosine": 2.0, "force_order": order}}
-    assert shown(BAR, wave, angle=math.radians(degrees))["force"] == pytest.approx(10 + added)
-
-
-@pytest.mark.parametrize(("hours", "force"), [(1.9, 10.0), (2.0, 13.0), (7.0, 13.0)])
-def test_a_step_stays(hours: float, force: float) -> None:
-    step = {"step": {"force": 3.0, "force_after": 2 * 3600.0}}
-    assert shown(BAR, step, time=hours * 3600)["force"] == pytest.approx(force)
+    ("model", "effects", "values", "read"),
+    [
+        # 2 um and 4 um at the top; 70 degC. A gain of a level counts from 0 degC: 1 % of 70 degC is 0.7 K
+        (SHAFT, {}, {}, TOP),
+        (SHAFT, {"sensor_offset": {"height_right": 3e-6, "warmth": -2.0}}, {},
+         {**TOP, "height_right": 7e-6, "warmth": 341.15}),
+        (SHAFT, {"sensor_gain": {"height_left": 0.5, "warmth": 0.01}}, {},
+         {**TOP, "height_left": 3e-6, "warmth": 343.85}),
+        # 10 N + 0.5 N/h over 4 h; (10 N + 2 N) * 1.1: the offset comes before the gain
+        (BAR, {"sensor_drift": {"force": 0.5 / 3600}}, {"time": 4 * 3600.0}, {"force": 12.0}),
+        (BAR, {"sensor_gain": {"force": 0.1}, "sensor_offset": {"force": 2.0}}, {}, {"force": 13.2}),
+        # 0.2 N/K: 5 K above 20 degC are 1 N. 3 um/K: the oil 2 K below its default of 60 degC takes 6 um off
+        (BAR, WARMER, {}, {"force": 10.0}),
+        (BAR, WARMER, {"temperature": 298.15}, {"force": 11.0}),
+        (SHAFT, {"thermal_drift": {"height_left": 3e-6}}, {"oil": "58 degC"},
+         {**TOP, "height_left": -4e-6, "warmth": 341.15}),
+        # 1 N of sine and 2 N of cosine, at a quarter of the wave and at its half
+        *((BAR, {"periodic_order": {"force_sine": 1.0, "force_cosine": 2.0, "force_order": order}},
+           {"angle": math.radians(degrees)}, {"force": 10 + added}) for order, degrees, added in WAVES),
+        # a step stays
+        *((BAR, STEP, {"time": hours * 3600}, {"force": force}) for hours, force in ((1.9, 10), (2.0, 13), (7.0, 13))),
+    ],
+)  # fmt: skip
+def test_what_an_effect_adds_to_a_reading(
+    model: Model[Any, Any], effects: dict[str, dict[str, float]], values: dict[str, Any], read: dict[str, float]
+) -> None:
+    found_ = shown(model, effects, **values)
+    assert {name: found_[name] for name in read} == pytest.approx(read)
 
 
 def test_rows_have_their_own_unknowns_conditions_and_inputs() -> None:

@@ -15,14 +15,12 @@ from diagnosis_models import (
     UM,
     Array,
     Asked,
-    cause_of,
     chosen_as,
     drive_model,
     fit_of,
     gauge,
     of_size_one,
     wander,
-    warming,
     white_noise,
     wide,
 )
@@ -327,14 +325,6 @@ def test_it_is_said_how_many_points_would_be_needed(tmp_path: Path, size: float)
 # Known answers of the algebra of a diagnosis: angles, separation, and what must be seen.
 
 
-def believed(made: Competition, name: str, *numbers: float) -> Fit:
-    """An explanation with numbers of its own (SI), as if it had been found."""
-    cause, values, still = cause_of(made, name), np.array(numbers), np.zeros_like(made.null.inputs)
-    (predicted,) = made.extended.at((cause,), [([values], np.zeros(len(made.extended.machine.inputs)))])
-    left = made.sample.left(predicted)
-    return Fit((cause,), (values,), still, predicted, left, made.sample.cost(left, still), made.sample)
-
-
 @pytest.mark.parametrize(("length", "apart"), [(1.0, 16.0), (1.5, 36 + (12 * np.sqrt(0.75) - 10) ** 2)])
 def test_two_curves_at_thirty_degrees(tmp_path: Path, length: float, apart: float) -> None:
     """A curve of 8 leaves 8 sin 30; of 12 the rival would need 10.4 and has 10: it leaves 6 across and 0.39 along.
@@ -350,31 +340,6 @@ def test_two_curves_at_thirty_degrees(tmp_path: Path, length: float, apart: floa
     true, rival = fit_of(made, "thermal_growth"), fit_of(made, "lead_error")
     assert_allclose(separation(true, rival, made.extended), apart, rtol=1e-6)
     assert_allclose(separation(true, true, made.extended), 0, rtol=0, atol=1e-9)
-
-
-def test_growth_in_a_warm_up_is_visible_but_not_separable_from_a_drift(tmp_path: Path) -> None:
-    bench = warming()
-    asked = Asked(drive_model(tolerances={}))
-    curve = 0.05 * (bench.temperature - 20)
-    noise = of_size_one(np.random.default_rng(42), len(bench))
-    columns = bench.shown(curve + noise)
-    made = asked.competing(tmp_path, columns)
-    true = believed(made, "thermal_growth", 0.05 * UM)
-
-    def left(*columns: Array) -> float:
-        design = np.column_stack(columns)
-        return float(np.sum((curve - design @ np.linalg.lstsq(design, curve)[0]) ** 2))
-
-    cases = [
-        (made.null, float(curve @ curve), 133.7),
-        (fit_of(made, "sensor_drift"), left(bench.time), 7.55),
-        (fit_of(made, "sensor_drift", "sensor_offset"), left(bench.time, bench.time**0), 2.35),
-    ]
-    found = [separation(true, rival, made.extended) for rival, _, _ in cases]
-    for ours, (_, dense, known) in zip(found, cases, strict=True):
-        assert_allclose(ours, dense, rtol=1e-5)
-        assert_allclose(ours, known, rtol=0, atol=0.05 if known > 100 else 0.005)
-    assert found[0] > 25 > 10 > found[1] > found[2]
 
 
 def test_a_gain_and_a_loss_of_stiffness_are_three_degrees_apart(tmp_path: Path) -> None:
