@@ -169,6 +169,10 @@ class Bench:
         """The columns where the gauge is off by this much, um; ``machine`` holds what is not as drawn."""
         return self.columns(gauge(self.load, self.travel, **machine) + error)
 
+    def drawn(self, error: Array | float = 0.0) -> dict[str, Array]:
+        """What the drawing knows alone, load and travel, and the gauge, um: few columns, so that a search is short."""
+        return {name: column for name, column in self.shown(error).items() if name in {"load", "travel", "deflection"}}
+
     @property
     def contact(self) -> Array:
         """What the deflection of the contact is in proportion to."""

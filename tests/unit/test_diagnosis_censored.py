@@ -108,20 +108,15 @@ def test_a_diagnosis_of_a_clipped_gauge_names_the_cause_with_its_size(tmp_path: 
 # Rows
 
 
-def test_a_censored_row_cuts_the_memory_of_the_noise(tmp_path: Path) -> None:
-    one, records = clipped_record(tmp_path, clipped={"deflection": (-np.inf, END * UM)})
+@pytest.mark.parametrize("lowest", [-np.inf, -END])
+def test_a_censored_row_cuts_the_memory_of_the_noise_and_lies_at_the_end(tmp_path: Path, lowest: float) -> None:
+    one, records = clipped_record(tmp_path, clipped={"deflection": (lowest * UM, END * UM)})
     (channel,) = laid_out(calibration_of(one.setup, records)).sample.channels
-    is_cut = TRUE >= END
-    assert_array_equal(records.sides["deflection"], is_cut)
-    assert_array_equal(channel.starts, is_cut | np.append(True, is_cut[:-1]))
-    assert records.readings == 60 - is_cut.sum()
-
-
-def test_a_reading_beyond_the_end_is_one_at_the_end(tmp_path: Path) -> None:
-    one = Asked(drive_model(), diagnose=DiagnoseOptions(clipped={"deflection": (-END * UM, END * UM)}))
-    records = one.records(tmp_path, BENCH.columns(TRUE))
-    assert_allclose(np.abs(records.measured["deflection"]).max(), END * UM)
-    assert_array_equal(records.sides["deflection"], np.where(TRUE >= END, 1, np.where(TRUE <= -END, -1, 0)))
+    sides = np.where(TRUE >= END, 1, np.where(lowest >= TRUE, -1, 0))
+    assert_array_equal(records.sides["deflection"], sides)
+    assert_array_equal(channel.starts, (sides != 0) | np.append(True, sides[:-1] != 0))
+    assert records.readings == 60 - np.count_nonzero(sides)
+    assert_allclose(records.measured["deflection"], np.clip(TRUE, lowest, END) * UM)
 
 
 FLAGS: dict[str, tuple[str, Callable[[bool], str]]] = {

@@ -201,11 +201,6 @@ def test_curves_over_several_numbers_count_by_the_spectrum_of_their_inner_produc
 # Shapes that nobody registered: which there are, what they calculate, and what is said in their place.
 
 
-def machine(folder: Path, bench: Bench, effects: Sequence[str] = ()) -> Calibration:
-    one = Asked(drive_model(effects, {}))
-    return calibration_of(one.setup, one.records(folder, bench.shown()))
-
-
 def of_kind(found: Sequence[Candidate], kind: str, *on: str) -> list[Candidate]:
     """The shapes of one kind, over these covariates if any are named."""
     return [
@@ -236,7 +231,7 @@ def test_orders_above_the_sampling_are_not_looked_for(tmp_path: Path) -> None:
     bench = replace(wide(96, turning=True), rotation=np.tile(np.arange(0.0, 360, 30), 8))
     ends = []
     for each in (bench, wide(96, turning=True)):
-        there = machine(tmp_path, each)
+        there = calibration(asked(), tmp_path, each)
         (order,) = of_kind(shapes_of(there.records, {"rotation": (1, 2, 3)}, has_steps=True), "order")
         assert order.numbers[-1].whole
         ends.append((order.numbers[-1].low, order.numbers[-1].high))
@@ -248,7 +243,7 @@ TURNING = wide(80, turning=True)
 
 def test_every_shape_over_what_moved_and_nothing_over_what_stood_still(tmp_path: Path) -> None:
     bench = replace(TURNING, temperature=np.full(80, 23.0))
-    found = shapes_of(machine(tmp_path, bench).records, {}, has_steps=False)
+    found = shapes_of(calibration(asked(), tmp_path, bench).records, {}, has_steps=False)
     kinds = {(each.shape.kind, each.shape.depends_on) for each in found if each.shape}
     moved = {("load",), ("travel",), ("rotation",), ("time",)}
     assert {depends for kind, depends in kinds if kind == "trend"} == moved
@@ -258,11 +253,11 @@ def test_every_shape_over_what_moved_and_nothing_over_what_stood_still(tmp_path:
     assert {depends for kind, depends in kinds if kind in {"jump", "kink", "dead zone"}} == {("load",)}
     assert not any("temperature" in depends for _, depends in kinds)
     assert len({each.tag for each in found}) == len(found)
-    assert not of_kind(shapes_of(machine(tmp_path, bench).records, {}, has_steps=True), "step")
+    assert not of_kind(shapes_of(calibration(asked(), tmp_path, bench).records, {}, has_steps=True), "step")
 
 
 def test_printed_terms_are_what_is_calculated(tmp_path: Path) -> None:
-    there = machine(tmp_path, TURNING)
+    there = calibration(asked(), tmp_path, TURNING)
     covariates = there.records.covariates
     values = {name: item.values for name, item in covariates.items()}
     for each in shapes_of(there.records, {}, has_steps=False):
@@ -299,7 +294,7 @@ def test_a_shape_draws_what_its_kind_says(
     tmp_path: Path, kind: str, on: str, shape: list[float], columns: list[Array]
 ) -> None:
     """The columns by hand, in kN, h and mm, span what the terms of the smallest shape of the kind do."""
-    there = machine(tmp_path, TURNING)
+    there = calibration(asked(), tmp_path, TURNING)
     smallest = min(
         of_kind(shapes_of(there.records, {}, has_steps=False), kind, *on.split()), key=lambda each: each.size
     )

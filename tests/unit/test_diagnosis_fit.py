@@ -194,7 +194,7 @@ def test_an_earlier_calibration_is_no_nominal_of_the_extended_model(tmp_path: Pa
     error = 0.15 * contact + 0.03 * bench.travel + np.random.default_rng(22).normal(0, 1, 40)
     asked = Asked(drive_model(["lead_error"], {"contact": "3 %"}))
     again = replace(asked.setup, calibrated={"contact": 3.1 * UM})
-    done = diagnose(again, asked.records(tmp_path, bench.shown(error)))
+    done = diagnose(again, asked.records(tmp_path, bench.drawn(error)))
     assert done.extended is not None
     assert done.setup.inputs.contact == done.extended.inputs.contact == again.inputs.contact != 3.1 * UM
     assert_allclose(done.extended.calibrated["contact"] / UM, 3.15, atol=0.06)

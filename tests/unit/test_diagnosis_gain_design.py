@@ -187,7 +187,7 @@ def test_a_gain_is_held_against_the_calibrated_model_and_the_noise_floor(tmp_pat
     bench = wide(200, seed=35)
     contact = bench.contact
     error = 0.12 * contact + 0.02 * bench.travel + rng.normal(0, 1, 200)  # 0.12 lies inside the tolerance
-    found = Asked(drive_model(["lead_error"])).diagnosed(tmp_path, bench.shown(error))
+    found = Asked(drive_model(["lead_error"])).diagnosed(tmp_path, bench.drawn(error))
     (gain,) = found.gain
     design = np.column_stack([contact, bench.load * bench.travel])
     free = error - design @ np.linalg.lstsq(design, error)[0]

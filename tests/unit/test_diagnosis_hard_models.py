@@ -293,7 +293,7 @@ def scattering(sd: float) -> Shop:
 
 def test_a_model_with_noise_of_its_own_has_the_causes_that_are_there(tmp_path: Path) -> None:
     """Up to a fifth of that of the readings; sizes within five standard errors of a rows-wide mean."""
-    answer = asked(scattering(1e-6), EFFECTS[:3:2]).diagnosed(tmp_path, record(leaning_with_play, ROWS, "warmth"))
+    answer = asked(scattering(1e-6), EFFECTS[:3:2], 60).diagnosed(tmp_path, record(leaning_with_play, 60, "warmth"))
     sizes = of_causes(answer)
     assert {"leans.slant", "plays.play"} <= set(sizes)
     assert sizes["plays.play"] == pytest.approx(30e-6, abs=5e-6)
@@ -303,14 +303,16 @@ def test_a_model_with_noise_of_its_own_has_the_causes_that_are_there(tmp_path: P
 
 def test_a_bending_cause_is_fitted_in_a_model_with_steps(tmp_path: Path) -> None:
     """As large as the noise of the readings."""
-    sizes = of_causes(asked(rounded(5e-6), EFFECTS[4:]).diagnosed(tmp_path, record(hardened, ROWS, "warmth", "place")))
+    sizes = of_causes(
+        asked(rounded(5e-6), EFFECTS[4:], 60).diagnosed(tmp_path, record(hardened, 60, "warmth", "place"))
+    )
     assert sizes["hardens.gain"] == pytest.approx(0.8, rel=0.03)
     assert sizes["hardens.knee"] == pytest.approx(8e3, rel=0.03)
 
 
 def test_a_model_rougher_than_the_readings_names_nothing_plainly(tmp_path: Path) -> None:
     """Steps of 50 um in readings with a noise of 5 um: the steps are what is wrong."""
-    answer = asked(rounded(50e-6), EFFECTS[:1]).diagnosed(tmp_path, record(leaning, ROWS, "warmth"))
+    answer = asked(rounded(50e-6), EFFECTS[:1], 60).diagnosed(tmp_path, record(leaning, 60, "warmth"))
     assert not answer.unique
     (said,) = answer.hindrances
     assert said.startswith("the model's bend jumps or scatters by up to 50 um by itself, which is most of")
@@ -420,9 +422,9 @@ def test_of_a_long_record_the_rows_searched_say_what_would_be_visible(
 ) -> None:
     """As much as all rows say, up to what a quarter of them is not like the whole."""
     answers = []
-    for rows_searched in (600, 150):
+    for rows_searched in (400, 100):
         monkeypatch.setattr(engine, "LONG", rows_searched)
-        answers.append(asked(Shop(), EFFECTS[:3:2], 600).diagnosed(tmp_path, record(leaning, 600, "warmth")))
+        answers.append(asked(Shop(), EFFECTS[:3:2], 400).diagnosed(tmp_path, record(leaning, 400, "warmth")))
     whole, few = answers
     sizes = [{seen.name: seen.smallest.value for seen in answer.seen if seen.smallest} for answer in answers]
     assert sizes[0].keys() == sizes[1].keys() > {"leans", "plays"}

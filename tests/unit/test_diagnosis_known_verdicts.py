@@ -30,7 +30,7 @@ from truing.diagnosis.noise import SMALLEST_SHARE
 from truing.diagnosis.result import DiagnosisResult
 
 PROPER = Asked(drive_model())
-WARM_AND_WORN = wide(150, seed=15)
+WARM_AND_WORN = wide(90, seed=15)
 GROWTH, WORN = 0.2 * (WARM_AND_WORN.temperature - 20), 0.3 * WARM_AND_WORN.time * np.sign(WARM_AND_WORN.load)
 
 
@@ -48,7 +48,7 @@ def test_a_linear_effect_is_named_and_sized_without_any_noise(tmp_path: Path) ->
 
 
 def test_clearance_under_a_load_of_one_sign_may_be_an_offset_and_the_sign_is_asked_for(tmp_path: Path) -> None:
-    bench = wide(150, seed=13)
+    bench = wide(80, seed=13)
     bench = replace(bench, load=np.abs(bench.load) + 0.5)
     error = 3 + np.random.default_rng(13).normal(0, 1, len(bench))
     found = Asked(drive_model(["clearance", "wear"])).diagnosed(tmp_path, bench.shown(error))
@@ -78,13 +78,13 @@ SCALED = {"load": ("N", 1e3), "travel": ("m", 1e-3), "time": ("s", 3600.0), "def
 def test_units_and_the_order_of_the_rows_inside_a_run_change_nothing_and_the_larger_cause_comes_first(
     tmp_path: Path,
 ) -> None:
-    columns = WARM_AND_WORN.shown(GROWTH + WORN + np.random.default_rng(15).normal(0, 1, 150))
-    labels = [f"run {row // 50}" for row in range(150)]
+    columns = WARM_AND_WORN.shown(GROWTH + WORN + np.random.default_rng(15).normal(0, 1, 90))
+    labels = [f"run {row // 30}" for row in range(90)]
     plain = TWO.diagnosed(tmp_path, columns, labels)
     assert [cause.effect for cause in plain.causes] == ["thermal_drift", "wear"]  # found the other way round
     squares = np.array([GROWTH @ GROWTH, WORN @ WORN])
     assert [cause.share for cause in plain.causes] == pytest.approx(squares / squares.sum(), abs=0.04)
-    order = np.concatenate([np.random.default_rng(16).permutation(50) + begin for begin in (0, 50, 100)])
+    order = np.concatenate([np.random.default_rng(16).permutation(30) + begin for begin in (0, 30, 60)])
     scaled = {name: values[order] * SCALED.get(name, ("", 1.0))[1] for name, values in columns.items()}
     units = {**HEADER, **{name: unit for name, (unit, _) in SCALED.items()}}
     again = replace(TWO, units=units).diagnosed(tmp_path, scaled, [labels[row] for row in order])
@@ -93,7 +93,7 @@ def test_units_and_the_order_of_the_rows_inside_a_run_change_nothing_and_the_lar
 
 
 def test_order_seven_is_unknown_and_said_to_be_order_seven(tmp_path: Path) -> None:
-    bench = wide(150, seed=19, turning=True)
+    bench = wide(100, seed=19, turning=True)
     wave = 2 * np.sin(np.radians(7 * bench.rotation + 40))
     noise = np.random.default_rng(19).normal(0, 1, len(bench))
     found = Asked(drive_model(["lead_error"])).diagnosed(tmp_path, bench.shown(wave + noise))

@@ -87,7 +87,7 @@ def test_what_a_search_of_some_rows_came_to_is_fitted_to_all(tmp_path: Path, mon
     monkeypatch.setattr(engine, "LONG", 80)
     bench, asked = wide(300), Asked(drive_model(("lead_error",), {}))
     error = 0.03 * bench.travel + np.random.default_rng(9).normal(size=300)
-    found = asked.diagnosed(tmp_path, bench.shown(error))
+    found = asked.diagnosed(tmp_path, bench.drawn(error))
     assert name_sets(found) == [{"lead_error"}]
     exact = bench.travel @ error / (bench.travel @ bench.travel)  # by all rows
     (size,) = found.causes[0].unknowns
@@ -120,7 +120,7 @@ def calls_of(tmp_path: Path, extra: int, tolerances: Mapping[str, str]) -> int:
     asked = Asked(Model(name="drive", title="Deflection of a screw drive", function=counting, errors=errors))
     bench = wide(50)
     error = 0.03 * bench.travel + np.random.default_rng(8).normal(size=50)
-    records = asked.records(tmp_path, bench.shown(error))
+    records = asked.records(tmp_path, bench.drawn(error))
     calls.clear()
     found = diagnose(asked.setup, records)
     assert [cause.effect for cause in found.causes] == ["lead_error"]
