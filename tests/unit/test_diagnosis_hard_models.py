@@ -349,48 +349,6 @@ def test_one_of_forty_effects_is_named(tmp_path: Path) -> None:
     assert of_causes(answer)["ripple_17.size"] == pytest.approx(20e-6, abs=5 * NOISE * 1e-6 * np.sqrt(2 / ROWS))
 
 
-PARTS = tuple(f"part_{place}" for place in range(24))
-Stack = inputs(
-    type(
-        "Stack", (), {
-            "__annotations__": dict.fromkeys(("place", "slant", *PARTS), Float), "__doc__": "Parts in a row.",
-            "place": given(0.0, "mm"), "slant": given(0.0, "um"), **{name: given(0.0, "um") for name in PARTS},
-        },
-    )
-)  # fmt: skip
-
-
-def stack_leans(it: Any, *, slant: Float) -> Any:
-    return replace(it, slant=it.slant + slant)
-
-
-stack_leans.__annotations__ |= {"it": Stack, "return": Stack}
-STACK_LEANS = Effect("leans", on_inputs=stack_leans, unknowns=[Unknown("slant", -200, 200, "um")])
-
-
-def stack(it: Any) -> Bend:
-    """Every part is felt where it lies, 12 mm from the next one."""
-    bend = it.slant * it.place / 0.3
-    for number, name in enumerate(PARTS):
-        bend = bend + getattr(it, name) * np.exp(-(((it.place - 0.012 * number) / 0.01) ** 2))
-    return Bend(bend=bend)
-
-
-stack.__annotations__ = {"it": Stack, "return": Bend}
-
-
-def test_many_tolerated_inputs_are_calibrated_and_no_cause(tmp_path: Path) -> None:
-    rng = np.random.default_rng(2)
-    place, off = np.linspace(0, 300, 240), rng.normal(0, 2, len(PARTS))
-    parts = [each * np.exp(-(((place - 12 * number) / 10) ** 2)) for number, each in enumerate(off)]
-    bend = np.sum(parts, axis=0) + rng.normal(0, 1, 240)
-    spreads = [Tolerance(name, normal(sd="2 um")) for name in PARTS]
-    model = Model(name="stack", title="Stack", function=stack, errors=[*spreads, STACK_LEANS])
-    answer = Asked(model, units=UNITS).diagnosed(tmp_path, {"place": place, "bend": bend})
-    assert len(answer.calibrated) == len(PARTS)
-    assert not answer.causes
-
-
 # Records of odd sizes
 
 

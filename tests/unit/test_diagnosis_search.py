@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations, pairwise
 from math import comb, inf, log
@@ -47,6 +47,7 @@ from truing.diagnosis.choice import (
     _certain,
     _drawn,
     _is_vaguer,
+    _largest,
     _rivals,
     _step,
     carried,
@@ -54,6 +55,7 @@ from truing.diagnosis.choice import (
     unsure,
 )
 from truing.diagnosis.competition import MARGIN, UNREGISTERED, Competition, beside, search
+from truing.diagnosis.conditional import ConditionalGain
 from truing.diagnosis.fitted import Fit, differ, far_inputs, is_at_bound
 from truing.diagnosis.folds import ends_of, folds_of
 from truing.diagnosis.noise import Autocorrelation
@@ -592,6 +594,33 @@ def test_noise_is_drawn_by_the_recursion_from_what_is_left(tmp_path: Path, rho: 
     by_hand[0] *= np.sqrt(1 - rho**2)
     assert_allclose(drawn[:ROWS], by_hand / np.sqrt(np.mean(pool**2)), rtol=1e-9, atol=1e-12)
     assert_allclose(drawn[ROWS:], generator.standard_normal((2, 7)))
+
+
+def test_the_largest_gain_of_a_draw_is_that_of_all_curves_tried_one_by_one(tmp_path: Path) -> None:
+    """Greedily: the curve that lowers most once paid for, then the best beside it."""
+    names = ["lead_error", "sensor_gain", "warm_up"]
+    made = named_competing(tmp_path, 0.0 * WARMING.time, names)
+    seen = made.look(made.null)
+    assert set(seen) >= {"lead_error", "warm_up"}
+    drawn = np.random.default_rng(12).normal(size=(ROWS, 9))
+    for steps in (1, 2):
+        by_hand = [_greedy(made, seen, drawn[:, draw], steps) for draw in range(9)]
+        assert_allclose(_largest(made, seen, drawn, 140.0, steps), by_hand, rtol=1e-9)
+
+
+def _greedy(made: Competition, seen: Mapping[str, ConditionalGain], values: Array, steps: int) -> float:
+    """The gain of one draw after so many steps, each projected off before the next."""
+    total, left = 0.0, values
+    for _ in range(steps):
+        tried = []
+        for cause in made.causes:
+            for basis in seen[cause.tag].span.basis if cause.tag in seen else ():
+                rest = left - basis.T @ (basis @ left)
+                gain = 140.0 * log((left @ left) / (rest @ rest)) - made.price_of(cause)
+                tried.append((gain, rest))
+        gain, left = max(tried, key=lambda each: each[0])
+        total += gain
+    return total
 
 
 def test_a_law_counts_the_draws_that_gain_as_much(tmp_path: Path) -> None:
