@@ -17,7 +17,6 @@ from diagnosis_models import (
     ends,
     fit_of,
     name_sets,
-    names_in,
     wide,
 )
 from numpy.testing import assert_allclose
@@ -45,18 +44,6 @@ def test_a_linear_effect_is_named_and_sized_without_any_noise(tmp_path: Path) ->
     rounding = 1e-12 * true
     assert low - rounding <= true <= high + rounding
     assert high - low < 8 * SMALLEST_SHARE * true / np.sqrt(len(bench))
-
-
-def test_clearance_under_a_load_of_one_sign_may_be_an_offset_and_the_sign_is_asked_for(tmp_path: Path) -> None:
-    bench = wide(80, seed=13)
-    bench = replace(bench, load=np.abs(bench.load) + 0.5)
-    error = 3 + np.random.default_rng(13).normal(0, 1, len(bench))
-    found = Asked(drive_model(["clearance", "wear"])).diagnosed(tmp_path, bench.shown(error))
-    assert found.verdict == "one_of"
-    assert {"clearance", "sensor_offset"} <= names_in(found)
-    assert found.next
-    assert min(point.settings["load"].value for point in found.next) < 0
-    assert any({"clearance", "sensor_offset"} == set(point.separates) for point in found.next)
 
 
 def assert_same(one: DiagnosisResult, other: DiagnosisResult) -> None:
