@@ -729,6 +729,7 @@ def _demand_true_proposals(made: DiagnosisResult, said: str, everything: str) ->
         suffices = made.next[0].needed <= len(made.next)
         assert (f"separates {spoken(made.next[0].separates[0])}" in everything) is False or suffices
         assert ("points together separate" in said or "it separates" in said) is suffices
+        assert ("points together separate" in said) is (suffices and made.next[0].needed > 1)
         assert (f"{made.next[0].needed} points like" in said) is not suffices
         assert pair.split(" + ")[0] in said
     if made.ties:

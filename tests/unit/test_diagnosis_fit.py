@@ -28,7 +28,7 @@ from scipy.optimize import brentq, least_squares, minimize, minimize_scalar
 from scipy.stats import f, t
 from scipy.stats import t as student
 
-from truing import Effect, Float, Unknown
+from truing import Condition, Effect, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
 from truing.diagnosis.competition import Competition
 from truing.diagnosis.engine import diagnose
 from truing.diagnosis.exact import EXACTLY, alone, fitting
@@ -132,6 +132,59 @@ def test_inputs_are_calibrated_by_their_prior_in_the_noise_that_is_left(tmp_path
     ((name, (value, of_its_sd)),) = input_values(best).items()
     assert name == "contact"
     assert_allclose([value / UM, of_its_sd], [3 + 0.09 * free.x[1], free.x[1]], rtol=1e-5)
+
+
+@inputs
+class Nothing:
+    """A model must have an input."""
+
+    size: Float = given(0.0, "", note="of nothing")
+
+
+@results
+class Reading:
+    """What a gauge shows of nothing."""
+
+    reading: Float = found("", note="reading")
+
+
+def along_first(nothing: Nothing, base: Reading, *, one: Float, first: Float) -> Reading:
+    """Follow the first condition."""
+    return replace(base, reading=base.reading + one * first)
+
+
+@pytest.mark.parametrize("stretched", [0.25, 0.5])
+def test_an_input_in_which_the_model_bends_is_fitted_with_the_model_itself(tmp_path: Path, stretched: float) -> None:
+    """(1 + stretched * size)^2 for a size of 0 +- 1, measured at 2: the slope there is 1.5 times, twice that at 0."""
+
+    def squared(nothing: Nothing) -> Reading:
+        return Reading(reading=16 * (1 + stretched * nothing.size) ** 2)
+
+    follow = Effect(
+        "along_first", on_results=along_first, needs=[Condition("first", "")], unknowns=[Unknown("one", -9, 9)]
+    )
+    spread = Tolerance("size", normal(sd="1"), why="drawing")
+    model = Model(name="bent", title="A bent input", function=squared, errors=[spread, follow])
+    first = np.linspace(-1, 1, 50)
+    reading = 16 * (1 + 2 * stretched) ** 2 + 2 * first + np.random.default_rng(29).normal(0, 0.5, 50)
+    asked = Asked(model, units={"first": "-", "reading": "-"})
+    made = asked.competing(tmp_path, {"first": first, "reading": reading}, scale=1.0)
+    best = fit_of(made, "along_first")
+
+    def said(x: Array) -> Array:
+        return np.asarray(16 * (1 + stretched * x[0]) ** 2 + x[1] * first)
+
+    def cost(x: Array) -> float:
+        return float(50 * np.log(np.mean((reading - said(x)) ** 2)) + x[0] ** 2)
+
+    free = minimize(cost, [2.0, 2.0], method="Nelder-Mead", options={"xatol": 1e-10, "fatol": 1e-12, "maxiter": 4000})
+    (value, of_its_sd) = input_values(best)["size"]
+    error = 0.5 / np.sqrt(50) / (32 * stretched * (1 + 2 * stretched))
+    assert of_its_sd == value
+    assert_allclose(value, free.x[0], rtol=0, atol=error)
+    assert_allclose(size_of(best, "one"), free.x[1], rtol=1e-5)
+    assert_allclose(best.predicted["reading"], said(np.array([value, size_of(best, "one")])), rtol=1e-9)
+    assert best.cost - free.fun < 1
 
 
 def test_an_earlier_calibration_is_no_nominal_of_the_extended_model(tmp_path: Path) -> None:

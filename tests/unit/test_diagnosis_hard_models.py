@@ -380,9 +380,9 @@ def test_of_a_long_record_the_rows_searched_say_what_would_be_visible(
 ) -> None:
     """As much as all rows say, up to what a quarter of them is not like the whole."""
     answers = []
-    for rows_searched in (400, 100):
+    for rows_searched in (600, 150):
         monkeypatch.setattr(engine, "LONG", rows_searched)
-        answers.append(asked(Shop(), EFFECTS[:3:2], 400).diagnosed(tmp_path, record(leaning, 400, "warmth")))
+        answers.append(asked(Shop(), EFFECTS[:3:2], 600).diagnosed(tmp_path, record(leaning, 600, "warmth")))
     whole, few = answers
     sizes = [{seen.name: seen.smallest.value for seen in answer.seen if seen.smallest} for answer in answers]
     assert sizes[0].keys() == sizes[1].keys() > {"leans", "plays"}
