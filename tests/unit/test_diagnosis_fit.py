@@ -200,6 +200,23 @@ def test_an_earlier_calibration_is_no_nominal_of_the_extended_model(tmp_path: Pa
     assert_allclose(done.extended.calibrated["contact"] / UM, 3.15, atol=0.06)
 
 
+def test_a_size_stays_inside_its_bounds(tmp_path: Path) -> None:
+    """700 um lie above the 500 um that were declared; the sizes beside it are those of least squares with it held."""
+    bench = wide(60, seed=21)
+    error = np.random.default_rng(24).normal(0, 40, 60) + 700 * np.sign(bench.load) + 5 * bench.travel
+    made = drive_competition(tmp_path, error, tolerances={})
+    start = np.array([4000 * UM]), np.array([1e-3])  # outside as well
+    best = alone(
+        made.extended,
+        fitting(made.sample, made.extended, [cause_of(made, name) for name in ("clearance", "lead_error")], start),
+    )
+    assert best is not None
+    assert_allclose(size_of(best, "gap"), 500 * UM, rtol=1e-9)
+    rest = error - 500 * np.sign(bench.load)
+    beside = rest @ bench.travel / (bench.travel @ bench.travel)
+    assert_allclose(size_of(best, "lead"), beside * UM / 1e-3, rtol=1e-5)
+
+
 def in_noise(made: Competition, found: Fit, **more: object) -> tuple[Fit, Certainty]:
     """A fit and its certainty as if the noise had been another one."""
     noise = {name: replace(own, **more) for name, own in made.sample.noise.items()}  # type: ignore[arg-type]
