@@ -745,7 +745,8 @@ def test_of_several_explanations_one_thing_is_said(
 ) -> None:
     """With points that separate them, or would if there were more of them, and a fact that does."""
     point = replace(ambiguous().next[0], separates=("rod_heating", rivals[0].causes[0]), needed=needed)
-    made = replace(named(), alternatives=tuple(rivals), remainder=beside, next=(point, point)[: 2 * needed], ties=(TIE,))
+    points = (point, point) if needed else ()
+    made = replace(named(), alternatives=tuple(rivals), remainder=beside, next=points, ties=(TIE,))
     assert_one_thing_is_said(made)
 
 
