@@ -29,7 +29,7 @@ from truing.diagnosis.noise import SMALLEST_SHARE
 from truing.diagnosis.result import DiagnosisResult
 
 PROPER = Asked(drive_model())
-WARM_AND_WORN = wide(90, seed=15)
+WARM_AND_WORN = replace(wide(90, seed=15), travel=np.full(90, 100.0))
 GROWTH, WORN = 0.2 * (WARM_AND_WORN.temperature - 20), 0.3 * WARM_AND_WORN.time * np.sign(WARM_AND_WORN.load)
 
 
