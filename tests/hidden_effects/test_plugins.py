@@ -44,6 +44,7 @@ RESONANCE = {"excitation": 0.06, "resonance_speed": 1800, "damping": 0.06}
 TILTED_ROLLER = screw(seed=5, hidden={"face_misalignment": {"misalignment": 1.5}}, kind="growing", count=60)
 NOTHING = [
     stage(seed=2, results=(ERROR, PLAY), kind="autocorrelated", count=70),
+    reducer(seed=1),
     screw(seed=2, kind="heavy", results=(screw_machine.ERROR, screw_machine.BACKLASH)),
     drive(seed=43, kind="autocorrelated", logs=("time", "wave_angle"), **STIFF),
     surface(seed=2),
@@ -51,6 +52,7 @@ NOTHING = [
 NAMED = [
     stage(seed=31, hidden={"centre_distance_growth": {"expansion": 12}}, results=(PLAY,), kind="autocorrelated"),
     stage(seed=13, hidden={"sun_runout": {"cosine": 1.2, "sine": -0.9}}, results=(ERROR,), kind="heavy"),
+    reducer(seed=15, hidden={"runout": {"offset": 1.2, "direction": 310}}, kind="autocorrelated"),
     TILTED_ROLLER,
     screw(seed=7, hidden={"mesh_resonance": RESONANCE}, results=(ROLLER,), count=120),
     drive(
