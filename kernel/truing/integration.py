@@ -202,7 +202,7 @@ def _first_step(problem: Problem, t: Matrix, y: Matrix, rate: Matrix) -> Matrix:
     change = np.maximum(slope, np.sqrt(_mean_square((bent - rate) / scale)) / guess)
     better = np.where(change <= 1e-15 / whole, np.maximum(1e-6 * whole, guess * 1e-3), (0.01 / change) ** (1 / ORDER))
     step = np.minimum(np.minimum(100 * guess, better), whole)
-    return np.where(np.isfinite(step) & (step > 0), step, 1e-6 * whole)
+    return np.asarray(np.where(np.isfinite(step) & (step > 0), step, 1e-6 * whole))
 
 
 def _one_step(problem: Problem, system: System, going: _Going, solution: Solution) -> Mask:
@@ -266,7 +266,7 @@ def _stopped(problem: Problem, going: _Going, is_good: Mask, solution: Solution)
     for place in np.flatnonzero(tiny | many):
         reason = GROWS if tiny[place] else STEP_LIMIT
         solution.reasons[int(going.machine[place])] = (reason, float(going.t[place]))
-    return tiny | many
+    return np.asarray(tiny | many)
 
 
 @dataclass(frozen=True)
@@ -294,7 +294,7 @@ def _arrive(problem: Problem, going: _Going, places: Indices, dense: _Dense, sol
     if happened.any():
         ended |= _happen(problem, dense.system, going, arrival, solution)
     going.is_stale = bool(happened.any() or (at_break & ~ended).any())
-    return ended
+    return np.asarray(ended)
 
 
 def _write(problem: Problem, dense: _Dense, going: _Going, arrival: _Arrival, solution: Solution) -> None:
