@@ -16,22 +16,6 @@ STATED = 'published=[Published(name="drag", result="drag", value=25.0, unit="N",
 WRONG = f"{RIGHT[:-1].replace('20.0', '25.0')}, {RIGHT.removeprefix('published=[')}"
 
 
-def test_a_row_that_matches(calc: Calc, tmp_path: Path) -> None:
-    write_block(tmp_path, more=RIGHT)
-    answer = calc("verify", "./block.py")
-    assert (answer.code, answer.err) == (0, "")
-    assert "1.0000  matches" in answer.out
-    assert answer.out.endswith("\n1 printed number: 1 match, 0 differ; every verdict is as stated\n")
-
-
-def test_a_difference_that_is_stated_is_a_finding(calc: Calc, tmp_path: Path) -> None:
-    write_block(tmp_path, more=STATED)
-    answer = calc("verify", "./block.py")
-    assert answer.code == 0
-    assert "0.8000  differs" in answer.out
-    assert "[1] a misprint" in answer.out
-
-
 def test_a_difference_that_nobody_states(calc: Calc, tmp_path: Path) -> None:
     write_block(tmp_path, more=WRONG)
     answer = calc("verify", "./block.py")

@@ -86,7 +86,8 @@ class Cluster:
 
 
 def _ended(process: Running) -> None:
-    process.signal(signal.SIGKILL)
+    if process.poll() is None:
+        process.signal(signal.SIGKILL)
     process.ended()
 
 
@@ -234,22 +235,30 @@ def test_finished_batches_outlive_a_lost_scheduler(
     assert (tmp_path / "run" / "results.json").read_bytes() == (tmp_path / "whole" / "results.json").read_bytes()
 
 
-def test_no_scheduler_answers(calc: Calc, monkeypatch: pytest.MonkeyPatch) -> None:
+REFUSED = [
+    (["NOBODY"], "no scheduler answers at NOBODY within 1 s; is dask scheduler running there?"),
+    (["10.0.0.5:8786"], "10.0.0.5:8786"),
+    (["tcp://"], "tcp://"),
+    (["carrier://pigeon:1"], "carrier://pigeon:1"),
+    (["tcp://host:port"], "tcp://host:port"),
+    (["NOBODY", "--workers", "2"], "--cluster and --workers exclude each other: a cluster has its own workers"),
+]
+
+
+@pytest.mark.parametrize(("words", "said"), REFUSED)
+def test_no_cluster_is_there(calc: Calc, monkeypatch: pytest.MonkeyPatch, words: list[str], said: str) -> None:
     monkeypatch.setattr(on_cluster, "CONNECT_SECONDS", 1)
     with socket.socket() as nobody:  # a port that nobody else gets, and where nobody listens
         nobody.bind(("127.0.0.1", 0))
         address = f"tcp://127.0.0.1:{nobody.getsockname()[1]}"
-        answer = calc("run", PIN, "-q", "--cluster", address)
-    assert answer == Answer(
-        2, "", f"calc: no scheduler answers at {address} within 1 s; is dask scheduler running there?\n"
-    )
+        answer = calc("run", PIN, "-q", "--cluster", *(word.replace("NOBODY", address) for word in words))
+    assert (answer.code, answer.out, answer.err.count("\n")) == (2, "", 1)
+    assert answer.err.startswith("calc: ")
+    assert said.replace("NOBODY", address) in answer.err
 
 
-@pytest.mark.parametrize("address", ["10.0.0.5:8786", "tcp://", "carrier://pigeon:1", "tcp://host:port"])
-def test_what_is_no_address(calc: Calc, monkeypatch: pytest.MonkeyPatch, address: str) -> None:
-    monkeypatch.setattr(on_cluster, "CONNECT_SECONDS", 1)
-    answer = calc("run", PIN, "-q", "--cluster", address)
-    assert answer.code == 2
-    assert answer.out == ""
-    assert answer.err.count("\n") == 1
-    assert address in answer.err
+def test_without_the_extra_it_is_named(calc: Calc, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    answer = calc("run", PIN, "-q", "--cluster", "tcp://127.0.0.1:1")
+    sentence = 'a cluster needs dask.distributed; install it with: pip install "truing[cluster]"'
+    assert (answer.code, answer.err) == (2, f"calc: {sentence}\n")

@@ -84,32 +84,26 @@ def on_terminal(monkeypatch: pytest.MonkeyPatch, patience: float = 0.05) -> Term
 
 
 @pytest.mark.parametrize(
-    ("elapsed", "done", "total", "left"),
+    ("elapsed", "first", "done", "total", "left"),
     [
-        (30.0, 1, 4, 90.0),  # a quarter in half a minute
-        (30.0, 3, 4, 10.0),
-        (100.0, 0, 4, None),  # nothing is known
-        (100.0, 1, 1000, None),  # next to nothing is
-        (0.5, 1, 2, None),  # too soon to say
-        (10.0, 4, 4, 0.0),
-        (10.0, 5, 4, 0.0),  # whoever counts too far is done
-        (10.0, 1, 0, None),
+        (30.0, 0, 1, 4, 90.0),  # a quarter in half a minute
+        (30.0, 0, 3, 4, 10.0),
+        (60.0, 0, 3, 4, 20.0),  # a step that takes long lengthens what is left
+        (100.0, 0, 0, 4, None),  # nothing is known
+        (100.0, 0, 1, 1000, None),  # next to nothing is
+        (0.5, 0, 1, 2, None),  # too soon to say
+        (10.0, 0, 4, 4, 0.0),
+        (10.0, 0, 5, 4, 0.0),  # whoever counts too far is done
+        (10.0, 0, 1, 0, None),
+        (10.0, 2, 3, 4, 10.0),  # half was done at once, a quarter took ten seconds: so will the last quarter
+        (10.0, 3, 3, 4, None),
     ],
 )
-def test_time_left_is_that_of_the_pace_so_far(elapsed: float, done: int, total: int, left: float | None) -> None:
-    found = Task("work", 5.0, done, total).left(5.0 + elapsed)
+def test_time_left_is_that_of_the_pace_since_one_heard_of_the_task(
+    elapsed: float, first: int, done: int, total: int, left: float | None
+) -> None:
+    found = Task("work", 5.0, done, total, first=first).left(5.0 + elapsed)
     assert found == (None if left is None else pytest.approx(left))
-
-
-def test_the_pace_counts_from_where_one_first_heard_of_the_task() -> None:
-    """Half was done at once, a quarter took ten seconds: so will the last quarter."""
-    assert Task("work", 0.0, 3, 4, first=2).left(10.0) == pytest.approx(10.0)
-    assert Task("work", 0.0, 3, 4, first=3).left(10.0) is None
-
-
-def test_a_step_that_takes_long_lengthens_what_is_left() -> None:
-    task = Task("work", 0.0, 1, 2)
-    assert [task.left(now) for now in (10.0, 20.0, 40.0)] == [10.0, 20.0, 40.0]
 
 
 @pytest.mark.parametrize(
@@ -153,19 +147,13 @@ def test_short_work_shows_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_an_error_takes_the_line_away(monkeypatch: pytest.MonkeyPatch) -> None:
     terminal = on_terminal(monkeypatch)
-    with pytest.raises(KeyboardInterrupt):
-        interrupted()
-    shown = terminal.getvalue()
-    assert shown.rindex("\x1b[2K") > shown.rindex("sweep")
-    assert shown.rindex("\x1b[?25h") > shown.rindex("\x1b[?25l")  # the cursor is there again
-
-
-def interrupted() -> None:
-    """Work that is ended by its user."""
-    with shown_progress() as report:
+    with pytest.raises(KeyboardInterrupt), shown_progress() as report:
         report("sweep", 1, 2)
         time.sleep(0.3)
         raise KeyboardInterrupt
+    shown = terminal.getvalue()
+    assert shown.rindex("\x1b[2K") > shown.rindex("sweep")
+    assert shown.rindex("\x1b[?25h") > shown.rindex("\x1b[?25l")  # the cursor is there again
 
 
 @pytest.mark.parametrize(("name", "value"), [("TERM", "dumb"), ("NO_COLOR", "1")])
@@ -229,22 +217,14 @@ def on_a_terminal(command: list[str], folder: Path) -> list[tuple[float, str]]:
 
 
 def test_parts_of_a_task_lie_one_behind_the_other() -> None:
-    said: list[tuple[str, int, int]] = []
-    note = lambda *words: said.append(words)  # noqa: E731
+    said: list[tuple[str, int]] = []
+
+    def note(task: str, done: int, _: int) -> None:
+        said.append((task, done))
+
     part_of(note, "surrogate", 0.2, 0.3)(1, 2)
     part_of(note, "surrogate", 0.2, 0.3)(0, 0)
     inner = within(note, "cases", 0.5, 0.75, ["sweep", "reliability"])
-    inner("sweep", 1, 2)
-    inner("reliability", 2, 2)
-    inner("nobody", 1, 2)
-    inner("reliability", 1, 2)  # begins anew: it does not go back
-    assert said == [
-        ("surrogate", 250, 1000),
-        ("surrogate", 200, 1000),
-        ("cases", 562, 1000),
-        ("cases", 750, 1000),
-        ("cases", 750, 1000),
-    ]
-
-
-# What the benchmark asks of every shipped study
+    for task, done in (("sweep", 1), ("reliability", 2), ("nobody", 1), ("reliability", 1)):  # it never goes back
+        inner(task, done, 2)
+    assert said == [("surrogate", 250), ("surrogate", 200), ("cases", 562), ("cases", 750), ("cases", 750)]

@@ -35,17 +35,6 @@ def columns(text: str) -> dict[str, list[str]]:
     return {name: [row[place] for row in rows] for place, name in enumerate(head)}
 
 
-def test_the_columns_of_the_file_come_first_and_units_stand_in_the_header(table: Table) -> None:
-    answer = table("load [kN],batch\n0.14,A\n0.28,B\n")
-    assert answer.code == 0
-    assert answer.err == "column 'batch' changes nothing and is kept as it stands.\n"
-    found = columns(answer.out)
-    assert list(found) == ["load [kN]", "batch", "pressure [MPa]", "distance [km]", "depth [um]"]
-    assert found["load [kN]"] == ["0.14", "0.28"]
-    assert found["batch"] == ["A", "B"]
-    assert [float(cell) for cell in found["pressure [MPa]"]] == pytest.approx([5.0, 10.0], rel=1e-15)
-
-
 def test_numbers_read_back_exactly(table: Table, tmp_path: Path) -> None:
     """0.1 N and its neighbours differ in the seventeenth digit; every one of them comes through."""
     loads = [0.1, math.nextafter(0.1, 1), 1 / 3, 2 / 3 * 1e-7, 123456.78901234567]
