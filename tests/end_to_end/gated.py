@@ -9,41 +9,19 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from own_pins import write_pin
 from warm import FORKED_WORKERS, LONGEST, Running
 
 FREE, ROWS, BATCHES = 6, 1024, 24
-PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
-PLUGIN = f'''
-"""The wear of a pin, calculated by whoever passes the gate."""
-
-import os
-import time
-from dataclasses import replace
-from pathlib import Path
-
-import numpy as np
-from pin_wear import PIN_WEAR, Pin, Wear, wear
-
-from truing import Model, hookimpl
-
-CALLS, OPEN = Path(__file__).with_name("calls"), Path(__file__).with_name("open")
-
-
-def gated(pin: Pin) -> Wear:
-    """Let {FREE} batches pass, and the others when the gate is opened."""
-    if np.shape(pin.load) == ({ROWS},):
-        with CALLS.open("ab", buffering=0) as calls:
-            calls.write(b"%12d" % os.getpid())
-        while CALLS.stat().st_size > 12 * {FREE} and not OPEN.exists():
-            time.sleep(0.01)
-    return wear(pin)
-
-
-@hookimpl
-def truing_models() -> list[Model]:
-    """Offer it."""
-    return [replace(PIN_WEAR, name="gated_pin", function=gated, sheet=[])]
-'''
+HEAD = 'CALLS, OPEN = Path(__file__).with_name("calls"), Path(__file__).with_name("open")'
+GATE = f"""
+if np.shape(pin.load) == ({ROWS},):
+    with CALLS.open("ab", buffering=0) as calls:
+        calls.write(b"%12d" % os.getpid())
+    while CALLS.stat().st_size > 12 * {FREE} and not OPEN.exists():
+        time.sleep(0.01)
+"""
+"""Let some batches pass, and the others when the gate is opened."""
 
 
 def wait_until(holds: Callable[[], Any], what: str) -> None:
@@ -62,8 +40,7 @@ class Gated:
 
     @classmethod
     def in_folder(cls, folder: Path) -> Gated:
-        (folder / "pin_wear.py").write_text(PIN.read_text(encoding="utf-8"), encoding="utf-8")
-        (folder / "gated_pin.py").write_text(PLUGIN, encoding="utf-8")
+        write_pin(folder, "gated_pin", head=HEAD, body=GATE, more="sheet=[]")
         return cls(folder)
 
     @property

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
 import sys
 import warnings
 from collections.abc import Callable
@@ -18,7 +17,7 @@ from matplotlib.figure import Figure
 from measured import read_document
 
 import truing
-from shared import TESTS, Calc
+from shared import TESTS, Calc, process
 from truing.studies.sweep import Swept
 
 PIN = TESTS / "data" / "pin_wear.py"
@@ -246,20 +245,19 @@ def test_an_interrupted_run_is_taken_up(pin: truing.LoadedModel, tmp_path: Path)
 
 
 SCRIPT = """
-import truing
+from truing.executors import open_executor
 
 print("begun")
-pin = truing.load({pin!r})
-print(pin.run(workers=2, draws=60_000, progress=False).verdict)
+with open_executor("processes:1") as worker:
+    print(worker.submit(abs, -3).result())
 """
 
 
 def test_a_script_with_workers_runs_once(tmp_path: Path) -> None:
     """Without ``if __name__ == "__main__"``."""
-    script = tmp_path / "script.py"
-    script.write_text(SCRIPT.format(pin=str(PIN)), encoding="utf-8")
-    done = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=120, check=False)
-    assert (done.returncode, done.stdout.split()) == (0, ["begun", "passes"]), done.stderr
+    (tmp_path / "script.py").write_text(SCRIPT, encoding="utf-8")
+    answer = process([sys.executable, "script.py"], tmp_path)
+    assert (answer.code, answer.out.split()) == (0, ["begun", "3"]), answer.err
 
 
 REFUSED = [

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import inspect
 import json
-import subprocess
 import sys
 from pathlib import Path
 from typing import Any
@@ -16,7 +15,7 @@ import pyarrow as pa
 import pytest
 
 import truing
-from shared import TESTS
+from shared import TESTS, process
 
 PIN = TESTS / "data" / "pin_wear.py"
 
@@ -174,15 +173,15 @@ def diagnosed(pin: Any, make: Any) -> list[Any]:
     return [found, base, record.frame(), found.ranking.frame(), found.residuals.frame()]
 
 
-def test_one_library_of_dataframes_is_enough(pin: truing.LoadedModel) -> None:
+def test_one_library_of_dataframes_is_enough(pin: truing.LoadedModel, tmp_path: Path) -> None:
     """In a process that finds pyarrow alone; the notebook runs with pandas and with polars alone.
 
     A notebook shows what has ``_repr_png_``: pyplot is not imported for it.
     """
     code = ALONE.replace("DIAGNOSED", inspect.getsource(diagnosed))
-    done = subprocess.run([sys.executable, "-c", code, PIN], capture_output=True, text=True, timeout=300, check=False)
-    assert done.returncode == 0, done.stderr
-    assert json.loads(done.stdout) == diagnosed(pin, pd.DataFrame)[0].document
+    answer = process([sys.executable, "-c", code, str(PIN)], tmp_path)
+    assert answer.code == 0, answer.err
+    assert json.loads(answer.out) == diagnosed(pin, pd.DataFrame)[0].document
 
 
 def test_without_any_a_sentence_says_what_to_install(pin: truing.LoadedModel, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -7,7 +7,7 @@ import shutil
 from pathlib import Path
 
 import pytest
-from block import write_block
+from own_pins import write_pin
 
 from shared import Answer, Calc
 from truing.report import pdf
@@ -27,16 +27,16 @@ def test_json_is_one_document_and_the_same_as_in_the_folder(calc: Calc, tmp_path
     ("body", "code", "words"),
     [
         ("raise ConvergenceError('the iteration stood still after 50 steps')", 4, "calc: the iteration stood still"),
-        ("raise ValueError('a mistake')", 3, "block.py:34: block failed: ValueError: a mistake"),
-        ("return np.zeros(3)", 3, "calc: block returned array([0., 0., 0.]), which is no Slide"),
+        ("raise ValueError('a mistake')", 3, "own_pin.py:21: own_pin failed: ValueError: a mistake"),
+        ("return np.zeros(3)", 3, "calc: own_pin returned array([0., 0., 0.]), which is no Wear"),
         ("raise KeyboardInterrupt", 130, "calc: interrupted; nothing was written"),
     ],
 )
 def test_exit_codes_of_a_plugin_that_does_not_answer(
     calc: Calc, tmp_path: Path, body: str, code: int, words: str
 ) -> None:
-    write_block(tmp_path, body=body)
-    answer = calc("run", "./block.py", "-q")
+    write_pin(tmp_path, body=body)
+    answer = calc("run", "./own_pin.py", "-q")
     assert answer.code == code
     assert answer.out == ""
     assert words in answer.err
@@ -45,14 +45,14 @@ def test_exit_codes_of_a_plugin_that_does_not_answer(
 
 
 def test_traceback_shows_where_and_keeps_sentence_and_code(calc: Calc, tmp_path: Path) -> None:
-    write_block(tmp_path, body="raise ValueError('a mistake')")
-    for arguments in (("--traceback", "run", "./block.py"), ("run", "./block.py", "--traceback")):
+    write_pin(tmp_path, body="raise ValueError('a mistake')")
+    for arguments in (("--traceback", "run", "./own_pin.py"), ("run", "./own_pin.py", "--traceback")):
         answer = calc(*arguments)
         assert (answer.code, answer.out) == (3, "")
         assert "Traceback (most recent call last)" in answer.err
-        assert "in block\n    raise ValueError('a mistake')" in answer.err
-        assert "block failed: ValueError: a mistake" in answer.err.split("\n")[-2]
-    assert "Traceback" not in calc("run", "./block.py").err
+        assert "in own_pin\n    raise ValueError('a mistake')" in answer.err
+        assert "own_pin failed: ValueError: a mistake" in answer.err.split("\n")[-2]
+    assert "Traceback" not in calc("run", "./own_pin.py").err
 
 
 @pytest.mark.parametrize("place", [0, 2, 4])

@@ -9,9 +9,10 @@ from pathlib import Path
 
 import pytest
 from gated import FREE, Gated, wait_until
+from own_pins import write_pin
+from warm import Running
 
 from shared import Answer, Calc
-from warm import Running
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="a console signal there stops the test too")
 
@@ -73,47 +74,19 @@ def test_an_interrupted_run_leaves_no_worker_behind(tmp_path: Path, by: int) -> 
     wait_until(lambda: not any(map(is_alive, children)), "the workers end")
 
 
-WHILE_FINALIZED = """
-import os
-import signal
-import time
-
-from truing import Float, Model, found, given, hookimpl, inputs, results
-
-
-@inputs
-class Wait:
-    seconds: Float = given(60.0, "s", note="how long it takes")
-
-
-@results
-class Waited:
-    waited: Float = found("s", note="how long it took")
-
-
+SIGNALLED = """
 class Signalled:
     def __del__(self) -> None:
         os.kill(os.getpid(), signal.SIGINT)
         for _ in range(1000):
             pass
-
-
-def wait(given: Wait) -> Waited:
-    Signalled()
-    time.sleep(60)
-    return Waited(waited=given.seconds)
-
-
-@hookimpl
-def truing_models() -> list[Model]:
-    return [Model(name="slow_wait", title="Wait", function=wait)]
 """
 
 
 def test_an_interrupt_during_a_finalizer_is_not_lost(tmp_path: Path) -> None:
     """Python drops what is raised in a finalizer; this one sends the signal to its own process."""
-    (tmp_path / "slow_wait.py").write_text(WHILE_FINALIZED)
-    ended = Running(["-m", "truing", "run", "slow_wait.py", "-q"], tmp_path).ended()
+    slow = write_pin(tmp_path, head=SIGNALLED, body="Signalled()\ntime.sleep(60)")
+    ended = Running(["-m", "truing", "run", slow, "-q"], tmp_path).ended()
     assert ended == Answer(130, "", "calc: interrupted; nothing was written\n")
 
 

@@ -141,6 +141,12 @@ IMPOSSIBLE: dict[str, list[tuple[list[str], int, str]]] = {
         (['longest_wave = "1 nm"'], 3, "the shortest wave is not shorter than the longest one"),
         (['fractal_roughness = "1e-9 m"'], 3, f"fractal_roughness {CONVENTIONS}"),
     ],
+    "press_linkage": [
+        (['crank_radius = "0.36 m"', 'lower_knee_length = "0.5 m"'], 4, "loop III, side 1 does not close: the lower "
+         "link cannot reach the slider, it needs |l - y_G| < l_h"),
+        (['rod_length = "0.5 m"'], 3, "loop I has no bottom dead centre: crank and rod in line do not reach the "
+         "platform; it needs crank_pivot_radius - platform_half_width < crank_radius + rod_length"),
+    ],
     "roller_screw_shift": [
         (["roller_teeth = 20", "ring_teeth = 27"], 4, "the formulas hold for ring_teeth at least 8 above roller_teeth"),
         # a cos(alpha) = 20 cos(20 deg) = 18.794 mm must be less than the centre distance

@@ -11,33 +11,14 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
+from own_pins import write_pin
 
 from shared import Calc
 from truing import progress
 from truing.progress import Task, has_terminal, shown_progress, spoken
 from truing.studies.bench import part_of, within
 
-SLOW = """
-import time
-from dataclasses import dataclass
-
-from truing import Float, Model, found, given, hookimpl, inputs, results
-
-
-@inputs
-class Given:
-    x: Float = given(1.0, "")
-
-
-@results
-class Found:
-    y: Float = found("")
-
-
-def double(item: Given) -> Found:
-    return Found(y=2 * item.x)
-
-
+PATIENT = """
 @dataclass(frozen=True)
 class Heard:
     def as_json(self): return {}
@@ -58,12 +39,12 @@ class Patient:
             bench.progress(self.name, step, self.steps)
             time.sleep(self.pause)
         return Heard()
-
-
-@hookimpl
-def truing_models():
-    return [Model(name="slow", title="Slow", function=double, studies=[Patient()])]
 """
+
+
+def write_slow(folder: Path) -> None:
+    """Write a pin with one study, of twelve steps that take 0.3 s."""
+    write_pin(folder, "slow", head=PATIENT, more="objectives=[], studies=[Patient()], sheet=[]")
 
 
 class Terminal(io.StringIO):
@@ -167,7 +148,7 @@ def test_plain_terminals_show_none(monkeypatch: pytest.MonkeyPatch, name: str, v
 
 def test_nothing_goes_to_a_pipe(calc: Calc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(progress, "PATIENCE", 0.0)
-    (tmp_path / "slow.py").write_text(SLOW, encoding="utf-8")
+    write_slow(tmp_path)
     answer = calc("run", "slow.py", "--set", "studies.patient.pause=0.02")
     assert (answer.code, answer.err) == (
         0,
@@ -178,7 +159,7 @@ def test_nothing_goes_to_a_pipe(calc: Calc, tmp_path: Path, monkeypatch: pytest.
 @pytest.mark.skipif(os.name == "nt", reason="a terminal of another kind")
 def test_a_real_terminal(tmp_path: Path) -> None:
     """Twelve steps of 0.3 s: silence for two seconds, then the bar with what is left, then the results."""
-    (tmp_path / "slow.py").write_text(SLOW, encoding="utf-8")
+    write_slow(tmp_path)
     heard = on_a_terminal([sys.executable, "-m", "truing", "run", "slow.py", "-v"], tmp_path)
     text = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", "".join(part for _, part in heard))
     begin = next(when for when, part in heard if "no --inputs" in part)
