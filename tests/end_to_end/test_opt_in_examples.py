@@ -248,15 +248,11 @@ def test_without_a_record_there_is_one_sentence(name: str, capsys: pytest.Captur
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_the_page_says_where_the_record_comes_from_and_under_which_licence(name: str) -> None:
+def test_the_page_says_where_the_record_comes_from_and_none_is_shipped(name: str) -> None:
     page = (EXAMPLES / name / "README.md").read_text(encoding="utf-8")
     assert NEEDED.search(page)
     assert "https://creativecommons.org/licenses/by-sa/4.0/" in page
     assert "https://github.com/" in page
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_no_record_is_shipped(name: str) -> None:
     ignored = (EXAMPLES / name / ".gitignore").read_text(encoding="utf-8").split()
     assert ignored[0] == "data.csv"
     files = {file.name for file in (EXAMPLES / name).iterdir() if file.is_file() and not any(map(file.match, ignored))}

@@ -54,14 +54,6 @@ def test_strict_ends_at_the_broken_guest(stranger: Callable[..., Answer]) -> Non
     assert BROKEN in answer.err
 
 
-def test_describe(stranger: Callable[..., Answer]) -> None:
-    answer = stranger("describe", "screw_joint")
-    assert answer.code == 0
-    for word in ("tightening_torque", "N·m", "settling", "friction", "clamp_left"):
-        assert word in answer.out
-    assert json.loads(stranger("describe", "screw_joint", "--json").out)
-
-
 def run_folder(stranger: Callable[..., Answer], folder: Path, *arguments: str) -> Any:
     """Run without a fault and return results.json."""
     answer = stranger("run", *arguments, "--output", folder)

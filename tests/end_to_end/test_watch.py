@@ -16,10 +16,10 @@ from typing import Any
 
 import pytest
 from gated import wait_until
+from warm import LONGEST, Running
 
 from shared import Calc
 from truing.watching import PATIENCE, WatchedFiles
-from warm import LONGEST, Running
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
 INPUTS = '[inputs]\nload = "120 N"\n[studies]\nrun = ["reliability"]\n'
@@ -98,7 +98,7 @@ def test_the_sheet_follows_inputs_and_code_and_survives_mistakes(tmp_path: Path)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="a console signal there stops the test too")
-def test_a_diagnosis_follows_its_measured_rows(calc: Calc, tmp_path: Path) -> None:
+def test_a_diagnosis_follows_its_measured_rows(tmp_path: Path) -> None:
     shutil.copy(PIN, tmp_path / "pin.py")
     saved(tmp_path / "pin.toml", '[inputs]\nload = "120 N"\n')
     depth = 3e-8 * (120 / 28e-6) * 0.5 * 3600 / 2.1e9 * 1e6  # Archard, um per hour
@@ -117,13 +117,6 @@ def test_a_diagnosis_follows_its_measured_rows(calc: Calc, tmp_path: Path) -> No
         assert watch.says("not calculated; the sheet of .* stays")
         assert watch.interrupted() == 1
         assert watch.says("calc: watched 2 diagnoses; the sheet of .* stays")
-    for words, why in (
-        (["--data", "n.csv"], "n.csv: no such file"),
-        (["--data", "m.csv", "--workers", "2"], "for runs"),
-    ):
-        answer = calc("watch", "./pin.py", "--inputs", "pin.toml", *words, cwd=tmp_path)
-        assert answer.code == 2
-        assert why in answer.err
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="a console signal there stops the test too")
@@ -152,6 +145,11 @@ def test_data_files_and_the_files_of_an_installed_package_are_watched(tmp_path: 
     [
         (["no_such_plugin", "--inputs", "pin.toml"], "calc: no plugin offers 'no_such_plugin'."),
         ([PIN, "--inputs", "pim.toml"], "pim.toml: no such file. Did you mean 'pin.toml'?"),
+        ([PIN, "--inputs", "pin.toml", "--data", "n.csv"], "n.csv: no such file"),
+        (
+            [PIN, "--inputs", "pin.toml", "--data", "pin.toml", "--workers", "2"],
+            "calc: --cases, --excel and --workers are",
+        ),
         ([PIN, "--inputs", "pin.toml", "-o", "other"], "calc: other: is an existing folder but no run of ours"),
     ],
 )
