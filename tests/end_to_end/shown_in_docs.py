@@ -39,7 +39,7 @@ from pathlib import Path
 from typing import Any
 
 from read_in_docs import read
-from warm import Running
+from warm import FORKED_WORKERS, Running
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ROOT / "docs" / "examples"
@@ -139,7 +139,12 @@ class Desk:
         raise AssertionError(f"the pages run calc, python, pip install and cd; not {parts[0]}")
 
     def _environment(self) -> dict[str, str]:
-        own = {"PYTHONUNBUFFERED": "1", "PYTHONIOENCODING": "utf-8", "PYTHONPATH": os.pathsep.join(self._installed())}
+        own = {
+            FORKED_WORKERS: "",
+            "PYTHONUNBUFFERED": "1",
+            "PYTHONIOENCODING": "utf-8",
+            "PYTHONPATH": os.pathsep.join(self._installed()),
+        }
         return {**own, **TERMINAL, "PYTHONDONTWRITEBYTECODE": "1"}
 
 
