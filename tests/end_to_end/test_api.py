@@ -14,7 +14,8 @@ import pandas as pd
 import pint
 import pytest
 from matplotlib.figure import Figure
-from measured import read_document
+from measured import calc_here, read_document
+from shown_in_docs import Desk
 
 import truing
 from shared import TESTS, Calc, process
@@ -24,7 +25,7 @@ PIN = TESTS / "data" / "pin_wear.py"
 EXAMPLES = TESTS.parent / "docs" / "examples"
 PRESS = EXAMPLES / "press_off_by_40_um"
 LOSS = 2.5e-4
-"""What is hidden in the record of the spring: the loss of shear modulus in 1/K."""
+"""What the page hides in the record of the spring: the loss of shear modulus in 1/K."""
 
 
 @pytest.fixture(scope="module")
@@ -33,59 +34,22 @@ def pin() -> truing.LoadedModel:
 
 
 @pytest.fixture(scope="module")
-def spring() -> truing.LoadedModel:
-    return truing.load(EXAMPLES / "coil_spring.py")
-
-
-@pytest.fixture(scope="module")
 def press() -> truing.LoadedModel:
     return truing.load("press_linkage")
 
 
-def measured_spring(rows: int = 60) -> pd.DataFrame:
-    """Forces of a spring of 1 x 8 mm, 8 coils, that softens as it gets warm; 20 mN of noise, every fifth row judges."""
-    rng = np.random.default_rng(3)
-    temperature, travel = np.linspace(20, 150, rows), rng.uniform(4, 12, rows)
-    rate = 81.7e3 * 1.0**4 / (8 * 8.0**3 * 8.0)  # N/mm
-    force = rate * travel * (1 - LOSS * (temperature - 20)) + rng.normal(0, 0.02, rows)
-    judged = ["yes" if row % 5 == 0 else "no" for row in range(rows)]
-    columns = {"compression [mm]": travel, "spring_temperature [degC]": temperature, "force [N]": force}
-    return pd.DataFrame({**columns, "judged": judged})
-
-
-def test_the_first_lines_that_a_user_writes(
-    spring: truing.LoadedModel, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, runs_share_processes: None
-) -> None:
-    """The listing by which the API was designed, line by line."""
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "press.toml").write_text('[inputs]\ncompression = "12 mm"\n[studies]\nseed = 1\n', encoding="utf-8")
-    measured_spring().to_csv("measured.csv", index=False)
-
-    run = spring.run(compression="12 mm", draws=100_000, seed=1)
+def test_the_first_lines_that_a_user_writes(listing_done: Desk) -> None:
+    """The listing by which the API was designed is run as its page shows it; here its numbers are looked at."""
+    run, table, found, better = (listing_done.namespace[name] for name in ("run", "table", "found", "better"))
     assert str(run["stress"].units) == "megapascal"
     assert run.si["stress"] == pytest.approx(714.6022644e6)  # K 8 F D / (pi d^3) by hand, K = 34 / 29
     assert [check.passed for check in run.checks] == [False, True]
     assert (run.passed, run.verdict) == (False, "fails")
     assert "stress" in run.frame()["name"].tolist()
-    assert run.sheet("spring.html").is_file()
-    assert (run.save("runs/spring") / "results.json").is_file()
-    assert spring.run("press.toml", workers=2).si["stress"] == run.si["stress"]
-    assert spring.study(truing.Reliability(draws=50_000)).frame()["limit kept"].tolist() == ["force"]
-    assert isinstance(spring.sweep("compression", "5 mm", "15 mm", 50).plot(), Figure)
-    table = spring.evaluate(pd.DataFrame({"compression [mm]": [5.0, 10.0]}))
-    assert table["force [N]"].tolist() == pytest.approx([12.46643, 24.93286], rel=1e-6)
-    record = truing.read("measured.csv", spring)
-    found = spring.diagnose(record, hold_out="judged = yes", per_file=["active_coils"])
-    assert found.verdict == "named"
-    low, high = found.causes[0].unknowns["loss"].interval95
-    assert low is not None
-    assert high is not None
-    assert low < LOSS < high
-    assert found.ranking.frame()["explanation"].tolist()[0] == "softening"
-    assert isinstance(found.residuals.plot(), Figure)
-    better = found.extended
-    differences = better.run().compare(run)
-    assert {"inputs", "effects"} <= set(differences.frame()["what"])
+    assert (listing_done.folder / "spring.html").is_file()
+    assert (listing_done.folder / "runs" / "spring" / "results.json").is_file()
+    assert table["force [N]"].tolist() == pytest.approx([2.493286 * travel for travel in table["compression [mm]"]])
+    assert {"inputs", "effects"} <= set(better.run().compare(run).frame()["what"])
     assert "softening" in found._repr_html_()
 
 
@@ -162,6 +126,7 @@ def test_a_sweep_and_a_study_of_ones_own(pin: truing.LoadedModel) -> None:
         swept.plot("presure")
     studies = pin.run(draws=4096).studies
     assert list(studies) == ["sensitivity", "reliability"]
+    assert studies["reliability"].frame()["limit kept"].tolist() == ["pressure"]
     assert isinstance(studies["sensitivity"].plot(), Figure)
     with pytest.raises(truing.TruingError, match="this study has no table 'nothing'; it has"):
         studies["reliability"].frame("nothing")
@@ -287,25 +252,28 @@ def test_what_a_file_refuses_is_refused_in_the_same_words(pin: truing.LoadedMode
 
 def test_a_diagnosis_names_the_cause_with_its_size(diagnosis: truing.Diagnosis) -> None:
     (cause,) = diagnosis.causes
-    low, high = cause.unknowns["clearance"].interval95
-    assert (diagnosis.verdict, cause.effect) == ("named", "joint_clearance")
+    low, high = cause.unknowns["loss"].interval95
+    assert (diagnosis.verdict, cause.effect) == ("named", "softening")
     assert low is not None
     assert high is not None
-    assert low <= 6.0 <= high  # um: what the page says was hidden
-    assert str(cause.unknowns["clearance"].quantity.units) == "micrometer"
-    assert diagnosis.ranking.frame()["explanation"].tolist()[0] == "joint clearance"
+    assert low < LOSS < high
+    assert str(cause.unknowns["loss"].quantity.units) == "1 / kelvin"
+    assert diagnosis.ranking.frame()["explanation"].tolist()[0] == "softening"
     assert isinstance(diagnosis.plot(), Figure)
     assert isinstance(diagnosis.ranking.plot(), Figure)
-    over = diagnosis.residuals.plot("link_temperature", "slider_tilt")
-    assert over.axes[0].get_xlabel().startswith("link temperature")
-    with pytest.raises(truing.TruingError, match="'link' is no column of the record"):
-        diagnosis.residuals.plot("link")
+    over = diagnosis.residuals.plot("spring_temperature", "force")
+    assert over.axes[0].get_xlabel().startswith("spring temperature")
+    with pytest.raises(truing.TruingError, match="'spring' is no column of the record"):
+        diagnosis.residuals.plot("spring")
 
 
-def test_a_diagnosis_is_that_of_the_command_line(diagnosis: truing.Diagnosis, play: Path, tmp_path: Path) -> None:
-    saved = diagnosis.save(tmp_path / "here")
-    assert json.loads((saved / "diagnosis.json").read_text("utf-8")) == read_document(play)
-    assert (saved / "extended.toml").read_text("utf-8") == (play / "extended.toml").read_text("utf-8")
+def test_a_diagnosis_is_that_of_the_command_line(diagnosis: truing.Diagnosis, listing_done: Desk) -> None:
+    desk, saved = listing_done.folder, diagnosis.save(listing_done.folder / "here")
+    options = ("hold_out=judged = yes", 'per_file=["active_coils"]')
+    settings = [word for option in options for word in ("--set", f"studies.diagnose.{option}")]
+    assert calc_here(desk, "diagnose", "coil_spring.py", "--data", "measured.csv", "-o", "there", *settings).code == 0
+    assert read_document(saved) == read_document(desk / "there")
+    assert (saved / "extended.toml").read_text("utf-8") == (desk / "there" / "extended.toml").read_text("utf-8")
     assert not diagnosis.compare(diagnosis)
 
 
