@@ -41,19 +41,13 @@ def test_describe_names_what_the_page_has_none_of(calc: Calc) -> None:
 
 def test_describe_as_json(calc: Calc) -> None:
     found = json.loads(calc("describe", "press_linkage", "--json").out)
-    assert found["name"] == "press_linkage"
-    names = [item["name"] for item in found["inputs"]]
-    assert len([name for name in names if "_deviation" in name]) == 29
-    by_name = {item["name"]: item for item in found["inputs"]}
-    assert by_name["crank_radius"]["default"] == 0.36
-    assert by_name["crank_radius"]["unit"] == "m"
-    assert by_name["reading"]["choices"] == ["complete", "printed"]
-    assert by_name["reading"]["default"] == "complete"
-    assert by_name["ground_pivot_angle"]["default"] == 0.367
-    assert {item["name"] for item in found["effects"]} >= {"link_heating"}
+    inputs = {item["name"]: item for item in found["inputs"]}
+    assert len([name for name in inputs if "_deviation" in name]) == 29
+    assert (inputs["crank_radius"]["default"], inputs["crank_radius"]["unit"]) == (0.36, "m")
+    assert (inputs["reading"]["default"], inputs["reading"]["choices"]) == ("complete", ["complete", "printed"])
+    assert "link_heating" in {item["name"] for item in found["effects"]}
     assert set(found["studies"]) >= {"sweep", "sensitivity", "reliability", "allocation"}
-    results = {item["name"]: item for item in found["results"]}
-    assert {"slider_position", "slider_tilt", "stroke", "bdc_position", "adjustments"} <= set(results)
+    assert {"slider_position", "bdc_position", "adjustments"} <= {item["name"] for item in found["results"]}
 
 
 def test_describe_names_what_the_reader_of_a_file_takes(calc: Calc) -> None:

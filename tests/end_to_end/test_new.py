@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import json
 import re
 import sys
 from pathlib import Path
@@ -121,27 +120,6 @@ def test_what_is_refused_leaves_nothing(calc: Calc, tmp_path: Path, words: list[
     assert answer.err.count("\n") == 1
     assert sorted(path.name for path in tmp_path.rglob("*")) == ["folder.py", "there.py"]
     assert (tmp_path / "there.py").read_text(encoding="utf-8") == "mine\n"
-
-
-def test_a_single_file_runs_and_is_diagnosed(calc: Calc, tmp_path: Path) -> None:
-    """The title stands on the sheet; the made rows of a project name the clamp with its 0.25 mrad/(N m)."""
-    title = PLANS[1].title
-    answer = calc("new", "gantry_beam", "--single-file", "--title", title)
-    assert answer.code == 0
-    assert "  python -m pytest ./gantry_beam.py\n" in answer.err
-    ran = calc("run", "./gantry_beam.py")
-    assert ran.code == 0, ran.err
-    assert ran.out.startswith(f"gantry_beam: {title}\n")
-    measured = tmp_path / "measured.csv"
-    measured.write_text(project(PLANS[1])["measured.csv"], encoding="utf-8")
-    found = calc("diagnose", "./gantry_beam.py", "--data", "measured.csv", "--json")
-    assert found.code == 0, found.err
-    document = json.loads(found.out)
-    assert document["verdict"] in {"named", "one_of"}
-    (cause,) = document["causes"]
-    assert cause["effect"] == "soft_clamp"
-    low, high = cause["unknowns"]["flexibility"]["interval95"]
-    assert low <= 0.25 <= high
 
 
 def test_a_single_file_passes_its_own_tests(made: Path) -> None:
