@@ -70,7 +70,7 @@ def test_types_are_clean_as_written(made: Path) -> None:
 def test_a_project_is_written_where_one_stands(calc: Calc, tmp_path: Path) -> None:
     here = calc("new", "gantry_arm", "--output", ".")
     assert (here.code, here.out) == (0, "")
-    assert here.err.startswith(f"wrote gantry_arm: {len(project(PLANS[1]))} files; now:\n")
+    assert here.err.startswith(f"wrote .: {len(project(PLANS[1]))} files; now:\n")
     assert "  cd " not in here.err
     assert (tmp_path / "gantry_arm" / "physics.py").is_file()
     spaced = calc("new", "gantry_arm", "-q", "--output", tmp_path / "ä b" / "c")

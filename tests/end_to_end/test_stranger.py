@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from shared import ROOT, TESTS, Answer, Calc, copied_guest, process
+from truing.testing import CalcProcess
 
 BROKEN = "plugin 'broken_guest' 0.0.7: IndexError: list index out of range"
 
@@ -46,6 +47,11 @@ def test_plugins_as_json(stranger: Callable[..., Answer]) -> None:
     ]
     (broken,) = document["broken"]
     assert (broken["plugin"], broken["version"], broken["line"]) == ("broken_guest", "0.0.7", 6)
+
+
+def test_a_process_of_its_own_finds_them_where_it_is_told(calc_process: CalcProcess, strangers: Path) -> None:
+    alone, beside = (calc_process("plugins", "--names", path=path).out.split() for path in (None, strangers))
+    assert set(beside) - set(alone) == {"broken_guest", "screw_joint"}
 
 
 def test_strict_ends_at_the_broken_guest(stranger: Callable[..., Answer]) -> None:
