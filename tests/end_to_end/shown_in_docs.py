@@ -97,7 +97,7 @@ class Desk:
 
     def _beside(self, words: list[str]) -> tuple[str, int]:
         """Run Python in a process of its own; pytest and pip begin in a fresh one."""
-        if hasattr(os, "fork") and words[1] not in {"pytest", "pip"}:
+        if hasattr(os, "fork") and {"pytest", "pip"}.isdisjoint(words[:2]):
             ended = Running(words, self.folder, self._environment(), together=True).ended()
             return ended.out, ended.code
         done = subprocess.run(
