@@ -135,3 +135,5 @@ def test_cases_come_with_a_table_of_their_own(calc: Calc, tmp_path: Path) -> Non
     assert rows[2][-1] == "failed: the contact flows: load exceeds hardness times area"
     assert rows[2][head.index("pressure [MPa]")] == ""
     assert f"for a spreadsheet: {folder.relative_to(tmp_path) / 'results.csv'} and " in said.err
+    for sheet in ("sheet.html", "sheet.md"):
+        assert all(row[0].strip("'") in (folder / sheet).read_text(encoding="utf-8") for row in rows)
