@@ -11,6 +11,8 @@ from collections.abc import Mapping, Sequence
 from itertools import count
 from pathlib import Path
 
+import pytest
+
 from truing.testing import Answer
 
 TESTS = Path(__file__).parents[1]
@@ -37,6 +39,8 @@ class Running:
         *,
         together: bool = False,
     ) -> None:
+        if sys.platform == "win32":
+            pytest.skip("Windows forks no processes")
         context = multiprocessing.get_context("forkserver")
         context.set_forkserver_preload(IMPORTED)
         beside = folder.parent / f".{folder.name} {os.getpid()} {next(_numbers)}"
