@@ -148,6 +148,7 @@ def test_series_become_arrays_in_si() -> None:
     assert STAGE.inputs(surface=SURFACE).profile.tolist() == [0.0, 1e-6, 0.5e-6]
     for profile in (("3 m", "4 m"), [3.0, 4.0]):
         assert STAGE.inputs(surface=SURFACE, profile=profile).profile.tolist() == [3.0, 4.0]
+    assert STAGE.own_result_fields["lag"].along == "lag"
 
 
 def test_texts_carry_units_and_numbers_are_si() -> None:

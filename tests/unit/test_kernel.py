@@ -132,88 +132,61 @@ def test_what_is_used_twice_is_said_of_both(write: Write) -> None:
     assert all("left" in broken.reason and "right" in broken.reason for broken in kernel.broken)
     (twins,) = Kernel([write("pins", TWO.format(name="same", other="same"))]).broken
     assert "offers two models called 'same'" in twins.reason
-
-
-def test_a_plugin_name_used_twice_is_refused(write: Write) -> None:
-    module = write("pin_one", PIN)
-    kernel = Kernel([module, module])
+    kernel = Kernel([write("pin_one", PIN)] * 2)
     assert list(kernel.offers) == ["pin_one"]
     assert "the plugin name 'pin_one' is taken by" in kernel.broken[0].reason
 
 
 # Broken plugins: named with version, file, line and exception, while every other works
 
+
+def hook_that(answers: str) -> str:
+    """The good module, but for what its hook does."""
+    return GOOD.format(name="guest_m").replace("return [MODEL]", answers)
+
+
 BROKEN = {
     "import error": (
-        "import math\nimport does_not_exist\n",
+        "import math\nimport gone\n",
         2,
-        "ModuleNotFoundError: No module named 'does_not_exist'",
+        "ModuleNotFoundError: No module named 'gone'",
     ),
     "syntax error": ("x = 1\n\ndef f(:\n    pass\n", 3, "SyntaxError: "),
     "raises": ("x = 1\nraise RuntimeError('no licence')\n", 2, "RuntimeError: no licence"),
     "leaves": ("import sys\n\n\nsys.exit(3)\n", 4, "SystemExit: 3"),
     "missing": (None, None, "ModuleNotFoundError: No module named 'guest_m'"),
     "bad declaration": (GOOD.format(name="my pin"), 16, "DeclarationError: model 'my pin': the name 'my pin' may hold"),
-    "hook raises": (
-        GOOD.format(name="guest_m").replace("return [MODEL]", "return [MODEL][1]"),
-        20,
-        "IndexError: list index out of range",
-    ),
-    "hook returns nothing": (
-        GOOD.format(name="guest_m").replace("return [MODEL]", "pass"),
-        18,
-        "DeclarationError: truing_models returned None; it returns a list",
-    ),
-    "hook returns no model": (
-        GOOD.format(name="guest_m").replace("return [MODEL]", "return [Pin]"),
-        18,
-        "which is no Model",
-    ),
+    "hook raises": (hook_that("return [MODEL][1]"), 20, "IndexError: list index out of range"),
+    "hook returns nothing": (hook_that("pass"), 18, "DeclarationError: truing_models returned None; it returns a list"),
+    "hook returns no model": (hook_that("return [Pin]"), 18, "which is no Model"),
     "wrong signature": (guest("truing_objectives", "[]").replace("(model)", "(model, file)"), 6, "asks for 'file'"),
-    "misspelt hook": (
-        guest("truing_models", "[]").replace("truing_models", "truing_model"),
-        6,
-        "'truing_model' is no hook",
-    ),
+    "misspelt hook": (guest("truing_models", "[]").replace("g_models", "g_model"), 6, "'truing_model' is no hook"),
     "unmarked hook": (GOOD.format(name="guest_m").replace("@hookimpl\n", ""), 18, "truing_models() is not marked"),
     "offers nothing": ("x = 1\n", None, "it offers nothing"),
 }
-
-
-def test_a_missing_plugin_has_no_line_where_another_library_finds_the_installed_ones(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Once imported, importlib_metadata (dask needs it) loads entry points; a line of it is nobody's fault."""
-    pytest.importorskip("importlib_metadata")
-    installed_from(tmp_path, monkeypatch, guest_m=None)
-    broken = next(item for item in Kernel.installed().broken if item.plugin == "guest_m")
-    assert (broken.file, broken.line) == ("guest_m", None)
 
 
 @pytest.mark.parametrize("case", BROKEN)
 def test_a_broken_plugin_is_named_and_disturbs_nobody(
     case: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """Importlib_metadata, once imported (dask needs it), loads entry points too; a line of it is nobody's fault."""
+    pytest.importorskip("importlib_metadata")
     text, line, reason = BROKEN[case]
     installed_from(tmp_path, monkeypatch, guest_m=text, pin_one=PIN)
     kernel = Kernel.installed()
     assert kernel.offer("pin_one").model.title == "A pin"
     broken = next(item for item in kernel.broken if item.plugin == "guest_m")
-    assert (broken.version, broken.line) == ("3.1", line)
+    file = "guest_m" if text is None else str(tmp_path / "guest_m.py")
+    assert (broken.version, broken.file, broken.line) == ("3.1", file, line)
     assert reason in broken.reason
-    if text is not None:
-        assert broken.file == str(tmp_path / "guest_m.py")
-        place = f"{broken.file}:{line}" if line else broken.file
-        assert str(broken) == f"{place}: plugin 'guest_m' 3.1: {broken.reason}"
+    place = f"{broken.file}:{line}" if line else broken.file
+    assert str(broken) == f"{place}: plugin 'guest_m' 3.1: {broken.reason}"
     with pytest.raises(PluginError, match=r"plugin 'guest_m' 3\.1: "):
         kernel.offer("guest_m")
-
-
-def test_strict_raises_at_the_first_broken_plugin(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    installed_from(tmp_path, monkeypatch, guest_m=BROKEN["hook raises"][0])
     with pytest.raises(PluginError, match=r"plugin 'guest_m' 3\.1: ") as caught:
         Kernel.installed(strict=True).offers  # noqa: B018
-    assert isinstance(caught.value.__cause__, IndexError)
+    assert type(caught.value.__cause__).__name__ in broken.reason or not line
 
 
 def test_a_fault_in_a_module_of_the_guest_is_named_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -238,13 +211,10 @@ def test_names_come_from_metadata_alone(tmp_path: Path, monkeypatch: pytest.Monk
 
 # Guests that add to somebody else's model
 
+EFFECT = "[Effect('wider', on_inputs=wider, unknowns=[Unknown('extra', 0, 1, 'm^2')])]"
 ADDITIONS: list[tuple[str, str, str]] = [
     ("truing_error_sources", "[Tolerance('load', normal(sd='3 %'))]", "load"),
-    (
-        "truing_error_sources",
-        "[Effect('wider', on_inputs=wider, unknowns=[Unknown('extra', 0, 1, 'm^2')])]",
-        "wider",
-    ),
+    ("truing_error_sources", EFFECT, "wider"),
     ("truing_objectives", "[Minimise('pressure')]", "pressure"),
     ("truing_reports", "[Section('Pressure', 'pressure')]", "Pressure"),
 ]
@@ -301,13 +271,11 @@ def test_what_does_not_fit_is_left_out_by_name(write: Write, hook: str, answer: 
     assert "is left out of 'pin_one'" in broken.reason
 
 
-@pytest.mark.parametrize(
-    ("answer", "reason"), [("[1 / 0]", "ZeroDivisionError: division by zero"), ("exit(7)", "SystemExit: 7")]
-)
-def test_a_guest_whose_hook_fails_is_left_out(write: Write, answer: str, reason: str) -> None:
-    kernel = Kernel([write("pin_one", PIN), write("zebra", guest("truing_reports", answer))])
-    assert kernel.offer("pin_one").added == ()
-    assert [(item.plugin, item.line, item.reason) for item in kernel.broken] == [("zebra", 8, reason)]
+def test_a_guest_whose_hook_fails_is_left_out(write: Write) -> None:
+    for answer, reason in (("[1 / 0]", "ZeroDivisionError: division by zero"), ("exit(7)", "SystemExit: 7")):
+        kernel = Kernel([write("pin_one", PIN), write("zebra", guest("truing_reports", answer))])
+        assert kernel.offer("pin_one").added == ()
+        assert [(item.plugin, item.line, item.reason) for item in kernel.broken] == [("zebra", 8, reason)]
 
 
 def test_guests_come_in_the_order_of_their_names_and_hit_only_whom_they_fit(write: Write) -> None:
