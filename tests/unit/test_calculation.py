@@ -4,29 +4,24 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from sample_models import STAGE
 from study_models import CHAIN, UNIFORMS, WEAR, setup_of
 
 from truing import (
     Bench,
-    Float,
     Maximise,
-    Model,
     Optimise,
     Optimum,
     Reliability,
     Require,
     Tolerance,
     Vary,
-    found,
-    given,
-    inputs,
     normal,
-    results,
 )
 from truing.calculation import calculate
 from truing.evaluate import evaluate
 from truing.executors import open_executor
-from truing.setup import SwitchedOn
+from truing.setup import SwitchedOn, default_setup
 from truing.studies.checks import EXIT_CODES, chance_check, margin_of
 from truing.studies.optimise import bounds_of
 from truing.studies.verdicts import sentence_of
@@ -135,45 +130,25 @@ def test_a_limit_is_printed_in_the_unit_of_its_result() -> None:
         assert check.margin == pytest.approx(1 / 11)
 
 
-@inputs
-class Bar:
-    """A bar of which a stiffness may be asked."""
-
-    stiffness: Float = given(100.0, "N/m")
-    asked: Float = given(None, "N/m")
-
-
-@results
-class Answer:
-    """What it has."""
-
-    rate: Float = found("N/m")
-    double: Float = found("N/m")
-
-
-def bar(bar_: Bar) -> Answer:
-    return Answer(rate=bar_.stiffness, double=2.0 * bar_.stiffness)
-
-
-BAR = Model(
-    name="bar",
-    title="Bar",
-    function=bar,
+FACTORED = replace(
+    STAGE,
+    errors=[],
     objectives=[
-        Require("rate", at_least="asked"), Require("double", at_most="300 N/m"), Vary("stiffness", "50 N/m", "200 N/m"),
-        Maximise("rate"),
+        Require("ratio", at_least="face_factor"), Require("ratio", at_most="3"), Vary("teeth_sun", "5", "31"),
+        Maximise("ratio"),
     ],
 )  # fmt: skip
 
 
 def test_a_limit_that_is_not_given_asks_for_nothing() -> None:
-    for asked, names in (({}, ["double"]), ({"asked": 80.0}, ["rate", "double"])):
-        setup = setup_of(BAR, **asked)
+    """Of 31 teeth on 5 to 31 the largest ratio up to 3 is 31 on 11."""
+    for asked, names in (({}, ["ratio"]), ({"face_factor": 1.2}, ["ratio at least", "ratio at most"])):
+        setup = default_setup(FACTORED, surface=None, **asked)
         assert [check.name for check in calculate(setup).checks] == names
         assert sorted(bound.name for bound in bounds_of(setup)) == sorted(names)
-    searched = replace(setup_of(BAR), studies=(Optimise(population=8, generations=12),))
-    (best,) = calculate(searched).record.outcome(Optimum).as_json()["front"]
-    assert best["objectives"]["rate"] == pytest.approx(150.0, rel=5e-3)
+        searched = calculate(replace(setup, studies=(Optimise(population=10, generations=12),)))
+        (best,) = searched.record.outcome(Optimum).as_json()["front"]
+        assert best["objectives"]["ratio"] == pytest.approx(31 / 11, rel=1e-12)
 
 
 PROBABLE = replace(

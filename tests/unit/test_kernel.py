@@ -10,6 +10,7 @@ from types import ModuleType
 
 import pytest
 
+from shared import TESTS
 from truing import Kernel
 from truing.errors import PluginError, UnknownPluginError
 from truing.kernel import Origin, entry_points, kernel_for
@@ -352,69 +353,33 @@ def test_files_that_are_no_plugin(tmp_path: Path, name: str, content: bytes | No
         kernel.offer(file.stem)
 
 
-DECLARED = '''"""A bar under load."""; import truing
-from truing import Float, Model, Price, Require, Tolerance, Vary, found, given, hookimpl, inputs, normal, results
-
-
-@inputs
-class Bar:
-    """What is known."""
-
-    load: Float = given(120.0, "N", note="load", above=0)
-
-
-@results
-class Stress:
-    """What is asked."""
-
-    double: Float = found("N", note="twice the load", formula="2 * load")
-
-
-def bar(given_: Bar) -> Stress:
-    """Return twice the load."""
-    return Stress(double=2 * given_.load)
-
-
-PRICE = Price("40 / width", width="N", unit="EUR")
-MODEL = Model(
-    name="bar", title="Bar", function=bar,
-    errors=[Tolerance("load", normal(sd="3 N"), why="scatter", price=PRICE)],
-    objectives=[Vary("load", "50 N", "200 N"), Require("double", at_most="80 N")],
-    studies=[truing.Sensitivity(of="double"), truing.Sweep(over="load", at="60 N to 90 N")],
-)
-
-
-@hookimpl
-def truing_models() -> list[Model[Bar, Stress]]:
-    """Offer the bar."""
-    return [MODEL]
-'''
+DECLARED = (TESTS / "data" / "pin_wear.py").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(
-    ("before", "after", "line", "sentence"),
+    ("before", "after", "sentence"),
     [
-        ('given(120.0, "N"', 'given(120.0, "W/m/k"', 9, "'load' is declared in 'W/m/k': unknown unit 'k'; "),
-        ('given(120.0, "N"', "given(120.0, 5", 9, "'load' is declared in 5; a unit is a text such as 'mm'"),
-        ("above=0", 'above="x"', 9, "'load' has the bound above='x'; it is a number in its unit"),
-        ('found("N"', 'found("Mlbf"', 16, "'double' is declared in 'Mlbf': unknown unit 'Mlbf'; 'lbf' takes no "),
-        ('"80 N"', '"80 mm"', 28, "Require('double'): '80 mm' is a length (mm), expected a force (N)"),
-        ('"50 N"', '"50 Pa"', 28, "Vary('load'): '50 Pa' is a pressure or stress (Pa), expected a force (N)"),
-        ('"3 N"', '"3 mm"', 27, "tolerance 'load': '3 mm' is a length (mm), expected a force (N)"),
-        ("price=PRICE", 'price=Price("1 / width", width="mm", unit="EUR")', 27, "the width of tolerance 'load' "),
-        ("given(120.0", 'given(float("inf")', 9, "the default of 'load' is inf, which is no finite number"),
-        ('of="double"', 'of="duoble"', 29, "study 'sensitivity': bar has no result 'duoble'. Did you mean 'double'?"),
-        ('over="load"', 'over="laod"', 29, "study 'sweep': bar has no input 'laod'. Did you mean 'load'?"),
+        ('given(120.0, "N"', 'given(120.0, "W/m/k"', "'load' is declared in 'W/m/k': unknown unit 'k'; "),
+        ('given(120.0, "N"', "given(120.0, 5", "'load' is declared in 5; a unit is a text such as 'mm'"),
+        ("above=0", 'above="x"', "'load' has the bound above='x'; it is a number in its unit"),
+        ('found("MPa"', 'found("Mlbf"', "'pressure' is declared in 'Mlbf': unknown unit 'Mlbf'; 'lbf' takes no "),
+        ('"80 MPa"', '"80 mm"', "Require('pressure'): '80 mm' is a length (mm), expected a pressure or stress (MPa)"),
+        ('"50 N"', '"50 Pa"', "Vary('load'): '50 Pa' is a pressure or stress (Pa), expected a force (N)"),
+        ('"3 %"', '"3 mm"', "tolerance 'load': '3 mm' is a length (mm), expected a force (N)"),
+        ('width="N"', 'width="mm"', "the width of tolerance 'load' is in 'mm', but 'load' is in 'N'"),
+        ("given(120.0", 'given(float("inf")', "the default of 'load' is inf, which is no finite number"),
+        ('of="depth"', 'of="detph"', "study 'sensitivity': pin_wear has no result 'detph'. Did you mean 'depth'?"),
+        ("gives=chance", 'gives=chance, over="laod", at="1 N"', "study 'reliability': pin_wear has no input 'laod'."),
     ],
-)  # fmt: skip
+)
 def test_a_quantity_that_is_declared_wrongly_is_told_with_its_line(
-    tmp_path: Path, before: str, after: str, line: int, sentence: str
+    tmp_path: Path, before: str, after: str, sentence: str
 ) -> None:
-    file = tmp_path / "bar.py"
+    file = tmp_path / "pin.py"
     file.write_text(DECLARED.replace(before, after, 1), encoding="utf-8")
     kernel = Kernel()
     kernel.add_file(file)
     with pytest.raises(PluginError) as caught:
-        kernel.offer("bar")
-    said = str(caught.value).splitlines()
-    assert f"{file}:{line}: plugin 'bar': DeclarationError: {sentence}" in "\n".join(said), said
+        kernel.offer("pin")
+    line = DECLARED.partition(before)[0].count("\n") + 1
+    assert f"{file}:{line}: plugin 'pin': DeclarationError: {sentence}" in str(caught.value)

@@ -123,6 +123,10 @@ def test_a_run_is_a_label_even_where_it_is_a_number_and_a_pure_number_needs_no_u
         np.testing.assert_array_equal(read(table(f"rate {mark}\n3e-8\n")).columns["rate"], [3e-8])
 
 
+OPEN = "opens a quotation mark that this line does not close; a cell ends in the line in which it begins"
+"""What an unclosed quotation mark is answered with."""
+
+
 @pytest.mark.parametrize(
     ("content", "sentences"),
     [
@@ -163,22 +167,6 @@ def test_a_run_is_a_label_even_where_it_is_a_number_and_a_pure_number_needs_no_u
             "2: depth: 'x' is no number",
             "3: this row has 1 cell, expected 2 as in the header",
         ]),
-    ],
-)  # fmt: skip
-def test_faults_of_a_table(table: Write, content: str, sentences: list[str]) -> None:
-    found = data_faults(table(content))
-    assert len(found) == len(sentences)
-    for one, beginning in zip(found, sentences, strict=True):
-        assert one.startswith(beginning)
-
-
-OPEN = "opens a quotation mark that this line does not close; a cell ends in the line in which it begins"
-"""What an unclosed quotation mark is answered with."""
-
-
-@pytest.mark.parametrize(
-    ("content", "sentences"),
-    [
         ('depth [um],note\n5,ok\n6,"start\n9.99,bad\n30,last\n', [f"3: cell 2 {OPEN}"]),
         ('depth [um],note\n5,ok\n6,"end', [f"3: cell 2 {OPEN}"]),
         ('depth [um],note\n5,"two\nlines"\n', [
@@ -213,8 +201,11 @@ OPEN = "opens a quotation mark that this line does not close; a cell ends in the
         ]),
     ],
 )  # fmt: skip
-def test_what_would_be_misread_is_refused(table: Write, content: str, sentences: list[str]) -> None:
-    assert data_faults(table(content)) == sentences
+def test_faults_of_a_table(table: Write, content: str, sentences: list[str]) -> None:
+    found = data_faults(table(content))
+    assert len(found) == len(sentences)
+    for one, beginning in zip(found, sentences, strict=True):
+        assert one.startswith(beginning)
 
 
 def test_a_mark_that_the_file_decides(table: Write) -> None:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-import math
 from dataclasses import replace
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 import pytest
 from pin_wear import PIN_WEAR, Pin
+from study_models import PAIR
 
 from truing import (
     Allocation,
@@ -23,9 +23,7 @@ from truing import (
     Tolerance,
     by_choice,
     found,
-    given,
     grade,
-    inputs,
     normal,
     off,
     plus_minus,
@@ -94,88 +92,57 @@ def test_every_tolerance_in_force_is_paid_once(errors: list[Any], free: tuple[st
 # A price that follows a choice
 
 
-@inputs
-class Form:
-    """A length, and the cost law that holds."""
-
-    length: Float = given(50.0, "mm")
-    cost_form: Literal["power", "exponential"] = given("power")
-
-
-@results
-class Same:
-    """What comes out."""
-
-    double: Float = found("mm")
-
-
-def doubled(form: Form) -> Same:
-    """Twice the length."""
-    return Same(double=2 * form.length)
-
-
-BOTH = by_choice(
-    "cost_form",
-    power=Price("16 * width**-0.5", width="mm", unit="EUR"),
-    exponential=Price("5 * exp(-2 * width)", width="mm", unit="EUR"),
-)
-CHOSEN: Model[Form, Same] = Model(
-    name="chosen", title="Two laws of cost", function=doubled,
-    errors=[Tolerance("length", plus_minus("0.125 mm"), price=BOTH)],
-)  # fmt: skip
-PRICES = {"power": 32.0, "exponential": 5 * math.exp(-0.5)}  # EUR for a band of 0.25 mm
-
-
+FORMS = {"reciprocal": lambda um: 1300 / um, "square": lambda um: 1300 / um**2}  # EUR for two bands of the same width
 GRADED = replace(
-    CHOSEN,
-    errors=[Tolerance("length", grade("IT8"), price=BOTH)],
-    objectives=[Require("double", within="20 um", reliability=0.9)],
+    PAIR,
+    errors=[replace(PAIR.tolerances["one"], spread=grade("IT8"))],
+    objectives=[Require("length", within="20 um", reliability=0.9)],
 )
 
 
-@pytest.mark.parametrize(("form", "price"), PRICES.items())
-def test_a_price_follows_the_choice(form: str, price: float) -> None:
+@pytest.mark.parametrize("law", FORMS)
+def test_a_price_follows_the_choice(law: str) -> None:
     """An allocation buys at this price, too."""
-    setup = default_setup(CHOSEN, cost_form=form)
+    setup = default_setup(PAIR, law=law)
+    price = FORMS[law](24)
     assert calculate(setup).answers["tolerance_price"] == pytest.approx(price, rel=1e-14)
-    settled = price_of(setup, CHOSEN.tolerances["length"])
+    settled = price_of(setup, PAIR.tolerances["one"])
     assert settled is not None
-    assert prices_at(settled, np.array([0.25e-3, 0.25e-3])) == pytest.approx([price, price], rel=1e-14)
-    allotted = calculate(replace(default_setup(GRADED, cost_form=form), studies=(Allocation(draws=10),)))
+    assert prices_at(settled, np.array([24e-6, 24e-6])) == pytest.approx([price / 1.3, price / 1.3], rel=1e-14)
+    allotted = calculate(replace(default_setup(GRADED, law=law), studies=(Allocation(draws=10),)))
     allocation = allotted.outcomes["allocation"]
-    width = tolerance(allocation.tolerances["length"], 0.05) * 1e3
-    law = 16 * width**-0.5 if form == "power" else 5 * math.exp(-2 * width)
-    assert allocation.cost == pytest.approx(law, rel=1e-12)
+    width = tolerance(allocation.tolerances["one"], 0.03)
+    assert allocation.cost == pytest.approx(FORMS[law](1e6 * width) / 1.3, rel=1e-12)
 
 
 def test_describe_tells_both_prices_and_the_kit_checks_them() -> None:
-    (said,) = description(Subject(CHOSEN).offer)["tolerances"]
-    assert said["price"]["chooser"] == "cost_form"
-    assert said["price"]["prices"]["power"] == {"formula": "16 * width**-0.5", "width": "mm", "unit": "EUR"}
+    said = description(Subject(PAIR).offer)["tolerances"][0]["price"]
+    assert said["chooser"] == "law"
+    assert said["prices"]["square"] == {"formula": "1000.0 / width**2", "width": "um", "unit": "EUR"}
     json.dumps(said)
-    both = by_choice("cost_form", power=BOTH.prices["power"], exponential=replace(EUR, formula="-3 * width"))
-    mistaken = replace(CHOSEN, errors=[Tolerance("length", plus_minus("0.125 mm"), price=both)])
-    with pytest.raises(AssertionError, match=r"the price of tolerance .length. is -0\.75 at its declared width"):
+    both = by_choice("law", reciprocal=EUR, square=replace(EUR, formula="-3 * width"))
+    mistaken = replace(PAIR, errors=[Tolerance("one", plus_minus("0.125 mm"), price=both)])
+    with pytest.raises(AssertionError, match=r"the price of tolerance .one. is -0\.75 at its declared width"):
         spreads_resolve(Subject(mistaken))
 
 
 EUR = Price("1 / width", width="mm", unit="EUR")
 WRONG = [
-    (by_choice("cost_from", power=EUR, exponential=EUR), "names 'cost_from', which is no input.*cost_form"),
-    (by_choice("length", power=EUR, exponential=EUR), "is chosen by 'length', which offers no choices"),
-    (by_choice("cost_form", power=EUR), "has a price for power, but 'cost_form' offers power, exponential"),
-    (by_choice("cost_form", power=EUR, exponential=replace(EUR, unit="yuan")), "the prices are in EUR and yuan"),
-    (by_choice("cost_form", power=EUR, exponential=replace(EUR, formula="1 / breadth")), "names breadth; it is a form"),
+    (by_choice("lwa", reciprocal=EUR, square=EUR), "names 'lwa', which is no input.*law"),
+    (by_choice("one", reciprocal=EUR, square=EUR), "is chosen by 'one', which offers no choices"),
+    (by_choice("law", reciprocal=EUR), "has a price for reciprocal, but 'law' offers reciprocal, square"),
+    (by_choice("law", reciprocal=EUR, square=replace(EUR, unit="yuan")), "the prices are in EUR and yuan"),
+    (by_choice("law", reciprocal=EUR, square=replace(EUR, formula="1 / breadth")), "names breadth; it is a formula"),
 ]
 
 
 @pytest.mark.parametrize(("price", "words"), WRONG)
 def test_a_price_that_cannot_be_chosen_is_refused(price: Any, words: str) -> None:
     with pytest.raises(DeclarationError, match=words):
-        replace(CHOSEN, errors=[Tolerance("length", plus_minus("0.1 mm"), price=price)])
-    for laws in ({"power": EUR, "exponential": off()}, {}):
+        replace(PAIR, errors=[Tolerance("one", plus_minus("0.1 mm"), price=price)])
+    for laws in ({"reciprocal": EUR, "square": off()}, {}):
         with pytest.raises(DeclarationError, match="takes a spread for each choice, or a price for each"):
-            by_choice("cost_form", **laws)
+            by_choice("law", **laws)
 
 
 # Many cases: each row changes the setup, the smallest margin governs, one that fails does not take the others away.
