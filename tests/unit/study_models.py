@@ -285,18 +285,7 @@ PRICED = Model(
 )  # fmt: skip
 
 
-# ZDT1 with five variables: E. Zitzler, K. Deb, L. Thiele, Evol. Comput. 8 (2000) 173; front f2 = 1 - sqrt(f1).
-
-
-@inputs
-class Five:
-    """Five shares."""
-
-    a: Float = given(0.5, "")
-    b: Float = given(0.5, "")
-    c: Float = given(0.5, "")
-    d: Float = given(0.5, "")
-    e: Float = given(0.5, "")
+# ZDT1 with three variables: E. Zitzler, K. Deb, L. Thiele, Evol. Comput. 8 (2000) 173; front f2 = 1 - sqrt(f1).
 
 
 @results
@@ -307,16 +296,15 @@ class Front:
     second: Float = found("")
 
 
-def zdt1(five: Five) -> Front:
+def zdt1(three: Three) -> Front:
     """The test function."""
-    away = 1 + 9 * (five.b + five.c + five.d + five.e) / 4
-    return Front(first=five.a, second=away * (1 - np.sqrt(five.a / away)))
+    away = 1 + 9 * (three.x2 + three.x3) / 2
+    return Front(first=three.x1, second=away * (1 - np.sqrt(three.x1 / away)))
 
 
-ZDT1: Model[Five, Front] = Model(
+ZDT1: Model[Three, Front] = Model(
     name="zdt1", title="ZDT1", function=zdt1,
-    objectives=[*(Vary(name, "0", "1") for name in "abcde"), Minimise("first"), Minimise("second")],
-    studies=[Optimise(population=60, generations=150)],
+    objectives=[*(Vary(name, "0", "1") for name in ("x1", "x2", "x3")), Minimise("first"), Minimise("second")],
 )  # fmt: skip
 
 

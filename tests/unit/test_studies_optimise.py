@@ -399,18 +399,18 @@ def test_the_hypervolume_of_known_fronts() -> None:
 
 
 def test_a_learnt_surrogate_finds_the_front_and_says_where_it_learnt_nothing() -> None:
-    learnt = Surrogate(of=("first", "second"), over={"a": "0.1..1", "b": "0..1"}, design=60, held_out=20, compare=0)
-    study = Optimise(vary=("a", "b"), population=40, generations=20, surrogate=True)
-    best = optimum(setup_of(ZDT1, c=0, d=0, e=0), learnt, study)
+    learnt = Surrogate(of=("first", "second"), over={"x1": "0.1..1", "x2": "0..1"}, design=60, held_out=20, compare=0)
+    study = Optimise(vary=("x1", "x2"), population=40, generations=20, surrogate=True)
+    best = optimum(setup_of(ZDT1), learnt, study)
     first, second = values(best, "first", "second").T
     inside = first > 0.1
     assert second[inside] == pytest.approx(1 - np.sqrt(first[inside]), abs=0.02)
-    counted = sum(design.inputs["a"] < 0.1 for design in best.front)
+    counted = sum(design.inputs["x1"] < 0.1 for design in best.front)
     assert counted > 0
     words = f"study 'optimise': {counted} of {len(best.front)} designs of the front lie outside the surrogate's box"
     assert words in best.warnings()
     assert best.knee is not None
-    assert best.exact["first"] == pytest.approx(best.knee.inputs["a"], rel=1e-12)
+    assert best.exact["first"] == pytest.approx(best.knee.inputs["x1"], rel=1e-12)
     assert json.loads(written(best))["surrogate"] is True
     assert "The surrogate answered" in best.blocks()[0].text  # type: ignore[union-attr]
 
