@@ -154,9 +154,6 @@ def test_series_become_arrays_in_si() -> None:
 def test_texts_carry_units_and_numbers_are_si() -> None:
     bar = bar_model().inputs(force="5 kN", width=0.03, reading="net", welded=True)
     assert (bar.force, bar.width, bar.reading, bar.welded) == (5000.0, 0.03, "net", True)
-
-
-def test_near_miss_of_an_input() -> None:
     with pytest.raises(UsageError, match=r"bar has no input 'heigth'\. Did you mean 'height'\?"):
         bar_model().inputs(heigth="3 mm")
     with pytest.raises(UsageError, match="'reading' of bar is one of gross, net, not 'nett'"):
@@ -247,9 +244,20 @@ def together(rng: np.random.Generator, count: int) -> dict[str, Any]:
     return {"width": common, "height": -common}
 
 
+def about_zero(rng: np.random.Generator, count: int) -> dict[str, Any]:
+    return {"height": 1e-6 * rng.standard_normal(count)}
+
+
+def shifted(rng: np.random.Generator, count: int) -> dict[str, Any]:
+    return {"height": 1e-6 * (0.1 + rng.standard_normal(count))}
+
+
 def test_drawn_stands_in_by_its_moments() -> None:
-    distribution = drawn(together).resolve(Target("height", 0.01, "mm", {}.__getitem__))
-    assert distribution.sd == pytest.approx(1e-3, rel=0.05)
+    """A mean that is chance is no shift; one of a tenth of a standard deviation is."""
+    height = Target("height", 0.01, "mm", {}.__getitem__)
+    assert drawn(together).resolve(height).sd == pytest.approx(1e-3, rel=0.05)
+    assert drawn(about_zero).resolve(height).mean == 0.01
+    assert drawn(shifted).resolve(height).mean - 0.01 == pytest.approx(1e-7, rel=0.2)
     with pytest.raises(DeclarationError, match="together draws width, height, but not 'it'"):
         drawn(together).resolve(target())
 
@@ -404,13 +412,13 @@ def test_effects_that_do_not_fit_their_function(arguments: dict[str, Any], sente
 # Goals
 
 
-def test_vary_takes_bounds_or_a_formula() -> None:
-    for arguments in ({}, {"low": "1 mm"}, {"low": "1 mm", "high": "2 mm", "by": "b"}, {"low": "1 mm", "by": "b"}):
+BOUNDS = {"low": "1 mm", "high": "2 mm"}
+
+
+def test_vary_takes_bounds_or_a_formula_and_require_one_limit() -> None:
+    for arguments in ({}, {"low": "1 mm"}, {**BOUNDS, "by": "b"}, {"low": "1 mm", "by": "b"}):
         with pytest.raises(DeclarationError, match="takes either low and high or by="):
             Vary("width", **arguments)
-
-
-def test_require_takes_one_limit() -> None:
     for arguments in ({}, {"at_most": "1 MPa", "at_least": "0 MPa"}):
         with pytest.raises(DeclarationError, match="takes one of at_most, at_least and within"):
             Require("stress", **arguments)
@@ -527,24 +535,10 @@ def two_arguments(bar: Bar, other: Bar) -> Stress:
     return stretch(bar)
 
 
-@pytest.mark.parametrize("function", [no_annotation, two_arguments])
-def test_the_function_takes_one_class_and_returns_one(function: Any) -> None:
-    with pytest.raises(DeclarationError, match="takes one annotated class of inputs and returns one of results"):
-        Model(name="bar", title="", function=function)
-
-
-def test_a_mean_that_is_chance_is_no_shift() -> None:
-    """Draws about zero leave the nominal where it is; a real shift of a tenth of a standard deviation stays."""
-
-    def about_zero(rng: np.random.Generator, count: int) -> dict[str, Any]:
-        return {"height": 1e-6 * rng.standard_normal(count)}
-
-    def shifted(rng: np.random.Generator, count: int) -> dict[str, Any]:
-        return {"height": 1e-6 * (0.1 + rng.standard_normal(count))}
-
-    target = Target("height", 0.01, "mm", {}.__getitem__)
-    assert drawn(about_zero).resolve(target).mean == 0.01
-    assert drawn(shifted).resolve(target).mean - 0.01 == pytest.approx(1e-7, rel=0.2)
+def test_the_function_takes_one_class_and_returns_one() -> None:
+    for function in (no_annotation, two_arguments):
+        with pytest.raises(DeclarationError, match="takes one annotated class of inputs and returns one of results"):
+            Model(name="bar", title="", function=function)
 
 
 # A spread of another width keeps its words, its place and its shape, and stands in its text in full.
@@ -616,13 +610,10 @@ def test_a_spread_of_another_width_is_written_in_its_words() -> None:
         with_width(normal(sd="3 %"), replace(LENGTH, nominal=0.0), 1e-6)
 
 
-@pytest.mark.parametrize("spread", [off(), drawn(together), by_choice("kind", fine=normal(sd="1 um"), rough=off())])
-def test_what_has_no_width_is_refused_by_name(spread: Spread) -> None:
-    with pytest.raises(UsageError, match=r"^the spread of 'height' is (off|drawn by together): it has no width"):
-        with_width(spread, replace(LENGTH, name="height"), 1e-5)
-
-
-@pytest.mark.parametrize("width", [0.0, -1e-6, math.nan, math.inf])
-def test_a_width_that_is_none_is_refused(width: float) -> None:
-    with pytest.raises(UsageError, match="the width of the tolerance of 'length' must lie above zero"):
-        with_width(normal(sd="1 um"), LENGTH, width)
+def test_what_has_no_width_and_a_width_that_is_none_are_refused() -> None:
+    for spread in (off(), drawn(together), by_choice("kind", fine=normal(sd="1 um"), rough=off())):
+        with pytest.raises(UsageError, match=r"^the spread of 'height' is (off|drawn by together): it has no width"):
+            with_width(spread, replace(LENGTH, name="height"), 1e-5)
+    for width in (0.0, -1e-6, math.nan, math.inf):
+        with pytest.raises(UsageError, match="the width of the tolerance of 'length' must lie above zero"):
+            with_width(normal(sd="1 um"), LENGTH, width)

@@ -70,6 +70,11 @@ def test_a_run_folder_holds_everything(tmp_path: Path, calculation: Calculation)
     assert load_either(folder) == document == json.loads((folder / "results.json").read_text(encoding="utf-8"))
     assert json.loads((folder / "run.json").read_text(encoding="utf-8"))["duration_s"] == 1.5
     assert leftovers(tmp_path / "runs") == ["Größe 1"]
+    course = document["results"]["course"]  # too large for the document
+    assert course == {"value": None, "unit": "um", "array": "course", "shape": [1201]}
+    with np.load(folder / "arrays.npz") as arrays:
+        assert sorted(arrays) == ["course", "moment"]
+        assert arrays["course"] == pytest.approx(np.asarray(calculation.answers["course"]) * 1e6)
 
 
 def test_results_are_in_printed_units_with_signed_margins(calculation: Calculation) -> None:
@@ -87,15 +92,6 @@ def test_results_are_in_printed_units_with_signed_margins(calculation: Calculati
     assert load == {"mean": pytest.approx(130), "sd": pytest.approx(3.9, rel=1e-12), "unit": "N"}
     assert document["effects"]["running_in"]["extra"]["sd"] == pytest.approx(0.2, rel=1e-12)
     assert document["conditions"]["frame"] == {"value": pytest.approx(35, abs=1e-9), "unit": "degC"}
-
-
-def test_large_results_stand_in_the_arrays(tmp_path: Path, calculation: Calculation) -> None:
-    document = write(tmp_path / "run", calculation)
-    entry = document["results"]["course"]
-    assert entry == {"value": None, "unit": "um", "array": "course", "shape": [1201]}
-    with np.load(tmp_path / "run" / "arrays.npz") as arrays:
-        assert sorted(arrays) == ["course", "moment"]
-        assert arrays["course"] == pytest.approx(np.asarray(calculation.answers["course"]) * 1e6)
 
 
 def test_equal_runs_are_equal_files(tmp_path: Path, calculation: Calculation) -> None:

@@ -189,13 +189,10 @@ def test_what_is_refused(text, unit, sentence):
     assert str(caught.value) == sentence
 
 
-@pytest.mark.parametrize("text", ["360 ± 0.05 mm", "360 mm +/- 0.05", "360 +- 0.05 mm", "360±0.05 mm", "± 0.05 mm"])
-def test_a_band_belongs_to_the_tolerances(text):
-    with pytest.raises(UnitError, match=r"holds a tolerance; .* under \[tolerances\]$"):
-        units.read_quantity(text, "mm")
-
-
-def test_a_long_text_is_refused_and_cut_in_the_sentence():
+def test_a_band_belongs_to_the_tolerances_and_a_long_text_is_cut_in_the_sentence():
+    for text in ("360 ± 0.05 mm", "360 mm +/- 0.05", "360 +- 0.05 mm", "360±0.05 mm", "± 0.05 mm"):
+        with pytest.raises(UnitError, match=r"holds a tolerance; .* under \[tolerances\]$"):
+            units.read_quantity(text, "mm")
     with pytest.raises(UnitError, match=r"is too long for a number with a unit \(100000 characters\)") as caught:
         units.read_quantity("9" * 100_000, "mm")
     assert len(str(caught.value)) < 150
@@ -221,17 +218,14 @@ def test_arrays_go_as_numbers_do_and_come_back(unit):
 
 
 def test_the_kind_of_number_is_kept():
-    assert type(units.to_si(3, "mm")) is float
-    assert type(units.from_si(np.float64(3), "mm")) is float
-    assert units.to_si(np.array([1, 2]), "mm").dtype == np.float64
-    assert units.from_si(np.array([1, 2]), "mm").dtype == np.float64
+    for convert in (units.to_si, units.from_si):
+        assert type(convert(3, "mm")) is type(convert(np.float64(3), "mm")) is float
+        assert convert(np.array([1, 2]), "mm").dtype == np.float64
 
 
 def test_powers_of_ten_in_a_header():
-    assert units.to_si(11.5, "1e-6/K") == pytest.approx(11.5e-6, rel=1e-15)
-    assert units.to_si(11.5, "10^-6 1/K") == pytest.approx(11.5e-6, rel=1e-15)
-    assert units.to_si(2.0, "10^3 N") == 2000.0
-    assert units.to_si(2.0, "1e-3") == 2e-3
+    for unit, size in (("1e-6/K", 1e-6), ("10^-6 1/K", 1e-6), ("10^3 N", 1e3), ("1e-3", 1e-3)):
+        assert units.to_si(11.5, unit) == pytest.approx(11.5 * size, rel=1e-15)
     for pure in ("", "[]", "[-]", "[1]", "-", "1"):
         assert units.to_si(2.0, pure) == 2.0
 
@@ -367,7 +361,7 @@ ANY_TEXT = st.one_of(
 )
 
 
-@settings(max_examples=600, deadline=None)
+@settings(max_examples=400, deadline=None)
 @given(text=ANY_TEXT, unit=st.sampled_from(["mm", "", "degC", "rad", "rpm", "N*m", "K", "EUR"]))
 @example(text="9**9**9 kN", unit="mm")
 @example(text="9" * 200, unit="mm")
@@ -391,7 +385,7 @@ def test_any_text_is_a_number_or_one_sentence_at_once(text, unit):
     assert time.perf_counter() - begin < 1
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=200, deadline=None)
 @given(unit=ANY_TEXT)
 def test_any_unit_text_is_a_unit_or_one_sentence(unit):
     try:
