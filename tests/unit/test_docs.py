@@ -159,26 +159,15 @@ def pages_of(name: str) -> str:
     return page("python.md") if is_for_users else page("declaring.md") + page("studies.md")
 
 
-def test_every_public_word_is_explained() -> None:
-    assert [name for name in truing.__all__ if not re.search(rf"(?<!\w){name}(?!\w)", pages_of(name))] == []
-
-
-FUNCTIONS = [
-    name for name in truing.__all__ if inspect.isfunction(getattr(truing, name)) and name not in {"inputs", "results"}
-]
-
-
-@pytest.mark.parametrize("name", FUNCTIONS)
-def test_every_argument_of_a_word_is_named(name: str) -> None:
-    text = pages_of(name)
-    arguments = [item for item in inspect.signature(getattr(truing, name)).parameters if item not in {"spreads", "of"}]
-    spoken = {"half": "plus_minus(", "chooser": "by_choice(", "low": "zone(", "high": "zone(", "name": f"{name}("}
-    missing = [
-        item
-        for item in arguments
-        if not re.search(rf"(?<!\w){item}(?!\w)", text) and spoken.get(item, "\0") not in text
-    ]
-    assert not missing
+def test_every_public_word_is_explained_with_its_arguments() -> None:
+    spoken = {"half": "plus_minus(", "chooser": "by_choice(", "low": "zone(", "high": "zone("}
+    for name in truing.__all__:
+        text, word = pages_of(name), getattr(truing, name)
+        assert re.search(rf"(?<!\w){name}(?!\w)", text), name
+        named = inspect.isfunction(word) and name not in {"inputs", "results"}
+        for argument in set(inspect.signature(word).parameters) - {"spreads", "of", "name"} if named else ():
+            said = spoken.get(argument, "\0") in text
+            assert said or re.search(rf"(?<!\w){argument}(?!\w)", text), f"{name}({argument})"
 
 
 def test_every_error_stands_in_the_tree_with_its_exit_code() -> None:
@@ -219,23 +208,16 @@ def test_the_json_of_the_studies_is_json() -> None:
         json.loads(text)
 
 
-def test_every_check_of_the_kit_is_listed_with_its_promise() -> None:
+def test_every_check_built_in_effect_condition_and_history_has_its_row() -> None:
     text = page("conformance.md")
     for check in CHECKS:
         row = f"| {check.name} | {check.promise} |"
         assert row in text, f"docs/reference/conformance.md needs the row {row}"
-
-
-def test_every_built_in_effect_and_condition_has_its_row() -> None:
     text = page("builtin_effects.md")
     model = load_file(DOCS / "examples" / "coil_spring.py").COIL_SPRING
-    listed = re.findall(r"^\| `(\w+)` \|", text, re.MULTILINE)
-    assert listed == list(builtin_effects(model))
+    assert re.findall(r"^\| `(\w+)` \|", text, re.MULTILINE) == list(builtin_effects(model))
     for name in [*(set(model.known_conditions) - set(model.conditions)), "temperature"]:
         assert f"condition `{name}` [" in text or f"\n  condition `{name}` [" in text
-
-
-def test_every_history_has_its_row() -> None:
     for word in [SINCE_START, *(f"{word} of X" for word in HISTORIES)]:
         assert f'\n| `"{word}"` |' in page("declaring.md")
 

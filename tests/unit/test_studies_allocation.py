@@ -148,14 +148,13 @@ def test_an_unreachable_goal_says_how_far_it_came() -> None:
     assert still.least_cost.status == "not reachable: 'height' misses 0.95 however small the scatter"
 
 
-@pytest.mark.parametrize("weights", [(1.0, 1.0), (3.0, 1.0), (0.0, 2.0)])
-def test_coefficients_weigh_sensitivity_and_cost(weights):
+def test_coefficients_weigh_sensitivity_and_cost() -> None:
     """Sensitivities 1, 1.5 and -0.5, whose sign does not count; IT9 is 87, 62 and 36 um (ISO 286-1)."""
-    first, second = weights
     parts = {"large": (1.5 / 1.0, 62 / 87), "middle": (1.0, 1.0), "small": (1.5 / 0.5, 62 / 36)}
-    expected = {name: (first * x + second * c) / (first + second) for name, (x, c) in parts.items()}
-    found = allotted(STACK, draws=100, weights=weights)
-    assert found.coefficients == pytest.approx(expected, rel=1e-9)
+    for first, second in ((1.0, 1.0), (3.0, 1.0), (0.0, 2.0)):
+        expected = {name: (first * x + second * c) / (first + second) for name, (x, c) in parts.items()}
+        found = allotted(STACK, draws=100, weights=(first, second))
+        assert found.coefficients == pytest.approx(expected, rel=1e-9)
 
 
 @pytest.mark.parametrize("studies", [(Reliability(draws=1000), Allocation(draws=1000)), (Allocation(draws=1000),)])
@@ -454,13 +453,6 @@ def test_the_least_cost_of_grades_and_widths_is_what_trying_everything_finds(goa
     assert answer.least_cost.cost == pytest.approx(min(costs), rel=1e-6)
 
 
-def test_widths_stay_where_grades_have_no_price() -> None:
-    bare = Tolerance("large", MIXED.tolerances["large"].spread)
-    answer = allotted(replace(MIXED, errors=[bare, MIXED.tolerances["middle"]]))
-    assert (answer.problem.variables, answer.problem.unit) == ({}, "1/mm")
-    assert any("the widths of 'middle' stay" in text for text in answer.warnings())
-
-
 def only_shift(lengths: Graded) -> Stack:
     """The last length alone."""
     return Stack(height=lengths.shift + 0.0 * lengths.large)
@@ -506,12 +498,14 @@ def test_the_cost_is_that_of_the_run_and_every_price_is_paid_once() -> None:
     assert 1e3 * answer.least.widths["pair"] == pytest.approx(6 * sd / 3.25**0.5, rel=1e-9)
 
 
-def test_what_is_off_or_drawn_by_a_function_is_not_chosen() -> None:
-    setup = setup_of(STACK)
-    assert set(allotted(STACK, replace(setup, spreads={**setup.spreads, "small": Off()})).tolerances) == {
-        "large", "middle"
-    }  # fmt: skip
+def test_what_is_off_or_drawn_by_a_function_or_has_grades_without_price_beside_it_is_not_chosen() -> None:
+    off_small = replace(setup_of(STACK), spreads={**setup_of(STACK).spreads, "small": Off()})
+    assert set(allotted(STACK, off_small).tolerances) == {"large", "middle"}
     assert set(allotted(replace(ROW, errors=[ROW.tolerances["large"], DRAWN])).tolerances) == {"large"}
+    bare = Tolerance("large", MIXED.tolerances["large"].spread)
+    answer = allotted(replace(MIXED, errors=[bare, MIXED.tolerances["middle"]]))
+    assert (answer.problem.variables, answer.problem.unit) == ({}, "1/mm")
+    assert any("the widths of 'middle' stay" in text for text in answer.warnings())
 
 
 def together(rng: Any, rows: int) -> dict[str, Any]:
