@@ -73,12 +73,12 @@ def test_answers_and_errors_come_in_the_order_of_the_jobs(two_processes):
 
 def test_a_lost_worker_changes_the_time_and_not_the_result(tmp_path, monkeypatch):
     """Those that die again and again end the run."""
-    monkeypatch.setattr(processes, "MOST_LOSSES", 2)
+    monkeypatch.setattr(processes, "MOST_LOSSES", 1)
     marker = str(tmp_path / "met")
     with open_executor("processes:1") as executor:
         assert list(in_order(executor, die_once, [(number, marker) for number in range(8)])) == list(range(8))
         assert executor.losses == 1
-        with pytest.raises(LostWorkersError, match="3 times without an answer"):
+        with pytest.raises(LostWorkersError, match="2 times without an answer"):
             list(in_order(executor, die, range(2)))
 
 
