@@ -89,23 +89,17 @@ def test_the_front_of_zdt1() -> None:
     assert best.distance == pytest.approx(farthest, rel=0.01)
 
 
-AMOUNTS = (1000.0, 300.0)  # of the prices, EUR times um or EUR times um^2
-BAND = 12e-6
-
-
-def least_cost(goal: float, law: str, permitted: float = BAND) -> float:
-    """Lagrange: with w1^2 + w2^2 = V the cost a1/w1 + a2/w2 is least for w^3 ~ a, a1/w1^2 + a2/w2^2 for w^4 ~ a."""
-    whole = 36 * (1e6 * permitted / norm.ppf((1 + goal) / 2)) ** 2
-    if law == "square":
-        return sum(math.sqrt(amount) for amount in AMOUNTS) ** 2 / whole
-    return sum(amount ** (2 / 3) for amount in AMOUNTS) ** 1.5 / math.sqrt(whole)
+def least_cost(permitted: float) -> float:
+    """Lagrange: with w1^2 + w2^2 = V the cost a1/w1^2 + a2/w2^2 is least for w^4 ~ a; 1000 and 300 EUR um^2."""
+    whole = 36 * (1e6 * permitted / norm.ppf((1 + 0.95) / 2)) ** 2
+    return (math.sqrt(1000.0) + math.sqrt(300.0)) ** 2 / whole
 
 
 def test_the_least_cost_of_two_tolerances_for_every_limit() -> None:
     study = Optimise(tightest=0.25, widest=4.0, chance="first_order", population=100, generations=200, verify=1000)
     best = optimum(setup_of(PAIR, law="square"), study)
     limits_ = np.array([design.inputs["permitted"] for design in best.front])
-    least = np.array([least_cost(0.95, "square", limit) for limit in limits_])
+    least = np.array([least_cost(limit) for limit in limits_])
     over = values(best, "tolerance_price")[:, 0] / least - 1
     assert over.min() > -1e-9
     assert np.median(over) < 3e-3
