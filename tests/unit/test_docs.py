@@ -165,8 +165,8 @@ def test_every_public_word_is_explained_with_its_arguments() -> None:
         text, word = pages_of(name), getattr(truing, name)
         assert re.search(rf"(?<!\w){name}(?!\w)", text), name
         named = inspect.isfunction(word) and name not in {"inputs", "results"}
-        for argument in set(inspect.signature(word).parameters) - {"spreads", "of", "name"} if named else ():
-            said = spoken.get(argument, "\0") in text
+        for argument in set(inspect.signature(word).parameters) - {"spreads", "of"} if named else ():
+            said = {**spoken, "name": f"{name}("}.get(argument, "\0") in text
             assert said or re.search(rf"(?<!\w){argument}(?!\w)", text), f"{name}({argument})"
 
 
