@@ -104,6 +104,10 @@ load = "kN"
     np.testing.assert_allclose(on.covariance, [[0.25e-12, 0.1e-6], [0.1e-6, 4.0]], rtol=1e-12)
 
 
+def test_the_options_of_a_study_may_stand_in_one_line() -> None:
+    assert pin("[studies]\ncensus = { draws = 7 }\n").studies == (Census(draws=7), Census(name="second"))
+
+
 def test_parts_choices_counts_series_and_files(folder: Path) -> None:
     text = f"""[inputs]
 teeth_sun = 19
@@ -333,6 +337,7 @@ COVARIANCE = '[effects.running_in]\nextra = "3 um"\nlength = "30 m"\ncovariance 
         ('[studies.census]\ndraws = 0\nof = ["nothing"]\nmethod = "plain"', [
             "2: study 'census': draws is at least 1", "3: study 'census': of names no result",
         ]),
+        ("[studies]\ncensus = { draws = 0 }", ["2: study 'census': draws is at least 1"]),
         ('[studies.census]\nmethod = "quasi"\ndraws = 3', ["2: study 'census': quasi takes an even number of draws"]),
         ('[inputs]\n[effects.running_in]\nextra = "3 um"', [
             "2: effect 'running_in' is on, so its unknown 'length' must be given (from 10 to 5000 m)",
