@@ -32,6 +32,7 @@ def hill(three: Three) -> Sum:
 HILL = Model(name="hill", title="Hill", function=hill)
 BOX = {"x1": "0..2", "x2": "-1..1"}
 STUDY = Surrogate(of="total", over=BOX, design=60, held_out=200, compare=0)
+QUICK = replace(STUDY, design=20, held_out=10)
 
 
 def emulated(model: Model[Any, Any], study: Surrogate, **changes: Any) -> Emulated:
@@ -107,7 +108,7 @@ def test_what_is_said_of_errors_and_bands_holds_at_points_held_out(found: Emulat
 
 def test_outside_its_box_and_for_other_values_it_does_not_stand(found: Emulated) -> None:
     assert found.passed == ()
-    outside = emulated(HILL, replace(STUDY, over={"x1": "1..2", "x2": "-1..1"}))
+    outside = emulated(HILL, replace(QUICK, over={"x1": "1..2", "x2": "-1..1"}))
     assert outside.passed == ("x1",)
     assert "outside the box of the surrogate in 'x1'" in outside.warnings()[0]
     assert outside.as_json()["extrapolated"] == ["x1"]
@@ -201,13 +202,13 @@ def test_the_number_of_threads_changes_nothing() -> None:
     for threads in (1, 2):
         with threadpool_limits(threads, user_api="blas"):
             assert {pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"} == {threads}
-            said.append(json.dumps([emulated(HILL, STUDY).as_json(), allotted(GROWING, draws=10).as_json()]))
+            said.append(json.dumps([emulated(HILL, QUICK).as_json(), allotted(GROWING, draws=10).as_json()]))
     assert said[0] == said[1]
     assert json.loads(said[0])[1]["reached"]
 
 
 def test_times_are_on_the_sheet_and_in_no_results() -> None:
-    found = emulated(HILL, replace(STUDY, compare=3000))
+    found = emulated(HILL, replace(QUICK, compare=3000))
     speed = found.speed
     assert speed is not None
     assert speed.rows == speed.measured == 3000
