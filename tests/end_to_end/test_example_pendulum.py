@@ -1,0 +1,77 @@
+"""The pendulum on a geared drive: its period in closed form, its record by a program that shares nothing with it."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.special import ellipk
+
+from shared import ROOT
+from truing import load
+
+HOME = ROOT / "docs" / "examples" / "geared_pendulum"
+WEIGHT = 1.2 * 9.80665 * 0.5
+"""Mass, gravity and length of the example, N m."""
+
+
+@pytest.fixture(scope="module")
+def pendulum() -> Any:
+    return load(HOME / "geared_pendulum.py")
+
+
+@pytest.fixture(scope="module")
+def simulation() -> ModuleType:
+    """The program that makes the records."""
+    spec = importlib.util.spec_from_file_location("simulate", HOME / "simulate.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules["simulate"] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.parametrize("release", [1.0, 60.0, 175.0])
+def test_the_period_is_a_complete_elliptic_integral(pendulum: Any, release: float) -> None:
+    """T = 4 sqrt(J / (m g l)) K(sin^2(phi_0 / 2)) for any release; dry friction shortens half a swing by nothing."""
+    run = pendulum.run(release=f"{release} deg", times=np.linspace(0, 12, 13))
+    inertia = 0.02 + 1.2 * 0.5**2
+    expected = 4 * np.sqrt(inertia / WEIGHT) * ellipk(np.sin(np.radians(release) / 2) ** 2)
+    assert run.si["period"] == pytest.approx(expected, rel=1e-8)
+
+
+def test_dry_friction_takes_the_same_angle_from_every_small_swing(pendulum: Any) -> None:
+    """From phi to -(phi - 2 M / (m g l)), after J. Den Hartog; and it rests where the weight is less than that."""
+    run = pendulum.run(release="4 deg", coulomb="0.05 N*m", times=np.linspace(0, 30, 3001))
+    angles, loss = run.si["angle"], 0.05 / WEIGHT
+    turns = np.abs(angles[1:-1][(np.diff(angles)[:-1] * np.diff(angles)[1:]) < 0])
+    assert turns[:3] == pytest.approx(np.radians(4) - 2 * loss * np.arange(1, 4), rel=2e-3)
+    assert abs(run.si["rest"]) < loss
+    assert np.ptp(angles[-500:]) == 0
+
+
+def test_the_record_is_that_of_a_program_of_its_own(pendulum: Any, simulation: ModuleType) -> None:
+    """Heun's steps of 0.1 ms, which turn up to one step late, against the located events of the calculation."""
+    times = [0.17 * row for row in range(50)]
+    shown = simulation.swing(0.6, 43.5, times)
+    run = pendulum.run(
+        times=np.array(times), tip_mass="0.6 kg", release="43.5 deg", length=f"{simulation.LENGTH} m",
+        inertia=f"{simulation.INERTIA} kg*m^2", coulomb=f"{simulation.DRY} N*m", viscous=f"{simulation.OIL} N*m*s",
+    )  # fmt: skip
+    assert np.degrees(run.si["angle"]) == pytest.approx(shown, abs=0.02)
+
+
+def test_the_records_are_those_that_the_program_writes(
+    simulation: ModuleType, tmp_path: Path, monkeypatch: Any
+) -> None:
+    """The first rows, so that nobody has to wait for all of them."""
+    monkeypatch.chdir(tmp_path)
+    simulation.write("swing_1.csv", 1.2, 61.0, [0.2 * row for row in range(5)], 1)
+    shipped = (HOME / "swing_1.csv").read_text(encoding="utf-8").splitlines()
+    assert (tmp_path / "swing_1.csv").read_text(encoding="utf-8").splitlines() == shipped[:6]
