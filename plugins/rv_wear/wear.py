@@ -11,19 +11,7 @@ from numpy.typing import NDArray
 
 from rv_wear import geometry
 from rv_wear.forces import Loads, holding, refuse, shared, start_scale
-from rv_wear.geometry import (
-    NUMBERS,
-    Choices,
-    Mesh,
-    Teeth,
-    columns_of,
-    distinct,
-    longest_arm_angle,
-    mesh_of,
-    relative_radius,
-    some_of,
-    teeth_of,
-)
+from rv_wear.geometry import NUMBERS, Choices, Mesh, Teeth, columns_of, mesh_of, teeth_of
 from rv_wear.quantities import Reducer
 from truing import Array, Float, either, feasible
 
@@ -151,7 +139,7 @@ def _power_law(factor: Array, power: float, film: Float | None) -> Rate:
 def _at_pitch_point(teeth: Teeth, unworn: Loads) -> Array:
     """What force and radius do to the coefficient at the longest arm, where the unworn force is largest; (m,)."""
     mesh = teeth.mesh
-    radius = relative_radius(mesh, longest_arm_angle(mesh))
+    radius = geometry.relative_radius(mesh, geometry.longest_arm_angle(mesh))
     line_load = unworn.scale.max(axis=0) / mesh.width
     return np.asarray(contact_part(mesh.equivalent_modulus, line_load, radius))
 
@@ -472,14 +460,14 @@ def worn(reducer: Reducer) -> dict[str, Float]:
 
 def meshes_of(reducer: Reducer) -> Meshes:
     """Find the distinct meshes of a call and refuse, by row, those that cannot be."""
-    mesh, of_row = distinct(mesh_of(reducer))
+    mesh, of_row = geometry.distinct(mesh_of(reducer))
     good, broken = holding(mesh)
     if not broken:
         return Meshes(mesh, len(good), of_row)
     refuse(broken, of_row)
     kept = np.flatnonzero(good)
     places = np.where(good, np.cumsum(good) - 1, -1)
-    return Meshes(some_of(mesh, kept), len(kept), None if of_row is None else places[of_row])
+    return Meshes(geometry.some_of(mesh, kept), len(kept), None if of_row is None else places[of_row])
 
 
 def oil_part(reducer: Reducer) -> Float:
