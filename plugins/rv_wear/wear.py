@@ -437,7 +437,7 @@ def worn(reducer: Reducer) -> dict[str, Float]:
     approach, pins = meshes.to_rows(new.approach), meshes.to_rows(new.loaded_pins)
     feasible(np.minimum(reducer.reconstruction_depth, depth) <= DEEPEST_STEP * approach, TOO_DEEP)
     feasible(pins**2 * reducer.phases >= FEWEST_POSITIONS, TOO_FEW)
-    duty = other_flank(reducer)
+    duty = either(reducer.reversing / (2.0 - reducer.reversing), 1.0)  # time of the other flank over that of the first
     other = depth if np.ndim(duty) == 0 and duty == 1.0 else depth_at(meshes, new, exposure * duty)[0]
     beside = reducer.extra_wear * np.where(np.asarray(duty) > 0.0, 1.0, 0.5)
     share = reducer.lost_motion_share * (1.0 + reducer.pin_wear_ratio)
@@ -486,8 +486,3 @@ def exposure_of(reducer: Reducer, oil: Float, time: Float) -> Float:
     meshings = time * (1.0 + 0.5 * reducer.ageing_rate * time) * reducer.output_speed * reducer.pin_count
     share = either(1.0 - 0.5 * reducer.reversing, reducer.loaded_share)
     return oil * (meshings * reducer.sliding_factor * share)
-
-
-def other_flank(reducer: Reducer) -> Float:
-    """Time for which the other flank is loaded, over that of the first: r / (2 - r), or 1 where nothing is stated."""
-    return either(reducer.reversing / (2.0 - reducer.reversing), 1.0)
