@@ -93,8 +93,7 @@ def ring_tooth(pair: Pair, geometry: Geometry) -> Tooth:
 
 def is_cut(pair: Pair) -> NDArray[np.bool_]:
     """Return whether the ring is made by a cutter; else it is taken as a rack."""
-    value: NDArray[np.bool_] = ~np.isnan(np.asarray(pair.cutter_teeth, dtype=float))
-    return value
+    return np.asarray(~np.isnan(np.asarray(pair.cutter_teeth, dtype=float)))
 
 
 def cut_section(pair: Pair, geometry: Geometry) -> tuple[roots.Root, roots.Arm]:
