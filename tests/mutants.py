@@ -234,7 +234,8 @@ MUTANTS: tuple[Mutant, ...] = (
         ("(1.2 + 0.13 * slenderness)", "(1.2 + 0.12 * slenderness)"),
     ),
     *changes(
-        "plugins/gear_geometry/mesh_load.py", "published/test_rv_gearing_factors.py published/test_effects_of_machines.py",
+        "plugins/gear_geometry/mesh_load.py",
+        "published/test_rv_gearing_factors.py published/test_effects_of_machines.py",
         ("2.0 * np.sqrt(held)", "1.9 * np.sqrt(held)"),
     ),
     *changes(
