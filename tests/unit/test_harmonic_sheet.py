@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from drawn import line, words
 from harmonic_fractal.estimate import Estimation, estimate_of
 from harmonic_fractal.figures import (
     flanks,
@@ -24,7 +25,7 @@ from harmonic_fractal.generators import brownian_surface
 from harmonic_fractal.model import HARMONIC_FRACTAL
 from harmonic_fractal.surface import Direction, Lines, Surface, without_line
 from harmonic_fractal.uncertainty import SurfaceValidity
-from truing import Drawing, Table, Words
+from truing import Drawing, Table
 from truing.calculation import Calculation, calculate
 from truing.report.sheet import input_value
 from truing.setup import default_setup
@@ -78,11 +79,6 @@ def stated() -> Calculation:
     return run()
 
 
-def words(blocks: Any, kind: str = "") -> str:
-    """All words of some blocks."""
-    return " ".join(block.text for block in blocks if isinstance(block, Words) and kind in ("", block.kind))
-
-
 def titles(blocks: Any) -> list[str]:
     return [block.title for block in blocks if isinstance(block, (Table, Drawing))]
 
@@ -92,29 +88,12 @@ def table(blocks: Any, title: str) -> Table:
     return next(block for block in blocks if isinstance(block, Table) and title in block.title)
 
 
-def line(panel: Any, label: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The data of the line with this label."""
-    found = next(item for item in panel.get_lines() if label in str(item.get_label()))
-    return np.asarray(found.get_xdata(), dtype=float), np.asarray(found.get_ydata(), dtype=float)
-
-
-# Sections
-
-
-def test_every_result_stands_in_one_section() -> None:
-    named = [name for section in HARMONIC_FRACTAL.sheet for name in section.names]
-    assert len(named) == len(set(named))
-    assert set(HARMONIC_FRACTAL.result_fields) == set(named)
-
-
 # Flanks
 
 
 def test_without_a_surface_the_sheet_says_so(stated: Calculation) -> None:
-    assert (
-        words(flanks(stated.record))
-        == "No flank was measured: D and G are as stated, and how sure they are is not known."
-    )
+    said = "No flank was measured: D and G are as stated, and how sure they are is not known."
+    assert words(flanks(stated.record)) == said
     assert stated.answers["surface_accepted"] == 1
     assert stated.verdict == "passes"
 
@@ -240,9 +219,6 @@ def test_structure_figure_of_a_refused_surface_is_for_comparison(bad: Flank) -> 
     assert not any("range" in label for label in labels)
 
 
-# D and G
-
-
 # One pair
 
 
@@ -286,15 +262,12 @@ def test_single_contacts_are_spheres(stated: Calculation) -> None:
     assert rows["the largest"][1] == pytest.approx(2e9 * float(stated.answers["clearance"]))
 
 
-def test_all_plastic_is_a_warning_on_sheet_and_terminal() -> None:
+def test_plastic_contacts_are_a_warning_on_sheet_and_terminal() -> None:
     found = run(pair_load="1e-5 N")
     assert "All contacts of the pair are plastic" in words(stiffness(found.record), "warning")
     assert any("all contacts of the pair are plastic" in text for text in found.warnings)
-
-
-def test_mostly_plastic_is_a_warning() -> None:
-    found = run(critical_rule="yield_onset", reference_torque="1 N*m")
-    assert any("58% of the load is on plastic contacts" in text for text in found.warnings)
+    mostly = run(critical_rule="yield_onset", reference_torque="1 N*m")
+    assert any("58% of the load is on plastic contacts" in text for text in mostly.warnings)
 
 
 # Torsion
@@ -312,6 +285,7 @@ def test_torsion_beside_the_catalogue(stated: Calculation) -> None:
     assert "at most 0.55 %" in said
     assert "not the weakest link" in said
     assert "everything around the mesh is rigid" in said
+    assert table(torsion(run(torque="-25 N*m").record), "torques of the catalogue").rows == rows
 
 
 def test_torsion_figure_goes_through_the_results() -> None:
@@ -328,16 +302,10 @@ def test_torsion_figure_goes_through_the_results() -> None:
     assert "everything around the mesh is rigid" not in words(torsion(found.record))
 
 
-def test_a_drive_that_turns_the_other_way_has_the_same_table(stated: Calculation) -> None:
-    other = table(torsion(run(torque="-25 N*m").record), "torques of the catalogue")
-    assert other.rows == table(torsion(stated.record), "torques of the catalogue").rows
-
-
 def test_an_input_file_that_is_not_given_is_said_so() -> None:
     setup = default_setup(HARMONIC_FRACTAL)
     for name in ("surface", "mating_surface", "mating_dimension"):
-        value = getattr(setup.inputs, name)
-        assert input_value(setup, setup.model.input_fields[name], value).text == "not given"
+        assert input_value(setup, setup.model.input_fields[name], getattr(setup.inputs, name)).text == "not given"
 
 
 @pytest.mark.parametrize(
