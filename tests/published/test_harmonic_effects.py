@@ -5,7 +5,7 @@ What each effect of a drive does is compared with a machine of its own in ``test
 
 from dataclasses import replace
 from functools import partial
-from math import cos, exp, pi, sqrt
+from math import cos, exp, pi, radians, sqrt, tanh
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +24,7 @@ from truing import Kernel
 from truing.diagnosis.reading import read_records
 from truing.inputs_file import read_setup
 
-UM, ROOM, RPM = 1e-6, 293.15, 1 / 60
+UM, ROOM, RPM, ALPHA = 1e-6, 293.15, 1 / 60, radians(20)
 with_effect: Any = partial(shown, HARMONIC_FRACTAL)
 added: Any = partial(change, HARMONIC_FRACTAL)
 
@@ -41,7 +41,7 @@ def test_pairs_that_bend_share_the_torque_with_those_that_come() -> None:
     found = with_effect("engaged_pairs", drive, gain=1.5, torque_scale=0.32)
     times = found["mesh_stiffness"] / with_effect("", drive)["mesh_stiffness"]
     assert times == pytest.approx(1 + 1.5 * (1 - exp(-25 / 8)), rel=1e-3)
-    radius = 25.4e-3 * cos(np.radians(20))
+    radius = 25.4e-3 * cos(ALPHA)
     softness = quad(lambda torque: 1 / (1 + 1.5 * (1 - exp(-torque / 8))), 0.1, 25)[0] / (60 * 1e4 * radius**2)
     assert found["torsion"] == pytest.approx(softness, rel=1e-3)
 
@@ -84,14 +84,27 @@ def test_torsion_is_continuous_to_rest() -> None:
     assert (np.diff(found[6:]) > 0).all()
 
 
-def test_what_was_never_loaded_holds_nothing_back_and_has_no_set() -> None:
-    """No way of turning, or no torque since the last turn; a drive that was only ever turned the other way."""
-    values = {"loop": 200e-6, "torque_scale": 0.08, "reversal_torque": 0.0}
-    for torque, direction, peak in ((3.0, 0.0, 3.0), (0.0, 1.0, 0.0)):
-        leg = {"direction": direction, "peak_torque": peak}
-        assert added("torsion", "hysteresis", drive_at(torque), **values, **leg) == 0
-    set_by_load = {"set": 40e-6, "exponent": 1.5, "stiffening": 0.2, "peak_torque": -1.0}
-    assert added("torsion", "first_load_set", drive_at(-10), **set_by_load) == 0
+LEG = {"loop": 200e-6, "torque_scale": 0.08, "direction": 1.0, "reversal_torque": -40.0, "peak_torque": 40.0}
+FIRST = {**LEG, "reversal_torque": 0.0, "peak_torque": 3.0}
+SHIFTED: list[tuple[str, float, dict[str, float], float]] = [  # effect, torque, unknowns and conditions, urad
+    ("hysteresis", 3.0, FIRST, -100 * (1 - exp(-3.0))),  # Masing: a first load slips in half the torque
+    ("hysteresis", 3.0, LEG, -100 * (1 - 2 * exp(-43 / 2))),
+    ("hysteresis", 3.0, FIRST | {"direction": 0.0}, 0.0),
+    ("hysteresis", 0.0, FIRST | {"peak_torque": 0.0}, 0.0),
+    ("viscous_hysteresis", 30.0, {**LEG, "thinning": 0.03, "speed": -500 * RPM, "temperature": ROOM - 20},
+     -0.5 * 200 * 0.5 * exp(0.6)),
+    ("lost_motion", -3.0, {"play": 60e-6, "torque_scale": 0.12}, -60 * tanh(1)),
+    ("flank_wear", 30.0, {"rate": UM, "torque_scale": 0.04, "cycles": 2e6}, 4 / (25.4e-3 * cos(ALPHA))),
+    ("first_load_set", -10.0, {"set": 40e-6, "exponent": 1.5, "stiffening": 0.2, "peak_torque": -1.0}, 0.0),
+    ("ellipticity", 25.0, {"cosine": 3e-6, "sine": -4e-6, "wave_angle": pi / 6}, 1.5 - 4 * cos(pi / 6)),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "torque", "values", "expected"), SHIFTED)
+def test_what_an_effect_adds_to_the_torsion(
+    name: str, torque: float, values: dict[str, float], expected: float
+) -> None:
+    assert added("torsion", name, drive_at(torque), **values) / UM == pytest.approx(expected, rel=1e-5, abs=1e-9)
 
 
 def test_turns_direction_and_peak_are_made_from_the_torque(tmp_path: Path) -> None:

@@ -85,14 +85,13 @@ def test_what_a_convention_costs() -> None:
         f"1 nm in the profile convention has {factor:.2f} nm in the areal one",
         f"its pair comes out **{stiffness[0] / stiffness[1]:.1f} times too stiff** at 25 N",
     )
+    root = np.sqrt(structure_function(np.array([0.4e-6, 20e-6]), 1.4, 1e-11)) * 1e9
     missing = (2 * np.pi) ** (0.6 / 0.4)
     soft = drive(fractal_roughness=missing * 1e-11, reference_torque=0.1)["stiffness"]
-    PAGE.says(f"too large by {missing:.1f} makes the pair {DEFAULT['stiffness'] / soft:.1f} times too soft")
-
-
-def test_how_rough_the_default_flank_is() -> None:
-    root = np.sqrt(structure_function(np.array([0.4e-6, 20e-6]), 1.4, 1e-11)) * 1e9
-    PAGE.says(f"differ by {root[0]:.1f} nm, root mean square, and two points 20 µm apart by {root[1]:.1f} nm")
+    PAGE.says(
+        f"too large by {missing:.1f} makes the pair {DEFAULT['stiffness'] / soft:.1f} times too soft",
+        f"differ by {root[0]:.1f} nm, root mean square, and two points 20 µm apart by {root[1]:.1f} nm",
+    )
 
 
 STEPS = np.unique(np.round(np.geomspace(1, 50, 16)).astype(np.int64))
@@ -243,20 +242,13 @@ def test_clearance() -> None:
     PAGE.says(f"a clearance of 0.2 µm is {minutes:.2f} arc minutes")
 
 
-def test_where_the_torsion_may_begin() -> None:
-    least = [float(drive(**more)["plastic_torque"]) for more in ({}, NANOMETRE)]
-    PAGE.says(f"({least[0] * 1e6:.0f} µN·m with the defaults, {least[1] * 1e3:.1f} mN·m with")
-
-
 @pytest.mark.parametrize(
     ("size", "text", "dimension", "roughness"),
     [
-        ("14", "2.4, 10⁻¹¹ m", 2.4, 1e-11),
-        ("20", "2.4, 10⁻¹¹ m", 2.4, 1e-11),
-        ("20", "2.5, 10⁻⁹ m", 2.5, 1e-9),
+        ("14", "2.4, 10⁻¹¹ m", 2.4, 1e-11), ("20", "2.4, 10⁻¹¹ m", 2.4, 1e-11), ("20", "2.5, 10⁻⁹ m", 2.5, 1e-9),
         ("32", "2.5, 10⁻⁹ m", 2.5, 1e-9),
     ],
-)
+)  # fmt: skip
 def test_beside_the_catalogue(size: str, text: str, dimension: float, roughness: float) -> None:
     settings = {
         "catalogue_size": size, "pitch_radius": 1.27e-3 * float(size), "torque": TABLE[size][1],
@@ -294,10 +286,14 @@ def test_the_torsion_beside_that_of_the_catalogue() -> None:
     assert alone == pytest.approx(2.8e6, abs=0.05e6)
 
 
-def test_the_range_of_validity() -> None:
-    PAGE.says(f"that is {float(DEFAULT['resolved_share']):.3f} of the sampling interval")
+def test_the_range_of_validity_and_where_the_torsion_may_begin() -> None:
     first = TABLE["20"][0] / (TABLE["20"][2]["50"][0] * 1e3)
-    PAGE.says(f"$T_1/K_1 = {first * 1e4:.1f}\\cdot10^{{-4}}$ rad here")
+    least = [float(drive(**more)["plastic_torque"]) for more in ({}, NANOMETRE)]
+    PAGE.says(
+        f"that is {float(DEFAULT['resolved_share']):.3f} of the sampling interval",
+        f"$T_1/K_1 = {first * 1e4:.1f}\\cdot10^{{-4}}$ rad here",
+        f"({least[0] * 1e6:.0f} µN·m with the defaults, {least[1] * 1e3:.1f} mN·m with",
+    )
 
 
 def test_beside_contact_over_all_scales() -> None:

@@ -57,6 +57,15 @@ def test_a_resonance_shakes_the_load(ratio: float, expected: float) -> None:
     assert found == pytest.approx(expected, rel=1e-7, abs=1e-12)
 
 
+def test_a_groove_takes_its_share_of_the_face_where_it_is_in_the_mesh() -> None:
+    """At its phase, and half a turn of the roller on, of which the screw makes 8/15."""
+    bare = with_effect()["root_stress_ring"]
+    for turns, expected in ((0.0, 1 / 0.7), (0.5, 1.0), (0.25, 1 / 0.85)):
+        angle = (np.radians(300) + turns * 2 * np.pi) / 1.875
+        found = with_effect("interrupted_tooth", lost=0.3, phase=np.radians(300), screw_angle=angle)
+        assert found["root_stress_ring"] / bare == pytest.approx(expected, rel=1e-9)
+
+
 def test_one_roller_alone_has_nobody_to_share_with() -> None:
     assert added("root_stress_roller", "roller_load_sharing", pair_at(rollers=1), lead=5 * UM) == 0
 

@@ -185,16 +185,11 @@ def test_without_clearance_all_pins_bear(torque: float, load_sharing: str) -> No
 @pytest.mark.parametrize("load_sharing", ["linear", "hertz"])
 @pytest.mark.parametrize("pins", [40, 41, 25])
 def test_torque_is_held_in_every_position_and_step(pins: int, load_sharing: str) -> None:
-    reducer = replace(
-        PAPER,
-        pin_count=pins,
-        eccentricity=K_1 * 0.1145 / pins,
-        load_sharing=load_sharing,  # type: ignore[arg-type]
-        output_torque=np.array([300.0, 3136.0, 5000.0]),
-    )
+    torques, sharing = np.array([300.0, 3136.0, 5000.0]), {"load_sharing": load_sharing}
+    reducer = replace(PAPER, pin_count=pins, eccentricity=K_1 * 0.1145 / pins, output_torque=torques, **sharing)
     teeth = teeth_of(mesh_of(reducer))
     arm = reducer.eccentricity * (pins - 1) / 0.0022 / 39 * lever(teeth.angle)
-    wanted = 0.55 * np.array([300.0, 3136.0, 5000.0])
+    wanted = 0.55 * torques
     for step, state in zip(range(40), states(teeth), strict=False):
         held = (state.loads.force * arm).sum(axis=0)
         assert held / wanted == pytest.approx(np.ones_like(held), rel=1e-9), step
@@ -271,15 +266,11 @@ def test_what_would_decide_the_wear_is_refused_by_name(changes: dict[str, float]
 @pytest.mark.parametrize(
     "changes",
     [
-        {"eccentricity": 2.5e-3},
-        {"pin_radius": 8.97e-3},
-        {"shift_modification": -26e-6},
+        {"eccentricity": 2.5e-3}, {"pin_radius": 8.97e-3}, {"shift_modification": -26e-6}, {"output_torque": 20000.0},
         {"equidistant_modification": 11.1e-6, "shift_modification": 7.1e-6},
-        {"equidistant_modification": -200e-6, "shift_modification": -204e-6},
-        {"output_torque": 0.1, "phases": 200},
-        {"output_torque": 20000.0},
+        {"equidistant_modification": -200e-6, "shift_modification": -204e-6}, {"output_torque": 0.1, "phases": 200},
     ],
-)
+)  # fmt: skip
 def test_what_is_only_unusual_is_calculated(changes: dict[str, float]) -> None:
     found = worn(replace(PAPER, **changes))
     assert np.isfinite([found["max_wear"], found["max_force"], found["max_pressure"]]).all()
@@ -287,7 +278,6 @@ def test_what_is_only_unusual_is_calculated(changes: dict[str, float]) -> None:
 
 def test_a_step_is_not_too_deep_for_a_wear_that_never_reaches_it() -> None:
     """Within the first step wear grows evenly, whatever its size: new discs and short times are calculated."""
-    new = worn(replace(PAPER, working_time=np.array([0.0, 36.0]), reconstruction_depth=5e-6))
-    assert new["max_wear"] == pytest.approx(
-        worn(replace(PAPER, working_time=np.array([0.0, 36.0])))["max_wear"], rel=1e-12
-    )
+    short = replace(PAPER, working_time=np.array([0.0, 36.0]))
+    deep = worn(replace(short, reconstruction_depth=5e-6))
+    assert deep["max_wear"] == pytest.approx(worn(short)["max_wear"], rel=1e-12)

@@ -40,20 +40,14 @@ def rough(lines: int, points: int, holes: float) -> np.ndarray:
     return heights
 
 
-@pytest.mark.parametrize("holes", [0.0, 0.03, 0.5])
-@pytest.mark.parametrize("shape", [(7, 60), (1, 300), (90, 500)])  # the last is of more than one block of lines
+@pytest.mark.parametrize("holes", [0.0, 0.3])
+@pytest.mark.parametrize("shape", [(7, 60), (1, 300), (90, 300)])  # the last is of more than one block of lines
 def test_sums_are_those_of_the_loop(shape: tuple[int, int], holes: float) -> None:
-    """Every line, every lag."""
+    """Every line, every lag; and along y, where the lines of a map are not side by side in memory."""
     heights = rough(*shape, holes)
-    for ours, theirs in zip(structure_sums(heights, STEPS), by_loop(heights, STEPS), strict=True):
-        np.testing.assert_allclose(ours, theirs, rtol=1e-12)
-
-
-def test_lines_along_y_are_columns() -> None:
-    """A transposed map, whose lines are not side by side in memory."""
-    heights = rough(80, 60, 0.02)
-    for ours, theirs in zip(structure_sums(heights.T, STEPS), by_loop(heights.T, STEPS), strict=True):
-        np.testing.assert_allclose(ours, theirs, rtol=1e-12)
+    for lines in (heights, heights.T):
+        for ours, theirs in zip(structure_sums(lines, STEPS), by_loop(lines, STEPS), strict=True):
+            np.testing.assert_allclose(ours, theirs, rtol=1e-12)
 
 
 def test_a_ramp_has_the_square_of_its_rise() -> None:
@@ -129,32 +123,23 @@ def test_lambda_is_the_printed_product_of_gamma_and_sine(dimension: float) -> No
 
 
 @pytest.mark.parametrize("dimension", DIMENSIONS)
-def test_the_power_law_is_the_mean_of_the_exact_sum(dimension: float) -> None:
-    """Within 0.5 % over a decade, in the convention of the profile."""
+def test_the_power_law_of_the_profile_and_of_many_directions(dimension: float) -> None:
+    """The mean of the exact sum within 0.5 % over a decade; directions weigh by the mean power of the cosine."""
     lags = lags_of_a_decade()
     law = constant(dimension, DENSITY, "profile") * 1e-9 ** (2 * (dimension - 1)) * lags ** (4 - 2 * dimension)
     assert float(np.mean(exact_sum(lags, dimension, 1e-9) / law)) == pytest.approx(1.0, abs=0.005)
-
-
-@pytest.mark.parametrize("dimension", DIMENSIONS)
-def test_many_directions_weigh_by_the_mean_power_of_the_cosine(dimension: float) -> None:
-    """The areal constant over that of one direction, by quadrature over the angle of the trace."""
     mean = quad(lambda angle: np.cos(angle) ** (4 - 2 * dimension), 0, np.pi / 2)[0] / (np.pi / 2)
     ratio = constant(dimension, DENSITY, "areal") / constant(dimension, DENSITY, "one_direction")
     assert float(ratio) == pytest.approx(mean, rel=1e-9)
+    # the level at a lag of one metre gives back the roughness it was made with
+    intercept = np.log(structure_function(1.0, dimension, 3e-11))
+    assert float(np.exp(log_roughness_of(intercept, dimension))) == pytest.approx(3e-11, rel=1e-9)
 
 
 def test_an_areal_roughness_is_four_times_that_of_the_profile() -> None:
     """At D_s = 1.5 and gamma = 1.5 by (pi/2)/ln 1.5, the square root of which is not taken: 2 (D_s - 1) = 1."""
     areal = converted(1e-9, 1.5, DENSITY, source="profile", target="areal")
     assert float(areal) == pytest.approx(1e-9 * np.pi / 2 / np.log(1.5), rel=1e-12)
-
-
-@pytest.mark.parametrize("dimension", DIMENSIONS)
-def test_roughness_of_its_own_structure_function(dimension: float) -> None:
-    """The level at a lag of one metre gives back the roughness it was made with."""
-    intercept = np.log(structure_function(1.0, dimension, 3e-11))
-    assert float(np.exp(log_roughness_of(intercept, dimension))) == pytest.approx(3e-11, rel=1e-9)
 
 
 def test_a_power_law_of_another_exponent_has_no_roughness() -> None:
