@@ -66,16 +66,15 @@ def test_the_factor_that_is_missing() -> None:
     assert PAGE.row("$G$ too large by") == [f"{factor:.4g}" if factor > 1e3 else f"{factor:.3g}" for factor in factors]
 
 
-@pytest.mark.parametrize("dimension", DIMENSIONS)
+@pytest.mark.parametrize("dimension", [1.2, 1.5, 1.8])
 def test_the_exact_sum_waves_about_the_law(dimension: float) -> None:
     """Over one wave of the ripple, far from both ends of the band; finely, because it has cusps where D_s is large."""
     waves = Waves(dimension=dimension, roughness=1e-9, lowest=1.5**-60, highest=1.5**120)
-    lags = np.exp(np.linspace(0.0, np.log(1.5), 40000, endpoint=False)) * 1e-6
+    lags = np.exp(np.linspace(0.0, np.log(1.5), 20000, endpoint=False)) * 1e-6
     law = constants(dimension)["profile"] * 1e-9 ** (2 * (dimension - 1)) * lags ** (4 - 2 * dimension)
     ratio = profile_sum(waves, lags) / law
     assert ratio.mean() == pytest.approx(1.0, abs=1e-3)
-    if dimension in {1.2, 1.5, 1.8}:
-        PAGE.says(f"{50 * (ratio.max() - ratio.min()):.2g} %")
+    PAGE.says(f"{50 * (ratio.max() - ratio.min()):.2g} %")
 
 
 def test_what_a_convention_costs() -> None:

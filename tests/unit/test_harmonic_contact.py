@@ -200,14 +200,6 @@ def test_a_smooth_mate_changes_nothing_and_deviations_come_last() -> None:
     np.testing.assert_allclose(rows.roughness, 1e-11 * np.array([1.0, 2.0 ** (1 / 0.8)]), rtol=1e-10)
 
 
-@pytest.mark.parametrize("convention", ["one_direction", "profile"])
-def test_the_convention_is_that_of_the_stated_roughness(convention: str) -> None:
-    """Isotropic ridges, D_s = 1.5: of one direction 2/pi of the squares are left; the profile divides by ln 1.5."""
-    found = interface_of(drive_of(fractal_dimension=2.5, fractal_roughness=1e-9, convention=convention))
-    factor = {"one_direction": np.pi / 2.0, "profile": np.pi / 2.0 / np.log(1.5)}[convention]
-    assert found.roughness == pytest.approx(1e-9 * factor, rel=1e-10)
-
-
 # Measured flanks
 
 

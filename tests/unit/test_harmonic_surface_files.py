@@ -30,18 +30,13 @@ MICROMETRES = FileLayout(spacing_x=4e-7, spacing_y=4e-7, height_unit="um")
 SPACED = FileLayout(spacing_x=1e-6, spacing_y=1e-6)
 NOTHING = FileLayout()
 HEIGHTS = np.array([[1.5, -2.0, 3.25, 0.5], [0.0, 7.0, -8.125, 1.0], [4.0, 5.0, 6.0, 2.0]])
-HOLED = np.array([[1.5, np.nan, 3.25], [np.nan, 7.0, -8.125]])
+NONE = np.nan
 
 
 def read(folder: Path, text: str | bytes, layout: FileLayout = MICROMETRES) -> Reading:
     file = folder / "flank.txt"
     file.write_bytes(text.encode() if isinstance(text, str) else text)
     return read_surface(file, layout)
-
-
-def heights(folder: Path, text: str | bytes, layout: FileLayout = MICROMETRES) -> NDArray[np.float64]:
-    """Heights in um."""
-    return read(folder, text, layout).surface.heights * 1e6
 
 
 def refused(folder: Path, text: str | bytes, layout: FileLayout = MICROMETRES) -> str:
@@ -58,67 +53,72 @@ def lines_of(separator: str, mark: str = ".") -> str:
     return "\n".join(separator.join(str(value).replace(".", mark) for value in row) for row in HEIGHTS)
 
 
+def grid_points() -> str:
+    """Points of the grid in any order."""
+    y, x = np.mgrid[0:3, 0:4]
+    points = np.stack([x * 0.4 + 7, y * 0.5 - 2, HEIGHTS], axis=-1).reshape(-1, 3)
+    shuffled = np.random.default_rng(3).permutation(points)
+    return "x [um] y [um] z [nm]\n" + "\n".join(" ".join(map(repr, row)) for row in shuffled.tolist())
+
+
+SAID = "# spacing_x = 0.4 um\n# spacing_y = 500 nm\n# height_unit = nm\n# filter_width = 1 um\n# anything = else\n"
+IN_MICROMETRES = replace(SPACED, height_unit="um")
+READ: list[tuple[list[str], FileLayout, Any, tuple[float, float]]] = [  # texts, layout, heights in um, spacing in um
+    # separators, decimal signs, comments
+    ([lines_of(","), lines_of(", "), lines_of(";"), lines_of("; "), lines_of("\t"), lines_of(" "), lines_of("   "),
+      lines_of(";", ","), lines_of("\t", ","), lines_of(" ", ","), lines_of(";").replace("\n", "\r\n"),
+      lines_of(",") + "\n\n\n", "# a comment\n\n" + lines_of(","), lines_of(",").replace("\n", "\n# in between\n"),
+      "\ufeff" + lines_of(","), lines_of(";").replace("\n", ";\n") + ";", "  " + lines_of(" ").replace("\n", "\n  "),
+      "Instrument: none\nheights in um\n" + lines_of(","), lines_of(",").replace("7.0", "7e0")],
+     MICROMETRES, HEIGHTS, (0.4, 0.4)),
+    # what was not measured is a hole and never zero; a row of holes keeps its place
+    (["1.5,,3.25\n,7,-8.125", "1.5, ,3.25\n ,7,-8.125", "1.5;nan;3.25\nNaN;7;-8.125", "1.5\t\t3.25\n\t7\t-8.125",
+      "1.5 *** 3.25\n*** 7 -8.125", "1,5 *** 3,25\nnan 7 -8,125", "1.5;---;3.25\nN/A;7;-8.125"],
+     MICROMETRES, [[1.5, NONE, 3.25], [NONE, 7.0, -8.125]], (0.4, 0.4)),
+    (["1,2,3,4\n,,,\n5,6,7,8\n9,9,,9", "1;2;3;4\n;;;\n5;6;7;8\n9;9;;9", "1\t2\t3\t4\n\t\t\t\n5\t6\t7\t8\n9\t9\t\t9"],
+     MICROMETRES, [[1, 2, 3, 4], [NONE] * 4, [5, 6, 7, 8], [9, 9, NONE, 9]], (0.4, 0.4)),
+    # one column and one row are profiles
+    (["1\n2\nnan\n4\n", "1,2,,4"], MICROMETRES, [[1, 2, NONE, 4]], (0.4, NONE)),
+    # a file that speaks for itself; a unit of metres per count; lines at the top that look like numbers
+    ([SAID + lines_of(",")], NOTHING, 1e-3 * HEIGHTS, (0.4, 0.5)),
+    (["# spacing = 2 um\n# height_unit: mm\n" + lines_of(",")], NOTHING, 1e3 * HEIGHTS, (2.0, 2.0)),
+    ([lines_of(" ")], replace(SPACED, height_unit="2.91818e-8 m"), 2.91818e-2 * HEIGHTS, (1.0, 1.0)),
+    (["3 4\n0.4\n" + lines_of(" ")], replace(IN_MICROMETRES, skip_lines=2), HEIGHTS, (1.0, 1.0)),
+    # two columns are a profile, whatever their heads; points in any order, and missing ones are holes
+    ([head + "\n10;1,5\n10,5;2\n11;-3\n11,5;4\n" for head in (
+        "x [um];z [nm]", "# x [um]; z [nm]", "X;Z\n[um];[nm]", "X;Y\n[um];[nm]", "Position (um);Height (nm)",
+        "x/um;z/nm", '"x [um]";"z [nm]"', "Instrument\n12 July\nx [um];z [nm]")],
+     NOTHING, [[1.5e-3, 2e-3, -3e-3, 4e-3]], (0.5, NONE)),
+    (["0 1\n1 2\n2 3\n"], FileLayout(columns=("x [um]", "z [um]")), [[1, 2, 3]], (1.0, NONE)),
+    (["x [um],z [um]\n3,13\n0,10\n1,11\n5,15\n6,16\n7,17\n"],
+     NOTHING, [[10, 11, NONE, 13, NONE, 15, 16, 17]], (1.0, NONE)),
+    (["X;Y;valid\r\n[mm];[mm];[1/0]\r\n8.6720;106.1;1\r\n8.6725;999;0\r\n8.6730;106.3;1\r\n"],
+     NOTHING, [[106.1e3, NONE, 106.3e3]], (0.5, NONE)),
+    ([grid_points()], NOTHING, 1e-3 * HEIGHTS, (0.4, 0.5)),
+    (["\n".join(line for line in grid_points().split("\n") if not line.endswith("-8.125"))],
+     NOTHING, np.where(HEIGHTS == -8.125, NONE, 1e-3 * HEIGHTS), (0.4, 0.5)),
+    # spacing may differ by one per cent
+    (["x [um],z [um]\n0,1\n1,2\n2.009,3\n3,4\n4,5\n"], NOTHING, [[1, 2, 3, 4, 5]], (1.0, NONE)),
+]  # fmt: skip
+
+
 @pytest.mark.parametrize(
-    "text",
-    [
-        lines_of(","), lines_of(", "), lines_of(";"), lines_of("; "), lines_of("\t"), lines_of(" "), lines_of("   "),
-        lines_of(";", ","), lines_of("\t", ","), lines_of(" ", ","),
-        lines_of(";").replace("\n", "\r\n"), lines_of(",") + "\n\n\n", "# a comment\n\n" + lines_of(","),
-        lines_of(",").replace("\n", "\n# in between\n"), "\ufeff" + lines_of(","),
-        lines_of(";").replace("\n", ";\n") + ";", "  " + lines_of(" ").replace("\n", "\n  "),
-        "Instrument: none\nheights in um\n" + lines_of(","), lines_of(",").replace("7.0", "7e0"),
-    ],
-)  # fmt: skip
-def test_separators_decimal_signs_and_comments(text: str, tmp_path: Path) -> None:
-    found = read(tmp_path, text).surface
-    assert found.heights == pytest.approx(HEIGHTS * 1e-6, rel=1e-14)
-    assert (found.spacing_x, found.spacing_y, found.name) == (4e-7, 4e-7, "flank.txt")
+    ("text", "layout", "expected", "spacing"), [(text, *rest) for texts, *rest in READ for text in texts]
+)
+def test_texts_that_are_read(
+    text: str, layout: FileLayout, expected: Any, spacing: tuple[float, float], tmp_path: Path
+) -> None:
+    found = read(tmp_path, text, layout).surface
+    np.testing.assert_allclose(found.heights * 1e6, expected, rtol=1e-12, atol=1e-15)
+    np.testing.assert_allclose([found.spacing_x * 1e6, found.spacing_y * 1e6], spacing, rtol=1e-9)
+    assert found.is_profile is (len(expected) == 1)
+    assert found.name == "flank.txt"
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "cp1252"])
 def test_encodings(encoding: str, tmp_path: Path) -> None:
     text = "# Prüfling, Höhe in µm\n# height_unit = µm\n" + lines_of(";", ",")
-    assert heights(tmp_path, text.encode(encoding), SPACED) == pytest.approx(HEIGHTS)
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "1.5,,3.25\n,7,-8.125", "1.5, ,3.25\n ,7,-8.125", "1.5;nan;3.25\nNaN;7;-8.125", "1.5\t\t3.25\n\t7\t-8.125",
-        "1.5 *** 3.25\n*** 7 -8.125", "1,5 *** 3,25\nnan 7 -8,125", "1.5;---;3.25\nN/A;7;-8.125",
-    ],
-)  # fmt: skip
-def test_what_was_not_measured_is_a_hole_and_never_zero(text: str, tmp_path: Path) -> None:
-    assert np.array_equal(heights(tmp_path, text).round(9), HOLED, equal_nan=True)
-
-
-def test_a_row_of_holes_keeps_its_place(tmp_path: Path) -> None:
-    for separator in ",;\t":
-        text = "\n".join([separator.join("1234"), separator * 3, separator.join("5678"), separator.join("99 9")])
-        found = heights(tmp_path, text)
-        assert found.shape == (4, 4)
-        assert np.isnan(found[1]).all()
-        assert np.isnan(found[3, 2])
-        assert np.isfinite(found).sum() == 11
-
-
-def test_one_column_and_one_row_are_profiles(tmp_path: Path) -> None:
-    for text in ("1\n2\nnan\n4\n", "1,2,,4"):
-        found = read(tmp_path, text).surface
-        assert found.is_profile
-        assert np.array_equal((found.heights * 1e6).round(9), [[1, 2, np.nan, 4]], equal_nan=True)
-        assert np.isnan(found.spacing_y)
-    assert "line 3 is empty" in refused(tmp_path, "1\n2\n\n4\n")
-
-
-def test_a_file_speaks_for_itself(tmp_path: Path) -> None:
-    head = "# spacing_x = 0.4 um\n# spacing_y = 500 nm\n# height_unit = nm\n# filter_width = 1 um\n# anything = else\n"
-    found = read(tmp_path, head + lines_of(","), NOTHING)
-    assert found.surface.heights == pytest.approx(HEIGHTS * 1e-9)
-    assert (found.surface.spacing_x, found.surface.spacing_y) == pytest.approx((4e-7, 5e-7))
-    assert found.filter_width == pytest.approx(1e-6)
-    both = read(tmp_path, "# spacing = 2 um\n# height_unit: mm\n" + lines_of(","), NOTHING).surface
-    assert (both.spacing_x, both.spacing_y, both.heights[0, 0]) == pytest.approx((2e-6, 2e-6, 1.5e-3))
+    assert read(tmp_path, text.encode(encoding), SPACED).surface.heights * 1e6 == pytest.approx(HEIGHTS)
 
 
 def test_what_is_stated_overrides_the_file_and_is_said(tmp_path: Path) -> None:
@@ -128,21 +128,12 @@ def test_what_is_stated_overrides_the_file_and_is_said(tmp_path: Path) -> None:
     assert len(found.remarks) == 3
     assert "spacing_x is 0.4 um as stated; the file says 2 um" in found.remarks
     assert not read(tmp_path, "# spacing = 0.4 um\n# height_unit = um\n" + lines_of(",")).remarks
-
-
-def test_a_unit_may_be_a_number_of_metres_per_count(tmp_path: Path) -> None:
-    layout = replace(SPACED, height_unit="2.91818e-8 m")
-    assert heights(tmp_path, lines_of(" "), layout) == pytest.approx(HEIGHTS * 2.91818e-2)
-
-
-def test_lines_at_the_top_that_look_like_numbers_are_skipped(tmp_path: Path) -> None:
-    text = "3 4\n0.4\n" + lines_of(" ")
-    assert "skip_lines" in refused(tmp_path, text)
-    assert heights(tmp_path, text, replace(SPACED, height_unit="um", skip_lines=2)) == pytest.approx(HEIGHTS)
+    assert read(tmp_path, SAID + lines_of(","), NOTHING).filter_width == pytest.approx(1e-6)
 
 
 REFUSED: list[tuple[str, FileLayout, str]] = [
     *((text, MICROMETRES, words) for text, words in (
+        ("1\n2\n\n4\n", "line 3 is empty"), ("3 4\n0.4\n" + lines_of(" "), "skip_lines"),
         ("", "empty"), ("  \n \n", "empty"), ("no numbers at all", "no line of the file holds numbers"),
         ("five,2,3,4\n1,2,3,4\n", "line 1: 'five' is no number"), ("five,2,3,4\n1,2,3,4\n", "skip_lines = 1"),
         ("# only\n# comments\n", "no line of the file holds numbers"), ("1,2,3,4\n1,2,3\n", "line 2 has 3 cells"),
@@ -183,57 +174,6 @@ REFUSED: list[tuple[str, FileLayout, str]] = [
 @pytest.mark.parametrize(("text", "layout", "words"), REFUSED)
 def test_texts_that_are_refused(text: str, layout: FileLayout, words: str, tmp_path: Path) -> None:
     assert words in refused(tmp_path, text, layout)
-
-
-# Columns
-
-
-@pytest.mark.parametrize(
-    "head",
-    [
-        "x [um];z [nm]", "# x [um]; z [nm]", "X;Z\n[um];[nm]", "X;Y\n[um];[nm]", "Position (um);Height (nm)",
-        "x/um;z/nm", '"x [um]";"z [nm]"', "Instrument\n12 July\nx [um];z [nm]",
-    ],
-)  # fmt: skip
-def test_two_columns_are_a_profile(head: str, tmp_path: Path) -> None:
-    found = read(tmp_path, head + "\n10;1,5\n10,5;2\n11;-3\n11,5;4\n", NOTHING).surface
-    assert found.heights == pytest.approx(np.array([[1.5, 2.0, -3.0, 4.0]]) * 1e-9)
-    assert found.spacing_x == pytest.approx(5e-7)
-    assert found.is_profile
-
-
-def test_columns_are_named_in_the_options(tmp_path: Path) -> None:
-    layout = FileLayout(columns=("x [um]", "z [um]"))
-    assert heights(tmp_path, "0 1\n1 2\n2 3\n", layout) == pytest.approx(np.array([[1.0, 2.0, 3.0]]))
-
-
-def test_points_of_a_profile_come_in_any_order_and_missing_ones_are_holes(tmp_path: Path) -> None:
-    text = "x [um],z [um]\n3,13\n0,10\n1,11\n5,15\n6,16\n7,17\n"
-    found = heights(tmp_path, text, NOTHING)
-    assert np.array_equal(found.round(9), [[10, 11, np.nan, 13, np.nan, 15, 16, 17]], equal_nan=True)
-
-
-def test_points_marked_invalid_are_holes(tmp_path: Path) -> None:
-    text = "X;Y;valid\r\n[mm];[mm];[1/0]\r\n8.6720;106.1;1\r\n8.6725;999;0\r\n8.6730;106.3;1\r\n"
-    found = read(tmp_path, text, NOTHING).surface
-    assert np.array_equal((found.heights * 1e3).round(9), [[106.1, np.nan, 106.3]], equal_nan=True)
-    assert found.spacing_x == pytest.approx(5e-7)
-
-
-def test_points_of_a_grid_come_in_any_order(tmp_path: Path) -> None:
-    y, x = np.mgrid[0:3, 0:4]
-    points = np.stack([x * 0.4 + 7, y * 0.5 - 2, HEIGHTS], axis=-1).reshape(-1, 3)
-    shuffled = np.random.default_rng(3).permutation(points)
-    text = "x [um] y [um] z [nm]\n" + "\n".join(" ".join(map(repr, row)) for row in shuffled.tolist())
-    found = read(tmp_path, text, NOTHING).surface
-    assert found.heights == pytest.approx(HEIGHTS * 1e-9)
-    assert (found.spacing_x, found.spacing_y) == pytest.approx((4e-7, 5e-7))
-    fewer = "\n".join(line for line in text.split("\n") if not line.endswith("-8.125"))
-    assert np.argwhere(np.isnan(heights(tmp_path, fewer, NOTHING))).tolist() == [[1, 2]]
-
-
-def test_spacing_may_differ_by_one_per_cent(tmp_path: Path) -> None:
-    assert heights(tmp_path, "x [um],z [um]\n0,1\n1,2\n2.009,3\n3,4\n4,5\n", NOTHING).shape == (1, 5)
 
 
 # Real files, read by the layouts of their formats
