@@ -44,21 +44,17 @@ def half_angle(outline: NDArray[np.complex128], radius: float) -> float:
 
 
 @pytest.mark.parametrize("shift", SHIFTS)
-def test_teeth_are_as_thick_as_their_shift_makes_them(shift: float) -> None:
-    """At the reference circle a tooth of the roller has pi/2 + 2 x tan(alpha), a gap of the ring with its own x."""
-    pair = pair_at(shift)
-    ring_shift = float(np.asarray(geometry_of(pair).ring_shift))
-    roller = half_angle(roller_half(pair), 10 * MODULE)
-    ring = half_angle(ring_half(pair), 50 * MODULE)
-    assert roller == pytest.approx((pi / 2 + 2 * shift * tan(ALPHA)) / 20, abs=CHORD)
-    assert pi / 100 - ring == pytest.approx((pi / 2 + 2 * ring_shift * tan(ALPHA)) / 100, abs=4e-7)
-
-
-@pytest.mark.parametrize("shift", SHIFTS)
 def test_outlines_run_from_tip_to_root_by_the_critical_section_of_the_rack(shift: float) -> None:
-    """Where its tangent makes 30 degrees with the axis of the tooth, twice the distance from it is the chord."""
+    """Where its tangent makes 30 degrees with the axis of the tooth, twice the distance from it is the chord.
+
+    At the reference circle a tooth of the roller has pi/2 + 2 x tan(alpha), a gap of the ring with its own x.
+    """
     pair = pair_at(shift)
     geometry = geometry_of(pair)
+    ring_shift = float(np.asarray(geometry.ring_shift))
+    thick = [(pi / 2 + 2 * x * tan(ALPHA)) / teeth for x, teeth in ((shift, 20), (ring_shift, 100))]
+    assert half_angle(roller_half(pair), 10 * MODULE) == pytest.approx(thick[0], abs=CHORD)
+    assert pi / 100 - half_angle(ring_half(pair), 50 * MODULE) == pytest.approx(thick[1], abs=4e-7)
     for outline, gear, teeth in ((roller_half(pair), geometry.roller, 20), (ring_half(pair), geometry.ring, 100)):
         assert abs(outline[0]) == pytest.approx(float(gear.tip_radius), rel=1e-9)
         assert abs(outline[-1]) == pytest.approx(float(gear.root_radius), rel=1e-9)

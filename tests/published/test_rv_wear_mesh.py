@@ -62,38 +62,25 @@ def slope(function: Any, at: float, step: float = 1e-5) -> complex:
 
 
 @pytest.mark.parametrize("psi", SOME)
-def test_the_flank_is_a_pin_radius_from_the_path_and_parallel_to_it(psi: float) -> None:
+def test_flank_speeds_and_radius_are_those_of_the_moving_profile(psi: float) -> None:
+    """The flank is a pin radius from the path and parallel to it, inwards: the disc lies inside of its pins.
+
+    A point of the pin that is in contact is fixed in the housing, which turns around the disc.
+    """
     turn = psi / 39
     away, along = complex(flank(turn) - path(turn)), slope(path, turn)
     assert abs(away) == pytest.approx(0.005, rel=1e-14)
     assert (away * along.conjugate()).real == pytest.approx(0, abs=1e-9 * abs(along) * 0.005)
-    assert (away * along.conjugate()).imag > 0  # inwards: the disc lies inside of its pins
+    assert (away * along.conjugate()).imag > 0
     assert abs((slope(flank, turn) * along.conjugate()).imag) < 1e-8 * abs(along) ** 2
-
-
-@pytest.mark.parametrize("psi", SOME)
-def test_speeds_are_those_of_the_moving_profile(psi: float) -> None:
-    turn = psi / 39
-    touching = complex(flank(turn) - path(turn))
-
-    def on_pin(at: float) -> Any:
-        """A point of the pin that is in contact at ``turn``: fixed in the housing, which turns around the disc."""
-        return path(at) + touching * np.exp(1j * (at - turn))
-
-    pin, contact_point = abs(slope(on_pin, turn)), abs(slope(flank, turn))
+    pin = abs(slope(lambda at: path(at) + away * np.exp(1j * (at - turn)), turn))
     assert geometry.sliding_speed(MESH, psi) == pytest.approx(pin, rel=1e-8)
-    assert geometry.rolling_speed(MESH, psi) == pytest.approx(contact_point, rel=1e-7)
-    assert abs(slope(path, turn)) == pytest.approx(0.1145 * geometry.pin_distance(MESH, psi), rel=1e-9)
-
-
-@pytest.mark.parametrize("psi", SOME)
-def test_radius_is_that_of_the_profile(psi: float) -> None:
-    def curvature(at: float) -> float:
-        first = slope(flank, at, 2e-4)
-        second = slope(lambda place: slope(flank, place, 2e-4), at, 2e-4)
-        return float((first.conjugate() * second).imag / abs(first) ** 3)
-
-    assert geometry.profile_radius(MESH, psi) == pytest.approx(-1 / curvature(psi / 39), rel=1e-4)
+    assert geometry.rolling_speed(MESH, psi) == pytest.approx(abs(slope(flank, turn)), rel=1e-7)
+    assert abs(along) == pytest.approx(0.1145 * geometry.pin_distance(MESH, psi), rel=1e-9)
+    first = slope(flank, turn, 2e-4)
+    second = slope(lambda place: slope(flank, place, 2e-4), turn, 2e-4)
+    curvature = float((first.conjugate() * second).imag / abs(first) ** 3)
+    assert geometry.profile_radius(MESH, psi) == pytest.approx(-1 / curvature, rel=1e-4)
 
 
 @pytest.mark.parametrize("eccentricity", [0.5e-3, 1.2e-3, 2.2e-3, 2.7e-3])

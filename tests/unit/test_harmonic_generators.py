@@ -145,18 +145,6 @@ def made(**values: Any) -> Made:
     return MADE_FLANK.inputs(**{**SMALL, **values})
 
 
-def test_the_lateral_filter_halves_its_wave_and_spares_long_ones() -> None:
-    x = 0.5e-6 * np.arange(4000)
-    values = made(spacing="0.5 um", filter_cutoff="20 um")
-    for wave, passed in ((20e-6, 0.5), (10e-6, 2.0**-4), (40e-6, 2.0**-0.25)):  # 2^-(cutoff/wave)^2, ISO 16610-21
-        line = np.sin(2.0 * np.pi * x / wave)[None, :]
-        seen = as_measured(line, values, np.random.default_rng(0), across=False)
-        margin = making.margin_of(values)
-        assert seen.shape == (1, 4000 - 2 * margin)
-        expected = passed * line[:, margin:-margin]
-        np.testing.assert_allclose(seen, expected, atol=2e-3)
-
-
 def test_an_instrument_adds_what_it_says() -> None:
     flat, rng = np.zeros((200, 300)), np.random.default_rng(2)
     noisy = as_measured(flat, made(noise="3 nm"), rng)
