@@ -9,18 +9,11 @@ from numpy.typing import NDArray
 from traced_gears import ALPHA, Flanks, line_of_action_meets, swept_root
 
 from gear_geometry.roots import Cutter, cut_ring_arm, cut_ring_root, form_factor, stress_correction
+from roller_screw_shift import objectives
 from roller_screw_shift.calculation import MARGINS, meshing_of, undercut_limit
 from roller_screw_shift.geometry import geometry_of
 from roller_screw_shift.model import ROLLER_SCREW_SHIFT
-from roller_screw_shift.objectives import (
-    PRINTED_RANGES,
-    PRINTED_WEIGHTS,
-    lower_limit,
-    normalised,
-    rule_weights,
-    total,
-    weight,
-)
+from roller_screw_shift.objectives import normalised
 from roller_screw_shift.quantities import Meshing, Pair
 from truing import TruingError
 from truing.errors import InfeasibleError
@@ -248,17 +241,17 @@ def test_curve_rises_is_level_at_both_ends_and_clipped_beyond() -> None:
 
 @pytest.mark.parametrize(("place", "limit"), [(0, 2.00), (1, 13.2), (2, 0.86)])
 def test_lower_limits_from_which_the_printed_weights_would_follow(place: int, limit: float) -> None:
-    given, high = PRINTED_WEIGHTS[place], PRINTED_RANGES[place][1]
-    found = lower_limit(given, high)
+    given, high = objectives.PRINTED_WEIGHTS[place], objectives.PRINTED_RANGES[place][1]
+    found = objectives.lower_limit(given, high)
     assert found == pytest.approx(limit, abs=5e-3)
-    assert weight((found, high)) == pytest.approx(given, rel=1e-12)
+    assert objectives.weight((found, high)) == pytest.approx(given, rel=1e-12)
 
 
 def test_total_objective_by_hand() -> None:
     ranges = ((0.0, 1.0), (10.0, 30.0), (0.0, 2.0))
-    weights = rule_weights(ranges)
+    weights = objectives.rule_weights(ranges)
     assert weights == pytest.approx((4.0, 0.01, 1.0))
-    found = total(np.array([[0.25, 0.5], [30.0, 20.0], [1.5, 2.0]]), ranges, weights)
+    found = objectives.total(np.array([[0.25, 0.5], [30.0, 20.0], [1.5, 2.0]]), ranges, weights)
     quarter = 0.25 - sin(pi / 2) / (2 * pi)
     assert found == pytest.approx([-4 * quarter + 0.01 + (1 - quarter), -2.0 + 0.005 + 1.0], abs=1e-14)
 
@@ -266,6 +259,6 @@ def test_total_objective_by_hand() -> None:
 @pytest.mark.parametrize("reach", [(1.0, 1.0), (2.0, 1.0), (0.0, float("inf")), (float("nan"), 1.0)])
 def test_a_range_without_width_is_refused(reach: tuple[float, float]) -> None:
     with pytest.raises(TruingError, match="no width"):
-        weight(reach)
+        objectives.weight(reach)
     with pytest.raises(TruingError, match="no width"):
         normalised(0.5, reach)

@@ -8,18 +8,9 @@ import pytest
 from numpy.typing import NDArray
 
 from drawn import line, words
+from harmonic_fractal import figures
 from harmonic_fractal.estimate import Estimation, estimate_of
-from harmonic_fractal.figures import (
-    flanks,
-    interface,
-    map_figure,
-    pair_figure,
-    profiles_figure,
-    signed,
-    stiffness,
-    structure_figure,
-    torsion,
-)
+from harmonic_fractal.figures import flanks, interface, stiffness, torsion
 from harmonic_fractal.flank import Flank
 from harmonic_fractal.generators import brownian_surface
 from harmonic_fractal.model import HARMONIC_FRACTAL
@@ -171,7 +162,7 @@ def test_what_is_said_of_a_flank_reaches_sheet_and_terminal(
 def test_map_shows_the_heights_with_the_longer_side_across(good: Flank) -> None:
     turned = Surface(good.surface.heights.T, SPACING, SPACING, "turned")
     for flank in (good, replace(good, surface=turned)):
-        image = map_figure(flank).axes[0].get_images()[0]
+        image = figures.map_figure(flank).axes[0].get_images()[0]
         shown: Any = image.get_array()
         assert shown.shape == (120, 300)
         np.testing.assert_allclose(shown, 1e9 * good.surface.heights)
@@ -179,7 +170,7 @@ def test_map_shows_the_heights_with_the_longer_side_across(good: Flank) -> None:
 
 
 def test_profiles_are_lines_of_the_direction_used(good: Flank) -> None:
-    panel: Any = profiles_figure(replace(good, chosen="y")).axes[0]
+    panel: Any = figures.profiles_figure(replace(good, chosen="y")).axes[0]
     drawn = [np.asarray(item.get_ydata(), dtype=float) for item in panel.get_lines()]
     columns = [1e9 * (column - column.mean()) for column in good.surface.heights.T]
     assert len(drawn) == 4
@@ -192,7 +183,7 @@ def test_a_long_profile_keeps_its_peaks() -> None:
     heights[0, 4321] = 5e-6
     profile = Surface(heights, SPACING, float("nan"), "long.csv")
     flank = Flank(raw=profile, surface=profile, estimates=(), chosen="x", reason="", warnings=())
-    panel: Any = profiles_figure(flank).axes[0]
+    panel: Any = figures.profiles_figure(flank).axes[0]
     x, z = (np.asarray(values, dtype=float) for values in panel.get_lines()[0].get_data())
     assert len(x) <= 2000
     assert np.ptp(z) == pytest.approx(5000.0)
@@ -200,7 +191,7 @@ def test_a_long_profile_keeps_its_peaks() -> None:
 
 
 def test_structure_figure_shows_points_fit_and_local_dimension(good: Flank) -> None:
-    upper, lower = structure_figure(good).axes
+    upper, lower = figures.structure_figure(good).axes
     used = good.used
     assert used is not None
     lags, fit = line(upper, "fit both together")
@@ -213,7 +204,7 @@ def test_structure_figure_shows_points_fit_and_local_dimension(good: Flank) -> N
 
 
 def test_structure_figure_of_a_refused_surface_is_for_comparison(bad: Flank) -> None:
-    upper, _ = structure_figure(bad).axes
+    upper, _ = figures.structure_figure(bad).axes
     labels = [str(item.get_label()) for item in upper.get_lines()]
     assert any(label.endswith("for comparison only") for label in labels)
     assert not any("range" in label for label in labels)
@@ -223,7 +214,7 @@ def test_structure_figure_of_a_refused_surface_is_for_comparison(bad: Flank) -> 
 
 
 def test_pair_figure_goes_through_the_results(stated: Calculation) -> None:
-    upper, lower = pair_figure(stated.record.inputs).axes
+    upper, lower = figures.pair_figure(stated.record.inputs).axes
     at = 25.0
     for panel, label, name, factor in (
         (upper, "(used)", "stiffness", 1.0), (lower, "amplitude of the largest", "clearance", 1e9),
@@ -236,7 +227,7 @@ def test_pair_figure_goes_through_the_results(stated: Calculation) -> None:
 
 def test_pair_figure_shows_every_reading(stated: Calculation) -> None:
     """At 25 N: 3.47e9 N/m with scaled tips, 2.16e8 with first yield; 3.0e8 by the rms height of 172 nm."""
-    upper, lower = pair_figure(stated.record.inputs).axes
+    upper, lower = figures.pair_figure(stated.record.inputs).axes
     for label, expected in (
         ("area, tip radius follows", 3.47e9), ("first yield, tip radius its own", 2.16e8), ("Persson", 3.0e8),
     ):  # fmt: skip
@@ -312,4 +303,4 @@ def test_an_input_file_that_is_not_given_is_said_so() -> None:
     ("value", "text"), [(1e-11, "1·10⁻¹¹"), (0.056, "0.056"), (-3.5e-7, "−3.5·10⁻⁷"), (1.95e9, "1.95·10⁹")]
 )
 def test_numbers_in_words(value: float, text: str) -> None:
-    assert signed(value) == text
+    assert figures.signed(value) == text

@@ -10,19 +10,10 @@ import pytest
 from numpy.typing import NDArray
 
 from harmonic_fractal import flank
+from harmonic_fractal import surface as surfaces
 from harmonic_fractal.estimate import Estimate
 from harmonic_fractal.flank import Flank, read_flank
-from harmonic_fractal.surface import (
-    Direction,
-    Lines,
-    Surface,
-    cut,
-    pooled,
-    quantisation,
-    spikes_of,
-    without_form,
-    without_line,
-)
+from harmonic_fractal.surface import Direction, Lines, Surface, cut
 from harmonic_fractal.surface_files import FileLayout, Reading, read_surface
 
 SURFACES = Path(__file__).parents[1] / "data" / "surfaces"
@@ -283,7 +274,7 @@ def test_lines_along_x_along_y_and_both() -> None:
     assert np.array_equal(both[3:, :3], HEIGHTS.T)
     assert np.isnan(both[3:, 3]).all()
     with pytest.raises(ValueError, match="cannot be pooled"):
-        pooled(Lines(HEIGHTS, 1e-6), Lines(HEIGHTS, 1.02e-6))
+        surfaces.pooled(Lines(HEIGHTS, 1e-6), Lines(HEIGHTS, 1.02e-6))
 
 
 # Cleaning of a surface and the options of a flank: form, rectangle, lines, spikes, choice, and every refusal.
@@ -317,22 +308,24 @@ def test_what_is_left_is_the_rest_of_least_squares(form: Any, order: int) -> Non
     terms = [np.ones_like(x), x, y] + ([x * x, x * y, y * y] if order == 2 else [])
     design = np.stack(terms, axis=1)
     expected = heights[known] - design @ np.linalg.lstsq(design, heights[known], rcond=None)[0]
-    assert without_form(heights, form)[known] == pytest.approx(expected, abs=1e-12)
+    assert surfaces.without_form(heights, form)[known] == pytest.approx(expected, abs=1e-12)
     assert np.array_equal(heights, holed(noise(), 0.1), equal_nan=True)  # the argument is left alone
     along = np.arange(200.0)
     fitted = np.polyval(np.polyfit(along, along**3, order), along)
-    assert without_form(along[None] ** 3, form)[0] == pytest.approx(along**3 - fitted, abs=1e-5)
+    assert surfaces.without_form(along[None] ** 3, form)[0] == pytest.approx(along**3 - fitted, abs=1e-5)
 
 
 def test_form_of_a_high_part_keeps_the_digits_of_its_roughness() -> None:
     rough = 1e-9 * noise()
     lifted = 0.1066 + 1e-4 * second_order(*SHAPE) / 100.0 + rough
-    assert without_form(lifted, "second_order") == pytest.approx(without_form(rough, "second_order"), abs=1e-16 * 200)
+    assert surfaces.without_form(lifted, "second_order") == pytest.approx(
+        surfaces.without_form(rough, "second_order"), abs=1e-16 * 200
+    )
 
 
 def test_each_line_loses_its_own_straight_line() -> None:
     heights = holed(noise(), 0.2) + np.outer(np.arange(70.0), np.arange(90.0)) + np.arange(70.0)[:, None]
-    for before, after in zip(heights, without_line(heights), strict=True):
+    for before, after in zip(heights, surfaces.without_line(heights), strict=True):
         known = np.isfinite(before)
         x = np.arange(90.0)[known]
         assert after[known] == pytest.approx(before[known] - np.polyval(np.polyfit(x, before[known], 1), x), abs=1e-10)
@@ -340,7 +333,7 @@ def test_each_line_loses_its_own_straight_line() -> None:
 
 
 def test_lines_of_one_point_or_of_none() -> None:
-    found = without_line(np.array([[np.nan, 3.0, np.nan], [np.nan, np.nan, np.nan], [1.0, np.nan, 5.0]]))
+    found = surfaces.without_line(np.array([[np.nan, 3.0, np.nan], [np.nan, np.nan, np.nan], [1.0, np.nan, 5.0]]))
     assert np.array_equal(np.isnan(found), [[1, 0, 1], [1, 1, 1], [0, 1, 0]])
     assert found[[0, 2, 2], [1, 0, 2]] == pytest.approx(0.0, abs=1e-15)
 
@@ -400,33 +393,33 @@ def hampel_by_loop(line: Array) -> list[bool]:
 @pytest.mark.parametrize("share", [0.0, 0.4])
 def test_spikes_are_those_of_the_loop_over_points(share: float) -> None:
     heights = holed(noise() ** 3, share)
-    found = spikes_of(heights)
+    found = surfaces.spikes_of(heights)
     assert found.tolist() == [hampel_by_loop(line) for line in heights]
     assert found.any()
-    assert not spikes_of(holed(noise() ** 3, 0.9)).any()
+    assert not surfaces.spikes_of(holed(noise() ** 3, 0.9)).any()
 
 
 def test_spikes_in_a_wide_map_of_many_blocks() -> None:
     heights = np.cumsum(noise((3, 100_000)), axis=1)
     heights[2, 99_990] += 100.0
-    assert spikes_of(heights)[2, 99_990]
-    assert np.array_equal(spikes_of(heights)[2], spikes_of(heights[2:])[0])
+    assert surfaces.spikes_of(heights)[2, 99_990]
+    assert np.array_equal(surfaces.spikes_of(heights)[2], surfaces.spikes_of(heights[2:])[0])
 
 
 def test_steps_of_the_instrument_are_no_spikes() -> None:
     line = np.zeros((1, 100))
     line[0, 40] = 2.0
     line[0, 70] = 9.0
-    assert np.flatnonzero(spikes_of(line)).tolist() == [40, 70]
-    assert np.flatnonzero(spikes_of(line, 2.0)).tolist() == [70]
+    assert np.flatnonzero(surfaces.spikes_of(line)).tolist() == [40, 70]
+    assert np.flatnonzero(surfaces.spikes_of(line, 2.0)).tolist() == [70]
 
 
 def test_quantisation_is_the_least_step() -> None:
     counts = np.round(noise() * 20.0)
-    assert quantisation(counts * 8.7e-12) == pytest.approx(8.7e-12, rel=1e-9)
-    assert quantisation(holed(counts * 8.7e-12 + 1e-9, 0.2)) == pytest.approx(8.7e-12, rel=1e-6)
-    assert quantisation(noise()) < 1e-4
-    assert quantisation(np.full((3, 3), 2.0)) == 0.0
+    assert surfaces.quantisation(counts * 8.7e-12) == pytest.approx(8.7e-12, rel=1e-9)
+    assert surfaces.quantisation(holed(counts * 8.7e-12 + 1e-9, 0.2)) == pytest.approx(8.7e-12, rel=1e-6)
+    assert surfaces.quantisation(noise()) < 1e-4
+    assert surfaces.quantisation(np.full((3, 3), 2.0)) == 0.0
 
 
 # A flank from a file
