@@ -155,9 +155,6 @@ MUTANTS: tuple[Mutant, ...] = (
         "kernel/truing/studies/allocation.py", "unit/test_studies_allocation.py",
         ("self.variances[demand] * (width / self.start) ** 2", "self.variances[demand] * (width / self.start)"),
         ("paid.imag / (COMPLEX_STEP * widths)", "paid.imag / COMPLEX_STEP"),
-    ),
-    *changes(
-        "kernel/truing/studies/allocation.py", "unit/test_studies_allocation.py",
         ("GRADES[coarsest - 1]", "GRADES[coarsest - 2]"),
         ("return float((reach * 10.0**log_sd) ** 2)", "return float(reach * 10.0**log_sd)"),
     ),
@@ -165,9 +162,6 @@ MUTANTS: tuple[Mutant, ...] = (
         "kernel/truing/studies/optimise.py", "unit/test_studies_optimise.py",
         ("mean = mean + slopes[column] * beside(shift", "mean = mean - slopes[column] * beside(shift"),
         ("beside(own[column].sd, slopes[column])) ** 2", "beside(own[column].sd, slopes[column]))"),
-    ),
-    *changes(
-        "kernel/truing/studies/optimise.py", "unit/test_studies_optimise.py",
         ("(1.0 - scaled.sum(axis=1))", "(scaled.sum(axis=1) - 1.0)"),
         ("(REFERENCE - order[:, 0])", "(order[:, 0])"),
     ),
@@ -266,9 +260,6 @@ MUTANTS: tuple[Mutant, ...] = (
     *changes(
         "plugins/harmonic_fractal/estimate.py", "unit/test_harmonic_estimate.py",
         ("2.0 - slopes / 2.0", "2.0 - slopes"),
-    ),
-    *changes(
-        "plugins/harmonic_fractal/estimate.py", "unit/test_harmonic_estimate.py",
         ("curve.pooled - 2.0 * noise**2", "curve.pooled - 1.0 * noise**2"),
     ),
     *changes(

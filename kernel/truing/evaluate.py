@@ -193,7 +193,7 @@ def _as_rows(case: Case, name: str, flat: Mapping[str, Any], rows: int) -> NDArr
     try:
         array = np.asarray(flat[name], dtype=float)
         if not result.along:
-            return np.broadcast_to(array, (rows,))
+            return array.reshape(rows) if array.ndim < 2 and array.size == rows else np.broadcast_to(array, (rows,))
         axis = flat.get(case.model.axes[name], array)
         return np.broadcast_to(array, (rows, np.asarray(axis).shape[-1] if np.ndim(axis) else 1))
     except (TypeError, ValueError):

@@ -1,16 +1,27 @@
-"""How much does the whole Monte Carlo cost beside drawing its random numbers?
+"""What does the whole Monte Carlo cost beside drawing its random numbers, on one core, on two, and in memory?
 
-Run it: ``python -m pytest tests/benchmarks/bench_monte_carlo.py -s``. The baseline draws as many standard normal
-numbers with one generator of the same kind (SFC64, the fastest that numpy has), array by array as long as a batch,
-always into the same memory, and does nothing else. Both are measured alternately in one process and the least time of
-each counts. Numpy's default generator, PCG64, is slower: against it the ratio would look better, so it is printed
-beside the other and decides nothing.
+Run it on a quiet machine: ``python -m pytest tests/benchmarks/bench_monte_carlo.py -s``. The baseline draws as many
+standard normal numbers with one generator of the same kind (SFC64, the fastest that numpy has), array by array as long
+as a batch, always into the same memory, and does nothing else. Both are measured alternately in one process and the
+least time of each counts. Numpy's default generator, PCG64, is slower: against it the ratio would look better, so it is
+printed beside the other and decides nothing.
+
+Two processes are to be 1.7 times as fast as one, a cluster of two workers 1.5 times. Workers have started and loaded
+the plugin before the clock runs. Memory is that of a fresh process which draws all by itself.
 """
 
-from collections.abc import Callable
+import json
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
+from contextlib import ExitStack, contextmanager
 from dataclasses import replace
+from pathlib import Path
 
+import distributed
 import numpy as np
 import pytest
 from timed import least, said_by_a_fresh_process
@@ -18,6 +29,7 @@ from timed import least, said_by_a_fresh_process
 from press_linkage.errors import SOURCES
 from truing import Reliability, normal
 from truing.calculation import calculate
+from truing.executors import SerialExecutor, open_executor
 from truing.kernel import Kernel
 from truing.setup import Setup, default_setup
 from truing.studies.sampling import scatter_of
@@ -78,3 +90,65 @@ def test_monte_carlo_costs_at_most_twice_its_random_numbers(made: Callable[[], S
     )
     print(f"\nthe whole study over drawing alone: {whole / drawing:.3f} (at most 2.0), by PCG64 {whole / default:.3f}")
     assert whole / drawing <= 2.0
+
+
+# Processes and a cluster
+
+
+def _start(program: str, *arguments: str) -> subprocess.Popen[bytes]:
+    command = [sys.executable, "-m", f"distributed.cli.{program}", *arguments, "--host", "127.0.0.1", "--no-dashboard"]
+    return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+@contextmanager
+def two_workers() -> Iterator[str]:
+    """A scheduler and two workers of one thread each; gives their address."""
+    with tempfile.TemporaryDirectory() as folder, ExitStack() as stack:
+        file = Path(folder) / "scheduler.json"
+        scheduler = _start("dask_scheduler", "--port", "0", "--scheduler-file", str(file))
+        stack.callback(scheduler.terminate)
+        while not file.exists() or not file.read_text():
+            time.sleep(0.05)
+        address = json.loads(file.read_text())["address"]
+        for _ in range(2):
+            worker = _start("dask_worker", address, "--no-nanny", "--nthreads", "1", "--local-directory", folder)
+            stack.callback(worker.wait)
+            stack.callback(worker.terminate)
+        with distributed.Client(address, set_as_default=False) as client:
+            client.wait_for_workers(2, timeout=60)
+        yield address
+
+
+def ratios(draws: int) -> dict[str, float]:
+    """How many times as fast as one process each place is."""
+    setup = all_sources()
+    with two_workers() as address, ExitStack() as stack:
+        places: dict[str, Executor] = {"serial": SerialExecutor()}
+        for name in ("processes:2", f"dask:{address}"):
+            places[name.partition(":")[0]] = stack.enter_context(open_executor(name))
+        for place in places.values():
+            monte_carlo(setup, 1_000_000, place)
+        times: dict[str, list[float]] = {name: [] for name in places}
+        for name, place in [*places.items()] * 3:
+            start = time.perf_counter()
+            monte_carlo(setup, draws, place)
+            times[name].append(time.perf_counter() - start)
+    quickest = {name: min(found) for name, found in times.items()}
+    print(f"\n{draws} machines: " + ", ".join(f"{name} {seconds:.2f} s" for name, seconds in quickest.items()))
+    return {name: quickest["serial"] / seconds for name, seconds in quickest.items()}
+
+
+def test_two_cores_are_used() -> None:
+    found = ratios(20 * DRAWS)
+    processes, cluster = found["processes"], found["dask"]
+    print(f"two processes are {processes:.2f} times as fast (at least 1.7), the cluster is {cluster:.2f} times (1.5)")
+    assert processes >= 1.7
+    assert cluster >= 1.5
+
+
+@pytest.mark.parametrize("place", ["serial", "processes:2"])
+def test_memory_is_flat_from_1e5_to_1e7_machines(place: str) -> None:
+    """Of the process that draws all by itself, and of the one that hands out and sums up: it keeps no batch."""
+    few, many = (peak_mebibytes(machines, place) for machines in (100_000, 10_000_000))
+    print(f"\npeak memory, {place}: {few:.1f} MiB at 1e5, {many:.1f} MiB at 1e7 machines (at most 1.05 times)")
+    assert many < 1.05 * few

@@ -1,16 +1,17 @@
-"""Every study of every shipped calculation that takes its time says how far it has come.
+"""Every shipped calculation and diagnosis that takes its time says how far it has come.
 
-Time is that of the processor, so that a busy machine makes no study long.
-
-pytest tests/benchmarks/bench_progress.py -s
+Run it: ``python -m pytest tests/benchmarks/bench_progress.py -s``. Time is that of the processor, so that a busy
+machine makes no study long.
 """
 
 import time
+from collections.abc import Callable
+from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from progress_seen import Seen, watched
 from shared import ROOT
 from truing import Kernel
 from truing.calculation import calculate
@@ -31,24 +32,39 @@ MORE = {
     "rv_gearing": ["studies.reliability.draws=400000"],
     "rv_wear": ["studies.reliability.draws=300000", "studies.surrogate.design=300"],
 }
+LONG = 2.0
+"""Seconds after which work owes word of its progress."""
+LEAST_STEPS = 10
+LONGEST_SILENCE = 0.4
+"""The share of its time that work may pass without a word, unless it is short."""
 
 
-@pytest.mark.parametrize("asked", ["shipped", "more"])
-@pytest.mark.parametrize("name", list(OFFERS))
-def test_long_studies_speak(name: str, asked: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def listen(name: str, work: Callable[..., Any]) -> None:
+    """Do some work, and demand that it speaks often enough, and of shares from nothing to all."""
+    words: list[tuple[float, float]] = []
+    begin = time.process_time()
+    work(progress=lambda _, done, total: words.append((time.process_time() - begin, done / total if total else 0.0)))
+    seconds = time.process_time() - begin
+    silence = max(after - before for before, after in pairwise([0.0, *(when for when, _ in words), seconds]))
+    shares = {share for _, share in words}
+    print(f"{name:26} {seconds:7.2f} s {len(words):6} words, silent for {silence:.2f} s")
+    if seconds > LONG:
+        assert len(shares) >= LEAST_STEPS
+        assert silence <= max(LONGEST_SILENCE * seconds, LONG)
+        assert all(0 <= share <= 1 for share in shares)
+
+
+@pytest.mark.parametrize(
+    ("name", "overrides"),
+    [*((name, []) for name in OFFERS), *MORE.items()],
+    ids=[*(f"{name}-shipped" for name in OFFERS), *(f"{name}-more" for name in MORE)],
+)
+def test_long_studies_speak(name: str, overrides: list[str]) -> None:
     offer = OFFERS[name]
-    if asked == "more" and name not in MORE:
-        pytest.skip("nothing to ask more of")
     example = offer.model.example
     file, folder = (str(example), example.parent) if example is not None else ("example.toml", Path.cwd())
-    overrides = MORE[name] if asked == "more" else []
     setup = setup_from_text(example_text(offer), offer, file=file, folder=folder, overrides=overrides)
-    with watched(monkeypatch, {type(study) for study in setup.studies}, time.process_time) as seen:
-        calculate(setup)
-    for one in seen:
-        print(f"{name:26} {one.name:16} {one.seconds:7.2f} s {len(one.words):6} words")
-    assert len(seen) == len(setup.studies)
-    assert not [fault for one in seen for fault in one.faults]
+    listen(name, lambda progress: calculate(setup, progress=progress))
 
 
 @pytest.mark.parametrize(
@@ -63,9 +79,4 @@ def test_a_diagnosis_speaks(name: str, files: list[str]) -> None:
     offer, places = OFFERS[name], [ROOT / "docs" / "examples" / file for file in files]
     setup = read_setup(places[0].parent / "inputs.toml", offer)
     records = read_records(places, offer, setup)
-    words: list[tuple[float, float]] = []
-    begin = time.process_time()
-    diagnose(setup, records, progress=lambda _, done, total: words.append((time.process_time() - begin, done / total)))
-    seen = Seen("diagnosis", time.process_time() - begin, tuple(words))
-    print(f"{name:26} {seen.name:16} {seen.seconds:7.2f} s {len(words):6} words")
-    assert not seen.faults
+    listen(name, lambda progress: diagnose(setup, records, progress=progress))

@@ -1,4 +1,4 @@
-"""What the benchmarks of the diagnosis share: options, many cases in one process or several, and shares of them.
+"""What the benchmarks of the diagnosis share: options, many cases in one process or several, and tables of outcomes.
 
 Import it before numpy: it keeps every process to one thread, and finds the generators of the tests.
 """
@@ -7,6 +7,9 @@ import argparse
 import json
 import os
 import sys
+import time
+import traceback
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from multiprocessing import get_context
@@ -21,6 +24,8 @@ sys.path.insert(0, str(TESTS))
 from hidden_effects.scoring import wilson  # noqa: E402
 
 Outcome = dict[str, Any]
+JUDGED = ("right", "open", "silent", "partly", "wrong", "failed")
+"""How an answer may be judged (``zoo.zoo.judgement``); of those that failed there is none."""
 
 
 def options_of(doc: str, cases: int) -> argparse.ArgumentParser:
@@ -64,3 +69,39 @@ def share(hits: int, count: int) -> str:
         return "-"
     low, high = wilson(hits, count)
     return f"{100 * hits / count:.0f} % [{low:.0f}, {high:.0f}]"
+
+
+def attempted(ask: Callable[[], Outcome]) -> Outcome:
+    """What came of a case, with its seconds; what goes wrong is an outcome too."""
+    start = time.process_time()
+    try:
+        said = ask()
+    except Exception:
+        said = {"judged": "failed", "said": traceback.format_exc(), "explanations": ()}
+    return {**said, "seconds": time.process_time() - start}
+
+
+def _line(title: str, outcomes: Sequence[Outcome]) -> str:
+    """Counts, and the shares of right answers, of right or open ones, and of wrong ones."""
+    counts = Counter(one["judged"] for one in outcomes)
+    right, fine, wrong = counts["right"], counts["right"] + counts["open"], counts["wrong"]
+    shares = (share(hits, len(outcomes)) for hits in (right, fine, wrong))
+    numbers = " | ".join(f"{counts[name]:>6}" for name in JUDGED)
+    return f"| {title:<32} | {len(outcomes):>5} | {numbers} | {' | '.join(f'{one:<17}' for one in shares)} |"
+
+
+def say_judged(outcomes: Sequence[Outcome], keys: Sequence[str]) -> None:
+    """Print the table, everything first, then by each key; the time; and every case that is neither right nor open."""
+    heads = " | ".join(f"{name:>6}" for name in JUDGED)
+    print(f"| {'':<32} | cases | {heads} | {'right':<17} | {'right or open':<17} | {'wrong':<17} |")
+    print(_line("all", outcomes))
+    for key in keys:
+        for name in sorted({str(one[key]) for one in outcomes}):
+            print(_line(f"{key} {name}", [one for one in outcomes if str(one[key]) == name]))
+    seconds = sorted(one["seconds"] for one in outcomes)
+    print(f"processor time of a case: median {seconds[len(seconds) // 2]:.1f} s, longest {seconds[-1]:.1f} s")
+    for one in outcomes:
+        if one["judged"] not in ("right", "open"):
+            said = " or ".join("+".join(names) for names in one["explanations"]) or one["said"].strip().splitlines()[-1]
+            case = ", ".join(str(one[key]) for key in keys)
+            print(f"  {one['seed']} {case}: {one['judged']}: {one['said'][:9]}: {said}")

@@ -8,9 +8,8 @@ import numpy as np
 
 from hidden_effects.candidates import Candidate, columns, stacked
 from hidden_effects.designs import Design
-from hidden_effects.information import Lens, Rival, beside_groups, other_groups, over_results, rivals
 from hidden_effects.press_machine import Array, Hidden, Rows, shown
-from hidden_effects.record import Record
+from hidden_effects.record import Lens, Record, Rival, beside_groups, other_groups, over_results, rivals
 from hidden_effects.rigs import Kind
 from hidden_effects.shapes import Shape, family_of
 
@@ -90,14 +89,6 @@ class Case:
             family = over_results(family_of(self.shape, self.record.rows), self.record)
             return (Lens(self.record, family).visibility(self.change), self.lens.separation(self.change, self.truth))
         return tuple(self.lens.separation(self.change, [name]) for name in reversed(self.truth))
-
-    @cached_property
-    def halves_beside_curve(self) -> tuple[float, ...]:
-        """The same, a shape being known as the very curve it is instead of as one of its family."""
-        if self.shape is None or not self.truth:
-            return self.halves
-        curves = [one for one in self.shape.columns(self.record.rows, self.results).T if np.any(one)]
-        return (Lens(self.record, np.column_stack(curves)).visibility(self.change), self.halves[1])
 
     @cached_property
     def nearest_rival(self) -> Rival:

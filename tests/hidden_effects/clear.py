@@ -2,8 +2,8 @@
 
 from math import inf
 
-from hidden_effects import gearing_cases, harmonic_cases, screw_cases
-from hidden_effects.gearing_cases import CONTACT, ERROR, LOSS, PLAY, SUN_ROOT, WARMTH
+from hidden_effects import gearing_machine, harmonic_machine, rv_machine, screw_machine
+from hidden_effects.gearing_machine import CONTACT, ERROR, LOSS, PLAY, SUN_ROOT, WARMTH
 from hidden_effects.harmonic_machine import MESH
 from hidden_effects.harmonic_surface import surface
 from hidden_effects.rigs import Wish
@@ -12,21 +12,21 @@ STAGE_STRESSES = (SUN_ROOT, CONTACT)
 
 
 def stage(results: tuple[str, ...], design: str = "rig", **hidden: dict[str, float]) -> Wish:
-    return gearing_cases.stage(hidden=hidden, results=results, design=design)
+    return gearing_machine.stage(hidden=hidden, results=results, design=design)
 
 
 def screw(results: tuple[str, ...], design: str = "bench", **hidden: dict[str, float]) -> Wish:
-    return screw_cases.screw(hidden=hidden, results=results, design=design)
+    return screw_machine.screw(hidden=hidden, results=results, design=design)
 
 
 def drive(**hidden: dict[str, float]) -> Wish:
     """A drive of which the torsion is measured."""
-    return harmonic_cases.drive(hidden=hidden)
+    return harmonic_machine.drive(hidden=hidden)
 
 
 def mesh(tooth: float = inf, **hidden: dict[str, float]) -> Wish:
     """A drive of which the stiffness of the mesh is measured."""
-    return harmonic_cases.drive(tooth, hidden=hidden, results=(MESH,), design="points")
+    return harmonic_machine.drive(tooth, hidden=hidden, results=(MESH,), design="points")
 
 
 STAGES = [
@@ -62,20 +62,21 @@ REDUCERS: dict[str, dict[str, float]] = {
     "friction_hysteresis": {"lag": 0.02}, "lubricant_ageing": {"rate": 0.3}, "load_exponent": {"exponent": 0.5},
     "duty_share": {"idle": 0.45},
 }  # fmt: skip
+REDUCED = [rv_machine.reducer(hidden={name: unknowns}, design="fleet") for name, unknowns in REDUCERS.items()]
 SCREWS = [
-    screw(screw_cases.STRESSES, face_misalignment={"misalignment": 2.0}),
-    screw(screw_cases.STRESSES, face_misalignment={"per_load": 0.1}),
-    screw(screw_cases.STRESSES, mesh_resonance={"excitation": 0.08, "resonance_speed": 1800, "damping": 0.06}),
-    screw(screw_cases.STRESSES, roller_load_sharing={"lead": 2.0}),
-    screw(screw_cases.STRESSES, roller_load_sharing={"lead": -0.4}),
-    screw(screw_cases.STRESSES, interrupted_tooth={"lost": 0.4, "phase": 320}),
-    screw((screw_cases.RING,), rim_compliance={"softness": 0.4}),
-    screw((screw_cases.BACKLASH,), thermal_centre_distance={"expansion": 11.5}),
-    screw((screw_cases.ERROR,), roller_runout={"cosine": 3.0, "sine": -2.0}),
-    screw((screw_cases.ERROR,), carrier_runout={"cosine": -1.0, "sine": 2.0}),
-    screw((screw_cases.AXIAL,), axial_migration={"mismatch": 0.05}),
-    screw((screw_cases.WEAR, screw_cases.BACKLASH), "endurance", flank_wear={"rate": 2.0}),
-    screw((screw_cases.TORQUE,), mesh_friction={"factor": 1.3}),
+    screw(screw_machine.STRESSES, face_misalignment={"misalignment": 2.0}),
+    screw(screw_machine.STRESSES, face_misalignment={"per_load": 0.1}),
+    screw(screw_machine.STRESSES, mesh_resonance={"excitation": 0.08, "resonance_speed": 1800, "damping": 0.06}),
+    screw(screw_machine.STRESSES, roller_load_sharing={"lead": 2.0}),
+    screw(screw_machine.STRESSES, roller_load_sharing={"lead": -0.4}),
+    screw(screw_machine.STRESSES, interrupted_tooth={"lost": 0.4, "phase": 320}),
+    screw((screw_machine.RING,), rim_compliance={"softness": 0.4}),
+    screw((screw_machine.BACKLASH,), thermal_centre_distance={"expansion": 11.5}),
+    screw((screw_machine.ERROR,), roller_runout={"cosine": 3.0, "sine": -2.0}),
+    screw((screw_machine.ERROR,), carrier_runout={"cosine": -1.0, "sine": 2.0}),
+    screw((screw_machine.AXIAL,), axial_migration={"mismatch": 0.05}),
+    screw((screw_machine.WEAR, screw_machine.BACKLASH), "endurance", flank_wear={"rate": 2.0}),
+    screw((screw_machine.TORQUE,), mesh_friction={"factor": 1.3}),
 ]
 DRIVES = [
     drive(series_compliance={"compliance": 12}),
@@ -99,6 +100,9 @@ DRIVES = [
     surface(hidden={"instrument_noise": {"variance": 100}}),
     surface(hidden={"lateral_filter": {"width": 0.8}}),
 ]
+CLEAR = {
+    "rv_gearing": STAGES, "rv_wear": REDUCED, "roller_screw_shift": SCREWS, "harmonic_fractal": DRIVES,
+}  # fmt: skip
 SHAPES = {
     "resonance_speed", "damping", "phase", "torque_scale", "run_in_time", "direction", "thinning", "exponent",
     "time_scale", "cycle_scale", "wavelength",

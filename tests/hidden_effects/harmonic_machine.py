@@ -1,18 +1,134 @@
 """A harmonic drive that rubs, creeps, wears, runs out of round and gets warm: its torsion from mechanics of its own.
 
-Nothing of the plugin is imported. Friction is a row of sliders behind springs, creep a row of dampers, play closes
-tooth by tooth, runout is the reach of a circle about a point. Torques N m, angles urad, times h, degC, r/min.
+Nothing of the plugin is imported. Rough flanks are added up contact by contact on a fine grid (lengths m, forces N),
+and the torsion of the mesh is the area below its compliance. Friction is a row of sliders behind springs, creep a row
+of dampers, play closes tooth by tooth, runout is the reach of a circle about a point. Torques N m, angles urad, times
+h, degC, r/min.
 """
 
 from dataclasses import dataclass
 from functools import cache
+from math import inf, isfinite
+from typing import Any
 
 import numpy as np
+from scipy.integrate import cumulative_trapezoid
 from scipy.optimize import brentq
 from scipy.special import ndtr
 
-from hidden_effects.harmonic_contact import FIRST_TORQUE, Array, Flanks, torques, torsion_of
-from hidden_effects.rows import Hidden, MeasuredRows, of
+from hidden_effects.rigs import Bench, Places, Rig, Wish, parted
+from hidden_effects.rows import Array, Hidden, MeasuredRows, of
+
+DENSITY, HARDNESS, MODULUS, POISSON = 1.5, 3e9, 206e9, 0.3
+RADIUS = 25.4e-3 * np.cos(np.radians(20))  # lever of the normal forces
+PAIRS, FIRST_TORQUE = 60, 2e-2
+AREA = 10e-3 * 0.4e-3  # of a flank
+GRID = 1500
+
+
+@dataclass(frozen=True)
+class Table:
+    """Normal load, stiffness and real area of one pair at rising largest contacts."""
+
+    load: Array
+    stiffness: Array
+    area: Array
+
+    def at(self, load: Array) -> tuple[Array, Array]:
+        """Stiffness, N/m, and area, m^2, under loads."""
+        place = np.log(np.maximum(load, self.load[0]))
+        return (
+            np.exp(np.interp(place, np.log(self.load), np.log(self.stiffness))),
+            np.exp(np.interp(place, np.log(self.load), np.log(self.area))),
+        )
+
+
+def domain_factor(profile: float) -> float:
+    """The factor of the area distribution that keeps the area of all contacts, by halving."""
+
+    def left(psi: float) -> float:
+        rest = (2 - profile) / profile
+        return float((psi ** ((2 - profile) / 2) - (1 + psi ** (-profile / 2)) ** -rest) / rest - 1)
+
+    return float(brentq(left, 1.0, 50.0, xtol=1e-12))
+
+
+@cache
+def table(dimension: float, roughness: float, modulus: float) -> Table:
+    """Add up all contacts of a pair, from those too small to be elastic to the largest."""
+
+    def force(area: Array) -> tuple[Array, Array]:
+        depth = (
+            2 * roughness ** (dimension - 2) * np.sqrt(np.log(DENSITY)) * (2 * np.sqrt(area / np.pi)) ** (3 - dimension)
+        )
+        tip = area / (2 * np.pi * depth)
+        return 4 / 3 * modulus * np.sqrt(tip) * depth**1.5, 2 * modulus * np.sqrt(tip * depth)
+
+    def excess(logarithm: float) -> float:
+        area = np.exp(np.array(logarithm))
+        return float(np.log(force(area)[0] / (HARDNESS * area)))
+
+    critical = float(np.exp(brentq(excess, np.log(1e-30), np.log(1e-4))))
+    areas = np.geomspace(critical * (1 + 1e-9), 1e-5, GRID)
+    elastic, spring = force(areas)
+    many = 0.5 * (dimension - 1) * domain_factor(dimension - 1) ** ((3 - dimension) / 2)
+    number = many * areas ** (-(dimension + 1) / 2)  # times the largest area to a power
+    small = np.geomspace(critical * 1e-30, critical, 4 * GRID)
+    plastic = np.trapezoid(HARDNESS * many * small ** ((3 - dimension) / 2), np.log(small))
+    all_of_it = np.trapezoid(many * small ** ((3 - dimension) / 2), np.log(small))
+    logs, scale = np.log(areas), areas ** ((dimension - 1) / 2)
+
+    def added(what: Array) -> Array:
+        return np.asarray(cumulative_trapezoid(what * number * areas, logs, initial=0.0))
+
+    load = scale * (plastic + added(elastic))
+    stiffness, area = scale * added(spring), scale * (all_of_it + added(areas))
+    return Table(load[1:], stiffness[1:], area[1:])
+
+
+def shares() -> Array:
+    """What each pair carries of the whole: the square of a cosine over two arcs, pairs in the middle of equal parts."""
+    half = PAIRS // 2
+    places = (2 * np.arange(half) + 1) / half - 1
+    weights = np.cos(np.pi * places / 2) ** 2
+    return np.asarray(np.concatenate([weights, weights]) / (2 * weights.sum()))
+
+
+@dataclass(frozen=True)
+class Flanks:
+    """Roughness and elasticity of both flanks, and what stands beside or behind a pair of them."""
+
+    dimension: float = 2.5
+    roughness: float = 1e-9
+    modulus: float = MODULUS
+    pairs: float = 1.0
+    """Pairs over those of the design."""
+    film: float = 0.0
+    """Modulus of the film times flank over its thickness, N/m, of a mean pair under 25 N m."""
+    tooth: float = np.inf
+
+    def stiffness(self, torque: Array) -> Array:
+        """Of the mesh, N m/rad."""
+        equivalent = self.modulus / (2 * (1 - POISSON**2))
+        loads = np.abs(np.atleast_1d(torque))[:, None] * shares() / (RADIUS * self.pairs)
+        spring, area = table(self.dimension, self.roughness, equivalent).at(loads)
+        thinner = (loads / RADIUS + 1e-12) ** 0.07 / np.mean((25 * shares() / RADIUS**2) ** 0.07)
+        spring = spring + self.film * thinner * (1 - area / 2 / AREA)
+        return np.asarray(RADIUS**2 * self.pairs * (1 / (1 / spring + 1 / self.tooth)).sum(axis=1))
+
+
+def torsion_of(compliance: Array, torques: Array) -> Array:
+    """Integral of the compliance over a rising torque."""
+    return np.asarray(cumulative_trapezoid(compliance, torques, initial=0.0))
+
+
+@cache
+def torques() -> Array:
+    """Torques at which the mesh is looked at, from the first one on."""
+    return np.geomspace(FIRST_TORQUE, 80.0, 600)
+
+
+# The drive
 
 TORSION, MESH = "torsion", "mesh_stiffness"
 COMPLIANCE = 36.0  # urad/(N m), of all that is in series with the mesh, as the inputs have it
@@ -207,3 +323,96 @@ def shown(rows: Rows, tooth: float, hidden: Hidden) -> dict[str, Array]:
     angle = elastic + friction(rows, hidden) + play(rows, hidden) + turning(rows, hidden) + set_of(rows, hidden)
     drift = of(hidden, "rig_drift", "rate") * rows.time
     return {TORSION: angle + drift, MESH: stiffness * stiffened(rows, hidden)}
+
+
+# How it is measured, and with what noise
+
+
+UNIT = {TORSION: "urad", MESH: "N*m/rad"}
+INPUTS = """plugin = "harmonic_fractal"
+
+[inputs]
+fractal_dimension = "2.5"
+fractal_roughness = "1e-9 m"
+convention = "areal"
+reference_torque = "20 mN*m"
+drive_compliance = "36 urad/(N*m)"
+{tooth}
+[studies.diagnose]
+box = {{ torque = "-40..40 N*m" }}
+"""
+PAST = {"torque": "N*m", "reversal_torque": "N*m", "peak_torque": "N*m", "direction": "1"}
+LOGS = {"time": "h", "wave_angle": "deg", "temperature": "degC", "cycles": "1", "speed": "r/min"}
+PEAKS = (8.0, 16.0, 24.0, 32.0, 12.0, 40.0)
+
+
+def drive(tooth: float = inf, logs: tuple[str, ...] = tuple(LOGS), **wish: Any) -> Wish:
+    """What a drive is to be like whose fitted readings and others know the whole past.
+
+    ``tooth`` is the stiffness of a tooth in bending, N/m: a mesh that bends is ten times as soft. ``logs`` is what the
+    rig writes down beside the torque and its past.
+    """
+    noise = {TORSION: 5.0, MESH: 6e4 * (0.1 if isfinite(tooth) else 1.0)}
+    rig = Rig(
+        plugin="harmonic_fractal",
+        inputs=INPUTS.format(tooth=f'tooth_stiffness = "{tooth:g} N/m"\n' if isfinite(tooth) else ""),
+        written=PAST | {name: LOGS[name] for name in logs},
+        measured=UNIT,
+        make=Bench(
+            stream=61, held=None, measured=measured, machine=lambda _: tooth, shown=shown,
+            spread=lambda rows: 0.4 + np.abs(rows.torque) / 25, noise=noise, parted=of_both, is_path=True,
+        ),
+    )  # fmt: skip
+    return Wish(**{"rig": rig, "design": "loops", "results": (TORSION,), "count": 60} | wish)
+
+
+def of_both(count: int, held: int, rng: np.random.Generator) -> tuple[Places, Places]:
+    """The places of the rows that are fitted and of those that are not; both begin with the clock.
+
+    It counts from the first reading of a file.
+    """
+    return parted(count, np.array([1, *rng.permutation(np.arange(2, count))[: held - 1]]))
+
+
+def measured(design: str, count: int, rng: np.random.Generator) -> Rows:
+    """Rows in the order of the clock.
+
+    Loops: from rest up and down between growing and smaller peaks, each leg at its own speed and temperature. Points:
+    any torque to either side, every reading at its own state of the drive.
+    """
+    path = {"loops": _loops, "points": _points}[design](count, rng)
+    torque, turned, leg = path
+    legs = int(leg.max()) + 1
+    of_leg = {"temperature": rng.uniform(0, 60, legs)[leg], "speed": rng.choice([0, 250, 500, 1000, 2000], legs)[leg]}
+    if design == "points":
+        of_leg = {"temperature": rng.uniform(0, 60, count), "speed": rng.choice([0, 300, 600, 1200, 2400], count)}
+    time = np.sort(rng.uniform(0, 12, count))
+    time[:2] = 0.0
+    return Rows(
+        time=time,
+        torque=torque,
+        reversal_torque=turned,
+        peak_torque=np.maximum.accumulate(np.maximum(torque, turned)),
+        direction=np.zeros(count) if design == "points" else np.sign(torque - turned + 1e-12 * (leg % 2 * -2 + 1)),
+        wave_angle=rng.uniform(0, 360, count),
+        temperature=np.asarray(of_leg["temperature"]),
+        cycles=np.sort(rng.uniform(0, 2e6, count)) if design == "points" else 1.2e6 * (time / 12) ** 0.6,
+        speed=np.asarray(of_leg["speed"], dtype=float),
+    )
+
+
+def _loops(count: int, rng: np.random.Generator) -> tuple[Array, Array, Places]:
+    """Torques, where they last turned, and the number of the leg."""
+    ends = [0.0, *(sign * peak for peak in PEAKS for sign in (1.0, -1.0))]
+    ways = np.abs(np.diff(ends))
+    along = np.sort(rng.uniform(0, ways.sum(), count))
+    along[0] = 0.0
+    leg = np.searchsorted(np.cumsum(ways), along, side="right").astype(np.intp)
+    begun = np.array(ends)[leg]
+    torque = begun + np.sign(np.array(ends)[leg + 1] - begun) * (along - np.concatenate([[0], np.cumsum(ways)])[leg])
+    return np.round(torque, 3), begun, leg
+
+
+def _points(count: int, rng: np.random.Generator) -> tuple[Array, Array, Places]:
+    torque = np.round(rng.uniform(3, 45, count) * rng.choice([-1.0, 1.0], count), 3)
+    return torque, np.zeros(count), np.arange(count, dtype=np.intp)

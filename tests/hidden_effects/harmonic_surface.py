@@ -1,7 +1,7 @@
-"""Made lines of a fractal surface, and what an instrument reads of them: the structure function of real heights.
+"""Structure functions of a fractal surface that is waved, noisy or read by a blunt instrument, lag by lag.
 
-Nothing of the plugin is imported. Lines are drawn as a sum of all waves with the spectrum of a power law, far beyond
-what is looked at on either side; a wave, a blunt instrument and its noise act on the heights. Lengths um.
+Nothing of the plugin is imported: the mean over directions and the spot of the instrument are sums over places, a wave
+is a cosine of the lag. What some lines show scatters about that like a variance. Lengths um.
 """
 
 from dataclasses import dataclass
@@ -10,16 +10,15 @@ from math import gamma, pi, sin
 
 import numpy as np
 
-from hidden_effects.harmonic_contact import Array
 from hidden_effects.rigs import Rig, RigCase, Wish
-from hidden_effects.rows import of
+from hidden_effects.rows import Array, of
 
 STRUCTURE = "structure_function"
 DIMENSION, ROUGHNESS = 2.4, 1e-5  # um, of a surface with ridges in all directions: the defaults
 EXPONENT = 6 - 2 * DIMENSION
-STEP, POINTS, LINES = 0.2, 2**13, 4
-FOLDS = 30  # of the spectrum about the sampling frequency: a point is no mean over a step
+STEP, READ = 0.2, 4 * 2**13  # um between points, and points of all lines
 FIRST, LAST = 2, 300  # lags in steps
+SHARED = 1.5  # differences over one lag that are as good as one alone, over the points in a lag
 
 
 @dataclass(frozen=True)
@@ -41,52 +40,6 @@ def power() -> float:
     return float((2 * pi) ** EXPONENT * level * directions * ROUGHNESS ** (2 - EXPONENT))
 
 
-def spectrum(frequency: Array, width: float) -> Array:
-    """Power of the heights per frequency, um^3, of points that a spot of this width has read.
-
-    S = 2 int P (1 - cos) df with P = k f^-(1 + a): k is what gives S = c lag^a.
-    """
-    level = pi / (2 * gamma(1 + EXPONENT) * sin(pi * EXPONENT / 2))
-    scale = power() / (2 * (2 * pi) ** EXPONENT * level)
-    folded = [np.abs(frequency + fold / STEP) for fold in range(-FOLDS, FOLDS + 1)]
-    return np.asarray(sum(scale * f ** -(1 + EXPONENT) * np.exp(-((2 * pi * f * width) ** 2)) for f in folded))
-
-
-def lines(rng: np.random.Generator, wish: Wish, count: int) -> Array:
-    """Heights of so many lines, um, as the instrument shows them."""
-    period = POINTS * 2
-    frequency = np.fft.rfftfreq(period, STEP)[1:]
-    size = np.sqrt(spectrum(frequency, of(wish.hidden, "lateral_filter", "width")) * frequency[0]) / 2
-    draws = rng.standard_normal((count, len(size))) + 1j * rng.standard_normal((count, len(size)))
-    waves = np.concatenate([np.zeros((count, 1)), draws * size], axis=1)
-    heights = np.fft.irfft(waves, period, axis=1)[:, :POINTS] * period
-    at = STEP * np.arange(POINTS)
-    amplitude = of(wish.hidden, "waviness", "square") ** 0.5
-    phases = rng.uniform(0, 2 * pi, (count, 1))
-    heights = heights + amplitude * np.cos(2 * pi * at / of(wish.hidden, "waviness", "wavelength", 1.0) + phases)
-    if wish.strange is not None:
-        heights = heights + wish.strange(at)
-    noise = of(wish.hidden, "instrument_noise", "variance") ** 0.5 * 1e-3
-    return np.asarray(heights + noise * rng.standard_t(6, heights.shape) / np.sqrt(1.5))
-
-
-def structure(heights: Array, step: int) -> Array:
-    """Mean square of the difference of heights over a lag, um^2, of every line."""
-    return np.asarray(((heights[:, step:] - heights[:, :-step]) ** 2).mean(axis=1))
-
-
-@cache
-def relative_error(step: int) -> float:
-    """Standard error of the structure function over itself, from many lines of a plain surface."""
-    each = structure(_plain(), step)
-    return float(each.std(ddof=1) / each.mean() / LINES**0.5)
-
-
-@cache
-def _plain() -> Array:
-    return lines(np.random.default_rng(63), surface(seed=0), 200)
-
-
 def true_structure(wish: Wish, lag: Array) -> Array:
     """What endless lines would show, um^2, the spot as a sum over places."""
     width = of(wish.hidden, "lateral_filter", "width")
@@ -96,7 +49,14 @@ def true_structure(wish: Wish, lag: Array) -> Array:
     plain = [np.sum(weight * (np.abs(one + apart) ** EXPONENT - np.abs(apart) ** EXPONENT)) for one in lag]
     wave = 1 - np.cos(2 * pi * lag / of(wish.hidden, "waviness", "wavelength", 1.0))
     noise = 2e-6 * of(wish.hidden, "instrument_noise", "variance")
-    return np.asarray(power() * np.array(plain) + of(wish.hidden, "waviness", "square") * wave + noise)
+    strange = [_of_line(wish, one) for one in lag]
+    return np.asarray(power() * np.array(plain) + of(wish.hidden, "waviness", "square") * wave + noise + strange)
+
+
+def _of_line(wish: Wish, lag: float) -> float:
+    """Mean square of the difference over a lag of what nobody registered."""
+    at = STEP * np.arange(READ)
+    return 0.0 if wish.strange is None else float(np.mean((wish.strange(at + lag) - wish.strange(at)) ** 2))
 
 
 def make_surface(wish: Wish) -> RigCase:
@@ -106,19 +66,18 @@ def make_surface(wish: Wish) -> RigCase:
     """
     rng = np.random.default_rng([wish.seed, 62])
     steps = np.unique(np.round(np.geomspace(FIRST, LAST, 2 * wish.count))).astype(int)
-    heights = lines(rng, wish, LINES * len(steps)).reshape(len(steps), LINES, POINTS)
-    read = np.array([structure(each, int(step)).mean() for each, step in zip(heights, steps, strict=True)])
-    sigma = power() * (STEP * steps) ** EXPONENT * [relative_error(int(step)) for step in steps]
-    parts = [rng.permutation(np.arange(first, len(steps), 2)) for first in (0, 1)]
-    lags = [Lags(STEP * steps[part], sigma[part]) for part in parts]
-    found = [{STRUCTURE: read[part]} for part in parts]
+    freedom = 2 * READ / (SHARED * steps)
+    true = true_structure(wish, STEP * steps)
+    read = true * rng.chisquare(freedom) / freedom
+    sigma = power() * (STEP * steps) ** EXPONENT * np.sqrt(2 / freedom)
+    fitted, held = (rng.permutation(np.arange(first, len(steps), 2)) for first in (0, 1))
     return RigCase(
-        rows=lags[0],
-        held=lags[1],
-        readings=found[0],
-        held_readings=found[1],
-        held_true={STRUCTURE: true_structure(wish, lags[1].lag)},
-        held_error=lags[1].sigma_structure_function,
+        rows=Lags(STEP * steps[fitted], sigma[fitted]),
+        held=Lags(STEP * steps[held], sigma[held]),
+        readings={STRUCTURE: read[fitted]},
+        held_readings={STRUCTURE: read[held]},
+        held_true={STRUCTURE: true[held]},
+        held_error=sigma[held],
     )
 
 

@@ -19,8 +19,6 @@ from truing.units import to_si
 
 POINTS = 4
 SETS = 200
-ROUNDS = 3
-SPARSE = 16
 BOX = {  # where the press can be set, SI; the crank angle as the inputs file of a case says, all else as declared
     "crank_angle": (-np.pi / 3, np.pi / 3), "forming_force": (-200e3, 2000e3), "link_temperature": (15.0, 60.0),
     "time": (0.0, 10 * HOUR), "strokes": (0.0, 1e6), "speed": (5 / 60, 1.0), "direction": (-1.0, 1.0),
@@ -41,13 +39,10 @@ def asked(case: Case, document: Mapping[str, Any]) -> dict[str, Any] | None:
     many = len(proposed)
     sets = [list(range(many + POINTS * at, many + POINTS * (at + 1))) for at in range(SETS)]
     found = [_left(problems, each) for each in sets]
-    best = max(found)
-    if best <= APART:
-        best = _exchanged(problems, sets[int(np.argmax(found))], range(many, many + POINTS * SETS, SPARSE))
     after = _left(problems, range(many))
     return {
         "rival": list(rival), "before": _left(problems, []), "points": many, "proposed": after,
-        "random_share": float(np.mean(np.array(found) > APART)), "best_random": max(found), "best": max(best, after),
+        "random_share": float(np.mean(np.array(found) > APART)), "best_random": max(found), "best": max(*found, after),
     }  # fmt: skip
 
 
@@ -115,20 +110,6 @@ class Problem:
 def _left(problems: Sequence[Problem], points: Sequence[int]) -> float:
     """The separation from a rival whatever its shapes."""
     return min(problem.left(points) for problem in problems)
-
-
-def _exchanged(problems: Sequence[Problem], points: Sequence[int], pool: Sequence[int]) -> float:
-    """Exchange points one by one for better ones of the pool; the separation that this reaches."""
-    chosen, best = list(points), _left(problems, points)
-    for _, place in product(range(ROUNDS), range(len(chosen))):
-        for other in pool:
-            tried = [*chosen[:place], other, *chosen[place + 1 :]]
-            found = _left(problems, tried)
-            if found > best:
-                best, chosen = found, tried
-        if best > APART:
-            break
-    return best
 
 
 def _problems(case: Case, rival: Sequence[str], points: Rows) -> Iterator[Problem]:

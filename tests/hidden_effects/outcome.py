@@ -8,9 +8,9 @@ import numpy as np
 
 from hidden_effects.candidates import Candidate, stacked
 from hidden_effects.cases import Case
-from hidden_effects.information import Lens, beside_groups, over_results
 from hidden_effects.oracle import calibrated, judged, oracle, rms, scale
 from hidden_effects.press_machine import SCATTER, Array, shown
+from hidden_effects.record import Lens, beside_groups, over_results
 from hidden_effects.shapes import family_of, groups
 from truing.testing.hiding import Answered
 from truing.units import to_si
@@ -50,8 +50,7 @@ def about(case: Case) -> dict[str, Any]:
         "shape": case.shape.text if case.shape else None,
         "depends_on": list(case.shape.depends_on) if case.shape else [],
         "lambda_det": case.lambda_det, "lambda_sep": case.lambda_sep, "rival": list(rival.names),
-        "halves": list(case.halves), "halves_beside_curve": list(case.halves_beside_curve),
-        "visible": case.is_visible, "separable": case.is_separable,
+        "halves": list(case.halves), "visible": case.is_visible, "separable": case.is_separable,
     }  # fmt: skip
 
 
@@ -70,8 +69,6 @@ def essentials(document: Document) -> dict[str, Any]:
         ],
         "alternative_count": len(document["alternatives"]),
         "remainder": {name: remainder[name] for name in ("depends_on", "shape", "results")} if remainder else None,
-        "noise_found": {name: wrong["noise"] for name, wrong in document["wrong"].items()},
-        "next": document["next"],
     }
 
 
@@ -207,18 +204,12 @@ def held_out(case: Case, predicted: Array) -> dict[str, float]:
 
 
 def gains(case: Case, document: Document, predicted: Array) -> dict[str, dict[str, float | None]]:
-    """By result: the gain as cross-validated, and as it is at the rows held out, both against the calibrated base.
-
-    Whoever knew the truth would state the gain of the record without error (``sampled``); another one differs still.
-    """
-    rows, base = case.record.rows, calibrated(case, DOUBTS)
-    readings = stacked(case.readings, case.results)
+    """By result: the gain as cross-validated, and as it is at the rows held out, both against the calibrated base."""
+    base = calibrated(case, DOUBTS)
     measured = judged(case, stacked(case.held_readings, case.results))
     residuals = {
         "held_before": measured - judged(case, stacked(shown(case.held, base, {}), case.results)),
         "held_after": measured - predicted,
-        "sampled_before": readings - stacked(shown(rows, base, {}), case.results),
-        "sampled_after": readings - case.true_readings(rows),
     }
     found = {}
     for at, result in enumerate(case.results):

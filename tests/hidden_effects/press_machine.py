@@ -16,37 +16,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hidden_effects.rows import Array, Hidden, MeasuredRows
+from published import press_by_hand as by_hand
 
 Complex: TypeAlias = NDArray[np.complex128]
 Sizes: TypeAlias = "dict[str, float | Array]"
 
 POSITION, TILT = "slider_position", "slider_tilt"
 REFERENCE_TEMPERATURE = 20.0  # degC
-NOMINAL = {
-    "crank_radius": 0.36, "rod_length": 1.304, "knee_drive_length": 0.868, "upper_knee_length": 1.7,
-    "lower_knee_length": 1.6, "slider_half_width": 1.6, "slider_joint_angle": 0.0, "crank_pivot_radius": 1.2,
-    "crank_pivot_angle": 0.0, "platform_half_width": 0.3, "platform_joint_angle": 0.0, "ground_pivot_radius": 1.393,
-    "ground_pivot_angle": 0.367, "crank_angle": 0.0,
-}  # fmt: skip
-ARM = 0.6
+JOINTS = by_hand.KINDS[5:13]
+NOMINAL = {kind: by_hand.PAPER.get(kind, 0.0) for kind in by_hand.KINDS}
+ARM = by_hand.PAPER["platform_arm"]
 SIDES = (1, 2)
-LINKS = ("crank_radius", "rod_length", "knee_drive_length", "upper_knee_length", "lower_knee_length")
+LINKS = by_hand.KINDS[:5]
 LOADED = ("rod_length", "knee_drive_length", "upper_knee_length", "lower_knee_length")
 BOTTOM = acos((0.3 - 1.2) / (0.36 + 1.304))  # direction of the crank with the slider lowest
-IT7 = {  # ISO 286-1, m
-    "crank_radius": 57e-6, "rod_length": 125e-6, "knee_drive_length": 90e-6, "upper_knee_length": 150e-6,
-    "lower_knee_length": 125e-6,
-}  # fmt: skip
-HALF_BANDS = {  # joints as mounted, along and across their radius, m and rad
-    "slider_half_width": 50e-6, "slider_joint_angle": 50e-6 / 1.6, "crank_pivot_radius": 100e-6,
-    "crank_pivot_angle": 100e-6 / 1.2, "platform_half_width": 50e-6, "platform_joint_angle": 50e-6 / 0.3,
-    "ground_pivot_radius": 50e-6, "ground_pivot_angle": 50e-6 / 1.393,
-}  # fmt: skip
-SCATTER: dict[str, float] = {
-    **{f"{kind}_deviation_{side}": band / 6 for side in SIDES for kind, band in IT7.items()},
-    **{f"{kind}_deviation_{side}": half / 3 for side in SIDES for kind, half in HALF_BANDS.items()},
-    "platform_arm_deviation": 70e-6 / 6,
-}
+STATED = by_hand.deviations("complete", dict.fromkeys(by_hand.LINKS, "IT7"))
+PARTS = (f"{kind}_deviation_{side}" for kinds in (LINKS, JOINTS) for side in SIDES for kind in kinds)
+SCATTER = {name: STATED[name] for name in (*PARTS, "platform_arm_deviation")}
+"""Standard deviations of the parts in m and rad: links of grade IT7, joints as mounted."""
 
 
 @dataclass(frozen=True)

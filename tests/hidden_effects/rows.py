@@ -1,6 +1,6 @@
 """What every machine of the generators shares: rows as they were measured, and unknowns of what is hidden."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Self, TypeAlias
 
@@ -29,3 +29,12 @@ class MeasuredRows:
 def of(hidden: Hidden, effect: str, unknown: str, otherwise: float = 0.0) -> float:
     """An unknown of an effect, in the unit of the registry; what it is otherwise where the effect is not hidden."""
     return float(hidden.get(effect, {}).get(unknown, otherwise))
+
+
+def halved(is_more: Callable[[Array], Array], low: Array, high: Array, rounds: int = 60) -> Array:
+    """Where something begins to be too much, between ``low`` and ``high``: intervals halved, nothing in closed form."""
+    for _ in range(rounds):
+        middle = (low + high) / 2
+        above = is_more(middle)
+        low, high = np.where(above, low, middle), np.where(above, middle, high)
+    return np.asarray(high)

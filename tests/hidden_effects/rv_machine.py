@@ -7,12 +7,13 @@ output; what changes the rate of wear evenly is a change of those turns.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from math import acos, pi, sqrt
 
 import numpy as np
 
-from hidden_effects.rows import Array, Hidden, MeasuredRows, of
+from hidden_effects.rigs import Bench, Rig, Wish
+from hidden_effects.rows import Array, Hidden, MeasuredRows, halved, of
 from hidden_effects.rv_play import Mesh, ends_of_play
 
 PINS, TEETH = 40, 39
@@ -106,13 +107,13 @@ def forces(torque: float, worn: Array) -> Array:
     """Force on every pin in every phase under the torque of one disc, N mm: rows of ``worn`` are turned to touch."""
     gap = NEW + worn
     gap = gap - ARM * np.min(gap / ARM, axis=1, keepdims=True)
-    low, high = np.full((PHASES, 1), 1.0), np.full((PHASES, 1), 1e6)
-    for _ in range(60):
-        middle = np.sqrt(low * high)
-        each = middle * np.maximum(ARM / LONGEST - gap / approach(middle), 0.0)
-        is_more = np.sum(each * ARM, axis=1, keepdims=True) > torque
-        high, low = np.where(is_more, middle, high), np.where(is_more, low, middle)
-    return np.asarray(each)
+
+    def each(logarithm: Array) -> Array:
+        force = np.exp(logarithm)
+        return np.asarray(force * np.maximum(ARM / LONGEST - gap / approach(force), 0.0))
+
+    ends = np.zeros((PHASES, 1)), np.full((PHASES, 1), np.log(1e6))
+    return each(halved(lambda logarithm: np.sum(each(logarithm) * ARM, axis=1, keepdims=True) > torque, *ends))
 
 
 @dataclass(frozen=True)
@@ -259,3 +260,61 @@ def shown(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> dict[str, Arr
     """What the gauges would show without noise: backlash in arcmin, wear in um; ``off`` in mm, roughness as a share."""
     backlash = play(rows, off, hidden) / MINUTE + of_reading(rows, hidden)
     return {"backlash": backlash, "max_wear": worn(rows, off, hidden)[0] * 1e3}
+
+
+# How it is measured, and with what noise
+
+
+BACKLASH, WEAR = "backlash", "max_wear"
+UNIT = {BACKLASH: "arcmin", WEAR: "um"}
+
+
+def machine(rng: np.random.Generator) -> Mapping[str, float]:
+    """Draw a reducer within its zones."""
+    off = {name: float(width / 6 * rng.standard_normal()) for name, width in ZONES.items()}
+    return {**off, "roughness": float(ROUGHNESS_SCATTER * rng.standard_normal())}
+
+
+def measured(design: str, count: int, rng: np.random.Generator) -> Rows:
+    """Rows in the order of the clock. Endurance: one set of discs at the rating; fleet: four sets, each at its own."""
+    sets = {"endurance": 1, "fleet": 4}[design]
+    set_of = np.sort(np.arange(count) % sets)
+    hours = LIFE * np.concatenate([np.sort(rng.random(int(np.sum(set_of == one))) ** 1.5) for one in range(sets)])
+    hours[0] = 0.0
+
+    def by_set(low: float, high: float, rated: float) -> Array:
+        values = np.linspace(low, high, sets)[rng.permutation(sets)] if sets > 1 else np.array([rated])
+        return np.asarray(values[set_of])
+
+    warm = rng.uniform(20, 45, count)
+    return Rows(
+        time=hours + LIFE * set_of * 1.02,
+        working_time=hours,
+        output_torque=by_set(2000, 4200, RATED),
+        output_speed=by_set(8, 20, SPEED),
+        oil_temperature=by_set(35, 60, 47.0),
+        housing_temperature=warm,
+        disc_temperature=warm + rng.uniform(-2, 8, count),
+        output_angle=rng.uniform(0, 360, count),
+        crank_angle=np.random.default_rng(count).uniform(0, 360, count),
+        measuring_torque=rng.uniform(0, 300, count),
+        direction=rng.choice([-1.0, 1.0], count),
+    )
+
+
+REDUCER = Rig(
+    plugin="rv_wear",
+    inputs='plugin = "rv_wear"\n',
+    written={
+        "time": "h", "working_time": "h", "output_torque": "N*m", "output_speed": "r/min",
+        "housing_temperature": "degC", "disc_temperature": "degC", "oil_temperature": "degC", "output_angle": "deg",
+        "crank_angle": "deg", "measuring_torque": "N*m", "direction": "1",
+    },
+    measured=UNIT,
+    make=Bench(
+        stream=74, held=300, measured=measured, machine=machine, shown=shown,
+        spread=lambda rows: 0.4 + 1.6 * rows.working_time / LIFE, noise={BACKLASH: 0.01, WEAR: 0.1},
+    ),
+)  # fmt: skip
+reducer = partial(Wish, rig=REDUCER, design="endurance", results=(BACKLASH,), count=100)
+"""What a reducer is to be like."""

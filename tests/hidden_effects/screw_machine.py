@@ -7,18 +7,20 @@ path; friction is integrated along it; backlash is what is left between tooth an
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from math import acos, cos, pi, radians, tan
 
 import numpy as np
 
-from hidden_effects.rows import Array, Hidden, MeasuredRows, of
+from hidden_effects.rigs import Bench, Rig, Wish
+from hidden_effects.rows import Array, Hidden, MeasuredRows, halved, of
 
 TEETH, RING_TEETH, MODULE, ALPHA = 20, 100, 0.5, radians(20)
 CENTRES, ADDENDUM, SHIFT, RING_SHIFT = 19.80778, 0.8, 0.21, -0.16
 FACE, ROLLERS, LEAD = 4.0, 10, 10.0
 SHARE, STIFFNESS = 5.1943e-3, 14.0  # of the axial load; N/(mm um)
 ROLLER_FACTOR, RING_FACTOR = 2.12002 * 1.86315, 1.83107 * 2.84399  # form times stress correction of this design
-CARRIER, ROLLER = 3 / 8, 15 / 8  # turns per turn of the screw, d_s/d_r = 3
+CARRIER_TURNS, ROLLER_TURNS = 3 / 8, 15 / 8  # turns per turn of the screw, d_s/d_r = 3
 WIDTHS = {"face_width": 0.1, "centre_distance_deviation": 0.02}  # of the tolerances, mm: six standard deviations
 SLICES = 200
 SECOND = 0.02  # second harmonic of the error of the teeth over the first
@@ -48,16 +50,14 @@ def force(rows: Rows) -> Array:
     return np.asarray(SHARE * 1e3 * np.abs(rows.axial_load))
 
 
-def balanced(approach: Array, gaps: Array, stiffness: Array | float) -> Array:
-    """Forces of springs behind gaps (n, k), um, that share a load (n, 1) given as ``approach`` of all of them, N."""
-    low, high = np.full_like(approach, -1e3), np.full_like(approach, 1e3)
-    each = gaps * 0
-    for _ in range(50):
-        middle = (low + high) / 2
-        each = np.maximum(middle - gaps, 0) * stiffness
-        is_more = each.sum(axis=1, keepdims=True) > approach
-        high, low = np.where(is_more, middle, high), np.where(is_more, low, middle)
-    return np.asarray(each)
+def balanced(load: Array, gaps: Array, stiffness: Array | float) -> Array:
+    """Forces of springs behind gaps (n, k), um, that share a load (n, 1), N."""
+
+    def forces(way: Array) -> Array:
+        return np.asarray(np.maximum(way - gaps, 0) * stiffness)
+
+    ends = np.full_like(load, -1e3), np.full_like(load, 1e3)
+    return forces(halved(lambda way: forces(way).sum(axis=1, keepdims=True) > load, *ends, 50))
 
 
 def crowding(rows: Rows, width: float, hidden: Hidden) -> Array:
@@ -95,7 +95,7 @@ def shaking(rows: Rows, hidden: Hidden) -> Array:
 
 def bearing_share(rows: Rows, hidden: Hidden) -> Array:
     """Share of the face that carries; the groove leaves the mesh a little faster than a cosine would."""
-    angle = np.radians(ROLLER * rows.screw_angle - of(hidden, "interrupted_tooth", "phase"))
+    angle = np.radians(ROLLER_TURNS * rows.screw_angle - of(hidden, "interrupted_tooth", "phase"))
     return np.asarray(1 - of(hidden, "interrupted_tooth", "lost") * ((1 + np.cos(angle)) / 2) ** 1.05)
 
 
@@ -109,7 +109,7 @@ def mounted(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> tuple[Array
     return centres, np.arccos(MODULE * (RING_TEETH - TEETH) / 2 * cos(ALPHA) / centres)
 
 
-def width_at(radius: Array, teeth: int, shift: float) -> Array:
+def width_at(radius: Array, teeth: int, shift: float | Array) -> Array:
     """Tooth of a gear, or space of a ring, as an arc on a circle (the tooth of an external gear fills the space)."""
     reference = MODULE * teeth / 2
     half = (pi / 2 + 2 * shift * tan(ALPHA)) / teeth
@@ -122,12 +122,13 @@ def tight_ring_shift() -> float:
     working = acos(MODULE * (RING_TEETH - TEETH) / 2 * cos(ALPHA) / CENTRES)
     ring = np.array(MODULE * RING_TEETH / 2 * cos(ALPHA) / cos(working))
     roller = np.array(MODULE * TEETH / 2 * cos(ALPHA) / cos(working))
-    low, high = RING_SHIFT - 0.1, RING_SHIFT + 0.1
-    for _ in range(60):
-        middle = (low + high) / 2
-        is_loose = width_at(ring, RING_TEETH, middle) > width_at(roller, TEETH, SHIFT)
-        low, high = (low, middle) if is_loose else (middle, high)
-    return middle
+    return float(
+        halved(
+            lambda shift: width_at(ring, RING_TEETH, shift) > width_at(roller, TEETH, SHIFT),
+            np.array(RING_SHIFT - 0.1),
+            np.array(RING_SHIFT + 0.1),
+        )
+    )
 
 
 def play(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> Array:
@@ -182,7 +183,7 @@ def friction(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> Array:
     pitch = MODULE * TEETH / 2 * cos(ALPHA) * np.tan(working)
     base_pitch = pi * MODULE * cos(ALPHA)
     screw = np.maximum(np.abs(rows.screw_speed), 1e-3) * 2 * pi / 60
-    carrier = CARRIER * screw
+    carrier = CARRIER_TURNS * screw
     turn = carrier * RING_TEETH / TEETH  # of a roller against the carrier
     at = start[:, None] + (end - start)[:, None] * (np.arange(4000) + 0.5) / 4000
     others = (at - base_pitch > start[:, None]).astype(float) + (at + base_pitch < end[:, None])
@@ -201,7 +202,7 @@ def friction(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> Array:
 def error(rows: Rows, hidden: Hidden) -> Array:
     """Transmission error, um: the reach of a circle from a point beside its centre."""
     found = np.zeros(len(rows))
-    for name, order, radius in (("roller_runout", ROLLER, 5e3), ("carrier_runout", CARRIER, 20e3)):
+    for name, order, radius in (("roller_runout", ROLLER_TURNS, 5e3), ("carrier_runout", CARRIER_TURNS, 20e3)):
         angle = np.radians(order * rows.screw_angle)
         x, y = of(hidden, name, "cosine"), of(hidden, name, "sine")
         found += np.hypot(radius * np.cos(angle) + x, radius * np.sin(angle) + y) - radius
@@ -210,8 +211,8 @@ def error(rows: Rows, hidden: Hidden) -> Array:
 
 def creep(rows: Rows, hidden: Hidden) -> Array:
     """How far a roller has gone along the screw, um, tooth by tooth of the ring."""
-    teeth = np.round(rows.screw_angle / 360 * CARRIER * RING_TEETH)
-    return np.asarray(of(hidden, "axial_migration", "mismatch") * LEAD * teeth / (CARRIER * RING_TEETH))
+    teeth = np.round(rows.screw_angle / 360 * CARRIER_TURNS * RING_TEETH)
+    return np.asarray(of(hidden, "axial_migration", "mismatch") * LEAD * teeth / (CARRIER_TURNS * RING_TEETH))
 
 
 def shown(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> dict[str, Array]:
@@ -229,3 +230,60 @@ def shown(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> dict[str, Arr
         "friction_torque": friction(rows, off, hidden),
         "backlash": play(rows, off, hidden) + gap / np.cos(mounted(rows, off, hidden)[1]),
     }
+
+
+# How it is measured, and with what noise
+
+
+ROLLER, RING, ERROR = "root_stress_roller", "root_stress_ring", "transmission_error"
+WEAR, AXIAL, TORQUE, BACKLASH = "wear_depth", "axial_shift", "friction_torque", "backlash"
+STRESSES = (ROLLER, RING)
+UNIT = {ROLLER: "MPa", RING: "MPa", ERROR: "um", WEAR: "um", AXIAL: "um", TORQUE: "N*m", BACKLASH: "um"}
+NOISE = {ROLLER: 1.5, RING: 2.0, ERROR: 0.5, WEAR: 0.1, AXIAL: 2.0, TORQUE: 5e-4, BACKLASH: 0.4}
+LOADS: Mapping[str, tuple[float, float]] = {"bench": (2.0, 20.0), "loaded": (12.0, 20.0), "endurance": (5.0, 20.0)}
+
+
+def machine(rng: np.random.Generator) -> Mapping[str, float]:
+    """Draw a screw within its tolerances."""
+    return {name: float(width / 6 * rng.standard_normal()) for name, width in WIDTHS.items()}
+
+
+def measured(design: str, count: int, rng: np.random.Generator) -> Rows:
+    """Rows in the order of the clock.
+
+    Bench: any load from 2 to 20 kN, few cycles. Loaded: the same from 12 kN on. Endurance: four sets of rollers, each
+    at its own load, to three million cycles.
+    """
+    low, high = LOADS[design]
+    time = np.sort(rng.uniform(0, 40, count))
+    load, cycles = rng.uniform(low, high, count), 400 * time
+    if design == "endurance":
+        set_of = np.arange(count) * 4 // count
+        load = np.linspace(low, high, 4)[rng.permutation(4)][set_of]
+        cycles = np.concatenate([np.sort(rng.uniform(0, 3e6, int(np.sum(set_of == one)))) for one in range(4)])
+        time = cycles / 6000 + 520 * set_of
+    return Rows(
+        time=time,
+        axial_load=load,
+        screw_speed=rng.uniform(60, 3000, count) * rng.choice([-1.0, 1.0], count),
+        temperature=rng.uniform(20, 60, count),
+        screw_angle=rng.uniform(0, 40 * 360, count),
+        cycles=cycles,
+    )
+
+
+SCREW = Rig(
+    plugin="roller_screw_shift",
+    inputs='plugin = "roller_screw_shift"\n\n[studies.diagnose]\nbox = { axial_load = "1..25 kN" }\n',
+    written={
+        "time": "h", "axial_load": "kN", "screw_speed": "r/min", "temperature": "degC", "screw_angle": "deg",
+        "cycles": "1",
+    },
+    measured=UNIT,
+    make=Bench(
+        stream=58, held=200, measured=measured, machine=machine, shown=shown,
+        spread=lambda rows: 0.4 + rows.axial_load / 12, noise=NOISE,
+    ),
+)  # fmt: skip
+screw = partial(Wish, rig=SCREW, design="bench", results=STRESSES, count=80)
+"""What a roller screw is to be like."""

@@ -49,10 +49,10 @@ def solved(pins: list[Pin], worn_off: list[float], start: float, torque: float, 
         force = 0.5 * (force + new)
 
 
-def wear_by_hand(equidistant: float, shift: float, hours: float = HOURS, *, go_on: bool = False) -> float:
+def wear_by_hand(equidistant: float, shift: float, hours: float = HOURS) -> float:
     """Deepest wear (m) by equations 1b to 16, one position and one pin after the other.
 
-    Every solution starts from equation 1 or, with ``go_on``, from the last force.
+    Every solution starts from equation 1.
     """
     torque = 0.55 * 3136.0
     k_1, compliance = 0.0022 * PITCH / 0.1145, 2.0 * (1.0 - 0.3**2) / (pi * 2.06e11 * 0.02)
@@ -63,7 +63,6 @@ def wear_by_hand(equidistant: float, shift: float, hours: float = HOURS, *, go_o
     positions = [contacts(equidistant, shift, (place + 0.5) / PHASES) for place in range(PHASES)]
     depths = [[0.0] * len(pins) for pins in positions]
     first = 4.0 * torque / (k_1 * TEETH * 0.1145)
-    scales = [first] * PHASES
     left = hours * 3600.0 * 15.0 / 60.0 * PITCH  # meshings
     threshold = 0.05e-6
     while True:
@@ -71,7 +70,7 @@ def wear_by_hand(equidistant: float, shift: float, hours: float = HOURS, *, go_o
         fastest = 0.0
         for place, pins in enumerate(positions):
             worn_off = depths[place]
-            scale = scales[place] = solved(pins, worn_off, scales[place] if go_on else first, torque, line)
+            scale = solved(pins, worn_off, first, torque, line)
             approach = compliance * scale * (line[1] - log(scale))
             taken = min((gap + depth) / arm for (arm, _, gap, _), depth in zip(pins, worn_off, strict=True))
             here = []

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import contextlib
 import gc
 import io
 import os
 import select
 import signal
 import sys
+import warnings
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO
 
+from truing.cli import main
 from truing.watching import WatchedFiles
 
 POLL = 0.05
@@ -91,8 +94,6 @@ def _be_the_command(
         descriptors = [stream() for stream in streams]
         sys.stdout = _stream(descriptors[0], 1, encoding)
         sys.stderr = _stream(descriptors[1], 2, encoding)
-        from truing.cli import main
-
         before()
         code = main(words)
         for stream in (sys.stdout, sys.stderr):  # as at the end of the interpreter, which exits with 120
@@ -125,3 +126,25 @@ def stop_watching() -> None:
         raise KeyboardInterrupt
 
     WatchedFiles.changed = stop  # type: ignore[assignment, method-assign]
+
+
+BAR = Path(__file__).parent / "bar.py"
+
+
+def filled(folder: Path, *commands: str) -> Path:
+    """Put into a folder what the verbs read: the bar, its inputs, rows, and a record.
+
+    Then run commands there, in this process, so that every fork of it has imported what they need.
+    """
+    (folder / "bar.py").write_text(BAR.read_text(encoding="utf-8"), encoding="utf-8")
+    (folder / "bar.toml").write_text("[inputs]\n")
+    (folder / "rows.csv").write_text("load [kN]\n9\n10\n")
+    rows = "".join(f"{10 + 0.1 * place},{100 + place + 0.01 * (-1) ** place}\n" for place in range(12))
+    (folder / "measured.csv").write_text(f"load [kN],stress [MPa]\n{rows}")
+    said = io.StringIO()
+    quiet = contextlib.redirect_stdout(said), contextlib.redirect_stderr(said)
+    with contextlib.chdir(folder), quiet[0], quiet[1], warnings.catch_warnings():
+        warnings.simplefilter("error", RuntimeWarning)  # of numpy, which a user would see
+        for words in commands:
+            assert main(words.split()) == 0, said.getvalue()
+    return folder

@@ -2,29 +2,24 @@
 
 from __future__ import annotations
 
-import contextlib
-import io
 import os
 import random
 import shutil
-import warnings
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from forked import End, Redirection, forked, stop_watching
+from forked import End, Redirection, filled, forked, stop_watching
 
-from truing.cli import main
 from truing.cli.app import app
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="needs os.fork, which Windows has not")
 
-BAR = Path(__file__).parent / "bar.py"
 VERBS = {
     "run": "run bar.py",
     "run fails": "run bar.py --set load=13kN",
     "run fails, JSON": "run bar.py --set load=13kN --json",
-    "run, cases": "run bar.py --cases good.csv",
+    "run, cases": "run bar.py --cases rows.csv",
     "run fails, cases": "run bar.py --cases bad.csv",
     "run is refused": "run bar.py --set load=13m",
     "watch": "watch bar.py -i bar.toml",
@@ -83,33 +78,17 @@ CANNOT_BE_WRITTEN = {"full", "read-only"}
 @pytest.fixture(scope="module")
 def prepared(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with everything that the verbs read; what they need is imported here, once."""
-    folder = tmp_path_factory.mktemp("verbs")
-    text = BAR.read_text(encoding="utf-8")
-    (folder / "bar.py").write_text(text, encoding="utf-8")
+    folder = filled(
+        tmp_path_factory.mktemp("verbs"),
+        "run bar.py -o one",
+        "run bar.py -o two --set load=9kN",
+        "diagnose bar.py --data measured.csv -o warm",
+    )
+    shutil.rmtree(folder / "warm")
+    text = (folder / "bar.py").read_text(encoding="utf-8")
     (folder / "wrong.py").write_text(text.replace("value=100.0", "value=90.0"), encoding="utf-8")
-    (folder / "bar.toml").write_text("[inputs]\n")
-    (folder / "good.csv").write_text("load [kN]\n9\n10\n")
     (folder / "bad.csv").write_text("load [kN]\n9\n13\n")
-    (folder / "rows.csv").write_text("load [kN]\n9\n10\n")
-    rows = "".join(f"{10 + 0.1 * place},{100 + place + 0.01 * (-1) ** place}\n" for place in range(12))
-    (folder / "measured.csv").write_text(f"load [kN],stress [MPa]\n{rows}")
-    _warm(folder)
     return folder
-
-
-def _warm(folder: Path) -> None:
-    before = Path.cwd()
-    os.chdir(folder)
-    try:
-        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()) as said:
-            assert main(["run", "bar.py", "-o", "one"]) == 0, said.getvalue()
-            assert main(["run", "bar.py", "-o", "two", "--set", "load=9kN"]) == 0
-            with warnings.catch_warnings():
-                warnings.simplefilter("error", RuntimeWarning)  # of numpy, which a user would see
-                assert main(["diagnose", "bar.py", "--data", "measured.csv", "-o", "warm"]) < 3, said.getvalue()
-            shutil.rmtree("warm")
-    finally:
-        os.chdir(before)
 
 
 @pytest.fixture

@@ -6,9 +6,7 @@ files are there or the new ones, whole; what is said is one sentence and true; t
 
 from __future__ import annotations
 
-import contextlib
 import errno
-import io
 import json
 import os
 import random
@@ -20,12 +18,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
-from forked import End, forked, stop_watching
+from forked import End, filled, forked, stop_watching
 
 from shared import ROOT
 from truing import atomic
 from truing.atomic import recover
-from truing.cli import main
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="needs os.fork, which Windows has not")
 
@@ -217,51 +214,34 @@ def _small_disk(size: int) -> Callable[[], None]:
 
 @pytest.fixture(scope="module")
 def prepared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Prepared]:
-    template = tmp_path_factory.mktemp("template")
-    text = (Path(__file__).parent / "bar.py").read_text(encoding="utf-8")
-    (template / "bar.py").write_text(text, encoding="utf-8")
-    (template / "bar.toml").write_text("[inputs]\n")
-    (template / "rows.csv").write_text("load [kN]\n9\n10\n")
-    rows = "".join(f"{10 + 0.1 * place},{100 + place + 0.01 * (-1) ** place}\n" for place in range(8))
-    (template / "measured.csv").write_text(f"load [kN],stress [MPa]\n{rows}")
+    """A folder with what the verbs read and older results; by the way all that they need is imported."""
+    template = filled(
+        tmp_path_factory.mktemp("template"),
+        "run bar.py -o older/runs/bar --set load=9kN",
+        "run bar.py -o warm --resume --cases rows.csv --excel",
+        "diagnose bar.py --data measured.csv -o older/runs/measured --set area=101mm^2",
+        "init bar.py -o warm.toml",
+        "table bar.py -i bar.toml --rows rows.csv -o warm.csv",
+        "index older -o warm.html",
+        "new mine -o warm.d",
+        "new mine --single-file -o warm.py",
+        "completion bash",
+        "describe bar.py",
+        "explain bar.py stress",
+        "verify bar.py",
+        "compare older/runs/bar older/runs/bar",
+        "plugins --names",
+    )
+    for path in (*template.glob("warm*"), template / "__pycache__", template / "bar.schema.json"):
+        shutil.rmtree(path) if path.is_dir() else path.unlink(missing_ok=True)
     older = template / "older"
-    older.mkdir()
     for name in ("made.toml", "bar.schema.json", "out.csv"):
         (older / name).write_text("older")
     (older / "out.html").write_text('<meta name="generator" content="calc index">older')
     (older / ".bashrc").write_text("older\n")
-    _warm(template)
     scratch = tmp_path_factory.mktemp("scratch")
     yield Prepared(template, scratch)
     shutil.rmtree(scratch)
-
-
-def _warm(template: Path) -> None:
-    """Make the older runs, and import by the way all that the verbs need."""
-    said = io.StringIO()
-    with contextlib.chdir(template), contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
-        for words in (
-            "run bar.py -o older/runs/bar --set load=9kN",
-            "run bar.py -o warm --resume --cases rows.csv --excel",
-            "diagnose bar.py --data measured.csv -o older/runs/measured --set area=101mm^2",
-            "init bar.py -o warm.toml",
-            "table bar.py -i bar.toml --rows rows.csv -o warm.csv",
-            "index older -o warm.html",
-            "new mine -o warm.d",
-            "new mine --single-file -o warm.py",
-            "completion bash",
-            "describe bar.py",
-            "explain bar.py stress",
-            "verify bar.py",
-            "compare older/runs/bar older/runs/bar",
-            "plugins --names",
-        ):
-            assert main(words.split()) == 0, said.getvalue()
-    for path in template.glob("warm*"):
-        shutil.rmtree(path) if path.is_dir() else path.unlink()
-    for path in (template / "__pycache__", template / "bar.schema.json"):
-        if path.exists():
-            shutil.rmtree(path) if path.is_dir() else path.unlink()
 
 
 def judge(prepared: Prepared, name: str, inject: Callable[[], None], what: str) -> None:

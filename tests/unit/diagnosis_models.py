@@ -169,6 +169,10 @@ class Bench:
         """The columns where the gauge is off by this much, um; ``machine`` holds what is not as drawn."""
         return self.columns(gauge(self.load, self.travel, **machine) + error)
 
+    def drawn(self, error: Array | float = 0.0) -> dict[str, Array]:
+        """What the drawing knows alone, load and travel, and the gauge, um: few columns, so that a search is short."""
+        return {name: column for name, column in self.shown(error).items() if name in {"load", "travel", "deflection"}}
+
     @property
     def contact(self) -> Array:
         """What the deflection of the contact is in proportion to."""
@@ -325,43 +329,3 @@ def of_size_one(rng: np.random.Generator, n: int) -> Array:
     """Noise whose mean square is 1 to the last digit."""
     noise = rng.normal(size=n)
     return np.asarray(noise / np.sqrt(np.mean(noise**2)))
-
-
-@inputs
-class Nothing:
-    """A model must have an input."""
-
-    size: Float = given(0.0, "", note="of nothing")
-
-
-@results
-class Reading:
-    """What a gauge shows of nothing."""
-
-    reading: Float = found("", note="reading")
-
-
-def silence(nothing: Nothing) -> Reading:
-    """Nothing happens."""
-    return Reading(reading=0.0 * nothing.size)
-
-
-def along_first(nothing: Nothing, base: Reading, *, one: Float, first: Float) -> Reading:
-    """Follow the first condition."""
-    return replace(base, reading=base.reading + one * first)
-
-
-def along_second(nothing: Nothing, base: Reading, *, two: Float, second: Float) -> Reading:
-    """Follow the second condition."""
-    return replace(base, reading=base.reading + two * second)
-
-
-def twist_model() -> Model[Any, Any]:
-    """Two effects, each in proportion to a condition of its own: any two curves that a test writes down."""
-    errors = [
-        Effect("along_first", on_results=along_first, needs=[Condition("first", "")], unknowns=[Unknown("one", -9, 9)]),
-        Effect(
-            "along_second", on_results=along_second, needs=[Condition("second", "")], unknowns=[Unknown("two", -9, 9)]
-        ),
-    ]
-    return Model(name="twist", title="Two curves", function=silence, errors=errors)

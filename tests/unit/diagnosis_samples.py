@@ -293,27 +293,10 @@ def undecided() -> DiagnosisResult:
     )
 
 
-def shape_of(records: Records) -> NDArray[np.float64]:
-    """The shape of the unknown remainder, SI."""
-    angle = records.covariates["crank_angle"].values
-    return np.asarray(14e-6 * np.cos(7 * angle) - 3e-6 * np.sin(7 * angle), dtype=float)
-
-
 REMAINDER = Remainder(
     ("crank_angle",), "order 7 of crank_angle", ("slide_position",), 0.0033,
     {"slide_position": (ShapeTerm("np.cos(7 * crank_angle)", 14e-6), ShapeTerm("np.sin(7 * crank_angle)", -3e-6))},
 )  # fmt: skip
-
-
-def _waved(share: float) -> dict[str, Any]:
-    """Records with an unregistered wave, and the curves before and after."""
-    records = records_of()
-    wave = shape_of(records)
-    measured = {**records.measured, "slide_position": records.measured["slide_position"] + wave}
-    records = replace(records, measured=measured)
-    position, tilt = curves_of(records, share)
-    after = replace(position, measured=measured["slide_position"], after=np.asarray(position.after) + wave)
-    return {"records": records, "curves": (after, tilt)}
 
 
 def unknown() -> DiagnosisResult:
@@ -325,14 +308,14 @@ def unknown() -> DiagnosisResult:
     )
     return _diagnosis(
         wrong=wrong_of(12 * UM, 0.75, ORDER), remainder=REMAINDER, ranking=ranking,
-        gain=gain_of(12.1 * UM, 6.3 * UM, 0.002), p_any=0.0033, calibrated=CALIBRATED, **_waved(1.0),
+        gain=gain_of(12.1 * UM, 6.3 * UM, 0.002), p_any=0.0033, calibrated=CALIBRATED,
     )  # fmt: skip
 
 
 def named_with_remainder() -> DiagnosisResult:
     """Verdict named, with something unregistered beside it."""
     made = named()
-    return replace(made, remainder=REMAINDER, wrong=wrong_of(42 * UM, 0.98, TREND, ORDER), **_waved(0.98))
+    return replace(made, remainder=REMAINDER, wrong=wrong_of(42 * UM, 0.98, TREND, ORDER))
 
 
 SAMPLES = {

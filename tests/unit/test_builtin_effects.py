@@ -148,27 +148,27 @@ def test_unknowns_have_the_unit_of_a_difference_of_their_result() -> None:
     assert (after.along, after.is_amplitude) == ("time", False)
 
 
-def test_an_angle_that_is_a_condition_comes_before_inputs_that_are_not_swept() -> None:
-    swash = Condition("swash", "rad")
-    bent = Effect("bent", on_inputs=_bent, unknowns=[Unknown("lift", -1, 1, "um")], needs=[swash])
-    model = replace(SHAFT, studies=[], errors=[*SHAFT.errors, bent])
-    orders = {name: effect for name, effect in model.known_effects.items() if name.startswith("periodic")}
-    assert list(orders) == ["periodic_order", "periodic_order_of_turn", "periodic_order_of_pitch"]
-    assert orders["periodic_order"].needs == (swash,)
+def _lifted_with(shaft: Shaft, *, lift: Float, it: Float) -> Shaft:
+    return replace(shaft, eccentricity=shaft.eccentricity + lift * it)
 
 
-def _bent(shaft: Shaft, *, lift: Float, swash: Float) -> Shaft:
-    return replace(shaft, eccentricity=shaft.eccentricity + lift * swash)
-
-
-def test_temperatures_are_conditions_first_and_then_inputs() -> None:
-    bearing = Condition("bearing", "degC", reference=30)
-    hot = Effect("hot", on_inputs=_hot, unknowns=[Unknown("lift", -1, 1, "um")], needs=[bearing])
-    model = replace(SHAFT, errors=[hot])
-    drifts = [name for name in model.known_effects if name.startswith("thermal")]
-    assert drifts == ["thermal_drift", "thermal_drift_of_oil"]
-    assert model.known_effects["thermal_drift"].needs == (bearing,)
-    assert "temperature" not in model.known_conditions
+@pytest.mark.parametrize(
+    ("condition", "name", "others"),
+    [
+        (Condition("it", "rad"), "periodic_order", ["turn", "pitch"]),
+        (Condition("it", "degC", reference=30), "thermal_drift", ["oil"]),
+    ],
+)
+def test_angles_and_temperatures_are_conditions_first_and_then_inputs(
+    condition: Condition, name: str, others: list[str]
+) -> None:
+    """Without a sweep no input is the angle before another one."""
+    own = Effect("own", on_inputs=_lifted_with, unknowns=[Unknown("lift", -1, 1, "um")], needs=[condition])
+    model = replace(SHAFT, studies=[], errors=[*SHAFT.errors, own])
+    effects = [effect for effect in model.known_effects if effect.startswith(name)]
+    assert effects == [name, *(f"{name}_of_{other}" for other in others)]
+    assert model.known_effects[name].needs == (condition,)
+    assert "temperature" not in model.known_conditions or condition.unit == "rad"
 
 
 @inputs
@@ -208,10 +208,6 @@ def test_the_wave_of_an_input_is_looked_for_where_a_record_turns_it_round(
     assert ("periodic_order_of_pitch" in names) is offered
     assert records.covariates["turn"].is_angle
     assert records.covariates["pitch"].is_angle is offered
-
-
-def _hot(shaft: Shaft, *, lift: Float, bearing: Float) -> Shaft:
-    return replace(shaft, eccentricity=shaft.eccentricity + lift * (bearing - 303.15))
 
 
 @inputs
@@ -261,47 +257,41 @@ def _own_offset(bar: Bar, base: Pull, *, zero: Float) -> Pull:
 # What they add to a reading, by hand
 
 
-def test_offset_and_gain() -> None:
-    """2 um and 4 um at the top; 70 degC. A gain of a level counts from 0 degC: 1 % of 70 degC is 0.7 K."""
-    base = shown(SHAFT, {})
-    assert [base["height_left"], base["height_right"], base["warmth"]] == pytest.approx([2e-6, 4e-6, 343.15])
-    moved = shown(SHAFT, {"sensor_offset": {"height_right": 3e-6, "warmth": -2.0}})
-    assert [moved["height_left"], moved["height_right"], moved["warmth"]] == pytest.approx([2e-6, 7e-6, 341.15])
-    scaled = shown(SHAFT, {"sensor_gain": {"height_left": 0.5, "warmth": 0.01}})
-    assert [scaled["height_left"], scaled["height_right"], scaled["warmth"]] == pytest.approx([3e-6, 4e-6, 343.85])
-
-
-def test_drift_counts_hours_and_the_offset_comes_before_the_gain() -> None:
-    """10 N + 0.5 N/h over 4 h; (10 N + 2 N) * 1.1."""
-    assert shown(BAR, {"sensor_drift": {"force": 0.5 / 3600}}, time=4 * 3600.0)["force"] == pytest.approx(12.0)
-    both = {"sensor_gain": {"force": 0.1}, "sensor_offset": {"force": 2.0}}
-    assert shown(BAR, both)["force"] == pytest.approx(13.2)
-
-
-def test_thermal_drift_vanishes_at_the_reference_of_a_condition_and_the_default_of_an_input() -> None:
-    """0.2 N/K: 5 K above 20 degC are 1 N. 3 um/K: the oil 2 K below its 60 degC takes 6 um off."""
-    drift = {"thermal_drift": {"force": 0.2}}
-    assert shown(BAR, drift)["force"] == pytest.approx(10.0)
-    assert shown(BAR, drift, temperature=298.15)["force"] == pytest.approx(11.0)
-    cooler = shown(SHAFT, {"thermal_drift": {"height_left": 3e-6}}, oil="58 degC")
-    assert cooler["height_left"] == pytest.approx(-4e-6)
-    assert cooler["warmth"] == pytest.approx(341.15)
+TOP = {"height_left": 2e-6, "height_right": 4e-6, "warmth": 343.15}
+WAVES = [(1, 0, 2.0), (1, 90, 1.0), (2, 45, 1.0), (2, 90, -2.0), (3, 30, 1.0), (3, 60, -2.0)]
+STEP = {"step": {"force": 3.0, "force_after": 2 * 3600.0}}
+WARMER = {"thermal_drift": {"force": 0.2}}
 
 
 @pytest.mark.parametrize(
-    ("order", "degrees", "added"),
-    [(1, 0, 2.0), (1, 90, 1.0), (2, 45, 1.0), (2, 90, -2.0), (3, 30, 1.0), (3, 60, -2.0)],
-)
-def test_a_wave_of_order_one_to_three(order: int, degrees: float, added: float) -> None:
-    """1 N of sine and 2 N of cosine, at a quarter of the wave and at its half."""
-    wave = {"periodic_order": {"force_sine": 1.0, "force_cosine": 2.0, "force_order": order}}
-    assert shown(BAR, wave, angle=math.radians(degrees))["force"] == pytest.approx(10 + added)
-
-
-@pytest.mark.parametrize(("hours", "force"), [(1.9, 10.0), (2.0, 13.0), (7.0, 13.0)])
-def test_a_step_stays(hours: float, force: float) -> None:
-    step = {"step": {"force": 3.0, "force_after": 2 * 3600.0}}
-    assert shown(BAR, step, time=hours * 3600)["force"] == pytest.approx(force)
+    ("model", "effects", "values", "read"),
+    [
+        # 2 um and 4 um at the top; 70 degC. A gain of a level counts from 0 degC: 1 % of 70 degC is 0.7 K
+        (SHAFT, {}, {}, TOP),
+        (SHAFT, {"sensor_offset": {"height_right": 3e-6, "warmth": -2.0}}, {},
+         {**TOP, "height_right": 7e-6, "warmth": 341.15}),
+        (SHAFT, {"sensor_gain": {"height_left": 0.5, "warmth": 0.01}}, {},
+         {**TOP, "height_left": 3e-6, "warmth": 343.85}),
+        # 10 N + 0.5 N/h over 4 h; (10 N + 2 N) * 1.1: the offset comes before the gain
+        (BAR, {"sensor_drift": {"force": 0.5 / 3600}}, {"time": 4 * 3600.0}, {"force": 12.0}),
+        (BAR, {"sensor_gain": {"force": 0.1}, "sensor_offset": {"force": 2.0}}, {}, {"force": 13.2}),
+        # 0.2 N/K: 5 K above 20 degC are 1 N. 3 um/K: the oil 2 K below its default of 60 degC takes 6 um off
+        (BAR, WARMER, {}, {"force": 10.0}),
+        (BAR, WARMER, {"temperature": 298.15}, {"force": 11.0}),
+        (SHAFT, {"thermal_drift": {"height_left": 3e-6}}, {"oil": "58 degC"},
+         {**TOP, "height_left": -4e-6, "warmth": 341.15}),
+        # 1 N of sine and 2 N of cosine, at a quarter of the wave and at its half
+        *((BAR, {"periodic_order": {"force_sine": 1.0, "force_cosine": 2.0, "force_order": order}},
+           {"angle": math.radians(degrees)}, {"force": 10 + added}) for order, degrees, added in WAVES),
+        # a step stays
+        *((BAR, STEP, {"time": hours * 3600}, {"force": force}) for hours, force in ((1.9, 10), (2.0, 13), (7.0, 13))),
+    ],
+)  # fmt: skip
+def test_what_an_effect_adds_to_a_reading(
+    model: Model[Any, Any], effects: dict[str, dict[str, float]], values: dict[str, Any], read: dict[str, float]
+) -> None:
+    found_ = shown(model, effects, **values)
+    assert {name: found_[name] for name in read} == pytest.approx(read)
 
 
 def test_rows_have_their_own_unknowns_conditions_and_inputs() -> None:
@@ -584,9 +574,8 @@ def _lifted(bar: Bar, base: Pull, *, lift: Float, turn: Float) -> Pull:
 
 def test_an_effect_without_parts_needs_every_unknown() -> None:
     own = Effect("own", on_reading=_any, unknowns=[Unknown("zero", -1, 1, "N"), Unknown("other", -1, 1, "N")])
-    model = replace(BAR, errors=[own])
     with pytest.raises(UsageError, match="effect 'own' is on, so its unknown 'other' must be given"):
-        evaluate(replace(default_setup(model), effects=(SwitchedOn(own, {"zero": 0.1}),)), reading=True)
+        evaluate(replace(default_setup(replace(BAR, errors=[own])), effects=(SwitchedOn(own, {"zero": 0.1}),)))
 
 
 def _any(bar: Bar, base: Pull, **unknowns: Float) -> Pull:

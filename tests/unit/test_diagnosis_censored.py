@@ -87,11 +87,11 @@ def test_a_fit_and_its_noise_are_those_of_the_tobit_likelihood(tmp_path: Path, l
 
 
 def test_a_diagnosis_of_a_clipped_gauge_names_the_cause_with_its_size(tmp_path: Path) -> None:
-    bench = wide(150, seed=43)
+    bench = wide(90, seed=43)
     true = gauge(bench.load, bench.travel) + 0.4 * (bench.temperature - 20)
-    true += np.random.default_rng(43).normal(0, 1, 150)
+    true += np.random.default_rng(43).normal(0, 1, 90)
     options = DiagnoseOptions(clipped={"deflection": (-10 * UM, 10 * UM)})
-    one = Asked(drive_model(["thermal_growth", "clearance"]), diagnose=options)
+    one = Asked(drive_model(["thermal_growth"], {"contact": "3 %"}), diagnose=options)
     found = one.diagnosed(tmp_path, bench.columns(np.clip(true, -10, 10)))
     (cause,) = found.causes
     assert names_in(found) == {"thermal_growth", "thermal_drift"}  # of the gauge: one curve
@@ -101,27 +101,22 @@ def test_a_diagnosis_of_a_clipped_gauge_names_the_cause_with_its_size(tmp_path: 
     (wrong,) = found.wrong
     assert wrong.noise_floor.value == pytest.approx(1 * UM, rel=0.2)
     cut = int((np.abs(true) >= 10).sum())
-    words = f"{cut} of 150 readings of 'deflection' are censored: the true value lies beyond what was read"
+    words = f"{cut} of 90 readings of 'deflection' are censored: the true value lies beyond what was read"
     assert words in found.records.notes
 
 
 # Rows
 
 
-def test_a_censored_row_cuts_the_memory_of_the_noise(tmp_path: Path) -> None:
-    one, records = clipped_record(tmp_path, clipped={"deflection": (-np.inf, END * UM)})
+@pytest.mark.parametrize("lowest", [-np.inf, -END])
+def test_a_censored_row_cuts_the_memory_of_the_noise_and_lies_at_the_end(tmp_path: Path, lowest: float) -> None:
+    one, records = clipped_record(tmp_path, clipped={"deflection": (lowest * UM, END * UM)})
     (channel,) = laid_out(calibration_of(one.setup, records)).sample.channels
-    is_cut = TRUE >= END
-    assert_array_equal(records.sides["deflection"], is_cut)
-    assert_array_equal(channel.starts, is_cut | np.append(True, is_cut[:-1]))
-    assert records.readings == 60 - is_cut.sum()
-
-
-def test_a_reading_beyond_the_end_is_one_at_the_end(tmp_path: Path) -> None:
-    one = Asked(drive_model(), diagnose=DiagnoseOptions(clipped={"deflection": (-END * UM, END * UM)}))
-    records = one.records(tmp_path, BENCH.columns(TRUE))
-    assert_allclose(np.abs(records.measured["deflection"]).max(), END * UM)
-    assert_array_equal(records.sides["deflection"], np.where(TRUE >= END, 1, np.where(TRUE <= -END, -1, 0)))
+    sides = np.where(TRUE >= END, 1, np.where(lowest >= TRUE, -1, 0))
+    assert_array_equal(records.sides["deflection"], sides)
+    assert_array_equal(channel.starts, (sides != 0) | np.append(True, sides[:-1] != 0))
+    assert records.readings == 60 - np.count_nonzero(sides)
+    assert_allclose(records.measured["deflection"], np.clip(TRUE, lowest, END) * UM)
 
 
 FLAGS: dict[str, tuple[str, Callable[[bool], str]]] = {

@@ -201,11 +201,6 @@ def test_curves_over_several_numbers_count_by_the_spectrum_of_their_inner_produc
 # Shapes that nobody registered: which there are, what they calculate, and what is said in their place.
 
 
-def machine(folder: Path, bench: Bench, effects: Sequence[str] = ()) -> Calibration:
-    one = Asked(drive_model(effects, {}))
-    return calibration_of(one.setup, one.records(folder, bench.shown()))
-
-
 def of_kind(found: Sequence[Candidate], kind: str, *on: str) -> list[Candidate]:
     """The shapes of one kind, over these covariates if any are named."""
     return [
@@ -236,7 +231,7 @@ def test_orders_above_the_sampling_are_not_looked_for(tmp_path: Path) -> None:
     bench = replace(wide(96, turning=True), rotation=np.tile(np.arange(0.0, 360, 30), 8))
     ends = []
     for each in (bench, wide(96, turning=True)):
-        there = machine(tmp_path, each)
+        there = calibration(asked(), tmp_path, each)
         (order,) = of_kind(shapes_of(there.records, {"rotation": (1, 2, 3)}, has_steps=True), "order")
         assert order.numbers[-1].whole
         ends.append((order.numbers[-1].low, order.numbers[-1].high))
@@ -248,7 +243,7 @@ TURNING = wide(80, turning=True)
 
 def test_every_shape_over_what_moved_and_nothing_over_what_stood_still(tmp_path: Path) -> None:
     bench = replace(TURNING, temperature=np.full(80, 23.0))
-    found = shapes_of(machine(tmp_path, bench).records, {}, has_steps=False)
+    found = shapes_of(calibration(asked(), tmp_path, bench).records, {}, has_steps=False)
     kinds = {(each.shape.kind, each.shape.depends_on) for each in found if each.shape}
     moved = {("load",), ("travel",), ("rotation",), ("time",)}
     assert {depends for kind, depends in kinds if kind == "trend"} == moved
@@ -258,11 +253,11 @@ def test_every_shape_over_what_moved_and_nothing_over_what_stood_still(tmp_path:
     assert {depends for kind, depends in kinds if kind in {"jump", "kink", "dead zone"}} == {("load",)}
     assert not any("temperature" in depends for _, depends in kinds)
     assert len({each.tag for each in found}) == len(found)
-    assert not of_kind(shapes_of(machine(tmp_path, bench).records, {}, has_steps=True), "step")
+    assert not of_kind(shapes_of(calibration(asked(), tmp_path, bench).records, {}, has_steps=True), "step")
 
 
 def test_printed_terms_are_what_is_calculated(tmp_path: Path) -> None:
-    there = machine(tmp_path, TURNING)
+    there = calibration(asked(), tmp_path, TURNING)
     covariates = there.records.covariates
     values = {name: item.values for name, item in covariates.items()}
     for each in shapes_of(there.records, {}, has_steps=False):
@@ -299,7 +294,7 @@ def test_a_shape_draws_what_its_kind_says(
     tmp_path: Path, kind: str, on: str, shape: list[float], columns: list[Array]
 ) -> None:
     """The columns by hand, in kN, h and mm, span what the terms of the smallest shape of the kind do."""
-    there = machine(tmp_path, TURNING)
+    there = calibration(asked(), tmp_path, TURNING)
     smallest = min(
         of_kind(shapes_of(there.records, {}, has_steps=False), kind, *on.split()), key=lambda each: each.size
     )
@@ -356,16 +351,6 @@ def two_files(folder: Path, one: Asked) -> tuple[Records, Array]:
     return read_records(paths, offer_of(one.model), one.setup), np.concatenate([bench.travel for bench in benches])
 
 
-# Numbers
-
-
-def test_a_cause_has_the_numbers_of_its_effect_in_si(tmp_path: Path) -> None:
-    rise, constant = effect_of(calibration(asked(["warm_up"]), tmp_path, wide(60)), "warm_up").numbers
-    assert_allclose([rise.low, rise.high, constant.low, constant.high], [-1e-3, 1e-3, 360, 72_000])
-    assert (rise.is_amplitude, rise.is_free, rise.is_log) == (True, True, False)
-    assert (constant.is_amplitude, constant.is_free, constant.is_log) == (False, True, True)
-
-
 @pytest.mark.parametrize("per_file", [("lead_error",), ("lead_error.lead",)])
 def test_an_unknown_of_every_file_is_a_number_for_each(tmp_path: Path, per_file: tuple[str, ...]) -> None:
     one = asked(["lead_error"])
@@ -400,22 +385,21 @@ def test_an_input_of_every_file_is_a_machine_for_each(tmp_path: Path) -> None:
     assert_allclose(made["deflection"] - there.base["deflection"], 2 * slopes[:, 1], rtol=1e-6, atol=1e-15)
 
 
-def test_an_input_that_moves_nothing_is_no_cause(tmp_path: Path) -> None:
+def test_causes_are_the_models_first_then_the_kernels_with_their_numbers_in_si(tmp_path: Path) -> None:
     there = calibration(
-        asked(tolerances={"contact": "3 %", "zero": "5 um"}), tmp_path, replace(wide(30), load=np.zeros(30))
-    )
-    assert [cause.name for cause in inputs_of(there)] == ["input:zero"]
-
-
-# Which
-
-
-def test_causes_are_the_models_first_then_the_kernels_and_their_tags_differ(tmp_path: Path) -> None:
-    found = effects_of(calibration(asked(["wear", "lead_error"]), tmp_path, wide(60)))
-    assert [cause.name for cause in found][:2] == ["wear", "lead_error"]
+        asked(["wear", "warm_up"], tolerances={"contact": "3 %", "zero": "5 um"}), tmp_path,
+        replace(wide(60), load=np.zeros(60)),
+    )  # fmt: skip
+    found = effects_of(there)
+    assert [cause.name for cause in found][:2] == ["wear", "warm_up"]
     assert [cause.is_kernel for cause in found] == [False, False, *[True] * (len(found) - 2)]
     assert len({cause.tag for cause in found}) == len(found)
     assert [cause.order for cause in found] == sorted(cause.order for cause in found)
+    rise, constant = found[1].numbers
+    assert_allclose([rise.low, rise.high, constant.low, constant.high], [-1e-3, 1e-3, 360, 72_000])
+    assert (rise.is_amplitude, rise.is_free, rise.is_log) == (True, True, False)
+    assert (constant.is_amplitude, constant.is_free, constant.is_log) == (False, True, True)
+    assert [cause.name for cause in inputs_of(there)] == ["input:zero"]  # the contact moves nothing without a load
 
 
 # Names of one curve
@@ -429,7 +413,7 @@ def named(one: Asked, folder: Path, bench: Bench, error: Array) -> list[set[str]
 
 
 def test_of_two_of_the_model_the_first_declared_and_the_one_with_fewer_unknowns_goes_first(tmp_path: Path) -> None:
-    bench = wide(120)
+    bench = replace(wide(60), temperature=np.full(60, 20.0))  # what never changes costs no search
     error = 0.1 * bench.travel
     several = asked(["lead_error"], more=["skewed", "lead_again"])
     assert named(several, tmp_path, bench, error) == [{"first: lead_error", "lead_again", "skewed"}]
@@ -438,7 +422,7 @@ def test_of_two_of_the_model_the_first_declared_and_the_one_with_fewer_unknowns_
 
 
 def test_curves_that_differ_only_by_what_is_tolerated_are_one(tmp_path: Path) -> None:
-    bench = wide(120)
+    bench = replace(wide(60), travel=np.zeros(60))
     warmer = replace(bench, temperature=27 + 2.5 * bench.time)  # growth is a drift and an offset
     error = 4 * (warmer.temperature - 20)
     apart = named(asked(["thermal_growth"]), tmp_path, warmer, error)
@@ -447,10 +431,13 @@ def test_curves_that_differ_only_by_what_is_tolerated_are_one(tmp_path: Path) ->
     assert alike == [{"first: sensor_drift", "thermal_growth", "thermal_drift"}]
 
 
-def test_the_first_order_of_a_gauge_goes_by_the_name_of_the_models_own(tmp_path: Path) -> None:
+@pytest.mark.parametrize(("order", "names"), [
+    (1, {"first: eccentricity", "periodic_order_of_rotation"}), (2, {"first: periodic_order_of_rotation"}),
+])  # fmt: skip
+def test_the_first_order_of_a_gauge_goes_by_the_name_of_the_models_own(
+    tmp_path: Path, order: int, names: set[str]
+) -> None:
     """Two numbers and no order claim less than an order that could have been another; orders 2 and 3 stay apart."""
-    bench, one = wide(150, turning=True), asked(["lead_error"], more=["eccentricity"])
-    first = 8 * np.sin(np.radians(bench.rotation) + 0.7)
-    assert named(one, tmp_path, bench, first) == [{"first: eccentricity", "periodic_order_of_rotation"}]
-    second = 8 * np.sin(2 * np.radians(bench.rotation) + 0.7)
-    assert named(one, tmp_path, bench, second) == [{"first: periodic_order_of_rotation"}]
+    bench = wide(90, turning=True)
+    wave = 8 * np.sin(order * np.radians(bench.rotation) + 0.7)
+    assert named(asked(more=["eccentricity"]), tmp_path, bench, wave) == [names]

@@ -52,7 +52,7 @@ def test_gross_errors_on_one_side_are_listed_with_their_rows_and_rarely_taken_fo
     alarms = listed = wrong = others = 0
     for seed in GROSS_SEEDS:
         columns, rows = gross_errors(seed)
-        asked = Asked(drive_model(), seed=seed)
+        asked = Asked(drive_model(["lead_error", "clearance"]), seed=seed)
         found = diagnose(asked.setup, asked.records(tmp_path, columns))
         named = {line - 2 for file, line in found.wrong[0].noise.outliers if Path(file).name == "measured.csv"}
         listed, wrong, others = listed + len(named & rows), wrong + len(rows), others + len(named - rows)

@@ -16,6 +16,7 @@ import pytest
 from diagnosis_models import (
     EFFECTS,
     TOLERANCES,
+    Array,
     Asked,
     Deflection,
     Drive,
@@ -28,7 +29,7 @@ from diagnosis_models import (
 )
 from numpy.testing import assert_allclose
 
-from truing import Effect, Float, Model, Tolerance, Unknown, found, given, inputs, normal, results
+from truing import Effect, Float, Model, Tolerance, Unknown, normal
 from truing.diagnosis import engine, machine
 from truing.diagnosis import extended as under_test
 from truing.diagnosis.causes import Candidate, effects_of
@@ -79,24 +80,15 @@ def test_a_search_looks_at_one_row_of_every_stretch(tmp_path: Path, monkeypatch:
     assert (few.lines == records.lines[taken]).all()
     assert len(np.unique(np.diff(taken))) > 3  # no regular step, which would fold a wave into another one
     assert engine.searched(few, seed=1) is few
-
-
-def test_a_record_along_an_axis_of_the_model_is_searched_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Its rows are one path: of some of them the model would draw another one."""
-    bench, asked = wide(130), Asked(drive_model(("lead_error",)))
-    records = asked.records(tmp_path, bench.columns(0.0 * bench.time))
-    assert engine.searched(records, seed=1) is records
-    monkeypatch.setattr(engine, "LONG", 40)
-    assert len(engine.searched(records, seed=1)) == 40
     along = replace(records, rows=replace(records.rows, series=("travel",)))
-    assert engine.searched(along, seed=1) is along
+    assert engine.searched(along, seed=1) is along  # its rows are one path: of some the model would draw another one
 
 
 def test_what_a_search_of_some_rows_came_to_is_fitted_to_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(engine, "LONG", 80)
     bench, asked = wide(300), Asked(drive_model(("lead_error",), {}))
     error = 0.03 * bench.travel + np.random.default_rng(9).normal(size=300)
-    found = asked.diagnosed(tmp_path, bench.shown(error))
+    found = asked.diagnosed(tmp_path, bench.drawn(error))
     assert name_sets(found) == [{"lead_error"}]
     exact = bench.travel @ error / (bench.travel @ bench.travel)  # by all rows
     (size,) = found.causes[0].unknowns
@@ -127,9 +119,9 @@ def calls_of(tmp_path: Path, extra: int, tolerances: Mapping[str, str]) -> int:
     spreads = [Tolerance(name, normal(sd=sd), why="drawing") for name, sd in tolerances.items()]
     errors: list[Any] = [*spreads, EFFECTS["lead_error"], *(ripple(order) for order in range(1, extra + 1))]
     asked = Asked(Model(name="drive", title="Deflection of a screw drive", function=counting, errors=errors))
-    bench = wide(80)
-    error = 0.03 * bench.travel + np.random.default_rng(8).normal(size=80)
-    records = asked.records(tmp_path, bench.shown(error))
+    bench = wide(50)
+    error = 0.03 * bench.travel + np.random.default_rng(8).normal(size=50)
+    records = asked.records(tmp_path, bench.drawn(error))
     calls.clear()
     found = diagnose(asked.setup, records)
     assert [cause.effect for cause in found.causes] == ["lead_error"]
@@ -137,21 +129,18 @@ def calls_of(tmp_path: Path, extra: int, tolerances: Mapping[str, str]) -> int:
     return len(calls)
 
 
-def test_effects_on_results_cost_no_call_of_a_slow_model_however_many_pairs_there_are(tmp_path: Path) -> None:
-    """What acts after the model needs it for the rows alone, whatever the size of the effect: of 21 pairs none.
+@pytest.mark.parametrize(("tolerances", "extra", "most", "most_more"), [({}, 6, 1, 2 * 6), (TOLERANCES, 5, 300, 5 * 5)])
+def test_effects_on_results_cost_few_calls_of_a_slow_model_however_many_pairs_there_are(
+    tmp_path: Path, tolerances: Mapping[str, str], extra: int, most: int, most_more: int
+) -> None:
+    """What acts after the model needs it for the rows alone, whose answer is known since they were read.
 
-    Of an effect that was not fitted the model is asked twice whether it fails with it.
+    Of an effect that was not fitted the model is asked twice whether it fails with it. Where inputs have tolerances
+    every explanation that is fitted has inputs of its own, and the model is called there; not for all of ten pairs.
     """
-    none, six = (calls_of(tmp_path, extra, {}) for extra in (0, 6))
-    assert none <= 1  # the answer to the rows is known since they were read
-    assert six <= 1 + 2 * 6
-
-
-def test_where_inputs_have_tolerances_a_further_effect_costs_a_few_calls(tmp_path: Path) -> None:
-    """Every explanation that is fitted has inputs of its own, and the model is called there; not for every pair."""
-    none, ten = (calls_of(tmp_path, extra, TOLERANCES) for extra in (0, 10))
-    assert none < 300
-    assert ten - none <= 5 * 10  # of 45 pairs more
+    none, more = (calls_of(tmp_path, effects, tolerances) for effects in (0, extra))
+    assert none <= most
+    assert more - none <= most_more
 
 
 def test_every_linear_algebra_has_one_thread_in_a_fresh_process() -> None:
@@ -187,57 +176,35 @@ except Held as held:
 LOADS = np.linspace(-20, 20, 40)
 
 
-@inputs
-class Beam:
-    """A beam with a support that gives way."""
-
-    load: Float = given(0.0, "N")
-    stiffness: Float = given(4.0, "N/mm", above=0)
-    yielding: Float = given(0.0, "mm/N")
+def shift(before: Drive, *, more: Float) -> Drive:
+    return replace(before, zero=before.zero + more)
 
 
-@results
-class Sag:
-    """How far it sags."""
-
-    sag: Float = found("mm")
+def reset(before: Drive, *, amount: Float) -> Drive:
+    """It sets what the shift adds to: beside that one it undoes what it adds. Beyond 1 mm there is no answer."""
+    return replace(before, zero=np.where(np.asarray(amount) > 1e-3, np.nan, amount))
 
 
-def beam(given: Beam) -> Sag:
-    return Sag(sag=given.load / given.stiffness + given.yielding * given.load)
-
-
-def softening(before: Beam, *, share: Float) -> Beam:
-    return replace(before, stiffness=before.stiffness * (1 - share))
-
-
-def support(before: Beam, *, more: Float) -> Beam:
-    return replace(before, yielding=before.yielding + more)
-
-
-def replaced_support(before: Beam, *, amount: Float) -> Beam:
-    """It sets what the other support adds to: beside that one it undoes what it adds."""
-    return replace(before, yielding=amount)
-
-
-BEAM = Model(
-    name="together_beam", title="Beam", summary="A beam on a support.", function=beam, cites=["none"],
+SHIFTED = replace(
+    drive_model(["stiffness_loss"], {}),
     errors=[
-        Effect("softening", on_inputs=softening, looks_like="too soft", unknowns=[Unknown("share", 0, 1)]),
-        Effect("support", on_inputs=support, looks_like="gives way", unknowns=[Unknown("more", 0, 1, "mm/N")]),
-        Effect(
-            "replaced_support", on_inputs=replaced_support, looks_like="gives way",
-            unknowns=[Unknown("amount", 0, 1, "mm/N")],
-        ),
+        EFFECTS["stiffness_loss"],
+        Effect("shift", on_inputs=shift, unknowns=[Unknown("more", 0, 2, "mm")]),
+        Effect("reset", on_inputs=reset, unknowns=[Unknown("amount", 0, 2, "mm")]),
     ],
-)  # fmt: skip
+)
+
+
+def shown_at(loss: float = 0.0, offset: float = 0.0) -> Array:
+    """What the gauge shows at LOADS, SI, with a loss of stiffness and an offset, by the formula of the textbook."""
+    return np.asarray(1e-6 * gauge((1 + loss) * LOADS, 0 * LOADS) + offset)
 
 
 @pytest.fixture
 def asked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Extended, dict[str, Candidate], list[int]]:
-    """The beam as a diagnosis asks it, its causes by name, and by call the number of points."""
-    one = Asked(BEAM, units={"load": "N", "sag": "mm"})
-    machine = calibration_of(one.setup, one.records(tmp_path, {"load": LOADS, "sag": LOADS / 4}))
+    """The drive as a diagnosis asks it, its causes by name, and by call the number of points."""
+    one = Asked(SHIFTED)
+    machine = calibration_of(one.setup, one.records(tmp_path, {"load": LOADS, "deflection": 1e6 * shown_at()}))
     calls: list[int] = []
     ask = under_test.predict_each
 
@@ -258,60 +225,58 @@ Points = tuple[str, list[float]]
 
 
 @pytest.mark.parametrize(
-    ("points", "compliances", "offsets", "calls"),
+    ("points", "expected", "calls"),
     [
         (  # points of the same causes are one call, and what is known is not asked again
-            [("softening", [0.5]), ("softening", [0.2]), ("softening sensor_offset", [0.2, 1e-3]),
-             ("softening", [0.2]), ("softening", [0.75])],
-            [1 / 2e3, 1 / 3.2e3, 1 / 3.2e3, 1 / 3.2e3, 1 / 1e3], [0.0, 0.0, 1e-3, 0.0, 0.0], [3, 1],
+            [("stiffness_loss", [0.5]), ("stiffness_loss", [0.2]), ("stiffness_loss sensor_offset", [0.2, 1e-3]),
+             ("stiffness_loss", [0.2]), ("stiffness_loss", [0.75])],
+            [(0.5, 0.0), (0.2, 0.0), (0.2, 1e-3), (0.2, 0.0), (0.75, 0.0)], [3, 1],
         ),
         (  # effects act where they are asked for alone: one sets what another one adds to, and is declared later
-            [("support", [2e-4]), ("replaced_support support", [1e-4, 2e-4]), ("replaced_support", [1e-4])],
-            [1 / 4e3 + 2e-4, 1 / 4e3 + 1e-4, 1 / 4e3 + 1e-4], [0.0] * 3, [1, 1, 1],
+            [("shift", [2e-4]), ("reset shift", [1e-4, 2e-4]), ("reset", [1e-4])],
+            [(0.0, 2e-4), (0.0, 1e-4), (0.0, 1e-4)], [1, 1, 1],
         ),
         (  # causes that come in another order are not mistaken for one another
-            [("softening support", [0.5, 0.25]), ("support softening", [0.5, 0.25]),
-             ("support softening", [0.25, 0.5])],
-            [1 / 2e3 + 0.25, 1 / 3e3 + 0.5, 1 / 2e3 + 0.25], [0.0] * 3, [2],
+            [("stiffness_loss shift", [0.5, 0.25]), ("shift stiffness_loss", [0.5, 0.25]),
+             ("shift stiffness_loss", [0.25, 0.5])],
+            [(0.5, 0.25), (0.25, 0.5), (0.5, 0.25)], [2],
         ),
         (  # a point at which the model has no answer leaves the others theirs
-            [("softening", [0.2]), ("softening", [1.0]), ("softening", [0.5])],
-            [1 / 3.2e3, np.nan, 1 / 2e3], [0.0] * 3, [3],
+            [("reset", [1e-4]), ("reset", [2e-3]), ("reset", [2e-4])],
+            [(0.0, 1e-4), (0.0, np.nan), (0.0, 2e-4)], [3],
         ),
     ],
     ids=["one call", "alone", "order", "no answer"],
 )  # fmt: skip
 def test_points_that_are_asked_at_one_time_are_answered_as_alone(
     asked: tuple[Extended, dict[str, Candidate], list[int]],
-    points: list[Points], compliances: list[float], offsets: list[float], calls: list[int],
+    points: list[Points], expected: list[tuple[float, float]], calls: list[int],
 ) -> None:  # fmt: skip
     extended, causes, counted = asked
     answers = extended.at_each(
         [request(extended, [causes[name] for name in names.split()], at) for names, at in points]
     )
     assert counted == calls
-    for (shown,), compliance, offset in zip(answers, compliances, offsets, strict=True):
-        expected = compliance * LOADS + offset
-        assert np.isnan(shown["sag"]).any() if np.isnan(compliance) else np.allclose(shown["sag"], expected, rtol=1e-12)
+    for (shown,), known in zip(answers, expected, strict=True):
+        assert_allclose(shown["deflection"], shown_at(*known), rtol=1e-9, atol=1e-15)
 
 
 def test_searches_that_end_at_different_times_each_return_their_own(
     asked: tuple[Extended, dict[str, Candidate], list[int]],
 ) -> None:
     extended, causes, calls = asked
-    soft = causes["softening"]
+    soft = causes["stiffness_loss"]
 
     def asking(share: float, rounds: int) -> Asking[list[float]]:
         largest = []
         for turn in range(rounds):
             (shown,) = yield request(extended, [soft], [share * (turn + 1)])
-            largest.append(float(shown["sag"].max()))
+            largest.append(float(shown["deflection"].max()))
         return largest
 
     made = together(extended, [asking(0.125, 3), asking(0.25, 0), asking(0.375, 1)])
-    expected = [[20 / 4e3 / (1 - share) for share in shares] for shares in ([0.125, 0.25, 0.375], [], [0.375])]
-    for own, right in zip(made, expected, strict=True):
-        np.testing.assert_allclose(own, right, rtol=1e-12)
+    for own, shares in zip(made, ([0.125, 0.25, 0.375], [], [0.375]), strict=True):
+        assert_allclose(own, [shown_at(share).max() for share in shares], rtol=1e-9)
     assert calls == [2, 1], "the last point is known by then"
 
 
@@ -319,7 +284,7 @@ def test_without_one_of_its_causes_the_rest_of_an_explanation_is_held(
     asked: tuple[Extended, dict[str, Candidate], list[int]],
 ) -> None:
     extended, causes, _ = asked
-    soft, adds = causes["softening"], causes["support"]
+    soft, adds = causes["stiffness_loss"], causes["shift"]
     sample = sample_of(extended.machine, first_noise(extended.machine), np.ones(len(LOADS), dtype=bool))
     both, values = (soft, adds), [np.array([0.5]), np.array([2e-4])]
     fit = alone(extended, fitting(sample, extended, both, values, held=[*soft.numbers, *adds.numbers]))
@@ -327,10 +292,10 @@ def test_without_one_of_its_causes_the_rest_of_an_explanation_is_held(
     held = held_without(fit, 0, sample, extended)
     assert held.causes == (adds,)
     np.testing.assert_array_equal(held.of(adds), [2e-4])
-    np.testing.assert_allclose(held.predicted["sag"], LOADS * (1 / 4e3 + 2e-4), rtol=1e-12)
+    assert_allclose(held.predicted["deflection"], shown_at(offset=2e-4), rtol=1e-9)
 
 
 def test_readings_that_the_model_meets_to_the_last_digit_have_nothing_wrong(tmp_path: Path) -> None:
-    one = Asked(BEAM, units={"load": "N", "sag": "mm"})
-    answer = diagnose(one.setup, one.records(tmp_path, {"load": LOADS, "sag": LOADS / 4}))
+    one = Asked(SHIFTED)
+    answer = one.diagnosed(tmp_path, {"load": LOADS, "deflection": 1e6 * shown_at()})
     assert (answer.verdict, answer.causes, answer.p_any, answer.warnings) == ("none", (), 1.0, ())

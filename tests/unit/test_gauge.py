@@ -84,6 +84,17 @@ WALL = Model(
 )
 
 
+def offer_of(model: Model[Any, Any]) -> Offer:
+    return Offer(model.name, model, Origin(model.name, "1.0", "", "", f"module:{model.name}"))
+
+
+def rows_for(model: Model[Any, Any], folder: Path, text: str, stated: str = "[inputs]\n") -> tuple[Setup, RowsFile]:
+    """Read rows for a model."""
+    (folder / "rows.csv").write_text(text)
+    setup = setup_from_text(stated, offer_of(model), file="given.toml", folder=folder)
+    return setup, read_rows(folder / "rows.csv", offer_of(model), setup)
+
+
 Gauge = Callable[..., Shown]
 
 
@@ -91,12 +102,8 @@ Gauge = Callable[..., Shown]
 def gauge(tmp_path: Path) -> Gauge:
     """Read rows for a model and return what its gauge shows."""
 
-    def show(model: Model, rows: str, inputs_text: str = "[inputs]\n") -> Shown:
-        offer = Offer(model.name, model, Origin(model.name, "", "", "", f"module:{model.name}"))
-        path = tmp_path / "rows.csv"
-        path.write_text(rows)
-        setup = setup_from_text(inputs_text, offer, file="given.toml", folder=tmp_path)
-        return shown_by_gauge(setup, read_rows(path, offer, setup))
+    def show(model: Model[Any, Any], rows: str, stated: str = "[inputs]\n") -> Shown:
+        return shown_by_gauge(*rows_for(model, tmp_path, rows, stated))
 
     return show
 
@@ -110,18 +117,15 @@ def test_rows_replace_inputs_and_come_back_in_printed_units(gauge: Gauge) -> Non
 
 
 def test_results_along_an_axis_are_read_at_the_place_of_the_row(gauge: Gauge) -> None:
-    rows = "depth [mm],flux [W/m^2]\n0,10\n50,10\n50,30\n100,10\n101,10\n"
+    rows = "depth [mm],flux [W/m^2]\n0,10\n50,10\n50,30\n100,10\n101,10\n,10\n"
     shown = gauge(WALL, rows, '[inputs]\npressing = ["1 N", "1 N", "1 N"]\n')
-    np.testing.assert_allclose(shown.values["temperature"], [20, 20.5, 21.5, 21, np.nan])
-    np.testing.assert_allclose(shown.values["inside"], [21, 21, 23, 21, 21])
+    np.testing.assert_allclose(shown.values["temperature"], [20, 20.5, 21.5, 21, np.nan, np.nan])
+    np.testing.assert_allclose(shown.values["inside"], [21, 21, 23, 21, 21, 21])
     assert "depth" not in shown.values
-    assert shown.reasons == {4: "'temperature' cannot be read at this row: it lies beyond the axis 'depth'"}
-
-
-def test_a_row_without_its_place_says_so(gauge: Gauge) -> None:
-    shown = gauge(WALL, "depth [mm],flux [W/m^2]\n,10\n50,10\n", '[inputs]\npressing = ["1 N", "1 N", "1 N"]\n')
-    np.testing.assert_allclose(shown.values["temperature"], [np.nan, 20.5])
-    assert shown.reasons == {0: "'temperature' cannot be read at this row: 'depth' is not given"}
+    assert shown.reasons == {
+        4: "'temperature' cannot be read at this row: it lies beyond the axis 'depth'",
+        5: "'temperature' cannot be read at this row: 'depth' is not given",
+    }
 
 
 def test_without_a_place_results_along_an_axis_are_left_out(gauge: Gauge) -> None:
@@ -147,13 +151,6 @@ def test_a_record_has_one_value_of_everything_else(gauge: Gauge) -> None:
 # As the engine asks: one machine, chosen results, SI
 
 
-def rows_for(model: Model, path: Path, text: str) -> tuple[Setup, RowsFile]:
-    offer = Offer(model.name, model, Origin(model.name, "", "", "", f"module:{model.name}"))
-    path.write_text(text)
-    setup = setup_from_text("[inputs]\n", offer, file="given.toml", folder=path.parent)
-    return setup, read_rows(path, offer, setup)
-
-
 def warm(given_: Wall, base: Course, *, slope: Float, room: Float) -> Course:
     """The probe reads warmer with the room."""
     return replace(base, inside=base.inside + slope * (room - 293.15), temperature=base.temperature + slope)
@@ -170,7 +167,7 @@ def test_a_condition_may_change_within_a_record(tmp_path: Path) -> None:
     )
     model = replace(WALL, errors=[effect])
     text = "depth [mm],pressing [N],room [degC]\n0,1,20\n50,2,22\n100,3,24\n"
-    setup, rows = rows_for(model, tmp_path / "rows.csv", text)
+    setup, rows = rows_for(model, tmp_path, text)
     on = replace(setup, effects=(SwitchedOn(effect, {"slope": 0.5}),))
     found = read_by_gauge(on, rows)
     np.testing.assert_allclose(found.results["inside"] - 273.15, [21, 22, 23])
@@ -182,20 +179,9 @@ def test_a_condition_may_change_within_a_record(tmp_path: Path) -> None:
 LOADS = "load [N],time [h]\n28,1\n56,2\n84,3\n"
 
 
-def counting() -> tuple[Callable[[Wall], Course], list[int]]:
-    """The calculation of the wall, and how many rows each call of it has had so far."""
-    calls: list[int] = []
-
-    def counted(given_: Wall) -> Course:
-        calls.append(np.size(given_.flux))
-        return wall(given_)
-
-    return counted, calls
-
-
 def test_each_trial_is_the_machine_with_that_input(tmp_path: Path) -> None:
     """Pressure is load over 28 mm^2; a measured column is replaced row by row, another input for all rows."""
-    setup, rows = rows_for(PIN_WEAR, tmp_path / "rows.csv", LOADS)
+    setup, rows = rows_for(PIN_WEAR, tmp_path, LOADS)
     changes = [{}, {"load": np.array([28.0, 28.0, 280.0])}, {"rate": 2e-8}, {"load": 14.0}]
     answers = [dict(each) for each in read_trials(setup, rows, changes, ["pressure", "depth"])]
     expected = [[1e6, 2e6, 3e6], [1e6, 1e6, 1e7], [1e6, 2e6, 3e6], [0.5e6] * 3]
@@ -214,77 +200,69 @@ def test_a_model_may_change_its_columns_in_place(tmp_path: Path, count: int) -> 
         given_.flux[...] -= 1.0
         return wall(given_)
 
-    setup, rows = rows_for(replace(WALL, function=colder), tmp_path / "rows.csv", "flux [W/m^2]\n10\n20\n30\n")
+    setup, rows = rows_for(replace(WALL, function=colder), tmp_path, "flux [W/m^2]\n10\n20\n30\n")
     value = np.broadcast_to(11.0, (3,))
     for answer in read_trials(setup, rows, [{"flux": value}] * count, ["inside"]):
         np.testing.assert_allclose(answer["inside"] - 293.15, [1, 1, 1])
     assert value[0] == 11.0
 
 
-def test_trials_are_one_call_and_not_too_many_rows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    counted, calls = counting()
-    setup, rows = rows_for(replace(WALL, function=counted), tmp_path / "rows.csv", "flux [W/m^2]\n10\n20\n30\n")
-    changes = [{"outside": 273.15 + place} for place in range(5)]
-    answers = list(read_trials(setup, rows, changes, ["inside"]))
-    assert calls == [15]
-    monkeypatch.setattr("truing.gauge.AT_ONCE", 7)
-    in_parts = list(read_trials(setup, rows, changes, ["inside"]))
-    assert calls[1:] == [6, 6, 3]
-    for place, (at_once, part) in enumerate(zip(answers, in_parts, strict=True)):
-        np.testing.assert_allclose(at_once["inside"] - 273.15, place + np.array([1, 2, 3]))
-        np.testing.assert_allclose(part["inside"], at_once["inside"])
+PLAIN = "flux [W/m^2]\n10\n20\n30\n"
+ALIKE = "depth [mm],flux [W/m^2]\n0,10\n50,20\n100,10\n100,20\n"
+RECORD = "run,depth [mm],pressing [N]\na,0,1\na,50,2\na,100,3\n"
+DIRT = effect_column("dirt", "offset")
+WARMER = [273.15 + place for place in range(5)]
+RISES = [[place + rise for rise in (1, 2, 3)] for place in range(-20, -15)]
 
 
-@pytest.mark.parametrize("text", ["depth [mm]\n0\n50\n100\n", "depth [mm],pressing [N]\n0,1\n50,2\n100,3\n"])
-def test_a_curve_is_calculated_once_for_all_rows_of_a_trial(tmp_path: Path, text: str) -> None:
-    """10 W/m^2 through 100 mm of 1 W/(m K) are one kelvin: half of it in the middle. The trials are one call."""
-    counted, calls = counting()
-    model = replace(WALL, function=counted)
-    setup, rows = rows_for(model, tmp_path / "rows.csv", text)
-    setup = setup.changed({"pressing": np.ones(3)})
-    answers = list(read_trials(setup, rows, [{"flux": 10.0}, {"flux": 20.0}], ["temperature"]))
-    np.testing.assert_allclose([each["temperature"] - 293.15 for each in answers], [[0, 0.5, 1], [0, 1, 2]], atol=1e-9)
-    assert calls == [2]
+@pytest.mark.parametrize(
+    ("text", "column", "values", "wanted", "answers", "calls"),
+    [
+        (PLAIN, "outside", WARMER, "inside", RISES, [15]),
+        (PLAIN, "outside", WARMER, "inside", RISES, [6, 6, 3]),
+        ("depth [mm]\n0\n50\n100\n", "flux", [10.0, 20.0], "temperature", [[0, 0.5, 1], [0, 1, 2]], [2]),
+        (RECORD, "flux", [10.0, 20.0], "temperature", [[0, 0.5, 1], [0, 1, 2]], [2]),
+        (PLAIN, "flux", [10.0, 20.0], "inside", [[1] * 3, [2] * 3], [2]),
+        (ALIKE, "outside", [293.15, 303.15], "temperature", [[0, 1, 1, 2], [10, 11, 11, 12]], [4]),
+        (
+            RECORD,
+            DIRT,
+            [np.full(3, float(size)) for size in range(40)],
+            "inside",
+            [[1 + k] * 3 for k in range(40)],
+            [1],
+        ),
+    ],
+    ids=["one call", "not too many rows", "a curve", "a record", "no column changes", "alike", "on the reading"],
+)
+def test_trials_are_few_calls(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, text: str, column: str, values: list[Any], wanted: str,
+    answers: list[list[float]], calls: list[int],
+) -> None:  # fmt: skip
+    """10 W/m^2 through 100 mm of 1 W/(m K) are one kelvin, half of it in the middle; beyond 20 degC."""
+    seen: list[int] = []
 
+    def counted(given_: Wall) -> Course:
+        seen.append(np.size(given_.flux))
+        return wall(given_)
 
-def test_what_no_column_changes_is_calculated_once_a_trial(tmp_path: Path) -> None:
-    counted, calls = counting()
-    setup, rows = rows_for(replace(WALL, function=counted), tmp_path / "rows.csv", "flux [W/m^2]\n10\n20\n30\n")
-    rows = replace(rows, columns={"of_another_effect": np.arange(3.0)})
-    answers = list(read_trials(setup, rows, [{"flux": 10.0}, {"flux": 20.0}], ["inside"]))
-    np.testing.assert_allclose([each["inside"] - 293.15 for each in answers], [[1] * 3, [2] * 3])
-    assert calls == [2]
-
-
-def test_rows_that_are_alike_are_one_calculation_along_an_axis(tmp_path: Path) -> None:
-    """Of 10 and 20 W/m^2 two kelvins are one third: four rows are two calculations, each read at its own places."""
-    counted, calls = counting()
-    text = "depth [mm],flux [W/m^2]\n0,10\n50,20\n100,10\n100,20\n"
-    setup, rows = rows_for(replace(WALL, function=counted), tmp_path / "rows.csv", text)
-    setup = setup.changed({"pressing": np.ones(3)})
-    plain, warm = read_trials(setup, rows, [{"outside": 293.15}, {"outside": 303.15}], ["temperature"])
-    np.testing.assert_allclose(plain["temperature"] - 293.15, [0, 1, 1, 2], atol=1e-9)
-    np.testing.assert_allclose(warm["temperature"] - 293.15, [10, 11, 11, 12], atol=1e-9)
-    assert calls == [4]
-
-
-def test_an_effect_on_the_reading_asks_for_no_record_again(tmp_path: Path) -> None:
-    """What dirt adds at 40 sizes is added to one record."""
-    counted, calls = counting()
-    text = "run,depth [mm],pressing [N]\na,0,1\na,50,2\na,100,3\n"
-    setup, rows = rows_for(replace(WALL, function=counted), tmp_path / "rows.csv", text)
-    on = setup.with_effects([SwitchedOn(WALL.known_effects["dirt"], {"offset": 0.0})])
-    changes = [{effect_column("dirt", "offset"): np.full(3, float(size))} for size in range(40)]
-    found = [each["inside"] for each in read_trials(on, rows, changes, ["inside"])]
-    np.testing.assert_allclose([each - found[0] for each in found], np.repeat(np.arange(40.0)[:, None], 3, axis=1))
-    assert calls == [1]
+    if len(calls) > 1:
+        monkeypatch.setattr("truing.gauge.AT_ONCE", 7)
+    setup, rows = rows_for(replace(WALL, function=counted), tmp_path, text)
+    others = {name: own for name, own in rows.columns.items() if name != column}
+    rows = replace(rows, columns={**others, "of_another_effect": np.arange(float(len(rows)))})
+    on = [SwitchedOn(WALL.known_effects["dirt"], {"offset": 0.0})] if column == DIRT else []
+    setup = (setup.changed({"pressing": np.ones(3)}) if "depth" in text else setup).with_effects(on)
+    told = [each[wanted] - 293.15 for each in read_trials(setup, rows, [{column: each} for each in values], [wanted])]
+    np.testing.assert_allclose(told, answers, atol=1e-9)
+    assert seen == calls
 
 
 def test_a_trial_in_which_the_model_fails_leaves_the_others(tmp_path: Path) -> None:
     def failing(given_: Wall) -> Course:
         return replace(wall(given_), inside=given_.outside + given_.flux / (given_.flux - 20.0))
 
-    setup, rows = rows_for(replace(WALL, function=failing), tmp_path / "rows.csv", "flux [W/m^2]\n10\n20\n30\n")
+    setup, rows = rows_for(replace(WALL, function=failing), tmp_path, "flux [W/m^2]\n10\n20\n30\n")
     plain, scaled = read_trials(setup, rows, [{}, {"flux": np.array([10.0, 40.0, 60.0])}], ["inside"])
     np.testing.assert_allclose(plain["inside"] - 293.15, [-1, np.nan, 3])
     np.testing.assert_allclose(scaled["inside"] - 293.15, [-1, 2, 1.5])
@@ -304,8 +282,6 @@ def history(derived: str, values: list[float], runs: list[int] | None = None, ti
     return derive(condition, column, None if runs is None else np.array(runs), clock).tolist()
 
 
-# Each kind, by hand
-
 KINDS: list[tuple[str, list[float], list[float]]] = [
     ("since_start", [5, 7, 4, 9], [0, 2, -1, 4]),
     ("running_maximum of x", [3, 1, 4, 1, 5], [3, 3, 4, 4, 5]),
@@ -323,60 +299,47 @@ KINDS: list[tuple[str, list[float], list[float]]] = [
 
 
 @pytest.mark.parametrize(("derived", "values", "seen"), KINDS)
-def test_what_has_been(derived: str, values: list[float], seen: list[float]) -> None:
+def test_what_has_been_whatever_the_order_of_the_rows(derived: str, values: list[float], seen: list[float]) -> None:
     assert history(derived, values) == seen
-
-
-# In time order, run by run
-
-
-@pytest.mark.parametrize(("derived", "values", "seen"), KINDS)
-def test_rows_out_of_order_are_the_same_rows(derived: str, values: list[float], seen: list[float]) -> None:
     order = np.random.default_rng(0).permutation(len(values))
     shuffled = history(derived, [values[row] for row in order], time=[60.0 * row for row in order])
     assert shuffled == [seen[row] for row in order]
 
 
-def test_history_begins_anew_with_every_run_but_the_start_is_that_of_the_file() -> None:
-    values, runs = [10.0, 1.0, 12.0, 3.0, 11.0, 2.0], [7, 3, 7, 3, 7, 3]
-    assert history("running_maximum of x", values, runs) == [10, 1, 12, 3, 12, 3]
-    assert history("cumulative of x", values, runs) == [0, 0, 2, 2, 3, 3]
-    assert history("direction of x", values, runs) == [1, 1, 1, 1, -1, -1]
-    assert history("last_reversal of x", values, runs) == [10, 1, 10, 1, 12, 3]
-    assert history("since_start", values, runs) == [0, -9, 2, -7, 1, -8]
-
-
-def test_the_earliest_row_of_the_file_is_the_start() -> None:
-    assert history("since_start", [30, 10, 20], [1, 2, 2], [8.0, 6.0, 7.0]) == [20, 0, 10]
-    assert history("since_start", [30, NAN, 20], time=[8.0, 6.0, 7.0])[::2] == [10, 0]
-    assert history("since_start", [6.0, 8.0], time=[NAN, NAN]) == [0, 2]
-
-
-def test_rows_without_a_time_come_last() -> None:
-    assert history("cumulative of x", [1, 9, 2], time=[0.0, NAN, 1.0]) == [0, 8, 1]
-
-
-# Missing values
+RUNS = ([10.0, 1.0, 12.0, 3.0, 11.0, 2.0], [7, 3, 7, 3, 7, 3], None)
+GAPS = ([NAN, 1, NAN, 4, 0], None, None)
+NEVER = ([NAN, NAN, 1.0], [1, 1, 2], None)
 
 
 @pytest.mark.parametrize(
-    ("derived", "seen"),
+    ("derived", "rows", "seen"),
     [
-        ("since_start", [NAN, 0, NAN, 3, -1]),
-        ("running_maximum of x", [NAN, 1, 1, 4, 4]),
-        ("cumulative of x", [NAN, 0, 0, 3, 7]),
-        ("direction of x", [1, 1, 1, 1, -1]),
-        ("last_reversal of x", [NAN, 1, 1, 1, 4]),
+        # history begins anew with every run, but the start is that of the file
+        ("running_maximum of x", RUNS, [10, 1, 12, 3, 12, 3]),
+        ("cumulative of x", RUNS, [0, 0, 2, 2, 3, 3]),
+        ("direction of x", RUNS, [1, 1, 1, 1, -1, -1]),
+        ("last_reversal of x", RUNS, [10, 1, 10, 1, 12, 3]),
+        ("since_start", RUNS, [0, -9, 2, -7, 1, -8]),
+        # the earliest row of the file is the start, and rows without a time come last
+        ("since_start", ([30, 10, 20], [1, 2, 2], [8.0, 6.0, 7.0]), [20, 0, 10]),
+        ("since_start", ([30, NAN, 20], None, [8.0, 6.0, 7.0]), [10, NAN, 0]),
+        ("since_start", ([6.0, 8.0], None, [NAN, NAN]), [0, 2]),
+        ("cumulative of x", ([1, 9, 2], None, [0.0, NAN, 1.0]), [0, 8, 1]),
+        # what is missing is passed over; where nothing is measured nothing is known
+        ("since_start", GAPS, [NAN, 0, NAN, 3, -1]),
+        ("running_maximum of x", GAPS, [NAN, 1, 1, 4, 4]),
+        ("cumulative of x", GAPS, [NAN, 0, 0, 3, 7]),
+        ("direction of x", GAPS, [1, 1, 1, 1, -1]),
+        ("last_reversal of x", GAPS, [NAN, 1, 1, 1, 4]),
+        ("since_start", ([NAN, NAN], None, None), [NAN, NAN]),
+        ("running_maximum of x", NEVER, [NAN, NAN, 1]),
+        ("cumulative of x", NEVER, [NAN, NAN, 0]),
+        ("direction of x", NEVER, [NAN, NAN, 0]),
+        ("last_reversal of x", NEVER, [NAN, NAN, 1]),
     ],
 )
-def test_what_is_missing_is_passed_over(derived: str, seen: list[float]) -> None:
-    np.testing.assert_array_equal(history(derived, [NAN, 1, NAN, 4, 0]), seen)
-
-
-@pytest.mark.parametrize("word", ["running_maximum", "cumulative", "direction", "last_reversal"])
-def test_where_nothing_is_measured_nothing_is_known(word: str) -> None:
-    assert np.isnan(history(f"{word} of x", [NAN, NAN, 1.0], [1, 1, 2])).tolist() == [True, True, False]
-    assert np.isnan(history("since_start", [NAN, NAN])).all()
+def test_runs_times_and_gaps(derived: str, rows: tuple[Any, ...], seen: list[float]) -> None:
+    np.testing.assert_array_equal(history(derived, *rows), seen)
 
 
 def test_a_column_that_is_not_there() -> None:
@@ -392,34 +355,28 @@ def test_many_rows_are_quick() -> None:
     assert np.count_nonzero(np.diff(way)) == 95  # extrema at pi/2 + k pi, k = 0 to 94, below 300
 
 
-# Declarations
+UNKNOWN = ["since start", "maximum of x", "direction", "direction of", "direction of x y", "since_start of x", "of x"]
+LEVEL = "is in degC, a temperature level, but what is gained is a difference"
 
 
 @pytest.mark.parametrize(
-    "derived",
-    ["since start", "maximum of x", "direction", "direction of", "direction of x y", "since_start of x", "of x"],
+    ("stated", "sentence"),
+    [
+        *(({"derived": word}, f"condition 'load' is derived by '{word}'; write 'since_start', ") for word in UNKNOWN),
+        ({"derived": "running_maximum of load"}, "each of another column"),
+        ({"unit": "degC", "derived": "since_start"}, LEVEL),
+        ({"unit": "degC", "derived": "cumulative of oil"}, LEVEL),
+        ({"low": 5, "high": 2}, "condition 'load': its range goes from 5 to 2; lower first"),
+    ],
 )
-def test_histories_that_nobody_knows(derived: str) -> None:
-    with pytest.raises(DeclarationError, match=f"condition 'it' is derived by '{derived}'; write 'since_start', "):
-        Condition("it", "", derived=derived)
+def test_conditions_that_cannot_be_are_refused(stated: dict[str, Any], sentence: str) -> None:
+    with pytest.raises(DeclarationError, match=sentence):
+        Condition("load", **{"unit": "N", **stated})
 
 
-def test_nothing_is_made_from_itself() -> None:
-    with pytest.raises(DeclarationError, match="each of another column"):
-        Condition("load", "N", derived="running_maximum of load")
-
-
-@pytest.mark.parametrize("derived", ["since_start", "cumulative of oil"])
-def test_what_is_gained_is_no_level(derived: str) -> None:
-    with pytest.raises(DeclarationError, match="is in degC, a temperature level, but what is gained is a difference"):
-        Condition("warming", "degC", derived=derived)
-    assert Condition("warming", "K", derived=derived).made_from in {"warming", "oil"}
+def test_a_temperature_may_be_gained_as_a_difference_and_be_the_highest_as_a_level() -> None:
+    assert Condition("warming", "K", derived="cumulative of oil").made_from == "oil"
     assert Condition("hottest", "degC", derived="running_maximum of oil").history == "running_maximum"
-
-
-def test_a_range_that_is_none() -> None:
-    with pytest.raises(DeclarationError, match="condition 'load': its range goes from 5 to 2; lower first"):
-        Condition("load", "N", low=5, high=2)
 
 
 # Rows of a file
@@ -474,48 +431,46 @@ STAGE = Model(
 )  # fmt: skip
 ALL = '[effects.lost]\nplay = "1 mm"\n[effects.worn]\nwear = "3 um"\n[effects.kneaded]\nyielding = "2 um/N"\n'
 Read = Callable[..., RowsFile]
-OFFER = Offer("stage", STAGE, Origin("stage", "", "", "", "module:stage"))
 
 
 @pytest.fixture
 def rows(tmp_path: Path) -> Read:
     """Read rows for the stage."""
-
-    def read(text: str, stated: str = ALL) -> RowsFile:
-        (tmp_path / "rows.csv").write_text(text)
-        return read_rows(tmp_path / "rows.csv", OFFER, setup_from_text(stated, OFFER, file="a.toml", folder=tmp_path))
-
-    return read
+    return lambda text, stated=ALL: rows_for(STAGE, tmp_path, text, stated)[1]
 
 
-def test_the_rows_of_a_file_make_the_conditions(rows: Read) -> None:
-    read = rows("place [mm],strokes,load [kN]\n0,100,0.001\n1,101,0.004\n0.5,103,0.002\n")
+def test_the_rows_of_a_file_make_the_conditions(tmp_path: Path) -> None:
+    text = "place [mm],strokes,load [kN]\n0,100,0.001\n1,101,0.004\n0.5,103,0.002\n"
+    setup, read = rows_for(STAGE, tmp_path, text, ALL)
     np.testing.assert_allclose(read.columns["way"], [1, 1, -1])
     np.testing.assert_allclose(read.columns["strokes"], [0, 1, 3])
     np.testing.assert_allclose(read.columns["peak"], [1, 4, 4])
     assert read.others == ()
-    setup = setup_from_text(ALL, OFFER, file="a.toml", folder=Path())
     shown = shown_by_gauge(setup, read).values["position"]
     np.testing.assert_allclose(shown, [0 - 500 + 0 + 2, 1000 - 500 + 3 + 8, 500 + 500 + 9 + 8])
 
 
-def test_time_and_runs_decide_what_came_before(rows: Read) -> None:
-    read = rows("time,run,place [mm]\n3,a,0.5\n1,b,7\n2,a,0.7\n2,b,9\n1,a,0.1\n")
-    np.testing.assert_allclose(read.columns["way"], [-1, 1, 1, 1, 1])
-    assert read.others == ()
+STATED = ALL + '[conditions]\nway = -1\nstrokes = 50\npeak = "2 N"\n'
 
 
-def test_a_column_of_its_own_is_taken_as_it_is(rows: Read) -> None:
-    read = rows("place [mm],way,peak [N]\n0,-1,7\n1,-1,3\n")
-    np.testing.assert_allclose(read.columns["way"], [-1, -1])
-    np.testing.assert_allclose(read.columns["peak"], [7, 3])
-
-
-def test_without_its_column_the_inputs_file_speaks(rows: Read) -> None:
-    read = rows("strokes,note\n5,a\n,b\n9,c\n", ALL + '[conditions]\nway = -1\nstrokes = 50\npeak = "2 N"\n')
-    assert "way" not in read.columns
-    assert "peak" not in read.columns
-    np.testing.assert_allclose(read.columns["strokes"], [0, 50, 4])
+@pytest.mark.parametrize(
+    ("text", "stated", "made"),
+    [
+        ("time,run,place [mm]\n3,a,0.5\n1,b,7\n2,a,0.7\n2,b,9\n1,a,0.1\n", ALL, {"way": [-1, 1, 1, 1, 1]}),
+        ("place [mm],way,peak [N]\n0,-1,7\n1,-1,3\n", ALL, {"way": [-1, -1], "peak": [7, 3]}),
+        ("strokes,note\n5,a\n,b\n9,c\n", STATED, {"strokes": [0, 50, 4]}),
+        ("time,place [mm]\nnoon,0\nevening,1\n", ALL, {"way": [1, 1]}),
+    ],
+    ids=["time and runs", "columns of their own", "as the inputs file says", "no clock"],
+)
+def test_what_came_before_is_known_from_what_the_file_holds(
+    rows: Read, text: str, stated: str, made: dict[str, list[float]]
+) -> None:
+    read = rows(text, stated)
+    for name in ("way", "strokes", "peak"):
+        assert (name in read.columns) is (name in made)
+        np.testing.assert_allclose(read.columns.get(name, []), made.get(name, []))
+    assert read.others == (("note",) if "note" in text else ())
 
 
 def test_the_column_it_is_made_from_is_checked(rows: Read) -> None:
@@ -527,17 +482,11 @@ def test_the_column_it_is_made_from_is_checked(rows: Read) -> None:
         rows("load [N]\n5\nmuch\n")
 
 
-def test_a_clock_that_is_none_leaves_the_rows_as_they_stand(rows: Read) -> None:
-    read = rows("time,place [mm]\nnoon,0\nevening,1\n")
-    np.testing.assert_allclose(read.columns["way"], [1, 1])
-
-
-def test_the_time_of_the_kernel_counts_from_the_first_row_where_an_effect_needs_it(rows: Read) -> None:
+def test_the_time_of_the_kernel_counts_from_the_first_row_where_an_effect_needs_it(tmp_path: Path, rows: Read) -> None:
     """2 um/h of drift; the file begins at 8 h. Without such an effect a column "time" may hold anything."""
     drift = '[effects.sensor_drift]\nposition = "2 um/h"\n'
-    read = rows("time [h]\n8\n9\n8.5\n", drift)
+    setup, read = rows_for(STAGE, tmp_path, "time [h]\n8\n9\n8.5\n", drift)
     np.testing.assert_allclose(read.columns["time"], [0, 3600, 1800])
-    setup = setup_from_text(drift, OFFER, file="a.toml", folder=Path())
     np.testing.assert_allclose(shown_by_gauge(setup, read).values["position"], [0, 2, 1], atol=1e-12)
     assert rows("time\n12:30\n12:31\n", "[inputs]\n").others == ("time",)
     with pytest.raises(InputError, match="column 'time' has no unit"):
@@ -588,30 +537,29 @@ BEAM = Model(
     function=beam,
     errors=[Tolerance("balance", drawn(scale, of=["weighed"]), on=["slack"])],
 )
-BEAM_OFFER = Offer("beam", BEAM, Origin("beam", "1.0", "", "", "module:beam"))
 
 
-def beam_setup(text: str) -> Setup:
-    return setup_from_text(text, BEAM_OFFER, file="beam.toml", folder=Path())
+def beam_setup(text: str, model: Model[Any, Any] = BEAM, folder: Path = Path()) -> Setup:
+    return setup_from_text(text, offer_of(model), file="beam.toml", folder=folder)
 
 
-def test_an_input_whose_meaning_is_missing_is_refused_with_its_line() -> None:
+@pytest.mark.parametrize(
+    ("text", "faults"),
+    [
+        ('load = "3 N"\nslack = "1 kg"\n', [
+            "beam.toml:2: load means nothing without load_case; state load_case (middle, end) beside it",
+            "beam.toml:3: slack",
+        ]),
+        ('load = "3 N"\nload_case = "ende"\n', ["beam.toml:3: load_case"]),
+    ],
+)  # fmt: skip
+def test_an_input_whose_meaning_is_missing_or_wrong_is_one_fault_with_its_line(text: str, faults: list[str]) -> None:
     with pytest.raises(InputError) as caught:
-        beam_setup('[inputs]\nload = "3 N"\nslack = "1 kg"\n')
-    first, second = str(caught.value).splitlines()
-    assert first == "beam.toml:2: load means nothing without load_case; state load_case (middle, end) beside it"
-    assert second.startswith("beam.toml:3: slack")
-
-
-@pytest.mark.parametrize("text", ["", '[inputs]\nload_case = "end"\n', '[inputs]\nload = "3 N"\nload_case = "end"\n'])
-def test_what_is_explained_or_not_stated_is_taken(text: str) -> None:
-    assert beam_setup(text).inputs.load_case in {"end", "middle"}
-
-
-def test_a_wrong_meaning_is_one_fault_and_not_two() -> None:
-    with pytest.raises(InputError) as caught:
-        beam_setup('[inputs]\nload = "3 N"\nload_case = "ende"\n')
-    assert len(str(caught.value).splitlines()) == 1
+        beam_setup("[inputs]\n" + text)
+    for said, expected in zip(str(caught.value).splitlines(), faults, strict=True):
+        assert said.startswith(expected)
+    for fine in ("", 'load_case = "end"\n', 'load = "3 N"\nload_case = "end"\n'):
+        assert beam_setup("[inputs]\n" + fine).inputs.load_case in {"end", "middle"}
 
 
 @results
@@ -646,9 +594,8 @@ def test_a_model_of_curves_only_asks_for_the_axis(gauge: Gauge) -> None:
 
 
 def test_a_result_is_calculated_where_it_was_measured(tmp_path: Path) -> None:
-    (tmp_path / "rows.csv").write_text("place [m],load [N]\n0.3,10\n7.5,10\n0.3,20\n,10\n")
-    machine = one_machine(beam_setup(""))
-    shown = read_by_gauge(machine, read_rows(tmp_path / "rows.csv", BEAM_OFFER, machine)).results["moment"]
+    setup, read = rows_for(BEAM, tmp_path, "place [m],load [N]\n0.3,10\n7.5,10\n0.3,20\n,10\n")
+    shown = read_by_gauge(one_machine(setup), read).results["moment"]
     np.testing.assert_allclose(shown, [0.9, 562.5, 1.8, np.nan], rtol=1e-12)
 
 
@@ -670,10 +617,9 @@ def by_record(rng: Any, count: int, *, record: float | None) -> dict[str, Any]:
 def test_a_draw_sees_a_file_and_that_there_is_none(tmp_path: Path) -> None:
     (tmp_path / "balance.txt").write_text("0.25")
     errors = [Tolerance("balance", drawn(by_record, of=["record"]), on=["slack"])]
-    offer = Offer("beam", Model(name="beam", title="Beam", function=beam, errors=errors), BEAM_OFFER.origin)
-    assert setup_from_text("", offer, file="beam.toml", folder=tmp_path).distributions() == {}
-    text = '[inputs]\nrecord = { file = "balance.txt" }\n'
-    with_file = setup_from_text(text, offer, file="beam.toml", folder=tmp_path)
+    model = replace(BEAM, errors=errors)
+    assert beam_setup("", model, tmp_path).distributions() == {}
+    with_file = beam_setup('[inputs]\nrecord = { file = "balance.txt" }\n', model, tmp_path)
     assert with_file.distributions()["balance"]["slack"].sd == pytest.approx(0.25, rel=0.02)
 
 

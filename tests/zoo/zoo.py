@@ -26,6 +26,8 @@ from truing.testing import Hidden, recorded
 from truing.testing.hiding import csv_of
 
 Array: TypeAlias = NDArray[np.float64]
+Columns: TypeAlias = Mapping[str, Array]
+"""By header ``name [unit]`` in the order of the file, each of shape (rows,); what was measured stands last."""
 Half: TypeAlias = Literal["open", "sealed"]
 Judged: TypeAlias = Literal["right", "open", "silent", "partly", "wrong"]
 
@@ -39,16 +41,11 @@ SMALLEST, LARGEST = 4.0, 30.0
 
 @dataclass(frozen=True)
 class Measured:
-    """A record without noise: columns by header ``name [unit]`` in the order of the file, each of shape (rows,).
+    """A record without noise, the header of what was measured, and the standard deviation of an honest gauge of it."""
 
-    ``result`` is the header of what was measured, ``noise`` the standard deviation of an honest gauge in its unit,
-    ``ordered`` whether the rows follow a time.
-    """
-
-    columns: Mapping[str, Array]
+    columns: Columns
     result: str
     noise: float
-    ordered: bool
 
 
 class Rig(Protocol):
@@ -56,7 +53,9 @@ class Rig(Protocol):
 
     @property
     def HIDDEN(self) -> Mapping[str, tuple[str, ...]]: ...  # noqa: N802  # a constant of the module
-    def measure(self, hidden: str | None, generator: np.random.Generator, rows: int) -> Measured: ...
+    @property
+    def NOISE(self) -> float: ...  # noqa: N802
+    def measure(self, hidden: str | None, generator: np.random.Generator, rows: int) -> Columns: ...
 
 
 def hideable(**effects: str) -> dict[str, tuple[str, ...]]:
@@ -203,7 +202,9 @@ def measured_of(case: Case, rows: int = ROWS) -> Measured:
     """The record of a case without noise: the same machine under every noise, registered or not."""
     words = (case.family, case.hidden or "")
     generator = np.random.default_rng([case.seed, *(zlib.crc32(word.encode()) for word in words)])
-    return rig_of(case.family).measure(case.hidden, generator, rows)
+    rig = rig_of(case.family)
+    columns = rig.measure(case.hidden, generator, rows)
+    return Measured(columns, list(columns)[-1], rig.NOISE)
 
 
 def record_of(case: Case, rows: int = ROWS) -> str:

@@ -282,21 +282,24 @@ def compare(name: str, batch: Batch) -> None:
         together = evaluate_rows(batch.setup, batch.columns, batch.rows, reading=True)
     except PluginError as error:
         fail(f"{name}: a batch in which {batch.what} fails as a whole: {error}")
-    for row in range(batch.rows):
-        alone = batch.alone(row)
+    singles = [batch.alone(row) for row in range(batch.rows)]
+    for row, alone in enumerate(singles):
         here, there = reason(together, row), reason(alone, 0)
         if here != there:
             fail(
                 f"{name}: where {batch.what}, row {row} {f'fails in a batch ({here})' if here else 'is answered'} and "
                 f"{f'fails alone ({there})' if there else 'is answered alone'}"
             )
-        for result, values in together.results.items():
-            inner = alone.results[result][0]
-            outer = values[row][: len(inner)] if np.ndim(inner) else values[row]
-            if _differs(outer, inner, values) and _differs(outer, inner, values, rounding(batch, row, result)):
+    for result, values in together.results.items():
+        inner = [alone.results[result][0] for alone in singles]
+        if values.ndim == 1 and not _differs(values, np.array(inner), values):
+            continue
+        for row, number in enumerate(inner):
+            outer = values[row][: len(number)] if np.ndim(number) else values[row]
+            if _differs(outer, number, values) and _differs(outer, number, values, rounding(batch, row, result)):
                 fail(
                     f"{name}: where {batch.what}, '{result}' of row {row} is {_short(outer)} in a batch and "
-                    f"{_short(inner)} alone; write np.where, not if, on anything that may vary"
+                    f"{_short(number)} alone; write np.where, not if, on anything that may vary"
                 )
 
 

@@ -24,12 +24,7 @@ class Shaft:
     """What arrives at the driven shaft."""
 
     pull: Float = found("N", symbol="F_u", note="pull of the belt", formula="2 * torque / driver_diameter")
-    driven_speed: Float = found(
-        "rpm",
-        symbol="n_2",
-        note="speed of the driven shaft",
-        formula="motor_speed * driver_diameter / driven_diameter * (1 - speed_loss)",
-    )
+    driven_speed: Float = found("rpm", formula="motor_speed * driver_diameter / driven_diameter * (1 - speed_loss)")
 
 
 def belt_drive(drive: Drive) -> Shaft:

@@ -25,18 +25,8 @@ class Joint:
 class Preload:
     """What holds the joint together."""
 
-    compliance: Float = found(
-        "um/kN",
-        symbol="delta",
-        note="of bolt and plates",
-        formula="clamp_length * (1 + plate_share) / (elasticity * stress_area)",
-    )
-    preload: Float = found(
-        "kN",
-        symbol="F_V",
-        note="force in the bolt",
-        formula="(pitch * turned / (2 * pi) - lost_length) / compliance",
-    )
+    compliance: Float = found("um/kN", formula="clamp_length * (1 + plate_share) / (elasticity * stress_area)")
+    preload: Float = found("kN", formula="(pitch * turned / (2 * pi) - lost_length) / compliance")
 
 
 def bolted_joint(joint: Joint) -> Preload:

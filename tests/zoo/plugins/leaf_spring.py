@@ -30,8 +30,6 @@ class Force:
     way: Float = found("mm", symbol="x", note="deflection of the leaves", formula="deflection - free_height_error")
     force: Float = found(
         "N",
-        symbol="F",
-        note="force of the ram",
         formula="rate * way * (1 + hardening * way**2) + helper_rate * max(way - helper_gap, 0) + friction"
         " + damping * ram_speed",
     )

@@ -26,18 +26,8 @@ class Winch:
 class Hook:
     """Where the hook is."""
 
-    payout: Float = found(
-        "m",
-        symbol="s",
-        note="rope that left the drum",
-        formula="drum_radius * turned + more_radius * min(turned, layer_ends)",
-    )
-    drop: Float = found(
-        "mm",
-        symbol="h",
-        note="way of the hook",
-        formula="payout + (free_length + payout) * (load / stiffness + elongation)",
-    )
+    payout: Float = found("m", formula="drum_radius * turned + more_radius * min(turned, layer_ends)")
+    drop: Float = found("mm", formula="payout + (free_length + payout) * (load / stiffness + elongation)")
 
 
 def rope_winch(winch: Winch) -> Hook:

@@ -34,8 +34,6 @@ class Lag:
     )
     twist: Float = found(
         "mrad",
-        symbol="theta",
-        note="angle of the motor minus that of the mass",
         formula="torque / (stiffness * (1 + hardening * abs(torque))) + play / 2 * tanh(torque / play_torque) + wave",
     )
 

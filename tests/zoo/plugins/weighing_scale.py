@@ -36,12 +36,7 @@ class Shown:
     """What the beam and the display show."""
 
     carried: Float = found("kg", symbol="m_B", note="load of the beam", formula="load - lagging - shunted - rubbed")
-    strain: Float = found(
-        "um/m",
-        symbol="epsilon",
-        note="strain under the gauges",
-        formula="6 * carried * gravity * arm / (modulus * width * thickness**2)",
-    )
+    strain: Float = found("um/m", formula="6 * carried * gravity * arm / (modulus * width * thickness**2)")
     signal: Float = found("mV/V", symbol="U", note="signal of the bridge", formula="gauge_factor * strain")
     reading: Float = found("kg", symbol="m_A", note="what the display shows", method="span, zero, and what is off")
 

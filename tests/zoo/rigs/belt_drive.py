@@ -7,7 +7,7 @@ slip ratio from a friction that rises with it (rubber), the speeds from the cons
 import numpy as np
 from scipy.optimize import brentq
 
-from zoo.zoo import Array, Measured, drawn_size, hideable
+from zoo.zoo import Array, Columns, drawn_size, hideable
 
 HIDDEN = hideable(slip="belt_slip", creep="creep")
 NOISE = 0.5
@@ -86,17 +86,16 @@ def belt_with(hidden: str | None, generator: np.random.Generator, diameters: tup
     return belt
 
 
-def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Measured:
+def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Columns:
     """A run of an hour or so with steps of speed under a changing load, one reading every half minute."""
     diameters = (generator.normal(0.125, 0.8e-4), generator.normal(0.250, 1.5e-4))
     belt = belt_with(hidden, generator, diameters)
     time, speed, torque, temperature = programme(generator, rows)
     shown = [driven(*row, diameters, belt) for row in zip(speed.tolist(), torque.tolist(), strict=True)]
-    columns = {
+    return {
         "time [min]": time,
         "motor_speed [rpm]": speed,
         "torque [N*m]": torque,
         "belt_temperature [degC]": temperature,
         "driven_speed [rpm]": np.array(shown),
     }
-    return Measured(columns, "driven_speed [rpm]", NOISE, ordered=True)

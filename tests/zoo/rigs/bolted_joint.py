@@ -8,7 +8,7 @@ NACA TN 902 (1943).
 import numpy as np
 from scipy.optimize import brentq
 
-from zoo.zoo import Array, Measured, drawn_size, hideable
+from zoo.zoo import Array, Columns, drawn_size, hideable
 
 HIDDEN = hideable(embedding="embedding", yielding="yielding")
 NOISE = 0.5
@@ -85,16 +85,15 @@ def table(generator: np.random.Generator, rows: int, bolt: dict[str, float]) -> 
     return np.round(360 * np.array(travels) / LEAD, 1), lengths, interfaces, warmer
 
 
-def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Measured:
+def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Columns:
     """One row for each bolt that was tightened and read."""
     bolt = bolt_with(hidden, generator)
     angles, lengths, interfaces, warmer = table(generator, rows, bolt)
     settings = zip(angles.tolist(), lengths.tolist(), interfaces.tolist(), warmer.tolist(), strict=True)
-    columns = {
+    return {
         "turned [deg]": angles,
         "clamp_length [mm]": lengths,
         "interfaces [-]": interfaces,
         "bolt_warmer [K]": warmer,
         "preload [kN]": np.array([preload(*row, bolt) for row in settings]),
     }
-    return Measured(columns, "preload [kN]", NOISE, ordered=False)

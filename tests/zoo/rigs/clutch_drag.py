@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from zoo.zoo import Array, Measured, drawn_size, hideable, sized
+from zoo.zoo import Array, Columns, drawn_size, hideable, sized
 
 HIDDEN = hideable(rupture="film_rupture", warming="gap_warming")
 NOISE = 0.05
@@ -86,7 +86,7 @@ def programme(generator: np.random.Generator, rows: int) -> Run:
     return Run(time, 100 + 1900 * sweep, oil + generator.normal(0, 0.8, rows), held)
 
 
-def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Measured:
+def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Columns:
     """A test of forty minutes: what the torque meter would show without noise."""
     mean, thicker = generator.normal(1.0, [0.03, 0.02]).tolist()
     uneven = 1 + generator.normal(0, 0.015, GAPS)
@@ -109,11 +109,10 @@ def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Me
             return torque(flooded, run, warmed(run, power, time_constant))
 
         rise = warmed(run, sized(heated, plain, size, 3000.0, low=0.1, rtol=1e-3), time_constant)
-    columns = {
+    return {
         "time [s]": run.time,
         "speed [rpm]": run.speed,
         "oil_temperature [degC]": run.oil,
         "feed [l/min]": run.feed,
         "drag_torque [N*m]": torque(plates, run, rise),
     }
-    return Measured(columns, "drag_torque [N*m]", NOISE, ordered=True)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from zoo.zoo import Array, Measured, drawn_size, hideable, sized
+from zoo.zoo import Array, Columns, drawn_size, hideable, sized
 
 HIDDEN = hideable(hysteresis="core_hysteresis", echo="cable_echo")
 Complex = NDArray[np.complex128]
@@ -99,7 +99,7 @@ def programme(generator: np.random.Generator, rows: int) -> tuple[Array, Array, 
     return time, np.asarray(1e3 * (80 + 1120 * sweep)), drive
 
 
-def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Measured:
+def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Columns:
     """Six sweeps from 80 kHz to 1.2 MHz and back at three drives: what the analyser would show without noise."""
     inductance, capacitance, level = (np.array([1e-4, 1e-9, 1.0]) * generator.normal(1, [0.03, 0.02, 0.01])).tolist()
     time, frequency, drive = programme(generator, rows)
@@ -121,10 +121,9 @@ def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Me
 
         reflection = float(np.sqrt(sized(waving, plain, size * NOISE, 0.5, rtol=1e-3)))
     bench = Bench(inductance, capacitance, level, rayleigh, length, (reflection, reflection))
-    columns = {
+    return {
         "time [min]": time,
         "frequency [kHz]": frequency / 1e3,
         "drive [V]": drive,
         "gain [-]": gain(bench, frequency, drive, loop),
     }
-    return Measured(columns, "gain [-]", NOISE, ordered=True)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from zoo.zoo import Array, Measured, drawn_size, hideable, sized
+from zoo.zoo import Array, Columns, drawn_size, hideable, sized
 
 HIDDEN = hideable(friction="spool_friction", leak="worn_land")
 NOISE = 0.6
@@ -84,7 +84,7 @@ def programme(generator: np.random.Generator, rows: int) -> Run:
     return Run(time, command, np.asarray(1e5 * (65 + 25 * swing + generator.normal(0, 2, rows))))
 
 
-def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Measured:
+def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Columns:
     """Four loops of the command within some minutes: what the flow meter would show without noise."""
     machine = (generator.normal(0.65, 0.013), generator.normal(0, 0.05))
     run = programme(generator, rows)
@@ -95,10 +95,9 @@ def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Me
         width = sized(lambda held: flow(run, machine, held, 0.0), plain, size, 3.0, low=0.01, rtol=1e-2)
     if hidden in ("leak", "friction_and_leak"):
         leak = drawn_size(generator) * NOISE * 7e6 / float(np.max(run.loss))
-    columns = {
+    return {
         "time [s]": run.time,
         "command [V]": run.command,
         "pressure_loss [bar]": run.loss / 1e5,
         "flow [l/min]": flow(run, machine, width, leak),
     }
-    return Measured(columns, "flow [l/min]", NOISE, ordered=True)

@@ -7,7 +7,7 @@ Iwan, A distributed-element model for hysteresis and its steady-state dynamic re
 import numpy as np
 from scipy.optimize import brentq
 
-from zoo.zoo import Array, Measured, drawn_size, hideable
+from zoo.zoo import Array, Columns, drawn_size, hideable
 
 HIDDEN = hideable(friction="interleaf_friction", helper="helper_leaf")
 NOISE = 15.0
@@ -62,7 +62,7 @@ def helper(way: float, rate: float, gap: float) -> float:
     return float(brentq(too_much, 0.0, 1e5, xtol=1e-6))
 
 
-def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Measured:
+def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Columns:
     """Slow cycles with readings at even times."""
     rate, zero = 90.0 * (1 + 0.03 * generator.standard_normal()), 0.7 * generator.standard_normal()
     way, time = ways(generator, rows)
@@ -74,10 +74,9 @@ def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Me
         second = drawn_size(generator) * NOISE / (DEEPEST - gap)
         force += np.array([helper(one, second, gap) for one in (way - zero).tolist()])
     speed = np.gradient(way, 10 * 60 / (len(way) - 1))
-    columns = {
+    return {
         "time [min]": time,
         "deflection [mm]": way[::PARTS],
         "ram_speed [mm/s]": speed[::PARTS],
         "force [N]": force[::PARTS],
     }
-    return Measured(columns, "force [N]", NOISE, ordered=True)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from zoo.zoo import Array, Measured, drawn_size, hideable, sized
+from zoo.zoo import Array, Columns, drawn_size, hideable, sized
 
 HIDDEN = hideable(leak="worn_ring", cavitation="cavitation")
 NOISE = 0.2
@@ -77,7 +77,7 @@ def programme(generator: np.random.Generator, rows: int) -> Points:
     return Points(flow, speed, generator.uniform(1.5, 9.0, rows))
 
 
-def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Measured:
+def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Columns:
     """A table of operating points: what the gauges would show without noise."""
     vanes, passages = generator.normal(1, [0.015, 0.08]).tolist()
     points = programme(generator, rows)
@@ -92,10 +92,9 @@ def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Me
         size, needs = drawn_size(generator) * NOISE, spread * generator.uniform(1.2, 1.9)
         hungry = replace(sound, needs=needs)
         steepness = sized(lambda lost: head(replace(hungry, steepness=lost), points), plain, size, 50.0, rtol=1e-3)
-    columns = {
+    return {
         "flow [m^3/h]": 3600 * points.flow,
         "speed [rpm]": points.speed,
         "suction_head [m]": points.suction,
         "head [m]": head(Pump(vanes, passages, ring, needs, steepness), points),
     }
-    return Measured(columns, "head [m]", NOISE, ordered=False)

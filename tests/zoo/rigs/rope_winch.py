@@ -7,7 +7,7 @@ felt.
 
 import numpy as np
 
-from zoo.zoo import Array, Measured, drawn_size, hideable
+from zoo.zoo import Array, Columns, drawn_size, hideable
 
 HIDDEN = hideable(bedding="bedding", layer="second_layer")
 NOISE = 3.0
@@ -53,7 +53,7 @@ def drops(angles: Array, loads: Array, paid: Array, rope: dict[str, float]) -> A
     return shown
 
 
-def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Measured:
+def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Columns:
     """Half a day of lifts, a reading every two minutes."""
     rope = {"stiffness": 8e3 * (1 + 0.05 * generator.standard_normal()), "bedded": 0.0, "scale": 1.0}
     radius = 0.2 + 1e-4 * generator.standard_normal()
@@ -66,11 +66,10 @@ def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Me
     if hidden in ("layer", "bedding_and_layer"):
         until = generator.uniform(0.25, 0.7) * FARTHEST
         more = 1e-3 * drawn_size(generator) * NOISE / until
-    columns = {
+    return {
         "time [min]": 2.0 * np.arange(rows, dtype=np.float64),
         "turned [rad]": angles,
         "load [kN]": loads,
         "rope_temperature [degC]": temperature,
         "drop [mm]": drops(angles, loads, unwound(radius, more, until), rope),
     }
-    return Measured(columns, "drop [mm]", NOISE, ordered=True)

@@ -6,7 +6,7 @@ housing. The air takes a little more heat from what is hotter (natural convectio
 
 import numpy as np
 
-from zoo.zoo import Array, Measured, drawn_size, hideable
+from zoo.zoo import Array, Columns, drawn_size, hideable
 
 HIDDEN = hideable(housing="housing_growth", churning="churning")
 NOISE = 0.5
@@ -60,7 +60,7 @@ def grown(times: Array, speeds: Array, spindle: dict[str, float]) -> tuple[Array
     return np.interp(at, steps, rises) * per_kelvin, np.interp(at, steps, lags) * per_kelvin
 
 
-def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Measured:
+def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Columns:
     """Five hours on the stand, a reading every two minutes; sizes are those at the largest place of the record."""
     spindle = {
         "rise": 18.0 * (1 + 0.08 * generator.standard_normal()),
@@ -76,5 +76,4 @@ def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Me
     growth, housing = grown(times, speeds, spindle)
     if hidden in ("housing", "housing_and_churning"):
         growth = growth - drawn_size(generator) * NOISE * housing / np.max(housing)
-    columns = {"time [min]": times, "speeds [rpm]": speeds, "hall_rise [K]": hall, "growth [um]": growth}
-    return Measured(columns, "growth [um]", NOISE, ordered=True)
+    return {"time [min]": times, "speeds [rpm]": speeds, "hall_rise [K]": hall, "growth [um]": growth}

@@ -6,7 +6,7 @@ free between the flanks. Teeth are unevenly spaced: one order of the angle, with
 
 import numpy as np
 
-from zoo.zoo import Array, Measured, drawn_size, hideable
+from zoo.zoo import Array, Columns, drawn_size, hideable
 
 HIDDEN = hideable(backlash="backlash", wave="gear_wave")
 NOISE = 0.01
@@ -68,12 +68,12 @@ def axis_with(hidden: str | None, generator: np.random.Generator) -> dict[str, f
     return axis
 
 
-def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Measured:
+def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Columns:
     """A minute of slow reversals under a changing torque, after one second of settling."""
     axis, run = axis_with(hidden, generator), programme(generator)
     shown = twists(run, axis)
     places = np.linspace(1.0 / STEP, len(shown) - 1, rows).astype(int)
-    columns = {
+    return {
         "time [s]": STEP * places,
         "motor_angle [rad]": run[0][places],
         "speed [rad/s]": run[1][places],
@@ -81,4 +81,3 @@ def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Me
         "load_torque [N*m]": run[3][places],
         "twist [mrad]": 1e3 * shown[places],
     }
-    return Measured(columns, "twist [mrad]", NOISE, ordered=True)

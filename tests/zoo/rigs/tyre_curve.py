@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from zoo.zoo import Array, Measured, drawn_size, hideable, sized
+from zoo.zoo import Array, Columns, drawn_size, hideable, sized
 
 HIDDEN = hideable(relaxation="relaxation", load="load_sensitivity")
 NOISE = 0.03
@@ -100,7 +100,7 @@ def programme(generator: np.random.Generator, rows: int) -> Run:
     return Run(time, np.asarray(angle), np.asarray(rate), load, speed)
 
 
-def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Measured:
+def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Columns:
     """Two minutes of sweeps: what the hub would show without noise."""
     stiff, grip = generator.normal(1, [0.04, 0.03]).tolist()
     run = programme(generator, rows)
@@ -113,7 +113,7 @@ def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Me
     if hidden in ("load", "relaxation_and_load"):
         size = drawn_size(generator) * NOISE
         exponent = sized(lambda power: force(Tread(stiff, grip, power), run), plain, size, 1.0, rtol=1e-2)
-    columns = {
+    return {
         "time [s]": run.time,
         "slip_angle [deg]": np.degrees(run.angle),
         "slip_rate [deg/s]": np.degrees(run.rate),
@@ -122,4 +122,3 @@ def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Me
         "tread_temperature [degC]": warm,
         "side_force [kN]": force(Tread(stiff, grip, exponent, length), run),
     }
-    return Measured(columns, "side_force [kN]", NOISE, ordered=True)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from zoo.zoo import Array, Measured, drawn_size, hideable, sized
+from zoo.zoo import Array, Columns, drawn_size, hideable, sized
 
 HIDDEN = hideable(creep="creep", stop="touching_stop")
 NOISE = 0.015
@@ -109,7 +109,7 @@ def programme(generator: np.random.Generator, rows: int) -> Weights:
     return Weights(changes, np.asarray(loads, dtype=np.float64), np.asarray(time))
 
 
-def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Measured:
+def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Columns:
     """An hour or so of weights put on and taken off: what the display would show without noise."""
     scale = (2.05 * generator.normal(1, 0.003), generator.normal(0, 0.03))
     weights = programme(generator, rows)
@@ -133,7 +133,7 @@ def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Me
             return display(weights, scale, Dirt(gaps, stiff), elastic)
 
         dirt = Dirt(gaps, sized(touching, plain, size, 1e3, rtol=1e-2))
-    columns = {
+    return {
         "time [s]": weights.time,
         "load [kg]": weights.loads[weights.step],
         "previous_load [kg]": np.append(0.0, weights.loads[:-1])[weights.step],
@@ -142,4 +142,3 @@ def measure(hidden: str | None, generator: np.random.Generator, rows: int) -> Me
         "platform_temperature [degC]": warm,
         "reading [kg]": display(weights, scale, dirt, creep),
     }
-    return Measured(columns, "reading [kg]", NOISE, ordered=True)
