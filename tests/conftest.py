@@ -3,6 +3,7 @@
 import gc
 import os
 import sys
+import zipfile
 from collections.abc import Iterator
 from contextlib import nullcontext
 from pathlib import Path
@@ -10,7 +11,7 @@ from pathlib import Path
 import pytest
 from xdist.scheduler import WorkStealingScheduling
 
-from shared import GUESTS, ROOT, TESTS, copied_guest, made_once, process
+from shared import GUESTS, ROOT, TESTS, build_wheels, copied_guest, made_once
 from truing.executors import WorkerPool, open_executor
 
 collect_ignore = ["third_party", "data"]
@@ -65,14 +66,19 @@ def kit_shares_processes(two_processes: WorkerPool, monkeypatch: pytest.MonkeyPa
 
 
 @pytest.fixture(scope="session")
-def strangers(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a folder with the strangers' plugins, installed as pip installs them, beside this environment."""
+def guest_wheels(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
+    """Return the wheels of the strangers' plugins, as they build them."""
 
-    def installed(folder: Path) -> None:
-        sources = [str(copied_guest(name, folder / "sources")) for name in GUESTS]
-        options = ["--quiet", "--no-deps", "--no-build-isolation", "--no-index", "--disable-pip-version-check"]
-        target = ["--target", str(folder / "installed")]
-        done = process([sys.executable, "-m", "pip", "install", *options, *target, *sources], folder)
-        assert done.code == 0, done.err
+    def built(folder: Path) -> None:
+        build_wheels(folder, [copied_guest(name, folder / "sources") for name in GUESTS])
 
-    return made_once(tmp_path_factory, "strangers", installed) / "installed"
+    return sorted(made_once(tmp_path_factory, "guests", built).glob("*.whl"))
+
+
+@pytest.fixture(scope="session")
+def strangers(guest_wheels: list[Path], tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a folder with the strangers' plugins, unpacked as pip installs them, beside this environment."""
+    folder = tmp_path_factory.mktemp("strangers")
+    for wheel in guest_wheels:
+        zipfile.ZipFile(wheel).extractall(folder)
+    return folder

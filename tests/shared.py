@@ -2,8 +2,9 @@
 
 import os
 import shutil
+import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NoReturn
 
@@ -19,7 +20,19 @@ ROUNDING = 8 * 2.0**-52
 place of an array, on another processor. numpy keeps its functions within 4 units in the last place on every processor,
 so two ways agree to 8; what follows multiplies that by its condition."""
 GUESTS = ("screw_joint", "broken_guest")
-__all__ = ["GUESTS", "ROOT", "ROUNDING", "TESTS", "Answer", "Calc", "copied_guest", "made_once", "missed", "process"]
+__all__ = [
+    "GUESTS",
+    "ROOT",
+    "ROUNDING",
+    "TESTS",
+    "Answer",
+    "Calc",
+    "build_wheels",
+    "copied_guest",
+    "made_once",
+    "missed",
+    "process",
+]
 
 
 def copied_guest(name: str, folder: Path) -> Path:
@@ -27,6 +40,22 @@ def copied_guest(name: str, folder: Path) -> Path:
     target = folder / name
     shutil.copytree(TESTS / "third_party" / name, target, ignore=shutil.ignore_patterns("__pycache__"))
     return target
+
+
+WHEELS = """
+import os, sys
+from hatchling.build import build_wheel
+for source in sys.argv[2:]:
+    os.chdir(source)
+    print(build_wheel(sys.argv[1]))
+"""
+
+
+def build_wheels(folder: Path, sources: Sequence[Path]) -> list[Path]:
+    """Build a wheel of each project into a folder."""
+    done = process([sys.executable, "-c", WHEELS, str(folder), *map(str, sources)], folder)
+    assert done.code == 0, done.err
+    return [folder / name for name in done.out.split()]
 
 
 def missed(words: str) -> NoReturn:

@@ -5,14 +5,14 @@ from __future__ import annotations
 import csv
 import io
 import json
-from collections.abc import Callable
-from contextlib import AbstractContextManager, nullcontext
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
 
 import pytest
 from measured import Diagnosed, diagnose_heated, read_document
 from refusals import listing, sentences
-from shown_in_docs import EXAMPLES, ROOT, check_page, desk_in
+from shown_in_docs import EXAMPLES, ROOT, Desk, check_page, desk_in
 
 import truing
 from shared import Answer, Calc, made_once
@@ -57,21 +57,40 @@ def heated(tmp_path_factory: pytest.TempPathFactory) -> Diagnosed:
     return Diagnosed(answer, read_document(desk / "runs" / "measured"), desk / "runs" / "measured")
 
 
-@pytest.fixture(scope="session")
-def diagnosis() -> truing.Diagnosis:
-    """The same, diagnosed by a call."""
-    press = truing.load("press_linkage")
-    return press.diagnose(truing.read(PRESS / "measured.csv", press), PRESS / "inputs.toml")
+@contextmanager
+def sharing(processes: WorkerPool) -> Iterator[None]:
+    """Let a run with two workers have these; that a run starts and ends its own is tested elsewhere."""
+
+    def opened(place: str) -> AbstractContextManager[WorkerPool]:
+        return nullcontext(processes) if place == "processes:2" else open_executor(place)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("truing.api.run.open_executor", opened)
+        yield
 
 
 @pytest.fixture
-def runs_share_processes(two_processes: WorkerPool, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let a run with two workers have those of all tests; that a run starts and ends its own is tested elsewhere."""
+def runs_share_processes(two_processes: WorkerPool) -> Iterator[None]:
+    """Let runs with two workers have those of all tests."""
+    with sharing(two_processes):
+        yield
 
-    def opened(place: str) -> AbstractContextManager[WorkerPool]:
-        return nullcontext(two_processes) if place == "processes:2" else open_executor(place)
 
-    monkeypatch.setattr("truing.api.run.open_executor", opened)
+@pytest.fixture(scope="session")
+def listing_done(tmp_path_factory: pytest.TempPathFactory, two_processes: WorkerPool) -> Desk:
+    """The desk of the page by which the API was designed, with what its listing has made."""
+    desk = desk_in(tmp_path_factory.mktemp("listing"))
+    with sharing(two_processes):
+        assert check_page(ROOT / "docs" / "reference" / "python.md", desk) == []
+    return desk
+
+
+@pytest.fixture(scope="session")
+def diagnosis(listing_done: Desk) -> truing.Diagnosis:
+    """The spring of this page that softens as it gets warm, diagnosed by a call."""
+    found = listing_done.namespace["found"]
+    assert isinstance(found, truing.Diagnosis)
+    return found
 
 
 @pytest.fixture

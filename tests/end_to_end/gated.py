@@ -3,55 +3,32 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-PATIENCE = 120.0  # seconds for what takes one or two on a quiet machine
+from own_pins import write_pin
+from warm import FORKED_WORKERS, LONGEST, Running
+
 FREE, ROWS, BATCHES = 6, 1024, 24
-PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
-PLUGIN = f'''
-"""The wear of a pin, calculated by whoever passes the gate."""
-
-import os
-import time
-from dataclasses import replace
-from pathlib import Path
-
-import numpy as np
-from pin_wear import PIN_WEAR, Pin, Wear, wear
-
-from truing import Model, hookimpl
-
-CALLS, OPEN = Path(__file__).with_name("calls"), Path(__file__).with_name("open")
-
-
-def gated(pin: Pin) -> Wear:
-    """Let {FREE} batches pass, and the others when the gate is opened."""
-    if np.shape(pin.load) == ({ROWS},):
-        with CALLS.open("ab", buffering=0) as calls:
-            calls.write(b"%12d" % os.getpid())
-        while CALLS.stat().st_size > 12 * {FREE} and not OPEN.exists():
-            time.sleep(0.01)
-    return wear(pin)
-
-
-@hookimpl
-def truing_models() -> list[Model]:
-    """Offer it."""
-    return [replace(PIN_WEAR, name="gated_pin", function=gated, sheet=[])]
-'''
+HEAD = 'CALLS, OPEN = Path(__file__).with_name("calls"), Path(__file__).with_name("open")'
+GATE = f"""
+if np.shape(pin.load) == ({ROWS},):
+    with CALLS.open("ab", buffering=0) as calls:
+        calls.write(b"%12d" % os.getpid())
+    while CALLS.stat().st_size > 12 * {FREE} and not OPEN.exists():
+        time.sleep(0.01)
+"""
+"""Let some batches pass, and the others when the gate is opened."""
 
 
 def wait_until(holds: Callable[[], Any], what: str) -> None:
     """Poll until something holds."""
-    until = time.monotonic() + PATIENCE
+    until = time.monotonic() + LONGEST
     while not holds():
-        assert time.monotonic() < until, f"not within {PATIENCE:.0f} s: {what}"
+        assert time.monotonic() < until, f"not within {LONGEST:.0f} s: {what}"
         time.sleep(0.02)
 
 
@@ -63,8 +40,7 @@ class Gated:
 
     @classmethod
     def in_folder(cls, folder: Path) -> Gated:
-        (folder / "pin_wear.py").write_text(PIN.read_text(encoding="utf-8"), encoding="utf-8")
-        (folder / "gated_pin.py").write_text(PLUGIN, encoding="utf-8")
+        write_pin(folder, "gated_pin", head=HEAD, body=GATE, more="sheet=[]")
         return cls(folder)
 
     @property
@@ -97,17 +73,14 @@ class Gated:
     def open(self) -> None:
         (self.folder / "open").touch()
 
-    def start(self, *more: str, launcher: Callable[[list[str]], list[str]] = list) -> subprocess.Popen[str]:
-        command = [sys.executable, "-m", "truing", *self.words, *more]
-        return subprocess.Popen(
-            launcher(command), cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-            encoding="utf-8", start_new_session=True,
-        )  # fmt: skip
+    def start(self, *more: str, forked: bool = True) -> Running:
+        """Run it; its workers start afresh, or are ``forked``: the sooner done, but they end as their parent does."""
+        return Running(["-m", "truing", *self.words, *more], self.folder, {FORKED_WORKERS: ""} if forked else {})
 
-    def at_the_gate(self, process: subprocess.Popen[str], calls: int) -> None:
+    def at_the_gate(self, process: Running, calls: int) -> None:
         """Wait until so many batches were begun."""
         wait_until(lambda: process.poll() is not None or self.calls >= calls, f"{calls} batches are begun")
-        assert process.poll() is None, process.communicate()
+        assert process.poll() is None, process.said
 
 
 def run_of(folder: Path) -> dict[str, Any]:

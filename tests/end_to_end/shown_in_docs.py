@@ -39,6 +39,7 @@ from pathlib import Path
 from typing import Any
 
 from read_in_docs import read
+from warm import FORKED_WORKERS, Running
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ROOT / "docs" / "examples"
@@ -89,14 +90,21 @@ class Desk:
             return "", 0
         if parts[0] == "calc" and not OF_ITS_OWN & set(parts):
             return self._here(parts[1:])
-        ended = subprocess.run(
-            self._spelled_out(parts), cwd=self.folder, env=self._environment(), stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT, text=True, encoding="utf-8", timeout=300, check=False,
-        )  # fmt: skip
-        said = ended.stdout.replace("\\", "/") if os.name == "nt" else ended.stdout  # the pages show paths with /
+        said, code = self._beside(self._spelled_out(parts))
         if parts[:3] == ["pip", "install", "-e"]:
             self.editable.append(str((self.folder / parts[3].partition("[")[0]).resolve()))
-        return "" if parts[0] == "pip" and ended.returncode == 0 else said, ended.returncode
+        return "" if parts[0] == "pip" and code == 0 else said, code
+
+    def _beside(self, words: list[str]) -> tuple[str, int]:
+        """Run Python in a process of its own; pytest and pip begin in a fresh one."""
+        if hasattr(os, "fork") and {"pytest", "pip"}.isdisjoint(words[:2]):
+            ended = Running(words, self.folder, self._environment(), together=True).ended()
+            return ended.out, ended.code
+        done = subprocess.run(
+            [sys.executable, *words], cwd=self.folder, env={**os.environ, **self._environment()}, check=False,
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, encoding="utf-8", timeout=300,
+        )  # fmt: skip
+        return done.stdout.replace("\\", "/"), done.returncode  # the pages show paths with /
 
     def _here(self, words: list[str]) -> tuple[str, int]:
         """Run ``calc`` in this process, and forget the reader's files afterwards: the next command reads them anew."""
@@ -119,21 +127,25 @@ class Desk:
         return [*self.editable, str(self.site)] if self.site.exists() else []
 
     def _spelled_out(self, parts: list[str]) -> list[str]:
-        """Use this Python for ``calc``, ``python`` and ``pip``; what is installed goes to a folder of its own."""
+        """Return what Python is to run for ``calc``, ``python`` and ``pip``; it installs into a folder of its own."""
         if parts[0] == "calc":
-            return [sys.executable, "-m", "truing", *parts[1:]]
+            return ["-m", "truing", *parts[1:]]
         if parts[0] == "python":
-            return [sys.executable, *parts[1:]]
+            return parts[1:]
         if parts[:2] == ["pip", "install"]:
             what = [part for part in parts[2:] if part != "-e"]
             offline = ["--no-deps", "--no-build-isolation", "--no-index", "--quiet", "--target", str(self.site)]
-            return [sys.executable, "-m", "pip", "install", *offline, *what]
+            return ["-m", "pip", "install", *offline, *what]
         raise AssertionError(f"the pages run calc, python, pip install and cd; not {parts[0]}")
 
     def _environment(self) -> dict[str, str]:
-        own = {"PYTHONUNBUFFERED": "1", "PYTHONIOENCODING": "utf-8", "PYTHONPATH": os.pathsep.join(self._installed())}
-        kept = {name: value for name, value in os.environ.items() if not name.startswith(("PYTEST", "COV"))}
-        return {**kept, **own, **TERMINAL, "PYTHONDONTWRITEBYTECODE": "1"}
+        own = {
+            FORKED_WORKERS: "",
+            "PYTHONUNBUFFERED": "1",
+            "PYTHONIOENCODING": "utf-8",
+            "PYTHONPATH": os.pathsep.join(self._installed()),
+        }
+        return {**own, **TERMINAL, "PYTHONDONTWRITEBYTECODE": "1"}
 
 
 NEEDED = re.compile(r"^<!-- needs data: (\S+) as (\S+) -->$", re.MULTILINE)

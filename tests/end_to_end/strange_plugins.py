@@ -40,18 +40,3 @@ def truing_models() -> list[Model[Beam, Tip]]:
     return [Model(name="beam", title="Clamped beam", function=beam, errors=ERRORS)]
 '''
 EXACT_BEAM = BEAM.replace('ERRORS = [Tolerance("modulus", normal(sd="2 %"))]', "ERRORS: list[Tolerance] = []")
-GUEST = """[build-system]
-requires = ["hatchling>=1.24"]
-build-backend = "hatchling.build"
-
-[project]
-name = "oil-of-our-press"
-version = "0.1"
-dependencies = ["truing"]
-
-[project.entry-points."truing.plugins"]
-my_new_effect = "new_effect"
-
-[tool.hatch.build.targets.wheel]
-only-include = ["new_effect.py"]
-"""

@@ -77,9 +77,9 @@ def test_what_is_shown_is_small_and_asks_for_nothing(name: str, diagnosis: truin
 def test_a_diagnosis_shows_verdict_picture_and_the_rest_folded(diagnosis: truing.Diagnosis) -> None:
     html = diagnosis._repr_html_()
     before, _, folded = html.partition("<details>")
-    assert "joint clearance, clearance" in before
+    assert "softening, loss" in before
     assert before.count("<img") == 1
-    assert re.search("joint clearance</td><td[^>]*>clearance</td><td[^>]*>5.97", before)
+    assert re.search("softening</td><td[^>]*>loss</td><td[^>]*>0.000247", before)
     for question in ("What is wrong", "Cause", "Extended model", "Gain", "Next"):
         assert f"<summary>{question}</summary>" in folded
 

@@ -12,33 +12,7 @@ import pytest
 from shared import Calc
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
-CASES = "case;load [kN];probe_temperature [degC];note\nlight;0,14;20;\nheavy;2,296;;keep\nnormal;;30;\n"
 QUICK = ("--set", "studies.reliability.draws=2000")
-
-
-def test_cases_on_stdout_in_results_and_on_the_sheet(calc: Calc, tmp_path: Path) -> None:
-    (tmp_path / "cases.csv").write_text(CASES, encoding="utf-8")
-    (tmp_path / "wear.toml").write_text('[inputs]\nload = "84 N"\n')
-    answer = calc("run", PIN, "--inputs", "wear.toml", "--cases", "cases.csv", *QUICK)
-    assert (answer.code, answer.err) == (1, "")
-    lines = [" ".join(line.split()) for line in answer.out.split("\n")]
-    assert lines[2] == "row case load [N] probe_temperature [degC] margin"
-    assert lines[3].startswith("1 light 140 20 ")
-    assert lines[4].startswith("2 heavy 2296 20 -")
-    assert lines[4].endswith(" FAILS, governing")
-    assert lines[5].startswith("3 normal 84 30 ")
-    assert lines[5].endswith(" pass")
-    assert "Fails. 1 of 3 cases fail; the governing case is heavy. (exit code 1)" in lines
-    found = json.loads((tmp_path / "runs/wear/results.json").read_text(encoding="utf-8"))
-    assert [case["name"] for case in found["cases"]] == ["light", "heavy", "normal"]
-    assert [case["governing"] for case in found["cases"]] == [False, True, False]
-    pressures = [case["results"]["pressure"]["value"] for case in found["cases"]]
-    assert pressures == pytest.approx([5, 82, 3])
-    assert found["results"]["pressure"]["value"] == pytest.approx(82)
-    for sheet in ("sheet.html", "sheet.md"):
-        text = (tmp_path / "runs/wear" / sheet).read_text(encoding="utf-8")
-        for name in ("light", "heavy", "normal"):
-            assert name in text
 
 
 def test_a_case_that_fails_is_said_with_its_line(calc: Calc, tmp_path: Path) -> None:

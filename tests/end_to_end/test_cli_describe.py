@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import tomllib
-from importlib.metadata import version
 from pathlib import Path
 
 import pin_wear
@@ -21,15 +20,6 @@ INSTALLED = ["harmonic_fractal", "press_linkage", "roller_screw_shift", "rv_gear
 MODELS = ["harmonic_fractal", "harmonic_fractal.made_flank", *INSTALLED[1:]]
 
 
-def test_plugins(calc: Calc) -> None:
-    answer = calc("plugins")
-    assert (answer.code, answer.err) == (0, "")
-    head, *rows = answer.out.rstrip("\n").split("\n")
-    assert head.split() == ["model", "version", "from", "title"]
-    assert [row.split()[:3] for row in rows] == [[name, version("truing"), "truing"] for name in MODELS]
-    assert calc("plugins", "--names").out == "".join(f"{name}\n" for name in INSTALLED)
-
-
 def test_plugins_as_json(calc: Calc) -> None:
     found = json.loads(calc("plugins", "--json").out)
     assert found["broken"] == []
@@ -40,41 +30,24 @@ def test_plugins_as_json(calc: Calc) -> None:
         assert Path(model["file"]).is_file()
 
 
-def test_describe_names_everything_that_is_declared(calc: Calc) -> None:
+def test_describe_names_what_the_page_has_none_of(calc: Calc) -> None:
     answer = calc("describe", PIN)
     assert (answer.code, answer.err) == (0, "")
-    for words in (
-        "pin_wear (a file): Sliding wear of a pin",
-        "load         F    120.0  N     normal load on the pin; above 0",
-        "rate         k    3e-08  -     wear coefficient; test 14",
-        "pressure    p  MPa  contact pressure",
-        "load      sd 3 %            on load      friction in the guide of the dead weight",
-        "running_in  on inputs   extra 0..50 µm, length 10..5000 m",
-        "warm_probe  on reading  slope -2..2 µm/K",
-        "needs probe_temperature",
-        "probe_temperature  reference 20  °C",
-        "vary load         50 N .. 200 N",
-        "require pressure  at most 80 MPa with reliability 0.99",
-        "Studies: sensitivity, reliability",
-    ):
-        assert " ".join(words.split()) in " ".join(answer.out.split()), words
+    said = " ".join(answer.out.split())
+    assert "rate k 3e-08 - wear coefficient; test 14" in said
+    assert "warm_probe on reading slope -2..2 µm/K needs probe_temperature" in said
+    assert "vary load 50 N .. 200 N" in said
 
 
 def test_describe_as_json(calc: Calc) -> None:
     found = json.loads(calc("describe", "press_linkage", "--json").out)
-    assert found["name"] == "press_linkage"
-    names = [item["name"] for item in found["inputs"]]
-    assert len([name for name in names if "_deviation" in name]) == 29
-    by_name = {item["name"]: item for item in found["inputs"]}
-    assert by_name["crank_radius"]["default"] == 0.36
-    assert by_name["crank_radius"]["unit"] == "m"
-    assert by_name["reading"]["choices"] == ["complete", "printed"]
-    assert by_name["reading"]["default"] == "complete"
-    assert by_name["ground_pivot_angle"]["default"] == 0.367
-    assert {item["name"] for item in found["effects"]} >= {"link_heating"}
+    inputs = {item["name"]: item for item in found["inputs"]}
+    assert len([name for name in inputs if "_deviation" in name]) == 29
+    assert (inputs["crank_radius"]["default"], inputs["crank_radius"]["unit"]) == (0.36, "m")
+    assert (inputs["reading"]["default"], inputs["reading"]["choices"]) == ("complete", ["complete", "printed"])
+    assert "link_heating" in {item["name"] for item in found["effects"]}
     assert set(found["studies"]) >= {"sweep", "sensitivity", "reliability", "allocation"}
-    results = {item["name"]: item for item in found["results"]}
-    assert {"slider_position", "slider_tilt", "stroke", "bdc_position", "adjustments"} <= set(results)
+    assert {"slider_position", "bdc_position", "adjustments"} <= {item["name"] for item in found["results"]}
 
 
 def test_describe_names_what_the_reader_of_a_file_takes(calc: Calc) -> None:
@@ -129,11 +102,6 @@ def test_the_schema_judges_every_example_as_an_editor_does() -> None:
         assert [*judge.iter_errors({"shet": {}})]
 
 
-def test_the_text_on_the_output_names_no_file(calc: Calc, tmp_path: Path) -> None:
-    assert "#:schema" not in calc("init", PIN).out
-    assert list(tmp_path.iterdir()) == []
-
-
 def test_a_schema_is_replaced_only_when_told_to(calc: Calc, tmp_path: Path) -> None:
     assert calc("init", PIN, "-o", "one.toml").code == 0
     schema = tmp_path / "pin_wear.schema.json"
@@ -151,12 +119,7 @@ def test_a_schema_is_replaced_only_when_told_to(calc: Calc, tmp_path: Path) -> N
     assert {path.name for path in tmp_path.iterdir()} == {schema.name, "one.toml", "two.toml", "three.toml"}
 
 
-def test_init_makes_the_folder_that_is_not_there(calc: Calc, tmp_path: Path) -> None:
-    assert calc("init", PIN, "-o", "new/pin.toml").code == 0
-    assert sorted(path.name for path in (tmp_path / "new").iterdir()) == ["pin.toml", "pin_wear.schema.json"]
-
-
 def test_what_init_writes_runs(calc: Calc, tmp_path: Path) -> None:
-    calc("init", PIN, "-o", "wear.toml")
-    answer = calc("run", PIN, "--inputs", "wear.toml", "-q")
+    calc("init", PIN, "-o", "new/wear.toml")
+    answer = calc("run", PIN, "--inputs", "new/wear.toml", "-q")
     assert answer.code == 0, answer.err

@@ -6,56 +6,40 @@ import json
 from pathlib import Path
 
 import pytest
-from block import write_block
+from own_pins import write_pin
 
 from shared import Calc
 from truing import Kernel
 
-RIGHT = 'published=[Published(name="drag", result="drag", value=20.0, unit="N", where="p. 3")]'
-STATED = 'published=[Published(name="drag", result="drag", value=25.0, unit="N", verdict="differs", why="a misprint")]'
-WRONG = f"{RIGHT[:-1].replace('20.0', '25.0')}, {RIGHT.removeprefix('published=[')}"
-
-
-def test_a_row_that_matches(calc: Calc, tmp_path: Path) -> None:
-    write_block(tmp_path, more=RIGHT)
-    answer = calc("verify", "./block.py")
-    assert (answer.code, answer.err) == (0, "")
-    assert "1.0000  matches" in answer.out
-    assert answer.out.endswith("\n1 printed number: 1 match, 0 differ; every verdict is as stated\n")
-
-
-def test_a_difference_that_is_stated_is_a_finding(calc: Calc, tmp_path: Path) -> None:
-    write_block(tmp_path, more=STATED)
-    answer = calc("verify", "./block.py")
-    assert answer.code == 0
-    assert "0.8000  differs" in answer.out
-    assert "[1] a misprint" in answer.out
+RIGHT = 'published=[Published(name="way", result="distance", value=360.0, unit="km", where="p. 3")]'
+STATED = RIGHT.replace('where="p. 3"', 'verdict="differs", why="a misprint"')
+WRONG = f"{RIGHT[:-1].replace('360.0', '450.0')}, {RIGHT.removeprefix('published=[')}"
 
 
 def test_a_difference_that_nobody_states(calc: Calc, tmp_path: Path) -> None:
-    write_block(tmp_path, more=WRONG)
-    answer = calc("verify", "./block.py")
+    write_pin(tmp_path, more=WRONG)
+    answer = calc("verify", "./own_pin.py")
     assert answer.code == 1
     assert "0.8000  differs, NOT AS STATED" in answer.out
-    assert "NOT as stated: drag" in answer.out
+    assert "NOT as stated: way" in answer.out
     assert "(exit code 1)" in answer.out
-    found = json.loads(calc("verify", "./block.py", "--json").out)
+    found = json.loads(calc("verify", "./own_pin.py", "--json").out)
     assert [row["as_stated"] for row in found["rows"]] == [False, True]
     assert [row["ratio"] for row in found["rows"]] == [0.8, 1.0]
 
 
 def test_a_match_where_a_difference_is_stated(calc: Calc, tmp_path: Path) -> None:
-    write_block(tmp_path, more=STATED.replace("25.0", "20.0"))
-    answer = calc("verify", "./block.py")
+    write_pin(tmp_path, more=STATED)
+    answer = calc("verify", "./own_pin.py")
     assert answer.code == 1
     assert "matches, NOT AS STATED" in answer.out
 
 
 def test_a_plugin_without_printed_numbers(calc: Calc, tmp_path: Path) -> None:
-    write_block(tmp_path)
-    answer = calc("verify", "./block.py")
-    assert (answer.code, answer.out) == (0, "block states no published numbers\n")
-    assert json.loads(calc("verify", "./block.py", "--json").out) == {"rows": [], "rules": {}, "findings": []}
+    write_pin(tmp_path)
+    answer = calc("verify", "./own_pin.py")
+    assert (answer.code, answer.out) == (0, "own_pin states no published numbers\n")
+    assert json.loads(calc("verify", "./own_pin.py", "--json").out) == {"rows": [], "rules": {}, "findings": []}
 
 
 TITLES = {

@@ -6,7 +6,6 @@ import json
 import os
 import signal
 import socket
-import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -16,8 +15,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
-from gated import BATCHES, FREE, PATIENCE, Gated, run_of, wait_until
-from test_interrupt import hearing_interrupts
+from gated import BATCHES, FREE, Gated, run_of, wait_until
+from warm import Running
 
 from shared import Answer, Calc
 from truing.errors import LostWorkersError, UsageError
@@ -29,6 +28,10 @@ distributed = pytest.importorskip("distributed", reason="the extra [cluster] is 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
 MOST_ENDED = 2
 """So many workers a batch may end; four, where nobody says otherwise."""
+SETTINGS = {
+    "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": str(MOST_ENDED - 1),
+    "DASK_DISTRIBUTED__WORKER__MULTIPROCESSING_METHOD": "forkserver",
+}
 
 
 @dataclass
@@ -37,8 +40,8 @@ class Cluster:
 
     folder: Path
     address: str = ""
-    scheduler: subprocess.Popen[bytes] | None = None
-    workers: list[subprocess.Popen[bytes]] = field(default_factory=list)
+    scheduler: Running | None = None
+    workers: list[Running] = field(default_factory=list)
 
     def with_workers(self, count: int, *, nanny: bool = False) -> Cluster:
         """Let so many workers be there, and a scheduler; what a test has ended is started anew."""
@@ -62,7 +65,7 @@ class Cluster:
         self.scheduler = started = self._start("dask_scheduler", "--port", "0", "--scheduler-file", str(file))
 
         def is_written() -> bool:
-            assert started.poll() is None, (self.folder / "dask_scheduler.log").read_text(errors="replace")
+            assert started.poll() is None, started.said
             try:
                 self.address = json.loads(file.read_text(encoding="utf-8"))["address"]
             except (OSError, ValueError):  # not there, or not yet whole
@@ -71,13 +74,10 @@ class Cluster:
 
         wait_until(is_written, "the scheduler has an address")
 
-    def _start(self, program: str, *arguments: str) -> subprocess.Popen[bytes]:
-        command = [sys.executable, "-m", f"distributed.cli.{program}", *arguments, "--no-dashboard"]
-        with open(self.folder / f"{program}.log", "ab") as log:
-            return subprocess.Popen(
-                [*command, "--host", "127.0.0.1"], cwd=self.folder, stdout=log, stderr=subprocess.STDOUT,
-                env={**os.environ, "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": str(MOST_ENDED - 1)},
-            )  # fmt: skip
+    def _start(self, program: str, *arguments: str) -> Running:
+        begin = f"import dask; dask.config.refresh(); from distributed.cli.{program} import main; main()"
+        place = ("--no-dashboard", "--host", "127.0.0.1")
+        return Running(["-c", begin, *arguments, *place], self.folder, SETTINGS, together=True)
 
     def end(self) -> None:
         for process in [*self.workers, *([self.scheduler] if self.scheduler else [])]:
@@ -85,9 +85,10 @@ class Cluster:
         self.workers.clear()
 
 
-def _ended(process: subprocess.Popen[bytes]) -> None:
-    process.kill()  # the worker of a nanny ends with it
-    process.wait()
+def _ended(process: Running) -> None:
+    if process.poll() is None:
+        process.signal(signal.SIGKILL)
+    process.ended()
 
 
 @pytest.fixture(scope="module")
@@ -123,7 +124,7 @@ def test_a_cluster_answers_as_one_process(cluster: Cluster, calc: Calc, tmp_path
 
 
 def test_a_plugin_in_one_file_reaches_the_cluster_and_another_one_there_is_refused(
-    cluster: Cluster, calc: Calc, calc_process: Calc, tmp_path: Path
+    cluster: Cluster, calc: Calc, tmp_path: Path
 ) -> None:
     address = cluster.with_workers(2).address
     file = tmp_path / "own_wear.py"
@@ -134,7 +135,7 @@ def test_a_plugin_in_one_file_reaches_the_cluster_and_another_one_there_is_refus
     assert run_of(tmp_path / "there")["warnings"] == []
     with file.open("a", encoding="utf-8") as more:
         more.write("\n# the workers have loaded the file without this line\n")
-    changed = calc_process(*words, "-o", "there", "--cluster", address)
+    changed = Running(["-m", "truing", *words, "-o", "there", "--cluster", address], tmp_path).ended()
     assert changed.code == 3
     assert changed.err.endswith(f"a worker has another {file}; bring the same file there and start it again\n")
 
@@ -143,11 +144,10 @@ def test_a_plugin_in_one_file_reaches_the_cluster_and_another_one_there_is_refus
 def test_an_interrupted_run_leaves_the_cluster_at_once(cluster: Cluster, tmp_path: Path) -> None:
     address = cluster.with_workers(2).address
     pin = Gated.in_folder(tmp_path)
-    process = pin.start("-o", "run", "-q", "--cluster", address, launcher=hearing_interrupts)
+    process = pin.start("-o", "run", "-q", "--cluster", address)
     pin.at_the_gate(process, FREE + 1)
-    process.send_signal(signal.SIGINT)
-    _, err = process.communicate(timeout=PATIENCE)
-    assert (process.returncode, err) == (130, "calc: interrupted; nothing was written\n")
+    process.signal(signal.SIGINT)
+    assert process.ended() == Answer(130, "", "calc: interrupted; nothing was written\n")
     pin.open()
     with distributed.Client(address, set_as_default=False) as client:
         wait_until(lambda: not any(client.processing().values()), "the workers have nothing to do")
@@ -156,23 +156,23 @@ def test_an_interrupted_run_leaves_the_cluster_at_once(cluster: Cluster, tmp_pat
 
 
 def test_a_worker_that_is_killed_changes_nothing_but_the_warning(cluster: Cluster, calc: Calc, tmp_path: Path) -> None:
-    workers = {worker.pid: worker for worker in cluster.with_workers(2).workers}
+    address = cluster.with_workers(2).address
     pin = Gated.in_folder(tmp_path)
 
     def kill_one_at_the_gate() -> None:
         try:
             wait_until(lambda: pin.calls > FREE, "a batch waits")  # the next one may be left to the same worker
-            workers[pin.callers[-1]].kill()
+            os.kill(pin.callers[-1], signal.SIGKILL)
         finally:
             pin.open()
 
     with beside(kill_one_at_the_gate):
-        answer = calc(*pin.words, "-o", "run", "--cluster", cluster.address)
+        answer = calc(*pin.words, "-o", "run", "--cluster", address)
     assert answer.code == 0, answer.err
     fate = "what was under way there was computed again, the results are the same"
-    lost = f"1 worker was lost at {cluster.address}; {fate}"
+    lost = f"1 worker was lost at {address}; {fate}"
     run = run_of(tmp_path / "run")
-    assert run["workers"] == {"count": 2, "lost": 1, "where": cluster.address}
+    assert run["workers"] == {"count": 2, "lost": 1, "where": address}
     assert run["warnings"] == [lost]
     assert f"warning: {lost}\n" in answer.err
     assert pin.calls > BATCHES  # what the killed one held was computed again
@@ -189,7 +189,7 @@ def test_a_cluster_without_workers_is_told(cluster: Cluster, monkeypatch: pytest
         with open_executor(f"dask:{cluster.address}") as place:
             answers = in_order(place, time.sleep, [0.0] * 16 + [60.0] * 20)
             next(answers)
-            only.kill()
+            only.signal(signal.SIGKILL)
             with pytest.raises(LostWorkersError, match=r"no worker has been left at tcp://.* for 0.2 s"):
                 list(answers)
     monkeypatch.setattr(on_cluster, "WORKER_SECONDS", 0.2)
@@ -221,7 +221,7 @@ def test_finished_batches_outlive_a_lost_scheduler(
         try:
             wait_until(lambda: pin.kept("run") == FREE, "six batches are kept")
         finally:
-            cluster.scheduler.kill()
+            cluster.scheduler.signal(signal.SIGKILL)
 
     with beside(lose_the_scheduler):
         cut_off = calc(*pin.words, "-q", "-o", "run", "--cluster", address, "--resume")
@@ -235,22 +235,29 @@ def test_finished_batches_outlive_a_lost_scheduler(
     assert (tmp_path / "run" / "results.json").read_bytes() == (tmp_path / "whole" / "results.json").read_bytes()
 
 
-def test_no_scheduler_answers(calc: Calc, monkeypatch: pytest.MonkeyPatch) -> None:
+REFUSED = [
+    (["NOBODY"], "no scheduler answers at NOBODY within 1 s; is dask scheduler running there?"),
+    (["10.0.0.5:8786"], "10.0.0.5:8786"),
+    (["tcp://"], "tcp://"),
+    (["carrier://pigeon:1"], "carrier://pigeon:1"),
+    (["tcp://host:port"], "tcp://host:port"),
+    (["NOBODY", "--workers", "2"], "--cluster and --workers exclude each other: a cluster has its own workers"),
+]
+
+
+@pytest.mark.parametrize(("words", "said"), REFUSED)
+def test_no_cluster_is_there(calc: Calc, monkeypatch: pytest.MonkeyPatch, words: list[str], said: str) -> None:
     monkeypatch.setattr(on_cluster, "CONNECT_SECONDS", 1)
     with socket.socket() as nobody:  # a port that nobody else gets, and where nobody listens
         nobody.bind(("127.0.0.1", 0))
         address = f"tcp://127.0.0.1:{nobody.getsockname()[1]}"
-        answer = calc("run", PIN, "-q", "--cluster", address)
-    assert answer == Answer(
-        2, "", f"calc: no scheduler answers at {address} within 1 s; is dask scheduler running there?\n"
-    )
+        answer = calc("run", PIN, "-q", "--cluster", *(word.replace("NOBODY", address) for word in words))
+    assert (answer.code, answer.out, answer.err.count("\n")) == (2, "", 1)
+    assert said.replace("NOBODY", address) in answer.err
 
 
-@pytest.mark.parametrize("address", ["10.0.0.5:8786", "tcp://", "carrier://pigeon:1", "tcp://host:port"])
-def test_what_is_no_address(calc: Calc, monkeypatch: pytest.MonkeyPatch, address: str) -> None:
-    monkeypatch.setattr(on_cluster, "CONNECT_SECONDS", 1)
-    answer = calc("run", PIN, "-q", "--cluster", address)
-    assert answer.code == 2
-    assert answer.out == ""
-    assert answer.err.count("\n") == 1
-    assert address in answer.err
+def test_without_the_extra_it_is_named(calc: Calc, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    answer = calc("run", PIN, "-q", "--cluster", "tcp://127.0.0.1:1")
+    sentence = 'a cluster needs dask.distributed; install it with: pip install "truing[cluster]"'
+    assert (answer.code, answer.err) == (2, f"calc: {sentence}\n")

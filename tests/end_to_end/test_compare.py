@@ -35,23 +35,6 @@ def runs(calc: Calc, made: Path) -> Calc:
     return partial(calc, cwd=made)
 
 
-def test_equal_runs(runs: Calc) -> None:
-    answer = runs("compare", "first", "again")
-    assert (answer.code, answer.out, answer.err) == (0, "equal\n", "")
-    assert json.loads(runs("compare", "first", "again", "--json").out) == {"equal": True, "changes": []}
-
-
-def test_different_runs(runs: Calc) -> None:
-    answer = runs("compare", "first", "heavy")
-    assert (answer.code, answer.err) == (1, "")
-    lines = [" ".join(line.split()) for line in answer.out.split("\n")]
-    assert lines[0] == "what name first heavy change"
-    assert "inputs load 120 N 2300 N x 19.2" in lines
-    assert "tolerances load sd 3 % sd 3 % sd x 19.2" in lines
-    assert "results pressure 4.2857143 MPa 82.142857 MPa x 19.2" in lines
-    assert not any(line.startswith("results distance") for line in lines)
-
-
 def test_a_check_that_flipped_stands_above_all_others(runs: Calc) -> None:
     there = runs("compare", "first", "heavy").out.split("\n")[1]
     assert there.split()[:3] == ["checks", "pressure", "1"]
@@ -85,12 +68,6 @@ def test_a_name_that_one_run_lacks() -> None:
     ]
 
 
-def test_versions_and_seeds_are_settings() -> None:
-    before, after = {"kernel": "0.1.0", "seed": 1}, {"kernel": "0.2.0", "seed": 2}
-    assert [(item.kind, item.name) for item in changes(before, after)] == [("settings", "kernel"), ("settings", "seed")]
-    assert changes(before, before) == []
-
-
 def test_rounding_is_no_change_and_a_change_beyond_it_is() -> None:
     before = {"results": {"a": {"value": 1.0, "unit": "mm"}}, "studies": {"s": {"x": [1.0, 2.0], "y": None}}}
     rounded = {"results": {"a": {"value": 1.0 + 4e-16, "unit": "mm"}}, "studies": {"s": {"x": [1.0, 2.0], "y": None}}}
@@ -98,6 +75,8 @@ def test_rounding_is_no_change_and_a_change_beyond_it_is() -> None:
     changed = {"results": {"a": {"value": 1.0 + 1e-11, "unit": "mm"}}, "studies": {"s": {"x": [1.0, 2.1], "y": 3.0}}}
     assert [(item.kind, item.name) for item in changes(before, changed)] == [("results", "a"), ("studies", "s")]
     assert differing(before["studies"], changed["studies"]) == 2
+    other = changes({**before, "kernel": "0.1.0", "seed": 1}, {**before, "kernel": "0.2.0", "seed": 2})
+    assert [(item.kind, item.name) for item in other] == [("settings", "kernel"), ("settings", "seed")]
 
 
 def test_tolerances_effects_and_studies_in_words(calc: Calc, tmp_path: Path) -> None:
@@ -136,6 +115,11 @@ def test_by_how_much(before: Any, after: Any, words: str) -> None:
     assert amount_of(Change("inputs", "x", before, after)) == words
 
 
+def test_a_limit_that_moved_is_said() -> None:
+    check = {"value": 5.0, "limit": 8.0, "unit": "mm", "margin": 0.375, "state": "passes"}
+    assert amount_of(Change("checks", "depth", check, {**check, "limit": 6.0, "margin": 1 / 6})) == "limit 8 -> 6"
+
+
 @pytest.mark.parametrize("state", ["passes", "fails"])
 def test_a_check_that_one_run_lacks_did_not_flip(state: str) -> None:
     check = {"value": 5.0, "limit": 8.0, "unit": "mm", "margin": 0.375, "state": state}
@@ -155,12 +139,6 @@ def test_what_is_long_or_nested_stays_short() -> None:
     )  # fmt: skip
     effect = {f"unknown_{place}": {"value": 1.0, "unit": "um"} for place in range(20)}
     assert words_of(Change("effects", "many", None, effect))[3] == "(see results.json)"
-
-
-def test_a_limit_that_moved_is_said() -> None:
-    check = {"value": 5.0, "limit": 8.0, "unit": "mm", "margin": 0.375, "state": "passes"}
-    change = Change("checks", "depth", check, {**check, "limit": 6.0, "margin": 1 / 6})
-    assert amount_of(change) == "limit 8 -> 6"
 
 
 class Terminal(io.StringIO):
@@ -189,14 +167,7 @@ def test_colour_on_a_terminal_repeats_the_words(runs: Calc, monkeypatch: pytest.
     flip = next(line for line in coloured.split("\n") if "now FAILS" in line)
     assert "\x1b[1;31m" in flip
     assert re.sub(r"\x1b\[[\d;]*m", "", coloured) == plain
-
-
-@pytest.mark.parametrize("environment", [{"NO_COLOR": "1"}, {"TERM": "dumb"}])
-def test_no_colour_where_none_is_wanted(
-    runs: Calc, monkeypatch: pytest.MonkeyPatch, environment: dict[str, str]
-) -> None:
-    plain = runs("compare", "first", "heavy").out
-    assert shown(monkeypatch, **environment) == plain
+    assert shown(monkeypatch, NO_COLOR="1") == shown(monkeypatch, TERM="dumb") == plain
 
 
 def diagnosed(folder: Path, document: dict[str, Any]) -> Path:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -27,12 +26,12 @@ from measured import (
     text_of,
 )
 from numpy.typing import NDArray
-from strange_plugins import BEAM, EXACT_BEAM, GUEST
+from strange_plugins import BEAM, EXACT_BEAM
 
 from hidden_effects.asking import write_case
 from hidden_effects.making import Wish, make_case
 from hidden_effects.press_machine import POSITION
-from shared import Calc, process
+from shared import Calc
 
 pytestmark = pytest.mark.filterwarnings("error::RuntimeWarning")
 Array = NDArray[Any]
@@ -219,15 +218,12 @@ def test_what_nobody_registered_is_unknown_with_what_it_depends_on(oily: Diagnos
 def test_the_new_effect_is_installed_and_named(
     calc: Calc, oily: Diagnosed, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """As the file says: in a project of its own, installed as pip installs it, it is a candidate like any other."""
-    project, installed = tmp_path / "project", tmp_path / "installed"
-    project.mkdir()
-    (project / "pyproject.toml").write_text(GUEST, encoding="utf-8")
-    (project / "new_effect.py").write_bytes((oily.folder / "new_effect.py").read_bytes())
-    options = ["--quiet", "--no-deps", "--no-build-isolation", "--no-index", "--disable-pip-version-check"]
-    command = [sys.executable, "-m", "pip", "install", *options, "--target", str(installed), str(project)]
-    done = process(command, tmp_path)
-    assert done.code == 0, done.err
+    """As the file says: in a project of its own, which lies as pip installs it, it is a candidate like any other."""
+    installed, described = tmp_path / "installed", tmp_path / "installed" / "oil_of_our_press-0.1.dist-info"
+    described.mkdir(parents=True)
+    (described / "METADATA").write_text("Metadata-Version: 2.1\nName: oil-of-our-press\nVersion: 0.1\n", "utf-8")
+    (described / "entry_points.txt").write_text("[truing.plugins]\nmy_new_effect = new_effect\n", "utf-8")
+    (installed / "new_effect.py").write_bytes((oily.folder / "new_effect.py").read_bytes())
     data = oily.folder.parent
     for name in ("inputs.toml", "oily.csv"):
         (tmp_path / name).write_bytes((data / name).read_bytes())

@@ -104,17 +104,6 @@ def test_a_ball_falls_as_its_differential_equation_says(ball: Any, drag: float, 
     assert np.ravel(answer.speed) == pytest.approx(by_steps.y[1], abs=1e-7)
 
 
-def test_the_licence_of_the_data_is_kept() -> None:
-    licence = (EXAMPLE / "LICENSE").read_text(encoding="utf-8")
-    assert licence.startswith("MIT License\n\nCopyright (c) 2020 Brian de S")
-    assert "The above copyright notice and this permission notice shall be included" in licence
-    files = sorted((EXAMPLE / "drops").glob("*.csv"))
-    assert len(files) == 20
-    assert all(
-        "Copyright (c) 2020 Brian de Silva" in file.read_text(encoding="utf-8").splitlines()[0] for file in files
-    )
-
-
 # What the page says of each ball, computed apart from any diagnosis
 
 

@@ -1,4 +1,4 @@
-"""Fatigue of panels: the published record against least squares, what a diagnosis says of it, and its preparation."""
+"""Fatigue of panels: the published record against least squares, what a diagnosis says of it."""
 
 from __future__ import annotations
 
@@ -127,27 +127,3 @@ def test_every_second_row_says_nothing_against_the_limit(desk: Path) -> None:
     write(desk / "half.csv", [head, *rows[::2]])
     document = EXAMPLE.diagnosed(desk, "half")
     assert ["fatigue_limit"] in document["explanations"] or document["verdict"] in {"none", "undecided"}
-
-
-# Preparation
-
-
-HEAD = "stress [MPa],life [kcycles],outcome [-]\n"
-
-
-def test_run_outs_are_marked_at_their_last_cycle(tmp_path: Path) -> None:
-    made = EXAMPLE.prepared(tmp_path, HEAD + "380,100,failed\n270,10000,runout\n300,1000,failed\n")
-    assert made[1:] == [["380", "5", "failed"], ["270", "7", "runout"], ["300", "6", "failed"]]
-
-
-@pytest.mark.parametrize(
-    ("text", "sentence"),
-    [
-        ("no table", r"data.csv:1: no column 'stress \[MPa\]'; README.md says which file is meant"),
-        (HEAD + "380,100,failed\n", "'outcome .-.' holds other words than 'failed' and 'runout', or one alone"),
-        (HEAD + "380,100,failed\n270,0,runout\n", r"data.csv:3: life '0' is no number above 0"),
-    ],
-)
-def test_another_file_is_refused_in_one_sentence(text: str, sentence: str, tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match=sentence):
-        EXAMPLE.prepared(tmp_path, text)

@@ -126,14 +126,6 @@ def test_the_records_are_whole(name: str, volts: float, levels: float) -> None:
     assert rows[:, 2].max() == 10.0
 
 
-def test_the_licence_goes_with_the_records() -> None:
-    licence = (EXAMPLE / "LICENSE").read_text(encoding="utf-8")
-    assert licence.startswith("MIT License\n\nCopyright (c) 2025 Milad Banitalebi Dehkordi\n")
-    assert "The above copyright notice and this permission notice shall be included" in licence
-    assert "Copyright (c) 2025 Milad Banitalebi Dehkordi" in STORY
-    assert "M. Schoukens, P. Mattsson, T. Wigren, J.-P. Noël" in STORY
-
-
 # What the story shows is what the commands print: the pages of the manual are run. Here it is held against other hands.
 
 FREE, BY_HAND, POWER = 0.669, 0.381, 0.370

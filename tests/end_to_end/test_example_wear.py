@@ -1,4 +1,4 @@
-"""Sliding wear: the published record against least squares, what a diagnosis says of it, and its preparation."""
+"""Sliding wear: the published record against least squares, what a diagnosis says of it."""
 
 from __future__ import annotations
 
@@ -116,28 +116,3 @@ def test_without_specimens_none_of_equal_explanations_is_called_the_only_one(des
     document = EXAMPLE.diagnosed(desk, "flat")
     tied = [set(item["causes"]) for item in document["ranking"] if item["behind"] < 1e-6]
     assert len(causes_of(document)) >= len([names for number, names in enumerate(tied) if names not in tied[:number]])
-
-
-# Preparation
-
-
-HEAD = "specimen [-],load [gf],cycles [-],wear [um]\n"
-
-
-def test_the_last_two_specimens_of_a_load_judge(tmp_path: Path) -> None:
-    made = EXAMPLE.prepared(tmp_path, HEAD + "".join(f"{name},10,2,100\n" for name in (7, 8, 9)))
-    assert [row[-1] for row in made["measured.csv"]] == ["record", "fit", "validation", "validation"]
-    assert made["logarithms.csv"][1] == ["7", "10", "2", "2.000000", "fit"]
-
-
-@pytest.mark.parametrize(
-    ("text", "sentence"),
-    [
-        ("no table", r"data.csv:1: no column 'specimen \[-\]'; README.md says which file is meant"),
-        (HEAD + "1,10,2,3\n2,10,2,3\n", "a load with fewer than 3 specimens: none is left to fit or to judge"),
-        (HEAD + "1,10,2,worn\n", r"data.csv:2: wear 'worn' is no number above 0"),
-    ],
-)
-def test_another_file_is_refused_in_one_sentence(text: str, sentence: str, tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match=sentence):
-        EXAMPLE.prepared(tmp_path, text)

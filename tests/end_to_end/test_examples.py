@@ -45,3 +45,21 @@ def test_the_data_are_said_to_be_free(table: str) -> None:
     assert first.startswith("# NIST")
     assert "Public domain" in first
     assert re.search(r"\*\*public\s+domain\*\*", (file.parent / "README.md").read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize(
+    ("example", "holder", "author"),
+    [
+        ("falling_balls", "2020 Brian de Silva", "B. M. de Silva, D. M. Higdon, S. L. Brunton"),
+        ("cascaded_tanks", "2025 Milad Banitalebi Dehkordi", "M. Schoukens, P. Mattsson, T. Wigren, J.-P. Noël"),
+    ],
+)
+def test_the_licence_goes_with_the_records(example: str, holder: str, author: str) -> None:
+    licence, page = ((EXAMPLES / example / name).read_text(encoding="utf-8") for name in ("LICENSE", "README.md"))
+    assert licence.lower().startswith(f"MIT License\n\nCopyright (c) {holder}\n".lower())
+    assert "The above copyright notice and this permission notice shall be included" in licence
+    assert f"Copyright (c) {holder}" in " ".join(page.split())
+    assert author in page
+    drops = list((EXAMPLES / example / "drops").glob("*.csv"))
+    assert len(drops) == {"falling_balls": 20}.get(example, 0)
+    assert all(f"Copyright (c) {holder}" in drop.read_text(encoding="utf-8").splitlines()[0] for drop in drops)

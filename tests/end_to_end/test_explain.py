@@ -32,20 +32,6 @@ def shown(calc: Calc, *words: str) -> list[str]:
     return [" ".join(line.split()) for line in answer.out.split("\n")]
 
 
-def test_a_result_has_its_formula_with_symbols_numbers_and_result(calc: Calc) -> None:
-    lines = shown(calc, str(PIN), "pressure")
-    assert lines[0] == "pressure p = 4.2857 MPa"
-    assert lines[lines.index("p = F / A") + 1 :][:2] == ["= 120 N / (28 mm²)", "= 4.2857 MPa"]
-
-
-def test_a_result_says_what_it_is_made_from_down_to_the_inputs(calc: Calc) -> None:
-    chain = [(item["depth"], item["name"]) for item in told(calc, "depth")["chain"]]
-    assert chain == [
-        (1, "early_depth"), (1, "rate"), (1, "pressure"), (2, "load"), (2, "area"), (1, "distance"), (2, "speed"),
-        (2, "time"), (1, "hardness"),
-    ]  # fmt: skip
-
-
 def test_what_scatters_is_ranked_by_its_share(calc: Calc) -> None:
     scatter = told(calc, "depth")["scatter"]
     assert [item["name"] for item in scatter["shares"]] == ["hardness", "load"]
@@ -59,17 +45,6 @@ def test_inputs_are_ranked_by_what_one_per_cent_does(calc: Calc) -> None:
     slopes = {item["name"]: item["percent"] for item in told(calc, "depth")["slopes"]}
     powers = {"load": 1, "area": -1, "speed": 1, "time": 1, "rate": 1, "hardness": -1}
     assert slopes == pytest.approx(powers, rel=1e-6)
-
-
-def test_a_result_names_its_limits_effects_and_what_follows(calc: Calc) -> None:
-    pressure = told(calc, "pressure")
-    assert pressure["limits"][0]["says"] == "at most 80 MPa, with reliability 0.99"
-    assert (pressure["followed_by"], pressure["effects"]) == (["depth"], [])
-    depth = told(calc, "depth")
-    assert {(item["name"], item["acts_on"]) for item in depth["effects"]} == {
-        ("running_in", "inputs"), ("warm_probe", "reading"),
-    }  # fmt: skip
-    assert "at most 80 MPa, with reliability 0.99: calc run decides it" in shown(calc, str(PIN), "pressure")
 
 
 def test_a_result_of_a_study_is_calculated_by_it(calc: Calc) -> None:

@@ -78,13 +78,10 @@ def test_the_example_runs_and_keeps_its_limits(example: Ran) -> None:
     assert value(example, "rough_share") < 1.0  # per cent
     assert all(check["passed"] for check in example.found["checks"])
     assert "<img" not in example.sheet
-
-
-def test_the_example_says_where_it_extrapolates(example: Ran) -> None:
     assert any("extrapolated below resolution" in text for text in example.found["warnings"])
 
 
-def test_a_surface_that_is_not_self_affine_is_refused_with_its_slopes(refused: Ran) -> None:
+def test_a_surface_that_is_not_self_affine_is_refused_with_its_slopes(refused: Ran, example: Ran) -> None:
     assert refused.code == 1
     assert value(refused, "surface_accepted") == 0
     (check,) = (each for each in refused.found["checks"] if each["name"] == "surface_accepted")
@@ -101,10 +98,7 @@ def test_a_surface_that_is_not_self_affine_is_refused_with_its_slopes(refused: R
     for slope in found["local_dimensions"]:
         assert f"{slope:.5g}" in refused.sheet
     assert str(SURFACES) not in refused.sheet  # no trace of this machine
-
-
-def test_what_is_stated_stands_for_a_refused_surface(refused: Ran, example: Ran) -> None:
-    for name in ("dimension", "roughness", "stiffness", "torsion"):
+    for name in ("dimension", "roughness", "stiffness", "torsion"):  # what is stated stands for what is refused
         assert value(refused, name) == pytest.approx(value(example, name), rel=1e-12)
 
 

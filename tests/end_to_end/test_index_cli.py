@@ -78,12 +78,6 @@ def test_what_is_foreign_or_damaged_is_said(listed: dict[str, Any], name: str, s
     assert listed[name] == sentence
 
 
-def test_newest_first_whatever_the_zone(calc: Calc, tmp_path: Path) -> None:
-    made_runs(tmp_path / "runs")
-    names = [entry["name"] for entry in json.loads(calc("index", "runs", "--json", "-q").out)["entries"]]
-    assert names[:5] == ["calm", "later/deep", "found", "first", "no_limits"]
-
-
 def test_the_page_is_written_beside_the_runs_and_its_links_arrive(calc: Calc, tmp_path: Path) -> None:
     made_runs(tmp_path / "runs")
     answer = calc("index", "runs")

@@ -9,43 +9,26 @@ from pathlib import Path
 
 import pytest
 
-from shared import GUESTS, ROOT, Answer, copied_guest, process
+from shared import ROOT, Answer, build_wheels, process
 from truing.new_project import NewPlugin, project, write_project
 
 pytestmark = pytest.mark.install
 OURS = {path.name for path in (ROOT / "plugins").iterdir() if (path / "__init__.py").is_file()}
 ARM = NewPlugin("gantry_arm", 'Arm of a gantry, 5" wide: „Übung“ \\ 1')
-WHEELS = """
-import os, sys
-from hatchling.build import build_wheel
-for source in sys.argv[2:]:
-    os.chdir(source)
-    print(build_wheel(sys.argv[1]))
-"""
 COMPILED_ONCE = {"PYTHONDONTWRITEBYTECODE": ""}
 
 
 @pytest.fixture(scope="module")
-def wheels(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
-    """Build our wheel and, in the folders beside it, projects of strangers: two that are kept and one made anew."""
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Build our wheel, and beside it that of a project that is made anew."""
     folder = tmp_path_factory.mktemp("wheels")
-    guests = [copied_guest(name, folder) for name in GUESTS]
     write_project(folder / ARM.name, project(ARM))
-    sources = [ROOT, *guests, folder / ARM.name]
-    done = process([sys.executable, "-c", WHEELS, str(folder), *map(str, sources)], folder)
-    assert done.code == 0, done.err
-    return [folder / name for name in done.out.split()]
+    return build_wheels(folder, [ROOT, folder / ARM.name])[0]
 
 
 @pytest.fixture(scope="module")
-def wheel(wheels: list[Path]) -> Path:
-    """Our wheel."""
-    return wheels[0]
-
-
-@pytest.fixture(scope="module")
-def fresh(wheels: list[Path], tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Make a fresh environment with all of them; returns its folder of commands.
+def fresh(wheel: Path, guest_wheels: list[Path], tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Make a fresh environment with both and two strangers' wheels; returns its folder of commands.
 
     What they need comes from the environment of the tests, behind the wheels; that it is declared is checked.
     """
@@ -54,6 +37,7 @@ def fresh(wheels: list[Path], tmp_path_factory: pytest.TempPathFactory) -> Path:
     assert process([sys.executable, "-m", "venv", "--without-pip", str(environment)], folder).code == 0
     commands = environment / ("Scripts" if os.name == "nt" else "bin")
     pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "--python", str(commands / "python")]
+    wheels = [*wheel.parent.glob("*.whl"), *guest_wheels]
     done = process([*pip, "install", "--quiet", "--no-compile", "--no-deps", *map(str, wheels)], folder)
     assert done.code == 0, done.err
     own = Path(sysconfig.get_path("purelib", vars={"base": str(environment), "platbase": str(environment)}))

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import os
 import signal
-import subprocess
 import sys
 import time
 from pathlib import Path
 
 import pytest
 from gated import FREE, Gated, wait_until
+from own_pins import write_pin
+from warm import Running
 
 from shared import Answer, Calc
 
@@ -36,32 +36,12 @@ def is_alive(process: int) -> bool:
         return False
 
 
-def hearing_interrupts(command: list[str]) -> list[str]:
-    """Return a command that hears an interrupt, also where the tests themselves were started deaf to it (``&``)."""
-    hear = "import os, signal, sys; signal.signal(signal.SIGINT, signal.SIG_DFL); os.execv(sys.argv[1], sys.argv[1:])"
-    return [sys.executable, "-c", hear, *command]
-
-
-def wait_until_begun(process: subprocess.Popen[str]) -> None:
-    """Wait until the command itself has taken the place of what makes it hear; a busy machine takes its time."""
-    told = Path(f"/proc/{process.pid}/cmdline")
-    for _ in range(600):
-        if not told.exists() or b"-m\0truing" in told.read_bytes().split(b"execv", 1)[0]:
-            return
-        time.sleep(0.05)
-
-
-def interrupted(process: subprocess.Popen[str], by: int = signal.SIGINT) -> tuple[Answer, list[int]]:
+def interrupted(process: Running, by: int = signal.SIGINT) -> tuple[Answer, list[int]]:
     """Signal to all processes of a command as a terminal does; return what it answers, and what it had started."""
-    try:
-        assert process.poll() is None, process.communicate()
-        children = children_of(process.pid) if SEES_CHILDREN else []
-        os.killpg(process.pid, by)
-        out, err = process.communicate(timeout=60)
-    finally:
-        if process.poll() is None:
-            os.killpg(process.pid, signal.SIGKILL)
-    return Answer(process.returncode, out, err), children
+    assert process.poll() is None, process.said
+    children = children_of(process.pid) if SEES_CHILDREN else []
+    process.signal(by)
+    return process.ended(), children
 
 
 def test_an_interrupted_run_leaves_the_earlier_one_as_it_was(calc: Calc, tmp_path: Path) -> None:
@@ -69,7 +49,7 @@ def test_an_interrupted_run_leaves_the_earlier_one_as_it_was(calc: Calc, tmp_pat
     assert calc(*pin.words, "--set", "studies.run=[]", "-q").code == 1  # its limit stays undecided
     folder = tmp_path / "runs" / "gated_pin"
     before = [(path.name, path.read_bytes()) for path in sorted(folder.iterdir())]
-    process = pin.start("-q", launcher=hearing_interrupts)
+    process = pin.start("-q")
     pin.at_the_gate(process, FREE + 1)
     end, _ = interrupted(process)
     assert end.code == 130
@@ -81,9 +61,8 @@ def test_an_interrupted_run_leaves_the_earlier_one_as_it_was(calc: Calc, tmp_pat
 def test_an_interrupted_run_leaves_no_worker_behind(tmp_path: Path, by: int) -> None:
     """Nor a word of one, while they start (the first) and while they work."""
     pin = Gated.in_folder(tmp_path)
-    process = pin.start("-q", "--workers", "2", "-o", "new/run", launcher=hearing_interrupts)
+    process = pin.start("-q", "--workers", "2", "-o", "new/run", forked=False)
     if by == signal.SIGINT and SEES_CHILDREN:
-        wait_until_begun(process)
         wait_until(lambda: process.poll() is not None or len(children_of(process.pid)) >= 2, "two workers start")
         time.sleep(0.1)
     else:
@@ -95,53 +74,24 @@ def test_an_interrupted_run_leaves_no_worker_behind(tmp_path: Path, by: int) -> 
     wait_until(lambda: not any(map(is_alive, children)), "the workers end")
 
 
-WHILE_FINALIZED = """
-import os
-import signal
-import time
-
-from truing import Float, Model, found, given, hookimpl, inputs, results
-
-
-@inputs
-class Wait:
-    seconds: Float = given(60.0, "s", note="how long it takes")
-
-
-@results
-class Waited:
-    waited: Float = found("s", note="how long it took")
-
-
+SIGNALLED = """
 class Signalled:
     def __del__(self) -> None:
         os.kill(os.getpid(), signal.SIGINT)
         for _ in range(1000):
             pass
-
-
-def wait(given: Wait) -> Waited:
-    Signalled()
-    time.sleep(60)
-    return Waited(waited=given.seconds)
-
-
-@hookimpl
-def truing_models() -> list[Model]:
-    return [Model(name="slow_wait", title="Wait", function=wait)]
 """
 
 
 def test_an_interrupt_during_a_finalizer_is_not_lost(tmp_path: Path) -> None:
     """Python drops what is raised in a finalizer; this one sends the signal to its own process."""
-    (tmp_path / "slow_wait.py").write_text(WHILE_FINALIZED)
-    command = hearing_interrupts([sys.executable, "-m", "truing", "run", "slow_wait.py", "-q"])
-    ended = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=50, check=False)
-    assert (ended.returncode, ended.stderr) == (130, "calc: interrupted; nothing was written\n")
+    slow = write_pin(tmp_path, head=SIGNALLED, body="Signalled()\ntime.sleep(60)")
+    ended = Running(["-m", "truing", "run", slow, "-q"], tmp_path).ended()
+    assert ended == Answer(130, "", "calc: interrupted; nothing was written\n")
 
 
 IN_A_FIT = """
-import atexit, os, pathlib, signal, sys, time
+import os, pathlib, signal, sys, time
 from truing.cli import main
 from truing.diagnosis import exact
 
@@ -160,8 +110,11 @@ def stepped(state, moved):
 
 exact.Fitting.settle, exact.Fitting._taken = settled, stepped
 told = pathlib.Path(sys.argv.pop())
-atexit.register(lambda: told.write_text(str(time.process_time() - stamps[0])))
-sys.exit(main())
+try:
+    code = main()
+finally:
+    told.write_text(str(time.process_time() - stamps[0]))
+sys.exit(code)
 """
 
 
@@ -171,10 +124,7 @@ def test_a_diagnosis_ends_at_once_in_the_middle_of_an_exact_fit(tmp_path: Path) 
     command = ["diagnose", "press_linkage", "--inputs", str(page / "inputs.toml"), "--data", str(page / "measured.csv")]
     work = tmp_path / "work"
     work.mkdir()
-    end = subprocess.run(
-        hearing_interrupts([sys.executable, "-c", IN_A_FIT, *command, "-q", str(tmp_path / "taken")]),
-        cwd=work, capture_output=True, text=True, check=False,
-    )  # fmt: skip
-    assert (end.returncode, end.stdout, end.stderr) == (130, "", "calc: interrupted; nothing was written\n")
+    end = Running(["-c", IN_A_FIT, *command, "-q", tmp_path / "taken"], work).ended()
+    assert end == Answer(130, "", "calc: interrupted; nothing was written\n")
     assert list(work.iterdir()) == []
     assert float((tmp_path / "taken").read_text()) < 1.0

@@ -21,15 +21,39 @@ finder.find_spec = lambda name, *more: None if name.partition(".")[0] in {blocke
 LARGEST = 100_000
 
 
-def executed(folder: Path, *blocked: str) -> Any:
-    """Return the notebook after a run in a kernel that does not find some packages."""
+BAR = """
+import time
+from truing import progress
+progress.PATIENCE = 0.2
+with progress.progress_bar(True) as report:
+    for step in range(8):
+        report("reliability", step, 8)
+        time.sleep(0.3)
+"""
+
+
+def executed(folder: Path, *blocked: str) -> tuple[Any, list[str]]:
+    """Run the notebook, and last some long work, in a kernel that does not find some packages.
+
+    Return it with what its displays drew, one after the other.
+    """
     notebook = nbformat.read(NOTEBOOK, as_version=4)
     notebook.cells.insert(0, nbformat.v4.new_code_cell(ALONE.format(blocked=blocked)))
+    notebook.cells.append(nbformat.v4.new_code_cell(BAR))
     client = nbclient.NotebookClient(
         notebook, timeout=300, kernel_name="python3", resources={"metadata": {"path": str(folder)}}
     )
+    drawn: list[str] = []
+    process = client.process_message
+
+    def listening(message: Any, cell: Any, number: int) -> Any:
+        if message["msg_type"] in ("display_data", "update_display_data"):
+            drawn.append(message["content"]["data"].get("text/html", ""))
+        return process(message, cell, number)
+
+    client.process_message = listening  # type: ignore[method-assign]
     client.execute()
-    return notebook
+    return notebook, drawn
 
 
 def outputs(notebook: Any) -> list[Any]:
@@ -44,8 +68,11 @@ def texts(notebook: Any, form: str = "text/plain") -> list[str]:
 
 @pytest.mark.parametrize("blocked", [("polars", "pyarrow"), ("pandas", "pyarrow")], ids=["pandas", "polars"])
 def test_the_notebook_runs_in_a_fresh_kernel(tmp_path: Path, blocked: tuple[str, ...]) -> None:
-    """What the words between the cells say of its numbers is true."""
-    notebook = executed(tmp_path, *blocked)
+    """What the words between the cells say of its numbers is true.
+
+    Long work shows a bar, drawn anew, and takes it away; nothing else is printed.
+    """
+    notebook, drawn = executed(tmp_path, *blocked)
     said = "\n".join(texts(notebook))
     assert not [
         output for cell in notebook.cells for output in cell.get("outputs", ()) if output.get("name") == "stderr"
@@ -68,42 +95,12 @@ def test_the_notebook_runs_in_a_fresh_kernel(tmp_path: Path, blocked: tuple[str,
     assert "12.9 %" in shown
     low, high = map(float, re.findall(r"95 %: (\S+) to (\S+)", "\n".join(texts(notebook)))[0])
     assert low < 2.5e-4 < high
+    assert any("reliability" in html and "50 %" in html for html in drawn)
+    assert drawn[-1] == ""
+    assert [shown["data"] for shown in notebook.cells[-1].outputs] == [{"text/plain": ""}]
 
 
 def test_the_notebook_is_kept_without_output() -> None:
     notebook = nbformat.read(NOTEBOOK, as_version=4)
     nbformat.validate(notebook)
     assert not [cell.id for cell in notebook.cells if cell.get("outputs") or cell.get("execution_count")]
-
-
-BAR = """
-import time
-from truing import progress
-progress.PATIENCE = 0.2
-with progress.progress_bar(True) as report:
-    for step in range(8):
-        report("reliability", step, 8)
-        time.sleep(0.3)
-"""
-
-
-def test_long_work_shows_a_bar_and_takes_it_away(tmp_path: Path) -> None:
-    """The display that a cell makes is drawn anew, and empty at the end; nothing else is printed."""
-    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(BAR)])
-    client = nbclient.NotebookClient(
-        notebook, timeout=60, kernel_name="python3", resources={"metadata": {"path": str(tmp_path)}}
-    )
-    drawn: list[str] = []
-    process = client.process_message
-
-    def listening(message: Any, cell: Any, number: int) -> Any:
-        if message["msg_type"] in ("display_data", "update_display_data"):
-            drawn.append(message["content"]["data"].get("text/html", ""))
-        return process(message, cell, number)
-
-    client.process_message = listening  # type: ignore[method-assign]
-    client.execute()
-    assert any("reliability" in html and "50 %" in html for html in drawn)
-    assert drawn[-1] == ""
-    (left,) = outputs(notebook)
-    assert left["data"] == {"text/plain": ""}

@@ -206,6 +206,22 @@ def test_every_second_stretch_of_the_drag_judges(prepare: Callable[[str, str], i
     assert float(rows[0]["torque [N*m]"]) == pytest.approx(24.5)  # the mean of 17 to 32
 
 
+FATIGUE = "stress [MPa],life [kcycles],outcome [-]\n"
+WEAR = "specimen [-],load [gf],cycles [-],wear [um]\n"
+
+
+def test_run_outs_are_marked_at_their_last_cycle(prepare: Callable[[str, str], int], tmp_path: Path) -> None:
+    assert prepare("panel_fatigue", FATIGUE + "380,100,failed\n270,10000,runout\n300,1000,failed\n") == 0
+    rows = [tuple(row.values()) for row in made(tmp_path, "lives.csv")]
+    assert rows == [("380", "5", "failed"), ("270", "7", "runout"), ("300", "6", "failed")]
+
+
+def test_the_last_two_specimens_of_a_load_judge(prepare: Callable[[str, str], int], tmp_path: Path) -> None:
+    assert prepare("sliding_wear", WEAR + "".join(f"{name},10,2,100\n" for name in (7, 8, 9))) == 0
+    assert [list(row.values())[-1] for row in made(tmp_path)] == ["fit", "validation", "validation"]
+    assert [*made(tmp_path, "logarithms.csv")[0].values()] == ["7", "10", "2", "2.000000", "fit"]
+
+
 NO_FILE = "this is no table"
 REFUSED = [
     ("cycloid_torsion", NO_FILE, r"data.csv:1: no column 'time \[s\]'; README.md says which file is meant"),
@@ -224,6 +240,16 @@ REFUSED = [
     ("cycloid_drag", NO_FILE, r"data.csv:1: no column 'time \[s\]'; README.md says which file is meant"),
     ("cycloid_drag", drag_record(80), r"data.csv: shorter than two stretches of 10 s, so that no row is left to judge"),
     ("cycloid_drag", drag_record(240).replace(",9\n", ",slip\n"), r"data.csv:10: torque 'slip' is no number"),
+    ("panel_fatigue", NO_FILE, r"data.csv:1: no column 'stress \[MPa\]'; README.md says which file is meant"),
+    (
+        "panel_fatigue",
+        FATIGUE + "380,100,failed\n",
+        r"data.csv: .* other words than 'failed' and 'runout', .*",
+    ),
+    ("panel_fatigue", FATIGUE + "380,100,failed\n270,0,runout\n", r"data.csv:3: life '0' is no number above 0"),
+    ("sliding_wear", NO_FILE, r"data.csv:1: no column 'specimen \[-\]'; README.md says which file is meant"),
+    ("sliding_wear", WEAR + "1,10,2,3\n2,10,2,3\n", r"data.csv: .* fewer than 3 specimens: none is left to .*"),
+    ("sliding_wear", WEAR + "1,10,2,worn\n", r"data.csv:2: wear 'worn' is no number above 0"),
     ("harmonic_stall", "\n".join(stall_record(1).splitlines()[:25]), r"data.csv: the plateau of run 1 is too short"),
 ]
 
@@ -238,7 +264,7 @@ def test_another_file_is_refused_in_one_sentence(
     assert [file.name for file in tmp_path.iterdir()] == ["data.csv"]
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", [*NAMES, "panel_fatigue", "sliding_wear"])
 def test_without_a_record_there_is_one_sentence(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     script = preparation(name)
     assert script.main([]) == 2
@@ -248,15 +274,11 @@ def test_without_a_record_there_is_one_sentence(name: str, capsys: pytest.Captur
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_the_page_says_where_the_record_comes_from_and_under_which_licence(name: str) -> None:
+def test_the_page_says_where_the_record_comes_from_and_none_is_shipped(name: str) -> None:
     page = (EXAMPLES / name / "README.md").read_text(encoding="utf-8")
     assert NEEDED.search(page)
     assert "https://creativecommons.org/licenses/by-sa/4.0/" in page
     assert "https://github.com/" in page
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_no_record_is_shipped(name: str) -> None:
     ignored = (EXAMPLES / name / ".gitignore").read_text(encoding="utf-8").split()
     assert ignored[0] == "data.csv"
     files = {file.name for file in (EXAMPLES / name).iterdir() if file.is_file() and not any(map(file.match, ignored))}

@@ -7,36 +7,18 @@ import os
 import re
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
+from own_pins import write_pin
 
 from shared import Calc
 from truing import progress
 from truing.progress import Task, has_terminal, shown_progress, spoken
 from truing.studies.bench import part_of, within
 
-SLOW = """
-import time
-from dataclasses import dataclass
-
-from truing import Float, Model, found, given, hookimpl, inputs, results
-
-
-@inputs
-class Given:
-    x: Float = given(1.0, "")
-
-
-@results
-class Found:
-    y: Float = found("")
-
-
-def double(item: Given) -> Found:
-    return Found(y=2 * item.x)
-
-
+PATIENT = """
 @dataclass(frozen=True)
 class Heard:
     def as_json(self): return {}
@@ -57,12 +39,12 @@ class Patient:
             bench.progress(self.name, step, self.steps)
             time.sleep(self.pause)
         return Heard()
-
-
-@hookimpl
-def truing_models():
-    return [Model(name="slow", title="Slow", function=double, studies=[Patient()])]
 """
+
+
+def write_slow(folder: Path) -> None:
+    """Write a pin with one study, of twelve steps that take 0.3 s."""
+    write_pin(folder, "slow", head=PATIENT, more="objectives=[], studies=[Patient()], sheet=[]")
 
 
 class Terminal(io.StringIO):
@@ -84,32 +66,26 @@ def on_terminal(monkeypatch: pytest.MonkeyPatch, patience: float = 0.05) -> Term
 
 
 @pytest.mark.parametrize(
-    ("elapsed", "done", "total", "left"),
+    ("elapsed", "first", "done", "total", "left"),
     [
-        (30.0, 1, 4, 90.0),  # a quarter in half a minute
-        (30.0, 3, 4, 10.0),
-        (100.0, 0, 4, None),  # nothing is known
-        (100.0, 1, 1000, None),  # next to nothing is
-        (0.5, 1, 2, None),  # too soon to say
-        (10.0, 4, 4, 0.0),
-        (10.0, 5, 4, 0.0),  # whoever counts too far is done
-        (10.0, 1, 0, None),
+        (30.0, 0, 1, 4, 90.0),  # a quarter in half a minute
+        (30.0, 0, 3, 4, 10.0),
+        (60.0, 0, 3, 4, 20.0),  # a step that takes long lengthens what is left
+        (100.0, 0, 0, 4, None),  # nothing is known
+        (100.0, 0, 1, 1000, None),  # next to nothing is
+        (0.5, 0, 1, 2, None),  # too soon to say
+        (10.0, 0, 4, 4, 0.0),
+        (10.0, 0, 5, 4, 0.0),  # whoever counts too far is done
+        (10.0, 0, 1, 0, None),
+        (10.0, 2, 3, 4, 10.0),  # half was done at once, a quarter took ten seconds: so will the last quarter
+        (10.0, 3, 3, 4, None),
     ],
 )
-def test_time_left_is_that_of_the_pace_so_far(elapsed: float, done: int, total: int, left: float | None) -> None:
-    found = Task("work", 5.0, done, total).left(5.0 + elapsed)
+def test_time_left_is_that_of_the_pace_since_one_heard_of_the_task(
+    elapsed: float, first: int, done: int, total: int, left: float | None
+) -> None:
+    found = Task("work", 5.0, done, total, first=first).left(5.0 + elapsed)
     assert found == (None if left is None else pytest.approx(left))
-
-
-def test_the_pace_counts_from_where_one_first_heard_of_the_task() -> None:
-    """Half was done at once, a quarter took ten seconds: so will the last quarter."""
-    assert Task("work", 0.0, 3, 4, first=2).left(10.0) == pytest.approx(10.0)
-    assert Task("work", 0.0, 3, 4, first=3).left(10.0) is None
-
-
-def test_a_step_that_takes_long_lengthens_what_is_left() -> None:
-    task = Task("work", 0.0, 1, 2)
-    assert [task.left(now) for now in (10.0, 20.0, 40.0)] == [10.0, 20.0, 40.0]
 
 
 @pytest.mark.parametrize(
@@ -153,19 +129,13 @@ def test_short_work_shows_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_an_error_takes_the_line_away(monkeypatch: pytest.MonkeyPatch) -> None:
     terminal = on_terminal(monkeypatch)
-    with pytest.raises(KeyboardInterrupt):
-        interrupted()
-    shown = terminal.getvalue()
-    assert shown.rindex("\x1b[2K") > shown.rindex("sweep")
-    assert shown.rindex("\x1b[?25h") > shown.rindex("\x1b[?25l")  # the cursor is there again
-
-
-def interrupted() -> None:
-    """Work that is ended by its user."""
-    with shown_progress() as report:
+    with suppress(KeyboardInterrupt), shown_progress() as report:
         report("sweep", 1, 2)
         time.sleep(0.3)
         raise KeyboardInterrupt
+    shown = terminal.getvalue()
+    assert shown.rindex("\x1b[2K") > shown.rindex("sweep")
+    assert shown.rindex("\x1b[?25h") > shown.rindex("\x1b[?25l")  # the cursor is there again
 
 
 @pytest.mark.parametrize(("name", "value"), [("TERM", "dumb"), ("NO_COLOR", "1")])
@@ -178,7 +148,7 @@ def test_plain_terminals_show_none(monkeypatch: pytest.MonkeyPatch, name: str, v
 
 def test_nothing_goes_to_a_pipe(calc: Calc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(progress, "PATIENCE", 0.0)
-    (tmp_path / "slow.py").write_text(SLOW, encoding="utf-8")
+    write_slow(tmp_path)
     answer = calc("run", "slow.py", "--set", "studies.patient.pause=0.02")
     assert (answer.code, answer.err) == (
         0,
@@ -189,7 +159,7 @@ def test_nothing_goes_to_a_pipe(calc: Calc, tmp_path: Path, monkeypatch: pytest.
 @pytest.mark.skipif(os.name == "nt", reason="a terminal of another kind")
 def test_a_real_terminal(tmp_path: Path) -> None:
     """Twelve steps of 0.3 s: silence for two seconds, then the bar with what is left, then the results."""
-    (tmp_path / "slow.py").write_text(SLOW, encoding="utf-8")
+    write_slow(tmp_path)
     heard = on_a_terminal([sys.executable, "-m", "truing", "run", "slow.py", "-v"], tmp_path)
     text = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", "".join(part for _, part in heard))
     begin = next(when for when, part in heard if "no --inputs" in part)
@@ -229,22 +199,14 @@ def on_a_terminal(command: list[str], folder: Path) -> list[tuple[float, str]]:
 
 
 def test_parts_of_a_task_lie_one_behind_the_other() -> None:
-    said: list[tuple[str, int, int]] = []
-    note = lambda *words: said.append(words)  # noqa: E731
+    said: list[tuple[str, int]] = []
+
+    def note(task: str, done: int, _: int) -> None:
+        said.append((task, done))
+
     part_of(note, "surrogate", 0.2, 0.3)(1, 2)
     part_of(note, "surrogate", 0.2, 0.3)(0, 0)
     inner = within(note, "cases", 0.5, 0.75, ["sweep", "reliability"])
-    inner("sweep", 1, 2)
-    inner("reliability", 2, 2)
-    inner("nobody", 1, 2)
-    inner("reliability", 1, 2)  # begins anew: it does not go back
-    assert said == [
-        ("surrogate", 250, 1000),
-        ("surrogate", 200, 1000),
-        ("cases", 562, 1000),
-        ("cases", 750, 1000),
-        ("cases", 750, 1000),
-    ]
-
-
-# What the benchmark asks of every shipped study
+    for task, done in (("sweep", 1), ("reliability", 2), ("nobody", 1), ("reliability", 1)):  # it never goes back
+        inner(task, done, 2)
+    assert said == [("surrogate", 250), ("surrogate", 200), ("cases", 562), ("cases", 750), ("cases", 750)]

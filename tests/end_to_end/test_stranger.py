@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from shared import ROOT, TESTS, Answer, Calc, copied_guest, process
+from truing.testing import CalcProcess
 
 BROKEN = "plugin 'broken_guest' 0.0.7: IndexError: list index out of range"
 
@@ -48,18 +49,15 @@ def test_plugins_as_json(stranger: Callable[..., Answer]) -> None:
     assert (broken["plugin"], broken["version"], broken["line"]) == ("broken_guest", "0.0.7", 6)
 
 
+def test_a_process_of_its_own_finds_them_where_it_is_told(calc_process: CalcProcess, strangers: Path) -> None:
+    alone, beside = (calc_process("plugins", "--names", path=path).out.split() for path in (None, strangers))
+    assert set(beside) - set(alone) == {"broken_guest", "screw_joint"}
+
+
 def test_strict_ends_at_the_broken_guest(stranger: Callable[..., Answer]) -> None:
     answer = stranger("plugins", "--strict")
     assert answer.code == 3
     assert BROKEN in answer.err
-
-
-def test_describe(stranger: Callable[..., Answer]) -> None:
-    answer = stranger("describe", "screw_joint")
-    assert answer.code == 0
-    for word in ("tightening_torque", "N·m", "settling", "friction", "clamp_left"):
-        assert word in answer.out
-    assert json.loads(stranger("describe", "screw_joint", "--json").out)
 
 
 def run_folder(stranger: Callable[..., Answer], folder: Path, *arguments: str) -> Any:

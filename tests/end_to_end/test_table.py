@@ -35,17 +35,6 @@ def columns(text: str) -> dict[str, list[str]]:
     return {name: [row[place] for row in rows] for place, name in enumerate(head)}
 
 
-def test_the_columns_of_the_file_come_first_and_units_stand_in_the_header(table: Table) -> None:
-    answer = table("load [kN],batch\n0.14,A\n0.28,B\n")
-    assert answer.code == 0
-    assert answer.err == "column 'batch' changes nothing and is kept as it stands.\n"
-    found = columns(answer.out)
-    assert list(found) == ["load [kN]", "batch", "pressure [MPa]", "distance [km]", "depth [um]"]
-    assert found["load [kN]"] == ["0.14", "0.28"]
-    assert found["batch"] == ["A", "B"]
-    assert [float(cell) for cell in found["pressure [MPa]"]] == pytest.approx([5.0, 10.0], rel=1e-15)
-
-
 def test_numbers_read_back_exactly(table: Table, tmp_path: Path) -> None:
     """0.1 N and its neighbours differ in the seventeenth digit; every one of them comes through."""
     loads = [0.1, math.nextafter(0.1, 1), 1 / 3, 2 / 3 * 1e-7, 123456.78901234567]
@@ -59,12 +48,27 @@ def test_numbers_read_back_exactly(table: Table, tmp_path: Path) -> None:
     assert columns(again.out) == found  # results that stand in the file are calculated again
 
 
-def test_readings_act_and_conditions_are_columns(table: Table) -> None:
-    rows = "probe_temperature [degC],load [N]\n20,120\n30,120\n30,240\n"
-    effect = '[effects.warm_probe]\nslope = "1.5 um/K"\n'
-    plain, warm = (columns(table(rows, text).out)["depth [um]"] for text in ("[inputs]\n", effect))
-    added = [float(one) - float(other) for one, other in zip(warm, plain, strict=True)]
-    assert added == pytest.approx([0, 15, 15], abs=1e-9)
+PROBED = "probe_temperature [degC],load [N]\n20,120\n30,120\n30,240\n"
+PRESSED = "time [h],crank_angle [deg]\n7,0\n7.5,0\n9,0\n"
+
+
+@pytest.mark.parametrize(
+    ("rows", "effect", "result", "added"),
+    [
+        # a reading acts, and its condition is a column
+        (PROBED, 'warm_probe]\nslope = "1.5 um/K"', "depth [um]", [0, 15, 15]),
+        # running-in adds its whole depth after many lengths: 360 km against 100 m
+        ("load [N]\n120\n", 'running_in]\nextra = "7 um"\nlength = "100 m"', "depth [um]", [7]),
+        # time counts from the first row of the file
+        (PRESSED, 'sensor_drift]\nslider_position = "4 um/h"', "slider_position [mm]", [0, 2e-3, 8e-3]),
+    ],
+)
+def test_effects_are_seen_by_the_gauge(table: Table, rows: str, effect: str, result: str, added: list[float]) -> None:
+    plugin = "press_linkage" if rows == PRESSED else PIN
+    plain, off = (
+        columns(table(rows, text, plugin=plugin).out)[result] for text in ("[inputs]\n", f"[effects.{effect}\n")
+    )
+    assert [float(one) - float(other) for one, other in zip(off, plain, strict=True)] == pytest.approx(added, abs=1e-9)
 
 
 def test_a_plugin_that_declares_nothing_of_the_kind_has_a_gauge_that_may_be_off(calc: Calc, tmp_path: Path) -> None:
@@ -84,24 +88,6 @@ def test_a_plugin_that_declares_nothing_of_the_kind_has_a_gauge_that_may_be_off(
     assert depths["plain"][2] == {}
     assert depths["off"][2]["sensor_offset"]["depth"]["value"] == pytest.approx(30)
     assert "sensor offset" in (tmp_path / "runs" / "off" / "sheet.html").read_text(encoding="utf-8")
-
-
-def test_time_counts_from_the_first_row_of_the_file(table: Table) -> None:
-    """A drift of 4 um/h seen by a press whose record begins at 7 h."""
-    rows = "time [h],crank_angle [deg]\n7,0\n7.5,0\n9,0\n"
-    drift = '[effects.sensor_drift]\nslider_position = "4 um/h"\n'
-    plain, drifted = (
-        columns(table(rows, text, plugin="press_linkage").out)["slider_position [mm]"] for text in ("[inputs]\n", drift)
-    )
-    added = [float(one) - float(other) for one, other in zip(drifted, plain, strict=True)]
-    assert added == pytest.approx([0, 2e-3, 8e-3], abs=1e-12)
-
-
-def test_an_effect_on_the_inputs_is_seen_by_the_gauge_too(table: Table) -> None:
-    """Running-in adds its whole depth after many lengths: 360 km against 100 m."""
-    effect = '[effects.running_in]\nextra = "7 um"\nlength = "100 m"\n'
-    plain, worn = (columns(table("load [N]\n120\n", text).out)["depth [um]"] for text in ("[inputs]\n", effect))
-    assert float(worn[0]) - float(plain[0]) == pytest.approx(7, abs=1e-9)
 
 
 def test_the_calibrated_machine_is_shown(table: Table) -> None:

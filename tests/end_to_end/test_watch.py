@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import os
-import queue
 import re
 import shutil
 import signal
-import subprocess
 import sys
 import threading
 import time
@@ -17,15 +15,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from test_interrupt import hearing_interrupts
+from gated import wait_until
+from warm import LONGEST, Running
 
 from shared import Calc
 from truing.watching import PATIENCE, WatchedFiles
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
 INPUTS = '[inputs]\nload = "120 N"\n[studies]\nrun = ["reliability"]\n'
-LONGEST = 120.0
-"""Seconds that anything may take before a test gives up; nothing waits for them where all is well."""
 
 
 def saved(file: Path, text: str, *, by_renaming: bool = False) -> None:
@@ -37,50 +34,42 @@ def saved(file: Path, text: str, *, by_renaming: bool = False) -> None:
 
 
 class Watching:
-    """A running ``calc watch`` whose lines arrive one by one."""
+    """A running ``calc watch`` whose lines are read one by one."""
 
-    def __init__(self, folder: Path, *words: str) -> None:
-        command = [sys.executable, "-m", "truing", "watch", *words, "--every", "0.05"]
-        self.process = subprocess.Popen(
-            hearing_interrupts(command), cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-            encoding="utf-8", env={**os.environ, "PYTHONUTF8": "1", "PYTHONUNBUFFERED": "1"},
-        )  # fmt: skip
-        self.lines: queue.Queue[str] = queue.Queue()
-        threading.Thread(target=self._read, daemon=True).start()
-
-    def _read(self) -> None:
-        assert self.process.stdout is not None
-        for line in self.process.stdout:
-            self.lines.put(line.rstrip("\n"))
+    def __init__(self, folder: Path, *words: str, path: str = "") -> None:
+        command = ["-m", "truing", "watch", *words, "--every", "0.05"]
+        self.process = Running(command, folder, {"PYTHONPATH": path}, together=True)
+        self.read = 0
 
     def says(self, pattern: str) -> str:
         """Wait for a line with this pattern and return it."""
-        seen = []
-        until = time.monotonic() + LONGEST
-        while time.monotonic() < until:
-            try:
-                seen.append(self.lines.get(timeout=1.0))
-            except queue.Empty:
-                assert self.process.poll() is None, seen
-                continue
-            if re.search(pattern, seen[-1]):
-                return seen[-1]
-        raise AssertionError(f"no line with {pattern!r} among {seen}")
+        shown: list[str] = []
+
+        def is_said() -> bool:
+            has_ended = self.process.poll() is not None
+            lines = self.process.said[0].split("\n")[self.read : -1]
+            shown[:] = [line for line in lines if re.search(pattern, line)][:1]
+            self.read += lines.index(shown[0]) + 1 if shown else 0
+            assert shown or not has_ended, lines
+            return bool(shown)
+
+        wait_until(is_said, f"a line with {pattern!r}")
+        return shown[0]
 
     def interrupted(self) -> int:
         """Press Ctrl-C and return the exit code."""
-        self.process.send_signal(signal.SIGINT)
-        return self.process.wait(timeout=LONGEST)
+        self.process.signal(signal.SIGINT)
+        return self.process.ended().code
 
 
 @contextmanager
-def watching(folder: Path, *words: str) -> Iterator[Watching]:
-    made = Watching(folder, *words)
+def watching(folder: Path, *words: str, path: str = "") -> Iterator[Watching]:
+    made = Watching(folder, *words, path=path)
     try:
         yield made
     finally:
         if made.process.poll() is None:
-            made.process.kill()
+            made.process.signal(signal.SIGKILL)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="a console signal there stops the test too")
@@ -109,7 +98,7 @@ def test_the_sheet_follows_inputs_and_code_and_survives_mistakes(tmp_path: Path)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="a console signal there stops the test too")
-def test_a_diagnosis_follows_its_measured_rows(calc: Calc, tmp_path: Path) -> None:
+def test_a_diagnosis_follows_its_measured_rows(tmp_path: Path) -> None:
     shutil.copy(PIN, tmp_path / "pin.py")
     saved(tmp_path / "pin.toml", '[inputs]\nload = "120 N"\n')
     depth = 3e-8 * (120 / 28e-6) * 0.5 * 3600 / 2.1e9 * 1e6  # Archard, um per hour
@@ -128,19 +117,10 @@ def test_a_diagnosis_follows_its_measured_rows(calc: Calc, tmp_path: Path) -> No
         assert watch.says("not calculated; the sheet of .* stays")
         assert watch.interrupted() == 1
         assert watch.says("calc: watched 2 diagnoses; the sheet of .* stays")
-    for words, why in (
-        (["--data", "n.csv"], "n.csv: no such file"),
-        (["--data", "m.csv", "--workers", "2"], "for runs"),
-    ):
-        answer = calc("watch", "./pin.py", "--inputs", "pin.toml", *words, cwd=tmp_path)
-        assert answer.code == 2
-        assert why in answer.err
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="a console signal there stops the test too")
-def test_data_files_and_the_files_of_an_installed_package_are_watched(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_data_files_and_the_files_of_an_installed_package_are_watched(tmp_path: Path) -> None:
     name, text = "worn_surface", PIN.with_name("worn_surface.py").read_text(encoding="utf-8")
     home, described = tmp_path / "site" / name, tmp_path / "site" / f"{name}-1.0.dist-info"
     home.mkdir(parents=True)
@@ -149,10 +129,9 @@ def test_data_files_and_the_files_of_an_installed_package_are_watched(
     saved(home / "law.py", text)
     saved(described / "METADATA", f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.0\n")
     saved(described / "entry_points.txt", f"[truing.plugins]\n{name} = {name}\n")
-    monkeypatch.setenv("PYTHONPATH", str(tmp_path / "site"))
     saved(tmp_path / "depths.txt", "1\n2\n3\n")
     saved(tmp_path / "worn.toml", '[inputs]\nsurface = "depths.txt"\n')
-    with watching(tmp_path, name, "--inputs", "worn.toml", "-o", "out") as watch:
+    with watching(tmp_path, name, "--inputs", "worn.toml", "-o", "out", path=str(tmp_path / "site")) as watch:
         assert watch.says(r"no checks; sheet: out.sheet\.html$")
         saved(tmp_path / "depths.txt", "2\n4\n6\n", by_renaming=True)
         assert watch.says(r"share -50 %; no checks")
@@ -166,6 +145,11 @@ def test_data_files_and_the_files_of_an_installed_package_are_watched(
     [
         (["no_such_plugin", "--inputs", "pin.toml"], "calc: no plugin offers 'no_such_plugin'."),
         ([PIN, "--inputs", "pim.toml"], "pim.toml: no such file. Did you mean 'pin.toml'?"),
+        ([PIN, "--inputs", "pin.toml", "--data", "n.csv"], "n.csv: no such file"),
+        (
+            [PIN, "--inputs", "pin.toml", "--data", "pin.toml", "--workers", "2"],
+            "calc: --cases, --excel and --workers are",
+        ),
         ([PIN, "--inputs", "pin.toml", "-o", "other"], "calc: other: is an existing folder but no run of ours"),
     ],
 )

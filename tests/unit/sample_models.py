@@ -132,9 +132,9 @@ PIN_OFFER = Offer("pin_wear", PIN_WEAR, Origin("pin_wear", "1.2.0", "pins", "pin
 STAGE_OFFER = Offer("gears.stage", STAGE, Origin("gears", "0.1", "gears", "gears.py", "entry:gears"))
 
 
-def pin(text: str) -> Setup:
-    """Read the text of an inputs file of the pin, wear.toml."""
-    return setup_from_text(text, PIN_OFFER, file="wear.toml", folder=Path())
+def pin(text: str, *overrides: str, file: str = "wear.toml") -> Setup:
+    """Read the text of an inputs file of the pin."""
+    return setup_from_text(text, PIN_OFFER, file=file, folder=Path(), overrides=overrides)
 
 
 def faults(text: str) -> list[str]:

@@ -4,29 +4,24 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from sample_models import STAGE
 from study_models import CHAIN, UNIFORMS, WEAR, setup_of
 
 from truing import (
     Bench,
-    Float,
     Maximise,
-    Model,
     Optimise,
     Optimum,
     Reliability,
     Require,
     Tolerance,
     Vary,
-    found,
-    given,
-    inputs,
     normal,
-    results,
 )
 from truing.calculation import calculate
 from truing.evaluate import evaluate
 from truing.executors import open_executor
-from truing.setup import SwitchedOn
+from truing.setup import SwitchedOn, default_setup
 from truing.studies.checks import EXIT_CODES, chance_check, margin_of
 from truing.studies.optimise import bounds_of
 from truing.studies.verdicts import sentence_of
@@ -36,15 +31,13 @@ IDLE = "effect 'grow' is on, but 'warmth' stays at its reference: it does nothin
 
 
 def test_an_effect_that_is_on_at_its_reference_is_a_warning() -> None:
+    """A condition that scatters does not stay there."""
     setup = replace(setup_of(CHAIN), effects=(GROWING,))
     assert calculate(setup).warnings == (IDLE,)
     warmer = replace(setup, conditions={"warmth": setup.conditions["warmth"] + 1})
-    assert calculate(warmer).warnings == ()
-
-
-def test_a_condition_that_scatters_does_not_stay_at_its_reference() -> None:
-    model = replace(CHAIN, errors=[*CHAIN.errors, Tolerance("warmth", normal(sd="5 K"))])
-    assert calculate(replace(setup_of(model), effects=(GROWING,))).warnings == ()
+    scattering = replace(CHAIN, errors=[*CHAIN.errors, Tolerance("warmth", normal(sd="5 K"))])
+    for other in (warmer, replace(setup_of(scattering), effects=(GROWING,))):
+        assert calculate(other).warnings == ()
 
 
 def test_sections_see_the_inputs_as_effects_leave_them() -> None:
@@ -65,27 +58,16 @@ def bench_of(**values: str) -> Bench:
     return Bench(setup, results, open_executor("serial"), setup.model.read_results(results))
 
 
-def test_another_design_has_its_own_results_and_leaves_the_first_alone() -> None:
-    bench = bench_of()
-    name = next(iter(CHAIN.input_fields))
-    value = float(bench.setup.nominal(name))
-    moved = bench.changed({name: value + 1e-3})
-    assert moved.answers["gap"] != bench.answers["gap"]
-    assert moved.answers["gap"] == setup_results(moved)["gap"]
-    assert float(bench.setup.nominal(name)) == value
-
-
-def setup_results(bench: Bench) -> dict[str, float]:
-    found: dict[str, float] = bench.setup.model.read_results(evaluate(bench.setup))
-    return found
-
-
-def test_another_width_scatters_accordingly() -> None:
+def test_another_design_has_its_own_results_and_widths_and_leaves_the_first_alone() -> None:
     bench = bench_of()
     name, inner = next(iter(bench.setup.distributions().items()))
-    width = next(iter(inner.values())).width
-    wide = bench.changed({}, {name: 2 * width}).setup.distributions()[name]
-    assert next(iter(wide.values())).sd == pytest.approx(2 * next(iter(inner.values())).sd, rel=1e-12)
+    value, (scatter,) = float(bench.setup.nominal(name)), inner.values()
+    moved = bench.changed({name: value + 1e-3})
+    assert moved.answers["gap"] != bench.answers["gap"]
+    assert moved.answers["gap"] == moved.setup.model.read_results(evaluate(moved.setup))["gap"]
+    assert float(bench.setup.nominal(name)) == value
+    (wide,) = bench.changed({}, {name: 2 * scatter.width}).setup.distributions()[name].values()
+    assert wide.sd == pytest.approx(2 * scatter.sd, rel=1e-12)
 
 
 def test_drawn_machines_are_the_first_of_the_reliability() -> None:
@@ -130,71 +112,43 @@ def test_a_value_on_its_limit_keeps_it(kind: str) -> None:
 @pytest.mark.parametrize(
     ("limit", "worst", "passed"),
     [({"at_most": "40 um"}, 36.0, True), ({"at_most": "30 um"}, 36.0, False),
-     ({"at_least": "3 um"}, 4.0, True), ({"at_least": "5 um"}, 4.0, False)],
+     ({"at_least": "3 um"}, 4.0, True), ({"at_least": "5 um"}, 4.0, False), ({"within": "1 um"}, 0.0, True)],
 )  # fmt: skip
 def test_along_an_axis_the_worst_place_decides(limit: dict[str, str], worst: float, passed: bool) -> None:
-    """2 um/h after 1, 4 and 9 h in two stages: 4, 16 and 36 um."""
+    """2 um/h after 1, 4 and 9 h in two stages: 4, 16 and 36 um; within is measured at every place."""
     check = check_of(WEAR, Require("course", **limit))
     assert (check.value, check.unit, check.passed) == (pytest.approx(worst), "um", passed)
+    assert check.limit == pytest.approx(float(next(iter(limit.values())).split()[0]))
     assert (check.margin > 0) == passed
 
 
-def test_along_an_axis_within_is_measured_at_every_place() -> None:
-    check = check_of(WEAR, Require("course", within="1 um"))
-    assert (check.value, check.limit, check.passed) == (0.0, pytest.approx(1.0), True)
-
-
 def test_a_limit_is_printed_in_the_unit_of_its_result() -> None:
-    check = check_of(CHAIN, Require("gap", at_most="0.011 m"))
-    assert (check.value, check.limit, check.unit) == (pytest.approx(10.0), pytest.approx(11.0), "mm")
     setup = setup_of(replace(CHAIN, objectives=[Require("gap", at_most="0.011 m")]))
-    (check,) = calculate(replace(setup, units={"gap": "um"})).checks
-    assert (check.value, check.limit, check.unit) == (pytest.approx(10e3), pytest.approx(11e3), "um")
-    assert np.isclose(check.margin, 1 / 11)
+    for units, unit, size in (({}, "mm", 1.0), ({"gap": "um"}, "um", 1e3)):
+        (check,) = calculate(replace(setup, units=units)).checks
+        assert (check.value, check.limit, check.unit) == (pytest.approx(10 * size), pytest.approx(11 * size), unit)
+        assert check.margin == pytest.approx(1 / 11)
 
 
-@inputs
-class Bar:
-    """A bar of which a stiffness may be asked."""
-
-    stiffness: Float = given(100.0, "N/m")
-    asked: Float = given(None, "N/m")
-
-
-@results
-class Answer:
-    """What it has."""
-
-    rate: Float = found("N/m")
-    double: Float = found("N/m")
-
-
-def bar(bar_: Bar) -> Answer:
-    return Answer(rate=bar_.stiffness, double=2.0 * bar_.stiffness)
-
-
-BAR = Model(
-    name="bar",
-    title="Bar",
-    function=bar,
+FACTORED = replace(
+    STAGE,
+    errors=[],
     objectives=[
-        Require("rate", at_least="asked"), Require("double", at_most="300 N/m"), Vary("stiffness", "50 N/m", "200 N/m"),
-        Maximise("rate"),
+        Require("ratio", at_least="face_factor"), Require("ratio", at_most="3"), Vary("teeth_sun", "5", "31"),
+        Maximise("ratio"),
     ],
 )  # fmt: skip
 
 
-@pytest.mark.parametrize(("asked", "names"), [({}, ["double"]), ({"asked": 80.0}, ["rate", "double"])])
-def test_a_limit_that_is_not_given_asks_for_nothing(asked: dict[str, float], names: list[str]) -> None:
-    setup = setup_of(BAR, **asked)
-    assert [check.name for check in calculate(setup).checks] == names
-    assert sorted(bound.name for bound in bounds_of(setup)) == sorted(names)
-
-
-def test_a_search_without_the_limit_goes_to_its_end() -> None:
-    setup = replace(setup_of(BAR), studies=(Optimise(population=8, generations=12),))
-    (best,) = calculate(setup).record.outcome(Optimum).as_json()["front"]
-    assert best["objectives"]["rate"] == pytest.approx(150.0, rel=5e-3)
+def test_a_limit_that_is_not_given_asks_for_nothing() -> None:
+    """Of 31 teeth on 5 to 31 the largest ratio up to 3 is 31 on 11."""
+    for asked, names in (({}, ["ratio"]), ({"face_factor": 1.2}, ["ratio at least", "ratio at most"])):
+        setup = default_setup(FACTORED, surface=None, **asked)
+        assert [check.name for check in calculate(setup).checks] == names
+        assert sorted(bound.name for bound in bounds_of(setup)) == sorted(names)
+        searched = calculate(replace(setup, studies=(Optimise(population=10, generations=12),)))
+        (best,) = searched.record.outcome(Optimum).as_json()["front"]
+        assert best["objectives"]["ratio"] == pytest.approx(31 / 11, rel=1e-12)
 
 
 PROBABLE = replace(

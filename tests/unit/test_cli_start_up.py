@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -47,16 +48,9 @@ def test_nothing_heavy_is_imported(arguments: list[str], words: str | None) -> N
 
 
 def test_the_probe_sees_what_is_imported() -> None:
-    code, names, _ = imported("plugins")
+    code, names, _ = imported("describe", str(Path(__file__).parents[1] / "data" / "pin_wear.py"))
     assert code == 0
-    assert {"press_linkage", "pluggy"} <= names
-
-
-def test_importing_truing_costs_nothing() -> None:
-    done = subprocess.run(
-        [sys.executable, "-c", "import sys, truing; print(*sys.modules)"], capture_output=True, text=True, check=True
-    )
-    assert {name.partition(".")[0] for name in done.stdout.split()} & HEAVY == set()
+    assert {"numpy", "pluggy", "pint"} <= names
 
 
 # What is printed: a terminal shows it and obeys none of it.
@@ -65,11 +59,10 @@ ORDERS = "\x1b[31mred\x1b[0m\x07 \x9b2J \u202egnp.exe\rover"
 SHOWN = "?[31mred?[0m? ?2J ?gnp.exe?over"
 
 
-@pytest.mark.parametrize("write", [out, say])
-def test_a_terminal_is_given_no_orders(write, capsys):
-    write(f"column '{ORDERS}'\nnext line\tµm")
-    printed = "".join(capsys.readouterr())
-    assert printed == f"column '{SHOWN}'\nnext line\tµm\n"
+def test_a_terminal_is_given_no_orders(capsys):
+    for write in (out, say):
+        write(f"column '{ORDERS}'\nnext line\tµm")
+        assert "".join(capsys.readouterr()) == f"column '{SHOWN}'\nnext line\tµm\n"
 
 
 def test_a_document_reads_back_as_it_was(capsys):

@@ -81,16 +81,13 @@ def spellings(parameter: Any) -> list[str]:
     return [spelling for spelling in parameter.opts if spelling not in {"--help", "-h"}]
 
 
-@pytest.mark.parametrize("hook", HOOKS)
-def test_every_hook_has_a_page_and_a_test(hook: str) -> None:
-    assert page("hooks", f"{hook}.md").startswith(f"## {hook}(")
-    written = "\n".join(file.read_text(encoding="utf-8") for file in (ROOT / "tests").rglob("test_*.py"))
-    assert re.search(rf"def test_\w*{hook}", written), f"no test is named after {hook}"
-
-
-def test_there_are_four_hooks() -> None:
+def test_every_hook_has_a_page_and_a_test() -> None:
     assert len(HOOKS) == 4
     assert {file.stem for file in (REFERENCE / "hooks").glob("*.md")} == set(HOOKS)
+    written = "\n".join(file.read_text(encoding="utf-8") for file in (ROOT / "tests").rglob("test_*.py"))
+    for hook in HOOKS:
+        assert page("hooks", f"{hook}.md").startswith(f"## {hook}(")
+        assert re.search(rf"def test_\w*{hook}", written), f"no test is named after {hook}"
 
 
 @pytest.fixture
@@ -140,25 +137,20 @@ def test_truing_reports_adds_what_its_page_shows(spring: ModuleType) -> None:
     assert wire.rows[0][1] == pytest.approx(volume_mm3 * 7.85e-3, rel=1e-3)
 
 
-@pytest.mark.parametrize(("verb", "options"), verbs().items(), ids=list(verbs()))
-def test_every_verb_has_a_page_that_names_all_its_options(verb: str, options: list[str]) -> None:
-    text = page("verbs", f"{verb}.md")
-    assert text.startswith(f"# calc {verb}\n")
-    assert "Exit codes:" in text
-    missing = [option for option in options if not re.search(rf"(?<![\w-]){re.escape(option)}(?![\w-])", text)]
-    assert not missing
-
-
-def test_no_page_is_about_a_verb_that_is_gone() -> None:
+def test_every_verb_has_a_page_that_names_all_its_options() -> None:
     assert {file.stem for file in (REFERENCE / "verbs").glob("*.md")} == set(verbs())
+    for verb, options in verbs().items():
+        text = page("verbs", f"{verb}.md")
+        assert text.startswith(f"# calc {verb}\n")
+        assert "Exit codes:" in text
+        missing = [option for option in options if not re.search(rf"(?<![\w-]){re.escape(option)}(?![\w-])", text)]
+        assert not missing, verb
 
 
-@pytest.mark.parametrize("option", ["--version", "--verbose", "--quiet", "--traceback", "-v", "-q", "--help"])
-def test_what_holds_for_every_verb_is_said_once(option: str) -> None:
-    short = {"--verbose": "-v", "--quiet": "-q"}.get(option, option)
-    assert f"`{short}`" in (DOCS / "index.md").read_text(encoding="utf-8") or f"calc {option}" in (
-        DOCS / "index.md"
-    ).read_text(encoding="utf-8")
+def test_what_holds_for_every_verb_is_said_once() -> None:
+    text = (DOCS / "index.md").read_text(encoding="utf-8")
+    for option in ("--version", "-v", "-q", "--traceback", "--help"):
+        assert f"`{option}`" in text or f"calc {option}" in text
 
 
 def pages_of(name: str) -> str:
@@ -167,41 +159,23 @@ def pages_of(name: str) -> str:
     return page("python.md") if is_for_users else page("declaring.md") + page("studies.md")
 
 
-@pytest.mark.parametrize("name", truing.__all__)
-def test_every_public_word_is_explained(name: str) -> None:
-    assert re.search(rf"(?<!\w){name}(?!\w)", pages_of(name))
+def test_every_public_word_is_explained_with_its_arguments() -> None:
+    spoken = {"half": "plus_minus(", "chooser": "by_choice(", "low": "zone(", "high": "zone("}
+    for name in truing.__all__:
+        text, word = pages_of(name), getattr(truing, name)
+        assert re.search(rf"(?<!\w){name}(?!\w)", text), name
+        named = inspect.isfunction(word) and name not in {"inputs", "results"}
+        for argument in set(inspect.signature(word).parameters) - {"spreads", "of"} if named else ():
+            said = {**spoken, "name": f"{name}("}.get(argument, "\0") in text
+            assert said or re.search(rf"(?<!\w){argument}(?!\w)", text), f"{name}({argument})"
 
 
-FUNCTIONS = [
-    name for name in truing.__all__ if inspect.isfunction(getattr(truing, name)) and name not in {"inputs", "results"}
-]
-
-
-@pytest.mark.parametrize("name", FUNCTIONS)
-def test_every_argument_of_a_word_is_named(name: str) -> None:
-    text = pages_of(name)
-    arguments = [item for item in inspect.signature(getattr(truing, name)).parameters if item not in {"spreads", "of"}]
-    spoken = {"half": "plus_minus(", "chooser": "by_choice(", "low": "zone(", "high": "zone(", "name": f"{name}("}
-    missing = [
-        item
-        for item in arguments
-        if not re.search(rf"(?<!\w){item}(?!\w)", text) and spoken.get(item, "\0") not in text
-    ]
-    assert not missing
-
-
-@pytest.mark.parametrize(
-    "name",
-    [name for name, item in vars(errors).items() if inspect.isclass(item) and issubclass(item, TruingError)]
-    + ["Fault"],
-)
-def test_every_error_stands_in_the_tree(name: str) -> None:
-    assert re.search(rf"(?<!\w){name}(?!\w)", page("errors.md"))
-
-
-def test_the_tree_of_errors_has_the_right_exit_codes() -> None:
-    for line in re.findall(r"^[│├└─ ]*(\w+Error) +exit (\d)", page("errors.md"), re.MULTILINE):
-        assert getattr(errors, line[0]).exit_code == int(line[1])
+def test_every_error_stands_in_the_tree_with_its_exit_code() -> None:
+    text = page("errors.md")
+    classes = [name for name, item in vars(errors).items() if inspect.isclass(item) and issubclass(item, TruingError)]
+    assert [name for name in [*classes, "Fault"] if not re.search(rf"(?<!\w){name}(?!\w)", text)] == []
+    for name, code in re.findall(r"^[│├└─ ]*(\w+Error) +exit (\d)", text, re.MULTILINE):
+        assert getattr(errors, name).exit_code == int(code)
 
 
 def sections(text: str) -> dict[str, str]:
@@ -211,24 +185,17 @@ def sections(text: str) -> dict[str, str]:
 
 
 @pytest.mark.parametrize("study", STUDIES, ids=lambda study: study.__name__)
-def test_every_option_of_a_study_is_in_its_table_with_its_default(study: type[Any]) -> None:
+def test_every_option_of_a_study_and_every_attribute_of_its_outcome_is_named(study: type[Any]) -> None:
     text = sections(page("studies.md"))[study.__name__]
     rows = dict(re.findall(r"^\| (`[^|]+`) \| ([^|]*) \|", text, re.MULTILINE))
     named = {name: default for names, default in rows.items() for name in re.findall(r"`(\w+)`", names)}
     fields = {item.name: item for item in dataclasses.fields(study)}
     assert set(named) == set(fields)
     for name, item in fields.items():
-        number = named[name].replace(" ", "")
         if isinstance(item.default, int) and not isinstance(item.default, bool):
-            assert number == str(item.default)
-
-
-@pytest.mark.parametrize("study", STUDIES, ids=lambda study: study.__name__)
-def test_every_attribute_of_an_outcome_is_named(study: type[Any]) -> None:
-    text = sections(page("studies.md"))[study.__name__]
-    outcomes = [STUDIES[study], Curve] if study is Reliability else [STUDIES[study]]
+            assert named[name].replace(" ", "") == str(item.default)
     methods = {"as_json", "blocks", "checks", "warnings", "of"}
-    for outcome in outcomes:
+    for outcome in [STUDIES[study], *([Curve] if study is Reliability else [])]:
         names = {item.name for item in dataclasses.fields(outcome)}
         names |= {name for name, item in vars(outcome).items() if isinstance(item, property)}
         assert not [name for name in names - methods if f"`{name}" not in text]
@@ -241,25 +208,18 @@ def test_the_json_of_the_studies_is_json() -> None:
         json.loads(text)
 
 
-def test_every_check_of_the_kit_is_listed_with_its_promise() -> None:
+def test_every_check_built_in_effect_condition_and_history_has_its_row() -> None:
     text = page("conformance.md")
     for check in CHECKS:
         row = f"| {check.name} | {check.promise} |"
         assert row in text, f"docs/reference/conformance.md needs the row {row}"
-
-
-def test_every_built_in_effect_and_condition_has_its_row() -> None:
     text = page("builtin_effects.md")
     model = load_file(DOCS / "examples" / "coil_spring.py").COIL_SPRING
-    listed = re.findall(r"^\| `(\w+)` \|", text, re.MULTILINE)
-    assert listed == list(builtin_effects(model))
+    assert re.findall(r"^\| `(\w+)` \|", text, re.MULTILINE) == list(builtin_effects(model))
     for name in [*(set(model.known_conditions) - set(model.conditions)), "temperature"]:
         assert f"condition `{name}` [" in text or f"\n  condition `{name}` [" in text
-
-
-@pytest.mark.parametrize("word", [SINCE_START, *(f"{word} of X" for word in HISTORIES)])
-def test_every_history_has_its_row(word: str) -> None:
-    assert f'\n| `"{word}"` |' in page("declaring.md")
+    for word in [SINCE_START, *(f"{word} of X" for word in HISTORIES)]:
+        assert f'\n| `"{word}"` |' in page("declaring.md")
 
 
 def table(text: str, title: str) -> list[list[str]]:
@@ -275,33 +235,32 @@ SPELLED_ALIKE = [
 ]
 
 
-@pytest.mark.parametrize("units", SPELLED_ALIKE, ids=lambda units: units[0])
-def test_units_said_to_be_the_same_are_the_same(units: list[str]) -> None:
-    for unit in units[1:]:
-        assert same_dimension(unit, units[0])
-        assert to_si(1.0, unit) == pytest.approx(to_si(1.0, units[0]), rel=1e-14)
+def test_units_said_to_be_the_same_are_the_same() -> None:
+    assert SPELLED_ALIKE
+    for first, *others in SPELLED_ALIKE:
+        for unit in others:
+            assert same_dimension(unit, first)
+            assert to_si(1.0, unit) == pytest.approx(to_si(1.0, first), rel=1e-14)
 
 
-REFUSED = [text for row in table(page("units.md"), "What is refused") for text in re.findall(r'`"([^"]+)"`', row[0])]
-
-
-@pytest.mark.parametrize("text", REFUSED)
-def test_what_the_page_of_units_refuses_is_refused(text: str) -> None:
-    with pytest.raises(UnitError):
-        read_quantity(text, "degC" if text == "5 C" else "m")
-
-
-def test_the_sentence_about_counts_and_angles_is_the_one_that_is_said() -> None:
+def test_what_the_page_of_units_refuses_is_refused() -> None:
+    rows = table(page("units.md"), "What is refused")
+    refused = [text for row in rows for text in re.findall(r'`"([^"]+)"`', row[0])]
+    assert refused
+    for text in refused:
+        with pytest.raises(UnitError):
+            read_quantity(text, "degC" if text == "5 C" else "m")
     (sentence,) = re.findall(r"```text\n(.*?)\n```", sections(page("units.md"))["Counts and angles"], re.DOTALL)
     with pytest.raises(UnitError, match=re.escape(sentence)):
         read_quantity("3000 rpm", "rad/s")
 
 
-@pytest.mark.parametrize("unit", ["degC", "K"])
-def test_levels_and_differences_are_written_as_the_page_says(unit: str) -> None:
-    (row,) = [row for row in table(page("units.md"), "Temperatures: levels and differences") if f"`{unit}`" in row[0]]
-    for text in re.findall(r'`"([^"]+)"`', row[1]):
-        read_quantity(text, unit)
+def test_levels_and_differences_are_written_as_the_page_says() -> None:
+    rows = table(page("units.md"), "Temperatures: levels and differences")
+    for unit in ("degC", "K"):
+        (row,) = [row for row in rows if f"`{unit}`" in row[0]]
+        for text in re.findall(r'`"([^"]+)"`', row[1]):
+            read_quantity(text, unit)
 
 
 SPREADS = [
@@ -312,11 +271,12 @@ SPREADS = [
 ]
 
 
-@pytest.mark.parametrize(("python", "file"), SPREADS)
-def test_a_spread_reads_the_same_in_python_and_in_a_file(python: str, file: str) -> None:
-    declared = eval(python, {name: getattr(truing, name) for name in truing.__all__})
+def test_a_spread_reads_the_same_in_python_and_in_a_file() -> None:
+    assert SPREADS
     target = Target("length", 0.25, "m", lambda name: 0.25)
-    assert read_spread(file.strip('"'), off()).resolve(target) == declared.resolve(target)
+    for python, file in SPREADS:
+        declared = eval(python, {name: getattr(truing, name) for name in truing.__all__})
+        assert read_spread(file.strip('"'), off()).resolve(target) == declared.resolve(target)
 
 
 def links(text: str) -> Iterator[str]:
@@ -333,8 +293,12 @@ def anchors(text: str) -> set[str]:
 
 
 @pytest.mark.parametrize("file", PAGES, ids=lambda file: str(file.relative_to(ROOT)))
-def test_links_inside_the_manual_lead_somewhere(file: Path) -> None:
-    for link in links(file.read_text(encoding="utf-8")):
+def test_a_page_names_no_machine_fetches_no_picture_and_its_links_lead_somewhere(file: Path) -> None:
+    text = file.read_text(encoding="utf-8")
+    assert not re.findall(r"(?:/home/|/work/|/root/|/tmp/|/Users/|[A-Z]:\\\\)\S*", text)
+    assert not re.findall(r"!\[[^\]]*\]\(https?:", text)
+    assert "<img" not in text
+    for link in links(text):
         if link.startswith(("https://", "http://")):
             continue
         target, _, anchor = link.partition("#")
@@ -343,11 +307,3 @@ def test_links_inside_the_manual_lead_somewhere(file: Path) -> None:
         assert ROOT in place.parents, f"{link}: leads out of the project"
         if anchor:
             assert anchor in anchors(place.read_text(encoding="utf-8")), f"{link}: no such heading"
-
-
-@pytest.mark.parametrize("file", PAGES, ids=lambda file: str(file.relative_to(ROOT)))
-def test_pages_name_no_machine_and_fetch_no_picture(file: Path) -> None:
-    text = file.read_text(encoding="utf-8")
-    assert not re.findall(r"(?:/home/|/work/|/root/|/tmp/|/Users/|[A-Z]:\\\\)\S*", text)
-    assert not re.findall(r"!\[[^\]]*\]\(https?:", text)
-    assert "<img" not in text

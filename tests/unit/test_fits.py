@@ -56,15 +56,6 @@ CALCULATOR_ABOVE_500_MM = {
     3150: "26 36 50 68",
 }
 
-# The values used for the links of a servo press: IT7, IT6, IT5 in mm.
-PRESS_LINKS = {
-    1800: (0.150, 0.092, 0.065),
-    1400: (0.125, 0.078, 0.055),
-    900: (0.090, 0.056, 0.040),
-    550: (0.070, 0.044, 0.032),
-    360: (0.057, 0.036, 0.025),
-}
-
 
 def width_um(grade: str, size_mm: float) -> float:
     return fits.tolerance(grade, size_mm / 1000) * 1e6
@@ -76,33 +67,20 @@ def test_table_up_to_500_mm(grade, line):
     assert [width_um(grade, size) for size in LIMITS_MM[:13]] == pytest.approx(expected, rel=1e-12)
 
 
-@pytest.mark.parametrize(("upper_mm", "line"), HANDBOOK_ABOVE_500_MM.items())
-def test_table_above_500_mm(upper_mm, line):
-    expected = [float(number) * 1000 for number in line.split()]
-    grades = [f"IT{number}" for number in range(5, 12)]
-    assert [width_um(grade, upper_mm) for grade in grades] == pytest.approx(expected, rel=1e-12)
+@pytest.mark.parametrize("upper_mm", HANDBOOK_ABOVE_500_MM)
+def test_tables_above_500_mm(upper_mm):
+    fine_um = [float(number) for number in CALCULATOR_ABOVE_500_MM[upper_mm].split()]
+    coarser_um = [float(number) * 1000 for number in HANDBOOK_ABOVE_500_MM[upper_mm].split()]
+    grades = [f"IT{number}" for number in range(1, 12)]
+    assert [width_um(grade, upper_mm) for grade in grades] == pytest.approx([*fine_um, *coarser_um], rel=1e-12)
 
 
-@pytest.mark.parametrize(("upper_mm", "line"), CALCULATOR_ABOVE_500_MM.items())
-def test_table_of_fine_grades_above_500_mm(upper_mm, line):
-    expected = [float(number) for number in line.split()]
-    assert [width_um(grade, upper_mm) for grade in fits.GRADES[:4]] == pytest.approx(expected, rel=1e-12)
-
-
-@pytest.mark.parametrize(("size_mm", "expected_mm"), PRESS_LINKS.items())
-def test_links_of_a_press(size_mm, expected_mm):
-    widths = [fits.tolerance(grade, size_mm / 1000) * 1000 for grade in ("IT7", "IT6", "IT5")]
-    assert widths == pytest.approx(expected_mm, rel=1e-12)
-
-
-@pytest.mark.parametrize("upper_mm", LIMITS_MM)
 @pytest.mark.parametrize("number", range(6, 14))
-def test_ten_times_the_width_every_fifth_grade(number, upper_mm):
+def test_ten_times_the_width_every_fifth_grade(number):
     """ISO 286-1: from IT6 upwards; the one printed exception is IT6 of 3 to 6 mm, 8 um beside 75 um at IT11."""
-    if (number, upper_mm) == (6, 6):
-        assert (width_um("IT6", 6), width_um("IT11", 6)) == pytest.approx((8, 75))
-    else:
-        assert width_um(f"IT{number + 5}", upper_mm) == pytest.approx(10 * width_um(f"IT{number}", upper_mm))
+    for upper_mm in LIMITS_MM:
+        ten_times = 75 if (number, upper_mm) == (6, 6) else 10 * width_um(f"IT{number}", upper_mm)
+        assert width_um(f"IT{number + 5}", upper_mm) == pytest.approx(ten_times)
 
 
 def test_wider_with_every_grade_and_never_narrower_with_size():
@@ -122,10 +100,14 @@ def test_a_size_on_a_limit_belongs_to_the_lower_range(limit):
     assert own < above or limit == 3150
 
 
-@pytest.mark.parametrize("size", [0.0, -0.1, 3.1501, 10.0, math.nan, math.inf, -math.inf])
-def test_sizes_outside_the_standard(size):
-    with pytest.raises(UnitError, match="above 0 and up to 3150 mm"):
-        fits.tolerance("IT7", size)
+def test_sizes_and_grades_outside_the_standard():
+    for size in (0.0, -0.1, 3.1501, 10.0, math.nan, math.inf, -math.inf):
+        with pytest.raises(UnitError, match="above 0 and up to 3150 mm"):
+            fits.tolerance("IT7", size)
+    for grade in ("IT19", "IT0", "IT01", "7", "", "H7", "IT 7x"):
+        with pytest.raises(UnitError, match="is not a tolerance grade"):
+            fits.tolerance(grade, 0.1)
+    assert fits.tolerance(" it10 ", 0.36) == fits.tolerance("IT10", 0.36)
 
 
 def test_coarse_grades_are_not_for_sizes_up_to_1_mm():
@@ -133,13 +115,3 @@ def test_coarse_grades_are_not_for_sizes_up_to_1_mm():
         fits.tolerance("IT14", 0.001)
     assert fits.tolerance("IT13", 0.001) == pytest.approx(140e-6)
     assert fits.tolerance("IT14", 0.0011) == pytest.approx(250e-6)
-
-
-@pytest.mark.parametrize("grade", ["IT19", "IT0", "IT01", "7", "", "H7", "IT 7x"])
-def test_unknown_grades(grade):
-    with pytest.raises(UnitError, match="is not a tolerance grade"):
-        fits.tolerance(grade, 0.1)
-
-
-def test_a_grade_may_be_written_in_small_letters():
-    assert fits.tolerance(" it10 ", 0.36) == fits.tolerance("IT10", 0.36)

@@ -75,12 +75,9 @@ def test_what_is_not_a_formula_is_refused_with_its_text_and_reason(text: str, se
     assert len(message) < 600
 
 
-def test_a_formula_that_is_no_text_is_refused() -> None:
+def test_a_formula_that_is_no_text_is_refused_and_a_tower_of_powers_answers_at_once() -> None:
     with pytest.raises(DeclarationError, match="a formula is a text, not float"):
         parse(3.5)  # type: ignore[arg-type]
-
-
-def test_a_tower_of_powers_answers_at_once() -> None:
     started = time.perf_counter()
     assert evaluate(parse("9**9**9"), {}) == math.inf
     assert time.perf_counter() - started < 0.5
@@ -165,22 +162,16 @@ def test_evaluate(text: str, expected: float) -> None:
 
 
 # inv 14.5, 20, 25 and 30 degrees, from the involute table in Niemann/Winter, Maschinenelemente II (also DIN 3960)
-@pytest.mark.parametrize(("degrees", "table"), [(14.5, 0.005545), (20, 0.014904), (25, 0.029975), (30, 0.053751)])
-def test_involute_against_the_printed_table(degrees: float, table: float) -> None:
-    assert evaluate(parse("inv(angle * pi / 180)"), {"angle": degrees}) == pytest.approx(table, abs=5.1e-7)
-
-
+INVOLUTE = {14.5: 0.005545, 20: 0.014904, 25: 0.029975, 30: 0.053751}
 # Any handbook of statistics
-@pytest.mark.parametrize(
-    ("argument", "chance"), [(0, 0.5), (1, 0.8413), (1.645, 0.95), (1.96, 0.975), (2.576, 0.995), (-1, 0.1587)]
-)
-def test_the_normal_probability_against_the_printed_table(argument: float, chance: float) -> None:
-    assert evaluate(parse("Phi(x)"), {"x": argument}) == pytest.approx(chance, abs=5e-5)
+CHANCES = {0: 0.5, 1: 0.8413, 1.645: 0.95, 1.96: 0.975, 2.576: 0.995, -1: 0.1587}
 
 
-def test_whole_numbers_compute_like_real_ones() -> None:
-    assert evaluate(parse("teeth**-1"), {"teeth": 2}) == 0.5
-    assert evaluate(parse("teeth / 4"), {"teeth": np.int64(2)}) == 0.5
+def test_involute_and_normal_probability_against_the_printed_tables() -> None:
+    degrees, arguments = (np.array(list(table)) for table in (INVOLUTE, CHANCES))
+    involute = evaluate(parse("inv(angle * pi / 180)"), {"angle": degrees})
+    assert involute == pytest.approx(list(INVOLUTE.values()), abs=5.1e-7)
+    assert evaluate(parse("Phi(x)"), {"x": arguments}) == pytest.approx(list(CHANCES.values()), abs=5e-5)
 
 
 @pytest.mark.parametrize(
@@ -197,9 +188,8 @@ def test_a_batch_equals_the_loop(text: str) -> None:
 
 def test_sums_run_over_the_last_axis() -> None:
     a = np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]])
-    np.testing.assert_array_equal(evaluate(parse("sum(a)"), {"a": a}), [6.0, 15.0])
-    np.testing.assert_array_equal(evaluate(parse("mean(a)"), {"a": a}), [2.0, 5.0])
-    np.testing.assert_array_equal(evaluate(parse("max(a) - min(a)"), {"a": a}), [2.0, 2.0])
+    for text, sums in (("sum(a)", [6.0, 15.0]), ("mean(a)", [2.0, 5.0]), ("max(a) - min(a)", [2.0, 2.0])):
+        np.testing.assert_array_equal(evaluate(parse(text), {"a": a}), sums)
     assert evaluate(parse("sum(a)"), {"a": a[0]}) == 6.0
     column = np.array([[10.0], [20.0]])
     np.testing.assert_array_equal(evaluate(parse("a * c"), {"a": a, "c": column})[1], [80.0, 100.0, 120.0])
@@ -211,11 +201,12 @@ def test_outside_its_domain_a_formula_is_nan_without_a_warning(recwarn: pytest.W
     assert not recwarn.list
 
 
-def test_inputs_stay_untouched() -> None:
+def test_whole_numbers_compute_like_real_ones_and_stay_untouched() -> None:
+    assert evaluate(parse("teeth**-1"), {"teeth": 2}) == 0.5
+    assert evaluate(parse("teeth / 4"), {"teeth": np.int64(2)}) == 0.5
     a = np.array([1, 2, 3])
     evaluate(parse("-abs(a) * 2"), {"a": a})
-    assert a.tolist() == [1, 2, 3]
-    assert a.dtype.kind == "i"
+    assert (a.tolist(), a.dtype.kind) == ([1, 2, 3], "i")
 
 
 def test_a_missing_value_and_a_text_are_named() -> None:
@@ -226,22 +217,11 @@ def test_a_missing_value_and_a_text_are_named() -> None:
 
 
 QUANTITIES = {
-    "load": (120.0, "N"),
-    "area": (28.0, "mm^2"),
-    "speed": (0.5, "m/s"),
-    "time": (200.0, "h"),
-    "hardness": (2.1, "GPa"),
-    "rate": (3e-8, ""),
-    "depth": (2.0, "um"),
-    "width": (3.0, "mm"),
-    "angle": (20.0, "deg"),
-    "turning": (1500.0, "rad/s"),
-    "torque": (10.0, "N*m"),
-    "power": (1.5, "kW"),
-    "share": (5.0, "%"),
-    "missing": (math.nan, "mm"),
-    "warm": (20.0, "K"),
-}
+    "load": (120.0, "N"), "area": (28.0, "mm^2"), "speed": (0.5, "m/s"), "time": (200.0, "h"), "hardness": (2.1, "GPa"),
+    "rate": (3e-8, ""), "depth": (2.0, "um"), "width": (3.0, "mm"), "angle": (20.0, "deg"),
+    "turning": (1500.0, "rad/s"), "torque": (10.0, "N*m"), "power": (1.5, "kW"), "share": (5.0, "%"),
+    "missing": (math.nan, "mm"), "warm": (20.0, "K"),
+}  # fmt: skip
 
 
 def quantity(name: str) -> object:
@@ -317,15 +297,11 @@ def test_unlike_dimensions_are_named_by_their_part(text: str, part: str, kinds: 
     assert set(words.removeprefix(f"formula {text!r}: {part}: ").split(" does not go with ")) == kinds
 
 
-def test_one_power_for_all_points() -> None:
+def test_quantities_as_arrays_with_one_power_for_all_points() -> None:
     registry = units.registry()
+    values = {"load": registry.Quantity(np.array([1.0, 2.0]), "kilonewton"), "area": registry.Quantity(4.0, "meter**2")}
+    assert evaluate_quantities(parse("load / area"), values).to("pascal").magnitude.tolist() == [250.0, 500.0]
     values = {"width": registry.Quantity(2.0, "meter"), "n": registry.Quantity(np.array([2.0, 3.0]), "")}
     with pytest.raises(UnitError, match="not one finite number"):
         evaluate_quantities(parse("width**n"), values)
     assert evaluate_quantities(parse("(width / width)**n * n"), values).magnitude.tolist() == [2.0, 3.0]
-
-
-def test_quantities_as_arrays() -> None:
-    registry = units.registry()
-    values = {"load": registry.Quantity(np.array([1.0, 2.0]), "kilonewton"), "area": registry.Quantity(4.0, "meter**2")}
-    assert evaluate_quantities(parse("load / area"), values).to("pascal").magnitude.tolist() == [250.0, 500.0]

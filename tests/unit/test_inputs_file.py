@@ -10,7 +10,6 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
-import jsonschema
 import numpy as np
 import pytest
 from jsonschema import Draft202012Validator
@@ -105,6 +104,10 @@ load = "kN"
     np.testing.assert_allclose(on.covariance, [[0.25e-12, 0.1e-6], [0.1e-6, 4.0]], rtol=1e-12)
 
 
+def test_the_options_of_a_study_may_stand_in_one_line() -> None:
+    assert pin("[studies]\ncensus = { draws = 7 }\n").studies == (Census(draws=7), Census(name="second"))
+
+
 def test_parts_choices_counts_series_and_files(folder: Path) -> None:
     text = f"""[inputs]
 teeth_sun = 19
@@ -152,17 +155,13 @@ def test_an_optional_input_left_out_is_nan_and_does_not_scatter(folder: Path) ->
 
 
 def test_a_grade_is_read_for_every_size_it_is_on(folder: Path) -> None:
+    """Where a stated size outgrows a declared grade, the size is told."""
     assert stage(f'[inputs]\n{SURFACE}\n[tolerances]\nbores = "IT6"\n', folder).spreads["bores"] == Grade("IT6")
-    found = stage_faults(f'[inputs]\n{SURFACE}\nbore_planet = "4 m"\n[tolerances]\nbores = "IT6"\n', folder)
-    assert len(found) == 1
-    assert found[0].startswith("stage.toml:5: bores: ")
-    assert "3150 mm" in found[0]
-
-
-def test_a_declared_grade_that_the_stated_size_outgrows_is_told_at_the_size(folder: Path) -> None:
-    found = stage_faults(f'[inputs]\n{SURFACE}\nbore_planet = "4 m"\n', folder)
-    assert len(found) == 1
-    assert found[0].startswith("stage.toml:3: tolerance 'bores': ")
+    large = f'[inputs]\n{SURFACE}\nbore_planet = "4 m"\n'
+    for text, place in (('[tolerances]\nbores = "IT6"\n', "5: bores"), ("", "3: tolerance 'bores'")):
+        (found,) = stage_faults(large + text, folder)
+        assert found.startswith(f"stage.toml:{place}: ")
+        assert "3150 mm" in found
 
 
 @pytest.mark.parametrize("mark", ["", "\ufeff"])
@@ -329,35 +328,31 @@ def test_a_wrong_name_or_section(text: str, sentence: str) -> None:
     assert found.startswith(f"wear.toml:{sentence}")
 
 
-def test_what_a_study_says_against_its_options_is_told_at_each() -> None:
-    assert faults('[studies.census]\ndraws = 0\nof = ["nothing"]\nmethod = "plain"\n') == [
-        "wear.toml:2: study 'census': draws is at least 1",
-        "wear.toml:3: study 'census': of names no result",
-    ]
-    assert faults('[studies.census]\nmethod = "quasi"\ndraws = 3\n') == [
-        "wear.toml:2: study 'census': quasi takes an even number of draws"
-    ]
-
-
-def test_an_effect_needs_all_its_unknowns() -> None:
-    assert faults('[inputs]\n[effects.running_in]\nextra = "3 um"\n') == [
-        "wear.toml:2: effect 'running_in' is on, so its unknown 'length' must be given (from 10 to 5000 m)"
-    ]
+COVARIANCE = '[effects.running_in]\nextra = "3 um"\nlength = "30 m"\ncovariance = '
 
 
 @pytest.mark.parametrize(
-    ("matrix", "words"),
+    ("text", "sentences"),
     [
-        ("[[1, 0.5], [0.4, 1]]", "not symmetric"),
-        ("[[1, 2], [2, 1]]", "a correlation beyond 1"),
-        ("[[1, nan], [nan, 1]]", "a list of 2 rows"),
-        ("[[1, 0], [0]]", "over extra [um], length [m]"),
+        ('[studies.census]\ndraws = 0\nof = ["nothing"]\nmethod = "plain"', [
+            "2: study 'census': draws is at least 1", "3: study 'census': of names no result",
+        ]),
+        ("[studies]\ncensus = { draws = 0 }", ["2: study 'census': draws is at least 1"]),
+        ('[studies.census]\nmethod = "quasi"\ndraws = 3', ["2: study 'census': quasi takes an even number of draws"]),
+        ('[inputs]\n[effects.running_in]\nextra = "3 um"', [
+            "2: effect 'running_in' is on, so its unknown 'length' must be given (from 10 to 5000 m)",
+        ]),
+        (f"{COVARIANCE}[[1, 0.5], [0.4, 1]]", ["4: covariance is not symmetric"]),
+        (f"{COVARIANCE}[[1, 2], [2, 1]]", ["4: covariance holds a correlation beyond 1"]),
+        (f"{COVARIANCE}[[1, nan], [nan, 1]]", ["4: covariance is a list of 2 rows of 2 numbers, "]),
+        (f"{COVARIANCE}[[1, 0], [0]]", ["4: covariance is a list of 2 rows of 2 numbers, over extra [um], length [m]"]),
     ],
-)
-def test_an_impossible_covariance(matrix: str, words: str) -> None:
-    (found,) = faults(f'[effects.running_in]\nextra = "3 um"\nlength = "30 m"\ncovariance = {matrix}\n')
-    assert found.startswith("wear.toml:4: covariance")
-    assert words in found
+)  # fmt: skip
+def test_what_does_not_go_together(text: str, sentences: list[str]) -> None:
+    found = faults(text + "\n")
+    assert len(found) == len(sentences)
+    for said, sentence in zip(found, sentences, strict=True):
+        assert said.startswith(f"wear.toml:{sentence}")
 
 
 def test_a_broken_line_does_not_hide_that_a_file_is_named(folder: Path) -> None:
@@ -365,10 +360,10 @@ def test_a_broken_line_does_not_hide_that_a_file_is_named(folder: Path) -> None:
     assert [text.split(":")[1] for text in stage_faults("[inputs]\nsurface = {file = \n", folder)] == ["2"]
 
 
-@pytest.mark.parametrize("number", [0.1, 1 / 3, 1e-300, 6.02214076e23, 123456.789012345])
-def test_a_bare_number_arrives_as_it_is(number: float) -> None:
-    assert pin(f"[inputs]\nrate = {number!r}\n").inputs.rate == number
-    assert pin(f'[inputs]\nrate = "{number!r}"\n').inputs.rate == number
+def test_a_bare_number_arrives_as_it_is() -> None:
+    for number in (0.1, 1 / 3, 1e-300, 6.02214076e23, 123456.789012345):
+        assert pin(f"[inputs]\nrate = {number!r}\n").inputs.rate == number
+        assert pin(f'[inputs]\nrate = "{number!r}"\n').inputs.rate == number
 
 
 # What ``--set`` and the settings of published numbers put in the place of the file.
@@ -394,12 +389,7 @@ def test_overrides_replace_what_the_file_says(tmp_path: Path) -> None:
     assert (setup.seed, setup.sheet.detail, setup.sheet.head["project"]) == (3, "short", "A=B")
     assert (setup.units, setup.calibrated) == ({"depth": "mm"}, {"hardness": 2e9})
     assert setup.source.file == str(path)
-
-
-def test_an_effect_is_switched_off() -> None:
-    text = '[effects.warm_probe]\nslope = "1 um/K"\n'
-    assert len(setup_of(text).effects) == 1
-    assert setup_of(text, "effects.warm_probe=off").effects == ()
+    assert read_setup(path, PIN_OFFER, overrides=[*overrides[:2], "effects.warm_probe=off"]).effects == ()
 
 
 def test_faults_of_overrides_come_after_those_of_the_file(tmp_path: Path) -> None:
@@ -433,24 +423,18 @@ def test_switches_counts_and_files_on_the_command_line(folder: Path) -> None:
     assert setup.inputs.surface.heights == (1.0, 2.0, 4.0)
 
 
-@pytest.mark.parametrize("stated", [SURFACE, 'surface = "flank.txt"'], ids=["table", "file"])
-def test_an_option_of_a_data_file_on_the_command_line(folder: Path, stated: str) -> None:
-    setup = stage(f"[inputs]\n{stated}\n", folder, 'surface.spacing="0.5 um"')
-    assert (setup.inputs.surface.spacing, setup.inputs.surface.heights) == ("0.5 um", (1.0, 2.0, 4.0))
-
-
-@pytest.mark.parametrize(
-    ("stated", "option", "words"),
-    [
+def test_an_option_of_a_data_file_on_the_command_line(folder: Path) -> None:
+    for stated in (SURFACE, 'surface = "flank.txt"'):
+        setup = stage(f"[inputs]\n{stated}\n", folder, 'surface.spacing="0.5 um"')
+        assert (setup.inputs.surface.spacing, setup.inputs.surface.heights) == ("0.5 um", (1.0, 2.0, 4.0))
+    for stated, option, words in [
         (SURFACE, "surface.spacng=1 um", "the reader takes no 'spacng'; beside file it takes: spacing, height_unit."),
         (SURFACE, "surface.file=none.txt", "there is no file 'none.txt'"),
         ("", "surface.spacing=1 um", "surface is read from a data file"),
-    ],
-)
-def test_an_option_that_is_none_is_named_with_the_override(folder: Path, stated: str, option: str, words: str) -> None:
-    (line,) = stage_faults(f"[inputs]\n{stated}\n", folder, option)
-    assert line.startswith(f"--set {option}: surface")
-    assert words in line
+    ]:
+        (line,) = stage_faults(f"[inputs]\n{stated}\n", folder, option)
+        assert line.startswith(f"--set {option}: surface")
+        assert words in line
 
 
 # The JSON Schema by which editors complete an inputs file.
@@ -492,12 +476,11 @@ def test_the_schema_of_studies_and_effects() -> None:
 SENTENCE = "the contact flows: load exceeds hardness times area"
 
 
-def blamed(text: str, *overrides: str, sentence: str = SENTENCE) -> str:
+def blamed(text: str, *overrides: str) -> str:
     """Return what is said of a file in which something impossible stands."""
-    setup = setup_from_text(text, PIN_OFFER, file="wear.toml", folder=Path(), overrides=overrides)
-    said = str(located(setup, sentence))
-    assert said.endswith(f": {sentence}")
-    return said.removesuffix(f": {sentence}")
+    said = str(located(pin(text, *overrides), SENTENCE))
+    assert said.endswith(f": {SENTENCE}")
+    return said.removesuffix(f": {SENTENCE}")
 
 
 @pytest.mark.parametrize(
@@ -519,16 +502,14 @@ def test_the_likeliest_line_is_blamed(text: str, overrides: tuple[str, ...], pla
     assert blamed(text, *overrides) == place
 
 
-def test_without_a_file_there_is_no_place() -> None:
-    assert str(located(default_setup(PIN_WEAR), SENTENCE)) == SENTENCE
-
-
 def test_only_what_is_impossible_is_told_by_line() -> None:
-    setup = setup_from_text('[inputs]\nload = "500 kN"\n', PIN_OFFER, file="wear.toml", folder=Path())
+    """Without a file there is none."""
+    setup = pin('[inputs]\nload = "500 kN"\n')
     with pytest.raises(InputError, match=r"^wear\.toml:2: the contact flows"), told_by_line(setup):
         raise InfeasibleError(SENTENCE)
     with pytest.raises(ZeroDivisionError), told_by_line(setup):
         _ = 1 / 0
+    assert str(located(default_setup(PIN_WEAR), SENTENCE)) == SENTENCE
 
 
 # The commented inputs file that a newcomer starts from.
@@ -536,42 +517,32 @@ def test_only_what_is_impossible_is_told_by_line() -> None:
 COMMENTED_OUT = re.compile(r"^# (?=\[|[\w\"]+ = )", re.MULTILINE)
 
 
-def test_the_example_is_the_default_setup() -> None:
-    setup = setup_from_text(example_text(PIN_OFFER), PIN_OFFER, file="", folder=Path())
+def test_the_example_is_the_default_setup_and_what_is_commented_out_states_the_defaults_too() -> None:
+    text = example_text(PIN_OFFER)
+    assert not any(old in text for old in RENAMED)
+    default = default_setup(PIN_WEAR, PIN_OFFER.origin)
+    setup = pin(text, file="")
     assert setup.source.stated == set(PIN_WEAR.input_fields)
-    assert replace(setup, source=InputsSource()) == default_setup(PIN_WEAR, PIN_OFFER.origin)
-
-
-def test_what_is_commented_out_states_the_defaults_too() -> None:
-    text = COMMENTED_OUT.sub("", example_text(PIN_OFFER))
-    setup = setup_from_text(text, PIN_OFFER, file="", folder=Path())
+    assert replace(setup, source=InputsSource()) == default
+    setup = pin(COMMENTED_OUT.sub("", text), file="")
     assert [on.effect.name for on in setup.effects] == ["running_in", "warm_probe"]
     assert setup.units == {"pressure": "MPa", "distance": "km", "depth": "um"}
-    plain = replace(setup, source=InputsSource(), effects=(), units={})
-    assert plain == default_setup(PIN_WEAR, PIN_OFFER.origin)
+    assert replace(setup, source=InputsSource(), effects=(), units={}) == default
 
 
 def test_an_example_with_a_data_file_runs_once_the_file_is_named(tmp_path: Path) -> None:
     text = example_text(STAGE_OFFER)
+    assert max(len(line) for line in text.splitlines()) <= 100
     (tmp_path / "surface.txt").write_text("1\n")
     named = text.replace('"surface.txt" }', '"surface.txt", spacing = "1 um" }')
     setup = setup_from_text(named, STAGE_OFFER, file="", folder=tmp_path)
     assert setup.inputs.surface.heights == (1.0,)
     assert (setup.inputs.planet.teeth, setup.inputs.planets, setup.inputs.reading) == (31, 3, "complete")
     assert setup.inputs.orders == (1, 2)
-    assert 'oil = "±5 K"' in text
-    assert '"printed" or "complete"' in text
-    assert "# face_factor = " in text
+    for words in ('oil = "±5 K"', '"printed" or "complete"', "# face_factor = "):
+        assert words in text
     everything = setup_from_text(COMMENTED_OUT.sub("", named), STAGE_OFFER, file="", folder=tmp_path)
     assert everything.spreads["oil"] == Band("5 K", "±")
-
-
-def test_no_line_is_too_long_to_read() -> None:
-    assert max(len(line) for line in example_text(STAGE_OFFER).splitlines()) <= 100
-
-
-def test_old_names_are_not_offered() -> None:
-    assert not any(old in example_text(PIN_OFFER) for old in RENAMED)
 
 
 def test_a_shipped_example_is_handed_out_as_it_is(tmp_path: Path) -> None:
@@ -598,12 +569,8 @@ lognormal = ["depth"]
 """
 
 
-def setup_of(text: str, *overrides: str) -> Setup:
-    return setup_from_text(text, PIN_OFFER, file="given.toml", folder=Path(), overrides=overrides)
-
-
 def test_the_options_in_si() -> None:
-    options = setup_of(TEXT).diagnose
+    options = pin(TEXT).diagnose
     assert options.per_file == ("sensor_offset", "running_in.extra", "load")
     assert options.held_out == ("record", "validation")
     assert set(options.box) == {"probe_temperature", "load", "rate", "angle"}
@@ -618,20 +585,12 @@ def test_the_options_in_si() -> None:
     assert options.lognormal == ("depth",)
 
 
-def test_nothing_is_asked_by_default() -> None:
-    assert setup_of("").diagnose == DiagnoseOptions()
+def test_they_are_written_back_as_they_are_and_can_be_set_on_the_command_line() -> None:
+    assert pin(complete_inputs(pin(TEXT))).diagnose == pin(TEXT).diagnose
+    assert pin("").diagnose == DiagnoseOptions()
     assert DiagnoseOptions().held_out == ("", "")
-    assert "[studies.diagnose]" not in complete_inputs(setup_of(""))
-
-
-def test_they_are_written_back_as_they_are() -> None:
-    options = setup_of(TEXT).diagnose
-    again = setup_of(complete_inputs(setup_of(TEXT)))
-    assert again.diagnose == options
-
-
-def test_they_can_be_set_on_the_command_line() -> None:
-    setup = setup_of("", 'studies.diagnose.per_file=["load"]', "studies.diagnose.hold_out=run = b")
+    assert "[studies.diagnose]" not in complete_inputs(pin(""))
+    setup = pin("", 'studies.diagnose.per_file=["load"]', "studies.diagnose.hold_out=run = b")
     assert setup.diagnose == DiagnoseOptions(per_file=("load",), hold_out="run = b")
 
 
@@ -667,11 +626,9 @@ def test_they_can_be_set_on_the_command_line() -> None:
     ],
 )
 def test_what_cannot_be_asked(line: str, expected: str) -> None:
-    with pytest.raises(InputError) as caught:
-        setup_of(f"[studies.diagnose]\n{line}\n")
-    (fault,) = caught.value.faults
-    assert expected in fault.message
-    assert fault.line == 2
+    (found,) = faults(f"[studies.diagnose]\n{line}\n")
+    assert found.startswith("wear.toml:2: ")
+    assert expected in found
 
 
 @pytest.mark.parametrize(
@@ -686,5 +643,5 @@ def test_what_cannot_be_asked(line: str, expected: str) -> None:
     ],
 )
 def test_the_schema_offers_them(asked: dict[str, object], fits: bool) -> None:
-    validator = jsonschema.Draft202012Validator(json_schema(PIN_OFFER))
+    validator = Draft202012Validator(json_schema(PIN_OFFER))
     assert validator.is_valid({"studies": {"diagnose": asked}}) is fits

@@ -86,35 +86,23 @@ def test_a_file_that_is_no_inputs_file(tmp_path: Path, name: str, content: bytes
     assert str(caught.value) == f"{path}:1: {sentence}"
 
 
-def test_latin_1_is_told_with_its_line(tmp_path: Path) -> None:
-    path = tmp_path / "latin.toml"
-    path.write_bytes("[sheet]\nproject = 'Prüfstand'\n".encode("latin-1"))
-    with pytest.raises(InputError) as caught:
-        read_setup(path, PIN_OFFER)
-    assert str(caught.value) == f"{path}:2: is not UTF-8 text; save it as UTF-8"
-
-
-def test_a_folder_and_a_missing_file(tmp_path: Path) -> None:
-    (tmp_path / "wear.toml").write_text("")
-    with pytest.raises(InputError, match="is a folder; name a file"):
-        read_setup(tmp_path, PIN_OFFER)
-    with pytest.raises(InputError, match=r"no such file\. Did you mean 'wear.toml'\?"):
-        read_setup(tmp_path / "waer.toml", PIN_OFFER)
-
-
-def test_a_link_that_leads_nowhere_is_told_as_one(tmp_path: Path) -> None:
+def test_what_cannot_be_opened_or_decoded_is_told_with_its_name(tmp_path: Path) -> None:
+    (tmp_path / "latin.toml").write_bytes("[sheet]\nproject = 'Prüfstand'\n".encode("latin-1"))
     (tmp_path / "loop.toml").symlink_to("loop.toml")
     (tmp_path / "gone.toml").symlink_to("was_here.toml")
     for name, sentence in {
-        "loop.toml": "is a symbolic link that leads back to itself; name the file",
-        "gone.toml": "is a symbolic link to 'was_here.toml', which is not there",
+        "latin.toml": ":2: is not UTF-8 text; save it as UTF-8",
+        "loop.toml": ": is a symbolic link that leads back to itself; name the file",
+        "gone.toml": ": is a symbolic link to 'was_here.toml', which is not there",
+        ".": ": is a folder; name a file",
+        "latn.toml": ": no such file. Did you mean 'latin.toml'?",
     }.items():
         with pytest.raises(InputError) as caught:
             read_setup(tmp_path / name, PIN_OFFER)
-        assert str(caught.value) == f"{tmp_path / name}: {sentence}"
+        assert str(caught.value) == f"{tmp_path / name}{sentence}"
 
 
-LONG, CONTROL = "q" * 100_000, "a\x1b[31mb\u202ec"
+LONG, CONTROL = "q" * 20_000, "a\x1b[31mb\u202ec"
 
 
 @pytest.mark.parametrize("word", [LONG, CONTROL], ids=["long", "control characters"])
@@ -155,7 +143,7 @@ HOSTILE: dict[str, Callable[[int], str]] = {
     "values without quotes": lambda n: "[inputs]\n" + "".join(f"load{i} = 1 N\n" for i in range(n // 14)),
     "unknown sections": lambda n: "".join(f"[inputs.load{i}]\n" for i in range(n // 16)),
 }
-SIZE = 10_000
+SIZE = 6_000
 NAMES = "[inputs]\n" + "".join(f"load{i} = 1\n" for i in range(120_000))
 
 
@@ -172,25 +160,26 @@ def processor_time(text: str) -> float:
 @pytest.mark.parametrize("kind", HOSTILE)
 def test_reading_time_grows_with_the_size_of_a_file(kind: str) -> None:
     """Four times the text takes about four times as long; a scan that goes back takes sixteen times."""
-    small = min(processor_time(HOSTILE[kind](SIZE)) for _ in range(3))
+    small = min(processor_time(HOSTILE[kind](SIZE)) for _ in range(2))
     large = min(processor_time(HOSTILE[kind](4 * SIZE)) for _ in range(2))
     assert large < 9 * max(small, 0.004)
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        NAMES,
-        "[" * 1_900_000,
-        '[inputs]\nload = "' + "9" * 1_900_000 + ' N"',
-    ],
-    ids=["120000 names", "brackets", "digits"],
-)
-def test_a_large_file_that_is_no_inputs_file_is_answered_at_once(text: str) -> None:
-    """Against what Python's own reader takes for 120,000 names, about half a second on a machine of its own."""
+@pytest.fixture(scope="module")
+def seconds_of_tomllib() -> float:
+    """What Python's own reader takes for 120,000 names, about half a second on a machine of its own."""
     begin = time.process_time()
     tomllib.loads(NAMES)
-    assert processor_time(text) < 5 * (time.process_time() - begin)
+    return time.process_time() - begin
+
+
+@pytest.mark.parametrize(
+    "text",
+    [NAMES, "[" * 1_900_000, '[inputs]\nload = "' + "9" * 1_900_000 + ' N"'],
+    ids=["120000 names", "brackets", "digits"],
+)
+def test_a_large_file_that_is_no_inputs_file_is_answered_at_once(text: str, seconds_of_tomllib: float) -> None:
+    assert processor_time(text) < 5 * seconds_of_tomllib
 
 
 LINES = st.one_of(

@@ -10,6 +10,7 @@ from types import ModuleType
 
 import pytest
 
+from shared import TESTS
 from truing import Kernel
 from truing.errors import PluginError, UnknownPluginError
 from truing.kernel import Origin, entry_points, kernel_for
@@ -132,88 +133,61 @@ def test_what_is_used_twice_is_said_of_both(write: Write) -> None:
     assert all("left" in broken.reason and "right" in broken.reason for broken in kernel.broken)
     (twins,) = Kernel([write("pins", TWO.format(name="same", other="same"))]).broken
     assert "offers two models called 'same'" in twins.reason
-
-
-def test_a_plugin_name_used_twice_is_refused(write: Write) -> None:
-    module = write("pin_one", PIN)
-    kernel = Kernel([module, module])
+    kernel = Kernel([write("pin_one", PIN)] * 2)
     assert list(kernel.offers) == ["pin_one"]
     assert "the plugin name 'pin_one' is taken by" in kernel.broken[0].reason
 
 
 # Broken plugins: named with version, file, line and exception, while every other works
 
+
+def hook_that(answers: str) -> str:
+    """The good module, but for what its hook does."""
+    return GOOD.format(name="guest_m").replace("return [MODEL]", answers)
+
+
 BROKEN = {
     "import error": (
-        "import math\nimport does_not_exist\n",
+        "import math\nimport gone\n",
         2,
-        "ModuleNotFoundError: No module named 'does_not_exist'",
+        "ModuleNotFoundError: No module named 'gone'",
     ),
     "syntax error": ("x = 1\n\ndef f(:\n    pass\n", 3, "SyntaxError: "),
     "raises": ("x = 1\nraise RuntimeError('no licence')\n", 2, "RuntimeError: no licence"),
     "leaves": ("import sys\n\n\nsys.exit(3)\n", 4, "SystemExit: 3"),
     "missing": (None, None, "ModuleNotFoundError: No module named 'guest_m'"),
     "bad declaration": (GOOD.format(name="my pin"), 16, "DeclarationError: model 'my pin': the name 'my pin' may hold"),
-    "hook raises": (
-        GOOD.format(name="guest_m").replace("return [MODEL]", "return [MODEL][1]"),
-        20,
-        "IndexError: list index out of range",
-    ),
-    "hook returns nothing": (
-        GOOD.format(name="guest_m").replace("return [MODEL]", "pass"),
-        18,
-        "DeclarationError: truing_models returned None; it returns a list",
-    ),
-    "hook returns no model": (
-        GOOD.format(name="guest_m").replace("return [MODEL]", "return [Pin]"),
-        18,
-        "which is no Model",
-    ),
+    "hook raises": (hook_that("return [MODEL][1]"), 20, "IndexError: list index out of range"),
+    "hook returns nothing": (hook_that("pass"), 18, "DeclarationError: truing_models returned None; it returns a list"),
+    "hook returns no model": (hook_that("return [Pin]"), 18, "which is no Model"),
     "wrong signature": (guest("truing_objectives", "[]").replace("(model)", "(model, file)"), 6, "asks for 'file'"),
-    "misspelt hook": (
-        guest("truing_models", "[]").replace("truing_models", "truing_model"),
-        6,
-        "'truing_model' is no hook",
-    ),
+    "misspelt hook": (guest("truing_models", "[]").replace("g_models", "g_model"), 6, "'truing_model' is no hook"),
     "unmarked hook": (GOOD.format(name="guest_m").replace("@hookimpl\n", ""), 18, "truing_models() is not marked"),
     "offers nothing": ("x = 1\n", None, "it offers nothing"),
 }
-
-
-def test_a_missing_plugin_has_no_line_where_another_library_finds_the_installed_ones(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Once imported, importlib_metadata (dask needs it) loads entry points; a line of it is nobody's fault."""
-    pytest.importorskip("importlib_metadata")
-    installed_from(tmp_path, monkeypatch, guest_m=None)
-    broken = next(item for item in Kernel.installed().broken if item.plugin == "guest_m")
-    assert (broken.file, broken.line) == ("guest_m", None)
 
 
 @pytest.mark.parametrize("case", BROKEN)
 def test_a_broken_plugin_is_named_and_disturbs_nobody(
     case: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """Importlib_metadata, once imported (dask needs it), loads entry points too; a line of it is nobody's fault."""
+    pytest.importorskip("importlib_metadata")
     text, line, reason = BROKEN[case]
     installed_from(tmp_path, monkeypatch, guest_m=text, pin_one=PIN)
     kernel = Kernel.installed()
     assert kernel.offer("pin_one").model.title == "A pin"
     broken = next(item for item in kernel.broken if item.plugin == "guest_m")
-    assert (broken.version, broken.line) == ("3.1", line)
+    file = "guest_m" if text is None else str(tmp_path / "guest_m.py")
+    assert (broken.version, broken.file, broken.line) == ("3.1", file, line)
     assert reason in broken.reason
-    if text is not None:
-        assert broken.file == str(tmp_path / "guest_m.py")
-        place = f"{broken.file}:{line}" if line else broken.file
-        assert str(broken) == f"{place}: plugin 'guest_m' 3.1: {broken.reason}"
+    place = f"{broken.file}:{line}" if line else broken.file
+    assert str(broken) == f"{place}: plugin 'guest_m' 3.1: {broken.reason}"
     with pytest.raises(PluginError, match=r"plugin 'guest_m' 3\.1: "):
         kernel.offer("guest_m")
-
-
-def test_strict_raises_at_the_first_broken_plugin(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    installed_from(tmp_path, monkeypatch, guest_m=BROKEN["hook raises"][0])
     with pytest.raises(PluginError, match=r"plugin 'guest_m' 3\.1: ") as caught:
         Kernel.installed(strict=True).offers  # noqa: B018
-    assert isinstance(caught.value.__cause__, IndexError)
+    assert type(caught.value.__cause__).__name__ in broken.reason or not line
 
 
 def test_a_fault_in_a_module_of_the_guest_is_named_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -238,13 +212,10 @@ def test_names_come_from_metadata_alone(tmp_path: Path, monkeypatch: pytest.Monk
 
 # Guests that add to somebody else's model
 
+EFFECT = "[Effect('wider', on_inputs=wider, unknowns=[Unknown('extra', 0, 1, 'm^2')])]"
 ADDITIONS: list[tuple[str, str, str]] = [
     ("truing_error_sources", "[Tolerance('load', normal(sd='3 %'))]", "load"),
-    (
-        "truing_error_sources",
-        "[Effect('wider', on_inputs=wider, unknowns=[Unknown('extra', 0, 1, 'm^2')])]",
-        "wider",
-    ),
+    ("truing_error_sources", EFFECT, "wider"),
     ("truing_objectives", "[Minimise('pressure')]", "pressure"),
     ("truing_reports", "[Section('Pressure', 'pressure')]", "Pressure"),
 ]
@@ -258,13 +229,9 @@ def test_a_guest_adds_to_somebody_elses_model(write: Write, hook: str, answer: s
     assert kernel.broken == []
     assert [(item.what, item.plugin) for item in offer.added] == [(what, "zebra")]
     assert len([*offer.model.errors, *offer.model.objectives, *offer.model.sheet]) == 1
-
-
-def test_what_a_plugin_adds_to_its_own_model_is_its_own(write: Write) -> None:
-    text = PIN + "\n@hookimpl\ndef truing_error_sources(model):\n    return [Tolerance('load', off())]\n"
-    offer = Kernel([write("pin_one", text)]).offer("pin_one")
-    assert list(offer.model.tolerances) == ["load"]
-    assert offer.added == ()
+    own = Kernel([write("pin_one", PIN + guest(hook, answer, WIDER))]).offer("pin_one")
+    assert len([*own.model.errors, *own.model.objectives, *own.model.sheet]) == 1
+    assert own.added == ()  # what a plugin adds to its own model is its own
 
 
 BAD_ADDITIONS: list[tuple[str, str, str]] = [
@@ -301,13 +268,11 @@ def test_what_does_not_fit_is_left_out_by_name(write: Write, hook: str, answer: 
     assert "is left out of 'pin_one'" in broken.reason
 
 
-@pytest.mark.parametrize(
-    ("answer", "reason"), [("[1 / 0]", "ZeroDivisionError: division by zero"), ("exit(7)", "SystemExit: 7")]
-)
-def test_a_guest_whose_hook_fails_is_left_out(write: Write, answer: str, reason: str) -> None:
-    kernel = Kernel([write("pin_one", PIN), write("zebra", guest("truing_reports", answer))])
-    assert kernel.offer("pin_one").added == ()
-    assert [(item.plugin, item.line, item.reason) for item in kernel.broken] == [("zebra", 8, reason)]
+def test_a_guest_whose_hook_fails_is_left_out(write: Write) -> None:
+    for answer, reason in (("[1 / 0]", "ZeroDivisionError: division by zero"), ("exit(7)", "SystemExit: 7")):
+        kernel = Kernel([write("pin_one", PIN), write("zebra", guest("truing_reports", answer))])
+        assert kernel.offer("pin_one").added == ()
+        assert [(item.plugin, item.line, item.reason) for item in kernel.broken] == [("zebra", 8, reason)]
 
 
 def test_guests_come_in_the_order_of_their_names_and_hit_only_whom_they_fit(write: Write) -> None:
@@ -342,14 +307,13 @@ def test_a_single_file_is_a_plugin(tmp_path: Path) -> None:
     folder.mkdir()
     (folder / "helper_of_mine.py").write_text("AREA = 3.0\n", encoding="utf-8")
     file = folder / "my_calculation.py"
-    file.write_text(GOOD.format(name="pin").replace("1.0", "AREA") + "", encoding="utf-8")
-    file.write_text("from helper_of_mine import AREA\n" + file.read_text(encoding="utf-8"), encoding="utf-8")
+    text = "from helper_of_mine import AREA\n" + GOOD.format(name="pin").replace("1.0", "AREA")
+    file.write_text(text, encoding="utf-8")
     kernel = Kernel()
     origin = kernel.add_file(file)
     offer = kernel.offer("my_calculation")
     assert (origin.name, offer.model.name, offer.model.inputs().area) == ("my_calculation", "pin", 3.0)
-    again = kernel_for(origin.ref)
-    assert again.offer("my_calculation").model.name == "pin"
+    assert kernel_for(origin.ref).offer("my_calculation").model.name == "pin"
 
 
 @pytest.mark.parametrize("stem", ["my calc-2", "rev.3", "größe", "2fast", "json"])
@@ -384,69 +348,33 @@ def test_files_that_are_no_plugin(tmp_path: Path, name: str, content: bytes | No
         kernel.offer(file.stem)
 
 
-DECLARED = '''"""A bar under load."""; import truing
-from truing import Float, Model, Price, Require, Tolerance, Vary, found, given, hookimpl, inputs, normal, results
-
-
-@inputs
-class Bar:
-    """What is known."""
-
-    load: Float = given(120.0, "N", note="load", above=0)
-
-
-@results
-class Stress:
-    """What is asked."""
-
-    double: Float = found("N", note="twice the load", formula="2 * load")
-
-
-def bar(given_: Bar) -> Stress:
-    """Return twice the load."""
-    return Stress(double=2 * given_.load)
-
-
-PRICE = Price("40 / width", width="N", unit="EUR")
-MODEL = Model(
-    name="bar", title="Bar", function=bar,
-    errors=[Tolerance("load", normal(sd="3 N"), why="scatter", price=PRICE)],
-    objectives=[Vary("load", "50 N", "200 N"), Require("double", at_most="80 N")],
-    studies=[truing.Sensitivity(of="double"), truing.Sweep(over="load", at="60 N to 90 N")],
-)
-
-
-@hookimpl
-def truing_models() -> list[Model[Bar, Stress]]:
-    """Offer the bar."""
-    return [MODEL]
-'''
+DECLARED = (TESTS / "data" / "pin_wear.py").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(
-    ("before", "after", "line", "sentence"),
+    ("before", "after", "sentence"),
     [
-        ('given(120.0, "N"', 'given(120.0, "W/m/k"', 9, "'load' is declared in 'W/m/k': unknown unit 'k'; "),
-        ('given(120.0, "N"', "given(120.0, 5", 9, "'load' is declared in 5; a unit is a text such as 'mm'"),
-        ("above=0", 'above="x"', 9, "'load' has the bound above='x'; it is a number in its unit"),
-        ('found("N"', 'found("Mlbf"', 16, "'double' is declared in 'Mlbf': unknown unit 'Mlbf'; 'lbf' takes no "),
-        ('"80 N"', '"80 mm"', 28, "Require('double'): '80 mm' is a length (mm), expected a force (N)"),
-        ('"50 N"', '"50 Pa"', 28, "Vary('load'): '50 Pa' is a pressure or stress (Pa), expected a force (N)"),
-        ('"3 N"', '"3 mm"', 27, "tolerance 'load': '3 mm' is a length (mm), expected a force (N)"),
-        ("price=PRICE", 'price=Price("1 / width", width="mm", unit="EUR")', 27, "the width of tolerance 'load' "),
-        ("given(120.0", 'given(float("inf")', 9, "the default of 'load' is inf, which is no finite number"),
-        ('of="double"', 'of="duoble"', 29, "study 'sensitivity': bar has no result 'duoble'. Did you mean 'double'?"),
-        ('over="load"', 'over="laod"', 29, "study 'sweep': bar has no input 'laod'. Did you mean 'load'?"),
+        ('given(120.0, "N"', 'given(120.0, "W/m/k"', "'load' is declared in 'W/m/k': unknown unit 'k'; "),
+        ('given(120.0, "N"', "given(120.0, 5", "'load' is declared in 5; a unit is a text such as 'mm'"),
+        ("above=0", 'above="x"', "'load' has the bound above='x'; it is a number in its unit"),
+        ('found("MPa"', 'found("Mlbf"', "'pressure' is declared in 'Mlbf': unknown unit 'Mlbf'; 'lbf' takes no "),
+        ('"80 MPa"', '"80 mm"', "Require('pressure'): '80 mm' is a length (mm), expected a pressure or stress (MPa)"),
+        ('"50 N"', '"50 Pa"', "Vary('load'): '50 Pa' is a pressure or stress (Pa), expected a force (N)"),
+        ('"3 %"', '"3 mm"', "tolerance 'load': '3 mm' is a length (mm), expected a force (N)"),
+        ('width="N"', 'width="mm"', "the width of tolerance 'load' is in 'mm', but 'load' is in 'N'"),
+        ("given(120.0", 'given(float("inf")', "the default of 'load' is inf, which is no finite number"),
+        ('of="depth"', 'of="detph"', "study 'sensitivity': pin_wear has no result 'detph'. Did you mean 'depth'?"),
+        ("gives=chance", 'gives=chance, over="laod", at="1 N"', "study 'reliability': pin_wear has no input 'laod'."),
     ],
-)  # fmt: skip
+)
 def test_a_quantity_that_is_declared_wrongly_is_told_with_its_line(
-    tmp_path: Path, before: str, after: str, line: int, sentence: str
+    tmp_path: Path, before: str, after: str, sentence: str
 ) -> None:
-    file = tmp_path / "bar.py"
+    file = tmp_path / "pin.py"
     file.write_text(DECLARED.replace(before, after, 1), encoding="utf-8")
     kernel = Kernel()
     kernel.add_file(file)
     with pytest.raises(PluginError) as caught:
-        kernel.offer("bar")
-    said = str(caught.value).splitlines()
-    assert f"{file}:{line}: plugin 'bar': DeclarationError: {sentence}" in "\n".join(said), said
+        kernel.offer("pin")
+    line = DECLARED.partition(before)[0].count("\n") + 1
+    assert f"{file}:{line}: plugin 'pin': DeclarationError: {sentence}" in str(caught.value)

@@ -38,65 +38,42 @@ TITLES = [
 ]
 
 
-@pytest.mark.parametrize("name", ["a", "belt_drive", "belt2", "x_1", "match", LONG_NAME])
-def test_a_good_name_is_taken(name: str) -> None:
-    check_name(name)
-    assert len(LONG_NAME) == LONGEST_NAME
+PROPOSED = {
+    "belt-drive": "belt_drive", "BeltDrive": "belt_drive", "2nd drive": "nd_drive", "Träger Größe": "traeger_groesse",
+    "crème_brûlée": "creme_brulee", "größe": "groesse", "_private": "private", "belt__drive": "belt_drive",
+    "belt_": "belt", "../../etc/passwd": "etc_passwd", "a/b": "a_b", "a\\b": "a_b", "belt.py": "belt_py", "a\nb": "a_b",
+    "\x1b[31mred": "mred", "'; rm -rf /": "rm_rf",
+}  # fmt: skip
+REFUSED = {
+    "such as belt_drive": ["", "123", "齿轮", "Class", "-", "x" * 10_000 + "!"],
+    f"at most {LONGEST_NAME} characters": ["a" * (LONGEST_NAME + 1)],
+    "a word of Python itself": ["class", "lambda"],
+    "a device on Windows": ["con", "com1"],
+    "another meaning in a project": ["tests", "build"],
+    "is a module already": ["json", "numpy", "truing", "gear_geometry"],
+    "is a module already (Python itself)": ["sys"],
+    "is a calculation of truing": ["press_linkage", "made_flank"],
+}
 
 
-@pytest.mark.parametrize(
-    ("name", "words"),
-    [
-        ("belt-drive", "write belt_drive"),
-        ("BeltDrive", "write belt_drive"),
-        ("2nd drive", "write nd_drive"),
-        ("Träger Größe", "write traeger_groesse"),
-        ("crème_brûlée", "write creme_brulee"),
-        ("größe", "write groesse"),
-        ("_private", "write private"),
-        ("belt__drive", "write belt_drive"),
-        ("belt_", "write belt"),
-        ("../../etc/passwd", "write etc_passwd"),
-        ("a/b", "write a_b"),
-        ("a\\b", "write a_b"),
-        ("belt.py", "write belt_py"),
-        ("a\nb", "write a_b"),
-        ("\x1b[31mred", "write mred"),
-        ("'; rm -rf /", "write rm_rf"),
-        ("", "such as belt_drive"),
-        ("123", "such as belt_drive"),
-        ("齿轮", "such as belt_drive"),
-        ("Class", "such as belt_drive"),
-        ("-", "such as belt_drive"),
-        ("a" * (LONGEST_NAME + 1), f"at most {LONGEST_NAME} characters"),
-        ("x" * 10_000 + "!", "such as belt_drive"),
-        ("class", "a word of Python itself"),
-        ("lambda", "a word of Python itself"),
-        ("con", "a device on Windows"),
-        ("com1", "a device on Windows"),
-        ("tests", "another meaning in a project"),
-        ("build", "another meaning in a project"),
-        ("json", "is a module already"),
-        ("sys", "is a module already (Python itself)"),
-        ("numpy", "is a module already"),
-        ("truing", "is a module already"),
-        ("gear_geometry", "is a module already"),
-        ("press_linkage", "is a calculation of truing"),
-        ("made_flank", "is a calculation of truing"),
-    ],
-)
-def test_a_bad_name_is_refused_in_one_sentence(name: str, words: str) -> None:
-    with pytest.raises(UsageError) as caught:
+def test_a_bad_name_is_refused_in_one_sentence() -> None:
+    refused = [(name, f"write {better}") for name, better in PROPOSED.items()]
+    refused += [(name, words) for words, bad in REFUSED.items() for name in bad]
+    for name, words in refused:
+        with pytest.raises(UsageError) as caught:
+            check_name(name)
+        sentence = str(caught.value)
+        assert words in sentence
+        assert sentence.isprintable()
+        assert len(sentence) < 300
+
+
+def test_a_good_name_and_what_is_proposed_are_taken() -> None:
+    for name in ("a", "belt_drive", "belt2", "x_1", "match", LONG_NAME):
         check_name(name)
-    sentence = str(caught.value)
-    assert words in sentence
-    assert sentence.isprintable()
-    assert len(sentence) < 300
-
-
-@pytest.mark.parametrize("name", ["HTTPServer2", "ÄußereKraft", "  spaced  out  ", "Shaft Ø 5"])
-def test_what_is_proposed_is_taken(name: str) -> None:
-    check_name(spelled(name))
+    assert len(LONG_NAME) == LONGEST_NAME
+    for name in ("HTTPServer2", "ÄußereKraft", "  spaced  out  ", "Shaft Ø 5"):
+        check_name(spelled(name))
 
 
 @pytest.mark.parametrize("title", TITLES)
@@ -118,19 +95,14 @@ def title_in(code: str) -> object:
     return title
 
 
-@pytest.mark.parametrize(
-    "title", ["", "   ", "two\nlines", "bell\a", "\u202eturned", "x" * (WIDEST_TITLE + 1), '"' * 36]
-)
-def test_a_title_that_is_no_line_is_refused(title: str) -> None:
-    with pytest.raises(UsageError, match="--title: "):
-        check_title(title)
+def test_a_title_that_is_no_line_is_refused() -> None:
+    for title in ("", "   ", "two\nlines", "bell\a", "\u202eturned", "x" * (WIDEST_TITLE + 1), '"' * 36):
+        with pytest.raises(UsageError, match="--title: "):
+            check_title(title)
 
 
-def test_without_a_title_the_name_is_it() -> None:
+def test_names_and_titles_of_what_is_written() -> None:
     assert title_of("belt_drive_2") == "Belt drive 2"
-
-
-def test_the_distribution_has_dashes_and_the_package_underscores() -> None:
     settings = tomllib.loads(project(NewPlugin("belt_drive", "Belt"))["pyproject.toml"])
     assert settings["project"]["name"] == "belt-drive"
     assert settings["project"]["entry-points"] == {"truing.plugins": {"belt_drive": "belt_drive"}}

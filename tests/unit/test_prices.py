@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-import math
 from dataclasses import replace
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 import pytest
 from pin_wear import PIN_WEAR, Pin
+from study_models import PAIR
 
 from truing import (
     Allocation,
@@ -23,9 +23,7 @@ from truing import (
     Tolerance,
     by_choice,
     found,
-    given,
     grade,
-    inputs,
     normal,
     off,
     plus_minus,
@@ -94,96 +92,57 @@ def test_every_tolerance_in_force_is_paid_once(errors: list[Any], free: tuple[st
 # A price that follows a choice
 
 
-@inputs
-class Form:
-    """A length, and the cost law that holds."""
-
-    length: Float = given(50.0, "mm")
-    cost_form: Literal["power", "exponential"] = given("power")
-
-
-@results
-class Same:
-    """What comes out."""
-
-    double: Float = found("mm")
-
-
-def doubled(form: Form) -> Same:
-    """Twice the length."""
-    return Same(double=2 * form.length)
-
-
-BOTH = by_choice(
-    "cost_form",
-    power=Price("16 * width**-0.5", width="mm", unit="EUR"),
-    exponential=Price("5 * exp(-2 * width)", width="mm", unit="EUR"),
+FORMS = {"reciprocal": lambda um: 1300 / um, "square": lambda um: 1300 / um**2}  # EUR for two bands of the same width
+GRADED = replace(
+    PAIR,
+    errors=[replace(PAIR.tolerances["one"], spread=grade("IT8"))],
+    objectives=[Require("length", within="20 um", reliability=0.9)],
 )
-CHOSEN: Model[Form, Same] = Model(
-    name="chosen", title="Two laws of cost", function=doubled,
-    errors=[Tolerance("length", plus_minus("0.125 mm"), price=BOTH)],
-)  # fmt: skip
-PRICES = {"power": 32.0, "exponential": 5 * math.exp(-0.5)}  # EUR for a band of 0.25 mm
 
 
-@pytest.mark.parametrize(("form", "price"), PRICES.items())
-def test_a_price_follows_the_choice(form: str, price: float) -> None:
-    setup = default_setup(CHOSEN, cost_form=form)
+@pytest.mark.parametrize("law", FORMS)
+def test_a_price_follows_the_choice(law: str) -> None:
+    """An allocation buys at this price, too."""
+    setup = default_setup(PAIR, law=law)
+    price = FORMS[law](24)
     assert calculate(setup).answers["tolerance_price"] == pytest.approx(price, rel=1e-14)
-    settled = price_of(setup, CHOSEN.tolerances["length"])
+    settled = price_of(setup, PAIR.tolerances["one"])
     assert settled is not None
-    assert settled.at(0.25e-3) == pytest.approx(price, rel=1e-14)
-    assert prices_at(settled, np.array([0.25e-3, 0.25e-3])) == pytest.approx([price, price], rel=1e-14)
+    assert prices_at(settled, np.array([24e-6, 24e-6])) == pytest.approx([price / 1.3, price / 1.3], rel=1e-14)
+    allotted = calculate(replace(default_setup(GRADED, law=law), studies=(Allocation(draws=10),)))
+    allocation = allotted.outcomes["allocation"]
+    width = tolerance(allocation.tolerances["one"], 0.03)
+    assert allocation.cost == pytest.approx(FORMS[law](1e6 * width) / 1.3, rel=1e-12)
 
 
-def test_describe_tells_both_prices() -> None:
-    (said,) = description(Subject(CHOSEN).offer)["tolerances"]
-    assert said["price"]["chooser"] == "cost_form"
-    assert said["price"]["prices"]["power"] == {"formula": "16 * width**-0.5", "width": "mm", "unit": "EUR"}
+def test_describe_tells_both_prices_and_the_kit_checks_them() -> None:
+    said = description(Subject(PAIR).offer)["tolerances"][0]["price"]
+    assert said["chooser"] == "law"
+    assert said["prices"]["square"] == {"formula": "1000.0 / width**2", "width": "um", "unit": "EUR"}
     json.dumps(said)
-
-
-def test_an_allocation_buys_at_the_price_of_the_choice() -> None:
-    graded = Tolerance("length", grade("IT8"), price=BOTH)
-    model = replace(CHOSEN, errors=[graded], objectives=[Require("double", within="20 um", reliability=0.9)])
-    for form, law in (("power", lambda w: 16 * w**-0.5), ("exponential", lambda w: 5 * math.exp(-2 * w))):
-        setup = replace(default_setup(model, cost_form=form), studies=(Allocation(draws=10),))
-        allotted = calculate(setup).outcomes["allocation"]
-        width = tolerance(allotted.tolerances["length"], 0.05) * 1e3
-        assert allotted.cost == pytest.approx(law(width), rel=1e-12)
-
-
-def test_the_kit_checks_every_price_of_a_choice() -> None:
-    free = replace(BOTH.prices["power"], formula="-3 * width")
-    both = by_choice("cost_form", power=BOTH.prices["power"], exponential=free)
-    mistaken = Tolerance("length", plus_minus("0.125 mm"), price=both)
-    with pytest.raises(AssertionError, match=r"the price of tolerance .length. is -0\.75 at its declared width"):
-        spreads_resolve(Subject(replace(CHOSEN, errors=[mistaken])))
+    both = by_choice("law", reciprocal=EUR, square=replace(EUR, formula="-3 * width"))
+    mistaken = replace(PAIR, errors=[Tolerance("one", plus_minus("0.125 mm"), price=both)])
+    with pytest.raises(AssertionError, match=r"the price of tolerance .one. is -0\.75 at its declared width"):
+        spreads_resolve(Subject(mistaken))
 
 
 EUR = Price("1 / width", width="mm", unit="EUR")
 WRONG = [
-    (by_choice("cost_from", power=EUR, exponential=EUR), "names 'cost_from', which is no input.*cost_form"),
-    (by_choice("length", power=EUR, exponential=EUR), "is chosen by 'length', which offers no choices"),
-    (by_choice("cost_form", power=EUR), "has a price for power, but 'cost_form' offers power, exponential"),
-    (by_choice("cost_form", power=EUR, exponential=replace(EUR, unit="yuan")), "the prices are in EUR and yuan"),
-    (
-        by_choice("cost_form", power=EUR, exponential=replace(EUR, formula="1 / breadth")),
-        "names breadth; it is a formula",
-    ),
+    (by_choice("lwa", reciprocal=EUR, square=EUR), "names 'lwa', which is no input.*law"),
+    (by_choice("one", reciprocal=EUR, square=EUR), "is chosen by 'one', which offers no choices"),
+    (by_choice("law", reciprocal=EUR), "has a price for reciprocal, but 'law' offers reciprocal, square"),
+    (by_choice("law", reciprocal=EUR, square=replace(EUR, unit="yuan")), "the prices are in EUR and yuan"),
+    (by_choice("law", reciprocal=EUR, square=replace(EUR, formula="1 / breadth")), "names breadth; it is a formula"),
 ]
 
 
 @pytest.mark.parametrize(("price", "words"), WRONG)
 def test_a_price_that_cannot_be_chosen_is_refused(price: Any, words: str) -> None:
     with pytest.raises(DeclarationError, match=words):
-        replace(CHOSEN, errors=[Tolerance("length", plus_minus("0.1 mm"), price=price)])
-
-
-def test_spreads_and_prices_are_not_mixed() -> None:
-    for laws in ({"power": EUR, "exponential": off()}, {}):
+        replace(PAIR, errors=[Tolerance("one", plus_minus("0.1 mm"), price=price)])
+    for laws in ({"reciprocal": EUR, "square": off()}, {}):
         with pytest.raises(DeclarationError, match="takes a spread for each choice, or a price for each"):
-            by_choice("cost_form", **laws)
+            by_choice("law", **laws)
 
 
 # Many cases: each row changes the setup, the smallest margin governs, one that fails does not take the others away.
@@ -201,34 +160,24 @@ def steep(given: Sensitivities) -> Steep:
     return Steep(slope=given.derivatives["depth"]["load"])
 
 
-PLAIN = replace(PIN_WEAR, objectives=[Require("pressure", at_most="80 MPa")], studies=[], sheet=[])
+BARE = replace(PIN_WEAR, objectives=[], studies=[], sheet=[])
+PLAIN = replace(BARE, objectives=[Require("pressure", at_most="80 MPa")])
 CHANCE = replace(
-    PIN_WEAR,
-    objectives=[Require("pressure", at_most="80 MPa", reliability=0.99)],
-    studies=[Reliability(draws=2000)],
-    sheet=[],
+    BARE, objectives=[Require("pressure", at_most="80 MPa", reliability=0.99)], studies=[Reliability(draws=2000)]
 )
-GIVEN = replace(
-    PIN_WEAR,
-    objectives=[Require("slope", at_most="0.2 um/N")],
-    studies=[Sensitivity(of="depth", gives=steep)],
-    sheet=[],
-)
-
-
-def remarked(cases: list[StatedCase]) -> CasesFile:
-    """Return cases as read from a file with two lines of remarks."""
-    return CasesFile(tuple(cases), RowCount("cases.csv", len(cases) + 2).without("begins with '#'", (97, 98)))
+STEEP = [Sensitivity(of="depth", gives=steep)]
+GIVEN = replace(BARE, objectives=[Require("slope", at_most="0.2 um/N")], studies=STEEP)
 
 
 def run(model: Model[Any, Any], *cases: dict[str, Any], setup: Setup | None = None) -> CasesTable:
-    """Run cases given in SI."""
+    """Run cases given in SI, as read from a file with two lines of remarks."""
     rows = [
         StatedCase(place, place + 1, f"case {place}", values, "cases.csv")
         for place, values in enumerate(cases, start=1)
     ]
+    count = RowCount("cases.csv", len(cases) + 2).without("begins with '#'", (97, 98))
     with open_executor("serial") as executor:
-        calculation, table = run_cases(setup or default_setup(model), remarked(rows), executor=executor)
+        calculation, table = run_cases(setup or default_setup(model), CasesFile(tuple(rows), count), executor=executor)
     governing = table.cases[table.governing]
     shown = calculation.setup.model.read_inputs(calculation.setup.inputs)
     assert all(shown[name] == value for name, value in governing.values.items() if name in shown)
@@ -317,13 +266,9 @@ def test_cases_that_pass_with_different_changes_only_do_not_pass() -> None:
     assert verdicts == ["proposed", "fails"]
 
 
-@pytest.mark.parametrize(
-    ("limits", "words"),
-    [((10.0, 4.0), ("-25", "%")), ((10.0, 0.0), ("-5", "mm"))],  # where one limit is 0, each margin is a distance
-)
-def test_the_smallest_margin_of_a_case_says_what_it_is(limits: tuple[float, float], words: tuple[str, str]) -> None:
-    checks = [Check("a", 8.0, limits[0], "mm", 0.2, passed=True)]
-    margin = (limits[1] - 5.0) / (limits[1] or 1.0)
-    checks.append(Check("b", 5.0, limits[1], "mm", margin, passed=False))
-    least = least_margin(checks)
-    assert (least.text, least.unit) == words
+def test_the_smallest_margin_of_a_case_says_what_it_is() -> None:
+    """In shares of its limit; where one limit is 0, each margin is a distance."""
+    for limit, margin, words in ((4.0, -0.25, ("-25", "%")), (0.0, -5.0, ("-5", "mm"))):
+        above = Check("b", 5.0, limit, "mm", margin, passed=False)
+        least = least_margin([Check("a", 8.0, 10.0, "mm", 0.2, passed=True), above])
+        assert (least.text, least.unit) == words

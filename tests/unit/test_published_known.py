@@ -1,12 +1,13 @@
 """A run that asked more than a printed number needs serves for it; one that asked less, or otherwise, does not."""
 
-from collections.abc import Iterator
 from dataclasses import replace
+from functools import wraps
 from typing import Any
 
 import pytest
+from study_models import CHAIN, Chain, Gap, chain
 
-from truing import Float, Model, Published, Sweep, found, given, inputs, results
+from truing import Model, Published, Sweep
 from truing.calculation import calculate
 from truing.errors import DeclarationError
 from truing.kernel import Offer, Origin
@@ -16,64 +17,44 @@ from truing.setup import default_setup
 CALLS: list[float] = []
 
 
-@inputs
-class Bar:
-    """A bar."""
-
-    load: Float = given(3.0, "kN")
-
-
-@results
-class Stretch:
-    """Its stretch."""
-
-    length: Float = found("mm")
-
-
-def stretch(bar: Bar) -> Stretch:
-    """One millimetre per kilonewton."""
+@wraps(chain)
+def counted(sizes: Chain) -> Gap:
+    """The dimension chain, which notes that it was calculated."""
     CALLS.append(0.0)
-    return Stretch(length=1e-6 * bar.load)
+    return chain(sizes)
 
 
-FIRST = Sweep(over="load", at="0..1 kN", points=3, name="first")
-SECOND = Sweep(over="load", at="0..2 kN", points=3, name="second")
+FIRST = Sweep(over="second", at="0..1 mm", points=3, name="sweep_1")
+SECOND = Sweep(over="second", at="0..2 mm", points=3, name="sweep_2")
 
 
-def model_asking(run: str) -> Model[Bar, Stretch]:
-    row = Published(name="length", result="length", value=3.0, unit="mm", settings={"studies.run": run})
-    return Model(name="bar", title="A bar", function=stretch, studies=[FIRST, SECOND], published=[row])
-
-
-@pytest.fixture(autouse=True)
-def forgotten() -> Iterator[None]:
-    CALLS.clear()
-    yield
-    CALLS.clear()
+def model_asking(run: str) -> Model[Chain, Gap]:
+    row = Published(name="gap", result="gap", value=10.0, unit="mm", settings={"studies.run": run})
+    return replace(CHAIN, function=counted, studies=[FIRST, SECOND], published=[row])
 
 
 @pytest.mark.parametrize(
-    ("run", "load", "known", "again"),
+    ("run", "first", "known", "again"),
     [
-        ('["first"]', "3 kN", (FIRST, SECOND), False),
-        ('["second"]', "3 kN", (FIRST, SECOND), False),
-        ("[]", "3 kN", (FIRST, SECOND), False),
-        ('["first", "second"]', "3 kN", (FIRST, SECOND), False),
-        ('["second", "first"]', "3 kN", (FIRST, SECOND), True),
-        ('["first"]', "4 kN", (FIRST, SECOND), True),
-        ('["first"]', "3 kN", (SECOND,), True),
+        ('["sweep_1"]', "30 mm", (FIRST, SECOND), False),
+        ('["sweep_2"]', "30 mm", (FIRST, SECOND), False),
+        ("[]", "30 mm", (FIRST, SECOND), False),
+        ('["sweep_1", "sweep_2"]', "30 mm", (FIRST, SECOND), False),
+        ('["sweep_2", "sweep_1"]', "30 mm", (FIRST, SECOND), True),
+        ('["sweep_1"]', "40 mm", (FIRST, SECOND), True),
+        ('["sweep_1"]', "30 mm", (SECOND,), True),
     ],
 )
 def test_a_known_run_serves_for_a_part_of_its_studies(
-    run: str, load: str, known: tuple[Sweep, ...], again: bool
+    run: str, first: str, known: tuple[Sweep, ...], again: bool
 ) -> None:
     model = model_asking(run)
-    origin = Origin("bar", "", "", "", "entry:bar")
-    made = calculate(replace(default_setup(model, origin, load=load), studies=known))
+    origin = Origin("chain", "", "", "", "entry:chain")
+    made = calculate(replace(default_setup(model, origin, first=first), studies=known))
     CALLS.clear()
-    (row,) = compare_published(Offer("bar", model, origin), known=made)
+    (row,) = compare_published(Offer("chain", model, origin), known=made)
     assert bool(CALLS) is again
-    assert row.value == pytest.approx(3.0)
+    assert row.value == pytest.approx(10.0)
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 """Figures: the same bytes every time, nothing shared between figures of one page, a title for those who cannot see."""
 
+import itertools
 import re
 from collections.abc import Callable
 from io import StringIO
@@ -29,44 +30,38 @@ def line() -> Any:
     return figure
 
 
-def test_a_figure_is_the_same_bytes_every_time() -> None:
-    assert draw(line, title="a", ident="f1") == draw(line, title="a", ident="f1")
+TITLE = "Depth <over> time & more"
 
 
-def test_a_figure_does_not_follow_the_users_settings() -> None:
-    before = draw(line, title="a", ident="f1")
+@pytest.fixture(scope="module")
+def drawn() -> str:
+    """The figure of a line as a page has it."""
+    return draw(line, title=TITLE, ident="f1")
+
+
+def test_a_figure_is_the_same_bytes_every_time_and_does_not_follow_the_users_settings(drawn: str) -> None:
     with mpl.rc_context({"font.size": 30, "svg.hashsalt": "other", "axes.facecolor": "red"}):
-        assert draw(line, title="a", ident="f1") == before
+        assert draw(line, title=TITLE, ident="f1") == drawn
 
 
-def test_figures_of_one_page_share_no_identifier() -> None:
-    first, second = (ElementTree.fromstring(draw(line, title="a", ident=ident)) for ident in ("f1", "f2"))
-    identifiers = [{node.get("id") for node in tree.iter() if node.get("id")} for tree in (first, second)]
-    assert identifiers[0]
-    assert not identifiers[0] & identifiers[1]
-
-
-def test_every_reference_inside_a_figure_finds_its_target() -> None:
-    text = draw(line, title="a", ident="f7")
-    identifiers = re.findall(r'\bid="([^"]+)"', text)
-    assert len(identifiers) == len(set(identifiers))
-    references = re.findall(r'(?:url\(#|href="#)([^)"]+)', text)
+def test_references_arrive_inside_their_figure_and_figures_of_one_page_share_no_identifier(drawn: str) -> None:
+    first, second = (re.findall(r'\bid="([^"]+)"', text) for text in (drawn, draw(line, title=TITLE, ident="f2")))
+    assert len(first) == len(set(first))
+    assert not set(first) & set(second)
+    references = re.findall(r'(?:url\(#|href="#)([^)"]+)', drawn)
     assert references
-    assert set(references) <= set(identifiers)
+    assert set(references) <= set(first)
 
 
-def test_a_figure_is_an_image_with_a_title_and_no_date() -> None:
-    tree = ElementTree.fromstring(draw(line, title="Depth <over> time & more", ident="f1"))
+def test_a_figure_is_an_image_with_a_title_and_brings_nothing_else_into_the_page(drawn: str) -> None:
+    tree = ElementTree.fromstring(drawn)
     assert tree.get("role") == "img"
     title = tree.find(f"{SVG}title")
     assert title is not None
-    assert title.text == "Depth <over> time & more"
+    assert title.text == TITLE
     assert tree.get("aria-labelledby") == title.get("id")
-
-
-@pytest.mark.parametrize("mark", ["<script", "<style", "<metadata", "<!--", "<?xml", "DOCTYPE", "matplotlib.org"])
-def test_a_figure_brings_nothing_into_the_page_but_itself(mark: str) -> None:
-    assert mark not in draw(line, title="a", ident="f1")
+    marks = ["<script", "<style", "<metadata", "<!--", "<?xml", "DOCTYPE", "matplotlib.org"]
+    assert [mark for mark in marks if mark in drawn] == []
 
 
 def test_a_figure_that_fails_is_named_with_its_place() -> None:
@@ -77,33 +72,26 @@ def test_a_figure_that_fails_is_named_with_its_place() -> None:
         draw(broken, title="Wear", ident="f1")
 
 
-@pytest.mark.parametrize(
-    "text", ["cost $5", r"\frac{1}{2}", r"$\frac$", "$x^$ and $y_1$", "$$", "a $ b $ c $", "\x1b[31m", "\u65e5"]
-)
-def test_no_text_breaks_a_figure(text: str) -> None:
-    def drawn() -> Any:
+def labelled(title: str) -> str:
+    """Draw a figure with this title, and with a formula at its axis."""
+
+    def make() -> Any:
         figure = line()
-        figure.axes[0].set_title(text)
+        figure.axes[0].set_title(title)
         figure.axes[0].set_xlabel(r"$\alpha_1$")
         return figure
 
-    tree = ElementTree.fromstring(draw(drawn, title=text, ident="f1"))
-    assert tree.get("role") == "img"
+    return draw(make, title=title, ident="f1")
 
 
-def test_a_formula_beside_a_broken_one_is_still_set() -> None:
-    def drawn(broken: str) -> str:
-        def make() -> Any:
-            figure = line()
-            figure.axes[0].set_title(broken)
-            figure.axes[0].set_xlabel(r"$\alpha_1$")
-            return figure
-
-        return draw(make, title="a", ident="f1")
-
-    assert "Oblique" in drawn(r"$\frac$")  # the slanted letter of a formula
-    assert "Oblique" in drawn("a title")
-    assert "Oblique" not in draw(line, title="a", ident="f1")
+@pytest.mark.parametrize(
+    "text", ["cost $5", r"\frac{1}{2}", r"$\frac$", r"$x^$ and $y_1$", "$$", "a $ b $ c $", "\x1b[31m", "\u65e5"]
+)
+def test_no_text_breaks_a_figure_and_a_formula_beside_it_is_still_set(text: str, drawn: str) -> None:
+    found = labelled(text)
+    assert ElementTree.fromstring(found).get("role") == "img"
+    assert "Oblique" in found  # the slanted letter of a formula
+    assert "Oblique" not in drawn
 
 
 # Layout of figures: panels stand where constrained layout sets them, all that is drawn is seen, nothing overlaps.
@@ -165,11 +153,20 @@ def placed(figure: Any) -> tuple[Any, Any]:
     return renderer, arranged(figure, renderer)
 
 
-@pytest.mark.parametrize("make", PLAIN)
-def test_panels_stand_where_constrained_layout_sets_them(make: Callable[[], Any]) -> None:
+@pytest.fixture(scope="module", params=PLAIN, ids=lambda make: make.__name__)
+def laid_out(request: pytest.FixtureRequest) -> tuple[Any, Any, Any]:
+    """A figure as it is laid out, the renderer, and the box of what is drawn."""
     with styled():
-        figure, expected = make(), make()
-        placed(figure)
+        figure = request.param()
+        return figure, *placed(figure)
+
+
+def test_panels_stand_where_constrained_layout_sets_them(
+    laid_out: tuple[Any, Any, Any], request: pytest.FixtureRequest
+) -> None:
+    figure, _, _ = laid_out
+    with styled():
+        expected = request.node.callspec.params["laid_out"]()
         FigureCanvasSVG(expected)
         expected.get_layout_engine().execute(expected)
     for axes, other in zip(figure.axes, expected.axes, strict=True):
@@ -177,23 +174,13 @@ def test_panels_stand_where_constrained_layout_sets_them(make: Callable[[], Any]
         assert axes.bbox.get_points() == pytest.approx(wanted, abs=4.0)  # points
 
 
-@pytest.mark.parametrize("make", PLAIN)
-def test_the_box_holds_all_that_is_drawn_and_little_more(make: Callable[[], Any]) -> None:
+def test_the_box_holds_all_that_is_drawn_and_no_panel_covers_another(laid_out: tuple[Any, Any, Any]) -> None:
+    figure, renderer, box = laid_out
     with styled():
-        figure = make()
-        renderer, box = placed(figure)
         drawn = 72 * figure.get_tightbbox(renderer).get_points()
-    assert box.get_points() == pytest.approx(drawn, abs=1.5)  # points, of 4.3 that are kept around
-
-
-@pytest.mark.parametrize("make", PLAIN)
-def test_the_labels_of_a_panel_leave_the_others_free(make: Callable[[], Any]) -> None:
-    with styled():
-        figure = make()
-        renderer, _ = placed(figure)
         boxes = [axes.get_tightbbox(renderer, for_layout_only=True) for axes in figure.axes]
-    overlaps = [(one, other) for one in boxes for other in boxes if one is not other and one.overlaps(other)]
-    assert not overlaps
+    assert box.get_points() == pytest.approx(drawn, abs=1.5)  # points, of 4.3 that are kept around
+    assert not [pair for pair in itertools.combinations(boxes, 2) if pair[0].overlaps(pair[1])]
 
 
 def test_panels_keep_their_share_of_the_width_beside_labels_that_take_all_of_it() -> None:

@@ -70,6 +70,11 @@ def test_a_run_folder_holds_everything(tmp_path: Path, calculation: Calculation)
     assert load_either(folder) == document == json.loads((folder / "results.json").read_text(encoding="utf-8"))
     assert json.loads((folder / "run.json").read_text(encoding="utf-8"))["duration_s"] == 1.5
     assert leftovers(tmp_path / "runs") == ["Größe 1"]
+    course = document["results"]["course"]  # too large for the document
+    assert course == {"value": None, "unit": "um", "array": "course", "shape": [1201]}
+    with np.load(folder / "arrays.npz") as arrays:
+        assert sorted(arrays) == ["course", "moment"]
+        assert arrays["course"] == pytest.approx(np.asarray(calculation.answers["course"]) * 1e6)
 
 
 def test_results_are_in_printed_units_with_signed_margins(calculation: Calculation) -> None:
@@ -89,23 +94,12 @@ def test_results_are_in_printed_units_with_signed_margins(calculation: Calculati
     assert document["conditions"]["frame"] == {"value": pytest.approx(35, abs=1e-9), "unit": "degC"}
 
 
-def test_large_results_stand_in_the_arrays(tmp_path: Path, calculation: Calculation) -> None:
-    document = write(tmp_path / "run", calculation)
-    entry = document["results"]["course"]
-    assert entry == {"value": None, "unit": "um", "array": "course", "shape": [1201]}
-    with np.load(tmp_path / "run" / "arrays.npz") as arrays:
-        assert sorted(arrays) == ["course", "moment"]
-        assert arrays["course"] == pytest.approx(np.asarray(calculation.answers["course"]) * 1e6)
-
-
 def test_equal_runs_are_equal_files(tmp_path: Path, calculation: Calculation) -> None:
+    """Packed arrays know neither the time nor the order in which they came."""
     write(tmp_path / "one", calculation)
     write(tmp_path / "two", calculate(calculation.setup))
     for name in ("results.json", "arrays.npz", "inputs.toml"):
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
-
-
-def test_packed_arrays_do_not_know_the_time() -> None:
     arrays = {"b": np.arange(3), "a": np.ones((2, 2))}
     assert npz_bytes(arrays) == npz_bytes(dict(reversed(arrays.items())))
 
@@ -120,9 +114,13 @@ class Left:
         return {}
 
 
+def left_by(calculation: Calculation, files: Mapping[str, Any]) -> Calculation:
+    """The calculation with a study that leaves these files."""
+    return replace(calculation, outcomes={"made": Left(files)})
+
+
 def test_a_study_leaves_files_beside_the_sheet(tmp_path: Path, calculation: Calculation) -> None:
-    left = replace(calculation, outcomes={"made": Left({"flank.csv": "1,2\n", "map.bin": b"\x00"})})
-    write(tmp_path / "one", left)
+    write(tmp_path / "one", left_by(calculation, {"flank.csv": "1,2\n", "map.bin": b"\x00"}))
     assert (tmp_path / "one" / "flank.csv").read_text() == "1,2\n"
     assert (tmp_path / "one" / "map.bin").read_bytes() == b"\x00"
 
@@ -130,11 +128,8 @@ def test_a_study_leaves_files_beside_the_sheet(tmp_path: Path, calculation: Calc
 @pytest.mark.parametrize(
     ("files", "sentence"),
     [
-        ({"../flank.csv": ""}, "plain file name"),
-        ({"": ""}, "plain file name"),
-        ({"flank.": ""}, "plain file name"),
-        ({"RESULTS.json": ""}, "has already"),
-        ({"sheet.pdf": ""}, "has already"),
+        *(({name: ""}, "plain file name") for name in ("../flank.csv", "", "flank.")),
+        *(({name: ""}, "has already") for name in ("RESULTS.json", "sheet.pdf")),
         ({"a.csv": "", "A.csv": ""}, "has already"),
         ({"flank.csv": 1.0}, "text or bytes"),
     ],
@@ -143,20 +138,15 @@ def test_a_file_that_cannot_be_left_is_the_fault_of_the_study(
     tmp_path: Path, calculation: Calculation, files: Mapping[str, Any], sentence: str
 ) -> None:
     with pytest.raises(PluginError, match=f"study 'made' .*{sentence}"):
-        write(tmp_path / "one", replace(calculation, outcomes={"made": Left(files)}))
+        write(tmp_path / "one", left_by(calculation, files))
     assert leftovers(tmp_path) == []
 
 
-def test_results_hold_no_token_that_is_no_json(calculation: Calculation) -> None:
-    document = results_document(calculation, provenance_of(calculation.setup))
-    assert "NaN" not in json_text(document)
-    with pytest.raises(ValueError, match="not JSON compliant"):
-        json_text({"value": math.nan})
-
-
-def test_studies_are_made_plain() -> None:
+def test_what_studies_say_is_made_plain_and_holds_no_token_that_is_no_json() -> None:
     said = {"a": np.float64(1.5), "b": (np.nan, np.inf, 2), "c": np.array([[1, 2]]), 3: np.bool_(True), "d": {"y", "x"}}
     assert clean(said) == {"a": 1.5, "b": [None, None, 2], "c": [[1, 2]], "3": True, "d": ["x", "y"]}
+    with pytest.raises(ValueError, match="not JSON compliant"):
+        json_text({"value": math.nan})
 
 
 def test_complete_inputs_give_the_run_again(tmp_path: Path, calculation: Calculation, offer: Offer) -> None:
@@ -189,9 +179,9 @@ def test_an_input_is_written_so_that_it_reads_the_same(value: float, unit: str) 
     assert read_quantity(exact(si, unit), unit) == si
 
 
-@pytest.mark.parametrize(("unit", "text"), [("mm", "0.05"), ("deg", "0.001324"), ("um", "12.5"), ("kN", "0.1")])
-def test_an_input_is_written_as_briefly_as_it_was_stated(unit: str, text: str) -> None:
-    assert exact(read_quantity(f"{text} {unit}", unit), unit) == f"{text} {unit}"
+def test_an_input_is_written_as_briefly_as_it_was_stated() -> None:
+    for text, unit in (("0.05", "mm"), ("0.001324", "deg"), ("12.5", "um"), ("0.1", "kN")):
+        assert exact(read_quantity(f"{text} {unit}", unit), unit) == f"{text} {unit}"
 
 
 def test_a_tolerance_that_follows_a_choice_is_left_to_follow_it() -> None:
@@ -203,13 +193,18 @@ def test_a_tolerance_that_follows_a_choice_is_left_to_follow_it() -> None:
     assert again.distributions() == wanted.distributions() != setup.distributions()
 
 
-def test_an_earlier_run_is_replaced_whole(tmp_path: Path, calculation: Calculation) -> None:
+@pytest.mark.skipif(os.name == "nt", reason="permissions are another matter on Windows")
+def test_an_earlier_run_is_replaced_whole_and_as_readable_as_its_neighbours(
+    tmp_path: Path, calculation: Calculation
+) -> None:
     folder = tmp_path / "run"
     write(folder, calculation)
     (folder / "notes.txt").write_text("left by the earlier run")
     write(folder, calculation)
     assert "notes.txt" not in leftovers(folder)
     assert leftovers(tmp_path) == ["run"]
+    (tmp_path / "plain").mkdir()
+    assert folder.stat().st_mode == (tmp_path / "plain").stat().st_mode
 
 
 @pytest.mark.parametrize(
@@ -235,50 +230,29 @@ def test_a_folder_that_is_no_run_of_ours_is_left_alone(tmp_path: Path, content: 
     assert leftovers(tmp_path) == ["folder"]
 
 
-@pytest.mark.parametrize(
-    ("place", "sentence"),
-    [
-        ("file/runs/one", "file is a file, so there can be no folder below it; name another place"),
-        ("file", "is a file; a run is a folder, name another place"),
-        pytest.param(
-            "link", "link: is a link that leads nowhere; name another place or remove this one",
-            marks=pytest.mark.skipif(sys.platform == "win32", reason="links need a privilege there"),
-        ),
-    ],
-)  # fmt: skip
-def test_a_place_that_is_none_is_refused_in_one_sentence(tmp_path: Path, place: str, sentence: str) -> None:
-    (tmp_path / "file").write_text("x")
-    if place == "link":
-        (tmp_path / "link").symlink_to(tmp_path / "nowhere")
-    with pytest.raises(OutputError, match=f"{sentence}$"):
-        demand_place(tmp_path / place)
-
-
-def test_a_place_that_is_free_is_not_touched_by_asking(tmp_path: Path) -> None:
+def test_a_place_that_is_none_is_refused_in_one_sentence_and_one_that_is_free_not_touched(tmp_path: Path) -> None:
     demand_place(tmp_path / "runs" / "one")
     assert leftovers(tmp_path) == []
+    (tmp_path / "file").write_text("x")
+    refused = {
+        "file/runs/one": "file is a file, so there can be no folder below it; name another place",
+        "file": "is a file; a run is a folder, name another place",
+    }
+    if sys.platform != "win32":  # links need a privilege there
+        (tmp_path / "link").symlink_to(tmp_path / "nowhere")
+        refused["link"] = "link: is a link that leads nowhere; name another place or remove this one"
+    for place, sentence in refused.items():
+        with pytest.raises(OutputError, match=f"{sentence}$"):
+            demand_place(tmp_path / place)
 
 
-@pytest.mark.skipif(os.name == "nt", reason="permissions are another matter on Windows")
-def test_a_run_folder_can_be_read_by_whoever_may_read_its_neighbours(tmp_path: Path, calculation: Calculation) -> None:
-    write(tmp_path / "run", calculation)
-    (tmp_path / "plain").mkdir()
-    assert (tmp_path / "run").stat().st_mode == (tmp_path / "plain").stat().st_mode
-
-
-@pytest.mark.parametrize(
-    ("content", "sentence"),
-    [
-        (None, "holds no results.json"),
-        ("{", "cannot be read"),
-        ('{"schema": "other/1"}', "is no truing.results/1 document"),
-    ],
-)
-def test_what_is_no_run_is_not_loaded(tmp_path: Path, content: str | None, sentence: str) -> None:
-    if content is not None:
-        (tmp_path / "results.json").write_text(content)
-    with pytest.raises(UnknownPluginError, match=sentence):
+def test_what_is_no_run_is_not_loaded(tmp_path: Path) -> None:
+    with pytest.raises(UnknownPluginError, match=r"holds no results\.json"):
         load_either(tmp_path)
+    for content, sentence in (("{", "cannot be read"), ('{"schema": "other/1"}', "is no truing.results/1 document")):
+        (tmp_path / "results.json").write_text(content)
+        with pytest.raises(UnknownPluginError, match=sentence):
+            load_either(tmp_path)
 
 
 def test_what_guests_added_is_listed(calculation: Calculation) -> None:

@@ -95,28 +95,24 @@ def test_the_shift_of_a_zone_is_in_the_mean():
     assert 1e6 * (odds.mean["height"] - 0.155) == pytest.approx(3, abs=4 * sd / sqrt(odds.draws))
 
 
-@pytest.mark.parametrize(
-    ("mean", "sd", "low", "high", "expected"),
-    [
-        (0.0, 1.0, -1.0, 1.0, 0.6826894921370859),  # the 68-95-99.7 rule
-        (0.0, 1.0, 5.0, float("inf"), 2.866515718791939e-07),
-        (0.0, 1.0, 8.0, 9.0, norm.sf(8) - norm.sf(9)),
-        (0.0, 1.0, -9.0, -8.0, norm.cdf(-8) - norm.cdf(-9)),
-        (1.0, 0.0, 0.0, 2.0, 1.0),
-        (3.0, 0.0, 0.0, 2.0, 0.0),
-    ],
-)
-def test_the_normal_chance_is_exact_in_both_tails(mean, sd, low, high, expected):
-    assert normal_chance(mean, sd, low, high) == pytest.approx(expected, rel=1e-12)
-
-
+CHANCES = [
+    (0.0, 1.0, -1.0, 1.0, 0.6826894921370859),  # the 68-95-99.7 rule
+    (0.0, 1.0, 5.0, float("inf"), 2.866515718791939e-07),
+    (0.0, 1.0, 8.0, 9.0, norm.sf(8) - norm.sf(9)),
+    (0.0, 1.0, -9.0, -8.0, norm.cdf(-8) - norm.cdf(-9)),
+    (1.0, 0.0, 0.0, 2.0, 1.0),
+    (3.0, 0.0, 0.0, 2.0, 0.0),
+]
 # Newcombe, Statistics in Medicine 17 (1998) 857, table I, method 3 (score): successes, trials, lower, upper.
-@pytest.mark.parametrize(
-    ("hits", "draws", "low", "high"), [(81, 263, 0.2553, 0.3662), (0, 20, 0.0, 0.1611), (1, 29, 0.0061, 0.1718)]
-)
-def test_the_interval_is_wilsons(hits, draws, low, high):
-    assert wilson(hits, draws) == pytest.approx((low, high), abs=5e-5)
-    assert wilson(draws - hits, draws) == pytest.approx((1 - high, 1 - low), abs=5e-5)
+NEWCOMBE = [(81, 263, 0.2553, 0.3662), (0, 20, 0.0, 0.1611), (1, 29, 0.0061, 0.1718)]
+
+
+def test_the_normal_chance_is_exact_in_both_tails_and_the_interval_is_wilsons():
+    for mean, sd, low, high, expected in CHANCES:
+        assert normal_chance(mean, sd, low, high) == pytest.approx(expected, rel=1e-12)
+    for hits, draws, low, high in NEWCOMBE:
+        assert wilson(hits, draws) == pytest.approx((low, high), abs=5e-5)
+        assert wilson(draws - hits, draws) == pytest.approx((1 - high, 1 - low), abs=5e-5)
 
 
 # ---- Monte Carlo --------------------------------------------------------------------------------------------------
@@ -169,16 +165,12 @@ def test_two_tolerances_on_one_input_add_up():
     assert (odds.first_sd["total"], odds.sd["total"]) == (pytest.approx(5, rel=1e-9), pytest.approx(5, rel=0.02))
 
 
-def test_a_reading_never_fails_a_machine(of_chain):
+def test_neither_a_reading_nor_one_calibrated_machine_is_the_design(of_chain):
     on = SwitchedOn(CHAIN.effects["misread"], {"offset": 1.0}, {"offset": 1.0})
     assert odds_of(replace(setup_of(CHAIN), effects=(on,))).probability == of_chain.probability
-
-
-def test_one_calibrated_machine_is_not_the_design():
-    setup = setup_of(CHAIN)
-    one = replace(setup, calibrated={"first": 31e-3})
-    assert calculate(replace(one, studies=())).answers == calculate(replace(setup, studies=())).answers
-    assert odds_of(one).as_json() == odds_of(setup).as_json()
+    one = replace(setup_of(CHAIN), calibrated={"first": 31e-3})
+    assert calculate(replace(one, studies=())).answers == calculate(replace(setup_of(CHAIN), studies=())).answers
+    assert odds_of(one).as_json() == of_chain.as_json()
 
 
 def test_where_nothing_scatters_chance_is_certain():
@@ -218,11 +210,8 @@ def test_the_curve_over_an_input():
     written = json.loads(json.dumps(odds.as_json(), allow_nan=False))["depth"]["curve"]
     assert written["at"] == pytest.approx([5, 10, 15, 20])
     assert odds.blocks()[-1].draw().axes
-
-
-def test_a_point_of_the_curve_that_is_impossible_keeps_its_reason():
     odds = odds_of(setup_of(ROOT), Reliability(draws=1000, over="square", at="-1..1 m^2", points=3))
-    assert [row for row, _ in odds.curve.failed] == [0]
+    assert [row for row, _ in odds.curve.failed] == [0]  # an impossible point keeps its reason
     assert odds.as_json()["side"]["curve"]["probability"][0] is None
     assert any("negative area" in text for text in odds.warnings())
 
@@ -379,8 +368,5 @@ def test_too_few_draws_are_a_warning(goal, limit, draws, sentence, said):
 def test_options_are_checked(options, sentence):
     with pytest.raises(UsageError, match=sentence):
         odds_of(setup_of(CHAIN), Reliability(**options))
-
-
-def test_nothing_required_is_said():
     with pytest.raises(UsageError, match="requires nothing"):
         odds_of(setup_of(replace(CHAIN, objectives=[])))

@@ -117,7 +117,8 @@ def studies_of(
     """Return the studies that run, in order, with the options the file sets."""
     studies: dict[str, Study] = {}
     for study in model.studies:
-        paths = (path for path in document.places if path[:2] == ("studies", study.name) and path in values)
+        told = {**document.places, **values}  # in the order of the file, then what stands in one line
+        paths = (path for path in told if path[:2] == ("studies", study.name) and path in values)
         options = {path[2]: values[path] for path in paths}
         studies[study.name], wrong = _with_options(study, options)
         named = f"study '{study.name}': "  # once, whether the study says it too or not
