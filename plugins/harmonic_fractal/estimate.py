@@ -107,13 +107,15 @@ def _shape(x: Array, found: Array) -> Array:
 
 def _residuals(x: Array, y: Array, found: Array) -> Array:
     left = y - _shape(x, found)
-    return np.asarray(left - left.mean(axis=-1, keepdims=True))
+    value: Array = left - left.mean(axis=-1, keepdims=True)
+    return value
 
 
 def _explained(left: Array, y: Array) -> Array:
     spread = np.square(y - y.mean(axis=-1, keepdims=True)).sum(axis=-1)
     left_over = np.square(left).sum(axis=-1)
-    return np.asarray(np.divide(spread - left_over, spread, out=np.full(spread.shape, np.nan), where=spread > 0))
+    value: Array = np.divide(spread - left_over, spread, out=np.full(spread.shape, np.nan), where=spread > 0)
+    return value
 
 
 # How far D and G scatter: blocks of neighbouring lines, or of neighbouring pieces of them, drawn anew many times
@@ -585,4 +587,5 @@ def _resampled(lines: Lines, curve: StructureFunction, found: _Fit, settings: Es
     else:
         pairs = _pairs(_law(curve.lags, mean_squares(weights @ units.sums, weights @ units.counts), settings))
         pairs += np.array([found.dimension, found.logarithm]) - _pairs(_law(curve.lags, curve.pooled, settings))
-    return np.asarray(pairs[np.isfinite(pairs).all(axis=1)] + np.array([1.0, 0.0]))
+    value: Array = pairs[np.isfinite(pairs).all(axis=1)] + np.array([1.0, 0.0])
+    return value

@@ -40,45 +40,47 @@ class Made:
     """A flank of known dimension and roughness."""
 
     kind: Literal["areal", "brownian", "profile"] = given(
-        "areal",
-        note="waves in all directions (Weierstrass-Mandelbrot, areal), fractional Brownian motion, or lines of a "
-             "Weierstrass-Mandelbrot profile that know nothing of one another",
+        "areal", note="waves in all directions (Weierstrass-Mandelbrot, areal), fractional Brownian motion, or lines "
+        "of a Weierstrass-Mandelbrot profile that know nothing of one another",
     )  # fmt: skip
-    fractal_dimension: Float = given(2.4, "", "D", "fractal dimension of the surface, one above that of its profiles",
-                                     TYPICAL, above=2, below=3)  # fmt: skip
-    fractal_roughness: Float = given(1e-11, "m", "G", "fractal roughness, in the convention stated beside it", TYPICAL,
+    fractal_dimension: Float = given(2.4, "", symbol="D", note="fractal dimension of the surface, one above that of "
+                                     "its profiles", source=TYPICAL, above=2, below=3)  # fmt: skip
+    fractal_roughness: Float = given(1e-11, "m", symbol="G",
+                                     note="fractal roughness, in the convention stated beside it", source=TYPICAL,
                                      above=0, at_most=1e-3, stated_with="convention")  # fmt: skip
     convention: Literal["areal", "one_direction", "profile"] = given(
-        "areal",
-        note="of G as stated: areal (ridges in all directions), one_direction (ridges across the trace), or profile "
-             "(Weierstrass-Mandelbrot profile, with the logarithm of the density)",
+        "areal", note="of G as stated: areal (ridges in all directions), one_direction (ridges across the trace), or "
+        "profile (Weierstrass-Mandelbrot profile, with the logarithm of the density)",
     )  # fmt: skip
-    density: Float = given(1.5, "", "gamma", "ratio of neighbouring frequencies", "the patent", above=1, at_most=10)
+    density: Float = given(1.5, "", symbol="gamma", note="ratio of neighbouring frequencies", source="the patent",
+                           above=1, at_most=10)  # fmt: skip
     # The patch
-    length: Float = given(200.0, "um", "L_x", "along the lines", PATCH, above=0, at_most=1e5)
-    width: Float = given(100.0, "um", "L_y", "across the lines; 0: a single profile", PATCH, at_least=0, at_most=1e5)
-    spacing: Float = given(0.4, "um", "dx", "of the points, both ways", above=0, at_most=1000)
+    length: Float = given(200.0, "um", symbol="L_x", note="along the lines", source=PATCH, above=0, at_most=1e5)
+    width: Float = given(100.0, "um", symbol="L_y", note="across the lines; 0: a single profile", source=PATCH,
+                         at_least=0, at_most=1e5)  # fmt: skip
+    spacing: Float = given(0.4, "um", symbol="dx", note="of the points, both ways", above=0, at_most=1000)
     # The waves
-    directions: int = given(40, symbol="M",
-                            note="directions of the ridges of an areal surface, over half a turn; with 1 they all run "
-                                 "across the lines", at_least=1, at_most=1000)  # fmt: skip
-    longest_wave: Float = given(None, "mm", "lambda_max", "not given: 100 times the longer side of the patch", RULE,
-                                above=0)  # fmt: skip
-    shortest_wave: Float = given(None, "um", "lambda_min", "not given: a fiftieth of the spacing", RULE, above=0)
+    directions: int = given(40, symbol="M", note="directions of the ridges of an areal surface, over half a turn; "
+                            "with 1 they all run across the lines", at_least=1, at_most=1000)  # fmt: skip
+    longest_wave: Float = given(None, "mm", symbol="lambda_max", note="not given: 100 times the longer side of the "
+                                "patch", source=RULE, above=0)  # fmt: skip
+    shortest_wave: Float = given(None, "um", symbol="lambda_min", note="not given: a fiftieth of the spacing",
+                                 source=RULE, above=0)  # fmt: skip
     seed: int = given(0, note="of all that is random; another one gives another flank of the same truth", at_least=0)
     # The instrument
-    filter_cutoff: Float = given(0.0, "um", "lambda_s",
-                                 "wave length of which half the amplitude passes the lateral filter; 0: no filter",
-                                 "ISO 16610-21", at_least=0, at_most=1e4)  # fmt: skip
-    noise: Float = given(0.0, "nm", "sigma_z", "standard deviation of the height of each point", at_least=0,
-                         at_most=1e6)  # fmt: skip
+    filter_cutoff: Float = given(0.0, "um", symbol="lambda_s", note="wave length of which half the amplitude passes "
+                                 "the lateral filter; 0: no filter", source="ISO 16610-21", at_least=0,
+                                 at_most=1e4)  # fmt: skip
+    noise: Float = given(0.0, "nm", symbol="sigma_z", note="standard deviation of the height of each point",
+                         at_least=0, at_most=1e6)  # fmt: skip
     height_step: Float = given(0.0, "nm", note="smallest difference of height that is told", at_least=0, at_most=1e6)
     spikes: Float = given(0.0, "%", note="share of points that stand out", at_least=0, at_most=50)
     spike_height: Float = given(500.0, "nm", note="by which they stand out, up or down", at_least=0, at_most=1e6)
     holes: Float = given(0.0, "%", note="share of points that were not measured", at_least=0, at_most=50)
     # How dimension and roughness are found again
     noise_aware: bool = given(False, note="fit a constant of white noise beside the power law")
-    shortest_lag: Float = given(None, "um", "xi_min", "of the fit; not given: the spacing", above=0, at_most=1e5)
+    shortest_lag: Float = given(None, "um", symbol="xi_min", note="of the fit; not given: the spacing", above=0,
+                                at_most=1e5)  # fmt: skip
 
 
 # What is told of a made flank: its truth, its heights, its structure function, and what an estimator makes of it
@@ -90,31 +92,37 @@ PLANE = "after its mean plane, or line, is taken away"
 class MadeFlank:
     """The truth, the flank that was made, and the truth as it is found again."""
 
-    profile_dimension: Float = found("", "D_s", "dimension of its profiles", "fractal_dimension - 1")
-    areal_roughness: Float = found("m", "G_areal", "roughness in the areal convention, which the estimator gives",
-                                   method="the same structure function along the lines, written in the areal "
-                                          "convention")  # fmt: skip
-    points: Float = found("", "N_x", "points of a line", digits=9,
+    profile_dimension: Float = found("", symbol="D_s", note="dimension of its profiles",
+                                     formula="fractal_dimension - 1")  # fmt: skip
+    areal_roughness: Float = found(
+        "m", symbol="G_areal", note="roughness in the areal convention, which the estimator gives",
+        method="the same structure function along the lines, written in the areal convention",
+    )  # fmt: skip
+    points: Float = found("", symbol="N_x", note="points of a line", digits=9,
                           method="spacings that fit into the length, and one more")  # fmt: skip
-    lines: Float = found("", "N_y", "lines", digits=9, method="spacings that fit into the width, and one more")
-    longest: Float = found("mm", "lambda_1", "longest wave of the sum; Brownian motion has longer ones",
+    lines: Float = found("", symbol="N_y", note="lines", digits=9,
+                         method="spacings that fit into the width, and one more")  # fmt: skip
+    longest: Float = found("mm", symbol="lambda_1", note="longest wave of the sum; Brownian motion has longer ones",
                            method="stated, or by rule")  # fmt: skip
-    shortest: Float = found("um", "lambda_n", "shortest wave of the sum; Brownian motion has shorter ones",
+    shortest: Float = found("um", symbol="lambda_n", note="shortest wave of the sum; Brownian motion has shorter ones",
                             method="stated, or by rule")  # fmt: skip
-    rms_height: Float = found("nm", "S_q", f"root mean square height {PLANE}", method="of the points")
-    height: Float = found("nm", "S_z", f"from the lowest to the highest point {PLANE}", method="of the points")
+    rms_height: Float = found("nm", symbol="S_q", note=f"root mean square height {PLANE}", method="of the points")
+    height: Float = found("nm", symbol="S_z", note=f"from the lowest to the highest point {PLANE}",
+                          method="of the points")  # fmt: skip
     lag: Float = rows("lag", unit="um")
-    structure_function: Float = found("nm^2", "S", "S of this flank as measured", along="lag",
+    structure_function: Float = found("nm^2", symbol="S", note="S of this flank as measured", along="lag",
                                       method="mean square of the difference of height, of all pairs")  # fmt: skip
-    exact: Float = found("nm^2", "S_exact", "S of all flanks of this truth, before the instrument", along="lag",
-                         method="sum over all waves; of Brownian motion its power law")  # fmt: skip
-    power_law: Float = found("nm^2", "S_law", "power law", along="lag", method="closed form")
-    fitted_dimension: Float = found("", "D_fit", "dimension of the surface, found again",
+    exact: Float = found("nm^2", symbol="S_exact", note="S of all flanks of this truth, before the instrument",
+                         along="lag", method="sum over all waves; of Brownian motion its power law")  # fmt: skip
+    power_law: Float = found("nm^2", symbol="S_law", note="power law", along="lag", method="closed form")
+    fitted_dimension: Float = found("", symbol="D_fit", note="dimension of the surface, found again",
                                     method="straight line through ln S over ln lag, along the lines")  # fmt: skip
-    fitted_roughness: Float = found("m", "G_fit", "roughness found again, areal convention", method="of the same fit")
-    dimension_error: Float = found("", "e_D", "found less true", "fitted_dimension - fractal_dimension")
-    roughness_error: Float = found("", "e_G", "decades by which the roughness found is above the true one",
-                                   "log10(fitted_roughness / areal_roughness)")  # fmt: skip
+    fitted_roughness: Float = found("m", symbol="G_fit", note="roughness found again, areal convention",
+                                    method="of the same fit")  # fmt: skip
+    dimension_error: Float = found("", symbol="e_D", note="found less true",
+                                   formula="fitted_dimension - fractal_dimension")  # fmt: skip
+    roughness_error: Float = found("", symbol="e_G", note="decades by which the roughness found is above the true one",
+                                   formula="log10(fitted_roughness / areal_roughness)")  # fmt: skip
     accepted: Float = found("", note="1 where the estimator sees a self-affine range, 0 where it refuses",
                             method="local slopes", digits=1)  # fmt: skip
 

@@ -88,7 +88,8 @@ class Arcs:
     @cached_property
     def offsets(self) -> NDArray[np.float64]:
         """ln of the share in parts of the largest, 0 or less."""
-        return np.asarray(np.log(self.shares / self.shares[0]))
+        value: NDArray[np.float64] = np.log(self.shares / self.shares[0])
+        return value
 
 
 def arcs_of(pairs: int) -> Arcs:
@@ -363,7 +364,8 @@ def _integrated(panels: Panels, rows: NDArray[np.intp], mesh: DriveMesh, count: 
     touched = micro.touched_area(size, law)[kind] if np.any(pair.film) else 0.0
     whole, rough = pair.around(alone, touched), alone @ mesh.arcs.counts
     sums = np.stack([rough if whole is alone else whole @ mesh.arcs.counts, rough])
-    return np.asarray((0.5 * panels.width[:, np.newaxis] * RULE[1] * step[kind, :, 0] / sums).sum(axis=2))
+    value: NDArray[np.float64] = (0.5 * panels.width[:, np.newaxis] * RULE[1] * step[kind, :, 0] / sums).sum(axis=2)
+    return value
 
 
 def _distinct(panels: Panels, rows: NDArray[np.intp], mesh: DriveMesh) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

@@ -74,7 +74,8 @@ class StructureFunction:
     @property
     def pairs(self) -> Array:
         """Numbers of pairs (k,) of all lines together."""
-        return np.asarray(self.counts.sum(axis=0))
+        value: Array = self.counts.sum(axis=0)
+        return value
 
     def at(self, chosen: NDArray[np.bool_]) -> "StructureFunction":
         """Return the same for a choice (k,) of its lags."""
@@ -152,7 +153,8 @@ def piece_sums(heights: Array, steps: Steps, pieces: int) -> tuple[Array, Array]
 
 def mean_squares(sums: Array, counts: Array) -> Array:
     """Return sums over counts, NaN where nothing was counted."""
-    return np.asarray(np.divide(sums, counts, out=np.full(np.shape(sums), np.nan), where=counts > 0))
+    value: Array = np.divide(sums, counts, out=np.full(np.shape(sums), np.nan), where=counts > 0)
+    return value
 
 
 # The power law of the structure function of a Weierstrass-Mandelbrot surface, and the conventions of its constant

@@ -108,10 +108,10 @@ SOURCES = (
 class LocalSlopes:
     """By how much the stiffness of one pair changes, in parts of itself."""
 
-    slope_dimension: Float = found("", "k_D", f"{NOTE} per unit of D at the same G", method="differences")
-    slope_roughness: Float = found("", "k_G", f"{NOTE} per ln G", method="differences")
-    slope_hardness: Float = found("", "k_H", f"{NOTE} per ln H", method="differences")
-    slope_load: Float = found("", "k_F", f"{NOTE} per ln F; the load exponent m", method="differences")
+    slope_dimension: Float = found("", symbol="k_D", note=f"{NOTE} per unit of D at the same G", method="differences")
+    slope_roughness: Float = found("", symbol="k_G", note=f"{NOTE} per ln G", method="differences")
+    slope_hardness: Float = found("", symbol="k_H", note=f"{NOTE} per ln H", method="differences")
+    slope_load: Float = found("", symbol="k_F", note=f"{NOTE} per ln F; the load exponent m", method="differences")
 
 
 def slopes(found_by: Sensitivities) -> LocalSlopes:

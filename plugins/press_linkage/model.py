@@ -3,9 +3,8 @@
 from pathlib import Path
 
 from press_linkage.answers import Readings, chances, cycle, influence, synthesis
-from press_linkage.effects import EFFECTS, HEATED
+from press_linkage.effects import EFFECTS
 from press_linkage.errors import exact_derivatives, press_linkage, source
-from press_linkage.figures import SYMBOLS
 from press_linkage.published import FINDINGS, PUBLISHED
 from press_linkage.sheet import SECTIONS
 from truing import (
@@ -33,6 +32,13 @@ LITERATURE = [
     "ISO 286-1:2010, ISO code system for tolerances on linear sizes.",
 ]
 SIDES = (1, 2)
+LINKS = {
+    "crank_radius": "a",
+    "rod_length": "k_R",
+    "knee_drive_length": "l_g",
+    "upper_knee_length": "l_m",
+    "lower_knee_length": "l_h",
+}
 COST = Price("1 / width", width="mm", unit="1/mm")
 
 
@@ -41,10 +47,10 @@ def on_both(kind: str) -> list[str]:
     return [source(kind, side) for side in SIDES]
 
 
-def link(kind: str) -> Tolerance:
+def link(kind: str, symbol: str) -> Tolerance:
     """A link length of both sides, made to an ISO 286 grade of its nominal size."""
     return Tolerance(
-        kind, grade("IT7", size=kind), on=on_both(kind), price=COST, source=f"Table 3, {SYMBOLS[kind]}",
+        kind, grade("IT7", size=kind), on=on_both(kind), price=COST, source=f"Table 3, {symbol}",
         why="length of the finished link between its bores",
     )  # fmt: skip
 
@@ -67,7 +73,7 @@ def joint(kind: str, half: str, *, coordinate: str, printed: str = "", radius: s
 
 
 TOLERANCES = [
-    *(link(kind) for kind in HEATED),
+    *(link(kind, symbol) for kind, symbol in LINKS.items()),
     Tolerance(
         "platform_arm", grade("IT7", size="platform_arm"), on=["platform_arm_deviation"], price=COST,
         source="Table 3, k", why="length of the finished arm",

@@ -671,19 +671,21 @@ class ShiftChoice:
     optimal_stress_difference: Float = optimal("f_2,opt", "difference of the root stresses", "MPa")
     optimal_sliding_difference: Float = optimal("f_3,opt", "difference of specific sliding")
     optimal_contact_ratio: Float = optimal("epsilon_opt", "contact ratio")
-    optimal_margin: Float = found("", "g_opt", "smallest of the margins at the optimum",
+    optimal_margin: Float = found("", symbol="g_opt", note="smallest of the margins at the optimum",
                                   method="each in its own unit; 0: a limit holds the optimum")  # fmt: skip
-    limit_distance: Float = found("", "Delta x_E", "from the optimum to the nearest shift that misses a limit",
-                                  method="ends of the interval, halved down to the last digits")  # fmt: skip
-    kept_as_stated: Float = found("%", "n_0", "screws of the stated shift that keep every limit", method=DRAWN)
-    kept_at_optimum: Float = found("%", "n_opt", "screws of the optimal shift that keep every limit", method=DRAWN)
-    grid_shift: Float = found("", "x_E,grid", "optimal shift of the roller on a dense grid",
+    limit_distance: Float = found("", symbol="Delta x_E", note="from the optimum to the nearest shift that misses a "
+                                  "limit", method="ends of the interval, halved down to the last digits")  # fmt: skip
+    kept_as_stated: Float = found("%", symbol="n_0", note="screws of the stated shift that keep every limit",
+                                  method=DRAWN)  # fmt: skip
+    kept_at_optimum: Float = found("%", symbol="n_opt", note="screws of the optimal shift that keep every limit",
+                                   method=DRAWN)  # fmt: skip
+    grid_shift: Float = found("", symbol="x_E,grid", note="optimal shift of the roller on a dense grid",
                               method="a check of Box's method")  # fmt: skip
-    grid_distance: Float = found("", "Delta x_grid", "between both optima", method="magnitude")
-    evaluations: Float = found("", "n_eval", "shifts that Box's method tried", method="drawn ones counted")
-    equal_sliding_roller: Float = found("", "x_E,3", "shift of the roller at which both roots slide alike",
+    grid_distance: Float = found("", symbol="Delta x_grid", note="between both optima", method="magnitude")
+    evaluations: Float = found("", symbol="n_eval", note="shifts that Box's method tried", method="drawn ones counted")
+    equal_sliding_roller: Float = found("", symbol="x_E,3", note="shift of the roller at which both roots slide alike",
                                         method="whatever the limits")  # fmt: skip
-    equal_sliding_ring: Float = found("", "x_I,3", "shift of the ring there", method="no backlash")
+    equal_sliding_ring: Float = found("", symbol="x_I,3", note="shift of the ring there", method="no backlash")
 
 
 def choice(chosen: ChosenShift) -> ShiftChoice:

@@ -93,7 +93,8 @@ def ring_tooth(pair: Pair, geometry: Geometry) -> Tooth:
 
 def is_cut(pair: Pair) -> NDArray[np.bool_]:
     """Return whether the ring is made by a cutter; else it is taken as a rack."""
-    return np.asarray(~np.isnan(np.asarray(pair.cutter_teeth, dtype=float)))
+    value: NDArray[np.bool_] = ~np.isnan(np.asarray(pair.cutter_teeth, dtype=float))
+    return value
 
 
 def cut_section(pair: Pair, geometry: Geometry) -> tuple[roots.Root, roots.Arm]:

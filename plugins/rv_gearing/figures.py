@@ -414,7 +414,8 @@ def _tooth(panel: Any, one: Notched, fill: str, edge: str) -> None:
 
 def _down(points: "Array", depth: float) -> "Array":
     """With the critical section at height 0."""
-    return np.asarray(points - np.array([[0.0], [depth]]))
+    value: Array = points - np.array([[0.0], [depth]])
+    return value
 
 
 def _chord(panel: Any, one: Notched) -> None:

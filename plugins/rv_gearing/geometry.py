@@ -24,34 +24,37 @@ LEAST_LINE_LOAD = 1.0  # N/m; what an idle mesh counts as loaded with where some
 class Duty:
     """What the drive does, and what it asks of one mesh."""
 
-    pins: Float = found("", "Z_5", "pins", method="those stated, else those of the group", digits=4)
-    ratio: Float = found("", "i", "input turns over output turns", "1 + teeth_planet * pins / teeth_sun",
-                         "equation 1 of the paper")  # fmt: skip
-    pin_ratio: Float = found("", "k", "pins over teeth of the disc", "pins / (pins - 1)")
+    pins: Float = found("", symbol="Z_5", note="pins", method="those stated, else those of the group", digits=4)
+    ratio: Float = found("", symbol="i", note="input turns over output turns", source="equation 1 of the paper",
+                         formula="1 + teeth_planet * pins / teeth_sun")  # fmt: skip
+    pin_ratio: Float = found("", symbol="k", note="pins over teeth of the disc", formula="pins / (pins - 1)")
     mesh_efficiency: Float = found(
-        "", "eta_16", "efficiency of both meshes",
-        "(pin_ratio - 1) * (pin_ratio - cycloid_efficiency + tooth_ratio * pin_ratio * involute_efficiency)"
-        " / ((pin_ratio - cycloid_efficiency) * (pin_ratio - 1 + tooth_ratio * pin_ratio))", "equation 8 of the paper",
+        "", symbol="eta_16", note="efficiency of both meshes", source="equation 8 of the paper",
+        formula="(pin_ratio - 1) * (pin_ratio - cycloid_efficiency + tooth_ratio * pin_ratio * involute_efficiency)"
+        " / ((pin_ratio - cycloid_efficiency) * (pin_ratio - 1 + tooth_ratio * pin_ratio))",
     )  # fmt: skip
-    sun_speed: Float = found("rpm", "n_1", "speed of the sun", "either(input_speed, output_speed * ratio)")
-    mesh_speed: Float = found("rpm", "n_rel", "speed of the sun relative to the carrier",
-                              "either(stated_mesh_speed, sun_speed * (1 - 1 / ratio))")  # fmt: skip
-    asked_torque: Float = found("N*m", "T_a", "torque asked for at the output: as given, else that of the power",
-                                "abs(either(load_torque, 9550 * power / sun_speed * ratio * mesh_efficiency"
-                                " * bearing_efficiency**3))", numeric=True)  # fmt: skip
-    sun_torque: Float = found("N*m", "T_1", "torque of the sun; as stated where it is",
-                              "either(stated_sun_torque, asked_torque"
-                              " / (ratio * mesh_efficiency * bearing_efficiency**3))")  # fmt: skip
-    output_torque: Float = found("N*m", "T_2", "torque at the output",
-                                 "sun_torque * ratio * mesh_efficiency * bearing_efficiency**3")  # fmt: skip
-    tangential_force: Float = found("N", "F_t", "tangential force of one mesh, without load factors",
-                                    "2 * sun_torque / (planets * reference_diameter_sun)")  # fmt: skip
-    pitch_line_velocity: Float = found("m/s", "v", "pitch line velocity relative to the carrier",
-                                       "pi * reference_diameter_sun * mesh_speed")  # fmt: skip
-    carrying_width: Float = found("mm", "b_w", "face width that carries", "carrying_share * face_width")
-    line_load: Float = found("N/mm", "w", "line load with the application factor",
-                             "max(tangential_force * application_factor / carrying_width, 0.001)",
-                             numeric=True)  # fmt: skip
+    sun_speed: Float = found("rpm", symbol="n_1", note="speed of the sun",
+                             formula="either(input_speed, output_speed * ratio)")  # fmt: skip
+    mesh_speed: Float = found("rpm", symbol="n_rel", note="speed of the sun relative to the carrier",
+                              formula="either(stated_mesh_speed, sun_speed * (1 - 1 / ratio))")  # fmt: skip
+    asked_torque: Float = found(
+        "N*m", symbol="T_a", note="torque asked for at the output: as given, else that of the power", numeric=True,
+        formula="abs(either(load_torque, 9550 * power / sun_speed * ratio * mesh_efficiency * bearing_efficiency**3))",
+    )  # fmt: skip
+    sun_torque: Float = found(
+        "N*m", symbol="T_1", note="torque of the sun; as stated where it is",
+        formula="either(stated_sun_torque, asked_torque / (ratio * mesh_efficiency * bearing_efficiency**3))",
+    )  # fmt: skip
+    output_torque: Float = found("N*m", symbol="T_2", note="torque at the output",
+                                 formula="sun_torque * ratio * mesh_efficiency * bearing_efficiency**3")  # fmt: skip
+    tangential_force: Float = found("N", symbol="F_t", note="tangential force of one mesh, without load factors",
+                                    formula="2 * sun_torque / (planets * reference_diameter_sun)")  # fmt: skip
+    pitch_line_velocity: Float = found("m/s", symbol="v", note="pitch line velocity relative to the carrier",
+                                       formula="pi * reference_diameter_sun * mesh_speed")  # fmt: skip
+    carrying_width: Float = found("mm", symbol="b_w", note="face width that carries",
+                                  formula="carrying_share * face_width")  # fmt: skip
+    line_load: Float = found("N/mm", symbol="w", note="line load with the application factor", numeric=True,
+                             formula="max(tangential_force * application_factor / carrying_width, 0.001)")  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -121,70 +124,82 @@ Which = Literal["sun", "planet"]
 class GearSize:
     """Sizes of one gear."""
 
-    teeth: Float = found("", "z", "teeth", method="those stated, else those of the group")
-    reference_diameter: Float = found("mm", "d", "reference diameter", "teeth * module / cos(helix_angle)", ISO_21771)
-    base_diameter: Float = found("mm", "d_b", "base diameter", "reference_diameter * cos(transverse_angle)", ISO_21771)
-    tip_diameter: Float = found("mm", "d_a", "tip diameter, without shortening",
-                                "reference_diameter + 2 * module * (addendum + shift)", ISO_21771)  # fmt: skip
-    root_diameter: Float = found("mm", "d_f", "root diameter", "reference_diameter - 2 * module * (dedendum - shift)",
-                                 ISO_21771)  # fmt: skip
+    teeth: Float = found("", symbol="z", note="teeth", method="those stated, else those of the group")
+    reference_diameter: Float = found("mm", symbol="d", note="reference diameter", source=ISO_21771,
+                                      formula="teeth * module / cos(helix_angle)")  # fmt: skip
+    base_diameter: Float = found("mm", symbol="d_b", note="base diameter", source=ISO_21771,
+                                 formula="reference_diameter * cos(transverse_angle)")  # fmt: skip
+    tip_diameter: Float = found("mm", symbol="d_a", note="tip diameter, without shortening", source=ISO_21771,
+                                formula="reference_diameter + 2 * module * (addendum + shift)")  # fmt: skip
+    root_diameter: Float = found("mm", symbol="d_f", note="root diameter", source=ISO_21771,
+                                 formula="reference_diameter - 2 * module * (dedendum - shift)")  # fmt: skip
     form_diameter: Float = found(
-        "mm", "d_Ff", "where the involute that the rack makes begins; the base diameter where it undercuts",
-        "hypot(base_diameter, max(reference_diameter * sin(transverse_angle) - 2 * module"
-        " * (dedendum - shift - fillet * (1 - sin(pressure_angle))) / sin(transverse_angle), 0))", ISO_21771,
+        "mm", symbol="d_Ff", note="where the involute that the rack makes begins; the base diameter where it undercuts",
+        source=ISO_21771,
+        formula="hypot(base_diameter, max(reference_diameter * sin(transverse_angle)"
+        " - 2 * module * (dedendum - shift - fillet * (1 - sin(pressure_angle))) / sin(transverse_angle), 0))",
     )  # fmt: skip
-    tip_angle: Float = found("deg", "alpha_at", "transverse pressure angle at the tip",
-                             "acos(base_diameter / tip_diameter)", ISO_21771)  # fmt: skip
-    tip_thickness: Float = found("mm", "s_at", "transverse tooth thickness at the tip; at 0 the tooth is pointed",
-                                 "tip_diameter * ((pi / 2 + 2 * shift * tan(pressure_angle)) / teeth"
-                                 " + inv(transverse_angle) - inv(tip_angle))", ISO_21771)  # fmt: skip
+    tip_angle: Float = found("deg", symbol="alpha_at", note="transverse pressure angle at the tip", source=ISO_21771,
+                             formula="acos(base_diameter / tip_diameter)")  # fmt: skip
+    tip_thickness: Float = found(
+        "mm", symbol="s_at", note="transverse tooth thickness at the tip; at 0 the tooth is pointed", source=ISO_21771,
+        formula="tip_diameter * ((pi / 2 + 2 * shift * tan(pressure_angle)) / teeth + inv(transverse_angle)"
+        " - inv(tip_angle))",
+    )  # fmt: skip
     start_curvature: Float = found(
-        "mm", "rho_A", "radius of curvature where contact begins at the root; below 0 the teeth interfere",
-        "base_diameter * tan(tip_angle) / 2 - contact_ratio * base_pitch", ISO_21771,
+        "mm", symbol="rho_A", note="radius of curvature where contact begins at the root; below 0 the teeth interfere",
+        formula="base_diameter * tan(tip_angle) / 2 - contact_ratio * base_pitch",
+        source=ISO_21771,
     )  # fmt: skip
-    virtual_teeth: Float = found("", "z_n", "teeth of the virtual spur gear",
-                                 "teeth / (cos(base_helix_angle)**2 * cos(helix_angle))",
-                                 "ISO 6336-3:2006, clause 6")  # fmt: skip
+    virtual_teeth: Float = found("", symbol="z_n", note="teeth of the virtual spur gear",
+                                 source="ISO 6336-3:2006, clause 6",
+                                 formula="teeth / (cos(base_helix_angle)**2 * cos(helix_angle))")  # fmt: skip
 
 
 @results
 class MeshSize:
     """Sizes of the mesh."""
 
-    tooth_ratio: Float = found("", "u", "planet teeth over sun teeth", "teeth_planet / teeth_sun")
-    transverse_angle: Float = found("deg", "alpha_t", "transverse pressure angle",
-                                    "atan(tan(pressure_angle) / cos(helix_angle))", ISO_21771)  # fmt: skip
-    base_helix_angle: Float = found("deg", "beta_b", "helix angle at the base cylinder",
-                                    "asin(sin(helix_angle) * cos(pressure_angle))", ISO_21771)  # fmt: skip
-    tight_angle: Float = found("deg", "alpha_wt,0", "transverse working pressure angle without backlash",
-                               "inv(tight_angle) == inv(transverse_angle) + 2 * tan(pressure_angle)"
-                               " * (shift_sun + shift_planet) / (teeth_sun + teeth_planet)", ISO_21771)  # fmt: skip
-    tight_centre_distance: Float = found("mm", "a_w,0", "centre distance without backlash",
-                                         "(base_diameter_sun + base_diameter_planet) / (2 * cos(tight_angle))",
-                                         ISO_21771)  # fmt: skip
-    centre_distance: Float = found("mm", "a_w", "working centre distance",
-                                   "tight_centre_distance + centre_distance_deviation")  # fmt: skip
-    working_angle: Float = found("deg", "alpha_wt", "transverse working pressure angle",
-                                 "acos((base_diameter_sun + base_diameter_planet) / (2 * centre_distance))",
-                                 ISO_21771)  # fmt: skip
-    base_pitch: Float = found("mm", "p_bt", "transverse base pitch",
-                              "pi * module * cos(transverse_angle) / cos(helix_angle)", ISO_21771)  # fmt: skip
-    contact_ratio: Float = found("", "epsilon_alpha", "transverse contact ratio",
-                                 "(base_diameter_sun * (tan(tip_angle_sun) - tan(working_angle)) + base_diameter_planet"
-                                 " * (tan(tip_angle_planet) - tan(working_angle))) / (2 * base_pitch)",
-                                 ISO_21771)  # fmt: skip
-    overlap_ratio: Float = found("", "epsilon_beta", "overlap ratio; 0 of spur gears",
-                                 "face_width * sin(helix_angle) / (pi * module)", ISO_21771)  # fmt: skip
-    total_contact_ratio: Float = found("", "epsilon_gamma", "total contact ratio", "contact_ratio + overlap_ratio",
-                                       ISO_21771)  # fmt: skip
-    virtual_contact_ratio: Float = found("", "epsilon_alpha n", "contact ratio of the virtual spur gears",
-                                         "contact_ratio / cos(base_helix_angle)**2",
-                                         "ISO 6336-3:2006, clause 6")  # fmt: skip
-    tooth_height: Float = found("mm", "h", "tooth height", "(addendum + dedendum) * module", ISO_21771)
-    curvature: Float = found("mm", "rho_red", "radius of relative curvature at the pitch point",
-                             "base_diameter_sun * base_diameter_planet * tan(working_angle)"
-                             " / (2 * (base_diameter_sun + base_diameter_planet))",
-                             "ISO 6336-2:2006, clause 12")  # fmt: skip
+    tooth_ratio: Float = found("", symbol="u", note="planet teeth over sun teeth", formula="teeth_planet / teeth_sun")
+    transverse_angle: Float = found("deg", symbol="alpha_t", note="transverse pressure angle", source=ISO_21771,
+                                    formula="atan(tan(pressure_angle) / cos(helix_angle))")  # fmt: skip
+    base_helix_angle: Float = found("deg", symbol="beta_b", note="helix angle at the base cylinder", source=ISO_21771,
+                                    formula="asin(sin(helix_angle) * cos(pressure_angle))")  # fmt: skip
+    tight_angle: Float = found(
+        "deg", symbol="alpha_wt,0", note="transverse working pressure angle without backlash", source=ISO_21771,
+        formula="inv(tight_angle) == inv(transverse_angle) + 2 * tan(pressure_angle) * (shift_sun + shift_planet)"
+        " / (teeth_sun + teeth_planet)",
+    )  # fmt: skip
+    tight_centre_distance: Float = found(
+        "mm", symbol="a_w,0", note="centre distance without backlash", source=ISO_21771,
+        formula="(base_diameter_sun + base_diameter_planet) / (2 * cos(tight_angle))",
+    )  # fmt: skip
+    centre_distance: Float = found("mm", symbol="a_w", note="working centre distance",
+                                   formula="tight_centre_distance + centre_distance_deviation")  # fmt: skip
+    working_angle: Float = found(
+        "deg", symbol="alpha_wt", note="transverse working pressure angle", source=ISO_21771,
+        formula="acos((base_diameter_sun + base_diameter_planet) / (2 * centre_distance))",
+    )  # fmt: skip
+    base_pitch: Float = found("mm", symbol="p_bt", note="transverse base pitch", source=ISO_21771,
+                              formula="pi * module * cos(transverse_angle) / cos(helix_angle)")  # fmt: skip
+    contact_ratio: Float = found(
+        "", symbol="epsilon_alpha", note="transverse contact ratio", source=ISO_21771,
+        formula="(base_diameter_sun * (tan(tip_angle_sun) - tan(working_angle))"
+        " + base_diameter_planet * (tan(tip_angle_planet) - tan(working_angle))) / (2 * base_pitch)",
+    )  # fmt: skip
+    overlap_ratio: Float = found("", symbol="epsilon_beta", note="overlap ratio; 0 of spur gears", source=ISO_21771,
+                                 formula="face_width * sin(helix_angle) / (pi * module)")  # fmt: skip
+    total_contact_ratio: Float = found("", symbol="epsilon_gamma", note="total contact ratio", source=ISO_21771,
+                                       formula="contact_ratio + overlap_ratio")  # fmt: skip
+    virtual_contact_ratio: Float = found("", symbol="epsilon_alpha n", note="contact ratio of the virtual spur gears",
+                                         source="ISO 6336-3:2006, clause 6",
+                                         formula="contact_ratio / cos(base_helix_angle)**2")  # fmt: skip
+    tooth_height: Float = found("mm", symbol="h", note="tooth height", source=ISO_21771,
+                                formula="(addendum + dedendum) * module")  # fmt: skip
+    curvature: Float = found("mm", symbol="rho_red", note="radius of relative curvature at the pitch point",
+                             source="ISO 6336-2:2006, clause 12",
+                             formula="base_diameter_sun * base_diameter_planet * tan(working_angle)"
+                                     " / (2 * (base_diameter_sun + base_diameter_planet))")  # fmt: skip
 
 
 def mesh_size(stage: Gearing, load: ToothLoad) -> MeshSize:

@@ -12,7 +12,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rv_gearing.quantities import Gearing
-from truing import Array, Bench, Float, Outcome, Table, TruingError, column, either, feasible, found, results, rows
+from truing import (
+    Array,
+    Bench,
+    Float,
+    Outcome,
+    Table,
+    TruingError,
+    column,
+    either,
+    feasible,
+    found,
+    results,
+    rows,
+)
 
 # What the drive must do: ratio, efficiency, torque, and the sizes of pin circle and centre distance they ask for
 #
@@ -364,8 +377,8 @@ def listing(symbol: str, note: str, unit: str = "", source: str = "") -> Any:
 class Listed:
     """The groups as a table, in the order asked for."""
 
-    group_count: Float = found("", "N", "groups of tooth numbers", method=CONDITIONS)
-    exact_count: Float = found("", "N_0", "of them with just the wanted ratio", method="counted")
+    group_count: Float = found("", symbol="N", note="groups of tooth numbers", method=CONDITIONS)
+    exact_count: Float = found("", symbol="N_0", note="of them with just the wanted ratio", method="counted")
     group_number: Float = rows("number of the group")
     group_sun_teeth: Float = listing("Z_1", "teeth of the sun")
     group_planet_teeth: Float = listing("Z_2", "teeth of the planet")

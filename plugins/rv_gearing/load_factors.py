@@ -26,38 +26,45 @@ SHARE, MOST = 0.075, 3e-6  # of a deviation that case-hardened and nitrided gear
 class GearQuality:
     """Deviations of one gear, and what it runs in."""
 
-    pitch_deviation: Float = found("um", "f_pt", "single pitch deviation",
-                                   "(0.3 * (module + 0.4 * sqrt(reference_diameter)) + 4)" + GRADE, ISO_1328,
-                                   numeric=True)  # fmt: skip
-    profile_deviation: Float = found("um", "f_f alpha ", "profile form deviation",
-                                     "(2.5 * sqrt(module) + 0.17 * sqrt(reference_diameter) + 0.5)" + GRADE, ISO_1328,
-                                     numeric=True)  # fmt: skip
-    helix_deviation: Float = found("um", "f_H beta ", "helix slope deviation",
-                                   "(0.07 * sqrt(reference_diameter) + 0.45 * sqrt(face_width) + 3)" + GRADE, ISO_1328,
-                                   numeric=True)  # fmt: skip
-    pitch_running_in: Float = found("um", "y_p", "what the gear takes off the pitch deviation", source=RUNNING_IN,
-                                    method="case-hardened and nitrided: 0.075 f_pb, at most 3 um; through-hardened: "
-                                           "160 f_pb/sigma_Hlim, limited above 5 m/s")  # fmt: skip
-    profile_running_in: Float = found("um", "y_f", "what the gear takes off the profile deviation", source=RUNNING_IN,
-                                      method="as for the pitch, with the profile form deviation")  # fmt: skip
+    pitch_deviation: Float = found("um", symbol="f_pt", note="single pitch deviation", numeric=True, source=ISO_1328,
+                                   formula="(0.3 * (module + 0.4 * sqrt(reference_diameter)) + 4)" + GRADE)  # fmt: skip
+    profile_deviation: Float = found(
+        "um", symbol="f_f alpha ", note="profile form deviation", numeric=True, source=ISO_1328,
+        formula="(2.5 * sqrt(module) + 0.17 * sqrt(reference_diameter) + 0.5)" + GRADE,
+    )  # fmt: skip
+    helix_deviation: Float = found(
+        "um", symbol="f_H beta ", note="helix slope deviation", numeric=True, source=ISO_1328,
+        formula="(0.07 * sqrt(reference_diameter) + 0.45 * sqrt(face_width) + 3)" + GRADE,
+    )  # fmt: skip
+    pitch_running_in: Float = found(
+        "um", symbol="y_p", note="what the gear takes off the pitch deviation", source=RUNNING_IN,
+        method="case-hardened and nitrided: 0.075 f_pb, at most 3 um; through-hardened: 160 f_pb/sigma_Hlim, limited "
+        "above 5 m/s",
+    )  # fmt: skip
+    profile_running_in: Float = found(
+        "um", symbol="y_f", note="what the gear takes off the profile deviation", source=RUNNING_IN,
+        method="as for the pitch, with the profile form deviation",
+    )  # fmt: skip
 
 
 @results
 class MeshQuality:
     """Deviations of the mesh: those of the worse gear, as made and after running in."""
 
-    pitch_error: Float = found("um", "f_pb", "transverse base pitch deviation",
-                               "max(pitch_deviation_sun, pitch_deviation_planet) * cos(transverse_angle)",
-                               ISO_1328)  # fmt: skip
-    profile_error: Float = found("um", "f_f alpha", "profile form deviation of the worse gear",
-                                 "max(profile_deviation_sun, profile_deviation_planet)")  # fmt: skip
-    running_in: Float = found("um", "y_alpha", "running-in allowance of the pitch",
-                              "(pitch_running_in_sun + pitch_running_in_planet) / 2", RUNNING_IN)  # fmt: skip
-    pitch_left: Float = found("um", "f_pb,eff", "effective base pitch deviation", "pitch_error - running_in",
-                              RUNNING_IN)  # fmt: skip
-    profile_left: Float = found("um", "f_f alpha,eff", "effective profile form deviation",
-                                "profile_error - (profile_running_in_sun + profile_running_in_planet) / 2",
-                                "ISO 6336-1:2006, 6.5.4")  # fmt: skip
+    pitch_error: Float = found(
+        "um", symbol="f_pb", note="transverse base pitch deviation", source=ISO_1328,
+        formula="max(pitch_deviation_sun, pitch_deviation_planet) * cos(transverse_angle)",
+    )  # fmt: skip
+    profile_error: Float = found("um", symbol="f_f alpha", note="profile form deviation of the worse gear",
+                                 formula="max(profile_deviation_sun, profile_deviation_planet)")  # fmt: skip
+    running_in: Float = found("um", symbol="y_alpha", note="running-in allowance of the pitch", source=RUNNING_IN,
+                              formula="(pitch_running_in_sun + pitch_running_in_planet) / 2")  # fmt: skip
+    pitch_left: Float = found("um", symbol="f_pb,eff", note="effective base pitch deviation", source=RUNNING_IN,
+                              formula="pitch_error - running_in")  # fmt: skip
+    profile_left: Float = found(
+        "um", symbol="f_f alpha,eff", note="effective profile form deviation", source="ISO 6336-1:2006, 6.5.4",
+        formula="profile_error - (profile_running_in_sun + profile_running_in_planet) / 2",
+    )  # fmt: skip
 
 
 def quality_of(
@@ -117,30 +124,33 @@ STEEL_MODULUS = 206e9  # Pa
 class MeshStiffness:
     """Stiffness of tooth and mesh, per face width."""
 
-    tooth_compliance: Float = found("mm*um/N", "q'", "compliance of a pair of teeth, theoretical",
-                                    "0.04723 + 0.15551 / virtual_teeth_sun + 0.25791 / virtual_teeth_planet - 0.00635"
-                                    " * shift_sun - 0.11654 * shift_sun / virtual_teeth_sun - 0.00193 * shift_planet"
-                                    " - 0.24188 * shift_planet / virtual_teeth_planet + 0.00529 * shift_sun**2"
-                                    " + 0.00182 * shift_planet**2", CLAUSE_9, numeric=True)  # fmt: skip
-    theoretical_stiffness: Float = found("N/(mm*um)", "c'_th", "stiffness of a pair of teeth, theoretical",
-                                         "1 / tooth_compliance", CLAUSE_9)  # fmt: skip
-    rack_factor: Float = found("", "C_B", "basic rack factor",
-                               "(1 + 0.5 * (1.2 - dedendum)) * (1 - 0.02 * (20 - pressure_angle))",
-                               "ISO 6336-1:2006, 9.3.1.4", numeric=True)  # fmt: skip
-    modulus_factor: Float = found("", "zeta", "moduli of both gears against steel",
-                                  "2 * young_modulus_sun * young_modulus_planet"
-                                  " / ((young_modulus_sun + young_modulus_planet) * 206)", CLAUSE_9,
-                                  numeric=True)  # fmt: skip
-    low_load_factor: Float = found("", "c_w", "softer contact below 100 N/mm", "min((line_load / 100)**0.25, 1)",
-                                   CLAUSE_9, numeric=True)  # fmt: skip
-    tooth_stiffness: Float = found("N/(mm*um)", "c'", "stiffness of a pair of teeth",
-                                   "0.8 * rack_factor * cos(helix_angle) * modulus_factor * low_load_factor"
-                                   " * theoretical_stiffness", CLAUSE_9)  # fmt: skip
-    mesh_stiffness: Float = found("N/(mm*um)", "c_gamma alpha", "mean mesh stiffness",
-                                  "either(stated_mesh_stiffness, tooth_stiffness * (0.75 * contact_ratio + 0.25))",
-                                  "ISO 6336-1:2006, 9.3.2")  # fmt: skip
-    mesh_stiffness_face: Float = found("N/(mm*um)", "c_gamma beta", "mesh stiffness for the face factor",
-                                       "0.85 * mesh_stiffness", "ISO 6336-1:2006, 9.3.2")  # fmt: skip
+    tooth_compliance: Float = found(
+        "mm*um/N", symbol="q'", note="compliance of a pair of teeth, theoretical", numeric=True, source=CLAUSE_9,
+        formula="0.04723 + 0.15551 / virtual_teeth_sun + 0.25791 / virtual_teeth_planet - 0.00635 * shift_sun"
+        " - 0.11654 * shift_sun / virtual_teeth_sun - 0.00193 * shift_planet"
+        " - 0.24188 * shift_planet / virtual_teeth_planet + 0.00529 * shift_sun**2 + 0.00182 * shift_planet**2",
+    )  # fmt: skip
+    theoretical_stiffness: Float = found("N/(mm*um)", symbol="c'_th", note="stiffness of a pair of teeth, theoretical",
+                                         formula="1 / tooth_compliance", source=CLAUSE_9)  # fmt: skip
+    rack_factor: Float = found("", symbol="C_B", note="basic rack factor", numeric=True,
+                               source="ISO 6336-1:2006, 9.3.1.4",
+                               formula="(1 + 0.5 * (1.2 - dedendum)) * (1 - 0.02 * (20 - pressure_angle))")  # fmt: skip
+    modulus_factor: Float = found(
+        "", symbol="zeta", note="moduli of both gears against steel", numeric=True, source=CLAUSE_9,
+        formula="2 * young_modulus_sun * young_modulus_planet / ((young_modulus_sun + young_modulus_planet) * 206)",
+    )  # fmt: skip
+    low_load_factor: Float = found("", symbol="c_w", note="softer contact below 100 N/mm", numeric=True,
+                                   source=CLAUSE_9, formula="min((line_load / 100)**0.25, 1)")  # fmt: skip
+    tooth_stiffness: Float = found(
+        "N/(mm*um)", symbol="c'", note="stiffness of a pair of teeth", source=CLAUSE_9,
+        formula="0.8 * rack_factor * cos(helix_angle) * modulus_factor * low_load_factor * theoretical_stiffness",
+    )  # fmt: skip
+    mesh_stiffness: Float = found(
+        "N/(mm*um)", symbol="c_gamma alpha", note="mean mesh stiffness", source="ISO 6336-1:2006, 9.3.2",
+        formula="either(stated_mesh_stiffness, tooth_stiffness * (0.75 * contact_ratio + 0.25))",
+    )  # fmt: skip
+    mesh_stiffness_face: Float = found("N/(mm*um)", symbol="c_gamma beta", note="mesh stiffness for the face factor",
+                                       source="ISO 6336-1:2006, 9.3.2", formula="0.85 * mesh_stiffness")  # fmt: skip
 
 
 def stiffness_of(
@@ -183,63 +193,78 @@ COARSE = 6  # accuracy grade from which tip relief does not count
 class Dynamics:
     """Inertia, resonance and dynamic factor of the mesh."""
 
-    inertia_sun: Float = found("kg*mm", "J_1", "moment of inertia of the sun per face width",
-                               "pi / 32 * density * (1 - bore_ratio_sun**4)"
-                               " * ((tip_diameter_sun + root_diameter_sun) / 2)**4", CLAUSE_6)  # fmt: skip
-    inertia_planet: Float = found("kg*mm", "J_2", "moment of inertia of a planet per face width",
-                                  "pi / 32 * density * (1 - bore_ratio_planet**4)"
-                                  " * ((tip_diameter_planet + root_diameter_planet) / 2)**4", CLAUSE_6)  # fmt: skip
-    reduced_mass: Float = found("kg/mm", "m_red", "reduced mass of sun and planets per face width",
-                                "4 * inertia_sun * inertia_planet / (planets * inertia_planet * base_diameter_sun**2"
-                                " + inertia_sun * base_diameter_planet**2)",
-                                "ISO 6336-1:2006, 6.5.8 and 6.5.9")  # fmt: skip
-    resonance_speed: Float = found("rpm", "n_E", "resonance speed of the mesh",
-                                   "sqrt(mesh_stiffness / reduced_mass) / (2 * pi * teeth_sun)",
-                                   "ISO 6336-1:2006, 6.5.3")  # fmt: skip
-    resonance_ratio: Float = found("", "N", "mesh speed over resonance speed", "mesh_speed / resonance_speed",
-                                   "ISO 6336-1:2006, 6.5.3")  # fmt: skip
-    resonance_limit: Float = found("", "N_S", "end of the range below resonance",
-                                   "cases(0.85, line_load >= 100, 0.5 + 0.35 * sqrt(line_load / 100))",
-                                   "ISO 6336-1:2006, 6.5.3", numeric=True)  # fmt: skip
-    pitch_influence: Float = found("", "B_p", "influence of the pitch deviation",
-                                   "tooth_stiffness * pitch_left / line_load", "ISO 6336-1:2006, 6.5.4")  # fmt: skip
-    profile_influence: Float = found("", "B_f", "influence of the profile deviation",
-                                     "tooth_stiffness * profile_left / line_load",
-                                     "ISO 6336-1:2006, 6.5.4")  # fmt: skip
-    relief_influence: Float = found("", "B_k", "influence of the tip relief",
-                                    "cases(1, accuracy_grade >= 6, abs(1 - tooth_stiffness * tip_relief / line_load))",
-                                    "ISO 6336-1:2006, 6.5.4")  # fmt: skip
-    profile_coefficient: Float = found("", "C_v2", "for the profile deviation",
-                                       "cases(0.34, total_contact_ratio <= 2, 0.57 / (total_contact_ratio - 0.3))",
-                                       COEFFICIENT)  # fmt: skip
-    stiffness_coefficient: Float = found("", "C_v3", "for the changing stiffness, below resonance",
-                                         "cases(0.23, total_contact_ratio <= 2, 0.096 / (total_contact_ratio - 1.56))",
-                                         COEFFICIENT)  # fmt: skip
-    resonance_coefficient: Float = found("", "C_v4", "for the changing stiffness, at resonance",
-                                         "cases(0.90, total_contact_ratio <= 2, (0.57 - 0.05 * total_contact_ratio)"
-                                         " / (total_contact_ratio - 1.44))", COEFFICIENT)  # fmt: skip
-    fast_coefficient: Float = found("", "C_v6", "for the profile deviation, above resonance",
-                                    "cases(0.47, total_contact_ratio <= 2, 0.12 / (total_contact_ratio - 1.74))",
-                                    COEFFICIENT)  # fmt: skip
-    fast_constant: Float = found("", "C_v7", "for the changing stiffness, above resonance",
-                                 "cases(0.75, total_contact_ratio <= 1.5, 0.125 * sin(pi * (total_contact_ratio - 2))"
-                                 " + 0.875, total_contact_ratio <= 2.5, 1)", COEFFICIENT)  # fmt: skip
-    dynamic_slow: Float = found("", "K", "growth of the dynamic factor below resonance",
-                                "0.32 * pitch_influence + profile_coefficient * profile_influence"
-                                " + stiffness_coefficient * relief_influence", "ISO 6336-1:2006, 6.5.4")  # fmt: skip
-    dynamic_resonant: Float = found("", "K_V,115", "dynamic factor at resonance",
-                                    "1 + 0.32 * pitch_influence + profile_coefficient * profile_influence"
-                                    " + resonance_coefficient * relief_influence",
-                                    "ISO 6336-1:2006, 6.5.5")  # fmt: skip
-    dynamic_fast: Float = found("", "K_V,150", "dynamic factor above resonance",
-                                "0.47 * pitch_influence + fast_coefficient * profile_influence + fast_constant",
-                                "ISO 6336-1:2006, 6.5.6")  # fmt: skip
-    dynamic_factor: Float = found("", "K_V", "dynamic factor; as stated where it is",
-                                  "either(stated_dynamic_factor, cases(1 + resonance_ratio * dynamic_slow,"
-                                  " resonance_ratio <= resonance_limit, dynamic_resonant, resonance_ratio <= 1.15,"
-                                  " dynamic_fast + (dynamic_resonant - dynamic_fast) * (1.5 - resonance_ratio) / 0.35,"
-                                  " resonance_ratio < 1.5, dynamic_fast)) + extra_dynamic_factor",
-                                  "ISO 6336-1:2006, 6.5.4 to 6.5.7")  # fmt: skip
+    inertia_sun: Float = found("kg*mm", symbol="J_1", note="moment of inertia of the sun per face width",
+                               source=CLAUSE_6, formula="pi / 32 * density * (1 - bore_ratio_sun**4)"
+                               " * ((tip_diameter_sun + root_diameter_sun) / 2)**4")  # fmt: skip
+    inertia_planet: Float = found("kg*mm", symbol="J_2", note="moment of inertia of a planet per face width",
+                                  source=CLAUSE_6, formula="pi / 32 * density * (1 - bore_ratio_planet**4)"
+                                  " * ((tip_diameter_planet + root_diameter_planet) / 2)**4")  # fmt: skip
+    reduced_mass: Float = found(
+        "kg/mm", symbol="m_red", note="reduced mass of sun and planets per face width",
+        source="ISO 6336-1:2006, 6.5.8 and 6.5.9",
+        formula="4 * inertia_sun * inertia_planet / (planets * inertia_planet * base_diameter_sun**2"
+        " + inertia_sun * base_diameter_planet**2)",
+    )  # fmt: skip
+    resonance_speed: Float = found("rpm", symbol="n_E", note="resonance speed of the mesh",
+                                   source="ISO 6336-1:2006, 6.5.3",
+                                   formula="sqrt(mesh_stiffness / reduced_mass) / (2 * pi * teeth_sun)")  # fmt: skip
+    resonance_ratio: Float = found("", symbol="N", note="mesh speed over resonance speed",
+                                   source="ISO 6336-1:2006, 6.5.3", formula="mesh_speed / resonance_speed")  # fmt: skip
+    resonance_limit: Float = found(
+        "", symbol="N_S", note="end of the range below resonance", numeric=True, source="ISO 6336-1:2006, 6.5.3",
+        formula="cases(0.85, line_load >= 100, 0.5 + 0.35 * sqrt(line_load / 100))",
+    )  # fmt: skip
+    pitch_influence: Float = found("", symbol="B_p", note="influence of the pitch deviation",
+                                   source="ISO 6336-1:2006, 6.5.4",
+                                   formula="tooth_stiffness * pitch_left / line_load")  # fmt: skip
+    profile_influence: Float = found("", symbol="B_f", note="influence of the profile deviation",
+                                     source="ISO 6336-1:2006, 6.5.4",
+                                     formula="tooth_stiffness * profile_left / line_load")  # fmt: skip
+    relief_influence: Float = found(
+        "", symbol="B_k", note="influence of the tip relief", source="ISO 6336-1:2006, 6.5.4",
+        formula="cases(1, accuracy_grade >= 6, abs(1 - tooth_stiffness * tip_relief / line_load))",
+    )  # fmt: skip
+    profile_coefficient: Float = found(
+        "", symbol="C_v2", note="for the profile deviation", source=COEFFICIENT,
+        formula="cases(0.34, total_contact_ratio <= 2, 0.57 / (total_contact_ratio - 0.3))",
+    )  # fmt: skip
+    stiffness_coefficient: Float = found(
+        "", symbol="C_v3", note="for the changing stiffness, below resonance", source=COEFFICIENT,
+        formula="cases(0.23, total_contact_ratio <= 2, 0.096 / (total_contact_ratio - 1.56))",
+    )  # fmt: skip
+    resonance_coefficient: Float = found(
+        "", symbol="C_v4", note="for the changing stiffness, at resonance", source=COEFFICIENT,
+        formula="cases(0.90, total_contact_ratio <= 2,"
+        " (0.57 - 0.05 * total_contact_ratio) / (total_contact_ratio - 1.44))",
+    )  # fmt: skip
+    fast_coefficient: Float = found(
+        "", symbol="C_v6", note="for the profile deviation, above resonance", source=COEFFICIENT,
+        formula="cases(0.47, total_contact_ratio <= 2, 0.12 / (total_contact_ratio - 1.74))",
+    )  # fmt: skip
+    fast_constant: Float = found(
+        "", symbol="C_v7", note="for the changing stiffness, above resonance", source=COEFFICIENT,
+        formula="cases(0.75, total_contact_ratio <= 1.5, 0.125 * sin(pi * (total_contact_ratio - 2)) + 0.875,"
+        " total_contact_ratio <= 2.5, 1)",
+    )  # fmt: skip
+    dynamic_slow: Float = found("", symbol="K", note="growth of the dynamic factor below resonance",
+                                source="ISO 6336-1:2006, 6.5.4",
+                                formula="0.32 * pitch_influence + profile_coefficient * profile_influence"
+                                        " + stiffness_coefficient * relief_influence")  # fmt: skip
+    dynamic_resonant: Float = found("", symbol="K_V,115", note="dynamic factor at resonance",
+                                    source="ISO 6336-1:2006, 6.5.5",
+                                    formula="1 + 0.32 * pitch_influence + profile_coefficient * profile_influence"
+                                            " + resonance_coefficient * relief_influence")  # fmt: skip
+    dynamic_fast: Float = found(
+        "", symbol="K_V,150", note="dynamic factor above resonance", source="ISO 6336-1:2006, 6.5.6",
+        formula="0.47 * pitch_influence + fast_coefficient * profile_influence + fast_constant",
+    )  # fmt: skip
+    dynamic_factor: Float = found(
+        "", symbol="K_V", note="dynamic factor; as stated where it is", source="ISO 6336-1:2006, 6.5.4 to 6.5.7",
+        formula="either(stated_dynamic_factor, cases(1 + resonance_ratio * dynamic_slow,"
+        " resonance_ratio <= resonance_limit, dynamic_resonant, resonance_ratio <= 1.15,"
+        " dynamic_fast + (dynamic_resonant - dynamic_fast) * (1.5 - resonance_ratio) / 0.35, resonance_ratio < 1.5,"
+        " dynamic_fast)) + extra_dynamic_factor",
+    )  # fmt: skip
 
 
 def dynamics_of(
@@ -320,52 +345,59 @@ WEIGHTS = {
 class FaceLoad:
     """Misalignment of the flanks and the face load factors."""
 
-    mean_line_load: Float = found("N/mm", "w_m", "mean line load with K_A, K_V and K_Hp",
-                                  "max(line_load * dynamic_factor * planet_factor, 0.001)", CLAUSE_7,
-                                  numeric=True)  # fmt: skip
-    bending_weight: Float = found("", "B_1", "weight of the deflection", source=CLAUSE_7, method=FORM)
-    making_weight: Float = found("", "B_2", "weight of the deviation as made", source=CLAUSE_7, method=FORM)
-    deflection: Float = found("um", "f_sh", "misalignment by bending and twist of the sun",
-                              "0.023 * (face_width / reference_diameter_sun)**2 * mean_line_load", CLAUSE_7,
-                              numeric=True)  # fmt: skip
-    making_deviation: Float = found("um", "f_ma", "misalignment as made",
-                                    "hypot(helix_deviation_sun, helix_deviation_planet)", CLAUSE_7)  # fmt: skip
-    least_misalignment: Float = found("um", "F_beta x,min", "least initial misalignment",
-                                      "max(0.005 * mean_line_load, 0.5"
-                                      " * max(helix_deviation_sun, helix_deviation_planet))", "ISO 6336-1:2006, 7.5.2",
-                                      numeric=True)  # fmt: skip
-    initial_misalignment: Float = found("um", "F_beta x", "misalignment before running in",
-                                        "max(1.33 * bending_weight * deflection + making_weight * making_deviation,"
-                                        " least_misalignment)", "ISO 6336-1:2006, 7.5.2")  # fmt: skip
-    face_running_in: Float = found("um", "y_beta", "what both gears run in, their mean", source=CLAUSE_7,
-                                   method="case-hardened and nitrided: 0.15 F_betax, at most 6 um; through-hardened: "
-                                          "320 F_betax/sigma_Hlim, limited above 5 m/s")  # fmt: skip
-    settled_misalignment: Float = found("um", "F_beta y,0", "misalignment after running in",
-                                        "initial_misalignment - face_running_in", CLAUSE_7)  # fmt: skip
-    settled_ratio: Float = found("", "r_0", "the same over twice the mean deflection",
-                                 "settled_misalignment * mesh_stiffness_face / (2 * mean_line_load)",
-                                 CLAUSE_7)  # fmt: skip
-    face_factor_alone: Float = found("", "K_H beta,0", "face load factor of these deviations; as stated where it is",
-                                     "either(stated_face_factor, cases(1 + settled_ratio, settled_ratio <= 1, 2"
-                                     " * sqrt(settled_ratio)))", CLAUSE_7)  # fmt: skip
-    misalignment: Float = found(
-        "um", "F_beta y", "misalignment by this factor and what comes on top, which may act against it",
-        "abs(cases(face_factor_alone - 1, face_factor_alone <= 2, (face_factor_alone / 2)**2) * 2 * mean_line_load"
-        " / mesh_stiffness_face + extra_misalignment)", CLAUSE_7,
+    mean_line_load: Float = found("N/mm", symbol="w_m", note="mean line load with K_A, K_V and K_Hp",
+                                  numeric=True, formula="max(line_load * dynamic_factor * planet_factor, 0.001)",
+                                  source=CLAUSE_7)  # fmt: skip
+    bending_weight: Float = found("", symbol="B_1", note="weight of the deflection", method=FORM, source=CLAUSE_7)
+    making_weight: Float = found("", symbol="B_2", note="weight of the deviation as made", method=FORM, source=CLAUSE_7)
+    deflection: Float = found("um", symbol="f_sh", note="misalignment by bending and twist of the sun", numeric=True,
+                              formula="0.023 * (face_width / reference_diameter_sun)**2 * mean_line_load",
+                              source=CLAUSE_7)  # fmt: skip
+    making_deviation: Float = found("um", symbol="f_ma", note="misalignment as made", source=CLAUSE_7,
+                                    formula="hypot(helix_deviation_sun, helix_deviation_planet)")  # fmt: skip
+    least_misalignment: Float = found(
+        "um", symbol="F_beta x,min", note="least initial misalignment", numeric=True, source="ISO 6336-1:2006, 7.5.2",
+        formula="max(0.005 * mean_line_load, 0.5 * max(helix_deviation_sun, helix_deviation_planet))",
     )  # fmt: skip
-    misalignment_ratio: Float = found("", "r", "the same over twice the mean deflection",
-                                      "misalignment * mesh_stiffness_face / (2 * mean_line_load)",
-                                      CLAUSE_7)  # fmt: skip
-    face_factor: Float = found("", "K_H beta", "face load factor for contact",
-                               "cases(1 + misalignment_ratio, misalignment_ratio <= 1, 2 * sqrt(misalignment_ratio))",
-                               CLAUSE_7)  # fmt: skip
-    face_exponent: Float = found("", "N_F", "exponent of the face load factor for bending",
-                                 "1 / (1 + min(tooth_height / face_width, 1 / 3)"
-                                 " + min(tooth_height / face_width, 1 / 3)**2)",
-                                 "ISO 6336-1:2006, clause 7")  # fmt: skip
-    face_factor_bending: Float = found("", "K_F beta", "face load factor for bending; as stated where it is",
-                                       "either(stated_face_factor_bending, face_factor**face_exponent)",
-                                       "ISO 6336-1:2006, clause 7")  # fmt: skip
+    initial_misalignment: Float = found(
+        "um", symbol="F_beta x", note="misalignment before running in", source="ISO 6336-1:2006, 7.5.2",
+        formula="max(1.33 * bending_weight * deflection + making_weight * making_deviation, least_misalignment)",
+    )  # fmt: skip
+    face_running_in: Float = found(
+        "um", symbol="y_beta", note="what both gears run in, their mean", source=CLAUSE_7,
+        method="case-hardened and nitrided: 0.15 F_betax, at most 6 um; through-hardened: 320 F_betax/sigma_Hlim, "
+        "limited above 5 m/s",
+    )  # fmt: skip
+    settled_misalignment: Float = found("um", symbol="F_beta y,0", note="misalignment after running in",
+                                        source=CLAUSE_7, formula="initial_misalignment - face_running_in")  # fmt: skip
+    settled_ratio: Float = found("", symbol="r_0", note="the same over twice the mean deflection",
+                                 formula="settled_misalignment * mesh_stiffness_face / (2 * mean_line_load)",
+                                 source=CLAUSE_7)  # fmt: skip
+    face_factor_alone: Float = found(
+        "", symbol="K_H beta,0", note="face load factor of these deviations; as stated where it is", source=CLAUSE_7,
+        formula="either(stated_face_factor,"
+        " cases(1 + settled_ratio, settled_ratio <= 1, 2 * sqrt(settled_ratio)))",
+    )  # fmt: skip
+    misalignment: Float = found(
+        "um", symbol="F_beta y", note="misalignment by this factor and what comes on top, which may act against it",
+        formula="abs(cases(face_factor_alone - 1, face_factor_alone <= 2, (face_factor_alone / 2)**2)"
+        " * 2 * mean_line_load / mesh_stiffness_face + extra_misalignment)",
+        source=CLAUSE_7,
+    )  # fmt: skip
+    misalignment_ratio: Float = found("", symbol="r", note="the same over twice the mean deflection",
+                                      formula="misalignment * mesh_stiffness_face / (2 * mean_line_load)",
+                                      source=CLAUSE_7)  # fmt: skip
+    face_factor: Float = found("", symbol="K_H beta", note="face load factor for contact", source=CLAUSE_7,
+                               formula="cases(1 + misalignment_ratio, misalignment_ratio <= 1,"
+                               " 2 * sqrt(misalignment_ratio))")  # fmt: skip
+    face_exponent: Float = found(
+        "", symbol="N_F", note="exponent of the face load factor for bending", source="ISO 6336-1:2006, clause 7",
+        formula="1 / (1 + min(tooth_height / face_width, 1 / 3) + min(tooth_height / face_width, 1 / 3)**2)",
+    )  # fmt: skip
+    face_factor_bending: Float = found(
+        "", symbol="K_F beta", note="face load factor for bending; as stated where it is",
+        source="ISO 6336-1:2006, clause 7", formula="either(stated_face_factor_bending, face_factor**face_exponent)",
+    )  # fmt: skip
 
 
 def face_load_of(
@@ -412,35 +444,39 @@ class PlanetSharing:
     """How unevenly the planets share."""
 
     planet_factor: Float = found(
-        "", "K_Hp", "uneven sharing among the planets, with the error of sharing; none carries more",
-        "min(max(planet_load_factor + sharing_error * mesh_stiffness * application_factor / line_load, 0),"
-        " max(planets, planet_load_factor))", "equation 13 of the paper",
+        "", symbol="K_Hp", note="uneven sharing among the planets, with the error of sharing; none carries more",
+        formula="min(max(planet_load_factor + sharing_error * mesh_stiffness * application_factor / line_load, 0),"
+        " max(planets, planet_load_factor))",
+        source="equation 13 of the paper",
     )  # fmt: skip
-    planet_factor_bending: Float = found("", "K_Fp",
-                                         "uneven sharing among the planets, for bending; as stated where it is",
-                                         "either(stated_planet_load_bending, max(1 + 1.5 * (planet_factor - 1), 0))",
-                                         "Rao Zhenggang, Design of planetary transmissions")  # fmt: skip
+    planet_factor_bending: Float = found(
+        "", symbol="K_Fp", note="uneven sharing among the planets, for bending; as stated where it is",
+        formula="either(stated_planet_load_bending, max(1 + 1.5 * (planet_factor - 1), 0))",
+        source="Rao Zhenggang, Design of planetary transmissions",
+    )  # fmt: skip
 
 
 @results
 class Sharing:
     """How unevenly the teeth share."""
 
-    transverse_line_load: Float = found("N/mm", "w_tH", "line load that parts the teeth",
-                                        "mean_line_load * face_factor", CLAUSE_8)  # fmt: skip
-    transverse_base: Float = found("", "K_alpha", "transverse load factor before its bounds",
-                                   "cases(total_contact_ratio / 2 * (0.9 + 0.4 * mesh_stiffness * pitch_left"
-                                   " / transverse_line_load), total_contact_ratio <= 2, 0.9 + 0.4"
-                                   " * sqrt(2 * (total_contact_ratio - 1) / total_contact_ratio) * mesh_stiffness"
-                                   " * pitch_left / transverse_line_load)", CLAUSE_8)  # fmt: skip
-    transverse_factor: Float = found("", "K_H alpha",
-                                     "transverse load factor for contact, within its bounds; as stated where it is",
-                                     "either(stated_transverse_factor, max(min(transverse_base, total_contact_ratio"
-                                     " / (contact_ratio * contact_ratio_factor**2)), 1))", CLAUSE_8)  # fmt: skip
+    transverse_line_load: Float = found("N/mm", symbol="w_tH", note="line load that parts the teeth", source=CLAUSE_8,
+                                        formula="mean_line_load * face_factor")  # fmt: skip
+    transverse_base: Float = found(
+        "", symbol="K_alpha", note="transverse load factor before its bounds", source=CLAUSE_8,
+        formula="cases(total_contact_ratio / 2 * (0.9 + 0.4 * mesh_stiffness * pitch_left / transverse_line_load),"
+        " total_contact_ratio <= 2, 0.9 + 0.4 * sqrt(2 * (total_contact_ratio - 1) / total_contact_ratio)"
+        " * mesh_stiffness * pitch_left / transverse_line_load)",
+    )  # fmt: skip
+    transverse_factor: Float = found(
+        "", symbol="K_H alpha", note="transverse load factor for contact, within its bounds; as stated where it is",
+        source=CLAUSE_8, formula="either(stated_transverse_factor, max(min(transverse_base,"
+        " total_contact_ratio / (contact_ratio * contact_ratio_factor**2)), 1))",
+    )  # fmt: skip
     transverse_factor_bending: Float = found(
-        "", "K_F alpha", "transverse load factor for bending, within its bounds; as stated where it is",
-        "either(stated_transverse_factor_bending,"
-        " max(min(transverse_base, total_contact_ratio / (0.25 * contact_ratio + 0.75)), 1))", CLAUSE_8,
+        "", symbol="K_F alpha", note="transverse load factor for bending, within its bounds; as stated where it is",
+        source=CLAUSE_8, formula="either(stated_transverse_factor_bending, max(min(transverse_base,"
+        " total_contact_ratio / (0.25 * contact_ratio + 0.75)), 1))",
     )  # fmt: skip
 
 

@@ -37,7 +37,7 @@ class Steel:
     contact_life_tail: Float = constant("q_H,l", "exponent of long life for contact", PART_2)
     bending_life_most: Float = constant("Y_NT,st", "life factor for bending of few cycles", LIFE)
     bending_life_slope: Float = constant("q_F", "exponent of limited life for bending", LIFE)
-    slip_layer: Float = found("mm", "rho'", "thickness of the slip layer", source=NOTCH,
+    slip_layer: Float = found("mm", symbol="rho'", note="thickness of the slip layer", source=NOTCH,
                               method="by the material; of through-hardened steel by its proof stress")  # fmt: skip
     surface_smooth: Float = constant("Y_R,0", "surface factor of a root smoother than 1 um", SURFACE)
     surface_constant: Float = constant("Y_R,1", "constant of the surface factor", SURFACE)
@@ -93,15 +93,17 @@ class GearLife:
     """Life factors of one gear."""
 
     contact_life_factor: Float = found(
-        "", "Z_NT", "life factor for contact, no pitting; as stated where it is",
-        "either(stated_contact_life, cases(min((contact_life_knee / load_cycles)**contact_life_slope,"
-        " contact_life_most), load_cycles <= contact_life_knee,"
-        " max((contact_life_knee / load_cycles)**contact_life_tail, 0.85)))", "ISO 6336-2:2006, clause 11",
+        "", symbol="Z_NT", note="life factor for contact, no pitting; as stated where it is",
+        source="ISO 6336-2:2006, clause 11",
+        formula="either(stated_contact_life, cases("
+        "min((contact_life_knee / load_cycles)**contact_life_slope, contact_life_most),"
+        " load_cycles <= contact_life_knee,"
+        " max((contact_life_knee / load_cycles)**contact_life_tail, 0.85)))",
     )  # fmt: skip
     bending_life_factor: Float = found(
-        "", "Y_NT", "life factor for bending; as stated where it is",
-        "either(stated_bending_life, cases(min((3e6 / load_cycles)**bending_life_slope, bending_life_most), load_cycles"
-        " <= 3e6, max((3e6 / load_cycles)**0.02, 0.85)))", "ISO 6336-3:2006, clause 12",
+        "", symbol="Y_NT", note="life factor for bending; as stated where it is", source="ISO 6336-3:2006, clause 12",
+        formula="either(stated_bending_life, cases(min((3e6 / load_cycles)**bending_life_slope, bending_life_most),"
+        " load_cycles <= 3e6, max((3e6 / load_cycles)**0.02, 0.85)))",
     )  # fmt: skip
 
 
@@ -109,9 +111,10 @@ class GearLife:
 class Cycles:
     """Load cycles of both gears."""
 
-    load_cycles_sun: Float = found("", "N_L1", "load cycles of a sun tooth", "mesh_speed * planets * working_life")
-    load_cycles_planet: Float = found("", "N_L2", "load cycles of a planet tooth flank",
-                                      "mesh_speed / tooth_ratio * working_life")  # fmt: skip
+    load_cycles_sun: Float = found("", symbol="N_L1", note="load cycles of a sun tooth",
+                                   formula="mesh_speed * planets * working_life")  # fmt: skip
+    load_cycles_planet: Float = found("", symbol="N_L2", note="load cycles of a planet tooth flank",
+                                      formula="mesh_speed / tooth_ratio * working_life")  # fmt: skip
 
 
 def cycles_of(stage: Gearing, load: ToothLoad) -> Cycles:

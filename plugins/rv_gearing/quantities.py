@@ -32,12 +32,13 @@ def stated(symbol: str, note: str) -> Any:
 class Gear:
     """What belongs to one gear alone: sun or planet."""
 
-    shift: Float = given(0.0, "", "x", "profile shift, in modules", LOST, at_least=-1.5, at_most=2)
-    bore_ratio: Float = given(0.0, "", "q", "bore over mean diameter, for its inertia", LOST, at_least=0, below=1)
+    shift: Float = given(0.0, "", symbol="x", note="profile shift, in modules", source=LOST, at_least=-1.5, at_most=2)
+    bore_ratio: Float = given(0.0, "", symbol="q", note="bore over mean diameter, for its inertia", source=LOST,
+                              at_least=0, below=1)  # fmt: skip
     contact_limit: Float = positive(1500.0, "MPa", "sigma_Hlim", "endurance limit for contact stress, ISO 6336-5")
     bending_limit: Float = positive(460.0, "MPa", "sigma_Flim", "nominal endurance limit for bending, ISO 6336-5")
     young_modulus: Float = positive(206.0, "GPa", "E", "modulus of steel")
-    poisson_ratio: Float = given(0.3, "", "nu", "Poisson ratio", LOST, at_least=0, below=0.5)
+    poisson_ratio: Float = given(0.3, "", symbol="nu", note="Poisson ratio", source=LOST, at_least=0, below=0.5)
     flank_roughness: Float = positive(4.0, "um", "R_z", "mean peak-to-valley roughness of the flank")
     root_roughness: Float = positive(4.0, "um", "R_z,F", "mean peak-to-valley roughness of the root")
     stated_form_factor: Float = stated("Y_Fa", "form factor, load at the tip")
@@ -57,18 +58,19 @@ class Gearing:
     # Duty, and the search for teeth
     power: Float = positive(2.26, "kW", "P", "input power", PAPER)
     output_speed: Float = positive(15.0, "r/min", "n", "speed of the output", PAPER)
-    target_ratio: Float = given(111.0, "", "i_p", "wanted ratio", PAPER, above=1)
-    ratio_tolerance: Float = given(0.01, "", "Delta i_p", "permitted relative deviation; the paper names 0.01 to 0.04",
-                                   PAPER, above=0, at_most=0.2)  # fmt: skip
-    module: Float = given(1.25, "mm", "m_n", "normal module", PAPER, above=0, below=100)
+    target_ratio: Float = given(111.0, "", symbol="i_p", note="wanted ratio", source=PAPER, above=1)
+    ratio_tolerance: Float = given(0.01, "", symbol="Delta i_p",
+                                   note="permitted relative deviation; the paper names 0.01 to 0.04", source=PAPER,
+                                   above=0, at_most=0.2)  # fmt: skip
+    module: Float = given(1.25, "mm", symbol="m_n", note="normal module", source=PAPER, above=0, below=100)
     fewest_pins: int = given(40, symbol="Z_5,min", note="fewest pins that are tried, even",
                              source="reading of the lost flow chart", at_least=4, at_most=1000)  # fmt: skip
     most_pins: int = given(40, symbol="Z_5,max", note="most pins that are tried, even",
                            source="reading of the lost flow chart", at_least=4, at_most=1000)  # fmt: skip
     fewest_sun_teeth: int = given(17, symbol="Z_1,min", note="fewest teeth of the sun: no undercut without shift",
                                   source=PAPER, at_least=6, at_most=1000)  # fmt: skip
-    least_tooth_ratio: Float = given(1.5, "", "u_min", "least teeth of the planet over those of the sun", PAPER,
-                                     at_least=1)  # fmt: skip
+    least_tooth_ratio: Float = given(1.5, "", symbol="u_min", note="least teeth of the planet over those of the sun",
+                                     source=PAPER, at_least=1)  # fmt: skip
     involute_efficiency: Float = share(0.992, "eta_H1", "mesh efficiency of sun and planet")
     cycloid_efficiency: Float = share(0.998, "eta_H6", "mesh efficiency of disc and pins")
     bearing_efficiency: Float = share(0.99, "eta_B", "of each of the three bearings: crank, its support, carrier")
@@ -80,48 +82,52 @@ class Gearing:
         "whole", note="centre distances of all pin circles that the torque permits, or of pin_circle_low alone"
     )
     group: int = given(1, symbol="no", note="group of the search that is rated, where no teeth are stated", at_least=1)
-    sun_teeth: Float = given(None, "", "Z_1", "teeth of the sun; without them those of the group", at_least=6,
-                             at_most=1000, whole=True)  # fmt: skip
-    planet_teeth: Float = given(None, "", "Z_2", "teeth of the planet; without them those of the group", at_least=6,
-                                at_most=3000, whole=True)  # fmt: skip
-    pin_teeth: Float = given(None, "", "Z_5", "pins; without them those of the group, or fewest_pins", at_least=4,
-                             at_most=1000, whole=True)  # fmt: skip
+    sun_teeth: Float = given(None, "", symbol="Z_1", note="teeth of the sun; without them those of the group",
+                             at_least=6, at_most=1000, whole=True)  # fmt: skip
+    planet_teeth: Float = given(None, "", symbol="Z_2", note="teeth of the planet; without them those of the group",
+                                at_least=6, at_most=3000, whole=True)  # fmt: skip
+    pin_teeth: Float = given(None, "", symbol="Z_5", note="pins; without them those of the group, or fewest_pins",
+                             at_least=4, at_most=1000, whole=True)  # fmt: skip
     # The load of the first stage
-    load_torque: Float = given(
-        None, "N*m", "T_2", "torque at the output, with the sign of its direction; without it that of the power"
-    )
-    input_speed: Float = given(None, "rpm", "n_in", "speed of the sun; without it that of the output speed", above=0)
-    stated_sun_torque: Float = given(None, "N*m", "T_1,st", "torque of the sun, in place of all the above", at_least=0)
-    stated_mesh_speed: Float = given(
-        None, "rpm", "n_rel,st", "speed of the sun relative to the carrier, in place of all the above", above=0
-    )
+    load_torque: Float = given(None, "N*m", symbol="T_2",
+                               note="torque at the output, with the sign of its direction; without it that of the "
+                                    "power")  # fmt: skip
+    input_speed: Float = given(None, "rpm", symbol="n_in", note="speed of the sun; without it that of the output speed",
+                               above=0)  # fmt: skip
+    stated_sun_torque: Float = given(None, "N*m", symbol="T_1,st", note="torque of the sun, in place of all the above",
+                                     at_least=0)  # fmt: skip
+    stated_mesh_speed: Float = given(None, "rpm", symbol="n_rel,st",
+                                     note="speed of the sun relative to the carrier, in place of all the above",
+                                     above=0)  # fmt: skip
     planets: int = given(2, symbol="n_p", note="planets that share the torque", source=LOST, at_least=1, at_most=12)
     application_factor: Float = positive(1.25, "", "K_A", "1 uniform, 1.25 light, 1.5 moderate, 1.75 heavy shocks")
-    planet_load_factor: Float = given(1.10, "", "K_Hp,0",
-                                      "uneven sharing among the planets: 1.05 to 1.2 with a floating sun, 1.3 to 1.6 "
-                                      "without", LOST, at_least=1)  # fmt: skip
+    planet_load_factor: Float = given(
+        1.10, "", symbol="K_Hp,0", note="uneven sharing among the planets: 1.05 to 1.2 with a floating sun, 1.3 to 1.6 "
+        "without", source=LOST, at_least=1,
+    )  # fmt: skip
     working_life: Float = positive(6000.0, "h", "L_h", "working time that is asked for")
     # Geometry and quality of the pair
-    pressure_angle: Float = given(20.0, "deg", "alpha_n", "of the rack", LOST, above=10, below=30)
-    helix_angle: Float = given(0.0, "deg", "beta", "0: spur", LOST, at_least=0, below=45)
-    face_width: Float = given(12.0, "mm", "b", "common face width", LOST, above=0, below=LARGEST)
+    pressure_angle: Float = given(20.0, "deg", symbol="alpha_n", note="of the rack", source=LOST, above=10, below=30)
+    helix_angle: Float = given(0.0, "deg", symbol="beta", note="0: spur", source=LOST, at_least=0, below=45)
+    face_width: Float = given(12.0, "mm", symbol="b", note="common face width", source=LOST, above=0, below=LARGEST)
     addendum: Float = positive(1.0, "", "h_a*", "addendum of the rack, in modules")
     dedendum: Float = positive(1.25, "", "h_f*", "dedendum of the rack, in modules")
-    fillet: Float = given(0.38, "", "rho_f*", "fillet radius of the rack", LOST, at_least=0, at_most=1)
+    fillet: Float = given(0.38, "", symbol="rho_f*", note="fillet radius of the rack", source=LOST, at_least=0,
+                          at_most=1)  # fmt: skip
     accuracy_grade: int = given(6, symbol="Q", note="grade of ISO 1328-1:1995", source=LOST, at_least=1, at_most=12)
     flank_form: Literal["none", "crowned", "helix_corrected", "crowned_and_corrected", "end_relief"] = given(
         "crowned", note="how the flank is modified along its width"
     )
-    tip_relief: Float = given(0.0, "um", "C_a", "tip relief; acts in the dynamic factor up to grade 5", LOST,
-                              at_least=0, below=1000)  # fmt: skip
+    tip_relief: Float = given(0.0, "um", symbol="C_a", note="tip relief; acts in the dynamic factor up to grade 5",
+                              source=LOST, at_least=0, below=1000)  # fmt: skip
     material: Literal["case_hardened", "through_hardened", "nitrided"] = given(
         "case_hardened", note="of both gears: life, running-in, notch and surface factors follow it"
     )
     proof_stress: Float = positive(800.0, "MPa", "sigma_0.2", "of through-hardened steel, for its notch sensitivity")
     density: Float = positive(7830.0, "kg/m**3", "rho", "of both gears, for their inertia", "ISO 6336-1:2006, 6.5.9")
     viscosity: Float = positive(100.0, "mm**2/s", "nu_40", "kinematic viscosity of the lubricant at 40 degC")
-    oil_temperature: Float = given(40.0, "degC", "theta_oil", "of the lubricant at work", LOST, at_least=-60,
-                                   at_most=250)  # fmt: skip
+    oil_temperature: Float = given(40.0, "degC", symbol="theta_oil", note="of the lubricant at work", source=LOST,
+                                   at_least=-60, at_most=250)  # fmt: skip
     # What is asked
     least_contact_safety: Float = positive(1.1, "", "S_Hmin", "least safety against pitting")
     least_bending_safety: Float = positive(1.25, "", "S_Fmin", "least safety against breakage")
@@ -134,16 +140,15 @@ class Gearing:
     )
     # Factors that are calculated unless they are stated
     stated_dynamic_factor: Float = stated("K_V", "dynamic factor")
-    stated_face_factor: Float = given(
-        None, "", "K_H beta,st", "face load factor for contact; calculated where it is not stated", at_least=1
-    )
+    stated_face_factor: Float = given(None, "", symbol="K_H beta,st", note="face load factor for contact; calculated "
+                                      "where it is not stated", at_least=1)  # fmt: skip
     stated_face_factor_bending: Float = stated("K_F beta", "face load factor for bending")
     stated_transverse_factor: Float = stated("K_H alpha", "transverse load factor for contact")
     stated_transverse_factor_bending: Float = stated("K_F alpha", "transverse load factor for bending")
     stated_planet_load_bending: Float = stated("K_Fp", "uneven sharing among the planets, for bending")
     stated_zone_factor: Float = stated("Z_H", "zone factor")
     stated_elasticity_factor: Float = given(
-        None, "MPa**0.5", "Z_E,st", "elasticity factor; calculated where it is not stated", above=0
+        None, "MPa**0.5", symbol="Z_E,st", note="elasticity factor; calculated where it is not stated", above=0
     )
     stated_contact_ratio_factor: Float = stated("Z_epsilon", "contact ratio factor for contact")
     stated_helix_factor: Float = stated("Z_beta", "helix factor for contact")
@@ -154,20 +159,21 @@ class Gearing:
     contact_size_factor: Float = positive(1.0, "", "Z_X", "1 up to module 10 mm", "ISO 6336-2, clause 14")
     stated_contact_ratio_bending: Float = stated("Y_epsilon", "contact ratio factor for bending, load at the tip")
     stated_helix_factor_bending: Float = stated("Y_beta", "helix factor for bending")
-    stated_mesh_stiffness: Float = given(None, "N/(mm*um)", "c_gamma,st",
-                                         "mean mesh stiffness; calculated where it is not stated", above=0)  # fmt: skip
-    # Neutral inputs: effects reach the calculation through them
-    extra_misalignment: Float = given(0.0, "um", "F_beta,0",
-                                      "neutral 0: misalignment over the face width, beside that of the tolerances",
-                                      at_least=-1000, at_most=1000)  # fmt: skip
-    extra_dynamic_factor: Float = given(0.0, "", "Delta K_V", "neutral 0: added to the dynamic factor", at_least=-0.9)
-    sharing_error: Float = given(0.0, "um", "e_p", "neutral 0: planet ahead of the others, along the line of action",
-                                 at_least=-1000, at_most=1000)  # fmt: skip
-    centre_distance_deviation: Float = given(
-        0.0, "um", "Delta a", "neutral 0: gears farther apart than without backlash", at_least=-1000, at_most=1000
+    stated_mesh_stiffness: Float = given(
+        None, "N/(mm*um)", symbol="c_gamma,st", note="mean mesh stiffness; calculated where it is not stated", above=0
     )
-    carrying_share: Float = given(1.0, "", "f_b", "neutral 1: share of the face width that carries", above=0, at_most=1)
-    relief_deviation: Float = given(0.0, "um", "Delta C_a", "neutral 0: tip relief missing on the tooth; loads its tip",
-                                    at_least=-1000, at_most=1000)  # fmt: skip
+    # Neutral inputs: effects reach the calculation through them
+    extra_misalignment: Float = given(0.0, "um", symbol="F_beta,0", note="neutral 0: misalignment over the face width, "
+                                      "beside that of the tolerances", at_least=-1000, at_most=1000)  # fmt: skip
+    extra_dynamic_factor: Float = given(0.0, "", symbol="Delta K_V", note="neutral 0: added to the dynamic factor",
+                                        at_least=-0.9)  # fmt: skip
+    sharing_error: Float = given(0.0, "um", symbol="e_p", note="neutral 0: planet ahead of the others, along the line "
+                                 "of action", at_least=-1000, at_most=1000)  # fmt: skip
+    centre_distance_deviation: Float = given(0.0, "um", symbol="Delta a", note="neutral 0: gears farther apart than "
+                                             "without backlash", at_least=-1000, at_most=1000)  # fmt: skip
+    carrying_share: Float = given(1.0, "", symbol="f_b", note="neutral 1: share of the face width that carries",
+                                  above=0, at_most=1)  # fmt: skip
+    relief_deviation: Float = given(0.0, "um", symbol="Delta C_a", note="neutral 0: tip relief missing on the tooth; "
+                                    "loads its tip", at_least=-1000, at_most=1000)  # fmt: skip
     sun: Gear = part(Gear, index="1")
     planet: Gear = part(Gear, index="2")

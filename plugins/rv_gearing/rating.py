@@ -34,44 +34,53 @@ MOST_SAFETY = 1000.0  # a stage without load is that safe
 class GearStress:
     """Sizes, quality and factors of one gear, its stresses, what they may be, and how safe it is."""
 
-    nominal_root_stress: Float = found("MPa", "sigma_F0", "nominal root stress, load at the tip",
-                                       "tangential_force / (carrying_width * module) * form_factor * stress_correction"
-                                       " * contact_ratio_factor_bending * helix_factor_bending", PART_3)  # fmt: skip
-    root_stress: Float = found("MPa", "sigma_F", "root stress, load at the tip",
-                               "nominal_root_stress * application_factor * dynamic_factor * face_factor_bending"
-                               " * transverse_factor_bending * planet_factor_bending * tip_load_factor",
-                               PART_3)  # fmt: skip
+    nominal_root_stress: Float = found(
+        "MPa", symbol="sigma_F0", note="nominal root stress, load at the tip", source=PART_3,
+        formula="tangential_force / (carrying_width * module) * form_factor * stress_correction"
+        " * contact_ratio_factor_bending * helix_factor_bending",
+    )  # fmt: skip
+    root_stress: Float = found(
+        "MPa", symbol="sigma_F", note="root stress, load at the tip", source=PART_3,
+        formula="nominal_root_stress * application_factor * dynamic_factor * face_factor_bending"
+        " * transverse_factor_bending * planet_factor_bending * tip_load_factor",
+    )  # fmt: skip
     nominal_root_stress_outer: Float = found(
-        "MPa", "sigma_F0,B", "nominal root stress, load at the outer single contact",
-        "tangential_force / (carrying_width * module) * form_factor_outer * stress_correction_outer"
-        " * helix_factor_bending * deep_tooth_factor", METHOD_B,
+        "MPa", symbol="sigma_F0,B", note="nominal root stress, load at the outer single contact", source=METHOD_B,
+        formula="tangential_force / (carrying_width * module) * form_factor_outer * stress_correction_outer"
+        " * helix_factor_bending * deep_tooth_factor",
     )  # fmt: skip
-    root_stress_outer: Float = found("MPa", "sigma_F,B", "root stress, load at the outer single contact",
-                                     "nominal_root_stress_outer * application_factor * dynamic_factor"
-                                     " * face_factor_bending * transverse_factor_bending * planet_factor_bending",
-                                     METHOD_B)  # fmt: skip
-    permitted_root_stress: Float = found("MPa", "sigma_FP", "permitted root stress",
-                                         "bending_limit * stress_correction_of_test * bending_life_factor"
-                                         " * notch_sensitivity * root_surface * bending_size / least_bending_safety",
-                                         BEARS_3)  # fmt: skip
-    root_safety: Float = found("", "S_F", "safety against breakage, load at the tip; 1000 at most",
-                               "min(permitted_root_stress * least_bending_safety / root_stress, 1000)",
-                               BEARS_3)  # fmt: skip
+    root_stress_outer: Float = found(
+        "MPa", symbol="sigma_F,B", note="root stress, load at the outer single contact", source=METHOD_B,
+        formula="nominal_root_stress_outer * application_factor * dynamic_factor * face_factor_bending"
+        " * transverse_factor_bending * planet_factor_bending",
+    )  # fmt: skip
+    permitted_root_stress: Float = found(
+        "MPa", symbol="sigma_FP", note="permitted root stress", source=BEARS_3,
+        formula="bending_limit * stress_correction_of_test * bending_life_factor * notch_sensitivity * root_surface"
+        " * bending_size / least_bending_safety",
+    )  # fmt: skip
+    root_safety: Float = found(
+        "", symbol="S_F", note="safety against breakage, load at the tip; 1000 at most", source=BEARS_3,
+        formula="min(permitted_root_stress * least_bending_safety / root_stress, 1000)",
+    )  # fmt: skip
     root_safety_outer: Float = found(
-        "", "S_F,B", "safety against breakage, load at the outer single contact; 1000 at most",
-        "min(permitted_root_stress * least_bending_safety / root_stress_outer, 1000)", METHOD_B,
+        "", symbol="S_F,B", note="safety against breakage, load at the outer single contact; 1000 at most",
+        source=METHOD_B, formula="min(permitted_root_stress * least_bending_safety / root_stress_outer, 1000)",
     )  # fmt: skip
-    contact_stress: Float = found("MPa", "sigma_H", "contact stress",
-                                  "single_contact_factor * nominal_contact_stress * sqrt(application_factor"
-                                  " * dynamic_factor * face_factor * transverse_factor * planet_factor)",
-                                  PART_2)  # fmt: skip
-    permitted_contact_stress: Float = found("MPa", "sigma_HP", "permitted contact stress",
-                                            "contact_limit * contact_life_factor * lubricant_factor * velocity_factor"
-                                            " * roughness_factor * work_hardening_factor * contact_size_factor"
-                                            " / least_contact_safety", BEARS_2)  # fmt: skip
-    contact_safety: Float = found("", "S_H", "safety against pitting; 1000 at most",
-                                  "min(permitted_contact_stress * least_contact_safety / contact_stress, 1000)",
-                                  BEARS_2)  # fmt: skip
+    contact_stress: Float = found(
+        "MPa", symbol="sigma_H", note="contact stress", source=PART_2,
+        formula="single_contact_factor * nominal_contact_stress * sqrt(application_factor * dynamic_factor"
+        " * face_factor * transverse_factor * planet_factor)",
+    )  # fmt: skip
+    permitted_contact_stress: Float = found(
+        "MPa", symbol="sigma_HP", note="permitted contact stress", source=BEARS_2,
+        formula="contact_limit * contact_life_factor * lubricant_factor * velocity_factor * roughness_factor"
+        " * work_hardening_factor * contact_size_factor / least_contact_safety",
+    )  # fmt: skip
+    contact_safety: Float = found(
+        "", symbol="S_H", note="safety against pitting; 1000 at most", source=BEARS_2,
+        formula="min(permitted_contact_stress * least_contact_safety / contact_stress, 1000)",
+    )  # fmt: skip
     size: GearSize = part(GearSize, suffix="")
     quality: load_factors.GearQuality = part(load_factors.GearQuality, suffix="")
     root: stress_factors.GearRoot = part(stress_factors.GearRoot, suffix="")
@@ -82,26 +91,30 @@ class GearStress:
 class Strength:
     """The first stage under its load."""
 
-    contact_stress: Float = found("MPa", "sigma_H", "contact stress of the sun", method="as of the sun")
-    transmission_error: Float = found("um", "TE", "along the line of action", method=BASE)
-    efficiency: Float = found("", "eta", "input to output", "mesh_efficiency * bearing_efficiency**3",
-                              "equations 6 and 7 of the paper")  # fmt: skip
-    flank_temperature: Float = found("degC", "theta_M", "of the flanks", method="that of the oil")
-    backlash: Float = found("um", "j_n", "along the line of action; 0 at the centre distance without backlash",
-                            "cases(0, centre_distance_deviation <= 0, (base_diameter_sun + base_diameter_planet)"
-                            " * (inv(working_angle) - inv(tight_angle)) * cos(base_helix_angle))",
-                            "ISO 21771")  # fmt: skip
-    nominal_contact_stress: Float = found("MPa", "sigma_H0", "nominal contact stress at the pitch point",
-                                          "zone_factor * elasticity_factor * contact_ratio_factor * helix_factor"
-                                          " * sqrt(tangential_force / (reference_diameter_sun * carrying_width)"
-                                          " * (tooth_ratio + 1) / tooth_ratio)", PART_2)  # fmt: skip
-    contact_safety: Float = found("", "S_H", "least safety against pitting of both gears",
-                                  "min(contact_safety_sun, contact_safety_planet)")  # fmt: skip
-    root_safety: Float = found("", "S_F", "least safety against breakage of both gears, load at the tip",
-                               "min(root_safety_sun, root_safety_planet)")  # fmt: skip
-    root_safety_outer: Float = found("", "S_F,B",
-                                     "least safety against breakage of both gears, load at the outer single contact",
-                                     "min(root_safety_outer_sun, root_safety_outer_planet)")  # fmt: skip
+    contact_stress: Float = found("MPa", symbol="sigma_H", note="contact stress of the sun", method="as of the sun")
+    transmission_error: Float = found("um", symbol="TE", note="along the line of action", method=BASE)
+    efficiency: Float = found("", symbol="eta", note="input to output", source="equations 6 and 7 of the paper",
+                              formula="mesh_efficiency * bearing_efficiency**3")  # fmt: skip
+    flank_temperature: Float = found("degC", symbol="theta_M", note="of the flanks", method="that of the oil")
+    backlash: Float = found(
+        "um", symbol="j_n", note="along the line of action; 0 at the centre distance without backlash",
+        source="ISO 21771", formula="cases(0, centre_distance_deviation <= 0,"
+        " (base_diameter_sun + base_diameter_planet) * (inv(working_angle) - inv(tight_angle))"
+        " * cos(base_helix_angle))",
+    )  # fmt: skip
+    nominal_contact_stress: Float = found(
+        "MPa", symbol="sigma_H0", note="nominal contact stress at the pitch point", source=PART_2,
+        formula="zone_factor * elasticity_factor * contact_ratio_factor * helix_factor"
+        " * sqrt(tangential_force / (reference_diameter_sun * carrying_width) * (tooth_ratio + 1) / tooth_ratio)",
+    )  # fmt: skip
+    contact_safety: Float = found("", symbol="S_H", note="least safety against pitting of both gears",
+                                  formula="min(contact_safety_sun, contact_safety_planet)")  # fmt: skip
+    root_safety: Float = found("", symbol="S_F", note="least safety against breakage of both gears, load at the tip",
+                               formula="min(root_safety_sun, root_safety_planet)")  # fmt: skip
+    root_safety_outer: Float = found(
+        "", symbol="S_F,B", note="least safety against breakage of both gears, load at the outer single contact",
+        formula="min(root_safety_outer_sun, root_safety_outer_planet)",
+    )  # fmt: skip
     duty: Duty = part(Duty, suffix="")
     mesh: MeshSize = part(MeshSize, suffix="")
     quality: load_factors.MeshQuality = part(load_factors.MeshQuality, suffix="")
@@ -237,9 +250,9 @@ SOUGHT = "bisection on the whole calculation"
 class Rating:
     """What the first stage may be loaded with."""
 
-    torque_capacity: Float = found("N*m", "T_2,max", "output torque at which the first safety is used up",
+    torque_capacity: Float = found("N*m", symbol="T_2,max", note="output torque at which the first safety is used up",
                                    method=SOUGHT)  # fmt: skip
-    power_capacity: Float = found("kW", "P_max", "input power at this torque and the speed of the run",
+    power_capacity: Float = found("kW", symbol="P_max", note="input power at this torque and the speed of the run",
                                   method="in proportion to the torque")  # fmt: skip
 
 

@@ -19,55 +19,66 @@ MPA = 1e6
 class ContactFactors:
     """Factors of the contact stress that sun and planet share, and the single contact factors of both."""
 
-    zone_factor: Float = found("", "Z_H", "zone factor; as stated where it is",
-                               "either(stated_zone_factor, sqrt(2 * cos(base_helix_angle) * cos(working_angle)"
-                               " / (cos(transverse_angle)**2 * sin(working_angle))))", ISO_2 + "6")  # fmt: skip
-    elasticity_factor: Float = found("MPa**0.5", "Z_E", "elasticity factor; as stated where it is",
-                                     "either(stated_elasticity_factor, sqrt(1 / (pi * ((1 - poisson_ratio_sun**2)"
-                                     " / young_modulus_sun + (1 - poisson_ratio_planet**2) / young_modulus_planet))))",
-                                     ISO_2 + "7")  # fmt: skip
-    contact_ratio_factor: Float = found(
-        "", "Z_epsilon", "contact ratio factor; as stated where it is",
-        "either(stated_contact_ratio_factor, sqrt(cases((4 - contact_ratio) / 3 * (1 - overlap_ratio) + overlap_ratio"
-        " / contact_ratio, overlap_ratio < 1, 1 / contact_ratio)))", ISO_2 + "8",
+    zone_factor: Float = found("", symbol="Z_H", note="zone factor; as stated where it is", source=ISO_2 + "6",
+                               formula="either(stated_zone_factor, sqrt(2 * cos(base_helix_angle) * cos(working_angle)"
+                                       " / (cos(transverse_angle)**2 * sin(working_angle))))")  # fmt: skip
+    elasticity_factor: Float = found(
+        "MPa**0.5", symbol="Z_E", note="elasticity factor; as stated where it is", source=ISO_2 + "7",
+        formula="either(stated_elasticity_factor, sqrt(1 / (pi * ((1 - poisson_ratio_sun**2) / young_modulus_sun"
+        " + (1 - poisson_ratio_planet**2) / young_modulus_planet))))",
     )  # fmt: skip
-    helix_power: Float = found("", "q_beta", "power of cos beta in the helix factor", source=ISO_2 + "9",
+    contact_ratio_factor: Float = found(
+        "", symbol="Z_epsilon", note="contact ratio factor; as stated where it is", source=ISO_2 + "8",
+        formula="either(stated_contact_ratio_factor, sqrt(cases((4 - contact_ratio) / 3 * (1 - overlap_ratio)"
+        " + overlap_ratio / contact_ratio, overlap_ratio < 1, 1 / contact_ratio)))",
+    )  # fmt: skip
+    helix_power: Float = found("", symbol="q_beta", note="power of cos beta in the helix factor", source=ISO_2 + "9",
                                method="-1/2 by ISO 6336:2006, 1/2 by GB/T 3480-1997")  # fmt: skip
-    helix_factor: Float = found("", "Z_beta", "helix factor; as stated where it is",
-                                "either(stated_helix_factor, cos(helix_angle)**helix_power)", ISO_2 + "9")  # fmt: skip
-    single_contact_counts: Float = found("", "s_BD", "1 where the single contact counts, else 0", source=ISO_2 + "6",
-                                         method="single_contact as stated")  # fmt: skip
+    helix_factor: Float = found("", symbol="Z_beta", note="helix factor; as stated where it is", source=ISO_2 + "9",
+                                formula="either(stated_helix_factor, cos(helix_angle)**helix_power)")  # fmt: skip
+    single_contact_counts: Float = found("", symbol="s_BD", note="1 where the single contact counts, else 0",
+                                         method="single_contact as stated", source=ISO_2 + "6")  # fmt: skip
     single_contact_factor_sun: Float = found(
-        "", "Z_B", "single contact factor of the sun; as stated where it is",
-        "either(stated_single_contact_sun, cases(max(1, overlap_ratio + (1 - overlap_ratio) * tan(working_angle)"
-        " / sqrt((tan(tip_angle_sun) - 2 * pi / teeth_sun) * (tan(tip_angle_planet) - (contact_ratio - 1) * 2 * pi"
-        " / teeth_planet))), single_contact_counts > 0 and overlap_ratio < 1, 1))", ISO_2 + "6",
+        "", symbol="Z_B", note="single contact factor of the sun; as stated where it is", source=ISO_2 + "6",
+        formula="either(stated_single_contact_sun, cases(max(1, overlap_ratio + (1 - overlap_ratio)"
+        " * tan(working_angle) / sqrt((tan(tip_angle_sun) - 2 * pi / teeth_sun)"
+        " * (tan(tip_angle_planet) - (contact_ratio - 1) * 2 * pi / teeth_planet))),"
+        " single_contact_counts > 0 and overlap_ratio < 1, 1))",
     )  # fmt: skip
     single_contact_factor_planet: Float = found(
-        "", "Z_D", "single contact factor of the planet; as stated where it is",
-        "either(stated_single_contact_planet, cases(max(1, overlap_ratio + (1 - overlap_ratio) * tan(working_angle)"
-        " / sqrt((tan(tip_angle_planet) - 2 * pi / teeth_planet) * (tan(tip_angle_sun) - (contact_ratio - 1) * 2 * pi"
-        " / teeth_sun))), single_contact_counts > 0 and overlap_ratio < 1, 1))", ISO_2 + "6",
+        "", symbol="Z_D", note="single contact factor of the planet; as stated where it is", source=ISO_2 + "6",
+        formula="either(stated_single_contact_planet, cases(max(1, overlap_ratio + (1 - overlap_ratio)"
+        " * tan(working_angle) / sqrt((tan(tip_angle_planet) - 2 * pi / teeth_planet)"
+        " * (tan(tip_angle_sun) - (contact_ratio - 1) * 2 * pi / teeth_sun))),"
+        " single_contact_counts > 0 and overlap_ratio < 1, 1))",
     )  # fmt: skip
-    lubricant_constant: Float = found("", "C_ZL", "share of Z_L without lubricant, by the softer gear",
-                                      f"cases(0.83, {SOFTER} < 850, 0.91, {SOFTER} > 1200, {SOFTER} / 4375 + 0.6357)",
-                                      ISO_2 + "12", numeric=True)  # fmt: skip
-    lubricant_factor: Float = found("", "Z_L", "lubricant factor; as stated where it is",
-                                    "either(stated_lubricant_factor, lubricant_constant + 4 * (1 - lubricant_constant)"
-                                    " / (1.2 + 134 / viscosity)**2)", ISO_2 + "12", numeric=True)  # fmt: skip
-    velocity_factor: Float = found("", "Z_V", "velocity factor; as stated where it is",
-                                   "either(stated_velocity_factor, lubricant_constant + 0.02 + 2"
-                                   " * (0.98 - lubricant_constant) / sqrt(0.8 + 32 / pitch_line_velocity))",
-                                   ISO_2 + "12", numeric=True)  # fmt: skip
-    relative_roughness: Float = found("um", "R_z10", "mean roughness of the flanks at a relative radius of 10 mm",
-                                      "(flank_roughness_sun + flank_roughness_planet) / 2 * cbrt(10 / curvature)",
-                                      ISO_2 + "12", numeric=True)  # fmt: skip
-    roughness_exponent: Float = found("", "C_ZR", "exponent of the roughness factor, by the softer gear",
-                                      f"cases(0.15, {SOFTER} < 850, 0.08, {SOFTER} > 1200, 0.32 - 0.0002 * {SOFTER})",
-                                      ISO_2 + "12", numeric=True)  # fmt: skip
-    roughness_factor: Float = found("", "Z_R", "roughness factor; as stated where it is",
-                                    "either(stated_roughness_factor, (3 / relative_roughness)**roughness_exponent)",
-                                    ISO_2 + "12", numeric=True)  # fmt: skip
+    lubricant_constant: Float = found(
+        "", symbol="C_ZL", note="share of Z_L without lubricant, by the softer gear", numeric=True, source=ISO_2 + "12",
+        formula=f"cases(0.83, {SOFTER} < 850, 0.91, {SOFTER} > 1200, {SOFTER} / 4375 + 0.6357)",
+    )  # fmt: skip
+    lubricant_factor: Float = found(
+        "", symbol="Z_L", note="lubricant factor; as stated where it is", numeric=True, source=ISO_2 + "12",
+        formula="either(stated_lubricant_factor,"
+        " lubricant_constant + 4 * (1 - lubricant_constant) / (1.2 + 134 / viscosity)**2)",
+    )  # fmt: skip
+    velocity_factor: Float = found(
+        "", symbol="Z_V", note="velocity factor; as stated where it is", numeric=True, source=ISO_2 + "12",
+        formula="either(stated_velocity_factor, lubricant_constant + 0.02"
+        " + 2 * (0.98 - lubricant_constant) / sqrt(0.8 + 32 / pitch_line_velocity))",
+    )  # fmt: skip
+    relative_roughness: Float = found(
+        "um", symbol="R_z10", note="mean roughness of the flanks at a relative radius of 10 mm", numeric=True,
+        source=ISO_2 + "12",
+        formula="(flank_roughness_sun + flank_roughness_planet) / 2 * cbrt(10 / curvature)",
+    )  # fmt: skip
+    roughness_exponent: Float = found(
+        "", symbol="C_ZR", note="exponent of the roughness factor, by the softer gear", numeric=True,
+        source=ISO_2 + "12", formula=f"cases(0.15, {SOFTER} < 850, 0.08, {SOFTER} > 1200, 0.32 - 0.0002 * {SOFTER})",
+    )  # fmt: skip
+    roughness_factor: Float = found(
+        "", symbol="Z_R", note="roughness factor; as stated where it is", numeric=True, source=ISO_2 + "12",
+        formula="either(stated_roughness_factor, (3 / relative_roughness)**roughness_exponent)",
+    )  # fmt: skip
 
 
 def contact_ratio_factor(stage: Gearing, mesh: MeshSize) -> Float:
@@ -154,73 +165,91 @@ ISO_3 = "ISO 6336-3:2006, clause "
 class GearRoot:
     """Form of the tooth root of one gear; lengths in modules."""
 
-    root_offset: Float = found("", "G", "centre of the rack's fillet from its reference line, in modules",
-                               "fillet - dedendum + shift", ISO_3 + "6")  # fmt: skip
+    root_offset: Float = found("", symbol="G", note="centre of the rack's fillet from its reference line, in modules",
+                               formula="fillet - dedendum + shift", source=ISO_3 + "6")  # fmt: skip
     root_angle: Float = found(
-        "deg", "theta", "where the tangent at the root is inclined by 30 degrees",
-        "root_angle == 2 / virtual_teeth * (root_offset * tan(root_angle) - pi / 4 - dedendum * tan(pressure_angle)"
-        " - (1 - sin(pressure_angle)) * fillet / cos(pressure_angle)) + pi / 3", ISO_3 + "6",
+        "deg", symbol="theta", note="where the tangent at the root is inclined by 30 degrees", source=ISO_3 + "6",
+        formula="root_angle == 2 / virtual_teeth * (root_offset * tan(root_angle) - pi / 4"
+        " - dedendum * tan(pressure_angle) - (1 - sin(pressure_angle)) * fillet / cos(pressure_angle)) + pi / 3",
     )  # fmt: skip
-    root_chord: Float = found("", "s_Fn", "chord of the critical section, in modules",
-                              "virtual_teeth * sin(pi / 3 - root_angle) + sqrt(3)"
-                              " * (root_offset / cos(root_angle) - fillet)", ISO_3 + "6")  # fmt: skip
-    root_fillet: Float = found("", "rho_F", "radius of the fillet there, in modules",
-                               "fillet + 2 * root_offset**2 / (cos(root_angle)"
-                               " * (virtual_teeth * cos(root_angle)**2 - 2 * root_offset))", ISO_3 + "6")  # fmt: skip
-    notch_parameter: Float = found("", "q_s", "notch parameter", "root_chord / (2 * root_fillet)", ISO_3 + "7")
-    virtual_tip_diameter: Float = found("mm", "d_an", "tip diameter of the virtual spur gear",
-                                        "module * virtual_teeth + tip_diameter - reference_diameter",
-                                        ISO_3 + "6")  # fmt: skip
-    virtual_base_diameter: Float = found("mm", "d_bn", "base diameter of the virtual spur gear",
-                                         "module * virtual_teeth * cos(pressure_angle)", ISO_3 + "6")  # fmt: skip
-    virtual_tip_angle: Float = found("deg", "alpha_an", "pressure angle at this tip",
-                                     "acos(virtual_base_diameter / virtual_tip_diameter)", ISO_3 + "6")  # fmt: skip
-    tip_load_angle: Float = found("deg", "alpha_Fan", "angle of the load at the tip",
-                                  "virtual_tip_angle - (pi / 2 + 2 * shift * tan(pressure_angle)) / virtual_teeth"
-                                  " - inv(pressure_angle) + inv(virtual_tip_angle)", "GB/T 3480-1997")  # fmt: skip
-    tip_arm: Float = found("", "h_Fa", "bending arm, load at the tip, in modules",
-                           "(virtual_base_diameter / (module * cos(tip_load_angle)) - virtual_teeth"
-                           " * cos(pi / 3 - root_angle) - root_offset / cos(root_angle) + fillet) / 2",
-                           "GB/T 3480-1997")  # fmt: skip
-    form_factor: Float = found("", "Y_Fa", "form factor, load at the tip; as stated where it is",
-                               "either(stated_form_factor, 6 * tip_arm * cos(tip_load_angle)"
-                               " / (root_chord**2 * cos(pressure_angle)))", "GB/T 3480-1997")  # fmt: skip
-    stress_correction: Float = found("", "Y_Sa", "stress correction, load at the tip; as stated where it is",
-                                     "either(stated_stress_correction, (1.2 + 0.13 * root_chord / tip_arm)"
-                                     " * notch_parameter**(1 / (1.21 + 2.3 * tip_arm / root_chord)))",
-                                     "GB/T 3480-1997")  # fmt: skip
-    outer_diameter: Float = found("mm", "d_en", "virtual diameter of the outer point of single contact",
-                                  "2 * hypot(sqrt(virtual_tip_diameter**2 - virtual_base_diameter**2) / 2 - pi * module"
-                                  " * cos(pressure_angle) * (virtual_contact_ratio - 1), virtual_base_diameter / 2)",
-                                  ISO_3 + "6")  # fmt: skip
-    outer_angle: Float = found("deg", "alpha_en", "pressure angle there",
-                               "acos(virtual_base_diameter / outer_diameter)", ISO_3 + "6")  # fmt: skip
-    outer_load_angle: Float = found("deg", "alpha_Fen", "angle of the load at the outer single contact",
-                                    "outer_angle - (pi / 2 + 2 * shift * tan(pressure_angle)) / virtual_teeth"
-                                    " - inv(pressure_angle) + inv(outer_angle)", ISO_3 + "6")  # fmt: skip
-    outer_arm: Float = found("", "h_Fe", "bending arm, load at the outer single contact, in modules",
-                             "(virtual_base_diameter / (module * cos(outer_load_angle)) - virtual_teeth"
-                             " * cos(pi / 3 - root_angle) - root_offset / cos(root_angle) + fillet) / 2",
-                             ISO_3 + "6")  # fmt: skip
-    form_factor_outer: Float = found("", "Y_F", "form factor, load at the outer single contact",
-                                     "6 * outer_arm * cos(outer_load_angle) / (root_chord**2 * cos(pressure_angle))",
-                                     ISO_3 + "6")  # fmt: skip
-    stress_correction_outer: Float = found("", "Y_S", "stress correction, load at the outer single contact",
-                                           "(1.2 + 0.13 * root_chord / outer_arm)"
-                                           " * notch_parameter**(1 / (1.21 + 2.3 * outer_arm / root_chord))",
-                                           ISO_3 + "7")  # fmt: skip
-    notch_sensitivity: Float = found("", "Y_delta relT", "relative notch sensitivity; as stated where it is",
-                                     "either(stated_notch_sensitivity, (1 + sqrt(0.2 * slip_layer"
-                                     " * (1 + 2 * notch_parameter))) / (1 + sqrt(1.2 * slip_layer)))", ISO_3 + "13",
-                                     numeric=True)  # fmt: skip
-    root_surface: Float = found("", "Y_RrelT", "relative surface factor; as stated where it is",
-                                "either(stated_root_surface, cases(surface_smooth, root_roughness < 1, surface_constant"
-                                " - surface_slope * (root_roughness + 1)**surface_exponent))", ISO_3 + "14",
-                                numeric=True)  # fmt: skip
-    bending_size: Float = found("", "Y_X", "size factor for bending; as stated where it is",
-                                "either(stated_bending_size, min(1,"
-                                " max(size_least, size_constant - size_slope * module)))", ISO_3 + "15",
-                                numeric=True)  # fmt: skip
+    root_chord: Float = found(
+        "", symbol="s_Fn", note="chord of the critical section, in modules", source=ISO_3 + "6",
+        formula="virtual_teeth * sin(pi / 3 - root_angle) + sqrt(3) * (root_offset / cos(root_angle) - fillet)",
+    )  # fmt: skip
+    root_fillet: Float = found("", symbol="rho_F", note="radius of the fillet there, in modules", source=ISO_3 + "6",
+                               formula="fillet + 2 * root_offset**2 / (cos(root_angle)"
+                                       " * (virtual_teeth * cos(root_angle)**2 - 2 * root_offset))")  # fmt: skip
+    notch_parameter: Float = found("", symbol="q_s", note="notch parameter", formula="root_chord / (2 * root_fillet)",
+                                   source=ISO_3 + "7")  # fmt: skip
+    virtual_tip_diameter: Float = found("mm", symbol="d_an", note="tip diameter of the virtual spur gear",
+                                        source=ISO_3 + "6", formula="module * virtual_teeth + tip_diameter"
+                                        " - reference_diameter")  # fmt: skip
+    virtual_base_diameter: Float = found("mm", symbol="d_bn", note="base diameter of the virtual spur gear",
+                                         source=ISO_3 + "6",
+                                         formula="module * virtual_teeth * cos(pressure_angle)")  # fmt: skip
+    virtual_tip_angle: Float = found("deg", symbol="alpha_an", note="pressure angle at this tip", source=ISO_3 + "6",
+                                     formula="acos(virtual_base_diameter / virtual_tip_diameter)")  # fmt: skip
+    tip_load_angle: Float = found(
+        "deg", symbol="alpha_Fan", note="angle of the load at the tip", source="GB/T 3480-1997",
+        formula="virtual_tip_angle - (pi / 2 + 2 * shift * tan(pressure_angle)) / virtual_teeth - inv(pressure_angle)"
+        " + inv(virtual_tip_angle)",
+    )  # fmt: skip
+    tip_arm: Float = found(
+        "", symbol="h_Fa", note="bending arm, load at the tip, in modules", source="GB/T 3480-1997",
+        formula="(virtual_base_diameter / (module * cos(tip_load_angle)) - virtual_teeth * cos(pi / 3 - root_angle)"
+        " - root_offset / cos(root_angle) + fillet) / 2",
+    )  # fmt: skip
+    form_factor: Float = found(
+        "", symbol="Y_Fa", note="form factor, load at the tip; as stated where it is", source="GB/T 3480-1997",
+        formula="either(stated_form_factor,"
+        " 6 * tip_arm * cos(tip_load_angle) / (root_chord**2 * cos(pressure_angle)))",
+    )  # fmt: skip
+    stress_correction: Float = found(
+        "", symbol="Y_Sa", note="stress correction, load at the tip; as stated where it is", source="GB/T 3480-1997",
+        formula="either(stated_stress_correction, (1.2 + 0.13 * root_chord / tip_arm)"
+        " * notch_parameter**(1 / (1.21 + 2.3 * tip_arm / root_chord)))",
+    )  # fmt: skip
+    outer_diameter: Float = found(
+        "mm", symbol="d_en", note="virtual diameter of the outer point of single contact", source=ISO_3 + "6",
+        formula="2 * hypot(sqrt(virtual_tip_diameter**2 - virtual_base_diameter**2) / 2"
+        " - pi * module * cos(pressure_angle) * (virtual_contact_ratio - 1), virtual_base_diameter / 2)",
+    )  # fmt: skip
+    outer_angle: Float = found("deg", symbol="alpha_en", note="pressure angle there", source=ISO_3 + "6",
+                               formula="acos(virtual_base_diameter / outer_diameter)")  # fmt: skip
+    outer_load_angle: Float = found(
+        "deg", symbol="alpha_Fen", note="angle of the load at the outer single contact", source=ISO_3 + "6",
+        formula="outer_angle - (pi / 2 + 2 * shift * tan(pressure_angle)) / virtual_teeth - inv(pressure_angle)"
+        " + inv(outer_angle)",
+    )  # fmt: skip
+    outer_arm: Float = found(
+        "", symbol="h_Fe", note="bending arm, load at the outer single contact, in modules", source=ISO_3 + "6",
+        formula="(virtual_base_diameter / (module * cos(outer_load_angle)) - virtual_teeth * cos(pi / 3 - root_angle)"
+        " - root_offset / cos(root_angle) + fillet) / 2",
+    )  # fmt: skip
+    form_factor_outer: Float = found(
+        "", symbol="Y_F", note="form factor, load at the outer single contact", source=ISO_3 + "6",
+        formula="6 * outer_arm * cos(outer_load_angle) / (root_chord**2 * cos(pressure_angle))",
+    )  # fmt: skip
+    stress_correction_outer: Float = found(
+        "", symbol="Y_S", note="stress correction, load at the outer single contact", source=ISO_3 + "7",
+        formula="(1.2 + 0.13 * root_chord / outer_arm)"
+        " * notch_parameter**(1 / (1.21 + 2.3 * outer_arm / root_chord))",
+    )  # fmt: skip
+    notch_sensitivity: Float = found(
+        "", symbol="Y_delta relT", note="relative notch sensitivity; as stated where it is", numeric=True,
+        source=ISO_3 + "13",
+        formula="either(stated_notch_sensitivity, (1 + sqrt(0.2 * slip_layer * (1 + 2 * notch_parameter)))"
+        " / (1 + sqrt(1.2 * slip_layer)))",
+    )  # fmt: skip
+    root_surface: Float = found(
+        "", symbol="Y_RrelT", note="relative surface factor; as stated where it is", numeric=True, source=ISO_3 + "14",
+        formula="either(stated_root_surface, cases(surface_smooth, root_roughness < 1,"
+        " surface_constant - surface_slope * (root_roughness + 1)**surface_exponent))",
+    )  # fmt: skip
+    bending_size: Float = found(
+        "", symbol="Y_X", note="size factor for bending; as stated where it is", numeric=True, source=ISO_3 + "15",
+        formula="either(stated_bending_size, min(1, max(size_least, size_constant - size_slope * module)))",
+    )  # fmt: skip
 
 
 @results
@@ -228,18 +257,20 @@ class BendingFactors:
     """Factors of bending that both gears share."""
 
     contact_ratio_factor_bending: Float = found(
-        "", "Y_epsilon", "contact ratio factor, for a load at the tip alone; as stated where it is",
-        "either(stated_contact_ratio_bending, 0.25 + 0.75 / virtual_contact_ratio)", "GB/T 3480-1997",
+        "", symbol="Y_epsilon", note="contact ratio factor, for a load at the tip alone; as stated where it is",
+        source="GB/T 3480-1997", formula="either(stated_contact_ratio_bending, 0.25 + 0.75 / virtual_contact_ratio)",
     )  # fmt: skip
-    helix_factor_bending: Float = found("", "Y_beta", "helix factor; as stated where it is",
-                                        "either(stated_helix_factor_bending, 1 - min(overlap_ratio, 1)"
-                                        " * min(helix_angle, 30) / 120)", ISO_3 + "8", numeric=True)  # fmt: skip
-    deep_tooth_factor: Float = found("", "Y_DT", "deep tooth factor, for a load at the outer single contact alone",
-                                     "cases(1, accuracy_grade > 4 or virtual_contact_ratio <= 2.05, 2.366 - 0.666"
-                                     " * virtual_contact_ratio, virtual_contact_ratio <= 2.5, 0.7)",
-                                     ISO_3 + "10")  # fmt: skip
-    tip_load_factor: Float = found("", "f_Ca", "more load at the tip where its relief is missing",
-                                   "max(1 + tooth_stiffness * relief_deviation / line_load, 0)")  # fmt: skip
+    helix_factor_bending: Float = found(
+        "", symbol="Y_beta", note="helix factor; as stated where it is", numeric=True, source=ISO_3 + "8",
+        formula="either(stated_helix_factor_bending, 1 - min(overlap_ratio, 1) * min(helix_angle, 30) / 120)",
+    )  # fmt: skip
+    deep_tooth_factor: Float = found(
+        "", symbol="Y_DT", note="deep tooth factor, for a load at the outer single contact alone", source=ISO_3 + "10",
+        formula="cases(1, accuracy_grade > 4 or virtual_contact_ratio <= 2.05, 2.366 - 0.666 * virtual_contact_ratio,"
+        " virtual_contact_ratio <= 2.5, 0.7)",
+    )  # fmt: skip
+    tip_load_factor: Float = found("", symbol="f_Ca", note="more load at the tip where its relief is missing",
+                                   formula="max(1 + tooth_stiffness * relief_deviation / line_load, 0)")  # fmt: skip
 
 
 def bending_factors(stage: Gearing, mesh: MeshSize, stiffness: Float, line_load: Float) -> BendingFactors:

@@ -101,8 +101,8 @@ TOLERANCES = [
 class Cost:
     """What the zones cost together."""
 
-    manufacturing_cost: Float = found("yuan", "C", "of all priced tolerances, as they are", "tolerance_price",
-                                      "sum of equations 25 to 27")  # fmt: skip
+    manufacturing_cost: Float = found("yuan", symbol="C", note="of all priced tolerances, as they are",
+                                      formula="tolerance_price", source="sum of equations 25 to 27")  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -96,9 +96,9 @@ STEPS = "share of the steps from one modification to the next larger one; 1: all
 class Trend:
     """What a larger equidistant modification does at the same radial clearance."""
 
-    force_falls: Float = found("", "n_F", "the largest force falls with the modification", method=STEPS)
-    mesh_widens: Float = found("", "n_p", "the loaded part of the flank does not shrink", method=STEPS)
-    wear_falls: Float = found("", "n_h", "the deepest wear falls with the modification", method=STEPS)
+    force_falls: Float = found("", symbol="n_F", note="the largest force falls with the modification", method=STEPS)
+    mesh_widens: Float = found("", symbol="n_p", note="the loaded part of the flank does not shrink", method=STEPS)
+    wear_falls: Float = found("", symbol="n_h", note="the deepest wear falls with the modification", method=STEPS)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -104,7 +104,8 @@ def _total(values: Array) -> Array:
     """Sum over the pins, in the same order however many positions there are."""
     positions = values.shape[1]
     wide = values if positions > 1 else np.repeat(values, 2, axis=1)  # of a single column numpy would add pairs
-    return np.asarray(wide.sum(axis=0)[:positions])
+    value: Array = wide.sum(axis=0)[:positions]
+    return value
 
 
 def _balanced(stiffness: Array, lost: Array, line: Line, scale: Array) -> Array:

@@ -32,19 +32,19 @@ class History:
     """Forces and wear along the flank; wear and backlash over the working time, from new."""
 
     phase_angle: Float = axis("deg", symbol="psi", note="phase angle of a pin, from the crank line")
-    normal_force: Float = found("N", "F", "force on a pin, unworn", along="phase_angle",
+    normal_force: Float = found("N", symbol="F", along="phase_angle", note="force on a pin, unworn",
                                 method="equation 2 at every position of the disc")  # fmt: skip
-    worn_force: Float = found("N", "F_T", "force on a pin after the working time", along="phase_angle",
+    worn_force: Float = found("N", symbol="F_T", along="phase_angle", note="force on a pin after the working time",
                               method="equation 2 with the worn profile")  # fmt: skip
-    wear_depth: Float = found("um", "h", "wear after the working time", along="phase_angle",
+    wear_depth: Float = found("um", symbol="h", along="phase_angle", note="wear after the working time",
                               method="equations 13 to 16")  # fmt: skip
 
-    wear_place: Float = found("%", "x_h", "place of the deepest wear in the loaded part of the flank",
+    wear_place: Float = found("%", symbol="x_h", note="place of the deepest wear in the loaded part of the flank",
                               method="0 where the contact of the new mesh begins, 100 % where it ends")  # fmt: skip
     history_time: Float = axis("h", symbol="T", note="working time")
-    wear_history: Float = found("um", "h_max", "deepest wear", along="history_time",
+    wear_history: Float = found("um", symbol="h_max", along="history_time", note="deepest wear",
                                 method="equations 13 to 16 up to each time")  # fmt: skip
-    backlash_history: Float = found("arcmin", "Delta phi", "backlash", along="history_time",
+    backlash_history: Float = found("arcmin", symbol="Delta phi", along="history_time", note="backlash",
                                     method="equation 21 with the wear at each time")  # fmt: skip
 
 
@@ -82,18 +82,22 @@ class SobolIndices:
 class Chances:
     """How often the backlash stays within its limit, and the normal distribution beside it."""
 
-    accuracy_reliability: Float = found("%", "R_T", "share of machines within the permitted backlash", method=COUNTED)
-    normal_reliability: Float = found("%", "R_N", "the same for a normal distribution",
-                                      "Phi((permitted_backlash - backlash_mean) / backlash_sd)",
-                                      method="first order; equation 21 is linear")  # fmt: skip
-    backlash_mean: Float = found("arcmin", "mu", "mean of the machines", method="first order")
-    backlash_sd: Float = found("arcmin", "sigma", "standard deviation of the machines", method="first order")
-    sampled_mean: Float = found("arcmin", "mu_d", "mean of the machines drawn", method="Monte Carlo")
-    sampled_sd: Float = found("arcmin", "sigma_d", "standard deviation of the machines drawn", method="Monte Carlo")
-    largest_backlash: Float = found("arcmin", "Delta phi_d", "largest among the machines drawn", method="Monte Carlo")
+    accuracy_reliability: Float = found("%", symbol="R_T", note="share of machines within the permitted backlash",
+                                        method=COUNTED)  # fmt: skip
+    normal_reliability: Float = found("%", symbol="R_N", note="the same for a normal distribution",
+                                      method="first order; equation 21 is linear",
+                                      formula="Phi((permitted_backlash - backlash_mean) / backlash_sd)")  # fmt: skip
+    backlash_mean: Float = found("arcmin", symbol="mu", note="mean of the machines", method="first order")
+    backlash_sd: Float = found("arcmin", symbol="sigma", note="standard deviation of the machines",
+                               method="first order")  # fmt: skip
+    sampled_mean: Float = found("arcmin", symbol="mu_d", note="mean of the machines drawn", method="Monte Carlo")
+    sampled_sd: Float = found("arcmin", symbol="sigma_d", note="standard deviation of the machines drawn",
+                              method="Monte Carlo")  # fmt: skip
+    largest_backlash: Float = found("arcmin", symbol="Delta phi_d", note="largest among the machines drawn",
+                                    method="Monte Carlo")  # fmt: skip
     reliability_time: Float = axis("h", symbol="T", note="working time")
-    reliability_history: Float = found("%", "R_T", "share within the permitted backlash", along="reliability_time",
-                                       method=COUNTED)  # fmt: skip
+    reliability_history: Float = found("%", symbol="R_T", along="reliability_time",
+                                       note="share within the permitted backlash", method=COUNTED)  # fmt: skip
 
 
 def history(swept: Swept) -> History:

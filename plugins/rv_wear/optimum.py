@@ -216,28 +216,29 @@ ORDER = "designs in the order of their cost"
 class Learnt:
     """What the surrogate of the wear is worth."""
 
-    band_share: Float = found("%", "n_95", "points up to 3000 h within the 95 % band of the surrogate",
+    band_share: Float = found("%", symbol="n_95", note="points up to 3000 h within the 95 % band of the surrogate",
                               method="ten times, everything else as in the inputs")  # fmt: skip
-    surrogate_coverage: Float = found("%", "c_95", "held-out points within the 95 % band",
+    surrogate_coverage: Float = found("%", symbol="c_95", note="held-out points within the 95 % band",
                                       method="designs that were not learnt from")  # fmt: skip
-    surrogate_error: Float = found("%", "e_50", "median error of the surrogate", method="of these points")
-    surrogate_worst: Float = found("%", "e_max", "largest error of the surrogate", method="of these points")
+    surrogate_error: Float = found("%", symbol="e_50", note="median error of the surrogate", method="of these points")
+    surrogate_worst: Float = found("%", symbol="e_max", note="largest error of the surrogate", method="of these points")
 
 
 @results
 class Front:
     """The designs that no other beats in cost and wear, and the knee among them."""
 
-    knee_cost: Float = found("yuan", "C_k", "cost at the knee of the front", method=KNEE)
-    knee_wear: Float = found("um", "h_k", "deepest wear at the knee of the front", method=KNEE)
-    knee_equidistant: Float = found("um", "Delta r_rp,k", "equidistant modification at the knee", method=KNEE)
-    smallest_wear: Float = found("um", "h_f", "smallest wear on the front",
+    knee_cost: Float = found("yuan", symbol="C_k", note="cost at the knee of the front", method=KNEE)
+    knee_wear: Float = found("um", symbol="h_k", note="deepest wear at the knee of the front", method=KNEE)
+    knee_equidistant: Float = found("um", symbol="Delta r_rp,k", note="equidistant modification at the knee",
+                                    method=KNEE)  # fmt: skip
+    smallest_wear: Float = found("um", symbol="h_f", note="smallest wear on the front",
                                  method="where no zone may be wider than it is now")  # fmt: skip
     front_cost: Float = axis("yuan", symbol="C", note="cost of the designs of the front")
-    front_wear: Float = found("um", "h_max", "deepest wear of the designs of the front", along="front_cost",
+    front_wear: Float = found("um", symbol="h_max", along="front_cost", note="deepest wear of the designs of the front",
                               method=ORDER)  # fmt: skip
-    front_equidistant: Float = found("um", "Delta r_rp", "equidistant modification of the designs", along="front_cost",
-                                     method=ORDER)  # fmt: skip
+    front_equidistant: Float = found("um", symbol="Delta r_rp", along="front_cost",
+                                     note="equidistant modification of the designs", method=ORDER)  # fmt: skip
 
 
 def end(number: int, what: str, unit: str, symbol: str) -> Any:
@@ -265,7 +266,7 @@ class FrontEnds:
 class Bought:
     """The least cost at the modifications as they are."""
 
-    least_cost: Float = found("yuan", "C_min", "least cost with these modifications",
+    least_cost: Float = found("yuan", symbol="C_min", note="least cost with these modifications",
                               method="widths with equal gain of variance per yuan, none tighter than now")  # fmt: skip
 
 

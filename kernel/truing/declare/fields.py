@@ -124,10 +124,10 @@ def in_si(value: Any, unit: str | None, is_series: bool = False) -> Any:
 def given(
     default: Any,
     unit: str | None = None,
+    *,
     symbol: str = "",
     note: str = "",
     source: str = "",
-    *,
     above: float | None = None,
     below: float | None = None,
     at_least: float | None = None,
@@ -165,14 +165,14 @@ def loaded(
 
 def found(
     unit: str,
+    *,
     symbol: str = "",
     note: str = "",
     formula: str = "",
-    source: str = "",
-    *,
     numeric: bool = False,
     along: str = "",
     method: str = "",
+    source: str = "",
     digits: int = 5,
 ) -> Any:
     """Declare a result; with ``numeric`` every name in the formula is its number in its declared unit.
