@@ -203,13 +203,10 @@ def _records(rows: RowsFile) -> Sequence[NDArray[np.intp]]:
     return _places_alike((rows.runs,), len(rows)) if rows.series and rows.runs else (np.arange(len(rows)),)
 
 
-@lru_cache(maxsize=64)
-def _places_alike(columns: tuple[Any, ...], rows: int) -> list[NDArray[np.intp]]:
-    """Return the places of the rows that share their values, which are a tuple or the bytes of floats.
-
-    A fit asks for the same ones again and again.
-    """
-    return rows_alike([np.frombuffer(values) if isinstance(values, bytes) else values for values in columns], rows)
+@lru_cache(maxsize=16)
+def _places_alike(columns: tuple[tuple[Any, ...], ...], rows: int) -> list[NDArray[np.intp]]:
+    """Return the places of rows that share their values; a fit asks for the same ones again and again."""
+    return rows_alike(columns, rows)
 
 
 def _alike(
@@ -223,16 +220,9 @@ def _alike(
             column = columns[name]
             line = next(rows.lines[row] for row in record if column[row] != column[record[0]])
             raise UsageError(f"{rows.file}:{line}: {name} changes within a run, but a record is one calculation")
-    differing = tuple(_hashable(columns[name], record) for name in varying)
+    differing = tuple(tuple(columns[name][row] for row in record.tolist()) for name in varying)
     for places in _places_alike(differing, len(record)):
         yield record[places], {name: _value_at(column, record[places[0]]) for name, column in columns.items()}
-
-
-def _hashable(column: Any, record: NDArray[np.intp]) -> Any:
-    """Return the values of a record, numbers as their bytes."""
-    if isinstance(column, list) or column.dtype.kind not in "biuf":
-        return tuple(column[row] for row in record.tolist())
-    return np.asarray(column[record], dtype=float).tobytes()
 
 
 def _is_column(column: Any) -> bool:

@@ -1,6 +1,5 @@
 """All engaged pairs of teeth together: who carries how much, how stiff the mesh is, and its torsion."""
 
-from collections import OrderedDict
 from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cached_property
 from hashlib import blake2b
@@ -238,7 +237,7 @@ KINKS = 128  # places at which a panel ends because there a pair turns elastic; 
 ROWS = 4096  # cut into panels at a time
 REMEMBERED = 128  # torsions: a fit asks for the same ones again, with other springs and readings around the mesh
 LARGEST = 2**14  # so many rows are remembered; more are calculated anew
-_TORSIONS: OrderedDict[bytes, tuple[Float, Float]] = OrderedDict()
+_TORSIONS: dict[bytes, tuple[Float, Float]] = {}
 
 
 @dataclass(frozen=True)
@@ -261,12 +260,11 @@ def mesh_torsion(torque: Float, reference: Float, mesh: DriveMesh) -> tuple[Floa
     for number in (torque, reference, mesh.arcs.shares, *mesh.law_numbers, *mesh.pair.numbers):
         digest.update(f"{np.shape(number)}".encode() + np.asarray(number, dtype=float).tobytes())
     key = digest.digest()
-    found = _TORSIONS.get(key) or _torsion(torque, reference, mesh)
+    found = _TORSIONS.pop(key, None) or _torsion(torque, reference, mesh)
     if np.size(found[0]) <= LARGEST:
-        _TORSIONS[key] = found
-        _TORSIONS.move_to_end(key)
-        if len(_TORSIONS) > REMEMBERED:
-            _TORSIONS.popitem(last=False)
+        _TORSIONS[key] = found  # the latest stands last
+    for old in list(_TORSIONS)[:-REMEMBERED]:
+        _TORSIONS.pop(old, None)
     return found
 
 
