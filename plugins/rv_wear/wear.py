@@ -244,25 +244,21 @@ class Unworn:
     first_step: Array
 
 
-@dataclass(frozen=True)
-class HistoryKey:
-    """Meshes as something to remember an answer by: their numbers as bytes, how many they are, and their choices."""
-
-    numbers: bytes
-    count: int
-    choices: Choices
+HistoryKey = tuple[bytes, int, Choices]
+"""Meshes as something to remember an answer by: their numbers as bytes, how many they are, and their choices."""
 
 
 def key_of(mesh: Mesh, places: NDArray[np.intp]) -> HistoryKey:
     """Some of many meshes (m,)."""
     table = np.stack([np.asarray(column)[places] for column in columns_of(mesh)])
-    return HistoryKey(table.tobytes(), len(places), mesh.choices)
+    return table.tobytes(), len(places), mesh.choices
 
 
 def mesh_from(key: HistoryKey) -> Mesh:
     """The meshes of a key."""
-    columns: list[Float] = list(np.frombuffer(key.numbers).reshape(-1, key.count))
-    return Mesh(**dict(zip(NUMBERS, columns, strict=True)), choices=key.choices)
+    numbers, count, choices = key
+    columns: list[Float] = list(np.frombuffer(numbers).reshape(-1, count))
+    return Mesh(**dict(zip(NUMBERS, columns, strict=True)), choices=choices)
 
 
 def unworn(mesh: Mesh) -> Unworn:
