@@ -1,7 +1,6 @@
 """Two tanks, one above the other: a pump fills the upper one, which empties into the lower one, which drains."""
 
 from dataclasses import dataclass, fields, replace
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -104,11 +103,6 @@ class Levels:
     lost: Float = found("V", note="water spilt and leaked, in the same unit", method="sum over the steps")
 
 
-def at_rows(value: Float, rows: NDArray[np.intp]) -> Float:
-    """Values of some rows: of an array (n, 1), or the one number of all."""
-    return value[rows, 0] if isinstance(value, np.ndarray) and value.ndim else value
-
-
 @dataclass(frozen=True)
 class Tank:
     """What leaves one tank; every field is a number or an array (n, 1)."""
@@ -119,22 +113,13 @@ class Tank:
     spill: Float
     leak: Float
 
-    @cached_property
-    def spills(self) -> bool:
-        """Whether anything may leave over the rim."""
-        return bool(np.any(self.spill))
-
-    @cached_property
-    def leaks(self) -> bool:
-        """Whether anything seeps away."""
-        return bool(np.any(self.leak))
-
     def outlet(self, level: Array) -> tuple[Array, Array]:
         """What leaves through the outlet at a level, V/s, and how much more it is per volt of level, 1/s."""
         deep = np.maximum(level, FILM)
         per_volt = self.outflow * (deep / FULL) ** self.exponent / deep
-        slope, is_wet = per_volt * self.exponent, level > FILM
-        return np.asarray(per_volt * level), slope if is_wet.all() else np.where(is_wet, slope, per_volt)
+        return np.asarray(per_volt * np.minimum(level, deep)), np.asarray(
+            per_volt * np.where(level > FILM, self.exponent, 1)
+        )
 
     def over(self, level: Array, inflow: Array, outflow: Array, slope: Array) -> tuple[Array, Array]:
         """What leaves over the rim, V/s, and how much more it is per volt of level, 1/s; all (n, m).
@@ -143,44 +128,41 @@ class Tank:
         below the rim and are left out.
         """
         over, more = np.zeros((2, *inflow.shape))
-        high = np.flatnonzero((level > self.rim - CREST) & (inflow > outflow))
-        if len(high):
-            near, surplus = level.reshape(-1)[high], inflow.reshape(-1)[high] - outflow.reshape(-1)[high]
-            rim, share = (at_rows(value, high // inflow.shape[1]) for value in (self.rim, self.spill))
-            height = 1 + (near - rim) / CREST
-            full = share * np.minimum(height, 1)
-            over.reshape(-1)[high] = full * surplus
-            more.reshape(-1)[high] = share * (
-                surplus / CREST * (height < 1) - np.minimum(height, 1) * slope.reshape(-1)[high]
-            )
+        high = (level > self.rim - CREST) & (inflow > outflow)
+        rim, share = (np.broadcast_to(value, inflow.shape)[high] for value in (self.rim, self.spill))
+        height, surplus = 1 + (level[high] - rim) / CREST, inflow[high] - outflow[high]
+        over[high] = share * np.minimum(height, 1) * surplus
+        more[high] = share * (surplus / CREST * (height < 1) - np.minimum(height, 1) * slope[high])
         return over, more
 
 
 @dataclass(frozen=True)
 class Flows:
-    """What leaves a tank: at each level, (n, m + 1), over the rim and in all, (n, m), in V/s; slopes in 1/s."""
+    """What leaves a tank: at each level, (n, m + 1), and over the rim in each step, (n, m), in V/s; slopes in 1/s."""
 
     out: Array
     seeped: Array
     spilt: Array
-    leaving: Array
     begin_slope: Array
     end_slope: Array
+
+    @property
+    def leaving(self) -> Array:
+        """All that leaves, the mean of each step."""
+        return np.asarray(mean(self.out + self.seeped) + self.spilt)
 
 
 def flows(tank: Tank, level: Array, inflow: Array) -> Flows:
     """What leaves a tank that stands at these levels while so much comes in."""
     out, slope = tank.outlet(level)
-    both, slopes, seeped, spilt = out, slope, np.zeros(level.shape), np.zeros(inflow.shape)
-    if tank.leaks:
-        seeped = np.asarray(tank.leak * level)
-        both, slopes = out + seeped, slope + tank.leak
+    seeped = np.asarray(tank.leak * level)
+    both, slopes, spilt = out + seeped, slope + tank.leak, np.zeros(inflow.shape)
     begin, end = slopes[:, :-1], slopes[:, 1:]
-    if tank.spills:
+    if np.any(tank.spill):
         first, more = tank.over(level[:, :-1], inflow, both[:, :-1], begin)
         last, rise = tank.over(level[:, 1:], inflow, both[:, 1:], end)
         spilt, begin, end = (first + last) / 2, begin + more, end + rise
-    return Flows(out=out, seeped=seeped, spilt=spilt, leaving=mean(both) + spilt, begin_slope=begin, end_slope=end)
+    return Flows(out=out, seeped=seeped, spilt=spilt, begin_slope=begin, end_slope=end)
 
 
 def mean(values: Array) -> Array:
@@ -210,15 +192,15 @@ def filled(tank: Tank, start: Array, inflow: Array, step: Array) -> tuple[Array,
     level = roughly(tank, start, inflow, step)
     now, change = flows(tank, level, inflow), np.zeros(level.shape)
     table, left = np.zeros((*level.shape, 2)), np.zeros(level.shape)
-    table[:, 0, 0], half = 1, step / 2
+    table[:, 0, 0] = 1
     for _ in range(MOST_ROUNDS):
-        left[:, 1:] = level[:, 1:] - level[:, :-1] + step * (now.leaving - inflow)
-        table[:, 1:, 0] = 1 + half * now.end_slope
-        table[:, :-1, 1] = half * now.begin_slope - 1
+        left[:, 1:] = np.diff(level) + step * (now.leaving - inflow)
+        table[:, 1:, 0] = 1 + step / 2 * now.end_slope
+        table[:, :-1, 1] = step / 2 * now.begin_slope - 1
         change = dtbtrs(table.reshape(-1, 2).T, left.reshape(-1, 1), uplo="L")[0].reshape(level.shape)
         level = level - change
         now = flows(tank, level, inflow)
-        if not np.abs(change).max() > SETTLED:
+        if not np.max(np.abs(change)) > SETTLED:
             break
     settled = np.max(np.abs(change), axis=-1, keepdims=True) <= SETTLED
     return np.where(settled, level, np.nan), now
