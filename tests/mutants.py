@@ -228,8 +228,8 @@ MUTANTS: tuple[Mutant, ...] = (
         ("(1.2 + 0.13 * slenderness)", "(1.2 + 0.12 * slenderness)"),
     ),
     *changes(
-        "plugins/gear_geometry/mesh_load.py", "published/test_rv_gearing_factors.py published/test_harmonic_effects.py "
-        "published/test_roller_screw_effects.py published/test_rv_gearing_effects.py",
+        "plugins/gear_geometry/mesh_load.py",
+        "published/test_rv_gearing_factors.py published/test_effects_of_machines.py",
         ("2.0 * np.sqrt(held)", "1.9 * np.sqrt(held)"),
     ),
     *changes(
@@ -273,7 +273,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ("np.log(both.roughness / middle.roughness)", "np.log(middle.roughness / both.roughness)"),
     ),
     *changes(
-        "plugins/harmonic_fractal/effects.py", "published/test_harmonic_effects.py",
+        "plugins/harmonic_fractal/effects.py", "published/test_effects_of_machines.py",
         ("1.0 - 2.0 * np.exp(-way)", "1.0 - np.exp(-way)"),
     ),
     *changes(
@@ -306,7 +306,7 @@ MUTANTS: tuple[Mutant, ...] = (
         ("(turn - np.sin(turn))", "(turn + np.sin(turn))"),
     ),
     *changes(
-        "plugins/roller_screw_shift/effects.py", "published/test_roller_screw_effects.py",
+        "plugins/roller_screw_shift/effects.py", "published/test_effects_of_machines.py",
         ("+ at_ring_tip**2", "- at_ring_tip**2"),
     ),
     *changes(

@@ -207,13 +207,14 @@ def _is_by_run(machine: Setup, rows: RowsFile) -> bool:
 
 def _records(machine: Setup, rows: RowsFile) -> Sequence[NDArray[np.intp]]:
     """Return the rows of each run that is one calculation; else, and without a column "run", the file is one."""
-    return _places_by_run(rows.runs) if _is_by_run(machine, rows) and rows.runs else (np.arange(len(rows)),)
+    is_by_run = _is_by_run(machine, rows) and rows.runs
+    return _places_alike((rows.runs,), len(rows)) if is_by_run else (np.arange(len(rows)),)
 
 
-@lru_cache(maxsize=8)
-def _places_by_run(runs: tuple[str, ...]) -> list[NDArray[np.intp]]:
-    """Return the places of the rows of each run; a fit asks for the same ones again and again."""
-    return rows_alike([runs], len(runs))
+@lru_cache(maxsize=16)
+def _places_alike(columns: tuple[tuple[Any, ...], ...], rows: int) -> list[NDArray[np.intp]]:
+    """Return the places of rows that share their values; a fit asks for the same ones again and again."""
+    return rows_alike(columns, rows)
 
 
 def _alike(
@@ -227,8 +228,8 @@ def _alike(
             column = columns[name]
             line = next(rows.lines[row] for row in record if column[row] != column[record[0]])
             raise UsageError(f"{rows.file}:{line}: {name} changes within a run, but a record is one calculation")
-    differing = [[columns[name][row] for row in record.tolist()] for name in varying]
-    for places in rows_alike(differing, len(record)):
+    differing = tuple(tuple(columns[name][row] for row in record.tolist()) for name in varying)
+    for places in _places_alike(differing, len(record)):
         yield record[places], {name: _value_at(column, record[places[0]]) for name, column in columns.items()}
 
 

@@ -5,11 +5,13 @@ Effects on results and on readings act after the model, so that rows which diffe
 
 from __future__ import annotations
 
+import os
 from collections import OrderedDict
 from collections.abc import Mapping
 from dataclasses import dataclass
 from hashlib import blake2b
 from struct import pack
+from time import process_time
 from typing import Any
 
 import numpy as np
@@ -70,6 +72,14 @@ def results_of(model: Model[Any, Any], inputs: Any, repeats: int, failed: Failed
         for name, value in answers.items()
     }
     return with_values(known.results, copies)
+
+
+def processor_seconds() -> float:
+    """Return how long this process, and those that it has waited for, have kept a processor busy.
+
+    What else the machine does is no part of it, so that a search is the same on a machine that is busy.
+    """
+    return process_time() + sum(os.times()[2:4])
 
 
 def forget() -> None:

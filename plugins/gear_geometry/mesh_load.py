@@ -47,6 +47,6 @@ def wave(angle: Float, cosine: Float, sine: Float) -> Float:
 def wave_unknowns(limit: float, unit: str, of: str, cosine: str = "cosine", sine: str = "sine") -> list[Unknown]:
     """Declare both parts of one harmonic."""
     return [
-        Unknown(cosine, -limit, limit, unit, note=f"in proportion to the cosine of {of}"),
-        Unknown(sine, -limit, limit, unit, note=f"in proportion to the sine of {of}"),
+        Unknown(cosine, -limit, limit, unit, f"in proportion to the cosine of {of}"),
+        Unknown(sine, -limit, limit, unit, f"in proportion to the sine of {of}"),
     ]

@@ -174,7 +174,11 @@ def harmonic_fractal(drive: Drive) -> Stiffness:
     return Stiffness(
         lag=drive.lags,
         structure_function=_seen(drive, rough),
-        **_interface(drive, rough),
+        surface_accepted=rough_contact.is_accepted(drive),
+        spacing=rough_contact.spacing_of(drive),
+        dimension=rough.dimension,
+        profile_dimension=rough.dimension - 1.0,
+        roughness=rough.roughness,
         **_contact(drive, contact),
         **_pair(drive, contact, pair),
         **_clearance(drive, contact, mesh, pair),
@@ -199,16 +203,6 @@ def _seen(drive: Drive, rough: rough_contact.Rough) -> Float:
     if not np.any(drive.spot_width):
         return seen
     return seen * kept_share(lags, column(drive.spot_width), 4.0 - 2.0 * dimension)
-
-
-def _interface(drive: Drive, rough: rough_contact.Rough) -> dict[str, Any]:
-    return {
-        "surface_accepted": rough_contact.is_accepted(drive),
-        "spacing": rough_contact.spacing_of(drive),
-        "dimension": rough.dimension,
-        "profile_dimension": rough.dimension - 1.0,
-        "roughness": rough.roughness,
-    }
 
 
 def _contact(drive: Drive, contact: rough_contact.Contact) -> dict[str, Any]:

@@ -90,37 +90,18 @@ def held_share(
     return sense * np.where(is_first, -np.expm1(-2.0 * way), 1.0 - 2.0 * np.exp(-way))
 
 
-def hysteresis(
-    drive: Drive,
-    results: Stiffness,
-    *,
-    loop: Float,
-    torque_scale: Float,
-    direction: Float,
-    reversal_torque: Float,
-    peak_torque: Float,
-) -> Stiffness:
+def hysteresis(drive: Drive, results: Stiffness, *, loop: Float, torque_scale: Float, **history: Float) -> Stiffness:
     """Dry friction holds the angle back by half of the loop: behind a torque that grows, and before one that falls.
 
     So the loop takes up energy, and is never negative. Range: every turn but that of the first load follows a branch on
     which the friction has slipped through, so several ``torque_scale`` (in parts of T_2) long. Of the direction only
     the sign counts.
     """
-    return turned(results, -0.5 * loop * held_share(drive, torque_scale, direction, reversal_torque, peak_torque))
+    return turned(results, -0.5 * loop * held_share(drive, torque_scale, **history))
 
 
 def viscous_hysteresis(
-    drive: Drive,
-    results: Stiffness,
-    *,
-    loop: Float,
-    torque_scale: Float,
-    thinning: Float,
-    speed: Float,
-    temperature: Float,
-    direction: Float,
-    reversal_torque: Float,
-    peak_torque: Float,
+    drive: Drive, results: Stiffness, *, loop: Float, thinning: Float, speed: Float, temperature: Float, **held: Float
 ) -> Stiffness:
     """The lubricant adds to the loop, in proportion to its viscosity and to the speed; at rest there is none of it.
 
@@ -128,7 +109,7 @@ def viscous_hysteresis(
     """
     viscosity = np.exp(-thinning * (temperature - TEMPERATURE.zero))
     width = loop * viscosity * np.abs(speed) / RATED_SPEED
-    return turned(results, -0.5 * width * held_share(drive, torque_scale, direction, reversal_torque, peak_torque))
+    return hysteresis(drive, results, loop=width, **held)
 
 
 def crossed(drive: Drive, torque_scale: Float) -> Float:
@@ -294,38 +275,35 @@ MASING = (
     "Masing, G., Eigenspannungen und Verfestigung beim Messing, 2nd Int. Congress of Applied Mechanics, Zurich 1926"
 )
 PARTS = "in parts of T_2 of the size in the catalogue (25 N*m for size 20)"
-FRICTION_SCALE = Unknown("torque_scale", 0.005, 4, "", note=f"torque after which 63 % has turned round, {PARTS}")
-PLAY_SCALE = Unknown("torque_scale", 0.002, 1, "", note=f"torque at which 76 % of the play is crossed, {PARTS}")
+FRICTION_SCALE = Unknown("torque_scale", 0.005, 4, "", f"torque after which 63 % has turned round, {PARTS}")
+PLAY_SCALE = Unknown("torque_scale", 0.002, 1, "", f"torque at which 76 % of the play is crossed, {PARTS}")
 
 
 def parts_of_wave(limit: float, unit: str, prefix: str = "", of: str = "the torsion") -> list[Unknown]:
     """Declare both parts of one harmonic."""
     return [
-        Unknown(f"{prefix}cosine", -limit, limit, unit, note=f"part of the wave of {of}"),
-        Unknown(f"{prefix}sine", -limit, limit, unit, note=f"part of the wave of {of}"),
+        Unknown(f"{prefix}cosine", -limit, limit, unit, f"part of the wave of {of}"),
+        Unknown(f"{prefix}sine", -limit, limit, unit, f"part of the wave of {of}"),
     ]
 
 
 EFFECTS: list[Effect[Drive, Stiffness]] = [
     Effect("series_compliance", on_inputs=series_compliance,
-           unknowns=[Unknown("compliance", 0, 1000, "urad/(N*m)",
-                             note="1 over a stiffness; 1.4 to 530 in the catalogue")],
+           unknowns=[Unknown("compliance", 0, 1000, "urad/(N*m)", "1 over a stiffness; 1.4 to 530 in the catalogue")],
            looks_like="the torsion grows in proportion to the torque, alike in both senses; nothing of the mesh "
                       "itself",
            why="cup, wave generator, its bearing and the test rig are springs in series with the mesh, and much "
                "softer",
            source=CATALOGUE),
     Effect("engaged_pairs", on_inputs=engaged_pairs,
-           unknowns=[Unknown("gain", 0, 2, "",
-                             note="of pairs at a large torque, over those stated; 1.7 from 15 to 40 %"),
+           unknowns=[Unknown("gain", 0, 2, "", "of pairs at a large torque, over those stated; 1.7 from 15 to 40 %"),
                      Unknown("torque_scale", 0.04, 8, "",
-                             note=f"torque after which 63 % of them have come to bear, {PARTS}")],
+                             f"torque after which 63 % of them have come to bear, {PARTS}")],
            looks_like="the mesh stiffens with the torque more than its flanks do, most where its teeth bend",
            why="the flexspline gives way under its load and lays more teeth against those of the circular spline",
            source="parallel pairs of teeth: at one torque the stiffness grows with their number to the power 1 - m"),
     Effect("oil_film", on_inputs=oil_film, needs=[SPEED, TEMPERATURE], acts_at_reference=True,
-           unknowns=[Unknown("stiffness", 0, 200, "kN/um",
-                             note="of a pair full of oil at 1000 rpm, 20 degC, T_2; 5 to 60")],
+           unknowns=[Unknown("stiffness", 0, 200, "kN/um", "of a pair full of oil at 1000 rpm, 20 degC, T_2; 5 to 60")],
            looks_like="the mesh is stiffer while it turns, most at a low speed and with warm oil, by one amount at "
                       "any torque; it is lost again where it creeps, and nothing is left at rest",
            why="oil between the flanks cannot leave in time and carries beside the asperities",
@@ -333,21 +311,21 @@ EFFECTS: list[Effect[Drive, Stiffness]] = [
                   "K. L., Greenwood, J. A., Poon, S. Y., A simple theory of asperity contact in elastohydrodynamic "
                   "lubrication, Wear 19 (1972) 91"),
     Effect("asperity_smoothing", on_inputs=asperity_smoothing, needs=[CYCLES],
-           unknowns=[Unknown("dimension", 0, 0.2, "", note="by which D rises; 0.02 to 0.1"),
-                     Unknown("roughness", 0, 5, "", note="by which ln G falls; 0.7 to 2.3"),
-                     Unknown("cycle_scale", 1e3, 1e7, "", note="cycles after which 63 % is done")],
+           unknowns=[Unknown("dimension", 0, 0.2, "", "by which D rises; 0.02 to 0.1"),
+                     Unknown("roughness", 0, 5, "", "by which ln G falls; 0.7 to 2.3"),
+                     Unknown("cycle_scale", 1e3, 1e7, "", "cycles after which 63 % is done")],
            looks_like="the mesh stiffens with the cycles, soon and then no more; the structure function falls with "
                       "them",
            why="the first load cycles flatten the highest asperities of new flanks",
            source="running-in of machined surfaces: D rises and G falls"),
     Effect("modulus_temperature", on_inputs=modulus_temperature, needs=[TEMPERATURE],
-           unknowns=[Unknown("softening", 0, 2e-3, "1/K", note="of steel 2.5e-4 to 4e-4")],
+           unknowns=[Unknown("softening", 0, 2e-3, "1/K", "of steel 2.5e-4 to 4e-4")],
            looks_like="torsion too large by one share when warm, of flanks, teeth and cup alike",
            why="Young's modulus falls with the temperature",
            source="handbook: elasticity of steel over temperature"),
     Effect("creep", on_results=creep, needs=[TIME],
-           unknowns=[Unknown("share", 0, 0.2, "", note="of the elastic torsion, per e-fold of time; 0.002 to 0.02"),
-                     Unknown("time_scale", 1e-3, 10, "h", note="time from which it counts")],
+           unknowns=[Unknown("share", 0, 0.2, "", "of the elastic torsion, per e-fold of time; 0.002 to 0.02"),
+                     Unknown("time_scale", 1e-3, 10, "h", "time from which it counts")],
            looks_like="the torsion grows with time in proportion to itself, fast at first and ever more slowly",
            why="joints, bearing and bonded cup settle under a torque that stays",
            source="logarithmic creep"),
@@ -365,68 +343,66 @@ EFFECTS: list[Effect[Drive, Stiffness]] = [
            why="the wave generator, or its coupling, is off the axis of the drive",
            source="first harmonic of an eccentricity"),
     Effect("hysteresis", on_results=hysteresis, needs=[DIRECTION, REVERSAL_TORQUE, PEAK_TORQUE],
-           unknowns=[Unknown("loop", 0, 2000, "urad", note="whole width; 290 to 870 (1 to 3 arcmin)"), FRICTION_SCALE],
+           unknowns=[Unknown("loop", 0, 2000, "urad", "whole width; 290 to 870 (1 to 3 arcmin)"), FRICTION_SCALE],
            looks_like="the torsion is smaller on the way up than on the way down at the same torque, and turns round "
                       "within a short way of it",
            why="teeth, bearing and cup rub before they slip",
            source=f"{MASING}; {CATALOGUE}"),
     Effect("viscous_hysteresis", on_results=viscous_hysteresis,
            needs=[SPEED, TEMPERATURE, DIRECTION, REVERSAL_TORQUE, PEAK_TORQUE], acts_at_reference=True,
-           unknowns=[Unknown("loop", 0, 2000, "urad",
-                             note="whole width at 1000 rpm and 20 degC, beside that at rest"),
+           unknowns=[Unknown("loop", 0, 2000, "urad", "whole width at 1000 rpm and 20 degC, beside that at rest"),
                      FRICTION_SCALE,
-                     Unknown("thinning", 0.01, 0.08, "1/K", note="of the lubricant's viscosity; 0.02 to 0.05")],
+                     Unknown("thinning", 0.01, 0.08, "1/K", "of the lubricant's viscosity; 0.02 to 0.05")],
            looks_like="a loop of the torsion that is wider the faster and the colder the drive runs; none at rest",
            why="the lubricant drags in proportion to its viscosity and to the speed",
            source=f"viscous drag; {MASING}"),
     Effect("lost_motion", on_results=lost_motion,
-           unknowns=[Unknown("play", 0, 1000, "urad", note="half of it; to 290 (1 arcmin) in catalogues"), PLAY_SCALE],
+           unknowns=[Unknown("play", 0, 1000, "urad", "half of it; to 290 (1 arcmin) in catalogues"), PLAY_SCALE],
            looks_like="the torsion jumps about no torque, and is shifted in its sense by one amount at larger ones",
            why="the teeth have play, which they cross one after another",
            source=CATALOGUE),
     Effect("first_load_set", on_results=first_load_set, needs=[PEAK_TORQUE],
-           unknowns=[Unknown("set", 0, 300, "urad", note="after a load of T_2 in the catalogue; 6 to 60"),
-                     Unknown("exponent", 1, 1.5, "", note="power of the peak torque"),
-                     Unknown("stiffening", 0, 2, "", note="of the mesh below the peak; 0.1 to 0.6")],
+           unknowns=[Unknown("set", 0, 300, "urad", "after a load of T_2 in the catalogue; 6 to 60"),
+                     Unknown("exponent", 1, 1.5, "", "power of the peak torque"),
+                     Unknown("stiffening", 0, 2, "", "of the mesh below the peak; 0.1 to 0.6")],
            parts=[("set", "exponent"), ("stiffening",)],
            looks_like="a torsion that stays when the torque goes, and grows only with a new peak; a mesh that is "
                       "stiffer below the peak than it was when it was reached",
            why="the highest asperities flow under the first load, and lie flat from then on",
            source="plastic contact of rough surfaces"),
     Effect("flank_wear", on_results=flank_wear, needs=[CYCLES],
-           unknowns=[Unknown("rate", 0, 20, "um", note="depth on either flank per million cycles in service"),
+           unknowns=[Unknown("rate", 0, 20, "um", "depth on either flank per million cycles in service"),
                      PLAY_SCALE],
            looks_like="a lost motion that grows in proportion to the cycles",
            why="the flanks slide on one another with every wave",
            source=ARCHARD),
     Effect("thermal_preload", on_results=thermal_preload, needs=[TEMPERATURE],
            unknowns=[Unknown("expansion", -20, 20, "um/(m*K)",
-                             note="linear, of the circular spline less that of the flexspline")],
+                             "linear, of the circular spline less that of the flexspline")],
            looks_like="a lost motion that grows, or shrinks, in proportion to the temperature",
            why="the two splines are of different metal and move apart, or together, as they get warm",
            source="linear expansion; play of teeth that move apart, 2 tan(alpha) times the distance"),
     Effect("lateral_filter", on_inputs=lateral_filter,
            unknowns=[Unknown("width", 0, 20, "um",
-                             note="standard deviation of its weight; 0.187 of the cutoff of ISO 16610-21")],
+                             "standard deviation of its weight; 0.187 of the cutoff of ISO 16610-21")],
            looks_like="the structure function is too low, by a share at lags below a few widths and by one amount "
                       "above",
            why="a stylus, a spot of light or a filter averages over the finest roughness",
            source="Gaussian weight on a power law; ISO 16610-21"),
     Effect("waviness", on_results=waviness,
-           unknowns=[Unknown("square", 0, 4, "um^2",
-                             note="of its amplitude A, since it enters so; A is 0.05 to 1 um"),
-                     Unknown("wavelength", 3, 3000, "um", note="30 to 500")],
+           unknowns=[Unknown("square", 0, 4, "um^2", "of its amplitude A, since it enters so; A is 0.05 to 1 um"),
+                     Unknown("wavelength", 3, 3000, "um", "30 to 500")],
            looks_like="the structure function has a hump at half a wavelength, and a dip at a whole one",
            why="chatter and feed of the tool leave waves on a flank",
            source="structure function of a sine"),
     Effect("rig_drift", on_reading=rig_drift, needs=[TIME],
-           unknowns=[Unknown("rate", -500, 500, "urad/h", note="1 to 30")],
+           unknowns=[Unknown("rate", -500, 500, "urad/h", "1 to 30")],
            looks_like="the torsion moves with time, whatever the torque, as with a sensor that drifts",
            why="the rig gets warm and bends",
            source="linear growth with time"),
     Effect("instrument_noise", on_reading=instrument_noise,
            unknowns=[Unknown("variance", 0, 1e4, "nm^2",
-                             note="square of the noise of one height, since it enters so; 1 to 2500")],
+                             "square of the noise of one height, since it enters so; 1 to 2500")],
            looks_like="the structure function is too high by one amount at any lag, which is an offset",
            why="every height has the noise of its instrument",
            source="structure function of white noise: twice its variance"),

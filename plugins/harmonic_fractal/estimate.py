@@ -5,19 +5,8 @@ from typing import Literal
 
 import numpy as np
 
-from harmonic_fractal.structure import (
-    CACHED,
-    SHARE,
-    Steps,
-    StructureFunction,
-    fit_steps,
-    local_steps,
-    log_roughness_of,
-    mean_squares,
-    piece_sums,
-    stated_steps,
-    structure_function_of,
-)
+from harmonic_fractal import structure
+from harmonic_fractal.structure import CACHED, SHARE, Steps, StructureFunction, mean_squares
 from harmonic_fractal.surface import Direction, Lines
 from truing import Array
 
@@ -153,7 +142,7 @@ def units_of(heights: Array, curve: StructureFunction, steps: Steps, block: int)
         together = -(-len(curve.sums) // MOST_UNITS)
         groups = _grouped(curve, together)
         return groups, _at_most(-(-(block or LINES_TOGETHER) // together), len(groups.sums))
-    pieces = StructureFunction(curve.lags, *piece_sums(heights, steps, PIECES))
+    pieces = StructureFunction(curve.lags, *structure.piece_sums(heights, steps, PIECES))
     reach = steps[-1] * len(pieces.sums) / (heights.shape[1] - steps[-1])
     return pieces, _at_most(int(np.ceil(reach)), len(pieces.sums))
 
@@ -456,7 +445,7 @@ def _curves(lines: Lines, settings: Estimation) -> tuple[StructureFunction, _Loc
     """Return S between whose lags the local slopes are taken, these slopes, and S at the lags of the fit."""
     points = lines.heights.shape[1]
     every, shortest = _steps(points, lines.spacing, settings), min(settings.lags, default=settings.shortest_lag)
-    coarse = _measured(lines, local_steps(points, shortest / lines.spacing))
+    coarse = _measured(lines, structure.local_steps(points, shortest / lines.spacing))
     noise = _noise(lines, every, settings)
     local = _local(coarse, noise, settings)
     is_whole = local.reason or settings.fit == "all"
@@ -467,8 +456,8 @@ def _curves(lines: Lines, settings: Estimation) -> tuple[StructureFunction, _Loc
 def _steps(points: int, spacing: float, settings: Estimation) -> Steps:
     """Return the lags, in points, within the limits that are set."""
     if settings.lags:
-        return stated_steps(points, [lag / spacing for lag in settings.lags])
-    return fit_steps(points, settings.shortest_lag / spacing, settings.longest_lag / spacing, settings.count)
+        return structure.stated_steps(points, [lag / spacing for lag in settings.lags])
+    return structure.fit_steps(points, settings.shortest_lag / spacing, settings.longest_lag / spacing, settings.count)
 
 
 def _reach(curve: StructureFunction, noise: float, local: _Local) -> tuple[float, float]:
@@ -486,15 +475,15 @@ def _within(points: int, spacing: float, found: tuple[float, float], settings: E
     last = min(max(SHARE * points * spacing, DECADE * low), high)
     if settings.lags:
         kept = [lag for lag in settings.lags if low * (1 - SLACK) <= lag <= high * (1 + SLACK)]
-        return stated_steps(points, [lag / spacing for lag in kept])
+        return structure.stated_steps(points, [lag / spacing for lag in kept])
     if settings.longest_lag > 0:
         last = min(settings.longest_lag, high)
-    return fit_steps(points, low / spacing, last / spacing, settings.count)
+    return structure.fit_steps(points, low / spacing, last / spacing, settings.count)
 
 
 def _measured(lines: Lines, steps: Steps) -> StructureFunction:
     """Return the structure function at those lags that have enough pairs, and where the surface is not flat."""
-    curve = structure_function_of(lines.heights, lines.spacing, steps)
+    curve = structure.structure_function_of(lines.heights, lines.spacing, steps)
     return curve.at((curve.pairs >= FEWEST_PAIRS) & (np.nan_to_num(curve.pooled) > 0.0))
 
 
@@ -541,7 +530,7 @@ def _law(lags: Array, values: Array, settings: Estimation) -> PowerLaw:
 def _pairs(law: PowerLaw) -> Array:
     """Return D_s and ln G (..., 2), NaN where there is no G."""
     dimension = 2.0 - law.slope / 2.0
-    return np.stack([dimension, log_roughness_of(law.intercept, dimension)], axis=-1)
+    return np.stack([dimension, structure.log_roughness_of(law.intercept, dimension)], axis=-1)
 
 
 def _fit(curve: StructureFunction, settings: Estimation) -> _Fit:

@@ -8,20 +8,9 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from harmonic_fractal import surface as surfaces
 from harmonic_fractal.estimate import FEWEST_POINTS, Estimate, Estimation, estimate_of
-from harmonic_fractal.surface import (
-    Direction,
-    Form,
-    Lines,
-    Surface,
-    cut,
-    pooled,
-    quantisation,
-    root_mean_square,
-    spikes_of,
-    without_form,
-    without_line,
-)
+from harmonic_fractal.surface import Direction, Form, Lines, Surface
 from harmonic_fractal.surface_files import FileLayout, Reading, length, metres_per_unit, read_surface
 
 # What the inputs file says beside the name of a surface, checked: a fault is one sentence that names the option
@@ -124,6 +113,7 @@ def _shown(value: object) -> str:
 
 FEW_MISSING, MANY_MISSING = 0.05, 0.20  # shares of the points: above the one a warning, above the other an error
 FEW_SPIKES = 0.02
+FITTED: tuple[Form, Form] = ("plane", "second_order")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -177,7 +167,7 @@ def prepared(raw: Surface, options: Options) -> Flank:
 
     Raises ValueError with one sentence.
     """
-    surface = cut(raw, options.rectangle, options.corner) if options.rectangle else raw
+    surface = surfaces.cut(raw, options.rectangle, options.corner) if options.rectangle else raw
     rows, points = surface.heights.shape
     if max(rows, points) < FEWEST_POINTS:
         raise ValueError(f"{rows} x {points} points (rows x points) are too few: a line needs {FEWEST_POINTS} or more")
@@ -186,17 +176,17 @@ def prepared(raw: Surface, options: Options) -> Flank:
         raise ValueError(
             f"{missing:.1%} of the points are missing, more than {MANY_MISSING:.0%}: cut another rectangle"
         )
-    plane, second = without_form(surface.heights, "plane"), without_form(surface.heights, "second_order")
+    plane, second = (surfaces.without_form(surface.heights, form) for form in FITTED)
     heights = {"none": surface.heights, "plane": plane, "second_order": second}[options.form]
-    step = quantisation(surface.heights)
-    spikes = spikes_of(heights, step)
+    step = surfaces.quantisation(surface.heights)
+    spikes = surfaces.spikes_of(heights, step)
     spiked = float(spikes.sum() / np.isfinite(heights).sum())
     if options.spikes == "remove":
         heights = np.where(spikes, np.nan, heights)
     clean = Surface(np.array(heights), surface.spacing_x, surface.spacing_y, surface.name)
     return Flank(
-        raw=raw, surface=clean, missing=missing, spiked=spiked, sq_raw=root_mean_square(surface.heights),
-        sq_plane=root_mean_square(plane), sq_second_order=root_mean_square(second),
+        raw=raw, surface=clean, missing=missing, spiked=spiked, sq_raw=surfaces.root_mean_square(surface.heights),
+        sq_plane=surfaces.root_mean_square(plane), sq_second_order=surfaces.root_mean_square(second),
         warnings=(*_shares(missing, spiked, options), *_steps(clean, step)),
     )  # fmt: skip
 
@@ -261,11 +251,11 @@ def with_choice(clean: Flank, options: Options) -> Flank:
 
 
 def _level(lines: Lines) -> Lines:
-    return Lines(without_line(lines.heights), lines.spacing)
+    return Lines(surfaces.without_line(lines.heights), lines.spacing)
 
 
 def _together(lines: dict[Direction, Lines], settings: Estimation) -> Estimate:
-    return estimate_of(pooled(lines["x"], lines["y"]), "both", settings)
+    return estimate_of(surfaces.pooled(lines["x"], lines["y"]), "both", settings)
 
 
 def _asked(clean: Flank, estimates: tuple[Estimate, ...], direction: Direction, said: tuple[str, ...] = ()) -> Flank:

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cached_property
+from hashlib import blake2b
 from typing import Any
 
 import numpy as np
@@ -234,6 +235,9 @@ WIDEST = 1.0  # panel, in the variable of integration
 TURN = 0.3  # 1/u where that variable turns from ln u to u
 KINKS = 128  # places at which a panel ends because there a pair turns elastic; of more pairs each matters less
 ROWS = 4096  # cut into panels at a time
+REMEMBERED = 128  # torsions: a fit asks for the same ones again, with other springs and readings around the mesh
+LARGEST = 2**14  # so many rows are remembered; more are calculated anew
+_TORSIONS: dict[bytes, tuple[Float, Float]] = {}
 
 
 @dataclass(frozen=True)
@@ -252,6 +256,20 @@ def mesh_torsion(torque: Float, reference: Float, mesh: DriveMesh) -> tuple[Floa
     out films and springs. Accuracy: 1e-9 of the value; with more than 250 pairs and a reference near the plastic limit
     1e-7. Rows that differ in their torque alone share the way of integration up to where it ends.
     """
+    digest = blake2b(digest_size=16)
+    for number in (torque, reference, mesh.arcs.shares, *mesh.law_numbers, *mesh.pair.numbers):
+        digest.update(f"{np.shape(number)}".encode() + np.asarray(number, dtype=float).tobytes())
+    key = digest.digest()
+    found = _TORSIONS.pop(key, None) or _torsion(torque, reference, mesh)
+    if np.size(found[0]) <= LARGEST:
+        _TORSIONS[key] = found  # the latest stands last
+    for old in list(_TORSIONS)[:-REMEMBERED]:
+        _TORSIONS.pop(old, None)
+    return found
+
+
+def _torsion(torque: Float, reference: Float, mesh: DriveMesh) -> tuple[Float, Float]:
+    """Return what ``mesh_torsion`` does."""
     begin, lever = mesh.plastic_torque, np.square(mesh.radius)
     given = mesh.with_rows(np.log(np.maximum(np.abs(torque), 1e-300) / begin), np.log(reference / begin), lever)
     last, first, lever = (np.atleast_1d(item) for item in given)

@@ -81,86 +81,56 @@ PUBLISHED = [
 
 # Where the patent leaves something open or cannot be read literally, and what its reader must know
 
-FINDINGS = [
-    Finding(
-        title="Equations 1, 3, 4, 6 and 8 are lost, and no number is printed",
-        text="The patent prints equations 2, 5 and 7 and names the symbols of the others. Equation 8 is told in words; "
-        "1, 3, 4 and 6 are those of the literature that have just these symbols. It gives no measured flank, no D, no "
-        "G, no stiffness and no clearance, so nothing of it can be compared in numbers. What is compared above is the "
-        "torsional stiffness that the maker of such drives prints.",
-    ),
-    Finding(
-        title="r' is called an area and must be a radius",
-        text="With r' as an area equation 7 has the unit m^(4 − D), which is no length. With the radius of the largest "
-        "contact it is the amplitude of equation 1, in metres. The input clearance_rule chooses between that "
-        "amplitude, twice it, and the amplitude of the longest wave of the patch.",
-    ),
-    Finding(
-        title="The clearance of equation 7 grows with the load",
-        text="It is half the interference of the largest contact: 47 nm at 1 N, 153 nm at 25 N and 255 nm at 100 N (D "
-        "= 2.4, G = 1e-11 m). A gap that widens while it is pressed cannot close, and cannot be the backlash of a "
-        "model of vibrations. What closes is the distance of the mean planes less the integral of dF/K: 461, 427 and "
-        "408 nm. At the output that is 0.12 arcmin, where catalogues state about 1 arcmin of hysteresis: the clearance "
-        "of a drive is made by tooth form, assembly and wear.",
-    ),
-    Finding(
-        title="Stiffness without load, and an integral without end",
-        text="Up to a small load (1.4e-5 N here) all contacts are plastic and the model has no stiffness; just above "
-        "it the stiffness begins at 0. The integrals of dF/K and dT/K from there on are infinite, like a logarithm, so "
-        "closing clearance and torsion count from a reference torque. From 0.1 instead of 1 mN m the torsion at 25 N m "
-        "is 3.44 instead of 3.05 µrad. The surfaces touch below that load too; how stiffly, this theory cannot say.",
-    ),
-    Finding(
-        title="The contact of the flanks is not the weakest part of the mesh",
-        text="The patent says so. Rough contacts of 60 pairs of size 20 have 4.7e7 N m/rad (D = 2.4, G = 1e-11 m) or "
-        "6.6e6 N m/rad (2.5, 1e-9 m); the maker prints 2.5e4 N m/rad for the drive. That is 0.05 % or 0.4 % of its "
-        "compliance at 25 N m, and 0.3 % of its torsion from 1 mN m on, or 1.9 % from 50 mN m. With 2e7 N/m for tooth "
-        "and rim of each pair the mesh has 4 to 5 %. More than nine tenths lie in cup, wave generator and bearing.",
-    ),
-    Finding(
-        title="Tuning the topography tunes the contact, hardly the drive",
-        text="The patent means to improve a drive by the topography of its flanks. In its own model half of G makes "
-        "the contact of a pair 1.67 times as stiff and D = 2.45 instead of 2.4 makes it 3.0 times as stiff: smoother "
-        "is always stiffer, and there is no best. But of the torsion of the drive at 25 N m a contact without any "
-        "compliance would save 0.26 %.",
-    ),
-    Finding(
-        title="A factor is missing in the constant that is usually printed",
-        text="For waves of f cycles per metre the constant of the structure function holds (2π)^(4 − 2 D_s). Where it "
-        "is left out, as in many papers, G comes out too large by (2π)^((2 − D_s)/(D_s − 1)): 15.7 at D_s = 1.4, 6.3 "
-        "at 1.5, 3.4 at 1.6, 1560 at 1.2. At 1.4 the stiffness of a pair is then 0.13 of what it should be. That "
-        "constant belongs to waves counted in radians per metre. The patent's own equations 3 and 4 are "
-        "lost with their constant.",
-    ),
-    Finding(
-        title="There are two G, and they differ by factors",
-        text="The G of a Weierstrass-Mandelbrot profile and that of the areal surface of the contact model differ by "
-        "ln γ and by the mean over directions: at D_s = 1.5 and γ = 1.5 one surface has an areal G 3.87 times that of "
-        "its profiles. The patent reads the one and puts it into the other, which would change the stiffness by a "
-        "factor of 3.4. Here every G has its convention.",
-    ),
-    Finding(
-        title="Named is the roughness-length method, printed the structure function",
-        text="Equation 2 is the structure function; the roughness-length method of Malinverno looks at the roughness "
-        "of windows instead and gives D_s only. The structure function is used.",
-    ),
-    Finding(
-        title="D = ⟨D_s⟩ + 1 holds for flanks that look alike in all directions",
-        text="Teeth that are shaped or ground have a lay, and D_s differs along and across it. Lines of all directions "
-        "are pooled only where they agree within 0.15; otherwise one direction is used, and said. The mean of many D_s "
-        "and a mean of G do not belong together: G of single lines scatters by decades, so its logarithm is averaged.",
-    ),
-    Finding(
-        title="A straight line always fits",
-        text="A surface that is smooth below 2 µm and random above 10 µm still gives R² = 0.98, a D and a G. The local "
-        "slopes tell: a flank without a decade of equal slopes is refused here, whatever its R², and the calculation "
-        "ends with a failed check. The patent asks nothing of the kind.",
-    ),
-    Finding(
-        title="Which contacts are plastic, and whether tips change, is a choice",
-        text="Small contacts yield first in this theory, which single contacts of a fixed tip do not (Morag and Etsion "
-        "2007). With first yield instead of the hardness as the limit the critical area is 3800 times as large and the "
-        "stiffness a ninth (2.16e8 instead of 1.95e9 N/m); with a tip radius that follows the area it is 1.78 times as "
-        "large. The inputs critical_rule and tip_rule choose; no test of flanks is known that decides.",
-    ),
-]
+TOLD = {
+    "Equations 1, 3, 4, 6 and 8 are lost, and no number is printed": "The patent prints equations 2, 5 and 7 and names "
+    "the symbols of the others. Equation 8 is told in words; 1, 3, 4 and 6 are those of the literature that have just "
+    "these symbols. It gives no measured flank, no D, no G, no stiffness and no clearance, so nothing of it can be "
+    "compared in numbers. What is compared above is the torsional stiffness that the maker of such drives prints.",
+    "r' is called an area and must be a radius": "With r' as an area equation 7 has the unit m^(4 − D), which is no "
+    "length. With the radius of the largest contact it is the amplitude of equation 1, in metres. The input "
+    "clearance_rule chooses between that amplitude, twice it, and the amplitude of the longest wave of the patch.",
+    "The clearance of equation 7 grows with the load": "It is half the interference of the largest contact: 47 nm at 1 "
+    "N, 153 nm at 25 N and 255 nm at 100 N (D = 2.4, G = 1e-11 m). A gap that widens while it is pressed cannot close, "
+    "and cannot be the backlash of a model of vibrations. What closes is the distance of the mean planes less the "
+    "integral of dF/K: 461, 427 and 408 nm. At the output that is 0.12 arcmin, where catalogues state about 1 arcmin "
+    "of hysteresis: the clearance of a drive is made by tooth form, assembly and wear.",
+    "Stiffness without load, and an integral without end": "Up to a small load (1.4e-5 N here) all contacts are "
+    "plastic and the model has no stiffness; just above it the stiffness begins at 0. The integrals of dF/K and dT/K "
+    "from there on are infinite, like a logarithm, so closing clearance and torsion count from a reference torque. "
+    "From 0.1 instead of 1 mN m the torsion at 25 N m is 3.44 instead of 3.05 µrad. The surfaces touch below that load "
+    "too; how stiffly, this theory cannot say.",
+    "The contact of the flanks is not the weakest part of the mesh": "The patent says so. Rough contacts of 60 pairs "
+    "of size 20 have 4.7e7 N m/rad (D = 2.4, G = 1e-11 m) or 6.6e6 N m/rad (2.5, 1e-9 m); the maker prints 2.5e4 N "
+    "m/rad for the drive. That is 0.05 % or 0.4 % of its compliance at 25 N m, and 0.3 % of its torsion from 1 mN m "
+    "on, or 1.9 % from 50 mN m. With 2e7 N/m for tooth and rim of each pair the mesh has 4 to 5 %. More than nine "
+    "tenths lie in cup, wave generator and bearing.",
+    "Tuning the topography tunes the contact, hardly the drive": "The patent means to improve a drive by the "
+    "topography of its flanks. In its own model half of G makes the contact of a pair 1.67 times as stiff and D = 2.45 "
+    "instead of 2.4 makes it 3.0 times as stiff: smoother is always stiffer, and there is no best. But of the torsion "
+    "of the drive at 25 N m a contact without any compliance would save 0.26 %.",
+    "A factor is missing in the constant that is usually printed": "For waves of f cycles per metre the constant of "
+    "the structure function holds (2π)^(4 − 2 D_s). Where it is left out, as in many papers, G comes out too large by "
+    "(2π)^((2 − D_s)/(D_s − 1)): 15.7 at D_s = 1.4, 6.3 at 1.5, 3.4 at 1.6, 1560 at 1.2. At 1.4 the stiffness of a "
+    "pair is then 0.13 of what it should be. That constant belongs to waves counted in radians per metre. The patent's "
+    "own equations 3 and 4 are lost with their constant.",
+    "There are two G, and they differ by factors": "The G of a Weierstrass-Mandelbrot profile and that of the areal "
+    "surface of the contact model differ by ln γ and by the mean over directions: at D_s = 1.5 and γ = 1.5 one surface "
+    "has an areal G 3.87 times that of its profiles. The patent reads the one and puts it into the other, which would "
+    "change the stiffness by a factor of 3.4. Here every G has its convention.",
+    "Named is the roughness-length method, printed the structure function": "Equation 2 is the structure function; the "
+    "roughness-length method of Malinverno looks at the roughness of windows instead and gives D_s only. The structure "
+    "function is used.",
+    "D = ⟨D_s⟩ + 1 holds for flanks that look alike in all directions": "Teeth that are shaped or ground have a lay, "
+    "and D_s differs along and across it. Lines of all directions are pooled only where they agree within 0.15; "
+    "otherwise one direction is used, and said. The mean of many D_s and a mean of G do not belong together: G of "
+    "single lines scatters by decades, so its logarithm is averaged.",
+    "A straight line always fits": "A surface that is smooth below 2 µm and random above 10 µm still gives R² = 0.98, "
+    "a D and a G. The local slopes tell: a flank without a decade of equal slopes is refused here, whatever its R², "
+    "and the calculation ends with a failed check. The patent asks nothing of the kind.",
+    "Which contacts are plastic, and whether tips change, is a choice": "Small contacts yield first in this theory, "
+    "which single contacts of a fixed tip do not (Morag and Etsion 2007). With first yield instead of the hardness as "
+    "the limit the critical area is 3800 times as large and the stiffness a ninth (2.16e8 instead of 1.95e9 N/m); with "
+    "a tip radius that follows the area it is 1.78 times as large. The inputs critical_rule and tip_rule choose; no "
+    "test of flanks is known that decides.",
+}
+FINDINGS = [Finding(title=title, text=text) for title, text in TOLD.items()]

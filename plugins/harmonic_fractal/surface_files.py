@@ -210,6 +210,7 @@ ROLES = {
 }  # fmt: skip
 NAMED = re.compile(r"\"?([A-Za-z]+)\"?\s*(?:[\[(]([^\])]*)[\])]|/\s*(\S+))?\"?")
 UNIT = re.compile(r"\"?[\[(]([^\])]*)[\])]\"?")
+SPACED = re.compile(r"\S+(?:\s+[\[(][^\])]*[\])])?")  # names between spaces, each with its unit
 
 
 HeightColumn = tuple[int, str]
@@ -243,7 +244,8 @@ def columns_of(table: TextTable, named: Sequence[str] = ()) -> dict[str, HeightC
 
 def _from_header(table: TextTable) -> dict[str, HeightColumn] | None:
     lines = [line.lstrip("#").strip() for line in table.header]
-    cells = [[cell.strip() for cell in _split(line, table.separator)] for line in lines]
+    parts = (line.split(mark) if (mark := table.separator) else SPACED.findall(line) for line in lines)
+    cells = [[cell.strip() for cell in part] for part in parts]
     width = table.values.shape[1]
     units: list[str] = []
     for row in reversed(cells):
@@ -257,10 +259,6 @@ def _from_header(table: TextTable) -> dict[str, HeightColumn] | None:
         if found is not None:
             return found
     return None
-
-
-def _split(line: str, separator: str | None) -> list[str]:
-    return line.split(separator) if separator is not None else re.findall(r"\S+(?:\s+[\[(][^\])]*[\])])?", line)
 
 
 def _roles(cells: list[str], units: list[str]) -> dict[str, HeightColumn] | None:

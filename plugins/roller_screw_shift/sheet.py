@@ -4,9 +4,13 @@ from collections.abc import Sequence
 from functools import partial
 
 from roller_screw_shift import figures, optimum
+from roller_screw_shift.calculation import MARGINS
+from roller_screw_shift.quantities import Meshing
 from truing import Block, Drawing, Optimum, Section, Words
 
 # The figures and tables by section of the sheet: each is there where its study ran
+
+DECLARED = tuple(Meshing.__dataclass_fields__)
 
 CONVENTION = (
     "Signs: E is the roller (an external gear), I the ring (an internal one, its number of teeth counted positive). A "
@@ -112,11 +116,7 @@ def weights(record: figures.PairRun) -> "Sequence[Block]":
 SECTIONS = [
     Section(
         "Roller and ring",
-        "working_angle", "shift_difference", "ring_shift", "mounted_distance", "mounted_angle", "base_radius_roller",
-        "base_radius_ring", "tip_radius_roller", "tip_radius_ring", "root_radius_roller", "root_radius_ring",
-        "tip_angle_roller", "tip_angle_ring", "contact_ratio", "half_angle_roller", "tip_land",
-        "crossing_cosine_roller", "crossing_angle_roller", "crossing_cosine_ring", "crossing_angle_ring",
-        "tip_clearance", "backlash",
+        *DECLARED[: DECLARED.index("root_sliding_roller")], "backlash",
         text="Each roller of the screw carries a gear at its ends that runs inside a ring in the nut and keeps the "
         "roller parallel to the screw. The threads fix the centre distance, so the difference of both shifts is fixed "
         "and one of them remains free.",
@@ -149,9 +149,7 @@ SECTIONS = [
     ),
     Section(
         "Limits of the shift",
-        "margin_ring_base", "margin_roller_base", "margin_contact_ratio", "margin_interference",
-        "margin_opposite_tips", "margin_roller_root", "margin_ring_root", "margin_involute", "margin_undercut",
-        "margin_tip_land", "margin_sliding", "lowest_shift", "highest_shift",
+        *MARGINS, "lowest_shift", "highest_shift",
         text="A margin above 0 is safe. The first six are the paper's; the others are needed beside them, because "
         "those alone leave a very wide range of shifts.",
         blocks=limits,

@@ -155,9 +155,10 @@ def flash_of(stage: Gearing, strength: Strength) -> Float:
     """
     speed = TURN * strength.duty.mesh_speed
     force = strength.duty.line_load / np.cos(strength.mesh.transverse_angle)
+    soft = sum((1.0 - gear.poisson_ratio**2) / gear.young_modulus for gear in (stage.sun, stage.planet))
     found: list[Float] = []
     for sun, planet in ends_of_path(strength):
-        width = 2.0 * half_width(stage, force, sun * planet / (sun + planet))
+        width = 2.0 * np.sqrt(4.0 * force * (sun * planet / (sun + planet)) * soft / np.pi)  # Hertz
         slip = np.abs(np.sqrt(speed * sun) - np.sqrt(speed * planet / strength.mesh.tooth_ratio))
         found.append(BLOK_FACTOR * force * slip / (np.sqrt(width) * CONTACT_COEFFICIENT))
     return np.maximum(found[0], found[1])
@@ -168,12 +169,6 @@ def ends_of_path(strength: Strength) -> tuple[tuple[Float, Float], tuple[Float, 
     sun, planet = strength.sun, strength.planet
     tips = [0.5 * gear.size.base_diameter * np.tan(gear.size.tip_angle) for gear in (sun, planet)]
     return (np.maximum(sun.size.start_curvature, 0.0), tips[1]), (tips[0], np.maximum(planet.size.start_curvature, 0.0))
-
-
-def half_width(stage: Gearing, force: Float, radius: Float) -> Float:
-    """Return the Hertzian half width, m, under a line load (N/m), at this radius of both flanks together."""
-    soft = sum((1.0 - gear.poisson_ratio**2) / gear.young_modulus for gear in (stage.sun, stage.planet))
-    return np.sqrt(4.0 * force * radius * soft / np.pi)
 
 
 # What follows the oil: how far its heat drives the gears apart, and what it holds back at any torque
@@ -191,11 +186,6 @@ def centre_distance_growth(stage: Gearing, *, expansion: Float) -> Gearing:
     return replace(stage, centre_distance_deviation=stage.centre_distance_deviation + growth)
 
 
-def viscosity_at_work(stage: Gearing) -> Float:
-    """Return the kinematic viscosity at the temperature of the oil, m²/s."""
-    return MM2_S * viscosity_at(stage.oil_temperature, stage.viscosity / MM2_S)
-
-
 def speed_dependent_loss(stage: Gearing, strength: Strength, *, constant: Float, viscous: Float) -> Strength:
     """Seals, bearings and oil hold the sun back at any torque: efficiency less M_0/T_1, not below 0.
 
@@ -203,7 +193,7 @@ def speed_dependent_loss(stage: Gearing, strength: Strength, *, constant: Float,
     T_1 is the torque that was calculated without M_0, so the loss is meant to be small beside it.
     """
     load = load_of(stage)
-    product = viscosity_at_work(stage) * load.duty.sun_speed
+    product = MM2_S * viscosity_at(stage.oil_temperature, stage.viscosity / MM2_S) * load.duty.sun_speed
     held_back = constant + viscous * np.cbrt(product / REFERENCE) ** 2
     loss = held_back / np.maximum(load.duty.sun_torque, LEAST_TORQUE)
     return replace(strength, efficiency=np.maximum(strength.efficiency - loss, 0.0))
@@ -267,58 +257,55 @@ ARCHARD = "Archard, J. F., Contact and rubbing of flat surfaces, Journal of Appl
 
 EFFECTS: list[Effect[Gearing, Strength]] = [
     Effect("face_misalignment", on_inputs=face_misalignment,
-           unknowns=[Unknown("misalignment", -3, 100, "um",
-                             note="over the face width, beside that of the tolerances"),
-                     Unknown("per_load", -3, 100, "um/kN", note="what it gains with the tangential force of a mesh")],
+           unknowns=[Unknown("misalignment", -3, 100, "um", "over the face width, beside that of the tolerances"),
+                     Unknown("per_load", -3, 100, "um/kN", "what it gains with the tangential force of a mesh")],
            parts=[("misalignment",), ("per_load",)],
            looks_like="all stresses too high by a share that falls with the load; with shafts that bend, by one "
                       "share at any load, which the tolerances or a gain of the gauge may be as well",
            why="sun and planet axes are not parallel: bores of the carrier, bearing play, and a shaft that bends",
            source=FACE),
     Effect("structural_resonance", on_inputs=structural_resonance,
-           unknowns=[Unknown("strength", 0, 2, "",
-                             note="error of the mesh times stiffness over load: gain far above it"),
-                     Unknown("resonance_speed", 200, 5000, "rpm", note="of the sun relative to the carrier"),
-                     Unknown("damping", 0.03, 0.3, "", note="damping ratio")],
+           unknowns=[Unknown("strength", 0, 2, "", "error of the mesh times stiffness over load: gain far above it"),
+                     Unknown("resonance_speed", 200, 5000, "rpm", "of the sun relative to the carrier"),
+                     Unknown("damping", 0.03, 0.3, "", "damping ratio")],
            looks_like="all stresses have a peak at one speed of the input, by the same share at any load; nothing at "
                       "rest and below the peak four times as much at twice the speed",
            why="shaft, carrier or housing have a frequency of their own, which the teeth of the sun meet at that "
                "speed",
            source=RESONANCE),
     Effect("planet_load_sharing", on_inputs=planet_load_sharing,
-           unknowns=[Unknown("lead", 0, 100, "um",
-                             note="of one planet before the mean of all, along the line of action")],
+           unknowns=[Unknown("lead", 0, 100, "um", "of one planet before the mean of all, along the line of action")],
            looks_like="all stresses too high at small loads, hardly at large ones; root stresses by nearly the same "
                       "amount at any load, like an offset",
            why="planets stand unevenly on their cranks; the first one to touch carries until its mesh has given way",
            source=STIFFNESS),
     Effect("crowned_contact", on_inputs=crowned_contact,
-           unknowns=[Unknown("full_line_load", 0, 200, "N/mm", note="force over width from which all of it carries")],
+           unknowns=[Unknown("full_line_load", 0, 200, "N/mm", "force over width from which all of it carries")],
            looks_like="all stresses too high at small loads, and right from some load on",
            why="crowned teeth touch in the middle of their width; the contact grows with the load",
            source="Hertz, point contact of crowned flanks that spreads over the face; width as the cube root of the "
                   "force"),
     Effect("relief_error", on_inputs=relief_error,
-           unknowns=[Unknown("missing", -50, 50, "um", note="of the relief of the tip")],
+           unknowns=[Unknown("missing", -50, 50, "um", "of the relief of the tip")],
            looks_like="root stresses off by the same amount at any load, like an offset; contact stress as calculated",
            why="the tips were ground back less than was meant, or more: the load meets the tooth higher, or lower",
            source=STIFFNESS),
     Effect("centre_distance_growth", on_inputs=centre_distance_growth,
            unknowns=[Unknown("expansion", -40, 40, "um/(m*K)",
-                             note="linear, of housing and carrier less that of the gears; aluminium less steel 12")],
+                             "linear, of housing and carrier less that of the gears; aluminium less steel 12")],
            looks_like="the backlash grows with the temperature of the oil, back and forth, and never with the hours",
            why="the parts that hold the gears apart expand more than the gears, or get warmer",
            source="linear expansion; backlash of an involute pair on its working centre distance, ISO 21771"),
     Effect("speed_dependent_loss", on_results=speed_dependent_loss,
-           unknowns=[Unknown("constant", 0, 50, "N*m", note="holding back the sun at any speed: seals, preload"),
+           unknowns=[Unknown("constant", 0, 50, "N*m", "holding back the sun at any speed: seals, preload"),
                      Unknown("viscous", 0, 50, "N*m",
-                             note="holding back the sun at 100 mm²/s and 1000 r/min; as the power 2/3")],
+                             "holding back the sun at 100 mm²/s and 1000 r/min; as the power 2/3")],
            looks_like="efficiency falls towards small torques, and the more so the faster and the colder",
            why="seals, preloaded bearings and oil hold back an idle reducer too; catalogues print less than the "
                "formula",
            source=PALMGREN),
     Effect("flash_temperature", on_results=flash_temperature,
-           unknowns=[Unknown("friction", 0, 0.5, "", note="mean coefficient of the flanks; 0.03 to 0.1 in oil")],
+           unknowns=[Unknown("friction", 0, 0.5, "", "mean coefficient of the flanks; 0.03 to 0.1 in oil")],
            looks_like="flanks warmer than the oil, with the load to the power 3/4 and the root of the speed",
            why="flanks slide on one another at the ends of the path of contact, and friction heats them",
            source=BLOK),
@@ -351,30 +338,29 @@ EFFECTS: list[Effect[Gearing, Strength]] = [
                "first",
            source=HARMONIC),
     Effect("ratio_drift", on_results=ratio_drift, needs=[INPUT_ANGLE],
-           unknowns=[Unknown("miscount", -1e-3, 1e-3, "", note="of the ratio, relative")],
+           unknowns=[Unknown("miscount", -1e-3, 1e-3, "", "of the ratio, relative")],
            looks_like="transmission error in proportion to the angle that was turned, and it never comes back",
            why="the ratio in the evaluation is rounded, or an encoder loses counts: an error of counting alone",
            source="kinematics: relative error of the ratio times angle and base radius of the sun"),
     Effect("wind_up", on_results=wind_up,
-           unknowns=[Unknown("compliance", 0, 100, "um/(N*m)", note="at the base circle of the sun, by its torque")],
+           unknowns=[Unknown("compliance", 0, 100, "um/(N*m)", "at the base circle of the sun, by its torque")],
            looks_like="transmission error in proportion to the torque, with its sign",
            why="the shaft between the encoder and the sun twists",
            source="Hooke's law"),
     Effect("lost_motion", on_results=lost_motion,
-           unknowns=[Unknown("play", 0, 1000, "um", note="along the line of action, from flank to flank"),
-                     Unknown("torque_scale", 1, 500, "N*m",
-                             note="at the output; at it 76 % of the play is taken up")],
+           unknowns=[Unknown("play", 0, 1000, "um", "along the line of action, from flank to flank"),
+                     Unknown("torque_scale", 1, 500, "N*m", "at the output; at it 76 % of the play is taken up")],
            looks_like="transmission error jumps where the torque changes its sign, and stays; so much more backlash",
            why="teeth, splines and bearings have play, which the torque takes up to one side or the other",
            source="lost motion of catalogues; hyperbolic tangent for the rounded jump"),
     Effect("wear_drift", on_results=wear_drift, needs=[TIME],
-           unknowns=[Unknown("rate", 0, 50, "nm/h", note="that each loaded flank loses")],
+           unknowns=[Unknown("rate", 0, 50, "nm/h", "that each loaded flank loses")],
            looks_like="transmission error drifts with the hours, to the side of the torque; the backlash grows twice "
                       "as fast",
            why="flanks wear, or peel by micropitting",
            source=ARCHARD),
     Effect("mesh_stiffening", on_results=mesh_stiffening,
-           unknowns=[Unknown("share", 0, 10, "", note="of the calculated deflection of the teeth")],
+           unknowns=[Unknown("share", 0, 10, "", "of the calculated deflection of the teeth")],
            looks_like="transmission error grows with the torque, with its sign, faster about zero than farther out",
            why="teeth give way, and the more so while they hardly touch",
            source=STIFFNESS),

@@ -435,7 +435,9 @@ def _force(panel: Any, at: tuple[float, Arm], depth: float, colour: str, words: 
     height, angle = float(arm.height), float(arm.angle)
     on_axis = np.array([0.0, height])
     way = np.array([-np.cos(angle), -np.sin(angle)])
-    reach = _to_circle(on_axis + np.array([0.0, depth]), way, 0.5 * diameter)
+    start = on_axis + np.array([0.0, depth])
+    along = float(start @ way)
+    reach = along + float(np.sqrt(along**2 - start @ start + (0.5 * diameter) ** 2))  # back to the circle of the force
     flank = on_axis - reach * way
     panel.plot(*np.array([flank, on_axis]).T, color=colour, linewidth=0.8, linestyle=(0, (4, 2)), zorder=4)
     panel.annotate(
@@ -445,12 +447,6 @@ def _force(panel: Any, at: tuple[float, Arm], depth: float, colour: str, words: 
     )  # fmt: skip
     panel.annotate(words, tuple(flank - ARROW * way), (2, 1), textcoords="offset points", fontsize=7.5,
                    color=colour, ha="left", va="bottom")  # fmt: skip
-
-
-def _to_circle(start: "Array", way: "Array", radius: float) -> float:
-    """How far back along ``way`` from ``start`` the circle of this radius is met."""
-    along = float(start @ way)
-    return along + float(np.sqrt(along**2 - start @ start + radius**2))
 
 
 def _arm(panel: Any, height: float) -> None:

@@ -283,7 +283,8 @@ def dynamics_of(
     resonance = np.sqrt(stiffness.mesh_stiffness / mass) / (2.0 * np.pi * load.sun)
     ratio, limit = load.duty.mesh_speed / resonance, resonance_limit(load.duty.line_load)
     specific = stiffness.tooth_stiffness / load.duty.line_load
-    pitch, profile, relief = specific * quality.pitch_left, specific * quality.profile_left, _relief(stage, specific)
+    pitch, profile = specific * quality.pitch_left, specific * quality.profile_left
+    relief = 1.0 if stage.accuracy_grade >= COARSE else np.abs(1.0 - specific * stage.tip_relief)
     c_2, c_3, c_4, c_6, c_7 = coefficients(total_contact_ratio)
     slow = 0.32 * pitch + c_2 * profile + c_3 * relief
     resonant = 1.0 + 0.32 * pitch + c_2 * profile + c_4 * relief
@@ -298,13 +299,6 @@ def dynamics_of(
         fast_coefficient=c_6, fast_constant=c_7, dynamic_slow=slow, dynamic_resonant=resonant, dynamic_fast=fast,
         dynamic_factor=factor,
     )  # fmt: skip
-
-
-def _relief(stage: Gearing, specific: Float) -> Float:
-    """Return B_k: tip relief counts for accurate gears only."""
-    if stage.accuracy_grade >= COARSE:
-        return 1.0
-    return np.abs(1.0 - specific * stage.tip_relief)
 
 
 def resonance_limit(line_load: Float) -> Float:

@@ -9,18 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_geometry.pairs import involute
-from rv_gearing import load_factors, stress_factors
-from rv_gearing.geometry import (
-    LEAST_LINE_LOAD,
-    Duty,
-    GearSize,
-    MeshSize,
-    ToothLoad,
-    Which,
-    gear_size,
-    load_of,
-    mesh_size,
-)
+from rv_gearing import geometry, load_factors, stress_factors
+from rv_gearing.geometry import LEAST_LINE_LOAD, Duty, GearSize, MeshSize, ToothLoad, Which
 from rv_gearing.material import Cycles, GearLife, Steel, cycles_of, life_of, steel_of
 from rv_gearing.quantities import Gearing
 from truing import Array, Bench, Block, Float, Outcome, Sweep, Swept, Table, TruingError, found, part, results
@@ -188,10 +178,10 @@ def safety(strength: Float, stress: Float) -> Float:
 
 def rv_gearing(stage: Gearing) -> Strength:
     """Strength of one stage or of a batch; every Float is a number or an array (n,), SI."""
-    load = load_of(stage)
-    mesh = mesh_size(stage, load)
-    sun_size = gear_size(stage, load, mesh, "sun")
-    sizes = sun_size, gear_size(stage, load, mesh, "planet")
+    load = geometry.load_of(stage)
+    mesh = geometry.mesh_size(stage, load)
+    sun_size = geometry.gear_size(stage, load, mesh, "sun")
+    sizes = sun_size, geometry.gear_size(stage, load, mesh, "planet")
     duty = load.duty
     made, quality = load_factors.quality_of(stage, sizes, mesh, duty.pitch_line_velocity)
     stiffness = load_factors.stiffness_of(stage, load, sizes, mesh.contact_ratio)

@@ -7,7 +7,8 @@ from itertools import chain
 
 import numpy as np
 
-from rv_gearing import figures, groups
+from rv_gearing import figures, groups, load_factors
+from rv_gearing.material import Steel
 from rv_gearing.rating import Reserve
 from truing import Block, Drawing, Section, Swept, Table, Words
 
@@ -217,35 +218,28 @@ SECTIONS = [
     Section(
         "Deviations of the teeth",
         *both("pitch_deviation", "profile_deviation", "helix_deviation", "pitch_running_in", "profile_running_in"),
-        "pitch_error", "profile_error", "running_in", "pitch_left", "profile_left",
+        *load_factors.MeshQuality.__dataclass_fields__,
     ),
     Section(
         "Stiffness of the mesh",
-        "tooth_compliance", "theoretical_stiffness", "rack_factor", "modulus_factor", "low_load_factor",
-        "tooth_stiffness", "mesh_stiffness", "mesh_stiffness_face",
+        *load_factors.MeshStiffness.__dataclass_fields__,
     ),
     Section(
         "Dynamic factor",
-        "inertia_sun", "inertia_planet", "reduced_mass", "resonance_speed", "resonance_ratio", "resonance_limit",
-        "pitch_influence", "profile_influence", "relief_influence", "profile_coefficient", "stiffness_coefficient",
-        "resonance_coefficient", "fast_coefficient", "fast_constant", "dynamic_slow", "dynamic_resonant",
-        "dynamic_fast", "dynamic_factor",
+        *load_factors.Dynamics.__dataclass_fields__,
         text="Method B of ISO 6336-1. A first stage runs far below the resonance of its mesh; what resonates in a "
         "reducer is its structure, which is not in this factor.",
     ),
     Section(
         "Face load factors",
-        "mean_line_load", "bending_weight", "making_weight", "deflection", "making_deviation", "least_misalignment",
-        "initial_misalignment", "face_running_in", "settled_misalignment", "settled_ratio",
-        "face_factor_alone", "misalignment", "misalignment_ratio", "face_factor",
-        "face_exponent", "face_factor_bending",
+        *load_factors.FaceLoad.__dataclass_fields__,
         text="Method C of ISO 6336-1. In small gears under a small load the deviations count for more than the load, "
         "and the factor becomes large. Where it was measured or calculated otherwise, state it: 1.1 to 1.3 is usual "
         "for crowned suns that align themselves.",
     ),
     Section(
         "Transverse load factors",
-        "transverse_line_load", "transverse_base", "transverse_factor", "transverse_factor_bending",
+        *load_factors.Sharing.__dataclass_fields__,
     ),
     Section(
         "Contact stress",
@@ -277,9 +271,7 @@ SECTIONS = [
     ),
     Section(
         "Constants of the material",
-        "contact_life_most", "contact_life_knee", "contact_life_slope", "contact_life_tail", "bending_life_most",
-        "bending_life_slope", "slip_layer", "surface_smooth", "surface_constant", "surface_slope",
-        "surface_exponent", "size_constant", "size_slope", "size_least",
+        *Steel.__dataclass_fields__,
         level="full",
     ),
     Section(

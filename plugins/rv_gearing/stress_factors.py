@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from gear_geometry.roots import Arm, Rack, Root, external_arm, external_root, form_factor, notch, stress_correction
+from gear_geometry.roots import Rack, external_arm, external_root, form_factor, notch, stress_correction
 from rv_gearing.geometry import GearSize, MeshSize, Which
 from rv_gearing.material import Steel
 from rv_gearing.quantities import Gearing
@@ -294,13 +294,15 @@ def root_of(stage: Gearing, size: GearSize, mesh: MeshSize, steel: Steel, which:
     rack = Rack(dedendum=stage.dedendum, fillet=stage.fillet, pressure_angle=stage.pressure_angle)
     teeth = size.virtual_teeth
     root = external_root(rack, teeth, gear.shift)
-    _formed(root, which)
+    sentence = f"the rack leaves no root to the teeth of the {which}: lower dedendum or fillet, or raise shift_{which}"
+    feasible((root.chord > 0.0) & (root.fillet > 0.0), sentence)
     virtual_tip = stage.module * teeth + size.tip_diameter - size.reference_diameter
     virtual_base = stage.module * teeth * np.cos(stage.pressure_angle)
     outer = outer_diameter(stage, (virtual_tip, virtual_base), mesh, which)
     tip = external_arm(rack, teeth, gear.shift, root, virtual_tip / stage.module)
     single = external_arm(rack, teeth, gear.shift, root, outer / stage.module)
-    _loaded(tip, single, which)
+    sentence = f"the load does not bend the teeth of the {which}, its arm is 0 or less: raise addendum or dedendum"
+    feasible((tip.height > 0.0) & (single.height > 0.0), sentence)
     sensitivity, surface, size_factor = strength_factors(steel, notch(root), gear.root_roughness, stage.module)
     return GearRoot(
         root_offset=stage.fillet - stage.dedendum + gear.shift,
@@ -348,15 +350,3 @@ def outer_diameter(stage: Gearing, virtual: tuple[Float, Float], mesh: MeshSize,
         f"the outer single contact of the {which} would lie below its base circle: raise its teeth or shift_{which}",
     )
     return 2.0 * np.hypot(reach, base)
-
-
-def _formed(root: Root, which: Which) -> None:
-    """Refuse a rack that leaves no root."""
-    sentence = f"the rack leaves no root to the teeth of the {which}: lower dedendum or fillet, or raise shift_{which}"
-    feasible((root.chord > 0.0) & (root.fillet > 0.0), sentence)
-
-
-def _loaded(tip: Arm, single: Arm, which: Which) -> None:
-    """Refuse a load that does not bend the tooth."""
-    sentence = f"the load does not bend the teeth of the {which}, its arm is 0 or less: raise addendum or dedendum"
-    feasible((tip.height > 0.0) & (single.height > 0.0), sentence)

@@ -6,8 +6,8 @@ from functools import partial
 from rv_wear import figures
 from rv_wear.costs import Bill
 from rv_wear.discs import Ground
-from rv_wear.machines import FACTORS, Newborn
-from rv_wear.optimum import Fronts
+from rv_wear.machines import FACTORS, Chances, Newborn, SobolIndices
+from rv_wear.optimum import Bought, Front, FrontEnds, Fronts, Learnt
 from truing import Block, Drawing, Odds, Optimum, Section, Sensitivities, Swept, Words
 
 # The figures by section of the sheet: each is there where its study ran, and drawn when the sheet is written
@@ -206,13 +206,12 @@ SECTIONS = [
     ),
     Section(
         "The sixteen indices",
-        *(f"index_{number}" for number in range(1, 17)),
+        *SobolIndices.__dataclass_fields__,
         level="full",
     ),
     Section(
         "Reliability of the backlash",
-        "accuracy_reliability", "normal_reliability", "backlash_mean", "backlash_sd", "sampled_mean", "sampled_sd",
-        "largest_backlash", "reliability_time", "reliability_history",
+        *Chances.__dataclass_fields__,
         text="Machines are drawn from the zones, and those within the permitted backlash are counted. Equation 21 is "
         "a sum, so the normal distribution stands beside the count as a check.",
         blocks=reliability,
@@ -226,22 +225,20 @@ SECTIONS = [
     ),
     Section(
         "Surrogate of the wear",
-        "band_share", "surrogate_coverage", "surrogate_error", "surrogate_worst",
+        *Learnt.__dataclass_fields__,
         text="The paper learns the wear from some simulated cases, because each of them takes long there. What that "
         "is worth here, and whether it is faster than the calculation itself, stands in the study below.",
     ),
     Section(
         "Better tolerances",
-        "least_cost", "least_wear_1", "corner_cost_1", "corner_wear_1", "least_wear_2", "corner_cost_2",
-        "corner_wear_2",
+        *Bought.__dataclass_fields__, *FrontEnds.__dataclass_fields__,
         text="Which modification and which widths of the zones are worth their money? The cost of the zones and the "
         "deepest wear are to be small, while the required share of machines stays within the permitted backlash.",
         blocks=better_tolerances,
     ),
     Section(
         "Better tolerances by search",
-        "knee_cost", "knee_wear", "knee_equidistant", "smallest_wear", "front_cost", "front_wear",
-        "front_equidistant",
+        *Front.__dataclass_fields__,
         text="As the paper does it: a genetic algorithm chooses modification and widths together, for the reliability "
         "that the inputs ask for. The study 'optimise' below tells start, knee and front.",
     ),

@@ -11,19 +11,7 @@ from numpy.typing import NDArray
 
 from rv_wear import geometry
 from rv_wear.forces import Loads, holding, refuse, shared, start_scale
-from rv_wear.geometry import (
-    NUMBERS,
-    Choices,
-    Mesh,
-    Teeth,
-    columns_of,
-    distinct,
-    longest_arm_angle,
-    mesh_of,
-    relative_radius,
-    some_of,
-    teeth_of,
-)
+from rv_wear.geometry import NUMBERS, Choices, Mesh, Teeth, columns_of, mesh_of, teeth_of
 from rv_wear.quantities import Reducer
 from truing import Array, Float, either, feasible
 
@@ -151,7 +139,7 @@ def _power_law(factor: Array, power: float, film: Float | None) -> Rate:
 def _at_pitch_point(teeth: Teeth, unworn: Loads) -> Array:
     """What force and radius do to the coefficient at the longest arm, where the unworn force is largest; (m,)."""
     mesh = teeth.mesh
-    radius = relative_radius(mesh, longest_arm_angle(mesh))
+    radius = geometry.relative_radius(mesh, geometry.longest_arm_angle(mesh))
     line_load = unworn.scale.max(axis=0) / mesh.width
     return np.asarray(contact_part(mesh.equivalent_modulus, line_load, radius))
 
@@ -256,25 +244,21 @@ class Unworn:
     first_step: Array
 
 
-@dataclass(frozen=True)
-class HistoryKey:
-    """Meshes as something to remember an answer by: their numbers as bytes, how many they are, and their choices."""
-
-    numbers: bytes
-    count: int
-    choices: Choices
+HistoryKey = tuple[bytes, int, Choices]
+"""Meshes as something to remember an answer by: their numbers as bytes, how many they are, and their choices."""
 
 
 def key_of(mesh: Mesh, places: NDArray[np.intp]) -> HistoryKey:
     """Some of many meshes (m,)."""
     table = np.stack([np.asarray(column)[places] for column in columns_of(mesh)])
-    return HistoryKey(table.tobytes(), len(places), mesh.choices)
+    return table.tobytes(), len(places), mesh.choices
 
 
 def mesh_from(key: HistoryKey) -> Mesh:
     """The meshes of a key."""
-    columns: list[Float] = list(np.frombuffer(key.numbers).reshape(-1, key.count))
-    return Mesh(**dict(zip(NUMBERS, columns, strict=True)), choices=key.choices)
+    numbers, count, choices = key
+    columns: list[Float] = list(np.frombuffer(numbers).reshape(-1, count))
+    return Mesh(**dict(zip(NUMBERS, columns, strict=True)), choices=choices)
 
 
 def unworn(mesh: Mesh) -> Unworn:
@@ -449,7 +433,7 @@ def worn(reducer: Reducer) -> dict[str, Float]:
     approach, pins = meshes.to_rows(new.approach), meshes.to_rows(new.loaded_pins)
     feasible(np.minimum(reducer.reconstruction_depth, depth) <= DEEPEST_STEP * approach, TOO_DEEP)
     feasible(pins**2 * reducer.phases >= FEWEST_POSITIONS, TOO_FEW)
-    duty = other_flank(reducer)
+    duty = either(reducer.reversing / (2.0 - reducer.reversing), 1.0)  # time of the other flank over that of the first
     other = depth if np.ndim(duty) == 0 and duty == 1.0 else depth_at(meshes, new, exposure * duty)[0]
     beside = reducer.extra_wear * np.where(np.asarray(duty) > 0.0, 1.0, 0.5)
     share = reducer.lost_motion_share * (1.0 + reducer.pin_wear_ratio)
@@ -472,14 +456,14 @@ def worn(reducer: Reducer) -> dict[str, Float]:
 
 def meshes_of(reducer: Reducer) -> Meshes:
     """Find the distinct meshes of a call and refuse, by row, those that cannot be."""
-    mesh, of_row = distinct(mesh_of(reducer))
+    mesh, of_row = geometry.distinct(mesh_of(reducer))
     good, broken = holding(mesh)
     if not broken:
         return Meshes(mesh, len(good), of_row)
     refuse(broken, of_row)
     kept = np.flatnonzero(good)
     places = np.where(good, np.cumsum(good) - 1, -1)
-    return Meshes(some_of(mesh, kept), len(kept), None if of_row is None else places[of_row])
+    return Meshes(geometry.some_of(mesh, kept), len(kept), None if of_row is None else places[of_row])
 
 
 def oil_part(reducer: Reducer) -> Float:
@@ -498,8 +482,3 @@ def exposure_of(reducer: Reducer, oil: Float, time: Float) -> Float:
     meshings = time * (1.0 + 0.5 * reducer.ageing_rate * time) * reducer.output_speed * reducer.pin_count
     share = either(1.0 - 0.5 * reducer.reversing, reducer.loaded_share)
     return oil * (meshings * reducer.sliding_factor * share)
-
-
-def other_flank(reducer: Reducer) -> Float:
-    """Time for which the other flank is loaded, over that of the first: r / (2 - r), or 1 where nothing is stated."""
-    return either(reducer.reversing / (2.0 - reducer.reversing), 1.0)

@@ -86,19 +86,8 @@ def closed(press: Values, crank_angle: float, off: Values | None = None) -> NDAr
     bottom = dead_centre(press)
     drive, upper, lower = np.radians([10.0, 105.0, 62.0])
     guess = [
-        1.4,
-        bottom,
-        drive,
-        upper,
-        lower,
-        3.5,
-        1.4,
-        np.pi - bottom,
-        np.pi - drive,
-        np.pi - upper,
-        np.pi - lower,
-        3.5,
-    ]
+        1.4, bottom, drive, upper, lower, 3.5, 1.4, np.pi - bottom, np.pi - drive, np.pi - upper, np.pi - lower, 3.5,
+    ]  # fmt: skip
     for part in np.linspace(0.0, 1.0, 2 + int(abs(crank_angle) / 0.1)):
         crank = bottom + part * crank_angle
         found = root(loops, guess, args=(press, crank, off or {}), method="hybr", options={"xtol": 1e-14})

@@ -1,4 +1,4 @@
-"""What each effect of press, gearing and reducer does, against a machine that was written apart from the plugin.
+"""What each effect of a plugin does, against a machine that was written apart from the plugin.
 
 The machines of the benchmark import nothing of a plugin, and most of what they do is not the formula of the effect:
 links move on complex numbers, load is spread strip by strip, wear and heat are summed step by step. The last number of
@@ -7,12 +7,13 @@ a case says how far both may be apart, as a share of the largest change: what th
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from math import inf
 from typing import Any
 
 import numpy as np
 import pytest
 
-from hidden_effects import gearing_machine, press_machine, rv_machine
+from hidden_effects import gearing_machine, harmonic_machine, press_machine, rv_machine, screw_machine
 from hidden_effects.clear import REDUCED, STAGES
 from hidden_effects.gearing_machine import Stage
 from hidden_effects.rigs import model_of
@@ -38,6 +39,13 @@ def press_rows(_: str) -> press_machine.Rows:
         speed=rng.uniform(0.1, 0.9, COUNT),
         direction=rng.choice([-1.0, 1.0], COUNT),
     )
+
+
+def screw_rows(design: str) -> screw_machine.Rows:
+    """As on the bench, under loads of either sign."""
+    rng = np.random.default_rng(3)
+    rows = screw_machine.measured(design, COUNT, rng)
+    return replace(rows, axial_load=rows.axial_load * rng.choice([-1.0, 1.0], COUNT))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -110,12 +118,23 @@ REDUCER = Machine(
     shown=lambda rows, hidden: rv_machine.shown(rows, {}, hidden), columns=rv_machine.REDUCER.written,
     results=rv_machine.UNIT, inputs={},
 )  # fmt: skip
+SCREW = Machine(
+    plugin="roller_screw_shift", rows=screw_rows, shown=lambda rows, hidden: screw_machine.shown(rows, {}, hidden),
+    columns=screw_machine.SCREW.written, results=screw_machine.UNIT, inputs={},
+)  # fmt: skip
+DRIVE = Machine(
+    plugin="harmonic_fractal", rows=lambda design: harmonic_machine.measured(design, COUNT, np.random.default_rng(3)),
+    shown=lambda rows, hidden: harmonic_machine.shown(rows, inf, hidden),
+    columns=harmonic_machine.PAST | harmonic_machine.LOGS, results=harmonic_machine.UNIT,
+    inputs={"fractal_dimension": 2.5, "fractal_roughness": "1e-9 m", "reference_torque": "20 mN*m",
+            "drive_compliance": "36 urad/(N*m)"},
+)  # fmt: skip
 HEAT = {"link_heating": {"expansion": 1.15e-5}}
 HANGING = {"slider_mass": "20 t", "counterbalance": "150 kN"}
 LOOSE = {"joint_clearance": {"clearance": 2e-5}}
 SOFT = {"elastic_deflection": {"compliance": 1e-9}}
 AHEAD = {"encoder_eccentricity": {"sine": 0.003, "cosine": -0.007}}
-EXACT, SLOPE, SUMMED, WORN, WAVE = 1e-9, 1e-5, 1e-3, 0.01, 0.045
+EXACT, SLOPE, SUMMED, WORN, HARMONIC, WAVE = 1e-9, 1.5e-5, 1e-3, 0.01, 0.02, 0.045
 PRESSES: list[tuple[Unknowns, float, dict[str, str]]] = [
     (HEAT, EXACT, {}),
     ({"side_heating": {"expansion_1": 1.4e-5, "expansion_2": -3e-6}}, EXACT, {}),
@@ -141,6 +160,40 @@ WITHIN = {
 }  # fmt: skip
 """How near the machine comes to the plugin, over the largest change; 1 % where heat or wear is summed otherwise."""
 DISCS = {"pin_pass_ripple": {"disc_cosine": 0.03, "disc_sine": -0.02}}
+SCREWS: list[tuple[Unknowns, float]] = [
+    ({"face_misalignment": {"misalignment": 1.5}}, SUMMED),
+    ({"face_misalignment": {"misalignment": 8.0, "per_load": 0.1}}, SUMMED),
+    ({"mesh_resonance": {"excitation": 0.06, "resonance_speed": 1800, "damping": 0.06}}, HARMONIC),
+    ({"roller_load_sharing": {"lead": 0.2}}, SLOPE),
+    ({"roller_load_sharing": {"lead": -0.4}}, SLOPE),  # it lifts off under small loads
+    ({"interrupted_tooth": {"lost": 0.3, "phase": 300}}, HARMONIC),
+    ({"rim_compliance": {"softness": 0.6}}, SLOPE),
+    ({"thermal_centre_distance": {"expansion": 11.5}}, EXACT),
+    ({"roller_runout": {"cosine": 3, "sine": -2}}, SUMMED),
+    ({"carrier_runout": {"cosine": 3, "sine": -2}}, SUMMED),
+    ({"axial_migration": {"mismatch": 0.05}}, SUMMED),
+    ({"flank_wear": {"rate": 2}}, EXACT),
+    ({"mesh_friction": {"factor": 1.5}}, SUMMED),
+]
+DRIVES: list[tuple[Unknowns, float, str]] = [
+    ({"series_compliance": {"compliance": 12}}, EXACT, "loops"),
+    ({"engaged_pairs": {"gain": 1.8, "torque_scale": 0.8}}, SUMMED, "points"),
+    ({"oil_film": {"stiffness": 0.03}}, WAVE, "points"),
+    ({"asperity_smoothing": {"dimension": 0.03, "roughness": 0.6, "cycle_scale": 2e5}}, SUMMED, "points"),
+    ({"modulus_temperature": {"softening": 8e-4}}, HARMONIC, "loops"),
+    ({"creep": {"share": 0.03, "time_scale": 0.1}}, 2e-5, "loops"),
+    ({"ellipticity": {"cosine": 20, "sine": -25}}, HARMONIC, "loops"),
+    ({"ellipticity": {"stiffness_cosine": 0.08, "stiffness_sine": 0.06}}, 0.022, "points"),
+    ({"eccentricity": {"cosine": -16, "sine": 20}}, SUMMED, "loops"),
+    ({"hysteresis": {"loop": 200, "torque_scale": 0.16}}, HARMONIC, "loops"),
+    ({"viscous_hysteresis": {"loop": 100, "torque_scale": 0.2, "thinning": 0.03}}, 0.03, "loops"),
+    ({"lost_motion": {"play": 60, "torque_scale": 0.12}}, HARMONIC, "loops"),
+    ({"first_load_set": {"set": 40, "exponent": 1.2}}, EXACT, "loops"),
+    ({"first_load_set": {"stiffening": 0.3}}, SLOPE, "points"),
+    ({"flank_wear": {"rate": 1.0, "torque_scale": 0.08}}, HARMONIC, "loops"),
+    ({"thermal_preload": {"expansion": 3}}, EXACT, "loops"),
+    ({"rig_drift": {"rate": 6}}, EXACT, "loops"),
+]
 CASES: list[tuple[Machine, Unknowns, float, str, dict[str, str]]] = [
     *((PRESS, hidden, within, "", stated) for hidden, within, stated in PRESSES),
     *((GEARING, wish.hidden, WITHIN.get(*wish.hidden, WORN), wish.design, {}) for wish in STAGES),
@@ -150,6 +203,8 @@ CASES: list[tuple[Machine, Unknowns, float, str, dict[str, str]]] = [
         if "runout" not in wish.hidden  # point by point in ``test_rv_wear_effects.py``
     ),
     (REDUCER, DISCS, EXACT, "fleet", {}),
+    *((SCREW, hidden, within, "endurance" if "flank_wear" in hidden else "bench", {}) for hidden, within in SCREWS),
+    *((DRIVE, hidden, within, design, {}) for hidden, within, design in DRIVES),
 ]
 
 

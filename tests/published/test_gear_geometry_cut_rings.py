@@ -78,28 +78,21 @@ def direction(angle: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 @pytest.mark.parametrize(("cutter", "teeth", "shift"), CASES)
-def test_the_critical_section_is_that_of_the_swept_cutter(cutter: Cutter, teeth: float, shift: float) -> None:
+def test_section_and_arm_are_those_of_the_swept_cutter(cutter: Cutter, teeth: float, shift: float) -> None:
+    """The force at the tip meets the axis of the tooth where its line does, tangent to the base circle."""
     root = cut_ring_root(cutter, teeth, shift, ALPHA)
     chord, curvature, depth = swept(cutter, teeth, shift)
     assert float(root.chord) == pytest.approx(chord, rel=1e-5)
     assert float(root.fillet) == pytest.approx(curvature, rel=1e-3)
     assert float(root.depth) == pytest.approx(depth, rel=1e-6)
-
-
-@pytest.mark.parametrize(("cutter", "teeth", "shift"), CASES)
-def test_the_force_at_the_tip_meets_the_axis_of_the_tooth_where_its_line_does(
-    cutter: Cutter, teeth: float, shift: float
-) -> None:
-    root = cut_ring_root(cutter, teeth, shift, ALPHA)
-    tip = 0.5 * teeth - 1.0 + shift
-    arm = cut_ring_arm(root, teeth, shift, tip, ALPHA)
-    base = 0.5 * teeth * np.cos(ALPHA)
+    tip, base = 0.5 * teeth - 1.0 + shift, 0.5 * teeth * np.cos(ALPHA)
     contact = np.arccos(base / tip)
     half = (0.5 * np.pi - 2.0 * shift * np.tan(ALPHA)) / teeth + involute(contact) - involute(ALPHA)
     point = tip * direction(np.array(half))  # the tooth stands along the first axis
-    along = direction(np.array(half + contact + 0.5 * np.pi))  # of the line of action, tangent to the base circle
+    along = direction(np.array(half + contact + 0.5 * np.pi))
     assert abs(point[0] * along[1] - point[1] * along[0]) == pytest.approx(base, rel=1e-12)
     meets = point[0] - point[1] * along[0] / along[1]
+    arm = cut_ring_arm(root, teeth, shift, tip, ALPHA)
     assert float(arm.height) == pytest.approx(float(root.depth) - meets, rel=1e-9)
 
 

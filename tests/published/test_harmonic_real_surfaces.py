@@ -38,12 +38,10 @@ def along(direction: str, found: Flank) -> Estimate:
 @pytest.mark.parametrize(
     ("file", "raw", "plane", "second_order"),
     [
-        ("al3d-1.al3d", 7.688, 0.2898, 0.2592),
-        ("matrix-4.txt", 0.1175, 0.07373, 0.07092),
-        ("metropro-1.dat", 0.07529, 0.01333, 0.003911),
-        ("hfm-1.hfm", 0.9057, 0.2453, 0.1381),
+        ("al3d-1.al3d", 7.688, 0.2898, 0.2592), ("matrix-4.txt", 0.1175, 0.07373, 0.07092),
+        ("metropro-1.dat", 0.07529, 0.01333, 0.003911), ("hfm-1.hfm", 0.9057, 0.2453, 0.1381),
     ],
-)
+)  # fmt: skip
 def test_root_mean_square_heights(file: str, raw: float, plane: float, second_order: float) -> None:
     found = flank(file, **PRINTED)
     heights = np.array([found.sq_raw, found.sq_plane, found.sq_second_order]) * 1e6
@@ -87,15 +85,12 @@ def test_fit_over_all_lags(
         ("al3d-1.al3d", "y", "0.62:1.03 1.07:1.04 1.70:1.07 2.94:1.16 5.09:1.36 8.48:1.65 14.36:1.98 24.71:1.89"),
         ("matrix-4.txt", "x", "0.52:1.15 0.91:1.17 1.28:1.21 1.81:1.25 2.72:1.37 4.00:1.72 5.81:2.64"),
         ("matrix-4.txt", "y", "0.52:1.29 0.91:1.46 1.43:1.75 2.48:1.79 4.30:1.81 7.30:1.83 12.51:1.87 21.39:1.74"),
-        (
-            "metropro-1.dat",
-            "x",
-            "1.55:1.80 3.11:1.94 5.81:1.94 10.48:1.92 19.40:1.85 36.09:1.77 67.92:1.84 128.08:1.66",
-        ),
+        ("metropro-1.dat", "x",
+         "1.55:1.80 3.11:1.94 5.81:1.94 10.48:1.92 19.40:1.85 36.09:1.77 67.92:1.84 128.08:1.66"),
         ("metropro-1.dat", "y", "1.55:2.21 2.69:1.56 4.66:2.06 8.92:1.93 16.29:1.89 29.47:1.82 53.53:1.81 97.74:2.06"),
         ("hfm-1.hfm", "x", "0.87:1.47 2.29:1.62 5.77:1.94 15.26:1.78 39.91:1.40 105.58:1.16 278.88:1.46 737.70:1.93"),
     ],
-)
+)  # fmt: skip
 def test_local_slopes(file: str, direction: str, printed: str) -> None:
     pairs = np.array([[float(number) for number in pair.split(":")] for pair in printed.split()])
     found = along(direction, flank(file, **PRINTED))

@@ -116,7 +116,7 @@ def _scatter_is_written_in_its_units(found: dict[str, Any], slopes: Any, reading
 def test_monte_carlo_draws_the_machines_of_the_loops(reading: str) -> None:
     """Two samples of the same machines, by two programs: they differ by their sampling errors only."""
     run = calculated(f"reading={reading}", 'studies.run=["reliability"]')
-    machines = 200_000
+    machines = 60_000
     for name, values, limit in zip(CHECKS, by_hand.drawn(reading, machines, 7), by_hand.limits(reading), strict=True):
         ours = run["studies"]["reliability"][name]
         share = float(np.mean(np.abs(values) <= limit))
@@ -127,13 +127,5 @@ def test_monte_carlo_draws_the_machines_of_the_loops(reading: str) -> None:
 
 
 def test_the_second_calculation_shares_no_code_with_the_first() -> None:
-    imported = re.findall(r"^(?:import|from) (\S+)", Path(by_hand.__file__).read_text(encoding="utf-8"), re.MULTILINE)
-    assert set(imported) == {
-        "collections.abc",
-        "itertools",
-        "statistics",
-        "typing",
-        "numpy",
-        "numpy.typing",
-        "scipy.optimize",
-    }
+    imported = re.findall(r"^(?:import|from) (\w+)", Path(by_hand.__file__).read_text(encoding="utf-8"), re.MULTILINE)
+    assert set(imported) == {"collections", "itertools", "statistics", "typing", "numpy", "scipy"}

@@ -57,11 +57,10 @@ def test_stroke_is_what_a_full_turn_covers(geometry: Press) -> None:
 
 def test_range_of_the_links_over_a_turn() -> None:
     side = solve(PAPER, np.linspace(-np.pi, np.pi, 7201)).side_1
-    for angle, low, high in [
-        (side.lower.angle, 24.1, 62.3),
-        (side.upper.angle - side.drive.angle, 52.3, 95.8),
+    for angle, low, high in (
+        (side.lower.angle, 24.1, 62.3), (side.upper.angle - side.drive.angle, 52.3, 95.8),
         (side.rod.angle, 114.5, 165.1),
-    ]:
+    ):  # fmt: skip
         assert np.degrees([np.min(angle), np.max(angle)]) == pytest.approx([low, high], abs=0.0501)
     assert [np.min(side.knee.y), np.max(side.knee.y)] == pytest.approx([0.139, 0.856], abs=5.001e-4)
 
@@ -200,16 +199,12 @@ SINGULAR = [
 
 
 @pytest.mark.parametrize(("kind", "loop", "words"), SINGULAR)
-def test_singular_positions_are_refused(kind: str, loop: str, words: str) -> None:
+def test_singular_positions_are_refused_and_the_smallest_sine_warns(kind: str, loop: str, words: str) -> None:
     at_once = broken(*singular(kind, 1e-13))[0]
     assert at_once.startswith(f"{loop} is singular: ")
     assert words in at_once
     assert broken(*singular(kind, 1e-9)) == []
     assert broken(*singular(kind, -1e-9))[0].startswith(f"{loop} does not close: ")
-
-
-@pytest.mark.parametrize("kind", [row[0] for row in SINGULAR])
-def test_smallest_sine_warns_before_a_singular_position(kind: str) -> None:
     geometry, angle = singular(kind, 1e-4)
     position = solve(geometry, angle)
     angles = [position.side_1.rod.angle, position.side_1.lower.angle]

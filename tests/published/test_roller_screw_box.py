@@ -13,7 +13,7 @@ from truing import TruingError
 
 Values = NDArray[np.float64]
 ROOT = sqrt(3.0)
-SEEDS = range(8)
+SEEDS = range(4)
 
 
 def within(kept: NDArray[np.bool_], cost: Values) -> Values:

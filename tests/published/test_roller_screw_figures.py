@@ -11,24 +11,19 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from drawn import figures, line
 from roller_screw_shift import sheet
 from roller_screw_shift.figures import MARKS, SIDES, path_of, ring_half, roller_half, triangle
 from roller_screw_shift.geometry import geometry_of
 from roller_screw_shift.model import MARGINS, ROLLER_SCREW_SHIFT
 from roller_screw_shift.optimum import ChosenShift
 from roller_screw_shift.quantities import Pair
-from truing import Drawing
 from truing.calculation import Calculation, calculate
-from truing.report.figures import draw
 from truing.setup import default_setup
 
 ALPHA, MODULE = radians(20.0), 0.5e-3
 CHORD = 4e-6  # rad, 20 nm of a tooth: the outline is drawn with 60 straight lines
 SHIFTS = (0.0, 0.21, 0.2534, 0.6)
-
-
-def inv(angle: Any) -> Any:
-    return np.tan(angle) - angle
 
 
 def pair_at(shift: float, **values: Any) -> Pair:
@@ -49,20 +44,17 @@ def half_angle(outline: NDArray[np.complex128], radius: float) -> float:
 
 
 @pytest.mark.parametrize("shift", SHIFTS)
-def test_teeth_are_as_thick_as_their_shift_makes_them(shift: float) -> None:
-    """At the reference circle a tooth of the roller has pi/2 + 2 x tan(alpha), a gap of the ring with its own x."""
-    pair = pair_at(shift)
-    ring_shift = float(np.asarray(geometry_of(pair).ring_shift))
-    roller = half_angle(roller_half(pair), 10 * MODULE)
-    ring = half_angle(ring_half(pair), 50 * MODULE)
-    assert roller == pytest.approx((pi / 2 + 2 * shift * tan(ALPHA)) / 20, abs=CHORD)
-    assert pi / 100 - ring == pytest.approx((pi / 2 + 2 * ring_shift * tan(ALPHA)) / 100, abs=4e-7)
+def test_outlines_run_from_tip_to_root_by_the_critical_section_of_the_rack(shift: float) -> None:
+    """Where its tangent makes 30 degrees with the axis of the tooth, twice the distance from it is the chord.
 
-
-@pytest.mark.parametrize("shift", SHIFTS)
-def test_outlines_run_from_tip_to_root_without_a_gap(shift: float) -> None:
+    At the reference circle a tooth of the roller has pi/2 + 2 x tan(alpha), a gap of the ring with its own x.
+    """
     pair = pair_at(shift)
     geometry = geometry_of(pair)
+    ring_shift = float(np.asarray(geometry.ring_shift))
+    thick = [(pi / 2 + 2 * x * tan(ALPHA)) / teeth for x, teeth in ((shift, 20), (ring_shift, 100))]
+    assert half_angle(roller_half(pair), 10 * MODULE) == pytest.approx(thick[0], abs=CHORD)
+    assert pi / 100 - half_angle(ring_half(pair), 50 * MODULE) == pytest.approx(thick[1], abs=4e-7)
     for outline, gear, teeth in ((roller_half(pair), geometry.roller, 20), (ring_half(pair), geometry.ring, 100)):
         assert abs(outline[0]) == pytest.approx(float(gear.tip_radius), rel=1e-9)
         assert abs(outline[-1]) == pytest.approx(float(gear.root_radius), rel=1e-9)
@@ -70,17 +62,10 @@ def test_outlines_run_from_tip_to_root_without_a_gap(shift: float) -> None:
         assert np.abs(np.diff(outline)).max() < 0.2 * MODULE
         if shift < 0.5:
             assert np.abs(np.diff(np.abs(outline))).max() < 0.05 * MODULE
-
-
-@pytest.mark.parametrize("shift", SHIFTS)
-def test_the_fillet_drawn_has_the_critical_section_of_the_rack(shift: float) -> None:
-    """Where its tangent makes 30 degrees with the axis of the tooth, twice the distance from it is the chord."""
-    pair = pair_at(shift)
+    fillet = roller_half(pair)[72:132]
+    way = np.angle(np.diff(fillet) / -1j)  # 0 along the axis, towards the root
+    beside = float(np.interp(radians(30.0), way, 0.5 * (fillet[1:] + fillet[:-1]).real))
     meshing: Any = ROLLER_SCREW_SHIFT.function(pair)
-    outline = roller_half(pair)[72:132]
-    way = np.angle(np.diff(outline) / -1j)  # 0 along the axis, towards the root
-    middle = 0.5 * (outline[1:] + outline[:-1])
-    beside = float(np.interp(radians(30.0), way, middle.real))
     assert 2 * beside / MODULE == pytest.approx(float(meshing.root_chord_roller), rel=2e-4)
 
 
@@ -121,17 +106,6 @@ def run() -> Calculation:
     return calculate(replace(default_setup(ROLLER_SCREW_SHIFT), studies=small))
 
 
-def figures(run: Calculation, section: Any) -> dict[str, Any]:
-    """The figures of a section by title, drawn."""
-    return {block.title: block.draw() for block in section(run.record) if isinstance(block, Drawing)}
-
-
-def labelled(panel: Any, begin: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The line whose label begins so."""
-    found = next(item for item in panel.get_lines() if str(item.get_label()).startswith(begin))
-    return np.asarray(found.get_xdata(), dtype=float), np.asarray(found.get_ydata(), dtype=float)
-
-
 def chosen_of(run: Calculation) -> ChosenShift:
     found = run.outcomes["shift"]
     assert isinstance(found, ChosenShift)
@@ -146,8 +120,8 @@ def test_objectives_over_the_shift(run: Calculation) -> None:
         shifts, values = np.asarray(curve.get_xdata()), np.asarray(curve.get_ydata())
         meshing: Any = ROLLER_SCREW_SHIFT.function(pair_at(0.1))
         assert np.interp(0.1, shifts, values) == pytest.approx(scale * float(getattr(meshing, name)), rel=1e-5)
-        assert labelled(panel, "optimum")[0][0] == pytest.approx(0.25345, abs=1e-5)
-        assert labelled(panel, "as stated")[0][0] == 0.21
+        assert line(panel, "optimum")[0][0] == pytest.approx(0.25345, abs=1e-5)
+        assert line(panel, "as stated")[0][0] == 0.21
 
 
 def test_limits_over_the_shift(run: Calculation) -> None:
@@ -166,7 +140,7 @@ def test_limits_over_the_shift(run: Calculation) -> None:
     )
     assert kept["margin_opposite_tips"] == pytest.approx((low, high), abs=2e-3)
     for name, root in (("g3", 0.25345), ("g10", -0.06737)):
-        shifts, margin = labelled(lines, name)
+        shifts, margin = line(lines, name)
         order = np.argsort(margin)
         order = order[np.isfinite(margin[order])]
         assert np.interp(0.0, margin[order], shifts[order]) == pytest.approx(root, abs=2e-4)
@@ -176,17 +150,17 @@ def test_what_the_weights_choose_on_the_front(run: Calculation) -> None:
     figure = figures(run, sheet.weights)["The front, and what the weights choose"]
     chosen = chosen_of(run)
     assert chosen.field is not None
-    for panel, other in zip(figure.axes, (0, 2), strict=True):
-        stress, value = labelled(panel, "all shifts")
+    assert len(figure.axes) == 2
+    for panel in figure.axes:
+        stress, value = line(panel, "all shifts")
         assert (stress[0], stress[-1]) == pytest.approx(chosen.field.ranges[1])
-        found, at = labelled(panel, "front found")
+        found, at = line(panel, "front found")
         assert len(found) == 12
         assert at == pytest.approx(np.interp(found, stress, value), rel=2e-3, abs=2e-4)
         for begin in ("rule, ranges found here: 0.2534", "rule, printed ranges: 0.2534", "as printed: 0.2534"):
-            mark = labelled(panel, begin)
+            mark = line(panel, begin)
             assert mark[0][0] == pytest.approx(stress[-1], rel=1e-6)
             assert mark[1][0] == pytest.approx(value[-1], rel=1e-4)
-        assert other in (0, 2)
 
 
 def test_the_triangle_of_weights(run: Calculation) -> None:
@@ -210,16 +184,16 @@ def test_marks_in_the_triangle_stand_at_their_shares(run: Calculation) -> None:
     panel = figure.axes[0]
     weights = (0.35, 0.01, 0.81)
     place = sum(share * corner for share, corner in zip(weights, SIDES, strict=True)) / sum(weights)
-    across, up = labelled(panel, "as printed")
+    across, up = line(panel, "as printed")
     assert (across[0], up[0]) == pytest.approx((place.real, place.imag))
-    assert {line.get_marker() for line in panel.get_lines()} == {marker for marker, _ in MARKS.values()}
+    assert {each.get_marker() for each in panel.get_lines()} == {marker for marker, _ in MARKS.values()}
 
 
 def test_sliding_shows_the_ends_before_and_after(run: Calculation) -> None:
     (panel,) = figures(run, sheet.sliding)["Sliding along the path of contact"].axes
     for begin, shift in (("before", 0.0), ("as stated", 0.21), ("optimum", 0.25345)):
         meshing: Any = ROLLER_SCREW_SHIFT.function(pair_at(shift))
-        ends = labelled(panel, begin)[1]
+        ends = line(panel, begin)[1]
         assert -ends == pytest.approx([float(meshing.root_sliding_roller), float(meshing.root_sliding_ring)], rel=1e-3)
 
 
@@ -235,13 +209,6 @@ def test_the_pair_is_drawn_to_scale_before_and_after(run: Calculation) -> None:
         assert np.abs(roller[:-2] - 19.80778j).max() == pytest.approx(tip, abs=1e-4)
         ring_shift = float(np.asarray(geometry_of(pair_at(shift)).ring_shift))
         assert np.abs(ring).min() == pytest.approx(0.5 * (50 - 0.8 + ring_shift), abs=1e-4)
-
-
-def test_every_figure_becomes_a_picture(run: Calculation) -> None:
-    for section in (sheet.signs, sheet.sliding, sheet.limits, sheet.choice, sheet.weights):
-        for block in section(run.record):
-            if isinstance(block, Drawing):
-                assert "<svg" in draw(block.draw, title=block.title, ident="figure")
 
 
 def test_without_the_study_the_pair_is_drawn_as_stated() -> None:

@@ -7,17 +7,9 @@ import pytest
 from traced_gears import ALPHA, Couple, Flanks, deepest_overlap, free_turn, path_of_contact, sliding_of_surfaces
 
 from gear_geometry.pairs import working_angle
+from roller_screw_shift import geometry as formulas
 from roller_screw_shift.calculation import meshing_of
-from roller_screw_shift.geometry import (
-    APART,
-    backlash,
-    contact_ratio,
-    crossing_of,
-    geometry_of,
-    involute_margin,
-    sliding_at_roots,
-    tip_land,
-)
+from roller_screw_shift.geometry import backlash, geometry_of
 from roller_screw_shift.model import ROLLER_SCREW_SHIFT
 from roller_screw_shift.quantities import Pair
 from roller_screw_shift.strength import load_of
@@ -60,13 +52,8 @@ TIPS = [
 
 def small_difference(roller: float, ring: float, stretch: float, shift: float, addendum: float) -> Pair:
     """A pair of few teeth difference, where tips may meet."""
-    return pair_of(
-        roller_teeth=float(roller),
-        ring_teeth=float(ring),
-        centre_distance=0.5e-3 * 0.5 * (ring - roller) * stretch,
-        roller_shift=shift,
-        addendum=addendum,
-    )
+    teeth = {"roller_teeth": float(roller), "ring_teeth": float(ring)}
+    return pair_of(**teeth, centre_distance=0.25e-3 * (ring - roller) * stretch, roller_shift=shift, addendum=addendum)
 
 
 @pytest.mark.parametrize("name", REGRESSION)
@@ -74,11 +61,7 @@ def test_the_default_pair_has_the_digits_of_an_independent_program(name: str) ->
     result = ROLLER_SCREW_SHIFT.read_results(ROLLER_SCREW_SHIFT.function(pair_of()))[name]
     digits = len(str(REGRESSION[name]).partition(".")[2])
     assert float(result) == pytest.approx(REGRESSION[name], abs=0.51 * 10.0**-digits)
-
-
-def test_the_tip_land_of_the_default_pair() -> None:
-    pair = pair_of()
-    assert tip_land(pair, geometry_of(pair)) / pair.module == pytest.approx(0.85162, abs=5e-6)
+    assert formulas.tip_land(pair_of(), geometry_of(pair_of())) / 0.5e-3 == pytest.approx(0.85162, abs=5e-6)
 
 
 def test_without_backlash_the_pair_keeps_both_equations_of_the_standard() -> None:
@@ -94,11 +77,21 @@ def test_without_backlash_the_pair_keeps_both_equations_of_the_standard() -> Non
 
 
 def test_a_positive_shift_of_the_ring_is_outward() -> None:
-    """The ring follows the roller: tip, root and gap of the ring grow with its shift."""
-    near, far = geometry_of(pair_of(roller_shift=0.0)), geometry_of(pair_of(roller_shift=0.2))
-    assert far.ring_shift > near.ring_shift
+    """The ring follows the roller: tip, root and gap of the ring grow with its shift, and not with a deviation."""
+    near, far, off = (
+        geometry_of(pair_of(**changed))
+        for changed in (
+            {"roller_shift": 0.0},
+            {"roller_shift": 0.2},
+            {"roller_shift": 0.0, "centre_distance_deviation": 30e-6},
+        )
+    )
+    assert far.ring_shift > near.ring_shift == off.ring_shift
     assert far.ring.tip_radius - near.ring.tip_radius == pytest.approx(0.2 * 0.5e-3, rel=1e-9)
     assert far.ring.root_radius - near.ring.root_radius == pytest.approx(0.2 * 0.5e-3, rel=1e-9)
+    assert off.ring.tip_radius == near.ring.tip_radius
+    assert off.mounted_angle > near.mounted_angle == near.working_angle
+    assert float(backlash(near)) == 0.0
 
 
 @pytest.mark.parametrize("deviation", [-40e-6, 0.0, 25e-6])
@@ -107,8 +100,8 @@ def test_sliding_and_contact_ratio_are_those_of_the_pair_as_mounted(deviation: f
     geometry, couple = geometry_of(pair), traced(pair)
     at_roller_tip, at_ring_tip = path_of_contact(couple)
     length = np.hypot(*(at_roller_tip - at_ring_tip)) / (np.pi * np.cos(ALPHA))
-    assert contact_ratio(geometry) == pytest.approx(length, rel=1e-10)
-    roller, ring = sliding_at_roots(geometry)
+    assert formulas.contact_ratio(geometry) == pytest.approx(length, rel=1e-10)
+    roller, ring = formulas.sliding_at_roots(geometry)
     assert -float(roller) == pytest.approx(sliding_of_surfaces(couple, at_ring_tip)[0], rel=1e-9)
     assert -float(ring) == pytest.approx(sliding_of_surfaces(couple, at_roller_tip)[1], rel=1e-9)
 
@@ -122,7 +115,7 @@ def test_specific_sliding_of_the_printed_shifts() -> None:
     assert meshing_of(pair).sliding_roller == pytest.approx(0.828725, abs=5e-7)
 
 
-@pytest.mark.parametrize("shift", [-0.05, 0.0, 0.21, 0.5, 0.7, 1.0, 1.5])
+@pytest.mark.parametrize("shift", [-0.05, 0.21, 0.7, 1.5])
 def test_the_sliding_that_counts_is_the_largest_on_the_path(shift: float) -> None:
     """Point by point from the speeds of both surfaces; from 0.69 on the path lies wholly beyond the pitch point."""
     pair = pair_of(roller_shift=shift)
@@ -149,14 +142,14 @@ def test_tips_overlap_by_what_their_clearance_lacks(
     roller: float, ring: float, stretch: float, shift: float, addendum: float
 ) -> None:
     pair = small_difference(roller, ring, stretch, shift, addendum)
-    clearance = float(crossing_of(geometry_of(pair)).clearance)
+    clearance = float(formulas.crossing_of(geometry_of(pair)).clearance)
     deepest = deepest_overlap(traced(pair))
-    assert involute_margin(geometry_of(pair)) > 0.0
+    assert formulas.involute_margin(geometry_of(pair)) > 0.0
     assert deepest == pytest.approx(max(0.0, -clearance), abs=2e-4)
 
 
 def test_some_of_these_tips_meet_and_some_do_not() -> None:
-    found = [float(crossing_of(geometry_of(small_difference(*each))).clearance) for each in TIPS]
+    found = [float(formulas.crossing_of(geometry_of(small_difference(*each))).clearance) for each in TIPS]
     assert min(found) < -0.1
     assert max(found) > 0.1
 
@@ -165,9 +158,9 @@ def test_tips_whose_circles_do_not_cross_have_a_whole_pitch() -> None:
     pair = pair_of(centre_distance=0.0195)  # the roller is too far inside to reach the teeth of the ring
     far = geometry_of(replace(pair, addendum=0.05))
     assert far.mounted_distance + far.roller.tip_radius < far.ring.tip_radius
-    assert float(crossing_of(far).clearance) == pytest.approx(2.0 * np.pi)
-    assert pytest.approx(2.0 * np.pi) == APART
-    assert contact_ratio(far) < 0.0
+    assert float(formulas.crossing_of(far).clearance) == pytest.approx(2.0 * np.pi)
+    assert pytest.approx(2.0 * np.pi) == formulas.APART
+    assert formulas.contact_ratio(far) < 0.0
 
 
 @pytest.mark.parametrize("deviation", [-40e-6, -2e-6, 0.0, 2e-6, 40e-6])
@@ -179,14 +172,6 @@ def test_backlash_is_the_play_of_the_roller_in_the_ring(deviation: float) -> Non
     play = free_turn(traced(pair)) * pitch_radius
     assert float(backlash(geometry)) == pytest.approx(play, abs=2e-11)
     assert deviation * play <= 0.0
-
-
-def test_the_shift_of_the_ring_does_not_follow_a_deviation() -> None:
-    near, far = geometry_of(pair_of()), geometry_of(pair_of(centre_distance_deviation=30e-6))
-    assert far.ring_shift == near.ring_shift
-    assert far.ring.tip_radius == near.ring.tip_radius
-    assert far.mounted_angle > near.mounted_angle == near.working_angle
-    assert float(backlash(near)) == 0.0
 
 
 def test_turns_of_carrier_and_roller_are_those_of_threads_that_roll() -> None:

@@ -9,21 +9,12 @@ from numpy.typing import NDArray
 from traced_gears import ALPHA, Flanks, line_of_action_meets, swept_root
 
 from gear_geometry.roots import Cutter, cut_ring_arm, cut_ring_root, form_factor, stress_correction
+from roller_screw_shift import objectives
 from roller_screw_shift.calculation import MARGINS, meshing_of, undercut_limit
 from roller_screw_shift.geometry import geometry_of
 from roller_screw_shift.model import ROLLER_SCREW_SHIFT
-from roller_screw_shift.objectives import (
-    PRINTED_RANGES,
-    PRINTED_WEIGHTS,
-    lower_limit,
-    normalised,
-    rule_weights,
-    total,
-    weight,
-)
+from roller_screw_shift.objectives import normalised
 from roller_screw_shift.quantities import Meshing, Pair
-from roller_screw_shift.strength import load_of
-from shared import ROUNDING
 from truing import TruingError
 from truing.errors import InfeasibleError
 from truing.evaluate import evaluate_rows
@@ -32,14 +23,9 @@ from truing.setup import default_setup
 
 # Neutral input, a value, what it makes of the root stress of the roller and of the ring
 SOCKETS = [
-    ("face_load_factor", 1.3, 1.3, 1.3),
-    ("dynamic_factor", 1.1, 1.1, 1.1),
-    ("sharing_factor", 1.25, 1.25, 1.25),
-    ("carrying_share", 0.8, 1.25, 1.25),
-    ("rim_factor", 1.6, 1.0, 1.6),
-]
-CONDITION = 10.0
-"""Of the root stress, by the angles that decide the tooth form."""
+    ("face_load_factor", 1.3, 1.3, 1.3), ("dynamic_factor", 1.1, 1.1, 1.1), ("sharing_factor", 1.25, 1.25, 1.25),
+    ("carrying_share", 0.8, 1.25, 1.25), ("rim_factor", 1.6, 1.0, 1.6),
+]  # fmt: skip
 DESIGN = ("shift_sum", "stress_difference", "sliding_difference")
 
 
@@ -101,10 +87,7 @@ def test_a_ring_that_a_cutter_makes(teeth: float, shift: float, addendum: float 
 
 
 def test_some_rings_of_a_batch_are_cut() -> None:
-    answer = answer_of(pair_of(cutter_teeth=np.array([np.nan, 25.0, np.nan])))
-    stress, chord = np.asarray(answer.root_stress_ring), np.asarray(answer.cut_chord_ring)
-    alone = [float(answer_of(pair_of(cutter_teeth=teeth)).root_stress_ring) for teeth in (np.nan, 25.0, np.nan)]
-    assert stress == pytest.approx(alone, rel=CONDITION * ROUNDING)
+    chord = np.asarray(answer_of(pair_of(cutter_teeth=np.array([np.nan, 25.0, np.nan]))).cut_chord_ring)
     assert chord[0] == chord[2] == 0.0 < chord[1]
 
 
@@ -133,14 +116,6 @@ def test_no_load_gives_no_stress_and_all_else_as_before() -> None:
     for each in fields(loaded):
         changes = each.name in stresses and "correction" not in each.name
         assert float(getattr(idle, each.name)) == (0.0 if changes else float(getattr(loaded, each.name)))
-
-
-def test_a_load_the_other_way_stresses_alike() -> None:
-    pair = pair_of(axial_load=np.array([-10e3, 0.0, 10e3]))
-    answer, load = answer_of(pair), load_of(pair)
-    assert np.asarray(load.tangential_force) == pytest.approx([51.943, 0.0, 51.943])
-    stress = np.asarray(answer.root_stress_roller)
-    assert stress[0] == stress[2] > stress[1] == 0.0
 
 
 # Limits
@@ -233,20 +208,16 @@ def test_what_no_pair_can_have_is_refused_by_name(changed: dict[str, float], wor
 
 
 def test_random_pairs_are_answered_with_numbers_or_refused_with_a_reason() -> None:
-    rng, count = np.random.default_rng(3), 4000
+    rng, count = np.random.default_rng(3), 2000
     roller = rng.integers(8, 60, count).astype(float)
     difference = rng.integers(4, 150, count).astype(float)
-    columns = {
-        "roller_teeth": roller,
-        "ring_teeth": roller + difference,
-        "pressure_angle": np.radians(rng.uniform(10.01, 29.99, count)),
-        "addendum": rng.uniform(0.05, 2.0, count),
-        "clearance": rng.uniform(0.0, 1.0, count),
-        "roller_fillet": rng.uniform(0.0, 0.6, count),
-        "ring_fillet": rng.uniform(0.0, 0.5, count),
-        "centre_distance": 0.25e-3 * difference * rng.uniform(0.93, 1.2, count),
-        "roller_shift": rng.uniform(-2.0, 3.0, count),
-    }
+    ranges = {
+        "addendum": (0.05, 2.0), "clearance": (0.0, 1.0), "roller_fillet": (0.0, 0.6), "ring_fillet": (0.0, 0.5),
+        "roller_shift": (-2.0, 3.0), "pressure_angle": (np.radians(10.01), np.radians(29.99)),
+    }  # fmt: skip
+    columns = {name: rng.uniform(*ends, count) for name, ends in ranges.items()}
+    columns |= {"roller_teeth": roller, "ring_teeth": roller + difference}
+    columns |= {"centre_distance": 0.25e-3 * difference * rng.uniform(0.93, 1.2, count)}
     rows = evaluate_rows(default_setup(ROLLER_SCREW_SHIFT), columns, count)
     assert 0.1 < rows.failed.mean() < 0.9
     assert not any("not finite" in reason for reason in rows.reasons.values())
@@ -256,17 +227,10 @@ def test_random_pairs_are_answered_with_numbers_or_refused_with_a_reason() -> No
 # How three objectives become one
 
 
-# X/(2 pi) - sin(X)/(2 pi) at quarters of a turn: sin is 1 at a quarter, 0 at a half.
-CURVE = [(0.0, 0.0), (0.25, 0.25 - 1 / (2 * pi)), (0.5, 0.5), (0.75, 0.75 + 1 / (2 * pi)), (1.0, 1.0)]
-
-
-@pytest.mark.parametrize(("place", "value"), CURVE)
-def test_curve(place: float, value: float) -> None:
-    assert normalised(2.0 + 3.0 * place, (2.0, 5.0)) == pytest.approx(value, abs=1e-15)
-    assert round(value, 6) in {0.0, 0.090845, 0.5, 0.909155, 1.0}
-
-
 def test_curve_rises_is_level_at_both_ends_and_clipped_beyond() -> None:
+    """X/(2 pi) - sin(X)/(2 pi): at quarters of a turn sin is 1, 0 and -1."""
+    quarters = [0.0, 0.25 - 1 / (2 * pi), 0.5, 0.75 + 1 / (2 * pi), 1.0]
+    assert normalised(np.linspace(2.0, 5.0, 5), (2.0, 5.0)) == pytest.approx(quarters, abs=1e-15)
     values = np.asarray(normalised(np.linspace(-1.0, 2.0, 3001), (0.0, 1.0)))
     assert (np.diff(values) >= 0.0).all()
     assert (values[:1001] == 0.0).all()
@@ -277,17 +241,17 @@ def test_curve_rises_is_level_at_both_ends_and_clipped_beyond() -> None:
 
 @pytest.mark.parametrize(("place", "limit"), [(0, 2.00), (1, 13.2), (2, 0.86)])
 def test_lower_limits_from_which_the_printed_weights_would_follow(place: int, limit: float) -> None:
-    given, high = PRINTED_WEIGHTS[place], PRINTED_RANGES[place][1]
-    found = lower_limit(given, high)
+    given, high = objectives.PRINTED_WEIGHTS[place], objectives.PRINTED_RANGES[place][1]
+    found = objectives.lower_limit(given, high)
     assert found == pytest.approx(limit, abs=5e-3)
-    assert weight((found, high)) == pytest.approx(given, rel=1e-12)
+    assert objectives.weight((found, high)) == pytest.approx(given, rel=1e-12)
 
 
 def test_total_objective_by_hand() -> None:
     ranges = ((0.0, 1.0), (10.0, 30.0), (0.0, 2.0))
-    weights = rule_weights(ranges)
+    weights = objectives.rule_weights(ranges)
     assert weights == pytest.approx((4.0, 0.01, 1.0))
-    found = total(np.array([[0.25, 0.5], [30.0, 20.0], [1.5, 2.0]]), ranges, weights)
+    found = objectives.total(np.array([[0.25, 0.5], [30.0, 20.0], [1.5, 2.0]]), ranges, weights)
     quarter = 0.25 - sin(pi / 2) / (2 * pi)
     assert found == pytest.approx([-4 * quarter + 0.01 + (1 - quarter), -2.0 + 0.005 + 1.0], abs=1e-14)
 
@@ -295,6 +259,6 @@ def test_total_objective_by_hand() -> None:
 @pytest.mark.parametrize("reach", [(1.0, 1.0), (2.0, 1.0), (0.0, float("inf")), (float("nan"), 1.0)])
 def test_a_range_without_width_is_refused(reach: tuple[float, float]) -> None:
     with pytest.raises(TruingError, match="no width"):
-        weight(reach)
+        objectives.weight(reach)
     with pytest.raises(TruingError, match="no width"):
         normalised(0.5, reach)

@@ -4,34 +4,23 @@ import re
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 from gear_geometry.pairs import clear_of_base, internal_sliding, involute, working_angle
+from pages import Page, number
 from roller_screw_shift.calculation import meshing_of, roller_screw_shift
 from roller_screw_shift.model import ROLLER_SCREW_SHIFT
 from truing.calculation import calculate
 from truing.setup import default_setup
 
-PAGE = (Path(__file__).parents[2] / "docs" / "explanation" / "roller_screw_shift.md").read_text(encoding="utf-8")
-WORDS = " ".join(PAGE.split())
+PAGE = Page("roller_screw_shift")
 PAPER = ROLLER_SCREW_SHIFT.inputs()
 FOUND = roller_screw_shift(PAPER)
 ALPHA = np.radians(20.0)
 SHIFTS = (0.21, -0.16)  # of roller and ring, as printed
-
-
-def row(start: str) -> list[str]:
-    """The cells of the row of a table that starts so, without its first cell."""
-    line = next(text for text in PAGE.splitlines() if text.startswith(f"| {start}"))
-    return [cell.strip() for cell in line.strip("|").split("|")][1:]
-
-
-def number(value: float, digits: int) -> str:
-    return f"{value:.{digits}f}".replace("-", "−")
 
 
 def printed_constraints(first: str) -> tuple[float, float, float]:
@@ -59,7 +48,7 @@ def printed_constraints(first: str) -> tuple[float, float, float]:
 def test_which_gear_is_1_in_the_printed_constraints() -> None:
     as_roller, as_ring = printed_constraints("roller"), printed_constraints("ring")
     for place, (start, digits) in enumerate((("(9), at", (4, 4)), ("(10), at", (2, 3)), ("(11), at", (4, 2)))):
-        shown = row(start)
+        shown = PAGE.row(start)
         assert shown[0] == number(as_roller[place], digits[0])
         assert shown[1].removesuffix(", violated") == number(as_ring[place], digits[1])
         assert ("violated" in shown[1]) == (as_ring[place] < (0.05 if place == 0 else 0.0))
@@ -69,7 +58,7 @@ def test_which_gear_is_1_in_the_printed_constraints() -> None:
 @pytest.mark.parametrize("start", ["16/80", "18/90", "20/100", "25/125"])
 def test_the_printed_pair_with_teeth_of_full_depth(start: str) -> None:
     teeth = tuple(float(text) for text in start.split("/"))
-    for shown, (roller, ring) in zip(row(start), (SHIFTS[::-1], SHIFTS), strict=True):
+    for shown, (roller, ring) in zip(PAGE.row(start), (SHIFTS[::-1], SHIFTS), strict=True):
         working = working_angle((ring - roller) / (teeth[1] - teeth[0]), ALPHA)
         tips = tuple(
             np.arccos(0.5 * count * np.cos(ALPHA) / (0.5 * count + outward + shift))
@@ -87,28 +76,32 @@ def test_the_difference_by_roots_folds_as_the_page_says() -> None:
     shifts = np.linspace(0.3, 1.5, 24_001)
     pair = ROLLER_SCREW_SHIFT.inputs(roller_shift=shifts, sliding_reading="roots")
     by_roots = np.asarray(meshing_of(pair).sliding_difference)
-    assert f"from $x_E$ = {shifts[np.argmax(by_roots)]:.3f} on" in WORDS
+    PAGE.says(f"from $x_E$ = {shifts[np.argmax(by_roots)]:.3f} on")
     there = roller_screw_shift(ROLLER_SCREW_SHIFT.inputs(roller_shift=0.9))
     told = f"it says {there.root_sliding_roller:.3f} for the roller while its tip slides by {there.sliding_roller:.3f}"
-    assert told in WORDS
+    PAGE.says(told)
 
 
-def test_the_wear_of_the_ring_beside_that_of_the_roller() -> None:
-    meshes = float(FOUND.ring_meshes)
+def test_numbers_in_the_text() -> None:
+    """The load: the upper end of f2, at the lowest shift that keeps all limits, is the printed 33.2 MPa with 51.943 N.
+
+    The rounded weight of f2 leaves its lower end open: 0.01 stands for 0.005 to 0.015.
+    """
+    meshes, carrier = float(FOUND.ring_meshes), 3.0 / (2.0 * 4.0)
     gap = (FOUND.root_sliding_roller + meshes * FOUND.tip_sliding_ring) / np.cos(float(FOUND.mounted_angle))
-    assert f"$n_r z_E/z_I = {meshes:g}$ meshes" in WORDS
-    assert f"grows by {float(gap / FOUND.sliding_roller):.2f} times the depth" in WORDS
-
-
-def test_the_geometry_of_the_printed_optimum() -> None:
-    assert rf"$\alpha_w = {np.degrees(FOUND.working_angle):.4f}°$" in PAGE
-    assert f"$D = {number(float(FOUND.shift_difference), 2).replace('−', '-')}$" in PAGE
-    assert rf"$|\eta_E| = {FOUND.sliding_roller:.4f}$, $|\eta_I| = {FOUND.sliding_ring:.4f}$" in WORDS
-
-
-def test_the_load_is_calibrated_as_the_page_says() -> None:
-    """The upper end of f2, at the lowest shift that keeps all limits, is the printed 33.2 MPa with 51.943 N."""
-    assert f"{float(FOUND.tangential_force):.3f} N for 10 kN" in WORDS
+    ends = [33.2 - 2 / np.sqrt(weight) for weight in (0.005, 0.015)]
+    PAGE.says(
+        f"$n_r z_E/z_I = {meshes:g}$ meshes",
+        f"grows by {float(gap / FOUND.sliding_roller):.2f} times the depth",
+        rf"$\alpha_w = {np.degrees(FOUND.working_angle):.4f}°$",
+        f"$D = {number(float(FOUND.shift_difference), 2).replace('−', '-')}$",
+        rf"$|\eta_E| = {FOUND.sliding_roller:.4f}$, $|\eta_I| = {FOUND.sliding_ring:.4f}$",
+        f"{float(FOUND.tangential_force):.3f} N for 10 kN",
+        f"anything from {ends[0]:.1f} to {ends[1]:.1f} serves",
+        f"The contact ratio of its pair is {float(FOUND.contact_ratio):.3f}.",
+        f"$k/(2(k + 1)) = {carrier}$ times per turn",
+        f"$z_I/z_E$ times as often, {carrier * 5}",
+    )
 
 
 @pytest.mark.parametrize(
@@ -117,23 +110,17 @@ def test_the_load_is_calibrated_as_the_page_says() -> None:
 def test_the_printed_weights_do_not_follow_from_the_printed_ranges(
     start: str, low: float, high: float, weight: float
 ) -> None:
-    line = next(text for text in PAGE.splitlines() if text.startswith(f"| {start} | {low}"))
-    shown = [cell.strip() for cell in line.strip("|").split("|")][1:]
+    shown = PAGE.row(f"{start} | {low}")
     assert shown[1] == f"{4 / (high - low) ** 2:.4f}"
     assert shown[2] == f"{weight:g}"
     assert float(shown[3]) == pytest.approx(high - 2 / np.sqrt(weight), abs=6e-3)
 
 
-def test_the_rounded_weight_leaves_the_lower_end_of_f2_open() -> None:
-    """0.01 stands for 0.005 to 0.015."""
-    ends = [33.2 - 2 / np.sqrt(weight) for weight in (0.005, 0.015)]
-    assert f"anything from {ends[0]:.1f} to {ends[1]:.1f} serves" in WORDS
-
-
 @cache
 def chosen(reading: str = "path", **inputs: float) -> tuple[Any, Mapping[str, Any]]:
     """The study of the shift with these inputs, and the results of its run."""
-    shifting = replace(ROLLER_SCREW_SHIFT.studies[0], points=4001, ratios=(1.2, 1.42, 1.423))  # type: ignore[type-var]
+    ratios = () if inputs else (1.2,) if reading == "roots" else (1.2, 1.42, 1.423)
+    shifting = replace(ROLLER_SCREW_SHIFT.studies[0], points=4001, ratios=ratios)  # type: ignore[type-var]
     setup = default_setup(ROLLER_SCREW_SHIFT, sliding_reading=reading, **inputs)
     done = calculate(replace(setup, studies=(shifting,)))
     return done.outcomes["shift"], done.answers
@@ -145,9 +132,9 @@ def test_the_ranges_of_the_objectives() -> None:
         ("range of f1", "sum", 1.0, 3), ("range of f2", "stress_difference", 1e-6, 2),
         ("range of f3", "sliding", 1.0, 3),
     ):  # fmt: skip
-        ends = row(start)[1].replace("−", "-").split(" to ")
+        ends = PAGE.row(start)[1].replace("−", "-").split(" to ")
         assert ends == [f"{scale * float(answers[f'{end}_{name}']):.{digits}f}" for end in ("least", "most")]
-    assert f"The lower end of f2 found here, {row('range of f2')[1].split()[0]} MPa" in WORDS
+    PAGE.says(f"The lower end of f2 found here, {PAGE.row('range of f2')[1].split()[0]} MPa")
 
 
 @pytest.mark.parametrize(
@@ -158,31 +145,24 @@ def test_the_ranges_of_the_objectives() -> None:
 def test_the_lost_limit_decides(start: str, limit: float, digits: int) -> None:
     variants = chosen()[0].variants
     best = next(each.shift for each in variants if (each.least_contact_ratio, each.weights) == (limit, "own_ranges"))
-    assert row(start)[1] == f"{number(best, digits)} / {number(best + float(FOUND.shift_difference), digits)}"
+    assert PAGE.row(start)[1] == f"{number(best, digits)} / {number(best + float(FOUND.shift_difference), digits)}"
 
 
 def test_the_weights_lead_elsewhere_where_no_limit_holds_the_optimum() -> None:
     for reading in ("path", "roots"):
         found = [each.shift for each in chosen(reading)[0].variants if each.least_contact_ratio == 1.2]
-        assert "{:.3f} (own ranges), {:.3f} (printed ranges) and {:.3f} (printed weights)".format(*found) in WORDS
-    assert f"The contact ratio of its pair is {float(FOUND.contact_ratio):.3f}." in WORDS
+        PAGE.says("{:.3f} (own ranges), {:.3f} (printed ranges) and {:.3f} (printed weights)".format(*found))
 
 
 def test_a_cutter_makes_the_range_of_f2_begin_at_0() -> None:
     """Which the substitute rack cannot give."""
     rack, cut = (chosen(**cutter)[0].field.course for cutter in ({}, {"cutter_teeth": 25.0}))
     assert rack.objectives[1].min() > 27
-    assert "keeps it above 27 MPa" in WORDS
     assert cut.objectives[1].min() < 0.02
-    assert f"are equal at $x_E = {cut.shifts[np.argmin(cut.objectives[1])]:.3f}$" in WORDS
+    equal = cut.shifts[np.argmin(cut.objectives[1])]
+    PAGE.says("keeps it above 27 MPa", f"are equal at $x_E = {equal:.3f}$")
 
 
 def test_equal_sliding_alone() -> None:
     shifts = [number(float(chosen()[1][f"equal_sliding_{gear}"]), 4) for gear in ("roller", "ring")]
-    assert row("equal sliding alone")[1] == " / ".join(shifts)
-
-
-def test_orders_of_carrier_and_roller() -> None:
-    carrier = 3.0 / (2.0 * 4.0)
-    assert f"$k/(2(k + 1)) = {carrier}$ times per turn" in WORDS
-    assert f"$z_I/z_E$ times as often, {carrier * 5}" in WORDS
+    assert PAGE.row("equal sliding alone")[1] == " / ".join(shifts)

@@ -5,15 +5,15 @@ with single calculations.
 """
 
 import json
-import re
-import warnings
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.path import Path as Outline
 
+from drawn import words
 from gear_geometry.roots import Rack, external_root
 from rv_gearing import sheet
 from rv_gearing.figures import groups_figure, meshing_of, notched_of, stresses_figure
@@ -21,10 +21,8 @@ from rv_gearing.geometry import half_space, tooth, trochoid, undercut
 from rv_gearing.groups import MEETING, SIZES, STRENGTH, FoundGroups, GroupColumn, GroupSearch, listed
 from rv_gearing.model import RV_GEARING
 from rv_gearing.rating import SAFETIES, Capacity, Reserve, Safeties, rating, rv_gearing
-from truing import Drawing, Kernel, Swept, Table, TruingError, Words
+from truing import Swept, Table, TruingError
 from truing.calculation import Calculation, calculate
-from truing.inputs_file import setup_from_text
-from truing.report.figures import draw
 from truing.setup import default_setup
 
 RACK = Rack(dedendum=1.25, fillet=0.38, pressure_angle=np.radians(20.0))
@@ -83,18 +81,16 @@ def test_the_better_groups_come_first_where_the_list_is_sorted_so() -> None:
     assert told.numbers[:4].tolist() == [4, 8, 15, 21]
     entry = told.as_json()
     assert entry["groups"]["preference"]["values"][:5] == [1, 1, 1, 1, 2]
-    assert [text.startswith("better: hunting teeth; planets in phase") for text in entry["reasons"]] == [True] * 4 + [
-        False
-    ] * 21
-    (table,) = [
-        block for block in sheet.search(calculation.record) if isinstance(block, Table) and "better" in block.title
-    ]
-    assert [row[0] for row in table.rows[:4]] == [4, 8, 15, 21]
-    assert [row[-1] for row in table.rows] == entry["reasons"]
+    is_better = [text.startswith("better: hunting teeth; planets in phase") for text in entry["reasons"]]
+    assert is_better == [True] * 4 + [False] * 21
+    tables = [block for block in sheet.search(calculation.record) if isinstance(block, Table)]
+    rows = {row[0]: row for table in tables if "better" in table.title for row in table.rows}
+    assert list(rows)[:4] == [4, 8, 15, 21]
+    assert [row[-1] for row in rows.values()] == entry["reasons"]
     page = (Path(__file__).parents[2] / "docs" / "how-to" / "choose_teeth.md").read_text(encoding="utf-8")
     for number in (4, 5, 1):
-        row = next(row for row in table.rows if row[0] == number)
-        assert f"| {number} | {row[1]:.0f}/{row[2]:.0f} | {row[-1]} |" in page
+        _, sun, planet, *_, reason = rows[number]
+        assert f"| {number} | {sun:.0f}/{planet:.0f} | {reason} |" in page
 
 
 def test_groups_with_just_the_wanted_ratio_keep_their_numbers() -> None:
@@ -127,13 +123,9 @@ def test_an_empty_list_is_said_and_the_stated_teeth_are_rated() -> None:
     assert calculation.answers["group_count"] == 0
     assert calculation.answers["group_ratio"].shape == (0,)
     assert "no group of tooth numbers meets" in " ".join(found(calculation).warnings())
-    first = sheet.search(calculation.record)[0]
-    assert isinstance(first, Words)
-    assert first.text.startswith("No group of tooth numbers")
+    assert words(sheet.search(calculation.record)).startswith("No group of tooth numbers")
     assert sheet.comparison(calculation.record) == []
-    assert [
-        block.title for block in sheet.search(run(GroupSearch(), **PAIRS[3]).record) if isinstance(block, Table)
-    ] == []
+    assert not any(isinstance(block, Table) for block in sheet.search(run(GroupSearch(), **PAIRS[3]).record))
     assert float(calculation.answers["root_stress_sun"]) > 0
     assert json.loads(json.dumps(found(calculation).as_json()))["count"] == 0
 
@@ -157,18 +149,21 @@ def test_a_column_that_is_none_is_refused() -> None:
 # ---- capacity and courses -----------------------------------------------------------------------------------------
 
 
+def reserve_of(calculation: Calculation) -> Reserve:
+    reserve = calculation.outcomes["capacity"]
+    assert isinstance(reserve, Reserve)
+    return reserve
+
+
 @pytest.mark.parametrize("place", range(4))
 def test_at_its_torque_a_safety_is_just_what_is_asked(whole: Calculation, place: int) -> None:
-    reserve = whole.outcomes["capacity"]
-    assert isinstance(reserve, Reserve)
-    at = rv_gearing(RV_GEARING.inputs(load_torque=float(reserve.torque[place])))
+    at = rv_gearing(RV_GEARING.inputs(load_torque=float(reserve_of(whole).torque[place])))
     safety = float(RV_GEARING.read_results(at)[SAFETIES[place]])
     assert safety == pytest.approx(1.25 if place < 2 else 1.1, rel=1e-9)
 
 
 def test_the_flank_of_the_sun_governs_and_its_life_ends_first(whole: Calculation) -> None:
-    reserve = whole.outcomes["capacity"]
-    assert isinstance(reserve, Reserve)
+    reserve = reserve_of(whole)
     assert reserve.governing == "pitting of the sun"
     worn = rv_gearing(RV_GEARING.inputs(working_life=float(reserve.life[2])))
     assert float(worn.sun.contact_safety) == pytest.approx(1.1, rel=1e-9)
@@ -180,34 +175,32 @@ def test_the_flank_of_the_sun_governs_and_its_life_ends_first(whole: Calculation
     assert float(given.power_capacity) == pytest.approx(2260 * more, rel=1e-3)
 
 
-def test_a_stated_torque_of_the_sun_is_what_is_raised() -> None:
+def test_a_stated_torque_of_the_sun_is_what_is_raised(whole: Calculation) -> None:
     """The same load, stated at the sun instead of by the power."""
-    by_power, stated = (
-        run(Capacity(), **inputs).outcomes["capacity"]
-        for inputs in ({}, {"stated_sun_torque": float(rv_gearing(RV_GEARING.inputs()).duty.sun_torque)})
-    )
-    assert isinstance(by_power, Reserve)
-    assert isinstance(stated, Reserve)
-    assert stated.torque == pytest.approx(by_power.torque, rel=1e-9)
+    stated = run(Capacity(), stated_sun_torque=float(rv_gearing(RV_GEARING.inputs()).duty.sun_torque))
+    assert reserve_of(stated).torque == pytest.approx(reserve_of(whole).torque, rel=1e-9)
 
 
 def test_a_stage_that_is_too_weak_at_any_load_says_so() -> None:
-    reserve = run(Capacity(), bending_limit_sun="0.001 MPa").outcomes["capacity"]
-    assert isinstance(reserve, Reserve)
+    reserve = reserve_of(run(Capacity(), bending_limit_sun="0.001 MPa"))
     assert reserve.torque[0] == 0
     table = reserve.blocks()[0]
     assert isinstance(table, Table)
     assert "always below" in table.rows[0]
 
 
+def swept_of(calculation: Calculation, name: str) -> Swept:
+    swept = calculation.outcomes[name]
+    assert isinstance(swept, Swept)
+    return swept
+
+
 def test_courses_hold_the_four_safeties_and_fall_with_the_load(whole: Calculation) -> None:
     for name, sign in (("load", -1.0), ("face_width", 1.0)):
-        swept = whole.outcomes[name]
-        assert isinstance(swept, Swept)
-        assert set(swept.results) == set(SAFETIES)
-        assert all(np.all(sign * np.diff(values) > 0) for values in swept.results.values())
-    swept = whole.outcomes["load"]
-    assert isinstance(swept, Swept)
+        results = swept_of(whole, name).results
+        assert set(results) == set(SAFETIES)
+        assert all(np.all(sign * np.diff(values) > 0) for values in results.values())
+    swept = swept_of(whole, "load")
     torque = float(whole.answers["output_torque"])
     assert (swept.axis[0], swept.axis[-1]) == (pytest.approx(0.1 * torque), pytest.approx(2 * torque))
     with pytest.raises(TruingError, match="the range of helix_angle"):
@@ -217,9 +210,8 @@ def test_courses_hold_the_four_safeties_and_fall_with_the_load(whole: Calculatio
 
 
 def test_a_course_over_the_load_goes_over_the_torque_of_the_sun_where_that_is_stated() -> None:
-    stated = run(Safeties(over="load_torque", at="100..2500 N*m", points=5, name="load"), stated_sun_torque=20.0)
-    swept = stated.outcomes["load"]
-    assert isinstance(swept, Swept)
+    course = Safeties(over="load_torque", at="100..2500 N*m", points=5, name="load")
+    swept = swept_of(run(course, stated_sun_torque=20.0), "load")
     assert swept.over == "stated_sun_torque"
     assert swept.axis == pytest.approx([2.0, 11.5, 21.0, 30.5, 40.0])
     assert np.all(np.diff(swept.results["contact_safety_sun"]) < 0)
@@ -276,10 +268,8 @@ PAIRS: list[dict[str, Any]] = [
 
 
 @pytest.mark.parametrize("inputs", PAIRS)
-def test_flanks_touch_and_do_not_overlap(inputs: dict[str, Any]) -> None:
+def test_flanks_touch_along_a_path_as_long_as_the_contact_ratio_says(inputs: dict[str, Any]) -> None:
     """Distances of the drawn outlines around the pitch point; a hundredth of a module is the step of the outline."""
-    from matplotlib.path import Path as Outline
-
     calculation = run(**inputs)
     meshing = meshing_of(calculation.record, calculation.record.inputs)
     planet = meshing.planet.teeth + np.array([[0.0], [meshing.distance]])
@@ -289,12 +279,6 @@ def test_flanks_touch_and_do_not_overlap(inputs: dict[str, Any]) -> None:
     assert away.min() < 0.03 * meshing.module
     inside = Outline(planet.T).contains_points(own.T)
     assert not np.any(inside) or away[inside].max() < 0.02 * meshing.module
-
-
-@pytest.mark.parametrize("inputs", PAIRS)
-def test_the_path_of_contact_is_as_long_as_the_contact_ratio_says(inputs: dict[str, Any]) -> None:
-    calculation = run(**inputs)
-    meshing = meshing_of(calculation.record, calculation.record.inputs)
     path = meshing.path()
     ratio = float(calculation.answers["contact_ratio"])
     assert (path["E"] - path["A"]) / meshing.base_pitch == pytest.approx(ratio, rel=1e-12)
@@ -336,50 +320,3 @@ def test_the_figure_of_stresses_has_every_group_below_its_limit(whole: Calculati
         for gear in ("sun", "planet"):
             assert lines[gear] == pytest.approx(found(whole).strength[f"{kind}_stress_{gear}"] / 1e6)
             assert np.all(lines[gear] < lines[f"{gear}, permissible"])
-
-
-@pytest.mark.parametrize(
-    ("inputs", "figures"),
-    [(PAIRS[3], 3), ({"fewest_pins": 20, "most_pins": 80, "load_torque": -900.0}, 5)],
-)
-def test_every_figure_is_drawn_without_a_complaint(inputs: dict[str, Any], figures: int) -> None:
-    """The pair of module 8 mm fits no window: no group, and nothing to draw of groups."""
-    studies = (
-        GroupSearch(sort_by="contact_safety_sun"),
-        Capacity(),
-        Safeties(over="power", at="1..4 kW", points=7, name="power"),
-    )
-    calculation = run(*studies, **inputs)
-    sections = (sheet.search, sheet.geometry, sheet.bending, sheet.method_b, sheet.courses, sheet.comparison)
-    count = 0
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        for section in sections:
-            for block in section(calculation.record):
-                if isinstance(block, Drawing):
-                    count += 1
-                    assert draw(block.draw, title=block.title, ident=f"f{count}").startswith("<svg")
-    assert count == figures
-
-
-def test_every_result_stands_in_a_section() -> None:
-    named = [name for section in RV_GEARING.sheet for name in section.names]
-    assert set(RV_GEARING.result_fields) == set(named)
-    assert len(named) == len(set(named))
-
-
-def test_the_example_names_every_input_effect_unknown_condition_and_study() -> None:
-    """Each line that is not read is read here too: the file with all of them on is calculated."""
-    text = RV_GEARING.example.read_text(encoding="utf-8") if RV_GEARING.example else ""
-    words = set(re.findall(r"^(?:# )?(\w+) = ", text, re.MULTILINE))
-    unknowns = {unknown.name for effect in RV_GEARING.effects.values() for unknown in effect.unknowns}
-    assert set(RV_GEARING.input_fields) | set(RV_GEARING.conditions) | unknowns <= words
-    assert {f"# [effects.{name}]" for name in RV_GEARING.effects} <= set(text.splitlines())
-    lines = [line[2:] if re.match(r"# (\w+ = |\[)", line) else line for line in text.splitlines()]
-    everything = "\n".join(lines).replace("draws = 1000000", "draws = 200")
-    offer = Kernel.installed().offer("rv_gearing")
-    setup = setup_from_text(everything, offer, file="example.toml", folder=Path())
-    assert len(setup.effects) == len(RV_GEARING.effects) == 17
-    answers = calculate(setup).answers
-    assert answers["transmission_error"] > 0
-    assert answers["flank_temperature"] > 320

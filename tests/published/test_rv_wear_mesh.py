@@ -62,38 +62,25 @@ def slope(function: Any, at: float, step: float = 1e-5) -> complex:
 
 
 @pytest.mark.parametrize("psi", SOME)
-def test_the_flank_is_a_pin_radius_from_the_path_and_parallel_to_it(psi: float) -> None:
+def test_flank_speeds_and_radius_are_those_of_the_moving_profile(psi: float) -> None:
+    """The flank is a pin radius from the path and parallel to it, inwards: the disc lies inside of its pins.
+
+    A point of the pin that is in contact is fixed in the housing, which turns around the disc.
+    """
     turn = psi / 39
     away, along = complex(flank(turn) - path(turn)), slope(path, turn)
     assert abs(away) == pytest.approx(0.005, rel=1e-14)
     assert (away * along.conjugate()).real == pytest.approx(0, abs=1e-9 * abs(along) * 0.005)
-    assert (away * along.conjugate()).imag > 0  # inwards: the disc lies inside of its pins
+    assert (away * along.conjugate()).imag > 0
     assert abs((slope(flank, turn) * along.conjugate()).imag) < 1e-8 * abs(along) ** 2
-
-
-@pytest.mark.parametrize("psi", SOME)
-def test_speeds_are_those_of_the_moving_profile(psi: float) -> None:
-    turn = psi / 39
-    touching = complex(flank(turn) - path(turn))
-
-    def on_pin(at: float) -> Any:
-        """A point of the pin that is in contact at ``turn``: fixed in the housing, which turns around the disc."""
-        return path(at) + touching * np.exp(1j * (at - turn))
-
-    pin, contact_point = abs(slope(on_pin, turn)), abs(slope(flank, turn))
+    pin = abs(slope(lambda at: path(at) + away * np.exp(1j * (at - turn)), turn))
     assert geometry.sliding_speed(MESH, psi) == pytest.approx(pin, rel=1e-8)
-    assert geometry.rolling_speed(MESH, psi) == pytest.approx(contact_point, rel=1e-7)
-    assert abs(slope(path, turn)) == pytest.approx(0.1145 * geometry.pin_distance(MESH, psi), rel=1e-9)
-
-
-@pytest.mark.parametrize("psi", SOME)
-def test_radius_is_that_of_the_profile(psi: float) -> None:
-    def curvature(at: float) -> float:
-        first = slope(flank, at, 2e-4)
-        second = slope(lambda place: slope(flank, place, 2e-4), at, 2e-4)
-        return float((first.conjugate() * second).imag / abs(first) ** 3)
-
-    assert geometry.profile_radius(MESH, psi) == pytest.approx(-1 / curvature(psi / 39), rel=1e-4)
+    assert geometry.rolling_speed(MESH, psi) == pytest.approx(abs(slope(flank, turn)), rel=1e-7)
+    assert abs(along) == pytest.approx(0.1145 * geometry.pin_distance(MESH, psi), rel=1e-9)
+    first = slope(flank, turn, 2e-4)
+    second = slope(lambda place: slope(flank, place, 2e-4), turn, 2e-4)
+    curvature = float((first.conjugate() * second).imag / abs(first) ** 3)
+    assert geometry.profile_radius(MESH, psi) == pytest.approx(-1 / curvature, rel=1e-4)
 
 
 @pytest.mark.parametrize("eccentricity", [0.5e-3, 1.2e-3, 2.2e-3, 2.7e-3])
@@ -185,16 +172,11 @@ def test_without_clearance_all_pins_bear(torque: float, load_sharing: str) -> No
 @pytest.mark.parametrize("load_sharing", ["linear", "hertz"])
 @pytest.mark.parametrize("pins", [40, 41, 25])
 def test_torque_is_held_in_every_position_and_step(pins: int, load_sharing: str) -> None:
-    reducer = replace(
-        PAPER,
-        pin_count=pins,
-        eccentricity=K_1 * 0.1145 / pins,
-        load_sharing=load_sharing,  # type: ignore[arg-type]
-        output_torque=np.array([300.0, 3136.0, 5000.0]),
-    )
+    torques, sharing = np.array([300.0, 3136.0, 5000.0]), {"load_sharing": load_sharing}
+    reducer = replace(PAPER, pin_count=pins, eccentricity=K_1 * 0.1145 / pins, output_torque=torques, **sharing)
     teeth = teeth_of(mesh_of(reducer))
     arm = reducer.eccentricity * (pins - 1) / 0.0022 / 39 * lever(teeth.angle)
-    wanted = 0.55 * np.array([300.0, 3136.0, 5000.0])
+    wanted = 0.55 * torques
     for step, state in zip(range(40), states(teeth), strict=False):
         held = (state.loads.force * arm).sum(axis=0)
         assert held / wanted == pytest.approx(np.ones_like(held), rel=1e-9), step
@@ -271,15 +253,11 @@ def test_what_would_decide_the_wear_is_refused_by_name(changes: dict[str, float]
 @pytest.mark.parametrize(
     "changes",
     [
-        {"eccentricity": 2.5e-3},
-        {"pin_radius": 8.97e-3},
-        {"shift_modification": -26e-6},
+        {"eccentricity": 2.5e-3}, {"pin_radius": 8.97e-3}, {"shift_modification": -26e-6}, {"output_torque": 20000.0},
         {"equidistant_modification": 11.1e-6, "shift_modification": 7.1e-6},
-        {"equidistant_modification": -200e-6, "shift_modification": -204e-6},
-        {"output_torque": 0.1, "phases": 200},
-        {"output_torque": 20000.0},
+        {"equidistant_modification": -200e-6, "shift_modification": -204e-6}, {"output_torque": 0.1, "phases": 200},
     ],
-)
+)  # fmt: skip
 def test_what_is_only_unusual_is_calculated(changes: dict[str, float]) -> None:
     found = worn(replace(PAPER, **changes))
     assert np.isfinite([found["max_wear"], found["max_force"], found["max_pressure"]]).all()
@@ -287,7 +265,6 @@ def test_what_is_only_unusual_is_calculated(changes: dict[str, float]) -> None:
 
 def test_a_step_is_not_too_deep_for_a_wear_that_never_reaches_it() -> None:
     """Within the first step wear grows evenly, whatever its size: new discs and short times are calculated."""
-    new = worn(replace(PAPER, working_time=np.array([0.0, 36.0]), reconstruction_depth=5e-6))
-    assert new["max_wear"] == pytest.approx(
-        worn(replace(PAPER, working_time=np.array([0.0, 36.0])))["max_wear"], rel=1e-12
-    )
+    short = replace(PAPER, working_time=np.array([0.0, 36.0]))
+    deep = worn(replace(short, reconstruction_depth=5e-6))
+    assert deep["max_wear"] == pytest.approx(worn(short)["max_wear"], rel=1e-12)

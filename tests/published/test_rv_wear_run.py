@@ -4,29 +4,26 @@ Expected numbers are geometry, closed forms and equations written a second time,
 independent program.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
-from functools import partial
 from math import acos, cos, degrees, isfinite, log, pi, radians, sin, sqrt
-from pathlib import Path
 from statistics import NormalDist
 from typing import Any
 
 import numpy as np
 import pytest
 from matplotlib.patches import Circle
-from numpy.typing import NDArray
 from rv_wear_by_hand import PRICE_OF, price_by_hand
 
+from drawn import figures, line, words
+from pages import Page
 from rv_wear import sheet
-from rv_wear.discs import Modifications
 from rv_wear.figures import mesh_figure
 from rv_wear.machines import NewMachines
 from rv_wear.optimum import Fronts, LeastCosts
-from truing import Drawing, Kernel, Reliability, TruingError, Words
+from truing import Kernel, Reliability, TruingError
 from truing.calculation import Calculation, calculate
 from truing.published import compare_published
-from truing.report.figures import draw
 from truing.setup import default_setup
 
 E, PINS, CIRCLE, RADIUS, ARM = 2.2, 40, 114.5, 5.0, 2.2 * 39  # mm
@@ -85,17 +82,6 @@ def run() -> Calculation:
     return calculate(replace(default_setup(OFFER.model, OFFER.origin), studies=studies))
 
 
-def figures(run: Calculation, section: Callable[[Any], Any]) -> dict[str, Any]:
-    """The figures of a section by title, drawn."""
-    return {block.title: block.draw() for block in section(run.record) if isinstance(block, Drawing)}
-
-
-def line(panel: Any, label: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The line with this label."""
-    found = next(item for item in panel.get_lines() if item.get_label() == label)
-    return np.asarray(found.get_xdata(), dtype=float), np.asarray(found.get_ydata(), dtype=float)
-
-
 def normal_mean(hours: float) -> float:
     """Mean backlash, arcmin, with the wear of the table."""
     return 0.6985 + 2 * WEAR.get(int(hours), 0.0) * PER_MICROMETRE
@@ -112,17 +98,22 @@ def spread(widths: Mapping[str, float], wear: float) -> float:
 # The mesh
 
 
+@pytest.fixture(scope="module")
+def mesh() -> Any:
+    """The drawing of the mesh."""
+    return mesh_figure(RV_WEAR.inputs()).axes[0]
+
+
 def circles(panel: Any) -> list[Any]:
-    return [item for item in panel.patches if isinstance(item, Circle) and item.get_radius() == pytest.approx(RADIUS)]
+    return [each for each in panel.patches if isinstance(each, Circle) and each.get_radius() == pytest.approx(RADIUS)]
 
 
-def test_every_pin_stands_on_its_circle_and_touches_the_disc() -> None:
+def test_every_pin_stands_on_its_circle_and_touches_the_disc(mesh: Any) -> None:
     """All pins but for what grinding takes off, before the disc is turned; the outline has a point every 0.2 mm."""
-    mesh = mesh_figure(RV_WEAR.inputs()).axes[0]
-    pins = np.array([complex(*item.center) for item in circles(mesh)])
+    pins = np.array([complex(*each.center) for each in circles(mesh)])
     assert len(pins) == PINS
     assert np.abs(pins) == pytest.approx(CIRCLE)
-    corners = next(item for item in mesh.patches if len(item.get_xy() if hasattr(item, "get_xy") else ()) > 1000)
+    corners = next(each for each in mesh.patches if len(each.get_xy() if hasattr(each, "get_xy") else ()) > 1000)
     outline = corners.get_xy()[:, 0] + 1j * corners.get_xy()[:, 1]
     gaps = np.abs(pins[:, None] - outline[None, :]).min(axis=1) - RADIUS
     psi = np.angle(pins)
@@ -130,20 +121,18 @@ def test_every_pin_stands_on_its_circle_and_touches_the_disc() -> None:
     assert gaps == pytest.approx(ground, abs=2e-3)
 
 
-def test_the_arrows_balance_the_torque_and_point_to_the_pitch_point() -> None:
+def test_the_arrows_balance_the_torque_and_point_to_the_pitch_point(mesh: Any) -> None:
     """Moments about the middle of the disc, from the arrows alone; the longest is the force that is written."""
-    mesh = mesh_figure(RV_WEAR.inputs()).axes[0]
-    arrows = [item for item in mesh.texts if item.get_text() == "" and item.arrow_patch is not None]
+    arrows = [each for each in mesh.texts if each.get_text() == "" and each.arrow_patch is not None]
     assert 9 <= len(arrows) <= 12
-    tails = np.array([complex(*item.xyann) for item in arrows])
-    tips = np.array([complex(*item.xy) for item in arrows])
-    to_pitch = E * PINS - tails
-    assert np.angle((tips - tails) / to_pitch) == pytest.approx(0.0, abs=1e-9)
-    written = next(float(item.get_text()[:-2]) for item in mesh.texts if item.get_text().endswith(" N"))
+    tails = np.array([complex(*each.xyann) for each in arrows])
+    tips = np.array([complex(*each.xy) for each in arrows])
+    assert np.angle((tips - tails) / (E * PINS - tails)) == pytest.approx(0.0, abs=1e-9)
+    written = next(float(each.get_text()[:-2]) for each in mesh.texts if each.get_text().endswith(" N"))
     force = (tips - tails) / np.abs(tips - tails).max() * written
     moments = ((tails - E).conjugate() * force).imag * 1e-3
     assert abs(moments.sum()) == pytest.approx(TORQUE, rel=1e-3)
-    assert len([item for item in circles(mesh) if item.get_facecolor()[:3] != (1.0, 1.0, 1.0)]) == len(arrows)
+    assert len([each for each in circles(mesh) if each.get_facecolor()[:3] != (1.0, 1.0, 1.0)]) == len(arrows)
 
 
 # Along the flank
@@ -175,7 +164,7 @@ def test_the_forces_hold_the_torque_in_every_position(run: Calculation, label: s
 def test_the_words_on_both_ways_of_sharing_are_read_off_the_figure(run: Calculation) -> None:
     panel = figures(run, sheet.forces)["Force on a pin"].axes[0]
     linear, hertz = (line(panel, f"new, {way}")[1] for way in ("in proportion to the approach", "Hertz at every pin"))
-    said = next(block.text for block in sheet.forces(run.record) if isinstance(block, Words))
+    said = words(sheet.forces(run.record))
     assert f"{100 * (hertz.max() / linear.max() - 1):.1f} % larger" in said
     assert f"up to {100 * np.abs(hertz - linear).max() / linear.max():.0f} % of" in said
     assert 1 < 100 * (hertz.max() / linear.max() - 1) < 4  # an independent solution of both
@@ -292,15 +281,14 @@ def test_no_design_of_the_search_beats_the_front(run: Calculation) -> None:
 
 def test_the_numbers_on_the_theory_page_are_those_of_the_fronts(run: Calculation) -> None:
     """Smallest wear, knee, and the cost at the paper's wear."""
-    page = (Path(__file__).parents[2] / "docs" / "explanation" / "rv_wear.md").read_text(encoding="utf-8")
     fronts: Fronts = run.outcomes["least_costs"]
     for front in fronts.fronts:
-        first, knee = front.designs[0], front.designs[front.knee or 0]
-        row = next(text for text in page.splitlines() if text.startswith(rf"| $R \ge {front.goal:g}$"))
-        assert f"{first.wear * 1e6:.3f} µm, {first.cost:.0f} yuan" in row
-        assert f"{knee.wear * 1e6:.3f} µm, {knee.cost:.0f} yuan" in row
         printed = {0.95: 3.151, 0.999: 3.207}[front.goal]
-        between = np.interp(printed, [item.wear * 1e6 for item in front.designs], [item.cost for item in front.designs])
+        wear, cost = ([getattr(each, name) for each in front.designs] for name in ("wear", "cost"))
+        between = np.interp(printed, 1e6 * np.array(wear), cost)
+        row = " ".join(Page("rv_wear").row(rf"$R \ge {front.goal:g}$"))
+        for place in (0, front.knee or 0):
+            assert f"{1e6 * wear[place]:.3f} µm, {cost[place]:.0f} yuan" in row
         assert f"{printed:g} µm: {between:.0f} yuan" in row
 
 
@@ -353,67 +341,22 @@ def test_every_printed_number_is_as_stated_and_as_near_as_in_the_reference(run: 
     assert all(row.published.why for row in rows.values() if not row.matches)
 
 
-# All of them
-
-
-SECTIONS = [section for section in RV_WEAR.sheet if section.blocks is not None]
-
-
-@pytest.mark.parametrize("section", SECTIONS, ids=lambda section: section.title)
-def test_every_figure_can_be_drawn_and_names_its_axes(run: Calculation, section: Any) -> None:
-    blocks = [block for block in section.blocks(run.record) if isinstance(block, Drawing)]
-    assert blocks
-    for block in blocks:
-        assert block.caption
-        figure = block.draw()
-        assert "<svg" in draw(partial(lambda made: made, figure), title=block.title, ident="f")
-        panels = figure.axes
-        assert all(panel.get_ylabel() or panel.get_yticklabels() or panel.get_shared_y_axes() for panel in panels)
-        assert panels[-1].get_xlabel()
-
-
-def test_without_studies_nothing_is_drawn_that_is_not_known() -> None:
-    bare = calculate(replace(default_setup(RV_WEAR), studies=()))
-    for section in (sheet.other_discs, sheet.influence, sheet.reliability, sheet.costs, sheet.better_tolerances):
-        assert list(section(bare.record)) == []
-    assert len(figures(bare, sheet.geometry)) == 2
-    assert list(figures(bare, sheet.wear)) == ["Wear along the flank"]
-
-
-@pytest.mark.parametrize(
-    "inputs",
-    [
-        {"working_time": "0 h", "phases": 4, "load_sharing": "hertz"},
-        {"output_torque": "1 N*m", "phases": 256, "equidistant_modification": "0 um", "shift_modification": "0 um"},
-        {"pin_count": 12, "eccentricity": "5 mm", "pin_radius": "12 mm", "film_factor": 150.0},
-    ],
-    ids=lambda inputs: next(iter(inputs)),
-)
-def test_an_unusual_reducer_is_drawn_too(inputs: dict[str, Any]) -> None:
-    setup = replace(default_setup(RV_WEAR), inputs=RV_WEAR.inputs(**inputs))
-    studies = (Modifications(points=3), NewMachines(draws=50), *(s for s in RV_WEAR.studies if s.name == "sweep"))
-    found = calculate(replace(setup, studies=studies))
-    for section in SECTIONS:
-        assert section.blocks is not None
-        for block in section.blocks(found.record):
-            if isinstance(block, Drawing):
-                assert block.draw().axes
-
-
 # The studies that are there for the figures
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("study", "options", "said"),
     [
-        ({"goals": (1.0,)}, "goals lie between 0 and 1"),
-        ({"span": (4.0, -45.0)}, "span is the lowest and the highest"),
-        ({"widest": 1.0}, "widest = 1 must lie above 1"),
+        (LeastCosts, {"goals": (1.0,)}, "goals lie between 0 and 1"),
+        (LeastCosts, {"span": (4.0, -45.0)}, "span is the lowest and the highest"),
+        (LeastCosts, {"widest": 1.0}, "widest = 1 must lie above 1"),
+        (NewMachines, {"draws": 1}, "2 to 100000 machines can be shown"),
+        (NewMachines, {"draws": 100_001}, "2 to 100000 machines can be shown"),
     ],
 )
-def test_a_front_that_cannot_be_is_refused(options: dict[str, Any], said: str) -> None:
+def test_a_study_that_cannot_be_is_refused(study: Any, options: dict[str, Any], said: str) -> None:
     with pytest.raises(TruingError, match=said):
-        LeastCosts(**options)
+        study(**options)
 
 
 def test_a_goal_out_of_reach_is_a_warning_and_no_front() -> None:
@@ -423,12 +366,6 @@ def test_a_goal_out_of_reach_is_a_warning_and_no_front() -> None:
     assert [front.designs for front in fronts.fronts] == [(), ()]
     assert sum("reaches a reliability of" in text for text in found.warnings) == 2
     assert list(sheet.better_tolerances(found.record)) == []
-
-
-@pytest.mark.parametrize("draws", [1, 100_001])
-def test_machines_that_cannot_be_shown_are_refused(draws: int) -> None:
-    with pytest.raises(TruingError, match="2 to 100000 machines can be shown"):
-        NewMachines(draws=draws)
 
 
 def test_the_machines_shown_are_the_first_of_the_reliability_study() -> None:

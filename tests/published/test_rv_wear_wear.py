@@ -18,6 +18,8 @@ from rv_wear.model import RV_WEAR
 from rv_wear.quantities import Reducer
 from rv_wear.wear import wear_at, worn
 from shared import ROUNDING
+from truing.evaluate import evaluate_rows
+from truing.setup import default_setup
 
 PAPER: Reducer = RV_WEAR.inputs()
 HOUR = 3600.0
@@ -189,41 +191,8 @@ def test_only_with_a_film_its_oil_counts() -> None:
 # Batches
 
 
-def test_a_batch_is_what_every_row_gives_alone() -> None:
-    rng = np.random.default_rng(5)
-    rows = 30
-    modification = np.repeat(rng.uniform(-40e-6, 5e-6, 6), 5)
-    columns = {
-        **ground(modification),
-        "output_torque": np.where(np.arange(rows) % 7 == 0, 2000.0, 3136.0),
-        "composite_roughness": rng.normal(0.694e-6, 0.01e-6, rows),
-        "working_time": rng.uniform(0, 8000 * HOUR, rows),
-        "loaded_share": rng.uniform(0, 1, rows),
-        "reversing": np.where(np.arange(rows) % 3 == 0, np.nan, rng.uniform(0, 1, rows)),
-    }
-    together = worn(replace(PAPER, **columns))
-    for row in range(rows):
-        alone = worn(replace(PAPER, **{name: values[row] for name, values in columns.items()}))
-        for name in (
-            "max_wear",
-            "wear_angle",
-            "backlash_wear",
-            "max_force",
-            "largest_force",
-            "max_pressure",
-            "coefficient",
-        ):
-            there = together[name][row]
-            assert there == pytest.approx(alone[name], rel=1e-14), name
-
-
 def test_a_row_that_cannot_be_leaves_the_others_alone() -> None:
-    from truing.evaluate import evaluate_rows
-    from truing.kernel import Kernel
-    from truing.setup import default_setup
-
-    offer = Kernel.installed(strict=True).offer("rv_wear")
-    setup = default_setup(offer.model, offer.origin)
+    setup = default_setup(RV_WEAR)
     modification = np.array([-26e-6, 30e-6, -26e-6, 2e-6])
     columns = {
         **ground(modification),
@@ -235,8 +204,7 @@ def test_a_row_that_cannot_be_leaves_the_others_alone() -> None:
     assert "interfere" in found.reasons[1]
     assert "undercut" in found.reasons[2]
     assert found.results["max_wear"][0] == pytest.approx(worn(PAPER)["max_wear"], rel=CONDITION * ROUNDING)
-    nobody = evaluate_rows(setup, {"pin_radius": np.full(3, 9.2e-3)}, 3)
-    assert nobody.failed.all()
-    alike = evaluate_rows(setup, {"pin_radius": 9.2e-3}, 3)
-    assert alike.failed.all()
-    assert "undercut" in alike.reasons[2]
+    for radius in (np.full(3, 9.2e-3), 9.2e-3):
+        nobody = evaluate_rows(setup, {"pin_radius": radius}, 3)
+        assert nobody.failed.all()
+        assert "undercut" in nobody.reasons[2]

@@ -158,7 +158,7 @@ def test_how_long_a_call_takes_says_how_many_there_are(
 ) -> None:
     """Five minutes by the nearest power of ten, and forty calls for every effect at least."""
     shop = Shop(seconds)
-    monkeypatch.setattr(extended, "perf_counter", shop.clock)
+    monkeypatch.setattr(extended, "processor_seconds", shop.clock)
     given_ = budget_of(0, effects, lambda: shop.function(1)(Beam()))
     assert (given_.calls, given_.takes) == (calls, takes)
     assert budget_of(77, effects, lambda: pytest.fail("it is not timed")).calls == 77
@@ -184,7 +184,7 @@ def test_a_model_of_a_second_a_call_is_diagnosed_in_minutes(tmp_path: Path, monk
     What follows the search (sizes, folds, the next measurement) takes a few hundred calls at most.
     """
     shop = Shop(1.0)
-    monkeypatch.setattr(extended, "perf_counter", shop.clock)
+    monkeypatch.setattr(extended, "processor_seconds", shop.clock)
     records = asked(shop).records(tmp_path, record(leaning_with_play))
     shop.time = shop.calls = 0.0
     answer = diagnose(asked(shop).setup, records)
@@ -206,7 +206,7 @@ def test_a_stated_budget_gives_one_answer_however_slow_the_machine_is(
     answers = []
     for seconds in (0.0, 30.0):
         shop = Shop(seconds)
-        monkeypatch.setattr(extended, "perf_counter", shop.clock)
+        monkeypatch.setattr(extended, "processor_seconds", shop.clock)
         answers.append(diagnosis_document(asked(shop, EFFECTS[:2], calls=60).diagnosed(tmp_path, record(leaning))))
     assert answers[0] == answers[1]
     assert "the search ended after 60 calls of the model and left out: " in " ".join(answers[0]["warnings"])

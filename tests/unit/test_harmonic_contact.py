@@ -64,21 +64,23 @@ def test_load_stiffness_and_areas_are_the_integrals_over_all_contacts(
 
 
 @pytest.mark.parametrize(("dimension", "roughness"), SURFACES)
-def test_a_tip_radius_that_follows_the_area_makes_the_pair_stiffer(dimension: float, roughness: float) -> None:
-    found = pressed(400.0, contact(dimension, roughness, tip_rule="scaled"))
-    expected = RoughPair(dimension, roughness).stiffness(float(found.largest_area), following=True)
-    assert found.stiffness == pytest.approx(expected, rel=1e-6)
+def test_tip_clearance_and_slope_of_one_surface(dimension: float, roughness: float) -> None:
+    """A tip radius that follows the area makes the pair stiffer; the clearance twice is the largest interference.
 
-
-# Load and largest area
-
-
-@pytest.mark.parametrize(("dimension", "roughness"), SURFACES)
-def test_from_load_to_largest_area_and_back(dimension: float, roughness: float) -> None:
-    ours = contact(dimension, roughness)
+    From load to largest area and back; the load exponent is the slope of the stiffness.
+    """
+    pair, ours, step = RoughPair(dimension, roughness), contact(dimension, roughness), 1e-5
+    scaled = pressed(400.0, contact(dimension, roughness, tip_rule="scaled"))
+    assert scaled.stiffness == pytest.approx(pair.stiffness(float(scaled.largest_area), following=True), rel=1e-6)
     size = micro.size_of(np.log(LOADS / ours.plastic_limit), ours.law)
     back = np.exp(micro.load_logarithm(size, ours.law)) * ours.plastic_limit
     np.testing.assert_allclose(back, LOADS, rtol=1e-12)
+    low, here, high = (pressed(25.0 * np.exp(way), ours) for way in (-step, 0.0, step))
+    slope = np.log(high.stiffness / low.stiffness) / (2.0 * step)
+    assert here.load_exponent == pytest.approx(slope, rel=1e-7)
+    largest = float(here.largest_area)
+    once = rough_contact.amplitude(np.sqrt(largest / np.pi), ours, 1.5)
+    assert 2.0 * once == pytest.approx(pair.interference(largest), rel=1e-12)
 
 
 @pytest.mark.parametrize("beyond", [1e-12, 1e-9, 1e-6, 1e-3])
@@ -99,26 +101,7 @@ def test_below_the_plastic_limit_there_is_no_stiffness_and_no_crash() -> None:
     np.testing.assert_allclose(found.real_area, found.contact_area, rtol=1e-12)
 
 
-# Laws of scale and sense
-
-
-@pytest.mark.parametrize(("dimension", "roughness"), SURFACES)
-def test_load_exponent_is_the_slope_of_the_stiffness(dimension: float, roughness: float) -> None:
-    ours, step = contact(dimension, roughness), 1e-5
-    low, here, high = (pressed(25.0 * np.exp(way), ours) for way in (-step, 0.0, step))
-    slope = np.log(high.stiffness / low.stiffness) / (2.0 * step)
-    assert here.load_exponent == pytest.approx(slope, rel=1e-7)
-
-
 # Clearance
-
-
-@pytest.mark.parametrize(("dimension", "roughness"), SURFACES)
-def test_the_clearance_twice_is_the_interference_of_the_largest_contact(dimension: float, roughness: float) -> None:
-    ours = contact(dimension, roughness)
-    largest = float(pressed(25.0, ours).largest_area)
-    once = rough_contact.amplitude(np.sqrt(largest / np.pi), ours, 1.5)
-    assert 2.0 * once == pytest.approx(RoughPair(dimension, roughness).interference(largest), rel=1e-12)
 
 
 def test_three_readings_of_the_clearance() -> None:
@@ -179,13 +162,10 @@ def test_height_of_a_patch_from_its_waves() -> None:
 
 
 def test_heights_are_stated_else_of_the_patch_else_none() -> None:
-    first, second = rough_contact.heights(drive_of(peak_height=2e-6))
-    assert (first, second) == (2e-6, 0.0)
+    assert rough_contact.heights(drive_of(peak_height=2e-6)) == (2e-6, 0.0)
     first, second = rough_contact.heights(drive_of(mating_dimension=2.4, mating_roughness=1e-11))
-    assert first == pytest.approx(second, rel=1e-12)
-    assert first == pytest.approx(
-        rough_contact.patch_height(Rough(dimension=2.4, roughness=1e-11), 2e-4, 1.5), rel=1e-12
-    )
+    of_patch = rough_contact.patch_height(Rough(dimension=2.4, roughness=1e-11), 2e-4, 1.5)
+    assert (first, second) == pytest.approx((of_patch, of_patch), rel=1e-12)
 
 
 # Two rough flanks as one, and what must hold before a drive is calculated.
@@ -218,14 +198,6 @@ def test_a_smooth_mate_changes_nothing_and_deviations_come_last() -> None:
     assert alone.roughness == pytest.approx(1e-11 * np.exp(-0.7), rel=1e-12)
     rows = interface_of(drive_of(mating_dimension=np.array([np.nan, 2.4]), mating_roughness=np.array([np.nan, 1e-11])))
     np.testing.assert_allclose(rows.roughness, 1e-11 * np.array([1.0, 2.0 ** (1 / 0.8)]), rtol=1e-10)
-
-
-@pytest.mark.parametrize("convention", ["one_direction", "profile"])
-def test_the_convention_is_that_of_the_stated_roughness(convention: str) -> None:
-    """Isotropic ridges, D_s = 1.5: of one direction 2/pi of the squares are left; the profile divides by ln 1.5."""
-    found = interface_of(drive_of(fractal_dimension=2.5, fractal_roughness=1e-9, convention=convention))
-    factor = {"one_direction": np.pi / 2.0, "profile": np.pi / 2.0 / np.log(1.5)}[convention]
-    assert found.roughness == pytest.approx(1e-9 * factor, rel=1e-10)
 
 
 # Measured flanks

@@ -43,35 +43,25 @@ def estimated(heights: np.ndarray, settings: Estimation = PLAIN, spacing: float 
 # What leaves D and G as they are, or changes them in a known way
 
 
-@pytest.mark.parametrize("factor", [0.1, 7.0])
-def test_higher_heights_change_the_roughness_by_a_power(factor: float) -> None:
-    """Heights times c: the same D_s, G times c^(1/(D_s - 1))."""
+@pytest.mark.parametrize(("higher", "longer"), [(0.1, 1.0), (7.0, 1.0), (1.0, 0.25), (1.0, 3.0)])
+def test_higher_heights_and_longer_lines_change_the_roughness_by_a_power(higher: float, longer: float) -> None:
+    """Heights times c: the same D_s, G times c^(1/(D_s - 1)). Points further apart by c: c^(-(2 - D_s)/(D_s - 1))."""
     heights = rough()
-    one, other = estimated(heights), estimated(factor * heights)
+    one, other = estimated(heights), estimated(higher * heights, spacing=longer * SPACING)
+    power = 1 / (one.dimension - 1)
     assert other.dimension == pytest.approx(one.dimension, rel=1e-12)
-    assert other.roughness == pytest.approx(one.roughness * factor ** (1 / (one.dimension - 1)), rel=1e-9)
-
-
-@pytest.mark.parametrize("factor", [0.25, 3.0])
-def test_longer_lines_change_the_roughness_by_a_power(factor: float) -> None:
-    """The same heights further apart by c: the same D_s, G times c^(-(2 - D_s)/(D_s - 1))."""
-    heights = rough()
-    one, other = estimated(heights), estimated(heights, spacing=factor * SPACING)
-    exponent = -(2 - one.dimension) / (one.dimension - 1)
-    assert other.dimension == pytest.approx(one.dimension, rel=1e-12)
-    assert other.roughness == pytest.approx(one.roughness * factor**exponent, rel=1e-9)
+    expected = one.roughness * higher**power * longer ** (-(2 - one.dimension) * power)
+    assert other.roughness == pytest.approx(expected, rel=1e-9)
 
 
 @pytest.mark.parametrize(
     "changed",
     [
-        pytest.param(lambda heights: heights[::-1], id="order of lines"),
-        pytest.param(lambda heights: -heights, id="sign"),
-        pytest.param(lambda heights: heights + 3e-6, id="constant"),
-        pytest.param(lambda heights: level(heights + 1e-9 * np.arange(500.0)), id="tilt, removed"),
-        pytest.param(lambda heights: heights[:, ::-1], id="sense of the lines"),
+        lambda heights: heights[::-1], lambda heights: -heights, lambda heights: heights + 3e-6,
+        lambda heights: level(heights + 1e-9 * np.arange(500.0)), lambda heights: heights[:, ::-1],
     ],
-)
+    ids=["order of lines", "sign", "constant", "tilt, removed", "sense of the lines"],
+)  # fmt: skip
 def test_what_does_not_belong_to_roughness_changes_nothing(changed) -> None:  # type: ignore[no-untyped-def]
     """D_s and G are those before."""
     heights = rough()
@@ -125,6 +115,8 @@ def test_a_surface_without_a_self_affine_range_is_refused(made, lines: int) -> N
     found = estimated(made(lines))
     assert not found.is_accepted
     assert found.reason.startswith("no self-affine range")
+    low, high = found.local_dimensions.min(), found.local_dimensions.max()
+    assert f"from {low:.2f} to {high:.2f} over lags of 0.4 um to 50 um" in found.reason
     assert np.isnan(found.range).all()
     assert found.resampled.shape == (0, 2)
     assert found.local_dimensions.size == found.local_lags.size == 8
@@ -132,17 +124,10 @@ def test_a_surface_without_a_self_affine_range_is_refused(made, lines: int) -> N
     assert found.lags.size > 8
 
 
-def test_the_reason_names_the_span_of_the_local_slopes() -> None:
-    """In numbers that can be checked against the table."""
-    found = estimated(smoothed(100))
-    low, high = found.local_dimensions.min(), found.local_dimensions.max()
-    assert f"it runs from {low:.2f} to {high:.2f} over lags of 0.4 um to 50 um" in found.reason
-
-
 @pytest.mark.parametrize("dimension", [1.3, 1.5, 1.7])
 def test_true_fractals_of_many_lines_are_accepted(dimension: float) -> None:
-    """All of eight surfaces of a hundred lines, over the whole lag range."""
-    for seed in range(8):
+    """All of four surfaces of a hundred lines, over the whole lag range."""
+    for seed in range(4):
         found = estimated(rough(dimension, seed=seed))
         assert found.is_accepted, found.reason
         assert found.range[0] == pytest.approx(SPACING)
@@ -197,15 +182,10 @@ def test_the_recipe_of_the_lags() -> None:
     np.testing.assert_allclose(found.local_lags / SPACING, np.sqrt(nodes[1:] * nodes[:-1]), rtol=1e-12)
 
 
-def test_a_shortest_lag_moves_all_lags() -> None:
-    """Those of the fit and those of the local slopes begin there: a filter of the instrument is not looked at."""
+def test_lags_that_are_stated() -> None:
+    """A shortest one moves all, of the fit and of the local slopes; a list is that of the fit, in whole points."""
     found = estimated(rough(), Estimation(resamples=0, shortest_lag=3.9 * SPACING))
-    assert found.lags[0] == pytest.approx(4 * SPACING)
-    assert found.all_lags[0] == pytest.approx(4 * SPACING)
-
-
-def test_stated_lags_are_those_of_the_fit() -> None:
-    """Rounded to whole points."""
+    assert (found.lags[0], found.all_lags[0]) == pytest.approx((4 * SPACING, 4 * SPACING))
     lags = tuple(SPACING * k for k in (1, 2.1, 3, 5, 8, 13, 21, 34, 50))
     found = estimated(rough(), Estimation(resamples=0, lags=lags))
     np.testing.assert_allclose(found.lags / SPACING, [1, 2, 3, 5, 8, 13, 21, 34, 50], rtol=1e-12)
@@ -236,7 +216,7 @@ def test_each_line_fitted_alone() -> None:
 
 # The fit of a power law with the noise of the instrument, against scipy's, and on surfaces with known noise.
 
-LAGS = 0.4e-6 * np.unique(np.round(np.geomspace(1, 50, 16)))
+LAGS = SPACING * np.unique(np.round(np.geomspace(1, 50, 16)))
 
 
 def law(amplitude: float, slope: float, noise: float) -> np.ndarray:
@@ -244,8 +224,8 @@ def law(amplitude: float, slope: float, noise: float) -> np.ndarray:
     return np.asarray(amplitude * (LAGS / LAGS[0]) ** slope + 2.0 * noise**2)
 
 
-@pytest.mark.parametrize("slope", [0.1, 0.6, 1.0, 1.4, 1.9])
-@pytest.mark.parametrize("noise", [0.0, 0.3, 1.0, 3.0])
+@pytest.mark.parametrize("slope", [0.1, 1.0, 1.9])
+@pytest.mark.parametrize("noise", [0.0, 0.3, 3.0])
 def test_an_exact_law_is_found_exactly(slope: float, noise: float) -> None:
     """Exponent, level and noise."""
     found = noise_fit(LAGS, law(1e-16, slope, noise * 1e-8))
@@ -267,7 +247,7 @@ def reference(values: np.ndarray) -> float:
     return min(2.0 * least_squares(left, start, bounds=bounds, xtol=1e-15, ftol=1e-15).cost for start in starts)
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", range(4))
 def test_the_least_squares_are_those_of_scipy(seed: int) -> None:
     """On scattered values: no other start finds a better fit."""
     rng = np.random.default_rng(seed)
@@ -278,61 +258,50 @@ def test_the_least_squares_are_those_of_scipy(seed: int) -> None:
     assert ours <= reference(values) * (1 + 1e-4) + 1e-12
 
 
-def test_a_noisy_fractal_is_accepted_with_its_noise_taken_off() -> None:
+NOISY: list[tuple[float, float]] = [(0.0, 0.0), (0.5e-8, 1 / 3), (1e-8, 2 / 3)]
+"""Noise, m, and its share of S at one spacing, 2 sigma^2 over S + 2 sigma^2 with 10 nm of S."""
+
+
+@pytest.mark.parametrize(("noise", "share"), NOISY)
+def test_noise_is_told_beside_a_plain_fit_and_taken_off_by_the_other(noise: float, share: float) -> None:
     """The local slopes are those of S less the noise; the short lags, which tell the noise, stay in the fit."""
     rng = np.random.default_rng(4)
-    heights = brownian_profiles(1.4, 1e-16, (100, 1000), rng) + 1.5e-8 * rng.standard_normal((100, 1000))
-    found = estimate_of(Lines(heights, 0.4e-6), "x", Estimation(resamples=50, noise_aware=True))
-    assert found.is_accepted
-    assert found.dimension == pytest.approx(1.4, abs=0.05)
-    assert found.lags[0] == pytest.approx(0.4e-6)
-    np.testing.assert_allclose(found.local_dimensions[:3], 1.4, atol=0.08)  # half of the noise left: 1.6 and more
-    assert found.resampled.shape == (50, 2)
+    heights = brownian_profiles(1.4, STEP, (200, 1000), rng) + noise * rng.standard_normal((200, 1000))
+    over_all = estimated(heights, replace(PLAIN, fit="all"))
+    assert over_all.noise_share == pytest.approx(share, abs=0.05)
+    assert over_all.noise_dimension == pytest.approx(1.4, abs=0.03)
+    aware = estimated(heights, Estimation(resamples=50, noise_aware=True))
+    assert aware.is_accepted
+    assert aware.warnings == ()
+    assert aware.dimension == pytest.approx(1.4, abs=0.05)
+    assert aware.lags[0] == pytest.approx(SPACING)
+    np.testing.assert_allclose(aware.local_dimensions[:3], 1.4, atol=0.08)  # half of the noise left: 1.6 and more
+    assert aware.resampled.shape == (50, 2)
+
+
+def test_a_plain_fit_of_a_noisy_surface_warns() -> None:
+    """With both dimensions; a surface without noise has nothing to say."""
+    clean = brownian_profiles(1.5, STEP, (100, 1000), np.random.default_rng(4))
+    noisy = clean + 1e-8 * np.random.default_rng(5).standard_normal(clean.shape)
+    quiet, plain = estimated(clean), estimated(noisy)
+    assert quiet.warnings == ()
+    assert plain.is_accepted
+    (words,) = plain.warnings
+    assert f"dimension {plain.noise_dimension:.3f}, not {plain.dimension:.3f}" in words
 
 
 def test_white_noise_alone_is_refused_by_the_fit_with_noise_too() -> None:
     """Nothing is left when the noise is taken off."""
-    heights = 1e-8 * np.random.default_rng(4).standard_normal((100, 500))
-    assert not estimate_of(Lines(heights, 0.4e-6), "x", Estimation(resamples=0, noise_aware=True)).is_accepted
-
-
-def test_the_share_of_noise_stands_beside_a_fit_without_it() -> None:
-    """Noise of a third of S at one spacing: 2 sigma^2 = S/2 makes the share 1/3; no noise, no share."""
-    rng = np.random.default_rng(4)
-    clean = brownian_profiles(1.4, 1e-16, (200, 1000), rng)
-    noisy = clean + 0.5e-8 * rng.standard_normal(clean.shape)
-    for heights, share in ((clean, 0.0), (noisy, 1.0 / 3.0)):
-        found = estimate_of(Lines(heights, 0.4e-6), "x", Estimation(resamples=0, fit="all"))
-        assert found.noise_share == pytest.approx(share, abs=0.05)
-        assert found.noise_dimension == pytest.approx(1.4, abs=0.03)
+    assert not estimated(white_noise(100), replace(PLAIN, noise_aware=True)).is_accepted
 
 
 def test_smooth_short_lags_are_no_noise() -> None:
     """A filtered surface without noise: the fit with noise leaves its smooth lags out as the plain fit does."""
-    rng = np.random.default_rng(5)
     kernel = np.array([0.25, 0.5, 0.25])
-    lines = brownian_profiles(1.5, 1e-16, (100, 1502), rng)
-    heights = np.stack([np.convolve(line, kernel, mode="valid") for line in lines])
-    plain, aware = (
-        estimate_of(Lines(heights, 0.4e-6), "x", Estimation(resamples=0, noise_aware=aware)) for aware in (False, True)
-    )
-    assert aware.lags[0] == plain.lags[0] > 0.4e-6
+    heights = np.stack([np.convolve(line, kernel, mode="valid") for line in rough(points=1502, seed=5)])
+    plain, aware = (estimated(heights, replace(PLAIN, noise_aware=aware)) for aware in (False, True))
+    assert aware.lags[0] == plain.lags[0] > SPACING
     assert aware.dimension == pytest.approx(plain.dimension, abs=0.01)
-
-
-def test_a_plain_fit_of_a_noisy_surface_warns() -> None:
-    """With both dimensions; a fit with noise, and a surface without, have nothing to say."""
-    rng = np.random.default_rng(4)
-    clean = brownian_profiles(1.5, 1e-16, (100, 1000), rng)
-    noisy = clean + 1e-8 * rng.standard_normal(clean.shape)
-    plain, aware, quiet = (
-        estimate_of(Lines(heights, 0.4e-6), "x", Estimation(resamples=0, noise_aware=aware))
-        for heights, aware in ((noisy, False), (noisy, True), (clean, False))
-    )
-    assert plain.is_accepted
-    assert len(plain.warnings) == 1
-    assert f"dimension {plain.noise_dimension:.3f}, not {plain.dimension:.3f}" in plain.warnings[0]
-    assert aware.warnings == quiet.warnings == ()
 
 
 # The roughness-length method: windows and the roughness in them, and the dimension of lines of known truth.

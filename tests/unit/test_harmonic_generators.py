@@ -1,6 +1,6 @@
 """Made surfaces of harmonic_fractal: exact sums, sums over random phases, and Brownian motion by its formula."""
 
-import json
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -9,34 +9,18 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from harmonic_fractal import generators
+from harmonic_fractal import made_flank as making
 from harmonic_fractal.flank import read_flank
-from harmonic_fractal.generators import (
-    Array,
-    Waves,
-    brownian_profiles,
-    brownian_surface,
-    levelled_structure,
-    profile_sum,
-    surface_sum,
-    weierstrass_profile,
-    weierstrass_surface,
-)
-from harmonic_fractal.made_flank import (
-    FlankFile,
-    Made,
-    as_measured,
-    flank_text,
-    made_flank,
-    margin_of,
-    surface_of,
-    truth_of,
-    waves_of,
-)
+from harmonic_fractal.generators import Array, Waves, brownian_profiles, profile_sum, surface_sum
+from harmonic_fractal.made_flank import FlankFile, Made, as_measured, made_flank, surface_of
 from harmonic_fractal.made_sheet import MADE_FLANK, SECTIONS
 from harmonic_fractal.structure import structure_function
-from shared import Calc
-from truing import Drawing, Record, Table, Words
+from truing import Drawing, Kernel, Record, Table, Words
+from truing.calculation import calculate
 from truing.errors import InfeasibleError
+from truing.inputs_file import setup_from_text
+from truing.setup import default_setup
 
 SPACING = 0.4e-6
 LENGTH = 200e-6
@@ -53,10 +37,10 @@ def squares(heights: Array, step: int) -> Array:
     return np.asarray(np.mean((heights[:, step:] - heights[:, :-step]) ** 2, axis=1))
 
 
-@pytest.mark.parametrize("dimension", [1.3, 1.4, 1.55, 1.7])
+@pytest.mark.parametrize("dimension", [1.3, 1.7])
 def test_lines_of_random_phases_have_the_exact_structure_function(dimension: float) -> None:
     made = waves(dimension)
-    lines = weierstrass_profile(made, SPACING * np.arange(501), 200, np.random.default_rng(4))
+    lines = generators.weierstrass_profile(made, SPACING * np.arange(501), 200, np.random.default_rng(4))
     assert lines.shape == (200, 501)
     np.testing.assert_allclose(lines[:, 0], 0.0, atol=1e-15)
     for step in (1, 3, 10, 30, 50):
@@ -83,7 +67,7 @@ def test_one_direction_is_the_profile_but_for_the_logarithm_of_the_density() -> 
 def test_a_patch_is_the_sum_over_its_waves_one_by_one() -> None:
     made = Waves(dimension=1.4, roughness=1e-10, lowest=2e3, highest=3e5, density=1.7, directions=5)
     x, y = 1.3e-6 * np.arange(7) - 2e-6, 0.7e-6 * np.arange(5)
-    patch = weierstrass_surface(made, x, y, np.random.default_rng(7))
+    patch = generators.weierstrass_surface(made, x, y, np.random.default_rng(7))
     phases = np.random.default_rng(7).uniform(0.0, 2.0 * np.pi, (5, len(made.frequencies)))
     heights = np.zeros((5, 7))
     scale = 1e-10**0.4 * np.sqrt(np.log(1.7) / 5)
@@ -104,7 +88,7 @@ def brownian_covariance(dimension: float, step: float, one: Array, two: Array) -
     return np.asarray(0.5 * step * (one**exponent + two**exponent - np.abs(one - two) ** exponent))
 
 
-@pytest.mark.parametrize("dimension", [1.2, 1.5, 1.75])
+@pytest.mark.parametrize("dimension", [1.2, 1.75])
 def test_brownian_lines_have_the_covariance_of_the_formula(dimension: float) -> None:
     count, step = 20_000, 4e-18
     lines = brownian_profiles(dimension, step, (count, 24), np.random.default_rng(11))
@@ -127,18 +111,18 @@ def test_lines_made_together_know_nothing_of_one_another() -> None:
 
 @pytest.mark.parametrize("dimension", [1.15, 1.6])
 def test_brownian_patches_have_their_law_in_every_direction(dimension: float) -> None:
-    exponent, count, step = 4.0 - 2.0 * dimension, 500, 2.0
+    exponent, count, step = 4.0 - 2.0 * dimension, 300, 2.0
     pairs = (((0, 0), (0, 1)), ((0, 0), (1, 0)), ((3, 2), (9, 25)), ((0, 29), (19, 0)), ((19, 0), (0, 0)))
     differences = np.empty((count, len(pairs)))
     for row in range(count):
-        patch = brownian_surface(dimension, step, (20, 30), np.random.default_rng([5, row]))
+        patch = generators.brownian_surface(dimension, step, (20, 30), np.random.default_rng([5, row]))
         differences[row] = [patch[one] - patch[two] for one, two in pairs]
     exact = np.array([step * np.hypot(one[0] - two[0], one[1] - two[1]) ** exponent for one, two in pairs])
     deviation = ((differences**2).mean(axis=0) - exact) / (exact * np.sqrt(2.0 / count))
     assert np.abs(deviation).max() < 3.0
 
 
-@pytest.mark.parametrize("dimension", [1.2, 1.5, 1.8])
+@pytest.mark.parametrize("dimension", [1.2, 1.8])
 def test_levelled_lines_have_the_structure_function_of_their_covariance(dimension: float) -> None:
     """P C P of the covariance of Brownian motion, with P what is left beside a straight line, entry by entry."""
     places = np.arange(90.0)
@@ -149,7 +133,7 @@ def test_levelled_lines_have_the_structure_function_of_their_covariance(dimensio
     spread = levelled.diagonal()
     exact = [np.mean(spread[k:] + spread[: 90 - k] - 2.0 * levelled.diagonal(k)) for k in range(90)]
     every = places ** (4.0 - 2.0 * dimension)
-    np.testing.assert_allclose(levelled_structure(every), exact, rtol=0.0, atol=1e-11 * every[-1])
+    np.testing.assert_allclose(generators.levelled_structure(every), exact, rtol=0.0, atol=1e-11 * every[-1])
 
 
 # The calculation harmonic_fractal.made_flank: its truth, its file, and the way back through harmonic_fractal.
@@ -159,18 +143,6 @@ SMALL = {"length": "60 um", "width": "20 um"}
 
 def made(**values: Any) -> Made:
     return MADE_FLANK.inputs(**{**SMALL, **values})
-
-
-def test_the_lateral_filter_halves_its_wave_and_spares_long_ones() -> None:
-    x = 0.5e-6 * np.arange(4000)
-    values = made(spacing="0.5 um", filter_cutoff="20 um")
-    for wave, passed in ((20e-6, 0.5), (10e-6, 2.0**-4), (40e-6, 2.0**-0.25)):  # 2^-(cutoff/wave)^2, ISO 16610-21
-        line = np.sin(2.0 * np.pi * x / wave)[None, :]
-        seen = as_measured(line, values, np.random.default_rng(0), across=False)
-        margin = margin_of(values)
-        assert seen.shape == (1, 4000 - 2 * margin)
-        expected = passed * line[:, margin:-margin]
-        np.testing.assert_allclose(seen, expected, atol=2e-3)
 
 
 def test_an_instrument_adds_what_it_says() -> None:
@@ -217,7 +189,7 @@ def test_the_instrument_looks_at_one_and_the_same_flank(kind: str) -> None:
 def test_a_filter_weakens_each_wave_as_the_instrument_samples_it() -> None:
     """Gaussian of ISO 16610-21: 2^-(cutoff f)^2 passes, f folded into the band that the points can show."""
     values = made(kind="profile", width="80 um", filter_cutoff="2.4 um")
-    waves, heights = waves_of(values), surface_of(values).heights
+    waves, heights = making.waves_of(values), surface_of(values).heights
     assert heights.shape == (201, 151)
     seen = np.abs(waves.frequencies - np.round(waves.frequencies * 0.4e-6) / 0.4e-6)
     passed = (waves.amplitudes * 2.0 ** -((2.4e-6 * seen) ** 2)) ** 2
@@ -244,7 +216,7 @@ def test_one_truth_in_any_convention_is_one_power_law(kind: str, convention: str
     assert true_by_error == pytest.approx(answer.areal_roughness, rel=1e-12)
 
 
-@pytest.mark.parametrize("directions", [1, 2, 3, 5, 40])
+@pytest.mark.parametrize("directions", [1, 2, 5, 40])
 def test_however_many_directions_s_along_the_lines_is_that_of_the_truth(directions: int) -> None:
     answer = made_flank(made(directions=directions, fractal_roughness=3e-11))
     np.testing.assert_allclose(answer.exact, answer.power_law, rtol=0.04)  # ripple, and the ends of the band
@@ -257,9 +229,9 @@ def test_ridges_of_one_direction_run_across_the_lines() -> None:
 
 
 def test_the_band_is_that_of_the_rule_or_as_stated() -> None:
-    ruled = truth_of(made())
+    ruled = making.truth_of(made())
     assert (1.0 / ruled.lowest, 1.0 / ruled.highest) == pytest.approx((6e-3, 8e-9), rel=1e-12)
-    stated = waves_of(made(longest_wave="60 um", shortest_wave="0.8 um")).frequencies
+    stated = making.waves_of(made(longest_wave="60 um", shortest_wave="0.8 um")).frequencies
     assert stated[0] == pytest.approx(1.0 / 60e-6, rel=1e-12)
     assert stated[-1] <= 1.0 / 0.8e-6 < 1.5 * stated[-1]
     short = made_flank(made(longest_wave="60 um", shortest_wave="0.8 um"))
@@ -299,7 +271,7 @@ def test_what_cannot_be_made_is_refused_by_name(values: dict[str, Any], sentence
 def test_a_written_flank_is_read_as_it_was(unit: str, tmp_path: Path) -> None:
     surface = surface_of(made(kind="brownian", holes="2 %", spacing="0.37 um"))
     file = tmp_path / "flank.csv"
-    file.write_text(flank_text(surface, "words, and a comma", unit), encoding="utf-8")
+    file.write_text(making.flank_text(surface, "words, and a comma", unit), encoding="utf-8")
     raw = read_flank(file, form="none").raw
     assert (raw.spacing_x, raw.spacing_y) == (surface.spacing_x, surface.spacing_y)
     np.testing.assert_allclose(raw.heights, surface.heights, rtol=1e-15, atol=0.0, equal_nan=True)
@@ -333,26 +305,18 @@ def test_the_sheet_draws_and_says_what_was_made(values: dict[str, Any]) -> None:
     assert bool(refused) == (record.results.accepted == 0.0)
 
 
-def test_a_made_flank_is_written_by_one_run_and_found_again_by_the_next(calc: Calc, tmp_path: Path) -> None:
+def test_a_made_flank_is_written_by_one_run_and_found_again_by_the_next(tmp_path: Path) -> None:
     """Seed 0 and the length of the lines are those of the shipped example; the kind is another, the lines are fewer."""
-    assert calc("init", "harmonic_fractal.made_flank", "-o", "made.toml").code == 0
-    told = calc("run", "harmonic_fractal.made_flank", "--inputs", "made.toml", "--set", "kind=brownian",
-                "--set", "width=30 um", "--output", "runs/made", "--json")  # fmt: skip
-    assert told.code == 0, told.err
-    results = json.loads(told.out)["results"]
-    assert results["accepted"]["value"] == 1
-    assert abs(results["dimension_error"]["value"]) < 0.08
-    (tmp_path / "drive.toml").write_text(
-        'plugin = "harmonic_fractal"\n[inputs]\nsurface = { file = "runs/made/flank.csv", form = "none" }\n',
-        encoding="utf-8",
-    )
-    read = calc("run", "harmonic_fractal", "--inputs", "drive.toml", "--set", "studies.run=[]",
-                "--output", "runs/read", "--json")  # fmt: skip
-    assert read.code in {0, 1}, read.err
-    found = json.loads(read.out)["results"]
-    assert found["dimension"]["value"] == pytest.approx(2.4, abs=0.08)
-    assert np.log10(found["roughness"]["value"] / 1e-11) == pytest.approx(0.0, abs=0.9)
-    flank = read_flank(tmp_path / "runs" / "made" / "flank.csv", form="none")
-    low, high = np.percentile(flank.resampled, (2.5, 97.5), axis=0)
+    offers = Kernel.installed().offers
+    made_run = calculate(default_setup(offers["harmonic_fractal.made_flank"].model, kind="brownian", width="30 um"))
+    assert made_run.answers["accepted"] == 1
+    assert abs(made_run.answers["dimension_error"]) < 0.08
+    (tmp_path / "flank.csv").write_text(made_run.outcomes["flank_file"].text, encoding="utf-8")
+    text = 'plugin = "harmonic_fractal"\n[inputs]\nsurface = { file = "flank.csv", form = "none" }\n'
+    setup = setup_from_text(text, offers["harmonic_fractal"], file="drive.toml", folder=tmp_path)
+    found = calculate(replace(setup, studies=())).answers
+    assert found["dimension"] == pytest.approx(2.4, abs=0.08)
+    assert np.log10(found["roughness"] / 1e-11) == pytest.approx(0.0, abs=0.9)
+    low, high = np.percentile(setup.inputs.surface.resampled, (2.5, 97.5), axis=0)
     assert low[0] < 2.4 < high[0]
     assert low[1] < np.log(1e-11) < high[1]

@@ -80,15 +80,6 @@ def test_no_torque_no_stiffness_but_that_of_a_film() -> None:
     assert normal_stiffness(0.0, mesh(drive_of(film_stiffness=1e8))) == pytest.approx(60 * 1e8, rel=1e-12)
 
 
-def test_both_senses_are_alike_and_rows_are_single_drives() -> None:
-    torque = np.array([-25.0, -1.0, 0.0, 3e-6, 1.0, 25.0, 400.0])
-    dimension = np.array([2.4, 2.3, 2.4, 2.45, 2.3, 2.4, 2.55])
-    rows = normal_stiffness(torque, mesh(drive_of(fractal_dimension=dimension)))
-    for row, (one, value) in enumerate(zip(torque, dimension, strict=True)):
-        single = normal_stiffness(-one, mesh(drive_of(fractal_dimension=value)))
-        assert rows[row] == pytest.approx(single, rel=1e-12)  # type: ignore[index]
-
-
 # Torsion over torque: beside a dense trapezoid, odd, from its reference on, and with what is in series.
 
 # inputs and torque: all pairs elastic from the start, some of them not, nearly none of them; springs; a film; pairs

@@ -7,24 +7,16 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from drawn import line, words
+from harmonic_fractal import figures
 from harmonic_fractal.estimate import Estimation, estimate_of
-from harmonic_fractal.figures import (
-    flanks,
-    interface,
-    map_figure,
-    pair_figure,
-    profiles_figure,
-    signed,
-    stiffness,
-    structure_figure,
-    torsion,
-)
+from harmonic_fractal.figures import flanks, interface, stiffness, torsion
 from harmonic_fractal.flank import Flank
 from harmonic_fractal.generators import brownian_surface
 from harmonic_fractal.model import HARMONIC_FRACTAL
 from harmonic_fractal.surface import Direction, Lines, Surface, without_line
 from harmonic_fractal.uncertainty import SurfaceValidity
-from truing import Drawing, Table, Words
+from truing import Drawing, Table
 from truing.calculation import Calculation, calculate
 from truing.report.sheet import input_value
 from truing.setup import default_setup
@@ -78,11 +70,6 @@ def stated() -> Calculation:
     return run()
 
 
-def words(blocks: Any, kind: str = "") -> str:
-    """All words of some blocks."""
-    return " ".join(block.text for block in blocks if isinstance(block, Words) and kind in ("", block.kind))
-
-
 def titles(blocks: Any) -> list[str]:
     return [block.title for block in blocks if isinstance(block, (Table, Drawing))]
 
@@ -92,29 +79,12 @@ def table(blocks: Any, title: str) -> Table:
     return next(block for block in blocks if isinstance(block, Table) and title in block.title)
 
 
-def line(panel: Any, label: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The data of the line with this label."""
-    found = next(item for item in panel.get_lines() if label in str(item.get_label()))
-    return np.asarray(found.get_xdata(), dtype=float), np.asarray(found.get_ydata(), dtype=float)
-
-
-# Sections
-
-
-def test_every_result_stands_in_one_section() -> None:
-    named = [name for section in HARMONIC_FRACTAL.sheet for name in section.names]
-    assert len(named) == len(set(named))
-    assert set(HARMONIC_FRACTAL.result_fields) == set(named)
-
-
 # Flanks
 
 
 def test_without_a_surface_the_sheet_says_so(stated: Calculation) -> None:
-    assert (
-        words(flanks(stated.record))
-        == "No flank was measured: D and G are as stated, and how sure they are is not known."
-    )
+    said = "No flank was measured: D and G are as stated, and how sure they are is not known."
+    assert words(flanks(stated.record)) == said
     assert stated.answers["surface_accepted"] == 1
     assert stated.verdict == "passes"
 
@@ -192,7 +162,7 @@ def test_what_is_said_of_a_flank_reaches_sheet_and_terminal(
 def test_map_shows_the_heights_with_the_longer_side_across(good: Flank) -> None:
     turned = Surface(good.surface.heights.T, SPACING, SPACING, "turned")
     for flank in (good, replace(good, surface=turned)):
-        image = map_figure(flank).axes[0].get_images()[0]
+        image = figures.map_figure(flank).axes[0].get_images()[0]
         shown: Any = image.get_array()
         assert shown.shape == (120, 300)
         np.testing.assert_allclose(shown, 1e9 * good.surface.heights)
@@ -200,7 +170,7 @@ def test_map_shows_the_heights_with_the_longer_side_across(good: Flank) -> None:
 
 
 def test_profiles_are_lines_of_the_direction_used(good: Flank) -> None:
-    panel: Any = profiles_figure(replace(good, chosen="y")).axes[0]
+    panel: Any = figures.profiles_figure(replace(good, chosen="y")).axes[0]
     drawn = [np.asarray(item.get_ydata(), dtype=float) for item in panel.get_lines()]
     columns = [1e9 * (column - column.mean()) for column in good.surface.heights.T]
     assert len(drawn) == 4
@@ -213,7 +183,7 @@ def test_a_long_profile_keeps_its_peaks() -> None:
     heights[0, 4321] = 5e-6
     profile = Surface(heights, SPACING, float("nan"), "long.csv")
     flank = Flank(raw=profile, surface=profile, estimates=(), chosen="x", reason="", warnings=())
-    panel: Any = profiles_figure(flank).axes[0]
+    panel: Any = figures.profiles_figure(flank).axes[0]
     x, z = (np.asarray(values, dtype=float) for values in panel.get_lines()[0].get_data())
     assert len(x) <= 2000
     assert np.ptp(z) == pytest.approx(5000.0)
@@ -221,7 +191,7 @@ def test_a_long_profile_keeps_its_peaks() -> None:
 
 
 def test_structure_figure_shows_points_fit_and_local_dimension(good: Flank) -> None:
-    upper, lower = structure_figure(good).axes
+    upper, lower = figures.structure_figure(good).axes
     used = good.used
     assert used is not None
     lags, fit = line(upper, "fit both together")
@@ -234,20 +204,17 @@ def test_structure_figure_shows_points_fit_and_local_dimension(good: Flank) -> N
 
 
 def test_structure_figure_of_a_refused_surface_is_for_comparison(bad: Flank) -> None:
-    upper, _ = structure_figure(bad).axes
+    upper, _ = figures.structure_figure(bad).axes
     labels = [str(item.get_label()) for item in upper.get_lines()]
     assert any(label.endswith("for comparison only") for label in labels)
     assert not any("range" in label for label in labels)
-
-
-# D and G
 
 
 # One pair
 
 
 def test_pair_figure_goes_through_the_results(stated: Calculation) -> None:
-    upper, lower = pair_figure(stated.record.inputs).axes
+    upper, lower = figures.pair_figure(stated.record.inputs).axes
     at = 25.0
     for panel, label, name, factor in (
         (upper, "(used)", "stiffness", 1.0), (lower, "amplitude of the largest", "clearance", 1e9),
@@ -260,7 +227,7 @@ def test_pair_figure_goes_through_the_results(stated: Calculation) -> None:
 
 def test_pair_figure_shows_every_reading(stated: Calculation) -> None:
     """At 25 N: 3.47e9 N/m with scaled tips, 2.16e8 with first yield; 3.0e8 by the rms height of 172 nm."""
-    upper, lower = pair_figure(stated.record.inputs).axes
+    upper, lower = figures.pair_figure(stated.record.inputs).axes
     for label, expected in (
         ("area, tip radius follows", 3.47e9), ("first yield, tip radius its own", 2.16e8), ("Persson", 3.0e8),
     ):  # fmt: skip
@@ -286,15 +253,12 @@ def test_single_contacts_are_spheres(stated: Calculation) -> None:
     assert rows["the largest"][1] == pytest.approx(2e9 * float(stated.answers["clearance"]))
 
 
-def test_all_plastic_is_a_warning_on_sheet_and_terminal() -> None:
+def test_plastic_contacts_are_a_warning_on_sheet_and_terminal() -> None:
     found = run(pair_load="1e-5 N")
     assert "All contacts of the pair are plastic" in words(stiffness(found.record), "warning")
     assert any("all contacts of the pair are plastic" in text for text in found.warnings)
-
-
-def test_mostly_plastic_is_a_warning() -> None:
-    found = run(critical_rule="yield_onset", reference_torque="1 N*m")
-    assert any("58% of the load is on plastic contacts" in text for text in found.warnings)
+    mostly = run(critical_rule="yield_onset", reference_torque="1 N*m")
+    assert any("58% of the load is on plastic contacts" in text for text in mostly.warnings)
 
 
 # Torsion
@@ -312,6 +276,7 @@ def test_torsion_beside_the_catalogue(stated: Calculation) -> None:
     assert "at most 0.55 %" in said
     assert "not the weakest link" in said
     assert "everything around the mesh is rigid" in said
+    assert table(torsion(run(torque="-25 N*m").record), "torques of the catalogue").rows == rows
 
 
 def test_torsion_figure_goes_through_the_results() -> None:
@@ -328,20 +293,14 @@ def test_torsion_figure_goes_through_the_results() -> None:
     assert "everything around the mesh is rigid" not in words(torsion(found.record))
 
 
-def test_a_drive_that_turns_the_other_way_has_the_same_table(stated: Calculation) -> None:
-    other = table(torsion(run(torque="-25 N*m").record), "torques of the catalogue")
-    assert other.rows == table(torsion(stated.record), "torques of the catalogue").rows
-
-
 def test_an_input_file_that_is_not_given_is_said_so() -> None:
     setup = default_setup(HARMONIC_FRACTAL)
     for name in ("surface", "mating_surface", "mating_dimension"):
-        value = getattr(setup.inputs, name)
-        assert input_value(setup, setup.model.input_fields[name], value).text == "not given"
+        assert input_value(setup, setup.model.input_fields[name], getattr(setup.inputs, name)).text == "not given"
 
 
 @pytest.mark.parametrize(
     ("value", "text"), [(1e-11, "1·10⁻¹¹"), (0.056, "0.056"), (-3.5e-7, "−3.5·10⁻⁷"), (1.95e9, "1.95·10⁹")]
 )
 def test_numbers_in_words(value: float, text: str) -> None:
-    assert signed(value) == text
+    assert figures.signed(value) == text

@@ -113,17 +113,17 @@ def test_study_without_a_measured_flank_claims_nothing() -> None:
     assert "nothing is propagated" in words.text
 
 
-@pytest.mark.parametrize("draws", [5, 10**6])
-def test_study_refuses_too_few_and_too_many_pairs(draws: int) -> None:
-    with pytest.raises(TruingError, match="20 to 100000"):
-        Uncertainty(draws=draws)
-
-
-@pytest.mark.parametrize("name", ["stifness", "structure_function"])
-def test_study_refuses_what_is_no_single_result(flanks: list[Flank], name: str) -> None:
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"draws": 5}, "20 to 100000"), ({"draws": 10**6}, "20 to 100000"), ({"of": ("stifness",)}, "stifness"),
+        ({"of": ("structure_function",)}, "structure_function"),
+    ],
+)  # fmt: skip
+def test_a_study_that_cannot_be_is_refused(flanks: list[Flank], options: dict[str, Any], words: str) -> None:
     setup = default_setup(HARMONIC_FRACTAL, surface=flanks[0], reference_torque="100 mN*m")
-    with pytest.raises(TruingError, match=name):
-        calculate(replace(setup, studies=(Uncertainty(of=(name,)),)))
+    with pytest.raises(TruingError, match=words):
+        calculate(replace(setup, studies=(Uncertainty(**options),)))
 
 
 # The tolerance that every other study draws from

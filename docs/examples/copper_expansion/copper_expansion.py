@@ -93,8 +93,9 @@ def debye(u: Float) -> tuple[Float, Float]:
     P. Debye, Ann. Phys. 344 (1912) 789: D(u) = 3/u^3 * integral from 0 to u of x^3/(e^x - 1).
     """
     far = np.minimum(u, 60.0)  # beyond it the integrand is below 1e-20
-    x = np.expand_dims(np.asarray(far), -1) * (NODES + 1) / 2
-    integral = far * np.sum(x**3 / np.expm1(x) * WEIGHTS, axis=-1) / 2
+    few, row = np.unique(far, return_inverse=True)  # a batch holds the same temperatures many times
+    x = np.expand_dims(few, -1) * (NODES + 1) / 2
+    integral = far * np.sum(x**3 / np.expm1(x) * WEIGHTS, axis=-1)[row].reshape(np.shape(far)) / 2
     energy = 3 * integral / u**3
     return energy, 4 * energy - 3 * far / np.expm1(far)
 

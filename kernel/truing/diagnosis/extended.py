@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import accumulate
 from math import inf, log10
-from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -19,7 +18,7 @@ from truing.diagnosis.machine import Calibration, Tolerated, predict_each
 from truing.errors import PluginError
 from truing.gauge import Trial
 from truing.repeated import REMEMBERED as REPEATED
-from truing.repeated import forget
+from truing.repeated import forget, processor_seconds
 from truing.setup import Setup, SwitchedOn, effect_column
 
 REMEMBERED = 64
@@ -31,7 +30,7 @@ LEAST_PER_EFFECT = 40
 MORE = 4
 """So many times the budget is proposed where it ended first."""
 QUICK_CALL = 0.03
-"""Seconds of a call below which a search needs no budget: it makes a few thousand calls."""
+"""Processor seconds of a call below which a search needs no budget: it makes a few thousand calls."""
 MINUTES = 300.0
 """Seconds that the calls of a search may take where no budget is stated."""
 CURVES = 0.25
@@ -383,12 +382,12 @@ def probe(extended: Extended, competing: Sequence[Candidate]) -> None:
 
 
 def budget_of(stated: int, effects: int, call: Callable[[], object]) -> CallBudget:
-    """Return the stated budget; else, by how long one ``call`` takes, none or one of some minutes."""
+    """Return the stated budget; else, by how long one ``call`` takes a processor, none or one of some minutes."""
     if stated:
         return CallBudget(stated)
-    begin = perf_counter()
+    begin = processor_seconds()
     call()
-    seconds = perf_counter() - begin
+    seconds = processor_seconds() - begin
     if seconds < QUICK_CALL:
         return CallBudget()
     takes = 10.0 ** round(log10(seconds))
