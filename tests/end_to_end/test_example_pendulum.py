@@ -39,11 +39,11 @@ def simulation() -> ModuleType:
 
 @pytest.mark.parametrize("release", [1.0, 60.0, 175.0])
 def test_the_period_is_a_complete_elliptic_integral(pendulum: Any, release: float) -> None:
-    """T = 4 sqrt(J / (m g l)) K(sin^2(phi_0 / 2)) for any release; dry friction shortens half a swing by nothing."""
+    """T = 4 sqrt(J / (m g l)) K(sin^2(phi_0 / 2)), but for errors of 1e-8 rad in each step."""
     run = pendulum.run(release=f"{release} deg", times=np.linspace(0, 12, 13))
     inertia = 0.02 + 1.2 * 0.5**2
     expected = 4 * np.sqrt(inertia / WEIGHT) * ellipk(np.sin(np.radians(release) / 2) ** 2)
-    assert run.si["period"] == pytest.approx(expected, rel=1e-8)
+    assert run.si["period"] == pytest.approx(expected, rel=1e-6)
 
 
 def test_dry_friction_takes_the_same_angle_from_every_small_swing(pendulum: Any) -> None:
