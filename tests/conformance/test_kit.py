@@ -10,14 +10,17 @@ from typing import Any, Literal
 
 import numpy as np
 import pytest
+from kettle import KETTLE, Heated, Kettle
 from pin_wear import PIN_WEAR
 
 from shared import TESTS
 from truing import (
     Condition,
+    Dynamics,
     Effect,
     Float,
     Model,
+    Motion,
     Price,
     Published,
     Require,
@@ -34,6 +37,8 @@ from truing import (
     normal,
     plus_minus,
     results,
+    state,
+    states,
 )
 from truing.calculation import calculate
 from truing.declare.model import PROMISES
@@ -83,6 +88,26 @@ def good(**changes: Any) -> Model[Any, Any]:
 def with_function(function: Callable[[Spring], Force]) -> Model[Any, Any]:
     function.__annotations__ = {"it": Spring, "return": Force}
     return good(function=function)
+
+
+@states
+class Unsaid:
+    """How warm it is, by a law without a formula."""
+
+    temperature: Float = state("degC", start="start")
+
+
+def swaying(unsaid: Unsaid, kettle: Kettle, time: Float) -> Unsaid:
+    """A heater that is turned up and down."""
+    return Unsaid(temperature=np.sin(time / 5))
+
+
+def read(kettle: Kettle, motion: Motion[Unsaid]) -> Heated:
+    """The record as it is read."""
+    return Heated(time=motion.time, warm=motion.states.temperature, hot_at=0.0)
+
+
+SWAYING = Dynamics(rate=swaying, gives=read, tolerance=1e-4, settled=1e-9)
 
 
 def branching() -> Model[Any, Any]:
@@ -220,6 +245,10 @@ WRONG: dict[str, tuple[Callable[[], Model[Any, Any]], str]] = {
     "steps may be halved": (
         lambda: with_input(lambda it: 1.0 + it * 1e3, default=1.0, halving=0.3),
         "a finer 'it' moves 'out' from 2 to 1.5 (SI): more than 30 %",
+    ),
+    "motion is settled": (
+        lambda: replace(KETTLE, function=SWAYING),
+        "a tenth of the tolerance moves 'warm' by",
     ),
     "inputs untouched": (lambda: with_function(writing), "the function writes to the input 'coils'"),
     "seeds decide": (

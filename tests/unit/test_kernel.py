@@ -268,11 +268,13 @@ def test_what_does_not_fit_is_left_out_by_name(write: Write, hook: str, answer: 
     assert "is left out of 'pin_one'" in broken.reason
 
 
-def test_a_guest_whose_hook_fails_is_left_out(write: Write) -> None:
-    for answer, reason in (("[1 / 0]", "ZeroDivisionError: division by zero"), ("exit(7)", "SystemExit: 7")):
-        kernel = Kernel([write("pin_one", PIN), write("zebra", guest("truing_reports", answer))])
-        assert kernel.offer("pin_one").added == ()
-        assert [(item.plugin, item.line, item.reason) for item in kernel.broken] == [("zebra", 8, reason)]
+@pytest.mark.parametrize(
+    ("answer", "reason"), [("[1 / 0]", "ZeroDivisionError: division by zero"), ("exit(7)", "SystemExit: 7")]
+)
+def test_a_guest_whose_hook_fails_is_left_out(write: Write, answer: str, reason: str) -> None:
+    kernel = Kernel([write("pin_one", PIN), write("zebra", guest("truing_reports", answer))])
+    assert kernel.offer("pin_one").added == ()
+    assert [(item.plugin, item.line, item.reason) for item in kernel.broken] == [("zebra", 8, reason)]
 
 
 def test_guests_come_in_the_order_of_their_names_and_hit_only_whom_they_fit(write: Write) -> None:

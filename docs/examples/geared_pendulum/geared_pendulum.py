@@ -34,8 +34,8 @@ if TYPE_CHECKING:
 
 GRAVITY = 9.80665
 """Standard acceleration of free fall, m/s2."""
-RECORD = tuple(0.1 * step for step in range(121))
-"""When the angle is asked for, s."""
+RECORD = tuple(0.1 * step for step in range(17))
+"""When the angle is asked for, s: one swing."""
 
 
 @inputs
