@@ -118,7 +118,8 @@ def lines(writer: Writer, equation: Equation, *, limit: float = LINE) -> list[Eq
     formula = equation.formula
     left = writer.symbol(equation.symbol, None) if equation.symbol else writer.word(equation.name)
     if equation.change == "rate":
-        left = writer.fraction(writer.infix(writer.word("d"), "gap", left), writer.word("dt"))
+        change, second = (writer.infix(writer.word("d"), "gap", each) for each in (left, writer.symbol("t", None)))
+        left = writer.fraction(change, second)
     elif equation.change == "next":
         left = writer.applied(writer.word("next"), writer.parenthesised(left))
     name = EquationLine(left, _name_width(equation.symbol or equation.name) + (1.5 if equation.change else 0))
