@@ -114,6 +114,8 @@ def test_the_step_limit_is_an_error_of_convergence() -> None:
 def test_a_record_that_cannot_be_followed_is_refused(changes: dict[str, Any], sentence: str) -> None:
     with pytest.raises(InfeasibleError, match=sentence):
         evaluate(default_setup(KETTLE, **changes))
+    with pytest.raises(InfeasibleError, match=sentence):
+        evaluate_rows(default_setup(KETTLE, **changes), {"loss": np.array([1.0, 2.0])}, 2)
 
 
 def kettle_of(**changes: Any) -> Model[Any, Any]:

@@ -302,16 +302,14 @@ def _machines(dynamics: Dynamics[S, I, R], inputs: I) -> _Machines[S, I, R]:
     """Take inputs apart: what is one machine, what differs between machines, what drives them."""
     fields_of = dynamics.input_fields
     stamps = np.atleast_1d(np.asarray(read(inputs, fields_of[dynamics.times].path), dtype=float))
-    feasible(len(stamps) > 1 and np.isfinite(stamps).all(), f"{dynamics.times}: a motion needs two times or more")
-    feasible(bool((np.diff(stamps) > 0).all()), f"{dynamics.times}: the times of a record rise; two are equal or fall")
+    _demand(len(stamps) > 1 and np.isfinite(stamps).all(), f"{dynamics.times}: a motion needs two times or more")
+    _demand((np.diff(stamps) > 0).all(), f"{dynamics.times}: the times of a record rise; two are equal or fall")
     drives = {each.path: np.asarray(read(inputs, each.path), dtype=float) for each in dynamics.driving.values()}
     for name, each in dynamics.driving.items():
         series = drives[each.path]
-        feasible(
-            series.ndim > 0 and series.shape[-1] == len(stamps),
-            f"{name} has {series.shape[-1] if series.ndim else 1} values at {len(stamps)} {dynamics.times}",
-        )
-        feasible(np.isfinite(series).all(axis=-1), f"{name} is missing at some of the {dynamics.times}")
+        values = series.shape[-1] if series.ndim else 1
+        _demand(values == len(stamps), f"{name} has {values} values at {len(stamps)} {dynamics.times}")
+        _demand(np.isfinite(series).all(), f"{name} is missing at some of the {dynamics.times}")
     numbers = {each.path: read(inputs, each.path) for each in fields_of.values() if each.varies}
     columns = {path: value for path, value in numbers.items() if np.ndim(value) == 1}
     sizes = {len(value) for value in columns.values()} | {len(value) for value in drives.values() if value.ndim > 1}
@@ -319,6 +317,12 @@ def _machines(dynamics: Dynamics[S, I, R], inputs: I) -> _Machines[S, I, R]:
     columns = {path: np.broadcast_to(value, (count,)) for path, value in columns.items()}
     held = frozenset(each.path for each in dynamics.driving.values() if getattr(each.spec, "between", "") == "hold")
     return _Machines(dynamics, inputs, stamps, count, not sizes, columns, drives, held)
+
+
+def _demand(holds: Any, sentence: str) -> None:
+    """Refuse a record that no machine can be followed along, one alone or a batch."""
+    if not holds:
+        raise InfeasibleError(sentence)
 
 
 def _in_steps(machines: _Machines[Any, Any, Any]) -> Solution:
