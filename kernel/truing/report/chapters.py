@@ -124,9 +124,10 @@ def _state_equation(writing: Writing) -> Iterator[Chapter]:
         ]  # fmt: skip
         entries.append(table_of("Events", ("event", "what passes 0", "happens where it", "then"), rows))
     if dynamics.step is None:
+        tolerance, settled = (format_number(each, 2) for each in (dynamics.tolerance, 100 * dynamics.settled))
         said = (
-            f"Every step keeps the relative error below {dynamics.tolerance:g}; a tenth of that changes no result by "
-            f"more than {format_number(100 * dynamics.settled, 2)} % of its largest value."
+            f"Every step keeps the relative error below {pretty(tolerance)}; a tenth of that changes no result by more "
+            f"than {pretty(settled)} % of its largest value."
         )
         entries.append(Paragraph(said))
     yield Chapter("State equation", tuple(entries))
