@@ -65,7 +65,7 @@ class EventRule:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Problem:
+class InitialValueProblem:
     """What is to be integrated: from ``start`` (d, n) at the first of ``stamps`` (k,), which rise, to the last.
 
     ``breaks`` rise and begin and end with the stamps: no step passes one. An error is held below ``tolerance`` times
@@ -96,7 +96,7 @@ class Solution:
     steps: int = 0
 
 
-def solve(problem: Problem) -> Solution:
+def solve(problem: InitialValueProblem) -> Solution:
     """Integrate every machine; one that comes to no end has NaN from there on, and a reason."""
     events, machines = len(problem.events), problem.start.shape[1]
     solution = Solution(
@@ -153,7 +153,7 @@ class _Step:
     """That at the end."""
 
 
-def _march(problem: Problem, solution: Solution) -> Indices:
+def _march(problem: InitialValueProblem, solution: Solution) -> Indices:
     """Take steps until every machine has come to an end; return those that are left because they are stiff."""
     system, going = problem.system, _begun(problem)
     stiff: list[Indices] = []
@@ -168,7 +168,7 @@ def _march(problem: Problem, solution: Solution) -> Indices:
     return np.concatenate([np.zeros(0, dtype=np.intp), *stiff])
 
 
-def _begun(problem: Problem) -> _Going:
+def _begun(problem: InitialValueProblem) -> _Going:
     count, events = problem.start.shape[1], range(len(problem.events))
     t, interval = np.full(count, problem.stamps[0]), np.zeros(count, dtype=np.intp)
     y = np.array(problem.start, dtype=float)
@@ -181,7 +181,7 @@ def _begun(problem: Problem) -> _Going:
     )  # fmt: skip
 
 
-def _scale(problem: Problem, *states: Matrix) -> Matrix:
+def _scale(problem: InitialValueProblem, *states: Matrix) -> Matrix:
     largest = problem.sizes[:, None]
     for state in states:
         largest = np.maximum(largest, np.abs(state))
@@ -192,7 +192,7 @@ def _mean_square(errors: Matrix) -> Matrix:
     return np.asarray(np.mean(errors * errors, axis=0))
 
 
-def _first_step(problem: Problem, t: Matrix, y: Matrix, rate: Matrix) -> Matrix:
+def _first_step(problem: InitialValueProblem, t: Matrix, y: Matrix, rate: Matrix) -> Matrix:
     """Guess a first step from the rate and how fast it changes (Hairer, Norsett, Wanner, II.4)."""
     scale, whole = _scale(problem, y), problem.stamps[-1] - problem.stamps[0]
     size, slope = (np.sqrt(_mean_square(each / scale)) for each in (y, rate))
@@ -205,7 +205,7 @@ def _first_step(problem: Problem, t: Matrix, y: Matrix, rate: Matrix) -> Matrix:
     return np.asarray(np.where(np.isfinite(step) & (step > 0), step, 1e-6 * whole))
 
 
-def _one_step(problem: Problem, system: System, going: _Going, solution: Solution) -> Mask:
+def _one_step(problem: InitialValueProblem, system: System, going: _Going, solution: Solution) -> Mask:
     """Try one step of every machine; return those that have come to an end, good or bad."""
     until = problem.breaks[going.interval + 1]
     is_last = going.step >= until - going.t
@@ -259,7 +259,7 @@ def _error(stages: Matrix, length: Matrix, scale: Matrix) -> Matrix:
     return np.asarray(np.where(mixed == 0, 0.0, np.abs(length) * fifth / np.sqrt(np.where(mixed == 0, 1.0, mixed))))
 
 
-def _stopped(problem: Problem, going: _Going, is_good: Mask, solution: Solution) -> Mask:
+def _stopped(problem: InitialValueProblem, going: _Going, is_good: Mask, solution: Solution) -> Mask:
     """Note the machines that can go no further, with the reason and the time; return them."""
     tiny = ~is_good & (going.step < LEAST_STEP * np.maximum(np.abs(going.t), problem.stamps[-1] - problem.stamps[0]))
     many = ~tiny & (going.taken >= problem.most_steps) & (problem.stamps[-1] > going.t)
@@ -279,7 +279,7 @@ class _Arrival:
     y: Matrix
 
 
-def _arrive(problem: Problem, going: _Going, places: Indices, dense: _Dense, solution: Solution) -> Mask:
+def _arrive(problem: InitialValueProblem, going: _Going, places: Indices, dense: _Dense, solution: Solution) -> Mask:
     """Go where a step ends, or where an event stops it, and fill in the stamps on the way; return who is at the end."""
     arrival = _first_event(problem, dense, going, places)
     _write(problem, dense, going, arrival, solution)
@@ -297,7 +297,7 @@ def _arrive(problem: Problem, going: _Going, places: Indices, dense: _Dense, sol
     return np.asarray(ended)
 
 
-def _write(problem: Problem, dense: _Dense, going: _Going, arrival: _Arrival, solution: Solution) -> None:
+def _write(problem: InitialValueProblem, dense: _Dense, going: _Going, arrival: _Arrival, solution: Solution) -> None:
     """Fill in the states at the stamps that were passed."""
     machine, begin = going.machine[arrival.places], going.stamp[arrival.places]
     end = np.searchsorted(problem.stamps, arrival.t, side="right")
@@ -358,7 +358,7 @@ class _OwnDense:
 # Events: what passes 0 within a step is bracketed and halved, the earliest of each machine ends its step there
 
 
-def _first_event(problem: Problem, dense: _Dense, going: _Going, good: Indices) -> _Arrival:
+def _first_event(problem: InitialValueProblem, dense: _Dense, going: _Going, good: Indices) -> _Arrival:
     """Return where machines are after their step, or at the earliest event in it."""
     step = dense.step
     event, t, y = np.full(len(good), -1), np.array(step.end), np.array(step.reached)
@@ -419,7 +419,7 @@ def _crossed(number: int, dense: _Dense, places: Indices, ends: Sequence[tuple[M
     return np.asarray(when)
 
 
-def _happen(problem: Problem, system: System, going: _Going, arrival: _Arrival, solution: Solution) -> Mask:
+def _happen(problem: InitialValueProblem, system: System, going: _Going, arrival: _Arrival, solution: Solution) -> Mask:
     """Let events happen: count them, set the states, hold those that end. Return the machines that are ended."""
     ended = np.zeros(len(arrival.t), dtype=bool)
     for number, rule in enumerate(problem.events):
@@ -451,7 +451,9 @@ def _beyond(value: Matrix, after: Matrix, *, is_set: bool) -> Matrix:
     return np.asarray(np.where(is_rounding, np.copysign(np.maximum(np.abs(value), TINY), after), value))
 
 
-def _count(problem: Problem, solution: Solution, number: int, machine: Indices, times: tuple[Matrix, Matrix]) -> Mask:
+def _count(
+    problem: InitialValueProblem, solution: Solution, number: int, machine: Indices, times: tuple[Matrix, Matrix]
+) -> Mask:
     """Count an event at the second of two times, the last one being at the first; return where they have no end."""
     before, t = times
     fresh = np.isnan(solution.first[number, machine])
@@ -467,7 +469,7 @@ def _count(problem: Problem, solution: Solution, number: int, machine: Indices, 
 # Stiff machines: the backward differences of scipy
 
 
-def _stiff(problem: Problem, machines: Indices, solution: Solution) -> None:
+def _stiff(problem: InitialValueProblem, machines: Indices, solution: Solution) -> None:
     """Integrate machines by BDF: those with events alone, the others together, parted where they come to no end."""
     waiting = [np.array([machine]) for machine in machines] if problem.events else [machines] if len(machines) else []
     while waiting:
@@ -484,7 +486,7 @@ def _stiff(problem: Problem, machines: Indices, solution: Solution) -> None:
             solution.reasons.setdefault(int(group[0]), (reason, float(going.t[0])))
 
 
-def _march_as_one(problem: Problem, system: System, going: _Going, solution: Solution) -> str:
+def _march_as_one(problem: InitialValueProblem, system: System, going: _Going, solution: Solution) -> str:
     """Take steps that all machines share until they have come to an end; return why they have not, or nothing."""
     everyone, solver = np.arange(len(going.t)), _solver(problem, system, going)
     while True:
@@ -506,7 +508,7 @@ def _march_as_one(problem: Problem, system: System, going: _Going, solution: Sol
             solver = _solver(problem, system, going)
 
 
-def _solver(problem: Problem, system: System, going: _Going) -> Any:
+def _solver(problem: InitialValueProblem, system: System, going: _Going) -> Any:
     """Return a solver for machines that stand at one time, up to the next break; their states are one behind another.
 
     The mean square of all errors is held so low that each machine keeps the tolerance.

@@ -382,7 +382,7 @@ def cycle_demands(press: Press, samples: int = 721) -> Iterator[ClosingDemand]:
 # angle, m/rad and m/rad^2.
 
 
-class Motion(NamedTuple):
+class LineMotion(NamedTuple):
     """Velocity and acceleration along one line, or of a point."""
 
     speed: Float
@@ -393,7 +393,7 @@ def _dot(one: JointPoint, other: JointPoint) -> Float:
     return one.y * other.y + one.z * other.z
 
 
-def platform_motion(half: Half) -> Motion:
+def platform_motion(half: Half) -> LineMotion:
     """Loop I: the platform as this side alone would move it, downward.
 
     The rod keeps its length, so rod · rod' = 0 and rod · rod'' + rod' · rod' = 0 with E on a vertical line.
@@ -403,10 +403,10 @@ def platform_motion(half: Half) -> Motion:
     speed = _dot(pin, JointPoint(rod.y, rod.z)) / rod.z
     swing = JointPoint(-pin.y, speed - pin.z)
     pull = JointPoint(-crank.y, -crank.z)  # acceleration of B, towards A
-    return Motion(speed, (_dot(pull, JointPoint(rod.y, rod.z)) - _dot(swing, swing)) / rod.z)
+    return LineMotion(speed, (_dot(pull, JointPoint(rod.y, rod.z)) - _dot(swing, swing)) / rod.z)
 
 
-def face_motion(half: Half, platform: Motion) -> Motion:
+def face_motion(half: Half, platform: LineMotion) -> LineMotion:
     """Loops II and III: the slider face over one joint, downward, for a given motion of the platform."""
     drive, upper, lower = (JointPoint(link.y, link.z) for link in (half.drive, half.upper, half.lower))
     quarter = JointPoint(-upper.z, upper.y)
@@ -419,12 +419,12 @@ def face_motion(half: Half, platform: Motion) -> Motion:
     pull = JointPoint(gain * quarter.y - turning * turning * upper.y, gain * quarter.z - turning * turning * upper.z)
     speed = _dot(lower, knee) / lower.z
     swing = JointPoint(-knee.y, speed - knee.z)
-    return Motion(speed, (_dot(lower, pull) - _dot(swing, swing)) / lower.z)
+    return LineMotion(speed, (_dot(lower, pull) - _dot(swing, swing)) / lower.z)
 
 
-def slider_motion(position: Position) -> Motion:
+def slider_motion(position: Position) -> LineMotion:
     """First and second derivative of the slider position by the crank angle, with the deviations that are present."""
     own = [platform_motion(half) for half in (position.side_1, position.side_2)]
-    platform = Motion(*(0.5 * (one + other) for one, other in zip(*own, strict=True)))
+    platform = LineMotion(*(0.5 * (one + other) for one, other in zip(*own, strict=True)))
     faces = [face_motion(half, platform) for half in (position.side_1, position.side_2)]
-    return Motion(*(0.5 * (one + other) for one, other in zip(*faces, strict=True)))
+    return LineMotion(*(0.5 * (one + other) for one, other in zip(*faces, strict=True)))

@@ -190,7 +190,7 @@ COARSE = 6  # accuracy grade from which tip relief does not count
 
 
 @results
-class Dynamics:
+class MeshDynamics:
     """Inertia, resonance and dynamic factor of the mesh."""
 
     inertia_sun: Float = found("kg*mm", symbol="J_1", note="moment of inertia of the sun per face width",
@@ -270,7 +270,7 @@ class Dynamics:
 def dynamics_of(
     stage: Gearing, load: ToothLoad, sizes: tuple[GearSize, GearSize], total_contact_ratio: Float,
     held: tuple[MeshQuality, MeshStiffness],
-) -> Dynamics:  # fmt: skip
+) -> MeshDynamics:  # fmt: skip
     """Return the dynamic factor with all that it follows from; ``held`` is quality and stiffness of the mesh."""
     quality, stiffness = held
     inertia = [
@@ -292,7 +292,7 @@ def dynamics_of(
     factor = either(stage.stated_dynamic_factor, by_range(ratio, limit, (slow, resonant, fast)))
     factor = factor + stage.extra_dynamic_factor
     feasible(factor > 0.0, "the dynamic factor must exceed 0: raise extra_dynamic_factor")
-    return Dynamics(
+    return MeshDynamics(
         inertia_sun=inertia[0], inertia_planet=inertia[1], reduced_mass=mass, resonance_speed=resonance,
         resonance_ratio=ratio, resonance_limit=limit, pitch_influence=pitch, profile_influence=profile,
         relief_influence=relief, profile_coefficient=c_2, stiffness_coefficient=c_3, resonance_coefficient=c_4,

@@ -120,7 +120,7 @@ class Strength:
     quality: load_factors.MeshQuality = part(load_factors.MeshQuality, suffix="")
     steel: Steel = part(Steel, suffix="")
     stiffness: load_factors.MeshStiffness = part(load_factors.MeshStiffness, suffix="")
-    dynamics: load_factors.Dynamics = part(load_factors.Dynamics, suffix="")
+    dynamics: load_factors.MeshDynamics = part(load_factors.MeshDynamics, suffix="")
     planets: load_factors.PlanetSharing = part(load_factors.PlanetSharing, suffix="")
     face: load_factors.FaceLoad = part(load_factors.FaceLoad, suffix="")
     sharing: load_factors.Sharing = part(load_factors.Sharing, suffix="")

@@ -226,7 +226,7 @@ SECTIONS = [
     ),
     Section(
         "Dynamic factor",
-        *load_factors.Dynamics.__dataclass_fields__,
+        *load_factors.MeshDynamics.__dataclass_fields__,
         text="Method B of ISO 6336-1. A first stage runs far below the resonance of its mesh; what resonates in a "
         "reducer is its structure, which is not in this factor.",
     ),

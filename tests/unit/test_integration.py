@@ -10,7 +10,7 @@ import pytest
 from scipy.special import ellipj, ellipk
 
 from truing.arrays import Indices, Matrix
-from truing.integration import ENDLESS, GROWS, STEP_LIMIT, EventRule, Problem, Solution, solve
+from truing.integration import ENDLESS, GROWS, STEP_LIMIT, EventRule, InitialValueProblem, Solution, solve
 
 Law = Callable[[Matrix, Matrix, Matrix], list[Matrix]]
 
@@ -52,7 +52,7 @@ class Held:
 def followed(system: object, start: list[float], stamps: Matrix, machines: int = 1, **options: object) -> Solution:
     settings = {"breaks": stamps[[0, -1]], "sizes": np.ones(len(start)), **options}
     y = np.repeat(np.array(start)[:, None], machines, axis=1)
-    return solve(Problem(system=system, start=y, stamps=stamps, **settings))  # type: ignore[arg-type]
+    return solve(InitialValueProblem(system=system, start=y, stamps=stamps, **settings))  # type: ignore[arg-type]
 
 
 def oscillator(t: Matrix, y: Matrix, own: Matrix) -> list[Matrix]:

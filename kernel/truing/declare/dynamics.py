@@ -14,7 +14,7 @@ from truing.arrays import Indices, Matrix
 from truing.declare.batch import feasible
 from truing.declare.fields import KEY, Float, InputField, hints_of, in_si, input_fields, read, with_values
 from truing.errors import ConvergenceError, DeclarationError, InfeasibleError
-from truing.integration import GROWS, STEP_LIMIT, EventRule, Problem, Solution, solve
+from truing.integration import GROWS, STEP_LIMIT, EventRule, InitialValueProblem, Solution, solve
 from truing.units import difference_unit
 
 I = TypeVar("I")  # noqa: E741  # inputs, as in Model[I, R]
@@ -212,10 +212,10 @@ class Dynamics(Generic[S, I, R]):
         return dict(zip(self.state_fields, along.rate(stamps, y, interval), strict=True))
 
 
-def _problem(machines: _Machines[Any, Any, Any]) -> Problem:
+def _problem(machines: _Machines[Any, Any, Any]) -> InitialValueProblem:
     dynamics, stamps = machines.dynamics, machines.stamps
     sizes = [in_si(spec.size, difference_unit(spec.unit)) for spec in dynamics.state_fields.values()]
-    return Problem(
+    return InitialValueProblem(
         system=machines, start=machines.start(), stamps=stamps,
         breaks=stamps if machines.drives else stamps[[0, -1]], sizes=np.array(sizes),
         events=[event.rule for event in dynamics.events], tolerance=dynamics.tolerance,
