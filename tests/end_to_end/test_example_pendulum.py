@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import importlib.util
 import sys
 from pathlib import Path
@@ -12,7 +13,7 @@ import numpy as np
 import pytest
 from scipy.special import ellipk
 
-from shared import ROOT
+from shared import ROOT, Calc
 from truing import load
 
 HOME = ROOT / "docs" / "examples" / "geared_pendulum"
@@ -75,3 +76,26 @@ def test_the_records_are_those_that_the_program_writes(
     simulation.write("swing_1.csv", 1.2, 61.0, [0.2 * row for row in range(5)], 1)
     shipped = (HOME / "swing_1.csv").read_text(encoding="utf-8").splitlines()
     assert (tmp_path / "swing_1.csv").read_text(encoding="utf-8").splitlines() == shipped[:6]
+
+
+def test_every_run_is_a_motion_on_its_own_times(pendulum: Any, calc: Calc, tmp_path: Path) -> None:
+    """Two runs of one file with other times, masses and starts; each begins at its first row."""
+    runs = {"a": ([5.0, 5.5, 6.1], 1.2, 60), "b": ([0.0, 0.3, 0.9, 2.0], 0.6, 40)}
+    rows = [f"{run},{t},{mass},{release}" for run, (times, mass, release) in runs.items() for t in times]
+    (tmp_path / "rows.csv").write_text("\n".join(["run,time [s],tip_mass [kg],release [deg]", *rows]), encoding="utf-8")
+    words = ("-i", HOME / "inputs.toml", "--rows", "rows.csv", "-o", "shown.csv")
+    assert calc("table", HOME / "geared_pendulum.py", *words).code == 0
+    with (tmp_path / "shown.csv").open(encoding="utf-8") as lines:
+        shown = [float(row["angle [deg]"]) for row in csv.DictReader(lines)]
+    expected = [
+        pendulum.run(times=np.array(times), tip_mass=f"{mass} kg", release=f"{release} deg").si["angle"]
+        for times, mass, release in runs.values()
+    ]
+    assert shown == pytest.approx(np.degrees(np.concatenate(expected)), abs=1e-9)
+
+
+def test_what_changes_within_a_run_is_refused_with_its_line(calc: Calc, tmp_path: Path) -> None:
+    (tmp_path / "rows.csv").write_text("run,time [s],tip_mass [kg]\na,0,1.2\na,0.5,1.3\n", encoding="utf-8")
+    answer = calc("table", HOME / "geared_pendulum.py", "-i", HOME / "inputs.toml", "--rows", "rows.csv")
+    assert answer.code == 2
+    assert "rows.csv:3: tip_mass changes within a run, but a record is one calculation" in answer.err

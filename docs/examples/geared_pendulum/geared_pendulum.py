@@ -130,7 +130,7 @@ def speed_of(swing: Swing, pendulum: Pendulum, time: Float) -> Float:
 def swung(pendulum: Pendulum, motion: Motion[Swing]) -> Swung:
     """The record as the gauge shows it."""
     vertical, swing = pendulum.vertical, motion.states
-    feasible(np.isfinite(motion.first["turns"]), "it never turns: dry friction holds the arm", only=["period"])
+    feasible(np.isfinite(motion.first["turns"]), "the arm does not turn within the record", only=["period"])
     angles = swing.angle + column(vertical)
     return Swung(
         time=motion.time,
