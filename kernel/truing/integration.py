@@ -377,6 +377,9 @@ def _first_event(problem: InitialValueProblem, dense: _Dense, going: _Going, goo
         places = np.flatnonzero(happens.any(axis=0))
         if len(places):
             look = happens[:, places].argmax(axis=0)
+            going.value[number, good[places]] = values[
+                look + 1, places
+            ]  # just beyond: it may come back in the same step
             ends = [(times[each, places], values[each, places]) for each in (look, look + 1)]
             when = _crossed(number, dense, places, ends)
             sooner = (when < t[places]) | (event[places] < 0)

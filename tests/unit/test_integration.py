@@ -116,6 +116,16 @@ def test_an_event_counts_in_the_direction_asked_for(direction: int, times: int) 
     assert solution.counts[0, 0] == times
 
 
+@pytest.mark.parametrize(("direction", "times"), [(1, 1), (-1, 1), (0, 2)])
+def test_a_value_that_dips_within_a_step_passes_once_each_way(direction: int, times: int) -> None:
+    """(t - 3) (t - 4) is integrated exactly, in a step that is longer than the dip."""
+    system = Machines(lambda t, y, own: [y[1], 2 + 0 * t], np.ones(1))
+    solution = followed(system, [12, -7], np.array([0.0, 8.0]), events=[EventRule(direction)])
+    assert not solution.reasons
+    assert solution.counts[0, 0] == times
+    assert solution.first[0, 0] == pytest.approx(4 if direction > 0 else 3, rel=1e-12)
+
+
 def test_an_event_that_ends_a_motion_holds_it() -> None:
     system = Machines(oscillator, np.array([2 * np.pi]))
     solution = followed(system, [1, 0], np.linspace(0, 3, 31), events=[EventRule(-1, ends=True)])
