@@ -404,6 +404,7 @@ def _of_dynamics(model: Model[Any, Any]) -> Iterator[str]:
         return
     for name in _twice(event.name for event in dynamics.events):
         yield f"two events are called '{name}'"
+    known = rate_scope(model)
     for name, spec in dynamics.state_fields.items():
         if isinstance(spec.start, str) and spec.start.isidentifier() and spec.start not in fields:
             near = near_miss(spec.start, fields)
@@ -412,7 +413,6 @@ def _of_dynamics(model: Model[Any, Any]) -> Iterator[str]:
         if isinstance(names, str):
             yield f"the rate of state '{name}': {names}"
             continue
-        known = rate_scope(model)
         for missing in sorted(names - set(known)):
             near = near_miss(missing, known)
             yield f"the rate of state '{name}' names '{missing}', which is no state, input or result.{near}"

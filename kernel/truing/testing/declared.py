@@ -147,12 +147,14 @@ def formulas_of(subject: Subject) -> Iterator[tuple[ResultField, Formula, bool, 
         if text:
             yield field, parse(text), bool(getattr(field.spec, "numeric", False)), formula_scope(subject.model, field)
     dynamics = subject.model.dynamics
-    for name, spec in dynamics.state_fields.items() if dynamics is not None else ():
+    if dynamics is None:
+        return
+    scope, per = rate_scope(subject.model), "/s" if dynamics.step is None else ""
+    for name, spec in dynamics.state_fields.items():
         if spec.rate:
-            per_second = "" if dynamics is not None and dynamics.step is not None else "/s"
-            unit = f"{difference_unit(spec.unit) or '1'}{per_second}"
+            unit = f"{difference_unit(spec.unit) or '1'}{per}"
             rate = ResultField(name=f"rate of {name}", path=(name,), spec=Found(unit=unit), symbol=spec.symbol)
-            yield rate, parse(spec.rate), False, rate_scope(subject.model)
+            yield rate, parse(spec.rate), False, scope
 
 
 def formulas_have_the_unit(subject: Subject) -> None:
