@@ -355,7 +355,7 @@ class _OwnDense:
         return np.array([gone, bend, 2 * gone - step.length * (step.rate + stages[0]), *higher])
 
 
-# Events: what passes 0 within a step is bracketed and halved, the earliest of each machine ends its step there
+# Events: what passes 0 within a step is bracketed, the earliest of each machine ends its step there
 
 
 def _first_event(problem: InitialValueProblem, dense: _Dense, going: _Going, good: Indices) -> _Arrival:
