@@ -35,6 +35,7 @@ STIFF, STIFF_STEPS = 5.0, 15
 
 GROWS = "a state grows beyond all bounds"
 STEP_LIMIT = "the step limit is reached"
+IS_STIFF = "it is stiff from there on"
 ENDLESS = "an event comes again and again without end"
 
 
@@ -78,6 +79,8 @@ class InitialValueProblem:
     breaks: Matrix
     sizes: Matrix
     events: Sequence[EventRule] = ()
+    begin: tuple[Matrix, Indices] | None = None
+    """When each machine begins, (n,), and in which stretch, where that is not the first stamp."""
     tolerance: float = 1e-8
     most_steps: int = 100_000
 
@@ -93,6 +96,13 @@ class Path:
     y: Matrix
     interval: Indices
     event: Indices
+
+    def then(self, rest: Path) -> Path:
+        """Return this path and another one behind it, which begins where it ends."""
+        return Path(
+            np.append(self.t[:-1], rest.t), np.column_stack([self.y[:, :-1], rest.y]),
+            np.append(self.interval, rest.interval), np.append(self.event, rest.event),
+        )  # fmt: skip
 
 
 @dataclass
@@ -127,12 +137,21 @@ class Solution:
         return made
 
 
-def solve(problem: InitialValueProblem, *, keeps_paths: bool = False) -> Solution:
-    """Integrate every machine; one that comes to no end has NaN from there on, and a reason."""
-    solution = empty_solution(problem)
+def solve(
+    problem: InitialValueProblem, solution: Solution | None = None, *, keeps_paths: bool = False
+) -> Solution:  # fmt: skip
+    """Integrate every machine; one that comes to no end has NaN from there on, and a reason.
+
+    Machines that begin later are given with a solution that holds what is before; of these a stiff one is left there.
+    """
+    solution = solution or empty_solution(problem)
     solution.taken = [] if keeps_paths else None
     with np.errstate(all="ignore"):
-        _stiff(problem, _march(problem, solution), solution)
+        stiff = _march(problem, solution)
+        if problem.begin is None:
+            _stiff(problem, stiff, solution)
+        else:
+            solution.reasons |= {int(machine): (IS_STIFF, float(problem.begin[0][machine])) for machine in stiff}
     return solution
 
 
@@ -204,14 +223,16 @@ def _march(problem: InitialValueProblem, solution: Solution) -> Indices:
 
 def _begun(problem: InitialValueProblem) -> _Going:
     count, events = problem.start.shape[1], range(len(problem.events))
-    t, interval = np.full(count, problem.stamps[0]), np.zeros(count, dtype=np.intp)
+    t, interval = problem.begin or (np.full(count, problem.stamps[0]), np.zeros(count, dtype=np.intp))
+    t, interval = np.array(t), np.array(interval)
     y = np.array(problem.start, dtype=float)
     rate = problem.system.rate(t, y, interval)
     values = [problem.system.crossing(event, t, y, interval) for event in events]
     return _Going(
-        machine=np.arange(count), t=t, y=y, rate=rate, step=_first_step(problem, t, y, rate), interval=interval,
-        stamp=interval + 1, value=np.array(values).reshape(len(events), count), taken=interval.copy(),
-        at_edge=interval.copy(), last_event=np.full(count, -np.inf),
+        machine=np.arange(count), t=t, y=y, rate=rate, step=_first_step(problem, (t, y, rate), interval),
+        interval=interval, stamp=np.searchsorted(problem.stamps, t, side="right"),
+        value=np.array(values).reshape(len(events), count), taken=np.zeros(count, dtype=np.intp),
+        at_edge=np.zeros(count, dtype=np.intp), last_event=np.full(count, -np.inf),
     )  # fmt: skip
 
 
@@ -227,13 +248,14 @@ def _mean_square(errors: Matrix) -> Matrix:
     return np.asarray(np.mean(errors * errors, axis=0))
 
 
-def _first_step(problem: InitialValueProblem, t: Matrix, y: Matrix, rate: Matrix) -> Matrix:
-    """Guess a first step from the rate and how fast it changes (Hairer, Norsett, Wanner, II.4)."""
+def _first_step(problem: InitialValueProblem, at: tuple[Matrix, Matrix, Matrix], interval: Indices) -> Matrix:
+    """Guess a first step from time, state and rate, and how fast this changes (Hairer, Norsett, Wanner, II.4)."""
+    t, y, rate = at
     scale, whole = scale_of(problem, y), problem.stamps[-1] - problem.stamps[0]
     size, slope = (np.sqrt(_mean_square(each / scale)) for each in (y, rate))
     guess = np.where((size < 1e-5) | (slope < 1e-5), 1e-6 * whole, 0.01 * size / slope)
     guess = np.minimum(guess, whole)
-    bent = problem.system.rate(t + guess, y + guess * rate, np.zeros(len(t), dtype=np.intp))
+    bent = problem.system.rate(t + guess, y + guess * rate, interval)
     change = np.maximum(slope, np.sqrt(_mean_square((bent - rate) / scale)) / guess)
     better = np.where(change <= 1e-15 / whole, np.maximum(1e-6 * whole, guess * 1e-3), (0.01 / change) ** (1 / ORDER))
     step = np.minimum(np.minimum(100 * guess, better), whole)

@@ -357,14 +357,39 @@ def _nearest(known: Sequence[_Followed], numbers: Matrix) -> dict[int, Path]:
 def _add_along(
     made: dict[int, _Followed], new: _Machines[Any, Any, Any], numbers: Matrix, along: Mapping[int, Path]
 ) -> None:
-    """Follow some machines along paths, as far as these lead to the end."""
+    """Follow some machines along paths, and step by step from where these no longer lead."""
     if not along:
         return
     places = [*along]
     problem = _problem(new.part(np.array(places)))
     solution = empty_solution(problem)
-    for each, path in at_once(problem, [*along.values()], solution).items():
+    followed = at_once(problem, [*along.values()], solution)
+    whole = followed.whole
+    if followed.part:
+        _go_on(problem, followed.part, solution)
+        whole = whole | {each: path for each, path in followed.part.items() if each not in solution.reasons}
+    for each, path in whole.items():
         made[places[each]] = _one_of(solution, each, numbers[places[each]], path)
+
+
+def _go_on(problem: InitialValueProblem, parts: dict[int, Path], solution: Solution) -> None:
+    """Follow machines step by step from the end of a path, and put what they took behind it."""
+    machines, paths = np.array([*parts]), [*parts.values()]
+    begin = np.array([path.t[-1] for path in paths]), np.array([path.interval[-1] for path in paths])
+    begin[1][:] += begin[0] == problem.breaks[begin[1] + 1]
+    own = Solution(solution.states[:, machines], solution.counts[:, machines], solution.first[:, machines])
+    rest = replace(
+        problem, system=problem.system.part(machines), start=np.array([path.y[:, -1] for path in paths]).T, begin=begin,
+    )  # fmt: skip
+    taken = solve(rest, own, keeps_paths=True).paths(rest)
+    solution.states[:, machines], solution.counts[:, machines], solution.first[:, machines] = (
+        own.states, own.counts, own.first,
+    )  # fmt: skip
+    for place, machine in enumerate(machines.tolist()):
+        if place in taken:
+            parts[machine] = parts[machine].then(taken[place])
+        else:
+            solution.reasons[machine] = own.reasons.get(place, (GROWS, float(begin[0][place])))
 
 
 def _add_alone(
