@@ -25,6 +25,8 @@ LEAST_STEP = 16 * ROUNDING
 """Shortest step, as a share of the time that is reached."""
 LOOKS, MOST_ROUNDS = 8, 60
 """How often a step is looked at for events, and in how many rounds at the most the time of one is found."""
+WRITTEN = 65_536
+"""States at so many stamps are calculated at once."""
 MOST_EVENTS = 10_000
 CLOSE, TINY = 1e-12, 1e-300
 """More events of one machine in one record, or events so close (a share of the record), have no end. What has just
@@ -35,7 +37,7 @@ STIFF, STIFF_STEPS = 5.0, 15
 
 GROWS = "a state grows beyond all bounds"
 STEP_LIMIT = "the step limit is reached"
-ENDLESS = "an event comes again and again without end"
+ENDLESS = "comes again and again without end"
 
 
 class System(Protocol):
@@ -62,6 +64,7 @@ class EventRule:
     ends: bool = False
     sets: bool = False
     """Whether it sets the state anew."""
+    name: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -308,8 +311,10 @@ def _write(problem: InitialValueProblem, dense: _Dense, going: _Going, arrival: 
     if not count.any():
         return
     place = np.repeat(np.arange(len(count)), count)
-    stamp = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count) + begin[place]
-    solution.states[:, machine[place], stamp] = dense.at(problem.stamps[stamp], place)
+    stamp = np.arange(len(place)) - np.repeat(np.cumsum(count) - count, count) + begin[place]
+    for first in range(0, len(place), WRITTEN):
+        some = slice(first, first + WRITTEN)
+        solution.states[:, machine[place[some]], stamp[some]] = dense.at(problem.stamps[stamp[some]], place[some])
 
 
 class _Dense(Protocol):
@@ -465,7 +470,8 @@ def _count(
     whole = problem.stamps[-1] - problem.stamps[0]
     endless = (t - before < CLOSE * whole) | (solution.counts[number, machine] > MOST_EVENTS)
     for place in np.flatnonzero(endless):
-        solution.reasons[int(machine[place])] = (ENDLESS, float(t[place]))
+        reason = f"the event '{problem.events[number].name}' {ENDLESS}"
+        solution.reasons[int(machine[place])] = (reason, float(t[place]))
     return np.asarray(endless)
 
 
