@@ -48,6 +48,8 @@ ROWS_PER_NUMBER = 4
 """Fewer rows for every number are followed by any curve, noise or not."""
 AT_ONCE, ROWS_AT_ONCE = 8, 20_000
 """So many fits ask the model together, of records of no more than so many rows among all."""
+MOVING_AT_ONCE = 64
+"""So many fits of a model that moves ask it together: many machines take hardly longer than one."""
 AGAIN, TO_THE_END = "fits in the noise that was learnt", "fits to the end"
 """What a budget that has ended leaves out, in words."""
 SINGLES = 12
@@ -169,6 +171,8 @@ class Competition:
     @property
     def at_once(self) -> int:
         """So many fits ask the model together; where calls are counted, one after another."""
+        if self.extended.is_moving:
+            return MOVING_AT_ONCE
         rows = len(self.sample.machine.records)
         return 1 if self.extended.budget.is_dear else max(1, min(AT_ONCE, ROWS_AT_ONCE // rows))
 

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from truing.arrays import Indices, Matrix
+from truing.declare.dynamics import following_together
 from truing.declare.sources import Effect
 from truing.diagnosis.causes import Candidate, at_rest
 from truing.diagnosis.machine import Calibration, Tolerated, predict_each
@@ -23,6 +24,8 @@ from truing.setup import Setup, SwitchedOn, effect_column
 
 REMEMBERED = 64
 """So many setups with moved inputs are kept, and what the model showed at so many points."""
+MOVING_REMEMBERED = 2048
+"""The same of a model that moves, of which many points are asked for at once."""
 ROWS_KEPT = 1_000_000
 """So many rows of what the model showed are kept."""
 LEAST_PER_EFFECT = 40
@@ -140,8 +143,11 @@ class Extended:
             waiting.update(rest)
             if rest:
                 new.append(_Asked(asked.causes, list(rest.values()), list(rest)))
-        for group in _grouped(new):
-            for asked in group:
+        groups = _grouped(new)
+        if self.is_moving:
+            self._follow_together(groups)
+        for group in groups:
+            for asked in group if not self.is_moving else ():
                 self._count(asked.causes, asked.points)
             answers = self._called(group[0].causes, [point for asked in group for point in asked.points])
             self._shown.update(zip((key for asked in group for key in asked.keys), answers, strict=True))
@@ -154,9 +160,23 @@ class Extended:
         ]
 
     @property
+    def is_moving(self) -> bool:
+        """Whether the model follows states along its record, so that machines of all kinds are one call of it."""
+        return self.machine.start.model.dynamics is not None
+
+    def _follow_together(self, groups: Sequence[Sequence[_Asked]]) -> None:
+        """Follow in one call what several groups of requests need."""
+        if not groups:
+            return
+        with following_together() as asked:
+            for group in groups:
+                self._called(group[0].causes, [point for each in group for point in each.points])
+        self.calls += asked.new > 0
+
+    @property
     def _most_shown(self) -> int:
         """So many answers of the model are kept."""
-        return min(REMEMBERED, max(1, ROWS_KEPT // max(len(self.machine.records), 1)))
+        return min(MOVING_REMEMBERED if self.is_moving else REMEMBERED, max(1, ROWS_KEPT // max(len(self.machine.records), 1)))
 
     def _with_shapes(
         self, shown: Mapping[str, Matrix], causes: Sequence[Candidate], values: Sequence[Matrix]
