@@ -176,7 +176,9 @@ class Extended:
     @property
     def _most_shown(self) -> int:
         """So many answers of the model are kept."""
-        return min(MOVING_REMEMBERED if self.is_moving else REMEMBERED, max(1, ROWS_KEPT // max(len(self.machine.records), 1)))
+        return min(
+            MOVING_REMEMBERED if self.is_moving else REMEMBERED, max(1, ROWS_KEPT // max(len(self.machine.records), 1))
+        )
 
     def _with_shapes(
         self, shown: Mapping[str, Matrix], causes: Sequence[Candidate], values: Sequence[Matrix]
