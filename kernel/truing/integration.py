@@ -93,6 +93,27 @@ class InitialValueProblem:
 
 
 @dataclass(frozen=True)
+class Slopes:
+    """Derivatives of m steps: by the state that each begins with, (m, d, d); and of the event that ends it.
+
+    Those of its value, (m, d + 1), and of the states after it, (m, d, d + 1), are by the states and the time there. Of
+    n machines all have one more dimension in front.
+    """
+
+    step: Matrix
+    value: Matrix
+    after: Matrix
+
+    def some(self, machines: Indices) -> Slopes:
+        """Return those of some machines."""
+        return Slopes(self.step[machines], self.value[machines], self.after[machines])
+
+    def of(self, machine: int, steps: int) -> Slopes:
+        """Return those of the first steps of one machine."""
+        return Slopes(*(np.array(each[machine, :steps]) for each in (self.step, self.value, self.after)))
+
+
+@dataclass(frozen=True)
 class Path:
     """The m steps of one machine: times (m + 1,) and states (d, m + 1) at which they begin and the last one ends.
 
@@ -103,6 +124,7 @@ class Path:
     y: Matrix
     interval: Indices
     event: Indices
+    slopes: Slopes | None = None
 
     def then(self, rest: Path) -> Path:
         """Return this path and another one behind it, which begins where it ends."""
