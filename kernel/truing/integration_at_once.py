@@ -102,7 +102,7 @@ class _Shot:
     @property
     def rate(self) -> Matrix:
         """The rates at the ends, (d, n, N)."""
-        return self.stages[STAGES].reshape(self.reached.shape)
+        return np.asarray(self.stages[STAGES].reshape(self.reached.shape))
 
 
 @dataclass(frozen=True)
