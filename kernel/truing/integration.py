@@ -453,16 +453,17 @@ def _happen(problem: InitialValueProblem, system: System, going: _Going, arrival
         is_set = np.zeros(len(own), dtype=bool)
         if rule.sets and (going.value[number, own] == 0).any():
             short = 1e-6 * going.step[own]
-            slopes = [_gained(number, part, t, y, interval, short) for y in (before, going.y[:, own])]
+            slopes = [_gained(number, part, (t, y, interval), short) for y in (before, going.y[:, own])]
             is_set = np.abs(slopes[1] - slopes[0]) > 1e-3 * np.abs(slopes[0])
         going.value[number, own] = _beyond(going.value[number, own], after, is_set)
     return ended
 
 
-def _gained(event: int, system: System, t: Matrix, y: Matrix, interval: Indices, short: Matrix) -> Matrix:
-    """Return what the value of an event gains within a short time, (n,)."""
-    later = system.crossing(event, t + short, y + short * system.rate(t, y, interval), interval)
-    return later - system.crossing(event, t, y, interval)
+def _gained(event: int, system: System, at: tuple[Matrix, Matrix, Indices], short: Matrix) -> Matrix:
+    """Return what the value of an event gains within a short time after time, state and interval, (n,)."""
+    t, y, interval = at
+    later = system.crossing(event, t + short, y + short * system.rate(*at), interval)
+    return later - system.crossing(event, *at)
 
 
 def _beyond(value: Matrix, after: Matrix, is_set: Mask) -> Matrix:

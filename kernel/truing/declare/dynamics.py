@@ -227,6 +227,26 @@ class Dynamics(Generic[S, I, R]):
         y = np.array([getattr(motion.states, name) for name in self.state_fields])
         return dict(zip(self.state_fields, along.rate(stamps, y, interval), strict=True))
 
+    def start_of(self, inputs: I) -> Matrix:
+        """Return the states in which one machine starts, (d,)."""
+        return _machines(self, inputs).start()[:, 0]
+
+    def law_at(self, inputs: I, states: Matrix) -> Matrix:
+        """Return what the law says at the first time of n machines in these states (d, n); inputs of one or of n."""
+        machines, several = _machines(self, inputs), np.zeros(states.shape[1], dtype=np.intp)
+        machines = machines.part(several) if machines.is_single else machines
+        return machines.rate(np.full(len(several), machines.stamps[0]), states, several)
+
+    def shown_at(self, inputs: I, states: Matrix) -> R:
+        """Return the results of n machines that stand in these states (d, n) at the first two times."""
+        machines = _machines(self, inputs)
+        series = {self.input_fields[self.times].path: machines.stamps, **machines.drives}
+        inputs = with_values(inputs, {path: values[..., :2] for path, values in series.items()})
+        standing = {name: np.repeat(states[row][:, None], 2, axis=1) for row, name in enumerate(self.state_fields)}
+        never = {event.name: np.full(states.shape[1], np.nan) for event in self.events}
+        counts = {name: np.zeros(states.shape[1]) for name in never}
+        return self.gives(inputs, Motion(machines.stamps[:2], self.state_type(**standing), counts, never))
+
 
 # What was followed is remembered machine by machine: a fit asks for the same ones again, among others
 
