@@ -17,7 +17,18 @@ from truing.arrays import Indices, Matrix
 from truing.declare.batch import feasible
 from truing.declare.fields import KEY, Float, InputField, hints_of, in_si, input_fields, read, with_values
 from truing.errors import ConvergenceError, DeclarationError, InfeasibleError
-from truing.integration import ENDLESS, GROWS, STEP_LIMIT, EventRule, InitialValueProblem, Solution, solve
+from truing.integration import (
+    ENDLESS,
+    GROWS,
+    STEP_LIMIT,
+    EventRule,
+    InitialValueProblem,
+    Path,
+    Solution,
+    empty_solution,
+    solve,
+)
+from truing.integration_at_once import at_once
 from truing.units import difference_unit
 
 WHAT_NOW = {
@@ -29,8 +40,10 @@ I = TypeVar("I")  # noqa: E741  # inputs, as in Model[I, R]
 R = TypeVar("R")
 S = TypeVar("S")
 T = TypeVar("T")
-MOST_REMEMBERED = 2_000_000
-"""So many values of states are remembered."""
+MOST_REMEMBERED, MOST_NEAR = 2_000_000, 256
+"""So many values of states are remembered; of so many machines the nearest one is looked for."""
+NEAR, FAR, TINY = 0.02, 6, 1e-300
+"""Sum of the shares by which numbers of machines differ that are followed along one path; and at the most."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -253,12 +266,17 @@ class Dynamics(Generic[S, I, R]):
 
 @dataclass(frozen=True)
 class _Followed:
-    """One machine as it was followed: states (d, k), by event how often and when first, (e,); why it came to no end."""
+    """One machine as it was followed: states (d, k), by event how often and when first, (e,); why it came to no end.
+
+    ``numbers`` are what it differs by from others, ``path`` the steps that it took.
+    """
 
     states: Matrix
     counts: Matrix
     first: Matrix
     reason: tuple[str, float] | None
+    numbers: Matrix
+    path: Path | None
 
 
 @dataclass
@@ -316,17 +334,114 @@ def _follow(machines: _Machines[Any, Any, Any]) -> list[_Followed]:
     made = {key: memory[key] for key in keys if key in memory}
     if places:
         new = machines.part(np.array(list(places.values())))
-        solution = _in_steps(new) if machines.dynamics.step is not None else solve(_problem(new))
-        for place, key in enumerate(places):
-            made[key] = _Followed(
-                np.array(solution.states[:, place]), np.array(solution.counts[:, place]),
-                np.array(solution.first[:, place]), solution.reasons.get(place),
-            )  # fmt: skip
-        most = max(1, MOST_REMEMBERED // max(solution.states[:, 0].size, 1))
+        made |= dict(zip(places, _followed(new), strict=True))
+        most = max(1, MOST_REMEMBERED // max(made[keys[0]].states.size, 1))
         memory.update((key, made[key]) for key in places)
         for old in list(memory)[:-most]:
             del memory[old]
     return [made[key] for key in keys]
+
+
+def _followed(new: _Machines[Any, Any, Any]) -> list[_Followed]:
+    """Follow machines: along a path that is known, else near one another, else step by step."""
+    numbers = np.column_stack([np.zeros(new.count), *(each for each in new.numbers.values() if each.ndim == 1)])
+    known = [each for key, each in new.dynamics.memory.items() if each.path is not None and key.startswith(new.record)]
+    made: dict[int, _Followed] = {}
+    _add_along(made, new, numbers, _nearest(known[-MOST_NEAR:], numbers))
+    left = np.array([place for place in range(new.count) if place not in made], dtype=np.intp)
+    leaders = left[_leaders(numbers[left])]
+    _add_alone(made, new, numbers, np.unique(leaders).tolist())
+    rest = [(int(place), made[int(leader)].path) for place, leader in zip(left, leaders, strict=True)]
+    _add_along(made, new, numbers, {place: path for place, path in rest if place not in made and path is not None})
+    _add_alone(made, new, numbers, [place for place in range(new.count) if place not in made])
+    return [made[place] for place in range(new.count)]
+
+
+def _leaders(numbers: Matrix) -> Indices:
+    """Return for every machine the first one that is near it, itself where none is, (n,)."""
+    scaled = numbers / np.maximum(np.abs(numbers).max(axis=0, initial=0.0), TINY)
+    leaders, firsts = np.zeros(len(numbers), dtype=np.intp), np.zeros(0, dtype=np.intp)
+    for place, row in enumerate(scaled):
+        off = np.abs(scaled[firsts] - row).sum(axis=1)
+        if not (off < NEAR).any():
+            firsts = np.append(firsts, place)
+            off = np.append(off, 0.0)
+        leaders[place] = firsts[np.argmin(off)]
+    return leaders
+
+
+def _nearest(known: Sequence[_Followed], numbers: Matrix) -> dict[int, Path]:
+    """Return the path of what is known nearest to each machine; none where that is far."""
+    if not known:
+        return {}
+    several = np.array([each.numbers for each in known])
+    off = (np.abs(several - numbers[:, None]) / np.maximum(np.abs(numbers[:, None]), TINY)).sum(axis=2)
+    nearest = np.argmin(np.where(np.isnan(off), np.inf, off), axis=1)
+    pairs = [(place, known[best], off[place, best]) for place, best in enumerate(nearest)]
+    return {place: best.path for place, best, far in pairs if best.path is not None and far < FAR}
+
+
+def _add_along(
+    made: dict[int, _Followed], new: _Machines[Any, Any, Any], numbers: Matrix, along: Mapping[int, Path]
+) -> None:
+    """Follow some machines along paths, and step by step from where these no longer lead."""
+    if not along:
+        return
+    places = [*along]
+    problem = _problem(new.part(np.array(places)))
+    solution = empty_solution(problem)
+    followed = at_once(problem, [*along.values()], solution)
+    whole = followed.whole
+    if followed.part:
+        _go_on(problem, followed.part, solution)
+        whole = whole | {each: path for each, path in followed.part.items() if each not in solution.reasons}
+    for each, path in whole.items():
+        made[places[each]] = _one_of(solution, each, numbers[places[each]], path)
+
+
+def _go_on(problem: InitialValueProblem, parts: dict[int, Path], solution: Solution) -> None:
+    """Follow machines step by step from the end of a path, and put what they took behind it."""
+    machines, paths = np.array([*parts]), [*parts.values()]
+    begin = np.array([path.t[-1] for path in paths]), np.array([path.interval[-1] for path in paths])
+    begin[1][:] += begin[0] == problem.breaks[begin[1] + 1]
+    own = Solution(solution.states[:, machines], solution.counts[:, machines], solution.first[:, machines])
+    rest = replace(
+        problem, system=problem.system.part(machines), start=np.array([path.y[:, -1] for path in paths]).T, begin=begin,
+    )  # fmt: skip
+    taken = solve(rest, own, keeps_paths=True).paths(rest)
+    solution.states[:, machines], solution.counts[:, machines], solution.first[:, machines] = (
+        own.states, own.counts, own.first,
+    )  # fmt: skip
+    for place, machine in enumerate(machines.tolist()):
+        if place in taken:
+            parts[machine] = parts[machine].then(taken[place])
+        else:
+            solution.reasons[machine] = own.reasons.get(place, (GROWS, float(begin[0][place])))
+
+
+def _add_alone(
+    made: dict[int, _Followed], new: _Machines[Any, Any, Any], numbers: Matrix, places: Sequence[int]
+) -> None:
+    """Follow some machines step by step."""
+    if not places:
+        return
+    part = new.part(np.array(places))
+    if new.dynamics.step is not None:
+        solution, paths = _in_steps(part), dict[int, Path]()
+    else:
+        problem = _problem(part)
+        solution = solve(problem, keeps_paths=True)
+        paths = solution.paths(problem)
+    for each, place in enumerate(places):
+        made[place] = _one_of(solution, each, numbers[place], paths.get(each))
+
+
+def _one_of(solution: Solution, machine: int, numbers: Matrix, path: Path | None) -> _Followed:
+    """Return one machine of a solution."""
+    return _Followed(
+        np.array(solution.states[:, machine]), np.array(solution.counts[:, machine]),
+        np.array(solution.first[:, machine]), solution.reasons.get(machine), numbers, path,
+    )  # fmt: skip
 
 
 def _problem(machines: _Machines[Any, Any, Any]) -> InitialValueProblem:

@@ -30,8 +30,8 @@ Asking = Generator[Request, Any, T]
 
 EXACTLY, CLOSELY, ROUGHLY = 1e-5, 1e-3, 1e-2
 """A fit ends where a step promises less than so much of the score."""
-MOST_STEPS, MOST_ROUGH = 40, 12
-"""So many steps are taken to an exact end, and to a rough one."""
+MOST_STEPS, MOST_ROUGH, MOST_ROUGH_AT_ONCE = 40, 12, 6
+"""So many steps are taken to an exact end, and to a rough one; of these with all derivatives at every point."""
 MOVED = 0.1
 """Sum of squares, in units of the noise, that slopes of the inputs may miss before their anchor is moved."""
 MOST_ANCHORS = 3
@@ -330,7 +330,7 @@ class Fitting:
         self._draw(point.drawn)
 
     def _ahead(self, damping: float, share: float) -> tuple[tuple[Matrix, Matrix], float]:
-        """Return where a damped step leads, with so much of what the inputs are to move, and the cost that is promised."""
+        """Return where a damped step leads, the inputs so much of their way, and the cost that is promised."""
         self.damping = damping
         standing = self.b, self.left
         bare = self.bare(self.predicted)
@@ -344,8 +344,9 @@ class Fitting:
         """Step down with numbers and inputs together until little is promised."""
         (now,) = yield from self.look_at([(self.u, self.anchor)])
         self.stand_at(now)
-        damping, tries = FIRST_DAMPING, WAYS[:1]
-        for _ in range(MOST_STEPS if until < ROUGHLY else MOST_ROUGH):
+        damping = FIRST_DAMPING
+        tries: Sequence[float] = WAYS[:1]
+        for _ in range(MOST_STEPS if until < ROUGHLY else MOST_ROUGH_AT_ONCE):
             ahead = [self._ahead(damping * FURTHER_DAMPED**place, share) for place, share in enumerate(tries)]
             promised = self.cost - ahead[0][1]
             if promised < until or damping > LARGEST_DAMPING:

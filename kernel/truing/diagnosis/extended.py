@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import accumulate
 from math import inf, log10
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -16,12 +16,14 @@ from truing.declare.dynamics import following_together
 from truing.declare.sources import Effect
 from truing.diagnosis.causes import Candidate, at_rest
 from truing.diagnosis.machine import Calibration, Tolerated, predict_each
+from truing.diagnosis.side_by_side import asked_beside, side_by_side
 from truing.errors import PluginError
 from truing.gauge import Trial
 from truing.repeated import REMEMBERED as REPEATED
 from truing.repeated import forget, processor_seconds
 from truing.setup import Setup, SwitchedOn, effect_column
 
+T = TypeVar("T")
 REMEMBERED = 64
 """So many setups with moved inputs are kept, and what the model showed at so many points."""
 MOVING_REMEMBERED = 2048
@@ -136,6 +138,15 @@ class Extended:
 
     def at_each(self, requests: Sequence[Request]) -> list[Predictions]:
         """Return the same for several requests; those of the same causes are one call of the model."""
+        return asked_beside((self, requests), lambda _: self._at_each(requests))
+
+    def side_by_side(self, several: Sequence[Callable[[], T]]) -> list[T]:
+        """Return what several tasks make that ask for predictions; of a model that moves they ask together."""
+        if not self.is_moving or len(several) < 2:
+            return [task() for task in several]
+        return side_by_side(several, _answered)
+
+    def _at_each(self, requests: Sequence[Request]) -> list[Predictions]:
         every = [_asked(*request) for request in requests]
         new, waiting = [], set(self._shown)
         for asked in every:
@@ -176,9 +187,8 @@ class Extended:
     @property
     def _most_shown(self) -> int:
         """So many answers of the model are kept."""
-        return min(
-            MOVING_REMEMBERED if self.is_moving else REMEMBERED, max(1, ROWS_KEPT // max(len(self.machine.records), 1))
-        )
+        most = MOVING_REMEMBERED if self.is_moving else REMEMBERED
+        return min(most, max(1, ROWS_KEPT // max(len(self.machine.records), 1)))
 
     def _with_shapes(
         self, shown: Mapping[str, Matrix], causes: Sequence[Candidate], values: Sequence[Matrix]
@@ -284,6 +294,16 @@ class Extended:
         inputs = zip(self.machine.inputs, off, strict=True)
         settings = ((given.name, given.file, self._value(given, sds)) for given, sds in inputs)
         return _columns(settings, self.machine.records.file_of)
+
+
+def _answered(asked: list[tuple[Extended, Sequence[Request]]]) -> list[list[Predictions]]:
+    """Answer what several tasks ask, those of one extended model together."""
+    answers: dict[int, list[Predictions]] = {}
+    for extended in {id(extended): extended for extended, _ in asked}.values():
+        own = [(index, requests) for index, (each, requests) in enumerate(asked) if each is extended]
+        made = iter(extended.at_each([request for _, requests in own for request in requests]))
+        answers |= {index: [next(made) for _ in requests] for index, requests in own}
+    return [answers[index] for index in range(len(asked))]
 
 
 def _asked(causes: Sequence[Candidate], points: Sequence[Point]) -> _Asked:
