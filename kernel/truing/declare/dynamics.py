@@ -40,6 +40,8 @@ I = TypeVar("I")  # noqa: E741  # inputs, as in Model[I, R]
 R = TypeVar("R")
 S = TypeVar("S")
 T = TypeVar("T")
+MOST_NEARBY = 64
+"""More machines in one call are followed step by step and not remembered: they are drawn, and nobody asks again."""
 MOST_REMEMBERED, MOST_NEAR = 2_000_000, 256
 """So many values of states are remembered; of so many machines the nearest one is looked for."""
 NEAR, FAR, TINY = 0.02, 6, 1e-300
@@ -319,6 +321,8 @@ def _remembered(machines: _Machines[Any, Any, Any]) -> Solution:
         states, events = len(machines.dynamics.state_fields), len(machines.dynamics.events)
         nothing = np.full((events, machines.count), np.nan)
         return Solution(np.full((states, machines.count, len(machines.stamps)), np.nan), nothing, nothing)
+    if machines.count > MOST_NEARBY:
+        return solve(_problem(machines)) if machines.dynamics.step is None else _in_steps(machines)
     known = _follow(machines)
     reasons = {place: each.reason for place, each in enumerate(known) if each.reason}
     return Solution(
