@@ -40,6 +40,8 @@ I = TypeVar("I")  # noqa: E741  # inputs, as in Model[I, R]
 R = TypeVar("R")
 S = TypeVar("S")
 T = TypeVar("T")
+MOST_NEARBY = 64
+"""More machines in one call, unless they are known, are drawn: nobody asks for them again, and none is remembered."""
 MOST_REMEMBERED, MOST_NEAR = 2_000_000, 256
 """So many values of states are remembered; of so many machines the nearest one is looked for."""
 NEAR, FAR, TINY = 1e-3, 6, 1e-300
@@ -240,6 +242,26 @@ class Dynamics(Generic[S, I, R]):
         y = np.array([getattr(motion.states, name) for name in self.state_fields])
         return dict(zip(self.state_fields, along.rate(stamps, y, interval), strict=True))
 
+    def start_of(self, inputs: I) -> Matrix:
+        """Return the states in which one machine starts, (d,)."""
+        return _machines(self, inputs).start()[:, 0]
+
+    def law_at(self, inputs: I, states: Matrix) -> Matrix:
+        """Return what the law says at the first time of n machines in these states (d, n); inputs of one or of n."""
+        machines, several = _machines(self, inputs), np.zeros(states.shape[1], dtype=np.intp)
+        machines = machines.part(several) if machines.is_single else machines
+        return machines.rate(np.full(len(several), machines.stamps[0]), states, several)
+
+    def shown_at(self, inputs: I, states: Matrix) -> R:
+        """Return the results of n machines that stand in these states (d, n) at the first two times."""
+        machines = _machines(self, inputs)
+        series = {self.input_fields[self.times].path: machines.stamps, **machines.drives}
+        inputs = with_values(inputs, {path: values[..., :2] for path, values in series.items()})
+        standing = {name: np.repeat(states[row][:, None], 2, axis=1) for row, name in enumerate(self.state_fields)}
+        never = {event.name: np.full(states.shape[1], np.nan) for event in self.events}
+        counts = {name: np.zeros(states.shape[1]) for name in never}
+        return self.gives(inputs, Motion(machines.stamps[:2], self.state_type(**standing), counts, never))
+
 
 # What was followed is remembered machine by machine: a fit asks for the same ones again, among others
 
@@ -299,6 +321,8 @@ def _remembered(machines: _Machines[Any, Any, Any]) -> Solution:
         states, events = len(machines.dynamics.state_fields), len(machines.dynamics.events)
         nothing = np.full((events, machines.count), np.nan)
         return Solution(np.full((states, machines.count, len(machines.stamps)), np.nan), nothing, nothing)
+    if machines.count > MOST_NEARBY and machines.keys()[0] not in machines.dynamics.memory:
+        return solve(_problem(machines)) if machines.dynamics.step is None else _in_steps(machines)
     known = _follow(machines, _step_by_step)
     reasons = {place: each.reason for place, each in enumerate(known) if each.reason}
     return Solution(
