@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import KW_ONLY, dataclass, field, fields, replace
 from functools import cached_property
+from hashlib import blake2b
 from typing import Any, Generic, Literal, TypeVar, cast, dataclass_transform
 
 import numpy as np
@@ -21,6 +24,8 @@ I = TypeVar("I")  # noqa: E741  # inputs, as in Model[I, R]
 R = TypeVar("R")
 S = TypeVar("S")
 T = TypeVar("T")
+MOST_REMEMBERED = 2_000_000
+"""So many values of states are remembered."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -174,6 +179,11 @@ class Dynamics(Generic[S, I, R]):
         return input_fields(self.input_type)
 
     @cached_property
+    def memory(self) -> dict[bytes, _Followed]:
+        """What was followed last, by what tells one machine from another."""
+        return {}
+
+    @cached_property
     def driving(self) -> dict[str, InputField]:
         """The input series that the law sees at every moment, by flat name."""
         along = self.input_fields[self.times].spec.along
@@ -192,7 +202,7 @@ class Dynamics(Generic[S, I, R]):
         """
         machines = _machines(self, inputs)
         known = self.state_fields
-        solution = _in_steps(machines) if self.step is not None else solve(_problem(machines))
+        solution = _remembered(machines)
         _say_why(solution, machines)
         one: Any = 0 if machines.is_single else slice(None)
         names = [event.name for event in self.events]
@@ -210,6 +220,87 @@ class Dynamics(Generic[S, I, R]):
         along = replace(machines.part(np.zeros(len(stamps), dtype=np.intp)), stamps=stamps)
         y = np.array([getattr(motion.states, name) for name in self.state_fields])
         return dict(zip(self.state_fields, along.rate(stamps, y, interval), strict=True))
+
+
+# What was followed is remembered machine by machine: a fit asks for the same ones again, among others
+
+
+@dataclass(frozen=True)
+class _Followed:
+    """One machine as it was followed: states (d, k), by event how often and when first, (e,); why it came to no end."""
+
+    states: Matrix
+    counts: Matrix
+    first: Matrix
+    reason: tuple[str, float] | None
+
+
+@dataclass
+class MachinesAsked:
+    """Machines that were asked for, and how many of them had to be followed."""
+
+    several: list[_Machines[Any, Any, Any]] = field(default_factory=list)
+    new: int = 0
+
+
+_ASKED: ContextVar[MachinesAsked | None] = ContextVar("truing_machines_asked", default=None)
+
+
+@contextmanager
+def following_together() -> Iterator[MachinesAsked]:
+    """Note which machines are asked for inside, which show NaN there, and follow all of them at the end at once.
+
+    What is asked for again afterwards is known then.
+    """
+    asked = MachinesAsked()
+    token = _ASKED.set(asked)
+    try:
+        yield asked
+    finally:
+        _ASKED.reset(token)
+    by_record: dict[tuple[int, bytes], list[_Machines[Any, Any, Any]]] = {}
+    for machines in asked.several:
+        by_record.setdefault((id(machines.dynamics), machines.record), []).append(machines)
+    for group in by_record.values():
+        machines = _joined(group)
+        asked.new += len({*machines.keys()} - {*machines.dynamics.memory})
+        _follow(machines)
+
+
+def _remembered(machines: _Machines[Any, Any, Any]) -> Solution:
+    """Return what is known of machines; those that are not known are followed, but for where they are noted alone."""
+    asked = _ASKED.get()
+    if asked is not None:
+        asked.several.append(machines)
+        states, events = len(machines.dynamics.state_fields), len(machines.dynamics.events)
+        nothing = np.full((events, machines.count), np.nan)
+        return Solution(np.full((states, machines.count, len(machines.stamps)), np.nan), nothing, nothing)
+    known = _follow(machines)
+    reasons = {place: each.reason for place, each in enumerate(known) if each.reason}
+    return Solution(
+        np.stack([each.states for each in known], axis=1), np.stack([each.counts for each in known], axis=1),
+        np.stack([each.first for each in known], axis=1), reasons,
+    )  # fmt: skip
+
+
+def _follow(machines: _Machines[Any, Any, Any]) -> list[_Followed]:
+    """Return what is known of machines, those that are not known followed in one call."""
+    memory, keys = machines.dynamics.memory, machines.keys()
+    places = {key: place for place, key in enumerate(keys) if key not in memory}
+    made = {key: memory[key] for key in keys if key in memory}
+    if places:
+        new = machines.part(np.array(list(places.values())))
+        solution = _in_steps(new) if machines.dynamics.step is not None else solve(_problem(new))
+        for place, key in enumerate(places):
+            made[key] = _Followed(
+                np.array(solution.states[:, place]), np.array(solution.counts[:, place]),
+                np.array(solution.first[:, place]), solution.reasons.get(place),
+            )  # fmt: skip
+        most = max(1, MOST_REMEMBERED // max(solution.states[:, 0].size, 1))
+        memory.update((key, made[key]) for key in places)
+        for old in list(memory)[:-most]:
+            del memory[old]
+    return [made[key] for key in keys]
 
 
 def _problem(machines: _Machines[Any, Any, Any]) -> InitialValueProblem:
@@ -235,6 +326,29 @@ class _Machines(Generic[S, I, R]):
     columns: Mapping[tuple[str, ...], Matrix]
     drives: Mapping[tuple[str, ...], Matrix]
     held: frozenset[tuple[str, ...]]
+
+    @cached_property
+    def record(self) -> bytes:
+        """What tells the record of these machines from that of others: every input that all machines share."""
+        wide = {path for path, value in self.drives.items() if value.ndim > 1}
+        digest = blake2b(digest_size=16)
+        for each in self.dynamics.input_fields.values():
+            if not each.varies and each.path not in wide:
+                value = read(self.inputs, each.path)
+                digest.update(value.tobytes() if isinstance(value, np.ndarray) else f"{value!r}\0".encode())
+        return digest.digest()
+
+    @cached_property
+    def numbers(self) -> dict[tuple[str, ...], Matrix]:
+        """By path what may differ between machines, (n,) or (n, k)."""
+        fields_of = [each for each in self.dynamics.input_fields.values() if each.varies]
+        made = {each.path: np.broadcast_to(read(self.inputs, each.path), (self.count,)) for each in fields_of}
+        return made | {path: value for path, value in self.drives.items() if value.ndim > 1}
+
+    def keys(self) -> list[bytes]:
+        """Return what tells every machine from any other one."""
+        rows = np.column_stack([np.zeros(self.count), *self.numbers.values()])
+        return [self.record + row.tobytes() for row in rows]
 
     def start(self) -> Matrix:
         """Return the states at the first stamp, (d, n)."""
@@ -317,6 +431,20 @@ def _machines(dynamics: Dynamics[S, I, R], inputs: I) -> _Machines[S, I, R]:
     columns = {path: np.broadcast_to(value, (count,)) for path, value in columns.items()}
     held = frozenset(each.path for each in dynamics.driving.values() if getattr(each.spec, "between", "") == "hold")
     return _Machines(dynamics, inputs, stamps, count, not sizes, columns, drives, held)
+
+
+def _joined(several: Sequence[_Machines[S, I, R]]) -> _Machines[S, I, R]:
+    """Return machines of one record as one batch; what is the same for all of them stays a number."""
+    first, *others = several
+    if not others:
+        return first
+    numbers = {path: np.concatenate([each.numbers[path] for each in several]) for path in first.numbers}
+    alone = {path: value for path, value in numbers.items() if value.ndim == 1}
+    columns = {path: value for path, value in alone.items() if (value != value[0]).any()}
+    inputs = with_values(first.inputs, {path: columns.get(path, value[0]) for path, value in alone.items()})
+    drives = {path: numbers.get(path, value) for path, value in first.drives.items()}
+    count = sum(each.count for each in several)
+    return replace(first, inputs=inputs, count=count, is_single=False, columns=columns, drives=drives)
 
 
 def _demand(holds: Any, sentence: str) -> None:
