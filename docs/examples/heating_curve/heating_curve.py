@@ -17,6 +17,7 @@ from truing import (
     Unknown,
     axis,
     column,
+    feasible,
     found,
     given,
     hookimpl,
@@ -61,7 +62,7 @@ class Unit:
         (22.0,) * len(SHIFT), "degC", symbol="T_a", along="time", note="temperature of the air around it"
     )
     oil_start: Float = given(22.0, "degC", symbol="T_10", note="temperature of the oil at first")
-    housing_start: Float = given(22.0, "degC", symbol="T_20", note="temperature of the housing at first")
+    housing_lag: Float = given(0.0, "K", symbol="T_12", note="by which the housing is colder than the oil at first")
     load_loss: Float = given(2.0, "%", symbol="v", note="share of the power that teeth and bearings lose", at_least=0)
     drag: Float = given(0.8, "N*m", symbol="M_0", note="drag torque of warm oil, at its stated temperature", at_least=0)
     drag_temperature: Float = given(40.0, "degC", symbol="T_0", note="temperature at which the drag is stated")
@@ -89,7 +90,7 @@ class Warmth:
         rate="(loss - passed_on) / (fill * oil_capacity)",
     )
     housing: Float = state(
-        "degC", start="housing_start", symbol="T_2", note="temperature of the housing",
+        "degC", start="oil_start", symbol="T_2", note="temperature of the housing",
         rate="(passed_on - given_off) / housing_capacity",
     )  # fmt: skip
 
@@ -143,6 +144,11 @@ def given_off(warmth: Warmth, unit: Unit) -> Float:
     return unit.cleanness * (unit.still_transfer + unit.fan_transfer * unit.speed) * (warmth.housing - unit.air)
 
 
+def begun(unit: Unit) -> Warmth:
+    """Both temperatures at first."""
+    return Warmth(oil=unit.oil_start, housing=unit.oil_start - unit.housing_lag)
+
+
 def warming(warmth: Warmth, unit: Unit, time: Float) -> Warmth:
     """What both temperatures gain per second."""
     passed = passed_on(warmth, unit)
@@ -154,6 +160,7 @@ def warming(warmth: Warmth, unit: Unit, time: Float) -> Warmth:
 
 def heated(unit: Unit, motion: Motion[Warmth]) -> Heated:
     """The record as it is read."""
+    feasible(unit.contact > 0, "heat flows from the warmer to the colder: contact exceeds 0")  # a fit tries what it may
     warmth, along = motion.states, in_columns(unit)
     return Heated(
         time=motion.time,
@@ -218,11 +225,10 @@ TOLERANCES = [
     Tolerance("drag", normal(sd="5 %"), why="of the catalogue, for an oil of this grade"),
     Tolerance("oil_capacity", normal(sd="3 %"), why="filled by the dipstick"),
     Tolerance("housing_capacity", normal(sd="2 %"), why="from weights"),
-    Tolerance("contact", normal(sd="10 %"), why="calculated"),
+    Tolerance("contact", normal(sd="5 %"), why="measured on a clean unit"),
     Tolerance("still_transfer", normal(sd="5 %"), why="measured on a clean unit"),
     Tolerance("fan_transfer", normal(sd="5 %"), why="measured on a clean unit"),
-    Tolerance("oil_start", normal(sd="20 K"), why="every record has its own"),
-    Tolerance("housing_start", normal(sd="20 K"), why="every record has its own"),
+    Tolerance("housing_lag", normal(sd="2 K"), why="every record begins with its own"),
 ]
 
 
@@ -250,7 +256,7 @@ HEATING_CURVE = Model(
     name="heating_curve",
     title="Heating curve of a gear unit",
     summary="Temperatures of oil and housing while a gear unit runs under load and cools at rest.",
-    function=Dynamics(rate=warming, gives=heated),
+    function=Dynamics(rate=warming, start=begun, gives=heated),
     errors=[*TOLERANCES, *EFFECTS],
     cites=["ISO/TR 14179-2:2001, Gears - Thermal capacity - Part 2: Thermal load-carrying capacity"],
     sheet=[

@@ -58,14 +58,18 @@ def day(shift: Shift, oil: float, housing: float, times: list[int]) -> list[tupl
 
 
 def write(name: str, shift: Shift, start: tuple[float, float], times: list[int], seed: int) -> None:
-    """Write one record of a unit that starts with these temperatures of oil and housing, degC."""
+    """Write one record of a unit that starts with these temperatures of oil and housing, degC.
+
+    Where the oil starts is the mean of ten readings before the unit is switched on.
+    """
     noise = random.Random(seed)
+    began = sum(start[0] + noise.gauss(0, NOISE) for _ in range(10)) / 10
     with open(name, "w", encoding="utf-8", newline="") as file:
         rows = csv.writer(file)
-        rows.writerow(["time [min]", "torque [N*m]", "speed [rpm]", "air [degC]", "oil [degC]"])
+        rows.writerow(["time [min]", "torque [N*m]", "speed [rpm]", "air [degC]", "oil_start [degC]", "oil [degC]"])
         for time, (oil, _) in zip(times, day(shift, *start, times), strict=True):
             read = f"{oil + noise.gauss(0, NOISE):.2f}"
-            rows.writerow([f"{time / 60:g}", *setting(shift, time), f"{air(time):.2f}", read])
+            rows.writerow([f"{time / 60:g}", *setting(shift, time), f"{air(time):.2f}", f"{began:.2f}", read])
 
 
 if __name__ == "__main__":

@@ -40,11 +40,11 @@ class Drive:
     """A geared drive whose motor is held fast, and the torque that turns its output."""
 
     times: Float = given(tuple(float(n) for n in range(len(LOOP))), "s", along="time", note="when the twist is read")
-    torque: Float = given(LOOP, "N*m", symbol="T", along="time", note="at the output")
-    stiffness: Float = given(20.0, "N*m/arcmin", symbol="k", note="of the gearing, flank on flank", above=0)
-    play: Float = given(0.5, "arcmin", symbol="b", note="of the gearing when it was new, flank to flank", at_least=0)
-    friction: Float = given(6.0, "N*m", symbol="M_R", note="dry friction of gearing and seals when new", at_least=0)
-    housing_stiffness: Float = given(60.0, "N*m/arcmin", symbol="k_h", note="of the housing", above=0)
+    torque: Float = given(LOOP, "N*m", symbol="T", along="time", note="torque at the output")
+    stiffness: Float = given(20.0, "N*m/arcmin", symbol="k", note="stiffness of the gearing, flank on flank", above=0)
+    play: Float = given(0.5, "arcmin", symbol="b", note="play of the gearing, flank to flank", at_least=0)
+    friction: Float = given(6.0, "N*m", symbol="M_R", note="dry friction of gearing and seals", at_least=0)
+    housing_stiffness: Float = given(60.0, "N*m/arcmin", symbol="k_h", note="stiffness of the housing", above=0)
     softness: Float = given(1.0, "", symbol="s", note="by how much softer the housing is", above=0)
     slipping: Float = given(0.0, "arcmin/(N*m)", symbol="c_s", note="compliance of a flange that slips", at_least=0)
     grip: Float = given(40.0, "N*m", symbol="M_s", note="torque from which on it slips", at_least=0)
