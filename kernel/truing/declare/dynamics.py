@@ -17,15 +17,27 @@ from truing.arrays import Indices, Matrix
 from truing.declare.batch import feasible
 from truing.declare.fields import KEY, Float, InputField, hints_of, in_si, input_fields, read, with_values
 from truing.errors import ConvergenceError, DeclarationError, InfeasibleError
-from truing.integration import GROWS, STEP_LIMIT, EventRule, InitialValueProblem, Solution, solve
+from truing.integration import (
+    GROWS,
+    STEP_LIMIT,
+    EventRule,
+    InitialValueProblem,
+    Path,
+    Solution,
+    empty_solution,
+    solve,
+)
+from truing.integration_at_once import at_once
 from truing.units import difference_unit
 
 I = TypeVar("I")  # noqa: E741  # inputs, as in Model[I, R]
 R = TypeVar("R")
 S = TypeVar("S")
 T = TypeVar("T")
-MOST_REMEMBERED = 2_000_000
-"""So many values of states are remembered."""
+MOST_REMEMBERED, MOST_NEAR = 2_000_000, 256
+"""So many values of states are remembered; of so many machines the nearest one is looked for."""
+NEAR, FAR, TINY = 0.02, 0.5, 1e-300
+"""Sum of the shares by which numbers of machines differ that are followed along one path; and at the most."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -227,12 +239,17 @@ class Dynamics(Generic[S, I, R]):
 
 @dataclass(frozen=True)
 class _Followed:
-    """One machine as it was followed: states (d, k), by event how often and when first, (e,); why it came to no end."""
+    """One machine as it was followed: states (d, k), by event how often and when first, (e,); why it came to no end.
+
+    ``numbers`` are what it differs by from others, ``path`` the steps that it took.
+    """
 
     states: Matrix
     counts: Matrix
     first: Matrix
     reason: tuple[str, float] | None
+    numbers: Matrix
+    path: Path | None
 
 
 @dataclass
@@ -290,17 +307,80 @@ def _follow(machines: _Machines[Any, Any, Any]) -> list[_Followed]:
     made = {key: memory[key] for key in keys if key in memory}
     if places:
         new = machines.part(np.array(list(places.values())))
-        solution = _in_steps(new) if machines.dynamics.step is not None else solve(_problem(new))
-        for place, key in enumerate(places):
-            made[key] = _Followed(
-                np.array(solution.states[:, place]), np.array(solution.counts[:, place]),
-                np.array(solution.first[:, place]), solution.reasons.get(place),
-            )  # fmt: skip
-        most = max(1, MOST_REMEMBERED // max(solution.states[:, 0].size, 1))
+        made |= dict(zip(places, _followed(new), strict=True))
+        most = max(1, MOST_REMEMBERED // max(made[keys[0]].states.size, 1))
         memory.update((key, made[key]) for key in places)
         for old in list(memory)[:-most]:
             del memory[old]
     return [made[key] for key in keys]
+
+
+def _followed(new: _Machines[Any, Any, Any]) -> list[_Followed]:
+    """Follow machines, near what is known or near one another where that can be."""
+    numbers = np.column_stack([np.zeros(new.count), *(each for each in new.numbers.values() if each.ndim == 1)])
+    known = [each for key, each in new.dynamics.memory.items() if each.path is not None and key.startswith(new.record)]
+    known = known[-MOST_NEAR:]
+    made: dict[int, _Followed] = {}
+    leaders = _leaders(numbers)
+    firsts = np.unique(leaders)
+    near = [nearest.path if (nearest := _nearest(known, numbers[each], FAR)) else None for each in firsts]
+    _add(made, new, numbers, dict(zip(firsts.tolist(), near, strict=True)))
+    rest = [each for each in range(new.count) if each not in made]
+    if rest:
+        _add(made, new, numbers, {each: made[int(leaders[each])].path for each in rest})
+    return [made[each] for each in range(new.count)]
+
+
+def _leaders(numbers: Matrix) -> Indices:
+    """Return for every machine the first one that is near it, itself where none is, (n,)."""
+    scaled = numbers / np.maximum(np.abs(numbers).max(axis=0), TINY)
+    leaders, firsts = np.zeros(len(numbers), dtype=np.intp), np.zeros(0, dtype=np.intp)
+    for place, row in enumerate(scaled):
+        off = np.abs(scaled[firsts] - row).sum(axis=1)
+        if not (off < NEAR).any():
+            firsts = np.append(firsts, place)
+            off = np.append(off, 0.0)
+        leaders[place] = firsts[np.argmin(off)]
+    return leaders
+
+
+def _nearest(known: Sequence[_Followed], numbers: Matrix, within: float) -> _Followed | None:
+    """Return what is known nearest to a machine; None where that is far."""
+    if not known:
+        return None
+    several = np.array([each.numbers for each in known])
+    off = (np.abs(several - numbers) / np.maximum(np.abs(numbers), TINY)).sum(axis=1)
+    best = int(np.argmin(off))
+    return known[best] if off[best] < within else None
+
+
+def _add(
+    made: dict[int, _Followed], new: _Machines[Any, Any, Any], numbers: Matrix, along: Mapping[int, Path | None]
+) -> None:  # fmt: skip
+    """Follow some machines, each along a path where one is given and leads to the end, else step by step."""
+    with_path = {place: path for place, path in along.items() if path is not None}
+    paths: dict[int, Path] = {}
+    if with_path and new.dynamics.step is None:
+        part = new.part(np.array([*with_path]))
+        solution = empty_solution(problem := _problem(part))
+        paths = at_once(problem, [*with_path.values()], solution)
+        places = [*with_path]
+        made |= {places[each]: _one_of(solution, each, numbers[places[each]], path) for each, path in paths.items()}
+    left = [place for place in along if place not in made]
+    if left:
+        part = new.part(np.array(left))
+        solution = _in_steps(part) if new.dynamics.step is not None else solve(_problem(part), keeps_paths=True)
+        paths = solution.paths(_problem(part)) if solution.taken else {}
+        for each, place in enumerate(left):
+            made[place] = _one_of(solution, each, numbers[place], paths.get(each))
+
+
+def _one_of(solution: Solution, machine: int, numbers: Matrix, path: Path | None) -> _Followed:
+    """Return one machine of a solution."""
+    return _Followed(
+        np.array(solution.states[:, machine]), np.array(solution.counts[:, machine]),
+        np.array(solution.first[:, machine]), solution.reasons.get(machine), numbers, path,
+    )  # fmt: skip
 
 
 def _problem(machines: _Machines[Any, Any, Any]) -> InitialValueProblem:
