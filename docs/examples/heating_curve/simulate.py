@@ -20,7 +20,7 @@ NOISE = 0.15
 
 Shift = list[tuple[float, float, float]]
 """From when on, s, with which torque, N m, at which speed, rpm."""
-DAY_1: Shift = [(0, 100, 1450), (7200, 150, 1450), (12600, 0, 0)]
+DAY_1: Shift = [(0, 100, 1450), (7200, 150, 1450), (12960, 0, 0)]
 DAY_2: Shift = [(0, 40, 1450), (5400, 100, 900), (10800, 0, 0)]
 
 
@@ -73,5 +73,5 @@ def write(name: str, shift: Shift, start: tuple[float, float], times: list[int],
 
 
 if __name__ == "__main__":
-    write("day_1.csv", DAY_1, (20.5, 20.5), [360 * row for row in range(51)], 1)
-    write("day_2.csv", DAY_2, (46.0, 43.0), [450 * row for row in range(37)], 2)
+    write("day_1.csv", DAY_1, (20.5, 20.5), [720 * row for row in range(26)], 1)
+    write("day_2.csv", DAY_2, (46.0, 43.0), [900 * row for row in range(19)], 2)

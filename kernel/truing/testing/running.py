@@ -197,7 +197,7 @@ def motion_is_settled(subject: Subject) -> None:
         before, after = (subject.model.read_results(each(inputs)) for each in (dynamics, finer))
         for name, value in before.items():
             here, there = np.asarray(value, dtype=float), np.asarray(after[name], dtype=float)
-            moved, size = np.nanmax(np.abs(here - there), initial=0.0), np.nanmax(np.abs(there), initial=0.0)
+            moved, size = (np.max(np.nan_to_num(np.abs(each)), initial=0.0) for each in (here - there, there))
             if moved > dynamics.settled * size:
                 what = f"a tenth of the tolerance moves '{name}' by {moved / size:.1g} of its largest value"
                 fail(f"{subject.model.name}: {what}, not {dynamics.settled:g}; state a smaller tolerance, or settled")
