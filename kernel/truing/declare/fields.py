@@ -46,6 +46,7 @@ class Given:
     stated_with: str = ""
     halving: float | None = None
     halving_but: Mapping[str, str] = field(default_factory=dict)
+    role: str = ""
 
     def initial(self) -> Any:
         """Return the default as the function sees it: SI, NaN where nothing is given."""
@@ -140,6 +141,7 @@ def given(
     stated_with: str = "",
     halving: float | None = None,
     halving_but: Mapping[str, str] | None = None,
+    role: Literal["", "set", "goes_on", "follows"] = "",
 ) -> Any:
     """Declare an input with its default and unit; ``None`` makes it optional (NaN inside).
 
@@ -148,11 +150,12 @@ def given(
     ``stated_with`` names the input that tells what this one means: a file that states one must state the other too.
     ``halving`` makes it a numerical step, tolerance or grid: the share of a result that halving it (doubling a count)
     changes at the most wherever the model answers; ``halving_but`` gives quantities for results that move otherwise.
+    ``role`` says of what a measurement varies how it gets there, as that of a ``Condition`` does.
     """
     spec = Given(
         default=default, unit=unit, symbol=symbol, note=note, source=source, above=above, below=below,
         at_least=at_least, at_most=at_most, whole=whole, along=along, between=between, stated_with=stated_with,
-        halving=halving, halving_but=halving_but or {},
+        halving=halving, halving_but=halving_but or {}, role=role,
     )  # fmt: skip
     return field(default_factory=spec.initial, metadata={KEY: spec})
 
@@ -317,6 +320,11 @@ class InputField:
     def varies(self) -> bool:
         """Whether the input may be an array inside a batch."""
         return self.kind in {"float", "whole"}
+
+    @property
+    def does(self) -> str:
+        """What a machine lets you do with it where a measurement varies it: see ``Condition.does``."""
+        return getattr(self.spec, "role", "") or "set"
 
     @property
     def is_count(self) -> bool:
