@@ -28,6 +28,7 @@ from truing.diagnosis.reading import read_records
 from truing.diagnosis.result import Verdict
 from truing.errors import Fault, InputError, UsageError
 from truing.example_file import example_of, example_text
+from truing.experiments.proposal import proposed
 from truing.gauge import shown_by_gauge
 from truing.inputs_file import read_setup, setup_from_text
 from truing.inputs_file.assemble import toml_value
@@ -215,7 +216,7 @@ class LoadedModel:
                 report("diagnosis" if steps else stage, step, steps)
 
             started, records = time.time(), read_records(record.files, self.offer, setup)
-            diagnosis = Diagnosis(self.offer, diagnose(setup, records, progress=as_one), started)
+            diagnosis = Diagnosis(self.offer, diagnose(setup, records, progress=as_one, propose=proposed), started)
             report("sheet and PDF" if pdf else "sheet", 0, 0)
             return diagnosis if output is None else replace(diagnosis, note=diagnosis.written(Path(output), pdf=pdf))
 

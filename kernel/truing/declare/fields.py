@@ -24,6 +24,9 @@ else:
 
 KEY = "truing"
 Between = Literal["linear", "hold"]
+Role = Literal["set", "goes_on", "follows"]
+"""What a machine lets you do with a quantity: set it, only let it go on (hours, wear), or see it follow from others."""
+ROLES: tuple[Role, ...] = typing.get_args(Role)
 InputKind = Literal["float", "whole", "integer", "switch", "choice", "text", "series", "file"]
 
 
@@ -46,7 +49,7 @@ class Given:
     stated_with: str = ""
     halving: float | None = None
     halving_but: Mapping[str, str] = field(default_factory=dict)
-    role: str = ""
+    role: Role | Literal[""] = ""
 
     def initial(self) -> Any:
         """Return the default as the function sees it: SI, NaN where nothing is given."""
@@ -141,7 +144,7 @@ def given(
     stated_with: str = "",
     halving: float | None = None,
     halving_but: Mapping[str, str] | None = None,
-    role: Literal["", "set", "goes_on", "follows"] = "",
+    role: Role | Literal[""] = "",
 ) -> Any:
     """Declare an input with its default and unit; ``None`` makes it optional (NaN inside).
 
@@ -322,9 +325,9 @@ class InputField:
         return self.kind in {"float", "whole"}
 
     @property
-    def does(self) -> str:
+    def does(self) -> Role:
         """What a machine lets you do with it where a measurement varies it: see ``Condition.does``."""
-        return getattr(self.spec, "role", "") or "set"
+        return (isinstance(self.spec, Given) and self.spec.role) or "set"
 
     @property
     def is_count(self) -> bool:

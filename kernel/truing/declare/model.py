@@ -16,6 +16,7 @@ from truing.declare.blocks import Block
 from truing.declare.builtin import builtin_effects
 from truing.declare.dynamics import Dynamics
 from truing.declare.fields import (
+    ROLES,
     Axis,
     Found,
     InputField,
@@ -30,7 +31,7 @@ from truing.declare.fields import (
 from truing.declare.goals import Maximise, Minimise, Objective, PriceByChoice, Require, Vary, prices_in
 from truing.declare.near_miss import near_miss
 from truing.declare.published import Finding, Published
-from truing.declare.sources import ROLES, Condition, Effect, ErrorSource, Tolerance
+from truing.declare.sources import Condition, Effect, ErrorSource, Tolerance
 from truing.declare.spreads import Band, ByChoice, Drawn, Grade, Spread
 from truing.errors import DeclarationError, UsageError
 from truing.formulas import parse

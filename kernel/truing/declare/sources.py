@@ -7,8 +7,9 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Concatenate, Generic, Literal, TypeAlias, TypeVar, get_args
+from typing import TYPE_CHECKING, Any, Concatenate, Generic, Literal, TypeAlias, TypeVar
 
+from truing.declare.fields import ROLES, Role
 from truing.declare.goals import Price, PriceByChoice
 from truing.declare.near_miss import near_miss
 from truing.declare.spreads import Spread
@@ -25,9 +26,6 @@ else:
     I = TypeVar("I")  # noqa: E741
     R = TypeVar("R")
 ActsOn = Literal["inputs", "results", "reading"]
-Role = Literal["set", "goes_on", "follows"]
-"""What a machine lets you do with a quantity: set it, only let it go on (hours, wear), or see it follow from others."""
-ROLES: tuple[Role, ...] = get_args(Role)
 SINCE_START = "since_start"
 HISTORIES = ("running_maximum", "cumulative", "direction", "last_reversal")
 """What a condition may be derived by: "since_start" from its own column, these from another one."""

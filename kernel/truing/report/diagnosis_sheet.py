@@ -15,6 +15,7 @@ from truing.diagnosis.result import (
     Alternative,
     Amount,
     DiagnosisResult,
+    Experiment,
     FittedUnknown,
     NoiseSummary,
     explanations_of,
@@ -26,6 +27,7 @@ from truing.report.diagnosis_words import (
     amount_text,
     cause_text,
     certainty,
+    experiment_text,
     explanation,
     fitted_text,
     headline,
@@ -42,7 +44,6 @@ from truing.report.diagnosis_words import (
     shared_words,
     spoken,
     tie_text,
-    together,
     verdict_word,
 )
 from truing.report.document import Banner, BlockView, Chapter, Document, Paragraph, TableView, table_of
@@ -458,23 +459,42 @@ def _next(diagnosis: DiagnosisResult) -> ChapterParts:
 
 
 def _points(diagnosis: DiagnosisResult) -> ChapterParts:
-    reasons = list(dict.fromkeys(point.why for point in diagnosis.next if point.why))
-    for index, point in enumerate(diagnosis.next, start=1):
-        yield f"{index}. {settings_text(point)}: {pair_text(point)} (λ then {score_text(point.separation)})"
-    for reason in reasons:
-        yield from _both(f"   {reason}")
-    names = list(dict.fromkeys(name for point in diagnosis.next for name in (*point.measure, *point.settings)))
-    rows = []
-    for index, point in enumerate(diagnosis.next, start=1):
-        settings = ["measure" if name in point.measure else amount_text(point.settings.get(name), 4) for name in names]
-        pair = " / ".join(together([name]) for name in point.separates)
-        rows.append((str(index), *settings, pair, score_text(point.separation)))
-    heads = ("Point", *(spoken(name).capitalize() for name in names), "Separates", "λ then")
+    """Write the further results and the experiment, with its readings as a table to be taken to the machine."""
+    for point in diagnosis.next:
+        if point.measure:
+            yield from _both(
+                f"measure {settings_text(point)}: {pair_text(point)} (λ then {score_text(point.separation)})"
+            )
+            yield from _both(f"   {point.why}")
+    experiment, readings = diagnosis.experiment, [point for point in diagnosis.next if not point.measure]
+    if experiment is None:
+        return
+    yield from _both(experiment_text(experiment))
+    yield from _both(f"   {max(readings, key=lambda point: len(point.why)).why}")
+    yield from experiment_views(experiment, [point.separation for point in readings])
+
+
+def experiment_views(experiment: Experiment, separations: Sequence[float]) -> Iterator[BlockView]:
+    """Write the readings of an experiment, and what its chance means."""
+    names = list(experiment.settings)
+    rows = [
+        (
+            str(index + 1),
+            *(
+                amount_text(Amount(float(experiment.settings[name][index]), experiment.units[name]), 4)
+                for name in names
+            ),
+            score_text(separation),
+        )
+        for index, separation in enumerate(separations)
+    ]
     note = (
-        "λ then is the separation to expect once all points up to this one are measured; from "
-        f"{APART:.0f} on the two are apart."
+        f"The chance is that of {experiment.chance.draws} simulated experiments, each explanation true in turn, with "
+        f"{experiment.chance.by}. λ then is the separation to expect after a reading; from {APART:.0f} on the two that "
+        "are least apart are told apart."
     )
-    yield table_of("Settings to measure", heads, rows, (*range(1, len(names) + 1), len(names) + 2), note)
+    heads = ("Reading", *(spoken(name).capitalize() for name in names), "λ then")
+    yield table_of("Readings to take", heads, rows, (*range(1, len(names) + 2),), note)
 
 
 # Data

@@ -10,6 +10,7 @@ from typing import Any
 from truing.diagnosis.result import (
     Amount,
     DiagnosisResult,
+    Experiment,
     FittedUnknown,
     Gain,
     Wrong,
@@ -162,6 +163,7 @@ def _use(diagnosis: DiagnosisResult) -> dict[str, Any]:
         "next": [
             _named(point, "settings", "measure", "separates", "why", "separation", "needed") for point in diagnosis.next
         ],
+        "experiment": None if diagnosis.experiment is None else experiment_document(diagnosis.experiment),
         "ties": [
             {
                 "explanations": list(tie.explanations),
@@ -169,6 +171,27 @@ def _use(diagnosis: DiagnosisResult) -> dict[str, Any]:
             }
             for tie in diagnosis.ties
         ],
+    }
+
+
+def experiment_document(experiment: Experiment) -> dict[str, Any]:
+    """Return an experiment as data: courses and readings in the units that stand beside them."""
+    units = experiment.units
+    return {
+        **_named(experiment, "tells", "apart"),
+        "courses": {
+            course.name: {
+                "way": course.way,
+                "from": _value(course.start, units[course.name]),
+                "to": _value(course.end, units[course.name]),
+            }
+            for course in experiment.courses
+        },
+        **_named(experiment, "results", "readings", "takes", "separation", "needed", "chance", "sizes"),
+        "settings": {
+            name: {"values": [_value(value, units[name])["value"] for value in values.tolist()], "unit": units[name]}
+            for name, values in experiment.settings.items()
+        },
     }
 
 
