@@ -33,7 +33,7 @@ from truing.diagnosis.noise import colour
 from truing.diagnosis.records import Records
 from truing.diagnosis.result import Chance
 from truing.diagnosis.sample import NoiseModel, Sample, sample_of
-from truing.experiments.duels import Explained, there
+from truing.experiments.duels import Explained, reached_by, there
 from truing.measurements import RowsFile
 from truing.studies.checks import wilson
 
@@ -146,7 +146,8 @@ class Simulation:
         for of in self.several:
             said = there(of, tried)
             rows = (said.slopes / spreads[:, None, None]).reshape(-1, said.slopes.shape[-1])
-            ready.append((said.shown, np.linalg.inv(rows @ of.inverse @ rows.T + np.eye(len(rows)))))
+            (reached,) = reached_by(rows[None], of.root)
+            ready.append((said.shown, np.eye(len(rows)) - reached @ reached.T))
         prices = [of.fit.cost + self.competition.price(of.fit) for of in self.several]
 
         def judged(truth: int, drawn: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:

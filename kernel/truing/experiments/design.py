@@ -52,6 +52,7 @@ class Stand:
     reach: Reach
     spreads: Matrix
     budget: int = BUDGET
+    fewest: int = FEWEST
 
     def machine_of(self, experiments: Sequence[Mapping[str, Course]], readings: int) -> Calibration:
         """Return the machine at the readings of some experiments."""
@@ -123,7 +124,7 @@ def _effort(stand: Stand, courses: Mapping[str, Course]) -> float:
 def _sized(stand: Stand, courses: Mapping[str, Course], pairs: set[tuple[str, str]]) -> Designed | None:
     """Take as many readings as tell the pairs apart, within the budget; pairs that these never do are left out."""
     live = [duel for duel in stand.duels([courses]) if duel.names in pairs]
-    counts = [*range(min(FEWEST, stand.budget), stand.budget + 1), *range(stand.budget + 1, MOST_READINGS + 1)]
+    counts = [*range(min(stand.fewest, stand.budget), stand.budget + 1), *range(stand.budget + 1, MOST_READINGS + 1)]
     needed: dict[tuple[str, str], int] = {}
     for duel in live:
         enough = (count for count in counts if float(duel.after(count / LOOKED_AT)[0]) >= ENOUGH)

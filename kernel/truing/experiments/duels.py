@@ -29,14 +29,16 @@ UNSEEN = 1e-9
 class Explained:
     """An explanation on the record: its inverse normal matrix (p, p), its free numbers first, then the inputs.
 
-    ``design`` (rows, p) and ``left`` (rows,) are weighted as the noise asks; both have no rows where there is no
-    record. ``free`` marks the numbers that are fitted, ``inverse`` is in units as the fit sees them.
+    ``root`` is upper triangular: its transpose times itself is the normal matrix. ``design`` (rows, p) and ``left``
+    (rows,) are weighted as the noise asks; both have no rows where there is no record. ``free`` marks the numbers that
+    are fitted; all is in units as the fit sees them.
     """
 
     fit: Fit
     free: Matrix
     design: Matrix
     left: Matrix
+    root: Matrix
     inverse: Matrix
 
     @property
@@ -65,7 +67,8 @@ def explained(fit: Fit, extended: Extended, roots: Matrix, *, has_record: bool) 
         design, left = np.zeros((0, int(free.sum()) + k)), np.zeros(0)
     normal = design.T @ design
     normal += np.diag([0.0] * (len(normal) - k) + [1.0] * k) + UNSEEN * np.diag(np.maximum(np.diag(normal), 1.0))
-    return Explained(fit, free, design, left, np.asarray(np.linalg.inv(normal), dtype=np.float64))
+    root = np.linalg.cholesky(normal).T
+    return Explained(fit, free, design, left, root, np.asarray(np.linalg.inv(normal), dtype=np.float64))
 
 
 def there(of: Explained, tried: Extended) -> There:
@@ -132,18 +135,19 @@ class Duel:
     separation: float
     left: Matrix
     rows: Matrix
-    inverse: Matrix
+    root: Matrix
 
     def after(self, times: float) -> Matrix:
         """Return the separation once every experiment is done, each reading so many times, (E,); 0 where one fails.
 
-        The rival is left with ``left' (1 / times + R inverse R')^-1 left`` more than now, R its rows there.
+        The rival is left with what a fit to the readings leaves that pays for its moves as the record asks.
         """
         is_known = np.asarray(np.isfinite(self.left).all(axis=1) & np.isfinite(self.rows).all(axis=(1, 2)))
         rows, left = np.where(is_known[:, None, None], self.rows, 0.0), np.where(is_known[:, None], self.left, 0.0)
-        normal = rows @ self.inverse @ rows.swapaxes(1, 2) + np.eye(left.shape[1]) / times
-        solved = np.linalg.solve(normal, left[..., None])[..., 0]
-        return np.asarray(np.where(is_known, self.separation + np.sum(left * solved, axis=1), 0.0))
+        wanted = left[..., None] * times**0.5
+        reached = reached_by(rows * times**0.5, self.root)
+        still = np.sum((wanted - reached @ (reached.swapaxes(1, 2) @ wanted)) * wanted, axis=(1, 2))
+        return np.asarray(np.where(is_known, self.separation + still, 0.0))
 
     def up_to(self, values: int) -> float:
         """Return the separation after the first values of the first experiment."""
@@ -164,8 +168,18 @@ def duels(several: Sequence[Explained], tried: Extended, spreads: Matrix, readin
         left = (shown.shown - said.shown) / spreads[:, None] - rows @ moved
         yield Duel(
             (name_of(true.fit), name_of(rival.fit)), separation, _by_experiment(left[..., None], readings)[..., 0],
-            _by_experiment(rows, readings), rival.inverse,
+            _by_experiment(rows, readings), rival.root,
         )  # fmt: skip
+
+
+def reached_by(rows: Matrix, root: Matrix) -> Matrix:
+    """Return Q (E, m, p), so that 1 - Q Q' is (1 + R N^-1 R')^-1, R rows (E, m, p) and N the normal matrix of a root.
+
+    By orthogonal decomposition of rows above root: where nothing was measured N is next to nothing.
+    """
+    stacked = np.concatenate([rows, np.broadcast_to(root, (len(rows), *root.shape))], axis=1)
+    stacked = stacked / np.maximum(np.linalg.norm(stacked, axis=1, keepdims=True), 1e-300)
+    return np.asarray(np.linalg.qr(stacked)[0][:, : rows.shape[1]])
 
 
 def _by_experiment(values: Matrix, readings: int) -> Matrix:

@@ -467,34 +467,31 @@ def _points(diagnosis: DiagnosisResult) -> ChapterParts:
             )
             yield from _both(f"   {point.why}")
     experiment, readings = diagnosis.experiment, [point for point in diagnosis.next if not point.measure]
-    if experiment is None:
+    if experiment is None or not readings:
         return
     yield from _both(experiment_text(experiment))
     yield from _both(f"   {max(readings, key=lambda point: len(point.why)).why}")
-    yield from experiment_views(experiment, [point.separation for point in readings])
+    yield readings_table(experiment, [point.separation for point in readings])
 
 
-def experiment_views(experiment: Experiment, separations: Sequence[float]) -> Iterator[BlockView]:
-    """Write the readings of an experiment, and what its chance means."""
+def readings_table(experiment: Experiment, separations: Sequence[float] = ()) -> TableView:
+    """Write the readings of an experiment, with the separation to expect after each, and what its chance means."""
     names = list(experiment.settings)
+    units = experiment.units
     rows = [
         (
             str(index + 1),
-            *(
-                amount_text(Amount(float(experiment.settings[name][index]), experiment.units[name]), 4)
-                for name in names
-            ),
-            score_text(separation),
+            *(amount_text(Amount(float(experiment.settings[name][index]), units[name]), 4) for name in names),
+            *(score_text(each) for each in separations[index : index + 1]),
         )
-        for index, separation in enumerate(separations)
+        for index in range(experiment.readings)
     ]
-    note = (
-        f"The chance is that of {experiment.chance.draws} simulated experiments, each explanation true in turn, with "
-        f"{experiment.chance.by}. λ then is the separation to expect after a reading; from {APART:.0f} on the two that "
-        "are least apart are told apart."
-    )
-    heads = ("Reading", *(spoken(name).capitalize() for name in names), "λ then")
-    yield table_of("Readings to take", heads, rows, (*range(1, len(names) + 2),), note)
+    chance = experiment.chance
+    note = f"The chance is that of {chance.draws} simulated experiments, each explanation true in turn: {chance.by}."
+    if separations:
+        note += f" λ then is the separation to expect after a reading; from {APART:.0f} on all are told apart."
+    heads = ("Reading", *(spoken(name).capitalize() for name in names), *(["λ then"] if separations else []))
+    return table_of("Readings to take", heads, rows, (*range(1, len(heads)),), note)
 
 
 # Data
