@@ -4,19 +4,16 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from diagnosis_models import Asked, chosen_as, drive_model, fit_of, wide
 from numpy.testing import assert_allclose
-from scipy.stats import norm
 
 from truing.diagnosis.choice import Chosen
-from truing.diagnosis.result import Course, Experiment
+from truing.diagnosis.result import Experiment
 from truing.experiments.design import BUDGET, ENOUGH, MOST_READINGS
 from truing.experiments.proposal import next_experiment
-from truing.experiments.reach import reach_of
 from truing.setup import DiagnoseOptions
 
 

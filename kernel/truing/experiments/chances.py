@@ -75,7 +75,7 @@ class Simulation:
         truths = sorted({place for pair in self.apart for place in pair})
         for index, truth in enumerate(truths):
             count = draws // len(truths) + (index < draws % len(truths))
-            scores, doubt = judge(truth, self._drawn(tried, truth, count, generator))
+            scores, doubt = judge(truth, self.readings_of(tried, truth, count, generator))
             others = [place for place in range(len(self.several)) if frozenset((truth, place)) in self.apart]
             behind = scores[:, others] - scores[:, [truth]]
             is_more = [self.several[truth].fit.key < self.several[other].fit.key for other in others]
@@ -83,7 +83,7 @@ class Simulation:
             right += int((behind >= least).all(axis=1).sum())
         return Chance(right / draws, *wilson(right, draws), draws, ROUGH if is_dear else EXACTLY)
 
-    def _drawn(self, tried: Extended, truth: int, count: int, generator: np.random.Generator) -> dict[str, Matrix]:
+    def readings_of(self, tried: Extended, truth: int, count: int, generator: np.random.Generator) -> dict[str, Matrix]:
         """Return what the gauges read in so many experiments in which an explanation is true, by result (count, n)."""
         of = self.several[truth]
         moves = generator.standard_normal((count, len(of.inverse))) @ _root(of).T

@@ -53,21 +53,22 @@ def next_experiment(chosen: Chosen) -> tuple[Experiment | None, list[NextPoint],
     results along an axis nothing is proposed: what could be set there is a whole record.
     """
     several = rival_fits(chosen)
-    if len(several) < 2:
-        return None, [], []
     pairs = [(name_of(chosen.best), name_of(fit)) for fit in several[1:]] if is_physical(chosen.best) else []
-    stand = stand_of(chosen, several)
-    best = designed(stand) if stand is not None else None
+    stand, best = designed_for(chosen)
     if stand is None or best is None:
         return None, [], pairs
     best, chance = grown(stand, best, chosen.competition, has_record=True)
     experiment, live = experiment_of(stand, best, chance)
     apart = {frozenset(pair) for pair in best.pairs}
-    return (
-        experiment,
-        list(points_of(stand, experiment, live)),
-        [pair for pair in pairs if frozenset(pair) not in apart],
-    )
+    left = [pair for pair in pairs if frozenset(pair) not in apart]
+    return experiment, list(points_of(stand, experiment, live)), left
+
+
+def designed_for(chosen: Chosen) -> tuple[Stand | None, Designed | None]:
+    """Return the best experiment for what a diagnosis leaves open, and what it is designed on."""
+    several = rival_fits(chosen)
+    stand = stand_of(chosen, several) if len(several) > 1 else None
+    return stand, designed(stand) if stand is not None else None
 
 
 def stand_of(chosen: Chosen, several: Sequence[Fit]) -> Stand | None:
@@ -86,13 +87,19 @@ def stand_of(chosen: Chosen, several: Sequence[Fit]) -> Stand | None:
 
 
 def grown(stand: Stand, best: Designed, competition: Competition, *, has_record: bool) -> tuple[Designed, Chance]:
-    """Simulate an experiment, with more readings where these name the right explanation too seldom."""
+    """Return an experiment with as many readings as name the right explanation often enough, and its chance.
+
+    The number of readings is chosen by one set of draws and the chance is that of another one: it is not the best of
+    several.
+    """
     apart = among(stand, {frozenset(pair) for pair in best.pairs})
+    seed = stand.machine.start.seed
     while True:
         machine = stand.machine_of([best.courses], best.readings)
-        chance = Simulation(competition, stand.several, apart, machine, has_record).chance(machine.start.seed)
-        if chance.value >= CHANCE or best.readings >= stand.budget:
-            return replace(best, needed=max(best.needed, best.readings)), chance
+        simulation = Simulation(competition, stand.several, apart, machine, has_record)
+        if best.readings >= stand.budget or simulation.chance(seed).value >= CHANCE:
+            best = replace(best, needed=max(best.needed, best.readings))
+            return best, simulation.chance(seed + 1)
         best = replace(best, readings=min(stand.budget, ceil(GROWTH * best.readings)))
 
 
