@@ -17,9 +17,7 @@ from truing.experiments.proposal import next_experiment
 from truing.setup import DiagnoseOptions
 
 
-def one_sign(
-    folder: Path, box: dict[str, tuple[float, float]], noise: float, *, is_named: bool = False
-) -> Chosen:
+def one_sign(folder: Path, box: dict[str, tuple[float, float]], noise: float, *, is_named: bool = False) -> Chosen:
     """A clearance of 3 um under a load of one sign: the offset is the same curve. The noise is square to both.
 
     ``is_named``: as another name for the winner; else as a rival.

@@ -67,8 +67,10 @@ def explained(fit: Fit, extended: Extended, roots: Matrix, *, has_record: bool) 
         design, left = np.zeros((0, int(free.sum()) + k)), np.zeros(0)
     normal = design.T @ design
     normal += np.diag([0.0] * (len(normal) - k) + [1.0] * k) + UNSEEN * np.diag(np.maximum(np.diag(normal), 1.0))
-    root = np.linalg.cholesky(normal).T
-    return Explained(fit, free, design, left, root, np.asarray(np.linalg.inv(normal), dtype=np.float64))
+    root, inverse = (
+        np.asarray(each, dtype=np.float64) for each in (np.linalg.cholesky(normal).T, np.linalg.inv(normal))
+    )
+    return Explained(fit, free, design, left, root, inverse)
 
 
 def there(of: Explained, tried: Extended) -> There:

@@ -14,6 +14,7 @@ from math import isnan
 import numpy as np
 
 from truing.arrays import Matrix, one_thread
+from truing.declare.goals import Vary
 from truing.declare.near_miss import near_miss
 from truing.declare.sources import SINCE_START, Condition
 from truing.diagnosis.causes import INPUT, Candidate, effects_of, inputs_of
@@ -44,6 +45,8 @@ SIZE = 5.0
 of its tolerance, of these."""
 SEEN = 1.0
 """A cause that moves no reading by so many standard deviations, at the ends of its bounds, cannot be seen."""
+MOST_LISTED = 8
+"""So many results are listed where none is named."""
 SMALL = 1e-3
 """Share of its bound at which an amplitude is first tried."""
 
@@ -108,7 +111,8 @@ def _check(setup: Setup, names: Sequence[str], noise: Mapping[str, float], budge
     if budget < LEAST_BUDGET:
         raise UsageError(f"a budget of {budget} readings tells nothing apart; allow {LEAST_BUDGET}, better twelve")
     if not noise:
-        results = ", ".join(name for name in model.measurable if not model.own_result_fields[name].along)
+        known = [name for name in model.measurable if not model.own_result_fields[name].along]
+        results = ", ".join(known[:MOST_LISTED]) + (" ..." if len(known) > MOST_LISTED else "")
         raise UsageError(
             "no noise is known: state the standard deviation of one reading for every result that is measured, as "
             f"--noise RESULT=SD or under [studies.diagnose] noise (results: {results})"
@@ -187,7 +191,7 @@ def _range(setup: Setup, name: str) -> tuple[float, float]:
             values = read_range(study.at, unit, 2)
             return float(values.min()), float(values.max())
     for goal in setup.model.objectives:
-        if getattr(goal, "input", "") == name and getattr(goal, "low", ""):
+        if isinstance(goal, Vary) and goal.input == name and not goal.by:
             return read_quantity(goal.low, unit), read_quantity(goal.high, unit)
     condition = setup.model.known_conditions.get(name)
     return (-1.0, 1.0) if condition is not None and condition.history == "direction" else range_of(setup, name, None)

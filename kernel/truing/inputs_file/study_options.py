@@ -147,10 +147,8 @@ def diagnose_section(model: Model[Any, Any]) -> FileSection:
     effects, of_model = model.known_effects, f"of {model.name}"
     numbers = {name: field.unit for name, field in model.input_fields.items() if field.varies}
     unknowns = [f"{name}.{unknown.name}" for name, effect in effects.items() for unknown in effect.unknowns]
-    own = _Known(
-        f"effect, unknown or number among the inputs {of_model}",
-        {**dict.fromkeys([*effects, *unknowns], ""), **numbers},
-    )
+    known = {**dict.fromkeys([*effects, *unknowns], ""), **numbers}
+    own = _Known(f"effect, unknown or number among the inputs {of_model}", known)
     conditions = {name: condition.unit for name, condition in model.known_conditions.items()}
     settable = _Known(f"condition and no number among the inputs {of_model}", {**numbers, **conditions})
     units = {name: model.own_result_fields[name].unit for name in model.measurable}
