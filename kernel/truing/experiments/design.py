@@ -16,7 +16,7 @@ import numpy as np
 from truing.arrays import Matrix
 from truing.diagnosis.extended import Extended, elsewhere
 from truing.diagnosis.machine import Calibration
-from truing.diagnosis.result import Course
+from truing.diagnosis.result import APART, Course
 from truing.experiments.duels import Duel, Explained, duels, machine_there
 from truing.experiments.reach import Reach
 
@@ -31,8 +31,12 @@ PASSES = 2
 ENOUGH = 33.0
 """Separation that names the right one with 95 %: twice the log likelihood has it as mean and twice its root as standard
 deviation, and another explanation is excluded ``SURE`` = 1.22 of these behind: 33 = (1.64 + 1.22) * 2 * 33^0.5."""
+NEARLY = 0.95
+"""Of the most that readings like these can reach, where that is less."""
 CHANCE, GROWTH = 0.95, 1.5
 """An experiment grows until its simulated chance is as high, so many times in one step, as far as the budget goes."""
+MORE = 2
+"""So many times more readings are simulated, up to ``MOST_READINGS``, where the budget does not suffice."""
 MOST_READINGS = 100
 """Nobody takes more: what so many readings do not tell apart is told apart by a fact, or not at all."""
 EFFORT: Mapping[str, float] = {"held": 0.0, "ramp": 0.1, "in turn": 0.15, "to and fro": 0.15}
@@ -71,12 +75,12 @@ class Stand:
 
 @dataclass(frozen=True)
 class Designed:
-    """An experiment as found, the pairs that it is for, and how many readings like these it would need."""
+    """An experiment as found, the pairs that it is for, and how many readings like these it would need; 0: too many."""
 
     courses: Mapping[str, Course]
     readings: int
     pairs: tuple[tuple[str, str], ...]
-    needed: int
+    needed: int = 0
 
 
 def designed(stand: Stand) -> Designed | None:
@@ -89,7 +93,7 @@ def designed(stand: Stand) -> Designed | None:
                       for _ in range(TRIED_FEW if few else TRIED))]  # fmt: skip
     ends = [plain | {name: course} for name, each in choices.items() for course in each[1:]] if not few else []
     fought = stand.duels([*first, *ends])
-    pairs = {duel.names for duel in fought if float(np.max(duel.after(MOST_READINGS / LOOKED_AT))) >= ENOUGH}
+    pairs = {duel.names for duel in fought if float(np.max(duel.after(MOST_READINGS / LOOKED_AT))) >= APART}
     if not pairs:
         return None
 
@@ -123,14 +127,14 @@ def _effort(stand: Stand, courses: Mapping[str, Course]) -> float:
 
 def _sized(stand: Stand, courses: Mapping[str, Course], pairs: set[tuple[str, str]]) -> Designed | None:
     """Take as many readings as tell the pairs apart, within the budget; pairs that these never do are left out."""
-    live = [duel for duel in stand.duels([courses]) if duel.names in pairs]
-    counts = [*range(min(stand.fewest, stand.budget), stand.budget + 1), *range(stand.budget + 1, MOST_READINGS + 1)]
-    needed: dict[tuple[str, str], int] = {}
-    for duel in live:
-        enough = (count for count in counts if float(duel.after(count / LOOKED_AT)[0]) >= ENOUGH)
-        if (count := next(enough, None)) is not None:
-            needed[duel.names] = count
-    if not needed:
+    fewest = min(stand.fewest, stand.budget)
+    counts: dict[tuple[str, str], int] = {}
+    for duel in stand.duels([courses]):
+        most = float(duel.after(MOST_READINGS / LOOKED_AT)[0])
+        if duel.names in pairs and most >= APART:
+            enough = min(ENOUGH, NEARLY * most)
+            reached = (count for count in range(fewest, MOST_READINGS) if duel.after(count / LOOKED_AT)[0] >= enough)
+            counts[duel.names] = next(reached, MOST_READINGS)
+    if not counts:
         return None
-    most = max(needed.values())
-    return Designed(stand.reach.settled(courses), min(most, stand.budget), tuple(needed), most)
+    return Designed(stand.reach.settled(courses), min(max(counts.values()), stand.budget), tuple(counts))

@@ -18,7 +18,7 @@ from truing.diagnosis.fitted import Fit
 from truing.diagnosis.result import Amount, Chance, DiagnosisResult, Experiment, NextPoint, readable_unit
 from truing.diagnosis.sample import Sample
 from truing.experiments.chances import Simulation
-from truing.experiments.design import CHANCE, GROWTH, Designed, Stand, designed
+from truing.experiments.design import CHANCE, GROWTH, MORE, MOST_READINGS, Designed, Stand, designed
 from truing.experiments.duels import Duel, explained, name_of
 from truing.experiments.facts import joined_pairs, result_to_measure, tie_of
 from truing.experiments.reach import reach_of
@@ -94,13 +94,17 @@ def grown(stand: Stand, best: Designed, competition: Competition, *, has_record:
     """
     apart = among(stand, {frozenset(pair) for pair in best.pairs})
     seed = stand.machine.start.seed
-    while True:
-        machine = stand.machine_of([best.courses], best.readings)
-        simulation = Simulation(competition, stand.several, apart, machine, has_record)
-        if best.readings >= stand.budget or simulation.chance(seed).value >= CHANCE:
-            best = replace(best, needed=max(best.needed, best.readings))
-            return best, simulation.chance(seed + 1)
-        best = replace(best, readings=min(stand.budget, ceil(GROWTH * best.readings)))
+
+    def simulated(readings: int) -> Simulation:
+        machine = stand.machine_of([best.courses], readings)
+        return Simulation(competition, stand.several, apart, machine, has_record)
+
+    needed = best.readings
+    while needed <= MOST_READINGS and simulated(needed).chance(seed).value < CHANCE:
+        more = min(stand.budget, ceil(GROWTH * needed))
+        needed = more if needed < stand.budget else MORE * needed
+    best = replace(best, readings=min(needed, stand.budget), needed=needed if needed <= MOST_READINGS else 0)
+    return best, simulated(best.readings).chance(seed + 1)
 
 
 def among(stand: Stand, apart: set[frozenset[str]]) -> frozenset[frozenset[int]]:
@@ -139,8 +143,6 @@ def points_of(stand: Stand, experiment: Experiment, live: Sequence[Duel]) -> Ite
     for count in range(1, experiment.readings + 1):
         weakest = min(live, key=lambda duel: duel.up_to((count - 1) * results))
         why = _why(stand, experiment, count - 1, weakest)
-        if count == experiment.readings < experiment.needed:
-            why += f"; {experiment.needed} readings like these would be needed to tell them apart"
         amounts = {
             name: Amount(float(values[count - 1]), experiment.units[name])
             for name, values in experiment.settings.items()

@@ -306,7 +306,8 @@ def experiment_text(experiment: Experiment) -> str:
     count, takes = experiment.readings, experiment.takes
     said = f"{count} readings" + (f" in {amount_text(readable(takes), 2)}" if takes is not None and takes.value else "")
     tells = f"tell {told_apart(experiment)} apart with a chance of {chance_text(experiment.chance)}"
-    more = f"; {experiment.needed} readings like these would do" if experiment.needed > count else ""
+    enough = f"{experiment.needed} readings" if experiment.needed else "more than a hundred readings"
+    more = f"; {enough} like these would be needed for 95 %" if experiment.needed != count else ""
     return f"{'; '.join(course_texts(experiment))}: {said} {tells}{more}"
 
 
