@@ -31,6 +31,7 @@ from truing.report.diagnosis_words import (
     explanation,
     fitted_text,
     headline,
+    is_result_first,
     listed,
     number_texts,
     p_text,
@@ -460,12 +461,19 @@ def _next(diagnosis: DiagnosisResult) -> ChapterParts:
 
 def _points(diagnosis: DiagnosisResult) -> ChapterParts:
     """Write the further results and the experiment, with its readings as a table to be taken to the machine."""
-    for point in diagnosis.next:
-        if point.measure:
-            yield from _both(
-                f"measure {settings_text(point)}: {pair_text(point)} (λ then {score_text(point.separation)})"
-            )
-            yield from _both(f"   {point.why}")
+    ways = [_results, _experiment]
+    for way in ways if is_result_first(diagnosis) else reversed(ways):
+        yield from way(diagnosis)
+
+
+def _results(diagnosis: DiagnosisResult) -> ChapterParts:
+    for point in (point for point in diagnosis.next if point.measure):
+        then = f"(λ then {score_text(point.separation)})"
+        yield from _both(f"measure {settings_text(point)}: {pair_text(point)} {then}")
+        yield from _both(f"   {point.why}")
+
+
+def _experiment(diagnosis: DiagnosisResult) -> ChapterParts:
     experiment, readings = diagnosis.experiment, [point for point in diagnosis.next if not point.measure]
     if experiment is None or not readings:
         return

@@ -287,11 +287,12 @@ def _gain_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
 
 def _next_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
     """Say what tells the explanations apart, with which chance."""
-    for point in diagnosis.next:
-        if point.measure:
-            yield f"measure {settings_text(point)}: it separates {pair_text(point)}."
-    if diagnosis.experiment is not None:
-        yield f"{experiment_text(diagnosis.experiment)}."
+    said = [
+        f"measure {settings_text(each)}: it separates {pair_text(each)}." for each in diagnosis.next if each.measure
+    ]
+    ways = [said, [] if diagnosis.experiment is None else [f"{experiment_text(diagnosis.experiment)}."]]
+    for sentences in ways if is_result_first(diagnosis) else reversed(ways):
+        yield from sentences
     yield from map(tie_text, diagnosis.ties)
     if diagnosis.next or diagnosis.ties:
         return
@@ -299,6 +300,11 @@ def _next_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
         yield "no other explanation comes near; there is nothing left to separate."
     if diagnosis.verdict == "one_of":
         yield "no setting can be proposed that tells them apart; another record, of other conditions, may."
+
+
+def is_result_first(diagnosis: DiagnosisResult) -> bool:
+    """Whether a further result is proposed before the experiment, which leaves something open that it does not."""
+    return bool(diagnosis.next and diagnosis.next[0].measure)
 
 
 def experiment_text(experiment: Experiment) -> str:
