@@ -39,6 +39,16 @@ CELLS, NODES = 16, 8
 """Parts of each stretch of a speed law, and Gauss points in each part: times are then exact to rounding."""
 ROUNDS = 5
 """Of Newton's method for the crank angle at a time; it begins within one part of a stretch."""
+REST = 1e-9  # rad/rad and m/rad: a slower body turns back at this crank angle
+MOST_ROUNDS, SETTLED = 200, 1e-14
+"""Of the friction of pins: so many at most, until no torque changes by more than this share of the largest."""
+LINKS = ("crank", "rod", "drive", "upper", "lower")
+PINS = (
+    ("crank_pivot", "crank", ""), ("crank_pin", "rod", "crank"), ("rod_joint", "rod", ""), ("arm_joint", "drive", ""),
+    ("drive_knee", "drive", "upper"), ("lower_knee", "lower", "upper"), ("ground_joint", "upper", ""),
+    ("slider_joint", "lower", ""),
+)  # fmt: skip
+"""Each joint that rubs, the link that turns on its pin, and the link in which the pin is fixed, if any."""
 SERIES = frozenset({"times", "speed_angle", "speed_share", "crank_speed", "force_angle", "force", "forming_force"})
 
 D = TypeVar("D")
@@ -256,14 +266,14 @@ def weight_torque(press: MovingPress, side: SideMotion) -> Float:
 
 
 class Demand(NamedTuple):
-    """What the joints of a link must give: their sum, and their moment about its first joint."""
+    """What the forces at the joints of a link must give: their sum, and their moment about its first joint."""
 
     force: JointPoint
     moment: Float
 
 
-def demand(body: Body, crank: CrankCourse) -> Demand:
-    """Mass times acceleration less the weight; the moment about the first joint of that and of the turning."""
+def demand(body: Body, crank: CrankCourse, couple: Float) -> Demand:
+    """Mass times acceleration less the weight; the moment of that and of the turning, less the couple."""
     square = crank.speed * crank.speed
     velocity, acceleration = body.motion
     moving = JointPoint(
@@ -272,7 +282,7 @@ def demand(body: Body, crank: CrankCourse) -> Demand:
     )
     force = JointPoint(body.mass * moving.y, body.mass * moving.z)
     turning = body.turning.acceleration * square + body.turning.speed * crank.acceleration
-    return Demand(force, body.inertia * turning + body.centre * _cross(body.line, force))
+    return Demand(force, body.inertia * turning + body.centre * _cross(body.line, force) - couple)
 
 
 @dataclass(frozen=True)
@@ -291,15 +301,16 @@ class JointForces:
     torque: Float
 
 
-def joint_forces(press: MovingPress, side: SideMotion, crank: CrankCourse, force: Float) -> JointForces:
-    """Forces of one side under its half of the force on the slider, pins without friction.
+def joint_forces(
+    press: MovingPress, side: SideMotion, crank: CrankCourse, force: Float, couples: Mapping[str, Float]
+) -> JointForces:
+    """Forces of one side under its half of the force on the slider; ``couples`` act on its links beside the joints.
 
     Slider and platform give the forces along z of the joints above them; the moment of the link above gives the other
     component. At the knee three links meet: the moments of two about their other ends give both components.
     """
-    crank_, rod, drive, upper, lower = (demand(body, crank) for body in side.links)
-    sliding = np.sign(side.slider.speed * crank.speed)
-    held = force + press.counterbalance + press.guide_friction * sliding
+    crank_, rod, drive, upper, lower = (demand(getattr(side, link), crank, couple) for link, couple in couples.items())
+    held = force + press.counterbalance + press.guide_friction * _sense(side.slider.speed, crank)
     slider_joint = _lower_end(side.lower, lower, 0.5 * (_inertia(press.slider_mass, side.slider, crank) + held))
     lower_knee = _plus(lower.force, slider_joint, -1.0)
     arm, link = side.drive.line, side.upper.line
@@ -327,6 +338,11 @@ def joint_forces(press: MovingPress, side: SideMotion, crank: CrankCourse, force
     )
 
 
+def _sense(way: Float, crank: CrankCourse) -> Float:
+    """Which way something goes, 1 or -1, whose travel per crank angle this is; 0 where it rests or turns back."""
+    return np.sign(np.where(np.abs(way) > REST, way, 0.0) * crank.speed)
+
+
 def _inertia(mass: Float, motion: LineMotion, crank: CrankCourse) -> Float:
     """Mass times acceleration less the weight of a body that is guided along z."""
     return mass * (motion.acceleration * crank.speed**2 + motion.speed * crank.acceleration - GRAVITY)
@@ -337,22 +353,40 @@ def _lower_end(body: Body, needs: Demand, downward: Float) -> JointPoint:
     return JointPoint((-body.line.y * downward - needs.moment) / body.line.z, -downward)
 
 
-def friction_torque(press: MovingPress, side: SideMotion, crank: CrankCourse, forces: JointForces) -> Float:
-    """Torque of one crank that guide, pins and oil take, of pins to first order in their friction.
+def rubbing(
+    press: MovingPress, side: SideMotion, crank: CrankCourse, forces: JointForces
+) -> tuple[dict[str, Float], Float]:
+    """The couple by which pins hold each link under these forces, and the torque of one crank that all of them take."""
+    couples: dict[str, Float] = dict.fromkeys(LINKS, 0.0)
+    taken: Float = 0.0
+    for joint, link, other in PINS:
+        way = getattr(side, link).turning.speed - (getattr(side, other).turning.speed if other else 0.0)
+        couple = press.bearing_friction * np.sqrt(_square(getattr(forces, joint)))
+        sense = _sense(way, crank)
+        couples[link] = couples[link] - couple * sense
+        taken = taken + couple * np.abs(way)
+        if other:
+            couples[other] = couples[other] + couple * sense
+    return couples, np.sign(crank.speed) * taken
 
-    The pin of the knee is taken to be fixed in the upper link.
+
+def in_equilibrium(press: MovingPress, side: SideMotion, crank: CrankCourse, force: Float) -> tuple[JointForces, Float]:
+    """The forces of the joints with the friction that they make in the pins; the torque of one crank that pins take.
+
+    Round by round, from pins without friction; where they grow without end the press locks.
     """
-    turning = {name: getattr(side, name).turning.speed for name in ("rod", "drive", "upper", "lower")}
-    rubbing = (
-        (forces.crank_pivot, 1.0), (forces.crank_pin, turning["rod"] - 1.0), (forces.rod_joint, turning["rod"]),
-        (forces.arm_joint, turning["drive"]), (forces.drive_knee, turning["drive"] - turning["upper"]),
-        (forces.lower_knee, turning["lower"] - turning["upper"]), (forces.ground_joint, turning["upper"]),
-        (forces.slider_joint, turning["lower"]),
-    )  # fmt: skip
-    pins = press.bearing_friction * sum(np.sqrt(_square(force)) * np.abs(way) for force, way in rubbing)
-    guide = 0.5 * press.guide_friction * np.abs(side.slider.speed)
-    taken: Float = np.sign(crank.speed) * (pins + guide) + press.drive_drag * crank.speed
-    return taken
+    forces = joint_forces(press, side, crank, force, dict.fromkeys(LINKS, 0.0))
+    if not np.any(press.bearing_friction):
+        return forces, 0.0 * forces.torque
+    with np.errstate(over="ignore", invalid="ignore"):
+        for _ in range(MOST_ROUNDS):
+            before, (couples, _) = forces, rubbing(press, side, crank, forces)
+            forces = joint_forces(press, side, crank, force, couples)
+            settled = np.abs(forces.torque - before.torque) <= SETTLED * np.max(np.abs(forces.torque))
+            if np.all(settled | np.isnan(forces.torque)):
+                break
+    feasible(settled, "the press locks: its pins rub more than the drive can overcome; bearing_friction is too large")
+    return forces, rubbing(press, side, crank, forces)[1]
 
 
 # The calculation itself
@@ -385,10 +419,11 @@ def press_motion(given: MovingPress) -> PressMotion:
     crank = course(press)
     half = half_at(press, crank.angle)
     side, force = side_motion(press, half), press_force(press, crank.angle)
-    forces, (inertia, slope) = joint_forces(press, side, crank, force), reduced_inertia(press, side)
-    friction = friction_torque(press, side, crank, forces)
-    rubbing = 0.5 * press.guide_friction * np.abs(side.slider.speed) * np.sign(crank.speed)
-    torque = forces.torque + friction - rubbing
+    inertia, slope = reduced_inertia(press, side)
+    forces, pins = in_equilibrium(press, side, crank, force)
+    dragging = press.drive_drag * crank.speed
+    guide = 0.5 * press.guide_friction * np.abs(side.slider.speed) * np.sign(crank.speed)
+    torque = forces.torque + dragging
     speed = side.slider.speed * crank.speed
     over = partial(np.trapezoid, x=times, axis=-1)
     return PressMotion(
@@ -409,7 +444,7 @@ def press_motion(given: MovingPress) -> PressMotion:
         reduced_inertia=inertia,
         inertia_slope=slope,
         weight_torque=weight_torque(press, side),
-        friction_torque=friction,
+        friction_torque=pins + guide + dragging,
         crank_torque=torque,
         drive_power=2.0 * torque * crank.speed,
         kinetic_energy=inertia * crank.speed**2,

@@ -2,10 +2,9 @@
 
 from dataclasses import replace
 
+from press_linkage.motion import LINKS
 from press_linkage.motion_quantities import MovingPress, PressMotion
 from truing import Effect, Float, Tolerance, Unknown, normal
-
-LINKS = ("crank", "rod", "drive", "upper", "lower")
 
 
 def guide_friction(press: MovingPress, *, friction: Float) -> MovingPress:
@@ -50,7 +49,7 @@ EFFECTS: list[Effect[MovingPress, PressMotion]] = [
            looks_like="the torque is larger where joints carry much, above all under the force of the work near the "
                       "bottom dead centre, where guide friction does nothing",
            why="pins run with little oil; 0.1 on a radius of 100 mm are 10 mm",
-           source="Coulomb friction of a pin in its bore; forces of the press without it"),
+           source="Coulomb friction of a pin in its bore"),
     Effect("drive_drag", on_inputs=drive_drag,
            unknowns=[Unknown("drag", 0, 50, "kN*m*s", "torque of one crank per angular speed")],
            looks_like="a constant torque at constant speed, in proportion to the speed",

@@ -158,7 +158,7 @@ def carrying(record: MotionRun) -> Sequence[Block]:
         letter, spoken = SPOKEN[name]
         rows.append((f"{letter.replace('_', '')}, {spoken}", KILO * float(size[at]), *sides, float(times[at]), angle))
     columns = ("joint", "largest force", "outward", "downward", "at the time", "at the crank angle")
-    note = "Of one side, at the time when it is largest; pins without friction."
+    note = "Of one side, at the time when it is largest."
     table = Table("Largest forces of the joints", columns, rows, ("", "kN", "kN", "kN", "s", "°"), note)
     return [Drawing("Forces at the joints over time", partial(joints_figure, answers)), table]
 
