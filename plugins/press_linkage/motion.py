@@ -35,8 +35,9 @@ from truing import Array, Float, column, either, feasible
 GRAVITY = 9.80665  # m/s2
 TURN = 2.0 * np.pi
 CLOSED = 1e-9  # rad: a table that ends so near to a whole turn ends where it begins
-CELLS, NODES = 16, 8
-"""Parts of each stretch of a speed law, and Gauss points in each part: times are then exact to rounding."""
+CELLS = 16
+"""Parts of each stretch of a speed law, with eight Gauss points each: times are then exact to rounding."""
+GAUSS = np.polynomial.legendre.leggauss(8)
 ROUNDS = 5
 """Of Newton's method for the crank angle at a time; it begins within one part of a stretch."""
 REST = 1e-9  # rad/rad and m/rad: a slower body turns back at this crank angle
@@ -115,7 +116,7 @@ def _over_angle(press: MovingPress, elapsed: Array) -> CrankCourse:
 
 def _duration(law: PchipInterpolator, start: Float, end: Float) -> Array:
     """The time from one angle to another at full speed 1 rad/s: the integral of 1/law, by Gauss and Legendre."""
-    nodes, weights = np.polynomial.legendre.leggauss(NODES)
+    nodes, weights = GAUSS
     half = np.asarray(0.5 * (end - start))[..., np.newaxis]
     inside = np.asarray(start)[..., np.newaxis] + half * (1.0 + nodes)
     return np.asarray((half * weights / law(inside)).sum(axis=-1))

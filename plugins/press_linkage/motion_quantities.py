@@ -29,8 +29,8 @@ class MovingPress(Mechanism):
 
     times: Float = given(ONE_TURN, "s", symbol="t", along="time", note="when the motion is looked at")
     # The drive
-    start_angle: Float = given(-180.0, "deg", symbol="phi_0", note="crank at the first time, from the bottom dead "
-                               "centre, growing with theta_11", at_least=-3600, at_most=3600)  # fmt: skip
+    start_angle: Float = given(-180.0, "deg", symbol="phi_0", note="crank angle at the first time; 0 at the bottom "
+                               "dead centre", at_least=-3600, at_most=3600)  # fmt: skip
     speed: Float = given(12.0, "rpm", symbol="n", note="full speed of the cranks", source="assumed", above=0,
                          at_most=1000)  # fmt: skip
     speed_angle: Float = given((0.0,), "deg", along="speed_angle", note="crank angles of the speed law, rising within "

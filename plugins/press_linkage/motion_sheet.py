@@ -135,11 +135,12 @@ def turning(record: MotionRun) -> Sequence[Block]:
     answers = record.results
     spent = 2.0 * inertia_torque(answers) * answers.drive_speed + answers.press_force * answers.slider_speed
     spent = spent + 2.0 * (answers.weight_torque + answers.friction_torque) * answers.drive_speed
-    left = np.max(np.abs(answers.drive_power - spent)) / np.max(np.abs(answers.drive_power))
+    left = float(np.max(np.abs(answers.drive_power - spent)) / np.max(np.abs(answers.drive_power)))
+    closed = "1e-12" if left < 1e-12 else f"{left:.0e}"
     words = (
         "The torque comes from the equilibrium of each body. Its power is the change of the kinetic energy and of the "
         "potential energy of the weights, and the work against counterbalance, force and friction: at every time of "
-        f"this record to {max(left, 1e-16):.0e} of the largest power."
+        f"this record to {closed} of the largest power."
     )
     caption = "One crank; the other needs the same."
     return [Drawing("Torque and power over time", partial(torque_figure, answers), caption), Words(words)]
