@@ -383,8 +383,10 @@ def in_equilibrium(press: MovingPress, side: SideMotion, crank: CrankCourse, for
         for _ in range(MOST_ROUNDS):
             before, (couples, _) = forces, rubbing(press, side, crank, forces)
             forces = joint_forces(press, side, crank, force, couples)
-            settled = np.abs(forces.torque - before.torque) <= SETTLED * np.max(np.abs(forces.torque))
-            if np.all(settled | np.isnan(forces.torque)):
+            is_number = np.isfinite(forces.torque)
+            largest = np.max(np.abs(forces.torque), where=is_number, initial=0.0)
+            settled = is_number & (np.abs(forces.torque - before.torque) <= SETTLED * largest)
+            if np.all(settled | ~is_number):
                 break
     feasible(settled, "the press locks: its pins rub more than the drive can overcome; bearing_friction is too large")
     return forces, rubbing(press, side, crank, forces)[1]

@@ -64,7 +64,7 @@ class MovingPress(Mechanism):
     guide_friction: Float = given(0.0, "kN", symbol="F_G", note=f"dry friction in the guides of the slider, {NEUTRAL}",
                                   at_least=0, at_most=1e4)  # fmt: skip
     bearing_friction: Float = given(0.0, "mm", symbol="rho", note="friction coefficient times radius of the pins, "
-                                    f"alike at all joints, {NEUTRAL}", at_least=0, at_most=100)  # fmt: skip
+                                    f"alike at all joints, {NEUTRAL}", at_least=0, at_most=1000)  # fmt: skip
     drive_drag: Float = given(0.0, "N*m*s", symbol="d", note="torque per angular speed of one crank, by oil in "
                               f"bearings and gears, {NEUTRAL}", at_least=0, at_most=1e7)  # fmt: skip
     # What is asked

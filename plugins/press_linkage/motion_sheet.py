@@ -23,6 +23,7 @@ from truing import (
     Section,
     Sensitivity,
     Sweep,
+    Swept,
     Table,
     Vary,
     Words,
@@ -110,17 +111,34 @@ def inertia_torque(answers: PressMotion) -> Any:
     return answers.reduced_inertia * answers.drive_acceleration + changing
 
 
+def lift_figure(swept: Swept) -> Figure:
+    """Draw largest torque and root mean square over the counterbalance, and where the latter is least."""
+    figure, panel = panels(1, 2.6)
+    lift, mean = KILO * swept.axis, KILO * np.asarray(swept.results["rms_torque"])
+    panel.plot(lift, KILO * np.asarray(swept.results["largest_torque"]), color=ORANGE, label="largest")
+    panel.plot(lift, mean, color=BLUE, label="root mean square")
+    if np.isfinite(mean).any():
+        least = int(np.nanargmin(mean))
+        panel.plot(lift[least], mean[least], "o", color=BLUE, markersize=5)
+        panel.annotate(f"{lift[least]:.4g} kN", (lift[least], mean[least]), (0, -12), textcoords="offset points",
+                       ha="center", fontsize=8)  # fmt: skip
+    panel.set_ylim(0.0, None)
+    quiet(panel, "counterbalance, kN", "torque of one crank, kN·m")
+    panel.legend(loc="best")
+    return figure
+
+
 def joints_figure(answers: PressMotion) -> Figure:
-    """Draw the size of the force at every joint of one side over time: driven chain and knee."""
-    figure, (upper, lower) = panels(2, 4.8, sharex=True)
-    for panel, names in ((upper, JOINTS[:3]), (lower, JOINTS[3:])):
-        styles = [{"color": colour} for colour in (INK, BLUE, ORANGE, GREEN)] + [
-            {"color": colour, "linestyle": "--"} for colour in (BLUE, ORANGE)
+    """Draw the size of the force at one joint of each link over time: rod, and the links at the knee."""
+    figure, (upper, lower) = panels(2, 4.4, sharex=True)
+    styles = {"crank_pin": INK, "arm_joint": GREEN, "ground_joint": BLUE, "slider_joint": ORANGE}
+    for panel, names in ((upper, ["crank_pin"]), (lower, ["arm_joint", "ground_joint", "slider_joint"])):
+        curves = [
+            (KILO * getattr(answers, name).size, f"${SPOKEN[name][0]}$ {SPOKEN[name][1]}", {"color": styles[name]})
+            for name in names
         ]
-        forces = [KILO * getattr(answers, name).size for name in names]
-        labels = [f"${SPOKEN[name][0]}$ {SPOKEN[name][1]}" for name in names]
-        _lines(panel, answers, list(zip(forces, labels, styles, strict=False)), "force, kN")
-        panel.legend(loc="upper right", fontsize=7)
+        _lines(panel, answers, curves, "force, kN")
+        panel.legend(loc="best")
     _dead_centres((upper, lower), answers)
     return figure
 
@@ -140,10 +158,15 @@ def turning(record: MotionRun) -> Sequence[Block]:
     words = (
         "The torque comes from the equilibrium of each body. Its power is the change of the kinetic energy and of the "
         "potential energy of the weights, and the work against counterbalance, force and friction: at every time of "
-        f"this record to {closed} of the largest power."
+        f"this record within {closed} of the largest power."
     )
     caption = "One crank; the other needs the same."
-    return [Drawing("Torque and power over time", partial(torque_figure, answers), caption), Words(words)]
+    drawn: list[Block] = [Drawing("Torque and power over time", partial(torque_figure, answers), caption), Words(words)]
+    swept = record.studies.get("sweep")
+    if swept is None or swept.over != "counterbalance":
+        return drawn
+    caption = "The drive heats least where the root mean square is least."
+    return [*drawn, Drawing("Torque over the counterbalance", partial(lift_figure, swept), caption)]
 
 
 def carrying(record: MotionRun) -> Sequence[Block]:
@@ -161,13 +184,14 @@ def carrying(record: MotionRun) -> Sequence[Block]:
     columns = ("joint", "largest force", "outward", "downward", "at the time", "at the crank angle")
     note = "Of one side, at the time when it is largest."
     table = Table("Largest forces of the joints", columns, rows, ("", "kN", "kN", "kN", "s", "°"), note)
-    return [Drawing("Forces at the joints over time", partial(joints_figure, answers)), table]
+    caption = "One joint of each link; at its other end the force differs by weight and inertia of the link."
+    return [Drawing("Forces at the joints over time", partial(joints_figure, answers), caption), table]
 
 
 SECTIONS = [
     Section(
         "Cranks and slider",
-        "crank_angle", "drive_speed", "drive_acceleration", "turns", "slider_position", "slope", "curvature",
+        "time", "crank_angle", "drive_speed", "drive_acceleration", "turns", "slider_position", "slope", "curvature",
         "slider_speed", "slider_acceleration", "press_force",
         text="The drive gives the crank angle; everything else follows from the exact loops, differentiated twice. z "
         "counts downward from O, and a positive force pushes the slider up.",
@@ -199,6 +223,7 @@ SECTIONS = [
         "Components of the joint forces",
         *(f"{part}_{name}" for name in JOINTS for part in ("outward", "downward", "size")),
         text="Outward and downward on the link, over the record.",
+        level="full",
     ),
 ]  # fmt: skip
 
@@ -222,7 +247,7 @@ MOTION = Model(
         Require("largest_torque", at_most="permitted_torque"),
     ],
     studies=[
-        Sweep(over="counterbalance", at="0..400 kN", points=41),
+        Sweep(over="counterbalance", at="0..400 kN", points=81),
         Sensitivity(of=("largest_torque", "rms_torque")),
     ],
     sheet=SECTIONS,

@@ -186,7 +186,7 @@ def slider_crank(offset: float, rod: Mapping[str, float] | None = None) -> Movin
 
 @pytest.mark.parametrize("offset", [0.9, 0.4, 1e-9])
 def test_the_limit_of_a_slider_crank_in_closed_form(offset: float) -> None:
-    """The rod is off the way of the piston by beta: sin beta = (a cos psi + offset)/l; it carries the force over cos beta."""
+    """The rod is off the way of the piston by beta, sin beta = (a cos psi + offset)/l."""
     press = slider_crank(offset)
     answer = press_motion(press)
     a, rod = 0.36, 1.304
