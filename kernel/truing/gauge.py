@@ -23,6 +23,8 @@ AT_ONCE = 65_536
 """So many rows are one call of the model."""
 TOGETHER = 16
 """So many calculations that each answer for many rows are one call of the model: more no longer fit the cache."""
+MOVING_TOGETHER = 1024
+"""The same of a model that moves: every step of it costs much whatever the number of machines."""
 
 
 @dataclass(frozen=True)
@@ -182,11 +184,12 @@ def _calls(
     record: NDArray[np.intp], machine: Setup, rows: RowsFile, trials: Sequence[Trial]
 ) -> Iterator[tuple[list[_Alike], int]]:
     """Give the calculations of some trials of a record that are one call, and how many copies of one trial they are."""
+    together = TOGETHER if machine.model.dynamics is None else MOVING_TOGETHER
     waiting: list[_Alike] = []
     count = 0
     for number, trial in enumerate(trials):
         own = [_Alike(*each, number) for each in _alike(record, machine, {**rows.columns, **trial}, rows)]
-        if waiting and (len(waiting) + len(own) > TOGETHER or own[0].values.keys() != waiting[0].values.keys()):
+        if waiting and (len(waiting) + len(own) > together or own[0].values.keys() != waiting[0].values.keys()):
             yield waiting, count
             waiting, count = [], 0
         waiting, count = waiting + own, count + 1 if len(waiting) == count * len(own) else 0

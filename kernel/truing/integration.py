@@ -82,6 +82,19 @@ class InitialValueProblem:
     most_steps: int = 100_000
 
 
+@dataclass(frozen=True)
+class Path:
+    """The m steps of one machine: times (m + 1,) and states (d, m + 1) at which they begin and the last one ends.
+
+    ``interval`` (m,) is the stretch between breaks of each, ``event`` (m,) what ended it, -1 where nothing did.
+    """
+
+    t: Matrix
+    y: Matrix
+    interval: Indices
+    event: Indices
+
+
 @dataclass
 class Solution:
     """States at the stamps, (d, n, k), NaN where a machine did not come to; ``reasons`` by machine, and when.
@@ -94,24 +107,45 @@ class Solution:
     first: Matrix
     reasons: dict[int, tuple[str, float]] = field(default_factory=dict)
     steps: int = 0
+    taken: list[tuple[Matrix, ...]] | None = None
+    """What was taken, where it is to be kept: machines, begin, end, state at the begin, stretch, event at the end."""
+
+    def paths(self, problem: InitialValueProblem) -> dict[int, Path]:
+        """Return the path of every machine that came to the end of its record, by steps of this method alone."""
+        if not self.taken:
+            return {}
+        machine, t, end, y, interval, event = (np.concatenate(each, axis=-1) for each in zip(*self.taken, strict=True))
+        order = np.argsort(machine, kind="stable")
+        made = {}
+        for number, own in enumerate(np.split(order, np.searchsorted(machine[order], range(1, self.states.shape[1])))):
+            is_whole = len(own) and (
+                end[own[-1]] == problem.stamps[-1] or (event[own[-1]] >= 0 and problem.events[event[own[-1]]].ends)
+            )
+            if is_whole and number not in self.reasons:
+                states = np.column_stack([y[:, own], self.states[:, number, -1]])
+                made[number] = Path(np.append(t[own], end[own[-1]]), states, interval[own], event[own])
+        return made
 
 
-def solve(problem: InitialValueProblem) -> Solution:
+def solve(problem: InitialValueProblem, *, keeps_paths: bool = False) -> Solution:
     """Integrate every machine; one that comes to no end has NaN from there on, and a reason."""
-    events, machines = len(problem.events), problem.start.shape[1]
-    solution = Solution(
-        np.full((*problem.start.shape, len(problem.stamps)), np.nan),
-        np.zeros((events, machines)),
-        np.full((events, machines), np.nan),
-    )
-    solution.states[:, :, 0] = problem.start
+    solution = empty_solution(problem)
+    solution.taken = [] if keeps_paths else None
     with np.errstate(all="ignore"):
         _stiff(problem, _march(problem, solution), solution)
     return solution
 
 
+def empty_solution(problem: InitialValueProblem) -> Solution:
+    """Return a solution that knows the starts alone."""
+    events, machines = len(problem.events), problem.start.shape[1]
+    states = np.full((*problem.start.shape, len(problem.stamps)), np.nan)
+    states[:, :, 0] = problem.start
+    return Solution(states, np.zeros((events, machines)), np.full((events, machines), np.nan))
+
+
 @lru_cache(maxsize=1)
-def _method() -> Any:
+def method() -> Any:
     """Return the coefficients; scipy is loaded when they are first needed."""
     return integrate.DOP853
 
@@ -141,7 +175,7 @@ class _Going:
 
 
 @dataclass(frozen=True)
-class _Step:
+class Step:
     """A step that was taken, of some machines: from ``t`` and ``y`` by ``length`` to ``end`` and ``reached``."""
 
     t: Matrix
@@ -181,7 +215,8 @@ def _begun(problem: InitialValueProblem) -> _Going:
     )  # fmt: skip
 
 
-def _scale(problem: InitialValueProblem, *states: Matrix) -> Matrix:
+def scale_of(problem: InitialValueProblem, *states: Matrix) -> Matrix:
+    """Return what errors of states are held below, (d, n)."""
     largest = problem.sizes[:, None]
     for state in states:
         largest = np.maximum(largest, np.abs(state))
@@ -194,7 +229,7 @@ def _mean_square(errors: Matrix) -> Matrix:
 
 def _first_step(problem: InitialValueProblem, t: Matrix, y: Matrix, rate: Matrix) -> Matrix:
     """Guess a first step from the rate and how fast it changes (Hairer, Norsett, Wanner, II.4)."""
-    scale, whole = _scale(problem, y), problem.stamps[-1] - problem.stamps[0]
+    scale, whole = scale_of(problem, y), problem.stamps[-1] - problem.stamps[0]
     size, slope = (np.sqrt(_mean_square(each / scale)) for each in (y, rate))
     guess = np.where((size < 1e-5) | (slope < 1e-5), 1e-6 * whole, 0.01 * size / slope)
     guess = np.minimum(guess, whole)
@@ -211,12 +246,12 @@ def _one_step(problem: InitialValueProblem, system: System, going: _Going, solut
     is_last = going.step >= until - going.t
     length = np.where(is_last, until - going.t, going.step)
     end = np.where(is_last, until, going.t + length)
-    stages, last = _stages(system, going, length)
-    reached = going.y + length * _combined(_method().B, stages)
+    stages, last = stages_of(system, (going.t, going.y, going.rate, length), going.interval)
+    reached = going.y + length * combined(method().B, stages)
     stages[STAGES] = system.rate(end, reached, going.interval)
     constant = _mean_square(stages[STAGES] - stages[STAGES - 1]) / _mean_square(reached - last)
     going.at_edge = np.where(length * np.sqrt(constant) > STIFF, going.at_edge + 1, np.maximum(going.at_edge - 1, 0))
-    error = _error(stages, length, _scale(problem, going.y, reached))
+    error = error_of(stages, length, scale_of(problem, going.y, reached))
     is_good = error < 1
     factor = np.clip(np.where(error > 0, SAFETY * error ** (-1 / ORDER), GROW), SHRINK, GROW)
     factor = np.where(np.isfinite(error), factor, SHRINK)
@@ -228,33 +263,37 @@ def _one_step(problem: InitialValueProblem, system: System, going: _Going, solut
     good = np.flatnonzero(is_good & ~ended)
     if len(good):
         own = (going.t, going.y, length, end, reached, stages[STAGES])
-        step = _Step(*(each[..., good] for each in own))
-        dense = _OwnDense(system.part(good), going.interval[good], step, stages[..., good])
+        step = Step(*(each[..., good] for each in own))
+        dense = OwnDense(system.part(good), going.interval[good], step, stages[..., good])
         ended[good] |= _arrive(problem, going, good, dense, solution)
         if going.is_stale:
             going.rate, going.is_stale = system.rate(going.t, going.y, going.interval), False
     return ended
 
 
-def _combined(weights: Matrix, stages: Matrix) -> Matrix:
+def combined(weights: Matrix, stages: Matrix) -> Matrix:
     """Return a weighted sum of stages, (d, n)."""
     return np.asarray((weights @ stages[: len(weights)].reshape(len(weights), -1)).reshape(stages.shape[1:]))
 
 
-def _stages(system: System, going: _Going, length: Matrix) -> tuple[Matrix, Matrix]:
-    """Return the rates at the stages of a step, (16, d, n), the last four left empty; and the state at the last one."""
-    stages, y = np.empty((16, *going.y.shape)), going.y
-    stages[0] = going.rate
+def stages_of(system: System, step: tuple[Matrix, Matrix, Matrix, Matrix], interval: Indices) -> tuple[Matrix, Matrix]:
+    """Return the rates at the stages of a step from t, y, the rate there, by a length; and the state at the last one.
+
+    Shapes (16, d, n), the last four left empty, and (d, n).
+    """
+    t, y, rate, length = step
+    stages, last = np.empty((16, *y.shape)), y
+    stages[0] = rate
     for stage in range(1, STAGES):
-        y = going.y + length * _combined(_method().A[stage, :stage], stages)
-        stages[stage] = system.rate(going.t + _method().C[stage] * length, y, going.interval)
-    return stages, y
+        last = y + length * combined(method().A[stage, :stage], stages)
+        stages[stage] = system.rate(t + method().C[stage] * length, last, interval)
+    return stages, last
 
 
-def _error(stages: Matrix, length: Matrix, scale: Matrix) -> Matrix:
+def error_of(stages: Matrix, length: Matrix, scale: Matrix) -> Matrix:
     """Return the error of a step in multiples of what is allowed, (n,): estimates of two orders in one."""
-    fifth = _mean_square(_combined(_method().E5, stages) / scale)
-    third = _mean_square(_combined(_method().E3, stages) / scale)
+    fifth = _mean_square(combined(method().E5, stages) / scale)
+    third = _mean_square(combined(method().E3, stages) / scale)
     mixed = fifth + 0.01 * third
     return np.asarray(np.where(mixed == 0, 0.0, np.abs(length) * fifth / np.sqrt(np.where(mixed == 0, 1.0, mixed))))
 
@@ -282,6 +321,9 @@ class _Arrival:
 def _arrive(problem: InitialValueProblem, going: _Going, places: Indices, dense: _Dense, solution: Solution) -> Mask:
     """Go where a step ends, or where an event stops it, and fill in the stamps on the way; return who is at the end."""
     arrival = _first_event(problem, dense, going, places)
+    if solution.taken is not None and isinstance(dense, OwnDense):
+        begin = dense.step.t, arrival.t, dense.step.y
+        solution.taken.append((going.machine[places], *begin, dense.interval, arrival.event))
     _write(problem, dense, going, arrival, solution)
     t = arrival.t
     going.t[places], going.rate[:, places] = t, dense.step.rate
@@ -317,16 +359,16 @@ class _Dense(Protocol):
 
     system: System
     interval: Indices
-    step: _Step
+    step: Step
 
     def at(self, t: Matrix, place: Indices) -> Matrix:
         """Return the states of the machines at these places of the step, each at a time of its own, (d, m)."""
 
 
-class _OwnDense:
+class OwnDense:
     """Those of steps of Dormand and Prince, to the seventh order; calculated where they are asked for."""
 
-    def __init__(self, system: System, interval: Indices, step: _Step, stages: Matrix) -> None:
+    def __init__(self, system: System, interval: Indices, step: Step, stages: Matrix) -> None:
         self.system, self.interval, self.step = system, interval, step
         self._stages = stages
         self._parts: Matrix | None = None
@@ -345,13 +387,13 @@ class _OwnDense:
         return np.asarray(y)
 
     def _prepared(self) -> Matrix:
-        step, stages, method = self.step, self._stages, _method()
-        for stage, (weights, share) in enumerate(zip(method.A_EXTRA, method.C_EXTRA, strict=True), STAGES + 1):
-            y = step.y + step.length * _combined(weights[:stage], stages)
+        step, stages, weights_of = self.step, self._stages, method()
+        for stage, (weights, share) in enumerate(zip(weights_of.A_EXTRA, weights_of.C_EXTRA, strict=True), STAGES + 1):
+            y = step.y + step.length * combined(weights[:stage], stages)
             stages[stage] = self.system.rate(step.t + share * step.length, y, self.interval)
         gone = step.reached - step.y
         bend = step.length * stages[0] - gone
-        higher = [step.length * _combined(weights, stages) for weights in method.D]
+        higher = [step.length * combined(weights, stages) for weights in weights_of.D]
         return np.array([gone, bend, 2 * gone - step.length * (step.rate + stages[0]), *higher])
 
 
@@ -373,7 +415,7 @@ def _first_event(problem: InitialValueProblem, dense: _Dense, going: _Going, goo
     for number, rule in enumerate(problem.events):
         values = np.array([going.value[number, good], *system.crossing(number, *at, interval).reshape(LOOKS, -1)])
         going.value[number, good] = values[-1]
-        happens = _passes(values, rule)
+        happens = passes(values, rule)
         places = np.flatnonzero(happens.any(axis=0))
         if len(places):
             look = happens[:, places].argmax(axis=0)
@@ -390,7 +432,7 @@ def _first_event(problem: InitialValueProblem, dense: _Dense, going: _Going, goo
     return _Arrival(good, event, t, y)
 
 
-def _passes(values: Matrix, rule: EventRule) -> Mask:
+def passes(values: Matrix, rule: EventRule) -> Mask:
     """Mark between which of the values (m + 1, n) an event happens, (m, n); one that is known begins at 0 as well."""
     before, after = values[:-1], values[1:]
     if rule.direction == 0:
@@ -501,7 +543,7 @@ def _march_as_one(problem: InitialValueProblem, system: System, going: _Going, s
         if solver.status == "failed" or not np.isfinite(reached).all():
             return GROWS
         t, end = (np.full(len(going.t), each) for each in (solver.t_old, solver.t))
-        step = _Step(t, y, end - t, end, reached, going.rate)
+        step = Step(t, y, end - t, end, reached, going.rate)
         ended = _arrive(problem, going, everyone, _SharedDense(system, going.interval, step, solver), solution)
         if ended.all():
             return ""
@@ -532,7 +574,7 @@ def _solver(problem: InitialValueProblem, system: System, going: _Going) -> Any:
 class _SharedDense:
     """The states along a step that all machines share."""
 
-    def __init__(self, system: System, interval: Indices, step: _Step, solver: Any) -> None:
+    def __init__(self, system: System, interval: Indices, step: Step, solver: Any) -> None:
         self.system, self.interval, self.step = system, interval, step
         self._at = solver.dense_output()
 

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import KW_ONLY, dataclass, field, fields, replace
 from functools import cached_property
+from hashlib import blake2b
 from typing import Any, Generic, Literal, TypeVar, cast, dataclass_transform
 
 import numpy as np
@@ -14,13 +17,27 @@ from truing.arrays import Indices, Matrix
 from truing.declare.batch import feasible
 from truing.declare.fields import KEY, Float, InputField, hints_of, in_si, input_fields, read, with_values
 from truing.errors import ConvergenceError, DeclarationError, InfeasibleError
-from truing.integration import GROWS, STEP_LIMIT, EventRule, InitialValueProblem, Solution, solve
+from truing.integration import (
+    GROWS,
+    STEP_LIMIT,
+    EventRule,
+    InitialValueProblem,
+    Path,
+    Solution,
+    empty_solution,
+    solve,
+)
+from truing.integration_at_once import at_once
 from truing.units import difference_unit
 
 I = TypeVar("I")  # noqa: E741  # inputs, as in Model[I, R]
 R = TypeVar("R")
 S = TypeVar("S")
 T = TypeVar("T")
+MOST_REMEMBERED, MOST_NEAR = 2_000_000, 256
+"""So many values of states are remembered; of so many machines the nearest one is looked for."""
+NEAR, FAR, TINY = 0.02, 0.5, 1e-300
+"""Sum of the shares by which numbers of machines differ that are followed along one path; and at the most."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -174,6 +191,11 @@ class Dynamics(Generic[S, I, R]):
         return input_fields(self.input_type)
 
     @cached_property
+    def memory(self) -> dict[bytes, _Followed]:
+        """What was followed last, by what tells one machine from another."""
+        return {}
+
+    @cached_property
     def driving(self) -> dict[str, InputField]:
         """The input series that the law sees at every moment, by flat name."""
         along = self.input_fields[self.times].spec.along
@@ -192,7 +214,7 @@ class Dynamics(Generic[S, I, R]):
         """
         machines = _machines(self, inputs)
         known = self.state_fields
-        solution = _in_steps(machines) if self.step is not None else solve(_problem(machines))
+        solution = _remembered(machines)
         _say_why(solution, machines)
         one: Any = 0 if machines.is_single else slice(None)
         names = [event.name for event in self.events]
@@ -210,6 +232,155 @@ class Dynamics(Generic[S, I, R]):
         along = replace(machines.part(np.zeros(len(stamps), dtype=np.intp)), stamps=stamps)
         y = np.array([getattr(motion.states, name) for name in self.state_fields])
         return dict(zip(self.state_fields, along.rate(stamps, y, interval), strict=True))
+
+
+# What was followed is remembered machine by machine: a fit asks for the same ones again, among others
+
+
+@dataclass(frozen=True)
+class _Followed:
+    """One machine as it was followed: states (d, k), by event how often and when first, (e,); why it came to no end.
+
+    ``numbers`` are what it differs by from others, ``path`` the steps that it took.
+    """
+
+    states: Matrix
+    counts: Matrix
+    first: Matrix
+    reason: tuple[str, float] | None
+    numbers: Matrix
+    path: Path | None
+
+
+@dataclass
+class MachinesAsked:
+    """Machines that were asked for, and how many of them had to be followed."""
+
+    several: list[_Machines[Any, Any, Any]] = field(default_factory=list)
+    new: int = 0
+
+
+_ASKED: ContextVar[MachinesAsked | None] = ContextVar("truing_machines_asked", default=None)
+
+
+@contextmanager
+def following_together() -> Iterator[MachinesAsked]:
+    """Note which machines are asked for inside, which show NaN there, and follow all of them at the end at once.
+
+    What is asked for again afterwards is known then.
+    """
+    asked = MachinesAsked()
+    token = _ASKED.set(asked)
+    try:
+        yield asked
+    finally:
+        _ASKED.reset(token)
+    by_record: dict[tuple[int, bytes], list[_Machines[Any, Any, Any]]] = {}
+    for machines in asked.several:
+        by_record.setdefault((id(machines.dynamics), machines.record), []).append(machines)
+    for group in by_record.values():
+        machines = _joined(group)
+        asked.new += len({*machines.keys()} - {*machines.dynamics.memory})
+        _follow(machines)
+
+
+def _remembered(machines: _Machines[Any, Any, Any]) -> Solution:
+    """Return what is known of machines; those that are not known are followed, but for where they are noted alone."""
+    asked = _ASKED.get()
+    if asked is not None:
+        asked.several.append(machines)
+        states, events = len(machines.dynamics.state_fields), len(machines.dynamics.events)
+        nothing = np.full((events, machines.count), np.nan)
+        return Solution(np.full((states, machines.count, len(machines.stamps)), np.nan), nothing, nothing)
+    known = _follow(machines)
+    reasons = {place: each.reason for place, each in enumerate(known) if each.reason}
+    return Solution(
+        np.stack([each.states for each in known], axis=1), np.stack([each.counts for each in known], axis=1),
+        np.stack([each.first for each in known], axis=1), reasons,
+    )  # fmt: skip
+
+
+def _follow(machines: _Machines[Any, Any, Any]) -> list[_Followed]:
+    """Return what is known of machines, those that are not known followed in one call."""
+    memory, keys = machines.dynamics.memory, machines.keys()
+    places = {key: place for place, key in enumerate(keys) if key not in memory}
+    made = {key: memory[key] for key in keys if key in memory}
+    if places:
+        new = machines.part(np.array(list(places.values())))
+        made |= dict(zip(places, _followed(new), strict=True))
+        most = max(1, MOST_REMEMBERED // max(made[keys[0]].states.size, 1))
+        memory.update((key, made[key]) for key in places)
+        for old in list(memory)[:-most]:
+            del memory[old]
+    return [made[key] for key in keys]
+
+
+def _followed(new: _Machines[Any, Any, Any]) -> list[_Followed]:
+    """Follow machines, near what is known or near one another where that can be."""
+    numbers = np.column_stack([np.zeros(new.count), *(each for each in new.numbers.values() if each.ndim == 1)])
+    known = [each for key, each in new.dynamics.memory.items() if each.path is not None and key.startswith(new.record)]
+    known = known[-MOST_NEAR:]
+    made: dict[int, _Followed] = {}
+    leaders = _leaders(numbers)
+    firsts = np.unique(leaders)
+    near = [nearest.path if (nearest := _nearest(known, numbers[each], FAR)) else None for each in firsts]
+    _add(made, new, numbers, dict(zip(firsts.tolist(), near, strict=True)))
+    rest = [each for each in range(new.count) if each not in made]
+    if rest:
+        _add(made, new, numbers, {each: made[int(leaders[each])].path for each in rest})
+    return [made[each] for each in range(new.count)]
+
+
+def _leaders(numbers: Matrix) -> Indices:
+    """Return for every machine the first one that is near it, itself where none is, (n,)."""
+    scaled = numbers / np.maximum(np.abs(numbers).max(axis=0), TINY)
+    leaders, firsts = np.zeros(len(numbers), dtype=np.intp), np.zeros(0, dtype=np.intp)
+    for place, row in enumerate(scaled):
+        off = np.abs(scaled[firsts] - row).sum(axis=1)
+        if not (off < NEAR).any():
+            firsts = np.append(firsts, place)
+            off = np.append(off, 0.0)
+        leaders[place] = firsts[np.argmin(off)]
+    return leaders
+
+
+def _nearest(known: Sequence[_Followed], numbers: Matrix, within: float) -> _Followed | None:
+    """Return what is known nearest to a machine; None where that is far."""
+    if not known:
+        return None
+    several = np.array([each.numbers for each in known])
+    off = (np.abs(several - numbers) / np.maximum(np.abs(numbers), TINY)).sum(axis=1)
+    best = int(np.argmin(off))
+    return known[best] if off[best] < within else None
+
+
+def _add(
+    made: dict[int, _Followed], new: _Machines[Any, Any, Any], numbers: Matrix, along: Mapping[int, Path | None]
+) -> None:  # fmt: skip
+    """Follow some machines, each along a path where one is given and leads to the end, else step by step."""
+    with_path = {place: path for place, path in along.items() if path is not None}
+    paths: dict[int, Path] = {}
+    if with_path and new.dynamics.step is None:
+        part = new.part(np.array([*with_path]))
+        solution = empty_solution(problem := _problem(part))
+        paths = at_once(problem, [*with_path.values()], solution)
+        places = [*with_path]
+        made |= {places[each]: _one_of(solution, each, numbers[places[each]], path) for each, path in paths.items()}
+    left = [place for place in along if place not in made]
+    if left:
+        part = new.part(np.array(left))
+        solution = _in_steps(part) if new.dynamics.step is not None else solve(_problem(part), keeps_paths=True)
+        paths = solution.paths(_problem(part)) if solution.taken else {}
+        for each, place in enumerate(left):
+            made[place] = _one_of(solution, each, numbers[place], paths.get(each))
+
+
+def _one_of(solution: Solution, machine: int, numbers: Matrix, path: Path | None) -> _Followed:
+    """Return one machine of a solution."""
+    return _Followed(
+        np.array(solution.states[:, machine]), np.array(solution.counts[:, machine]),
+        np.array(solution.first[:, machine]), solution.reasons.get(machine), numbers, path,
+    )  # fmt: skip
 
 
 def _problem(machines: _Machines[Any, Any, Any]) -> InitialValueProblem:
@@ -235,6 +406,29 @@ class _Machines(Generic[S, I, R]):
     columns: Mapping[tuple[str, ...], Matrix]
     drives: Mapping[tuple[str, ...], Matrix]
     held: frozenset[tuple[str, ...]]
+
+    @cached_property
+    def record(self) -> bytes:
+        """What tells the record of these machines from that of others: every input that all machines share."""
+        wide = {path for path, value in self.drives.items() if value.ndim > 1}
+        digest = blake2b(digest_size=16)
+        for each in self.dynamics.input_fields.values():
+            if not each.varies and each.path not in wide:
+                value = read(self.inputs, each.path)
+                digest.update(value.tobytes() if isinstance(value, np.ndarray) else f"{value!r}\0".encode())
+        return digest.digest()
+
+    @cached_property
+    def numbers(self) -> dict[tuple[str, ...], Matrix]:
+        """By path what may differ between machines, (n,) or (n, k)."""
+        fields_of = [each for each in self.dynamics.input_fields.values() if each.varies]
+        made = {each.path: np.broadcast_to(read(self.inputs, each.path), (self.count,)) for each in fields_of}
+        return made | {path: value for path, value in self.drives.items() if value.ndim > 1}
+
+    def keys(self) -> list[bytes]:
+        """Return what tells every machine from any other one."""
+        rows = np.column_stack([np.zeros(self.count), *self.numbers.values()])
+        return [self.record + row.tobytes() for row in rows]
 
     def start(self) -> Matrix:
         """Return the states at the first stamp, (d, n)."""
@@ -317,6 +511,20 @@ def _machines(dynamics: Dynamics[S, I, R], inputs: I) -> _Machines[S, I, R]:
     columns = {path: np.broadcast_to(value, (count,)) for path, value in columns.items()}
     held = frozenset(each.path for each in dynamics.driving.values() if getattr(each.spec, "between", "") == "hold")
     return _Machines(dynamics, inputs, stamps, count, not sizes, columns, drives, held)
+
+
+def _joined(several: Sequence[_Machines[S, I, R]]) -> _Machines[S, I, R]:
+    """Return machines of one record as one batch; what is the same for all of them stays a number."""
+    first, *others = several
+    if not others:
+        return first
+    numbers = {path: np.concatenate([each.numbers[path] for each in several]) for path in first.numbers}
+    alone = {path: value for path, value in numbers.items() if value.ndim == 1}
+    columns = {path: value for path, value in alone.items() if (value != value[0]).any()}
+    inputs = with_values(first.inputs, {path: columns.get(path, value[0]) for path, value in alone.items()})
+    drives = {path: numbers.get(path, value) for path, value in first.drives.items()}
+    count = sum(each.count for each in several)
+    return replace(first, inputs=inputs, count=count, is_single=False, columns=columns, drives=drives)
 
 
 def _demand(holds: Any, sentence: str) -> None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -144,6 +145,9 @@ def _answer(chosen: Chosen, setup: Setup, progress: Progress) -> DiagnosisResult
     units = units_of(chosen)
     causes = by_share(chosen, causes_of(chosen, best))
     judged = nested(chosen, part_of(progress, "diagnosis", STAGE_ENDS["significance"], STAGE_ENDS["gain"]))
+    alternatives = [
+        partial(alternative_of, chosen, rival, with_sizes=rank < SIZED) for rank, rival in enumerate(chosen.rivals)
+    ]
     points, ties = with_results(chosen, next_points(chosen))
     progress("gain", FINE, FINE)
     return DiagnosisResult(
@@ -153,9 +157,7 @@ def _answer(chosen: Chosen, setup: Setup, progress: Progress) -> DiagnosisResult
         units=units,
         wrong=wrong_of(chosen, units),
         causes=causes,
-        alternatives=tuple(
-            alternative_of(chosen, rival, with_sizes=rank < SIZED) for rank, rival in enumerate(chosen.rivals)
-        ),
+        alternatives=tuple(chosen.competition.extended.side_by_side(alternatives)),
         remainder=remainder_of(chosen, units),
         seen=tuple(smallest_visible(chosen)),
         not_measured=_not_measured(machine),
@@ -185,7 +187,8 @@ def _ranking(chosen: Chosen) -> tuple[Alternative, ...]:
     top = competition.score(competition.known[chosen.best.key])
     others = [fit for fit in competition.ranked() if fit.key != chosen.best.key][: RANKED - 1]
     ranked = [Rival(chosen.best, 0.0), *(Rival(fit, max(0.0, competition.score(fit) - top)) for fit in others)]
-    return tuple(alternative_of(chosen, each) for each in ranked)
+    tasks = [partial(alternative_of, chosen, each) for each in ranked]
+    return tuple(competition.extended.side_by_side(tasks))
 
 
 def units_of(chosen: Chosen) -> dict[str, str]:

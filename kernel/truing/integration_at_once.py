@@ -1,0 +1,411 @@
+"""A motion all at once: every step of a path that is known from a machine nearby, at the same time, until they meet.
+
+Unknown are the states at the ends of all steps and the times of the events. Newton's method makes the end of every
+step the start of the next one (multiple shooting; J. Stoer, R. Bulirsch, Introduction to numerical analysis, 7.3.5).
+A step is the one of ``truing.integration``, with its error and its events: what is not within the tolerance, or meets
+other events than the path, is left to be followed step by step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from truing.arrays import Indices, Mask, Matrix
+from truing.integration import (
+    LOOKS,
+    ORDER,
+    STAGES,
+    InitialValueProblem,
+    OwnDense,
+    Path,
+    Solution,
+    Step,
+    System,
+    combined,
+    error_of,
+    method,
+    passes,
+    scale_of,
+    stages_of,
+)
+
+MOST_ROUNDS = 8
+"""So many rounds of Newton's method are taken."""
+MET = 0.02
+"""Steps meet when the states are to move by less than this share of the tolerance."""
+ASIDE = 1e-6
+"""Share of a state, or of its size, and of the record, by which it is moved for a derivative."""
+CONTRACTS = 0.5
+"""A round that is to move more than this share of what the one before moved leads nowhere."""
+MOST_PARTINGS, MOST_PARTS, NEARLY = 4, 8, 0.5
+"""So often steps are parted, each into so many at the most, where their error is above this share of what it may be."""
+FAR = 1e5
+"""Derivatives are taken anew where states moved by more than so many tolerances."""
+
+
+@dataclass(frozen=True)
+class _Grid:
+    """n machines with N steps each; one that has fewer is filled up with steps of no length.
+
+    ``t`` (n, N + 1) and ``y`` (d, n, N + 1) hold the ends of the steps. A stretch lies between two ends that are held
+    or are events; inside of it times move in proportion. ``share`` (2, n, N) says where in its stretch a step begins
+    and ends, ``last`` (n, N) which step ends its stretch. Masks (n, N): ``is_last`` of these, ``is_empty`` of no length.
+    """
+
+    system: System
+    t: Matrix
+    y: Matrix
+    interval: Indices
+    event: Indices
+    share: Matrix
+    last: Indices
+    is_last: Mask
+    is_empty: Mask
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Machines and steps."""
+        machines, steps = self.event.shape
+        return machines, steps
+
+    def some(self, machines: Indices) -> _Grid:
+        """Return some of the machines."""
+        steps = self.shape[1]
+        flat = (machines[:, None] * steps + np.arange(steps)).ravel()
+        return _Grid(
+            self.system.part(flat), self.t[machines], self.y[:, machines], self.interval[machines],
+            self.event[machines], self.share[:, machines], self.last[machines], self.is_last[machines],
+            self.is_empty[machines],
+        )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class _Shot:
+    """All steps, from where they begin now: lengths, stages (16, d, m), where they lead and go on, (d, n, N).
+
+    ``value`` (n, N) is that of the event which is to end a step.
+    """
+
+    length: Matrix
+    stages: Matrix
+    reached: Matrix
+    after: Matrix
+    value: Matrix
+
+    @property
+    def rate(self) -> Matrix:
+        """The rates at the ends, (d, n, N)."""
+        return self.stages[STAGES].reshape(self.reached.shape)
+
+
+@dataclass(frozen=True)
+class _Slopes:
+    """Derivatives of the steps: by the state they begin with, (n, N, d, d); of events by state and time, last."""
+
+    step: Matrix
+    value: Matrix
+    after: Matrix
+
+
+def at_once(problem: InitialValueProblem, paths: Sequence[Path], solution: Solution) -> dict[int, Path]:
+    """Fill in the solution for the machines that can be followed along these paths; return their own paths.
+
+    Steps whose error is not within the tolerance are parted, and the machine is followed along the finer path.
+    """
+    made: dict[int, Path] = {}
+    left = dict(enumerate(paths))
+    with np.errstate(all="ignore"):
+        for _ in range(MOST_PARTINGS):
+            if not left:
+                break
+            machines = np.array([*left])
+            own = replace(problem, system=problem.system.part(machines), start=problem.start[:, machines])
+            several = _Several(own, machines, solution)
+            left = _along(several, _grid(own, [*left.values()]), made)
+    return made
+
+
+@dataclass(frozen=True)
+class _Several:
+    """Machines that are followed together: their problem, which of the solution they are."""
+
+    problem: InitialValueProblem
+    machines: Indices
+    solution: Solution
+
+
+def _along(several: _Several, grid: _Grid, made: dict[int, Path]) -> dict[int, Path]:
+    """Fill in the machines whose steps meet; return finer paths of those whose steps are too long."""
+    problem, machines = several.problem, np.arange(len(several.machines))
+    before, finer = np.full(len(machines), np.inf), dict[int, Path]()
+    slopes: _Slopes | None = None
+    for _ in range(MOST_ROUNDS):
+        shot = _shoot(problem, grid)
+        if slopes is None or before.max(initial=0.0) > FAR:
+            slopes = _slopes(problem, grid, shot)
+        moved_y, moved_t = _newton(grid, shot, slopes)
+        moves = _size(problem, shot, moved_y, moved_t)
+        met = np.flatnonzero(moves < MET)
+        if len(met):
+            own = replace(several, machines=several.machines[machines[met]])
+            finer |= _judged(own, grid.some(met), _some(shot, met), made)
+        t = grid.t + moved_t
+        is_apart = (moves >= MET) & (moves < CONTRACTS * before)
+        on = np.flatnonzero(is_apart & (np.diff(t, axis=1) >= 0).all(axis=1))
+        if not len(on):
+            break
+        grid = replace(grid, t=t, y=grid.y + moved_y).some(on)
+        slopes = _Slopes(slopes.step[on], slopes.value[on], slopes.after[on])
+        machines, before = machines[on], moves[on]
+    return finer
+
+
+def _grid(problem: InitialValueProblem, paths: Sequence[Path]) -> _Grid:
+    """Put paths side by side, each machine with the start of its own."""
+    steps = max(len(path.event) for path in paths)
+    fills = [steps - len(path.event) for path in paths]
+    pairs = list(zip(paths, fills, strict=True))
+    t = np.array([np.pad(path.t, (0, fill), mode="edge") for path, fill in pairs])
+    y = np.stack([np.pad(path.y, ((0, 0), (0, fill)), mode="edge") for path, fill in pairs], axis=1)
+    y[:, :, 0] = problem.start
+    interval = np.array([np.pad(path.interval, (0, fill), mode="edge") for path, fill in pairs])
+    event = np.array([np.pad(path.event, (0, fill), constant_values=-1) for path, fill in pairs])
+    is_last = (event >= 0) | (np.diff(interval, axis=1, append=-1) != 0)
+    number = np.arange(steps)
+    is_empty = number >= np.array([[len(path.event)] for path in paths])
+    is_last |= np.roll(is_empty, -1, axis=1) | (number == steps - 1)
+    last = np.minimum.accumulate(np.where(is_last, number, steps)[:, ::-1], axis=1)[:, ::-1]
+    first = np.maximum.accumulate(np.where(np.roll(is_last, 1, axis=1) | (number == 0), number, 0), axis=1)
+    rows = np.arange(len(paths))[:, None]
+    low, high = t[rows, first], t[rows, last + 1]
+    whole = np.where(high > low, high - low, 1.0)
+    share = np.array([(t[:, :-1] - low) / whole, np.where(is_last, 1.0, (t[:, 1:] - low) / whole)])
+    system = problem.system.part(np.repeat(np.arange(len(paths)), steps))
+    return _Grid(system, t, y, interval, event, share, last, is_last, is_empty)
+
+
+def _some(shot: _Shot, machines: Indices) -> _Shot:
+    steps = shot.value.shape[1]
+    flat = (machines[:, None] * steps + np.arange(steps)).ravel()
+    return _Shot(
+        shot.length[flat], shot.stages[:, :, flat], shot.reached[:, machines], shot.after[:, machines],
+        shot.value[machines],
+    )  # fmt: skip
+
+
+def _shoot(problem: InitialValueProblem, grid: _Grid) -> _Shot:
+    """Take all steps."""
+    begin, interval = grid.y[:, :, :-1].reshape(len(grid.y), -1), grid.interval.ravel()
+    t, end = grid.t[:, :-1].ravel(), grid.t[:, 1:].ravel()
+    stages, reached = _steps(grid.system, t, begin, end - t, interval)
+    after, value = np.array(reached), np.zeros(len(t))
+    for number, rule in enumerate(problem.events):
+        own = np.flatnonzero(grid.event.ravel() == number)
+        if len(own):
+            at = end[own], reached[:, own], interval[own]
+            part = grid.system.part(own)
+            value[own] = part.crossing(number, *at)
+            if rule.sets:
+                after[:, own] = part.after(number, *at)
+    shape = len(begin), *grid.shape
+    return _Shot(end - t, stages, reached.reshape(shape), after.reshape(shape), value.reshape(grid.shape))
+
+
+def _steps(system: System, t: Matrix, y: Matrix, length: Matrix, interval: Indices) -> tuple[Matrix, Matrix]:
+    """Return the stages of steps, with the rate at their ends, and where they lead."""
+    stages, _ = stages_of(system, (t, y, system.rate(t, y, interval), length), interval)
+    reached = y + length * combined(method().B, stages)
+    stages[STAGES] = system.rate(t + length, reached, interval)
+    return stages, reached
+
+
+def _slopes(problem: InitialValueProblem, grid: _Grid, shot: _Shot) -> _Slopes:
+    """Take derivatives of all steps, and of all events, by differences."""
+    begin, interval = grid.y[:, :, :-1].reshape(len(grid.y), -1), grid.interval.ravel()
+    states, many = begin.shape
+    aside = ASIDE * np.maximum(np.abs(begin), problem.sizes[:, None])
+    several = np.tile(np.arange(many), states)
+    moved = np.concatenate([begin + aside * unit[:, None] for unit in np.eye(states)], axis=1)
+    t = grid.t[:, :-1].ravel()
+    _, reached = _steps(grid.system.part(several), t[several], moved, shot.length[several], interval[several])
+    made = (reached.reshape(states, states, many) - shot.reached.reshape(states, 1, many)) / aside
+    step = np.moveaxis(made, -1, 0).reshape(*grid.shape, states, states)
+    value, after = np.zeros((many, states + 1)), np.zeros((many, states, states + 1))
+    for number, rule in enumerate(problem.events):
+        own = np.flatnonzero(grid.event.ravel() == number)
+        if len(own):
+            _event_slopes(problem, grid, shot, (number, own), (value, after), is_set=rule.sets)
+    return _Slopes(step, value.reshape(*grid.shape, -1), after.reshape(*grid.shape, states, -1))
+
+
+def _event_slopes(
+    problem: InitialValueProblem, grid: _Grid, shot: _Shot, event: tuple[int, Indices], made: tuple[Matrix, Matrix],
+    *, is_set: bool,
+) -> None:  # fmt: skip
+    """Fill in the derivatives of an event at its steps, by every state and by the time."""
+    (number, own), (value, after) = event, made
+    y = shot.reached.reshape(len(grid.y), -1)[:, own]
+    t, interval = grid.t[:, 1:].ravel()[own], grid.interval.ravel()[own]
+    states, several = len(y), np.tile(np.arange(len(own)), len(y) + 1)
+    aside = ASIDE * np.vstack([
+        np.maximum(np.abs(y), problem.sizes[:, None]),
+        np.full(len(own), problem.stamps[-1] - problem.stamps[0]),
+    ])  # fmt: skip
+    moved = np.hstack([y + aside[:-1] * unit[:, None] for unit in np.eye(states)] + [y])
+    late = np.concatenate([np.tile(t, states), t + aside[-1]])
+    part = grid.system.part(own[several])
+    crossing = part.crossing(number, late, moved, interval[several]).reshape(states + 1, -1)
+    value[own] = ((crossing - shot.value.ravel()[own]) / aside).T
+    if not is_set:
+        after[own, :, :-1] = np.eye(states)
+        return
+    set_to = part.after(number, late, moved, interval[several]).reshape(states, states + 1, -1)
+    before = shot.after.reshape(states, -1)[:, own]
+    after[own] = np.moveaxis((set_to - before[:, None]) / aside, -1, 0)
+
+
+def _newton(grid: _Grid, shot: _Shot, slopes: _Slopes) -> tuple[Matrix, Matrix]:
+    """Return how far states (d, n, N + 1) and times (n, N + 1) are to move so that all steps meet.
+
+    Inside of a stretch whose end is an event, states move in proportion to when it comes, which is known at its end.
+    """
+    machines, steps = grid.shape
+    states = len(grid.y)
+    missed = np.moveaxis(shot.after - grid.y[:, :, 1:], 0, -1)
+    rate = np.moveaxis(shot.stages[0].reshape(shot.reached.shape), 0, -1)
+    carried = -np.einsum("nsij,nsj->nsi", slopes.step, rate)
+    ended = np.moveaxis(shot.rate, 0, -1)
+    begins, ends = grid.share[..., None]
+    by_end = carried * begins + ended * ends
+    by_begin = carried * (1 - begins) + ended * (1 - ends)
+    by_end[grid.is_empty], by_begin[grid.is_empty] = 0.0, 0.0
+    along = np.zeros((steps + 1, machines, states, 2))  # what states move by, and for each second the event is later
+    late, first = np.zeros((steps, machines)), np.zeros((steps, machines))
+    now, shift = along[0], np.zeros(machines)
+    has_event, has_end = (grid.event >= 0).any(axis=0), grid.is_last.any(axis=0)
+    for number in range(steps):
+        first[number] = shift
+        now = slopes.step[:, number] @ now
+        now[..., 1] += by_end[:, number]
+        now[..., 0] += by_begin[:, number] * shift[:, None]
+        if has_event[number]:
+            own = np.flatnonzero(grid.event[:, number] >= 0)
+            late[number, own] = _later(shot, slopes, now, (own, number))
+            shift = np.where(grid.event[:, number] >= 0, late[number], shift)
+            now[own, :, 0] = _after(slopes, now, late, (own, number))
+        now[..., 0] += missed[:, number]
+        if has_end[number]:
+            is_last, is_empty = grid.is_last[:, number], grid.is_empty[:, number]
+            now[is_last, :, 1] = 0.0
+            late[number] = np.where(is_empty, shift, late[number])
+            shift = np.where(is_last & (grid.event[:, number] < 0) & ~is_empty, 0.0, shift)
+        along[number + 1] = now
+    whole = np.take_along_axis(late, grid.last.T, axis=0)
+    moved = along[..., 0]
+    moved[1:] += along[1:, ..., 1] * whole[..., None]
+    times = np.zeros((machines, steps + 1))
+    times[:, 1:] = ((1 - grid.share[1].T) * first + grid.share[1].T * whole).T
+    return np.moveaxis(moved, (0, 1, 2), (2, 1, 0)), times
+
+
+def _later(shot: _Shot, slopes: _Slopes, now: Matrix, at: tuple[Indices, int]) -> Matrix:
+    """Return by how much later an event comes, of the machines whose step it ends."""
+    own, number = at
+    value = slopes.value[own, number]
+    risen = np.einsum("nd,ndk->nk", value[:, :-1], now[own])
+    return np.asarray(-(shot.value[own, number] + risen[:, 0]) / (risen[:, 1] + value[:, -1]))
+
+
+def _after(slopes: _Slopes, now: Matrix, late: Matrix, at: tuple[Indices, int]) -> Matrix:
+    """Return by how much the states after an event move."""
+    own, number = at
+    moved = now[own, :, 0] + now[own, :, 1] * late[number, own, None]
+    both = np.column_stack([moved, late[number, own]])
+    return np.asarray(np.einsum("nde,ne->nd", slopes.after[own, number], both))
+
+
+def _size(problem: InitialValueProblem, shot: _Shot, moved_y: Matrix, moved_t: Matrix) -> Matrix:
+    """Return how far states are to move, in tolerances, by machine; what events come later counts by the rates."""
+    allowed = scale_of(problem, shot.after.reshape(len(shot.after), -1)).reshape(shot.after.shape)
+    shifted = np.abs(moved_t[:, 1:] * shot.rate)
+    sizes = (np.abs(moved_y[:, :, 1:]) + shifted) / allowed
+    largest = sizes.max(axis=(0, 2))
+    return np.where(np.isfinite(largest), largest, np.inf)
+
+
+def _judged(several: _Several, grid: _Grid, shot: _Shot, made: dict[int, Path]) -> dict[int, Path]:
+    """Fill in the machines whose steps are within the tolerance and meet no other event; part steps that are not."""
+    problem = several.problem
+    begin, reached = grid.y[:, :, :-1].reshape(len(grid.y), -1), shot.reached.reshape(len(grid.y), -1)
+    t, end = grid.t[:, :-1].ravel(), grid.t[:, 1:].ravel()
+    step = Step(t, begin, shot.length, end, reached, shot.stages[STAGES])
+    dense = OwnDense(grid.system, grid.interval.ravel(), step, shot.stages)
+    error = error_of(shot.stages, shot.length, scale_of(problem, begin, reached)).reshape(grid.shape)
+    is_close = (error < 1).all(axis=1)
+    is_right = _meets_no_other(problem, grid, dense) if problem.events else np.ones(len(is_close), dtype=bool)
+    for row in np.flatnonzero(is_close & is_right):
+        _write(several, grid, shot, dense, row)
+        made[int(several.machines[row])] = _path(grid, shot, row)
+    return {
+        int(several.machines[row]): _parted(_path(grid, shot, row), dense, error[row], row * grid.shape[1])
+        for row in np.flatnonzero(~is_close & np.isfinite(error).all(axis=1))
+    }
+
+
+def _write(several: _Several, grid: _Grid, shot: _Shot, dense: OwnDense, row: int) -> None:
+    """Fill in one machine: its states at the stamps, and its events."""
+    number, ends, solution = several.machines[row], grid.t[row, 1:], several.solution
+    stamps = several.problem.stamps
+    which = np.searchsorted(ends, stamps[1:])
+    within = np.flatnonzero(which < len(ends))
+    flat = row * grid.shape[1] + which[within]
+    solution.states[:, number, 1 + within] = dense.at(stamps[1 + within], flat)
+    solution.states[:, number, 1 + len(within) :] = shot.after[:, row, -1, None]
+    for event in range(len(several.problem.events)):
+        times = ends[grid.event[row] == event]
+        solution.counts[event, number] = len(times)
+        solution.first[event, number] = times[0] if len(times) else np.nan
+
+
+def _path(grid: _Grid, shot: _Shot, row: int) -> Path:
+    """Return the path of one machine."""
+    steps = int((~grid.is_empty[row]).sum())
+    y = np.column_stack([grid.y[:, row, :steps], shot.after[:, row, -1]])
+    return Path(grid.t[row, : steps + 1], y, grid.interval[row, :steps], grid.event[row, :steps])
+
+
+def _parted(path: Path, dense: OwnDense, error: Matrix, first: int) -> Path:
+    """Return a path with shorter steps where their errors are too large, or nearly so."""
+    error = error[: len(path.event)]
+    parts = np.where(error > NEARLY, np.ceil((error / NEARLY) ** (1 / ORDER)).clip(2, MOST_PARTS), 1).astype(np.intp)
+    which = np.repeat(np.arange(len(parts)), parts)
+    part = np.arange(len(which)) - np.repeat(np.cumsum(parts) - parts, parts)
+    begin = path.t[which] + part / parts[which] * (path.t[which + 1] - path.t[which])
+    y = np.where(part == 0, path.y[:, which], dense.at(begin, first + which))
+    event = np.where(part == parts[which] - 1, path.event[which], -1)
+    return Path(np.append(begin, path.t[-1]), np.column_stack([y, path.y[:, -1]]), path.interval[which], event)
+
+
+def _meets_no_other(problem: InitialValueProblem, grid: _Grid, dense: OwnDense) -> Mask:
+    """Whether machines meet the events of their path, in the right direction, and no other one."""
+    (machines, steps), step = grid.shape, dense.step
+    shares = np.arange(LOOKS + 1)[:, None] / LOOKS
+    times, several = step.t + shares * step.length, np.tile(np.arange(len(step.t)), LOOKS + 1)
+    states = dense.at(times.ravel(), several)
+    system, interval = grid.system.part(several), dense.interval[several]
+    is_empty, event = grid.is_empty.ravel(), grid.event.ravel()
+    begins_after = np.roll(event, 1) >= 0
+    begins_after[::steps] = False
+    is_good = np.ones(machines, dtype=bool)
+    for number, rule in enumerate(problem.events):
+        values = system.crossing(number, times.ravel(), states, interval).reshape(LOOKS + 1, -1)
+        ends_here = event == number
+        is_wrong = ends_here & (values[-2] * rule.direction > 0)
+        values[:, is_empty] = np.nan
+        values[0, begins_after] = values[-1, ends_here] = np.nan  # what has just passed 0, or is just to pass it
+        is_wrong |= passes(values, rule).any(axis=0)
+        is_good &= ~is_wrong.reshape(machines, steps).any(axis=1)
+    return is_good
