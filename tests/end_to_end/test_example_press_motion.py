@@ -48,12 +48,12 @@ def test_both_programs_need_the_same_torque(simulation: ModuleType, tmp_path: Pa
     monkeypatch.setattr(simulation, "turned", lambda time, rpm, start: start + np.pi / 30 * rpm * time)
     simulation.write("even.csv", 12.0, np.radians(-150), 1.2e6, rows=50, seed=1)
     shown = np.genfromtxt("even.csv", delimiter=",", skip_header=1)
-    bars, lengths = simulation.BARS, {"crank": "AB", "rod": "BE", "drive": "CG", "upper": "MG", "lower": "GH"}
+    links = zip(("crank", "rod", "drive", "upper", "lower"), simulation.BARS.values(), strict=True)
     run = load("press_linkage.motion").run(
         times=shown[:, 0], start_angle="-150 deg", forming_force=shown[:, 3],
         slider_mass=f"{simulation.SLIDER} kg", platform_mass=f"{simulation.PLATFORM} kg",
         counterbalance=f"{simulation.LIFT} N", rotor_inertia=f"{simulation.ROTOR} kg*m^2",
-        **{f"mass_{link}": f"{bars[joints]} kg" for link, joints in lengths.items()},
+        **{f"mass_{link}": f"{mass} kg" for link, mass in links},
     )  # fmt: skip
     assert run.si["crank_torque"] / 1e3 == pytest.approx(shown[:, 4], abs=6e-4)
 

@@ -14,7 +14,7 @@ PIVOT, JOINT, HALF = 1.2, 0.3, 1.6
 GROUND = (1.393 * math.cos(0.367), 1.393 * math.sin(0.367))
 BOTTOM = math.acos((JOINT - PIVOT) / (CRANK + ROD))
 """Direction of the crank, stretched in line with its rod."""
-BARS = {"AB": 57.2, "BE": 203.0, "CG": 137.0, "MG": 265.0, "GH": 252.5}
+BARS = {("A", "B"): 57.2, ("B", "E"): 203.0, ("C", "G"): 137.0, ("M", "G"): 265.0, ("G", "H"): 252.5}
 """Links by their joints, kg; C is the end of the arm."""
 PLATFORM, SLIDER, ROTOR = 2030.0, 20100.0, 208.0
 LIFT = 196e3 * 0.87
