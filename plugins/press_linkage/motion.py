@@ -46,7 +46,7 @@ MOST_ROUNDS, SETTLED = 200, 1e-14
 LINKS = ("crank", "rod", "drive", "upper", "lower")
 PINS = (
     ("crank_pivot", "crank", ""), ("crank_pin", "rod", "crank"), ("rod_joint", "rod", ""), ("arm_joint", "drive", ""),
-    ("drive_knee", "drive", "upper"), ("lower_knee", "lower", "upper"), ("ground_joint", "upper", ""),
+    ("knee_of_drive", "drive", "upper"), ("knee_of_lower", "lower", "upper"), ("ground_joint", "upper", ""),
     ("slider_joint", "lower", ""),
 )  # fmt: skip
 """Each joint that rubs, the link that turns on its pin, and the link in which the pin is fixed, if any."""
@@ -73,16 +73,25 @@ def course(press: MovingPress) -> CrankCourse:
     """
     times = np.atleast_1d(press.times)
     feasible(len(times) > 1 and bool(np.all(np.diff(times) > 0)), "times: two or more, each later than the one before")
-    speeds = TURN * np.asarray(press.crank_speed)
-    if not speeds.size:
+    speeds = _over_time(press, "crank_speed", times)
+    if speeds is None:
         return _over_angle(press, times - times[0])
-    fits = speeds.shape == times.shape
-    feasible(fits, f"crank_speed has {speeds.size} values at {len(times)} times; it needs one at each")
-    if not fits:
+    if not np.isfinite(speeds).all():
         return _no_course(times)
-    law = PchipInterpolator(times, speeds)
+    law = PchipInterpolator(times, TURN * speeds)
     turned = law.antiderivative()(times)
     return CrankCourse(press.start_angle + turned - turned[0], law(times), law(times, 1))
+
+
+def _over_time(press: MovingPress, name: str, times: Array) -> Array | None:
+    """A series that is stated at the times, NaN where it does not fit them; None where it is not stated."""
+    values = np.asarray(getattr(press, name), dtype=np.float64)
+    if not values.size:
+        return None
+    fits = values.shape == times.shape
+    feasible(fits, f"{name} has {values.size} values at {len(times)} times; it needs one at each")
+    feasible(bool(np.isfinite(values).all()), f"{name} is missing at some of the times")
+    return values if fits else np.full(times.shape, np.nan)
 
 
 def _no_course(times: Array) -> CrankCourse:
@@ -128,24 +137,22 @@ def turn_table(angles: Float, values: Float, *names: str) -> tuple[Array, Array]
     Where it is none, NaN over one angle, and its row fails.
     """
     angle, value = np.atleast_1d(angles), np.atleast_1d(values)
-    fits = angle.shape == value.shape
+    fits = angle.shape == value.shape and angle.size > 0
     feasible(fits, f"{names[1]} has {value.size} values at {angle.size} of {names[0]}; it needs one at each")
     if fits and len(angle) > 1 and abs(angle[-1] - angle[0] - TURN) < CLOSED and value[0] == value[-1]:
         angle, value = angle[:-1], value[:-1]
-    rises = bool(np.all(np.diff(angle) > 0)) and angle[-1] - angle[0] < TURN - CLOSED
+    rises = not fits or (bool(np.all(np.diff(angle) > 0)) and angle[-1] - angle[0] < TURN - CLOSED)
     feasible(rises, f"{names[0]}: angles rise within one turn; a table over a whole turn ends with its first value")
     return (angle, value) if fits and rises else (np.zeros(1), np.full(1, np.nan))
 
 
 def press_force(press: MovingPress, angle: Float) -> Float:
     """The force on the slider at the times: as it is stated there, else over the crank angle, straight between."""
-    stated, times = np.asarray(press.forming_force), np.atleast_1d(press.times)
-    if not stated.size:
-        angles, forces = turn_table(press.force_angle, press.force, "force_angle", "force")
-        return np.interp(angle, angles, forces, period=TURN)
-    fits = stated.shape == times.shape
-    feasible(fits, f"forming_force has {stated.size} values at {len(times)} times; it needs one at each")
-    return stated if fits else np.full(times.shape, np.nan)
+    stated = _over_time(press, "forming_force", np.atleast_1d(press.times))
+    if stated is not None:
+        return stated
+    angles, forces = turn_table(press.force_angle, press.force, "force_angle", "force")
+    return np.interp(angle, angles, forces, period=TURN)
 
 
 # How the bodies move, per crank angle: first and second derivatives, so that any speed and acceleration follow
@@ -294,9 +301,9 @@ class JointForces:
     crank_pin: JointPoint  # B, on the rod
     rod_joint: JointPoint  # E, on the rod
     arm_joint: JointPoint  # B5, on the knee drive
-    drive_knee: JointPoint  # G, on the knee drive
-    upper_knee: JointPoint  # G, on the upper knee link
-    lower_knee: JointPoint  # G, on the lower knee link
+    knee_of_drive: JointPoint  # G, on the knee drive
+    knee_of_upper: JointPoint  # G, on the upper knee link
+    knee_of_lower: JointPoint  # G, on the lower knee link
     ground_joint: JointPoint  # M, on the upper knee link
     slider_joint: JointPoint  # H, on the lower knee link
     torque: Float
@@ -313,15 +320,15 @@ def joint_forces(
     crank_, rod, drive, upper, lower = (demand(getattr(side, link), crank, couple) for link, couple in couples.items())
     held = force + press.counterbalance + press.guide_friction * _sense(side.slider.speed, crank)
     slider_joint = _lower_end(side.lower, lower, 0.5 * (_inertia(press.slider_mass, side.slider, crank) + held))
-    lower_knee = _plus(lower.force, slider_joint, -1.0)
+    knee_of_lower = _plus(lower.force, slider_joint, -1.0)
     arm, link = side.drive.line, side.upper.line
     across = _cross(link, arm)
-    along_drive = -(upper.moment + _cross(link, lower_knee)) / across
-    drive_knee = JointPoint(
+    along_drive = -(upper.moment + _cross(link, knee_of_lower)) / across
+    knee_of_drive = JointPoint(
         along_drive * arm.y - drive.moment / across * link.y, along_drive * arm.z - drive.moment / across * link.z
     )
-    upper_knee = _plus(_plus(JointPoint(0.0, 0.0), lower_knee, -1.0), drive_knee, -1.0)
-    arm_joint = _plus(drive.force, drive_knee, -1.0)
+    knee_of_upper = _plus(_plus(JointPoint(0.0, 0.0), knee_of_lower, -1.0), knee_of_drive, -1.0)
+    arm_joint = _plus(drive.force, knee_of_drive, -1.0)
     pulled = 0.5 * _inertia(press.platform_mass, side.platform, crank) + arm_joint.z
     rod_joint = _lower_end(side.rod, rod, pulled)
     crank_pin = _plus(rod.force, rod_joint, -1.0)
@@ -330,10 +337,10 @@ def joint_forces(
         crank_pin=crank_pin,
         rod_joint=rod_joint,
         arm_joint=arm_joint,
-        drive_knee=drive_knee,
-        upper_knee=upper_knee,
-        lower_knee=lower_knee,
-        ground_joint=_plus(upper.force, upper_knee, -1.0),
+        knee_of_drive=knee_of_drive,
+        knee_of_upper=knee_of_upper,
+        knee_of_lower=knee_of_lower,
+        ground_joint=_plus(upper.force, knee_of_upper, -1.0),
         slider_joint=slider_joint,
         torque=crank_.moment + press.rotor_inertia * crank.acceleration + _cross(side.crank.line, crank_pin),
     )
@@ -441,9 +448,9 @@ def press_motion(given: MovingPress) -> PressMotion:
         slider_acceleration=side.slider.acceleration * crank.speed**2 + side.slider.speed * crank.acceleration,
         press_force=force,
         rod_speed=side.rod.turning.speed * crank.speed,
-        drive_link_speed=side.drive.turning.speed * crank.speed,
-        upper_speed=side.upper.turning.speed * crank.speed,
-        lower_speed=side.lower.turning.speed * crank.speed,
+        knee_drive_speed=side.drive.turning.speed * crank.speed,
+        upper_knee_speed=side.upper.turning.speed * crank.speed,
+        lower_knee_speed=side.lower.turning.speed * crank.speed,
         reduced_inertia=inertia,
         inertia_slope=slope,
         weight_torque=weight_torque(press, side),

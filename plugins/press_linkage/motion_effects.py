@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-from press_linkage.motion import LINKS
 from press_linkage.motion_quantities import MovingPress, PressMotion
 from truing import Effect, Float, Tolerance, Unknown, normal
 
@@ -75,7 +74,12 @@ EFFECTS: list[Effect[MovingPress, PressMotion]] = [
 TOLERANCES = [
     Tolerance("slider_mass", normal(sd="1 %"), why="weighed with its upper die; assumed"),
     Tolerance("counterbalance", normal(sd="2 %"), why="pressure gauge of the cylinders; assumed"),
-    Tolerance("link_mass", normal(sd="3 %"), on=[f"mass_{link}" for link in LINKS], why="calculated; assumed"),
+    Tolerance(
+        "link_mass",
+        normal(sd="3 %"),
+        on=[f"mass_{link}" for link in ("crank", "rod", "knee_drive", "upper_knee", "lower_knee")],
+        why="calculated; assumed",
+    ),
     Tolerance("platform_mass", normal(sd="3 %"), why="calculated; assumed"),
     Tolerance("rotor_inertia", normal(sd="10 %"), why="of motor and gears from catalogues; assumed"),
     Tolerance("start_angle", normal(sd="0.1 deg"), why="zero of the encoder; assumed"),

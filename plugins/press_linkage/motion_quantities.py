@@ -49,9 +49,9 @@ class MovingPress(Mechanism):
     # Masses
     crank: Link = part(Link, index="a", mass=56.5)
     rod: Link = part(Link, index="R", mass=205.0)
-    drive: Link = part(Link, index="g", mass=136.0)
-    upper: Link = part(Link, index="m", mass=267.0)
-    lower: Link = part(Link, index="h", mass=251.0)
+    drive: Link = part(Link, index="g", suffix="knee_drive", mass=136.0)
+    upper: Link = part(Link, index="m", suffix="upper_knee", mass=267.0)
+    lower: Link = part(Link, index="h", suffix="lower_knee", mass=251.0)
     rotor_inertia: Float = given(200.0, "kg*m^2", symbol="J_D", note="of motor and gears, as it is felt at one crank",
                                  source=ASSUMED, at_least=0, at_most=1e7)  # fmt: skip
     platform_mass: Float = given(2.0, "t", symbol="m_P", note="of the platform with its arm", source=ASSUMED,
@@ -113,9 +113,9 @@ class PressMotion:
                                    "angle or over time")  # fmt: skip
     # The links
     rod_speed: Float = over_time("rad/s", "omega_R", "angular speed of the rod", method="loop I")
-    drive_link_speed: Float = over_time("rad/s", "omega_g", "angular speed of the knee drive", method="loop II")
-    upper_speed: Float = over_time("rad/s", "omega_m", "angular speed of the upper knee link", method="loop II")
-    lower_speed: Float = over_time("rad/s", "omega_h", "angular speed of the lower knee link", method="loop III")
+    knee_drive_speed: Float = over_time("rad/s", "omega_g", "angular speed of the knee drive", method="loop II")
+    upper_knee_speed: Float = over_time("rad/s", "omega_m", "angular speed of the upper knee link", method="loop II")
+    lower_knee_speed: Float = over_time("rad/s", "omega_h", "angular speed of the lower knee link", method="loop III")
     # What one crank needs
     reduced_inertia: Float = over_time("kg*m^2", "J", "inertia of one side, as it is felt at its crank",
                                        method="sum of what each body has per square of the crank speed")  # fmt: skip
@@ -137,9 +137,9 @@ class PressMotion:
     crank_pin: JointForce = part(JointForce, index="B", suffix="crank_pin")
     rod_joint: JointForce = part(JointForce, index="E", suffix="rod_joint")
     arm_joint: JointForce = part(JointForce, index="B5", suffix="arm_joint")
-    drive_knee: JointForce = part(JointForce, index="Gg", suffix="drive_knee")
-    upper_knee: JointForce = part(JointForce, index="Gm", suffix="upper_knee")
-    lower_knee: JointForce = part(JointForce, index="Gh", suffix="lower_knee")
+    knee_of_drive: JointForce = part(JointForce, index="Gg", suffix="knee_of_drive")
+    knee_of_upper: JointForce = part(JointForce, index="Gm", suffix="knee_of_upper")
+    knee_of_lower: JointForce = part(JointForce, index="Gh", suffix="knee_of_lower")
     ground_joint: JointForce = part(JointForce, index="M", suffix="ground_joint")
     slider_joint: JointForce = part(JointForce, index="H", suffix="slider_joint")
     # Over the record

@@ -34,8 +34,8 @@ MotionRun = Record[MovingPress, PressMotion]
 KILO = 1e-3
 SPOKEN = {
     "crank_pivot": ("A", "crank pivot"), "crank_pin": ("B", "crank pin"), "rod_joint": ("E", "rod on the platform"),
-    "arm_joint": ("B_5", "knee drive on the arm"), "drive_knee": ("G", "knee drive on the knee"),
-    "upper_knee": ("G", "upper link on the knee"), "lower_knee": ("G", "lower link on the knee"),
+    "arm_joint": ("B_5", "knee drive on the arm"), "knee_of_drive": ("G", "knee drive on the knee"),
+    "knee_of_upper": ("G", "upper link on the knee"), "knee_of_lower": ("G", "lower link on the knee"),
     "ground_joint": ("M", "ground joint"), "slider_joint": ("H", "slider joint"),
 }  # fmt: skip
 """Letter and name of each joint."""
@@ -199,7 +199,7 @@ SECTIONS = [
     ),
     Section(
         "Links",
-        "rod_speed", "drive_link_speed", "upper_speed", "lower_speed",
+        "rod_speed", "knee_drive_speed", "upper_knee_speed", "lower_knee_speed",
         text="Angular speeds of one side, positive from outward toward downward.",
     ),
     Section(

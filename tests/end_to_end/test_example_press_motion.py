@@ -48,7 +48,7 @@ def test_both_programs_need_the_same_torque(simulation: ModuleType, tmp_path: Pa
     monkeypatch.setattr(simulation, "turned", lambda time, rpm, start: start + np.pi / 30 * rpm * time)
     simulation.write("even.csv", 12.0, np.radians(-150), 1.2e6, rows=50, seed=1)
     shown = np.genfromtxt("even.csv", delimiter=",", skip_header=1)
-    links = zip(("crank", "rod", "drive", "upper", "lower"), simulation.BARS.values(), strict=True)
+    links = zip(("crank", "rod", "knee_drive", "upper_knee", "lower_knee"), simulation.BARS.values(), strict=True)
     run = load("press_linkage.motion").run(
         times=shown[:, 0], start_angle="-150 deg", forming_force=shown[:, 3],
         slider_mass=f"{simulation.SLIDER} kg", platform_mass=f"{simulation.PLATFORM} kg",

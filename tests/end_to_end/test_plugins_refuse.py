@@ -39,8 +39,8 @@ BOUNDS: dict[str, dict[str, str]] = {
     },
     "press_linkage.motion": {
         "above 0": "speed speed_share permitted_torque crank_radius",
-        "at least 0": "slider_mass counterbalance guide_friction bearing_friction mass_rod inertia_upper",
-        "at most 3": "centre_lower",
+        "at least 0": "slider_mass counterbalance guide_friction bearing_friction mass_rod inertia_upper_knee",
+        "at most 3": "centre_lower_knee",
     },
     "roller_screw_shift": {
         "above 0": "module face_width centre_distance screw_diameter roller_diameter rim_factor "

@@ -18,7 +18,7 @@ GRAVITY, STEP, TINY = 9.80665, 0.01, 1e-30
 NEAR = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5, 0.0, 4 / 5, -1 / 5, 4 / 105, -1 / 280])
 LINKS = {"crank": "AB", "rod": "BE", "drive": "CG", "upper": "MG", "lower": "GH"}
 """First and last joint of each link; C is the end of the platform arm."""
-FORCES = ("crank_pivot", "crank_pin", "rod_joint", "arm_joint", "drive_knee", "upper_knee", "lower_knee",
+FORCES = ("crank_pivot", "crank_pin", "rod_joint", "arm_joint", "knee_of_drive", "knee_of_upper", "knee_of_lower",
           "ground_joint", "slider_joint")  # fmt: skip
 """Unknown forces, each on the link of ``ON``; then the torque and what guides platform and slider along y."""
 ON = ("crank", "rod", "rod", "drive", "drive", "upper", "lower", "upper", "lower")

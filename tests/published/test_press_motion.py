@@ -61,7 +61,7 @@ def test_motion_is_that_of_complex_steps(machine: MovingMachine) -> None:
     assert answer.slope == pytest.approx(slope(height, angle), abs=1e-13)
     assert answer.curvature == pytest.approx(curvature(height, angle), abs=1e-10)
     turning = {link: going(machine, link, angle).turn * speed for link in LINKS}
-    for name, link in {"rod": "rod", "drive_link": "drive", "upper": "upper", "lower": "lower"}.items():
+    for name, link in {"rod": "rod", "knee_drive": "drive", "upper_knee": "upper", "lower_knee": "lower"}.items():
         assert getattr(answer, f"{name}_speed") == pytest.approx(turning[link], abs=1e-13)
 
 
@@ -268,7 +268,9 @@ REFUSED: list[tuple[dict[str, Any], str]] = [
     ({"times": np.array([0.0])}, "times: two or more"),
     ({"times": np.array([0.0, 1.0, 1.0])}, "each later than the one before"),
     ({"crank_speed": np.array([0.2, 0.2])}, "crank_speed has 2 values at 121 times"),
+    ({"crank_speed": np.where(np.arange(121) == 7, np.nan, 0.2)}, "crank_speed is missing at some of the times"),
     ({"forming_force": np.array([1e3])}, "forming_force has 1 values at 121 times"),
+    ({"force_angle": np.zeros(0), "force": np.zeros(0)}, "force has 0 values at 0 of force_angle"),
     ({"speed_angle": np.zeros(2)}, "speed_share has 1 values at 2 of speed_angle"),
     ({"speed_angle": np.array([0.0, -1.0]), "speed_share": np.ones(2)}, "speed_angle: angles rise within one turn"),
     ({"force_angle": np.array([0.0, 7.0]), "force": np.ones(2)}, "force_angle: angles rise within one turn"),
