@@ -42,7 +42,7 @@ CONTRACTS = 0.5
 """A round that is to move more than this share of what the one before moved leads nowhere."""
 MOST_PARTINGS, MOST_PARTS, NEARLY = 4, 8, 0.5
 """So often steps are parted, each into so many at the most, where their error is above this share of what it may be."""
-FAR = 1e5
+FAR = 1e4
 """Derivatives are taken anew where states moved by more than so many tolerances."""
 
 
@@ -51,8 +51,9 @@ class _Grid:
     """n machines with N steps each; one that has fewer is filled up with steps of no length.
 
     ``t`` (n, N + 1) and ``y`` (d, n, N + 1) hold the ends of the steps. A stretch lies between two ends that are held
-    or are events; inside of it times move in proportion. ``share`` (2, n, N) says where in its stretch a step begins
-    and ends, ``last`` (n, N) which step ends its stretch. Masks (n, N): ``is_last`` of these, ``is_empty`` of no length.
+    or are events; inside of it times move in proportion: ``share`` (2, n, N) says where in its stretch a step begins
+    and ends, ``stretch`` and ``place`` (n, N) which stretch it is in and the how manieth step of it, ``is_last`` whether
+    it is the last one. ``is_empty`` marks steps of no length.
     """
 
     system: System
@@ -61,7 +62,8 @@ class _Grid:
     interval: Indices
     event: Indices
     share: Matrix
-    last: Indices
+    stretch: Indices
+    place: Indices
     is_last: Mask
     is_empty: Mask
 
@@ -77,8 +79,8 @@ class _Grid:
         flat = (machines[:, None] * steps + np.arange(steps)).ravel()
         return _Grid(
             self.system.part(flat), self.t[machines], self.y[:, machines], self.interval[machines],
-            self.event[machines], self.share[:, machines], self.last[machines], self.is_last[machines],
-            self.is_empty[machines],
+            self.event[machines], self.share[:, machines], self.stretch[machines], self.place[machines],
+            self.is_last[machines], self.is_empty[machines],
         )  # fmt: skip
 
 
@@ -144,8 +146,7 @@ def _along(several: _Several, grid: _Grid, made: dict[int, Path]) -> dict[int, P
     slopes: _Slopes | None = None
     for _ in range(MOST_ROUNDS):
         shot = _shoot(problem, grid)
-        if slopes is None or before.max(initial=0.0) > FAR:
-            slopes = _slopes(problem, grid, shot)
+        slopes = _slopes_near(several, grid, shot, (slopes, before))
         moved_y, moved_t = _newton(grid, shot, slopes)
         moves = _size(problem, shot, moved_y, moved_t)
         met = np.flatnonzero(moves < MET)
@@ -177,14 +178,17 @@ def _grid(problem: InitialValueProblem, paths: Sequence[Path]) -> _Grid:
     number = np.arange(steps)
     is_empty = number >= np.array([[len(path.event)] for path in paths])
     is_last |= np.roll(is_empty, -1, axis=1) | (number == steps - 1)
+    before = np.zeros_like(is_last)
+    before[:, 1:] = is_last[:, :-1]
+    stretch = np.cumsum(before & ~is_empty, axis=1)
+    first = np.maximum.accumulate(np.where(before | (number == 0), number, 0), axis=1)
     last = np.minimum.accumulate(np.where(is_last, number, steps)[:, ::-1], axis=1)[:, ::-1]
-    first = np.maximum.accumulate(np.where(np.roll(is_last, 1, axis=1) | (number == 0), number, 0), axis=1)
     rows = np.arange(len(paths))[:, None]
     low, high = t[rows, first], t[rows, last + 1]
     whole = np.where(high > low, high - low, 1.0)
     share = np.array([(t[:, :-1] - low) / whole, np.where(is_last, 1.0, (t[:, 1:] - low) / whole)])
     system = problem.system.part(np.repeat(np.arange(len(paths)), steps))
-    return _Grid(system, t, y, interval, event, share, last, is_last, is_empty)
+    return _Grid(system, t, y, interval, event, share, stretch, number - first, is_last, is_empty)
 
 
 def _some(shot: _Shot, machines: Indices) -> _Shot:
@@ -241,6 +245,20 @@ def _slopes(problem: InitialValueProblem, grid: _Grid, shot: _Shot) -> _Slopes:
     return _Slopes(step, value.reshape(*grid.shape, -1), after.reshape(*grid.shape, states, -1))
 
 
+def _slopes_near(
+    several: _Several, grid: _Grid, shot: _Shot, known: tuple[_Slopes | None, Matrix]
+) -> _Slopes:  # fmt: skip
+    """Return derivatives, taken anew for the machines that moved far."""
+    slopes, moved = known
+    if slopes is None:
+        return _slopes(several.problem, grid, shot)
+    far = np.flatnonzero(moved > FAR)
+    if len(far):
+        new = _slopes(several.problem, grid.some(far), _some(shot, far))
+        slopes.step[far], slopes.value[far], slopes.after[far] = new.step, new.value, new.after
+    return slopes
+
+
 def _event_slopes(
     problem: InitialValueProblem, grid: _Grid, shot: _Shot, event: tuple[int, Indices], made: tuple[Matrix, Matrix],
     *, is_set: bool,
@@ -270,61 +288,83 @@ def _event_slopes(
 def _newton(grid: _Grid, shot: _Shot, slopes: _Slopes) -> tuple[Matrix, Matrix]:
     """Return how far states (d, n, N + 1) and times (n, N + 1) are to move so that all steps meet.
 
-    Inside of a stretch whose end is an event, states move in proportion to when it comes, which is known at its end.
+    Within a stretch all is linear in the states and the time at which it begins and the time at which it ends. The end
+    of one that is an event comes when its value is 0; then one stretch after another is known.
     """
-    machines, steps = grid.shape
-    states = len(grid.y)
+    states, (machines, steps) = len(grid.y), grid.shape
     missed = np.moveaxis(shot.after - grid.y[:, :, 1:], 0, -1)
-    rate = np.moveaxis(shot.stages[0].reshape(shot.reached.shape), 0, -1)
+    along = _within(grid, shot, slopes, missed)
+    chain, late = _stretches(grid, shot, slopes, (along, missed))
+    begins = np.zeros((chain.shape[1] + 1, machines, states + 1))  # states and time at which stretches begin
+    for number in range(chain.shape[1]):
+        moved = np.einsum("nij,nj->ni", chain[:, number, :, :-1], begins[number])
+        begins[number + 1] = moved + chain[:, number, :, -1]
+    rows = np.arange(machines)[:, None]
+    begin, ends = begins[grid.stretch, rows], begins[grid.stretch + 1, rows]
+    whole = np.einsum("nsj,nsj->ns", late[rows, grid.stretch, :-1], begin) + late[rows, grid.stretch, -1]
+    basis = np.concatenate([begin, whole[..., None], np.ones((machines, steps, 1))], axis=-1)
+    moved_y, moved_t = np.zeros((states, machines, steps + 1)), np.zeros((machines, steps + 1))
+    inside = np.einsum("nsij,nsj->nsi", along, basis)
+    moved_y[:, :, 1:] = np.moveaxis(np.where(grid.is_last[..., None], ends[..., :-1], inside), -1, 0)
+    moved_t[:, 1:] = (1 - grid.share[1]) * begin[..., -1] + grid.share[1] * whole
+    moved_t[:, 1:][grid.is_empty] = np.broadcast_to(begins[-1][:, -1:], grid.shape)[grid.is_empty]
+    return moved_y, moved_t
+
+
+def _within(grid: _Grid, shot: _Shot, slopes: _Slopes, missed: Matrix) -> Matrix:
+    """Return how the state at the end of every step moves with what its stretch begins and ends with, (n, N, d, d + 3).
+
+    The columns are the states at its begin, the times of begin and end, and what moves anyway.
+    """
+    states, (machines, steps) = len(grid.y), grid.shape
+    rate, ended = (np.moveaxis(each, 0, -1) for each in (shot.stages[0].reshape(shot.reached.shape), shot.rate))
     carried = -np.einsum("nsij,nsj->nsi", slopes.step, rate)
-    ended = np.moveaxis(shot.rate, 0, -1)
-    begins, ends = grid.share[..., None]
-    by_end = carried * begins + ended * ends
-    by_begin = carried * (1 - begins) + ended * (1 - ends)
-    by_end[grid.is_empty], by_begin[grid.is_empty] = 0.0, 0.0
-    along = np.zeros((steps + 1, machines, states, 2))  # what states move by, and for each second the event is later
-    late, first = np.zeros((steps, machines)), np.zeros((steps, machines))
-    now, shift = along[0], np.zeros(machines)
-    has_event, has_end = (grid.event >= 0).any(axis=0), grid.is_last.any(axis=0)
-    for number in range(steps):
-        first[number] = shift
-        now = slopes.step[:, number] @ now
-        now[..., 1] += by_end[:, number]
-        now[..., 0] += by_begin[:, number] * shift[:, None]
-        if has_event[number]:
-            own = np.flatnonzero(grid.event[:, number] >= 0)
-            late[number, own] = _later(shot, slopes, now, (own, number))
-            shift = np.where(grid.event[:, number] >= 0, late[number], shift)
-            now[own, :, 0] = _after(slopes, now, late, (own, number))
-        now[..., 0] += missed[:, number]
-        if has_end[number]:
-            is_last, is_empty = grid.is_last[:, number], grid.is_empty[:, number]
-            now[is_last, :, 1] = 0.0
-            late[number] = np.where(is_empty, shift, late[number])
-            shift = np.where(is_last & (grid.event[:, number] < 0) & ~is_empty, 0.0, shift)
-        along[number + 1] = now
-    whole = np.take_along_axis(late, grid.last.T, axis=0)
-    moved = along[..., 0]
-    moved[1:] += along[1:, ..., 1] * whole[..., None]
-    times = np.zeros((machines, steps + 1))
-    times[:, 1:] = ((1 - grid.share[1].T) * first + grid.share[1].T * whole).T
-    return np.moveaxis(moved, (0, 1, 2), (2, 1, 0)), times
+    shares = grid.share[..., None]
+    by_begin = carried * (1 - shares[0]) + ended * (1 - shares[1])
+    by_end = carried * shares[0] + ended * shares[1]
+    many = int(grid.stretch.max()) + 1
+    now = np.zeros((machines * many, states, states + 3))
+    now[:, :, :states] = np.eye(states)
+    along = np.zeros((machines, steps, states, states + 3))
+    for number in range(int(grid.place.max()) + 1):
+        row, step = np.nonzero((grid.place == number) & ~grid.is_empty)
+        own = row * many + grid.stretch[row, step]
+        moved = slopes.step[row, step] @ now[own]
+        moved[:, :, -3] += by_begin[row, step]
+        moved[:, :, -2] += by_end[row, step]
+        moved[:, :, -1] += missed[row, step]
+        along[row, step] = now[own] = moved
+    return along
 
 
-def _later(shot: _Shot, slopes: _Slopes, now: Matrix, at: tuple[Indices, int]) -> Matrix:
-    """Return by how much later an event comes, of the machines whose step it ends."""
-    own, number = at
-    value = slopes.value[own, number]
-    risen = np.einsum("nd,ndk->nk", value[:, :-1], now[own])
-    return np.asarray(-(shot.value[own, number] + risen[:, 0]) / (risen[:, 1] + value[:, -1]))
+def _stretches(
+    grid: _Grid, shot: _Shot, slopes: _Slopes, within: tuple[Matrix, Matrix]
+) -> tuple[Matrix, Matrix]:  # fmt: skip
+    """Return how state and time at the end of stretches move with those at their begin, and when they end.
 
-
-def _after(slopes: _Slopes, now: Matrix, late: Matrix, at: tuple[Indices, int]) -> Matrix:
-    """Return by how much the states after an event move."""
-    own, number = at
-    moved = now[own, :, 0] + now[own, :, 1] * late[number, own, None]
-    both = np.column_stack([moved, late[number, own]])
-    return np.asarray(np.einsum("nde,ne->nd", slopes.after[own, number], both))
+    Shapes (n, J, d + 1, d + 2) and (n, J, d + 2), the last column being what moves anyway.
+    """
+    (along, missed), states, machines = within, len(grid.y), grid.shape[0]
+    many = int(grid.stretch.max()) + 1
+    chain, late = np.zeros((machines, many, states + 1, states + 2)), np.zeros((machines, many, states + 2))
+    chain[..., :-1] = np.eye(states + 1)
+    row, step = np.nonzero(grid.is_last & ~grid.is_empty)
+    reached = np.array(along[row, step])
+    reached[:, :, -1] -= missed[row, step]
+    known, by_end = np.delete(reached, -2, axis=2), reached[:, :, -2]
+    value, is_event = slopes.value[row, step], (grid.event[row, step] >= 0)[:, None]
+    risen = np.einsum("sd,sdk->sk", value[:, :-1], known)
+    risen[:, -1] += shot.value[row, step]
+    faster = np.einsum("sd,sd->s", value[:, :-1], by_end) + value[:, -1]
+    when = np.where(is_event, -risen / faster[:, None], 0.0)
+    moved = known + by_end[:, :, None] * when[:, None]
+    after = slopes.after[row, step]
+    after_event = after[:, :, :-1] @ moved + after[:, :, -1:] * when[:, None]
+    ended = np.where(is_event[:, None], after_event, moved)
+    ended[:, :, -1] += missed[row, step]
+    chain[row, grid.stretch[row, step]] = np.concatenate([ended, when[:, None]], axis=1)
+    late[row, grid.stretch[row, step]] = when
+    return chain, late
 
 
 def _size(problem: InitialValueProblem, shot: _Shot, moved_y: Matrix, moved_t: Matrix) -> Matrix:

@@ -36,7 +36,7 @@ S = TypeVar("S")
 T = TypeVar("T")
 MOST_REMEMBERED, MOST_NEAR = 2_000_000, 256
 """So many values of states are remembered; of so many machines the nearest one is looked for."""
-NEAR, FAR, TINY = 0.02, 0.5, 1e-300
+NEAR, FAR, TINY = 0.02, 6, 1e-300
 """Sum of the shares by which numbers of machines differ that are followed along one path; and at the most."""
 
 
@@ -316,24 +316,23 @@ def _follow(machines: _Machines[Any, Any, Any]) -> list[_Followed]:
 
 
 def _followed(new: _Machines[Any, Any, Any]) -> list[_Followed]:
-    """Follow machines, near what is known or near one another where that can be."""
+    """Follow machines: along a path that is known, else near one another, else step by step."""
     numbers = np.column_stack([np.zeros(new.count), *(each for each in new.numbers.values() if each.ndim == 1)])
     known = [each for key, each in new.dynamics.memory.items() if each.path is not None and key.startswith(new.record)]
-    known = known[-MOST_NEAR:]
     made: dict[int, _Followed] = {}
-    leaders = _leaders(numbers)
-    firsts = np.unique(leaders)
-    near = [nearest.path if (nearest := _nearest(known, numbers[each], FAR)) else None for each in firsts]
-    _add(made, new, numbers, dict(zip(firsts.tolist(), near, strict=True)))
-    rest = [each for each in range(new.count) if each not in made]
-    if rest:
-        _add(made, new, numbers, {each: made[int(leaders[each])].path for each in rest})
-    return [made[each] for each in range(new.count)]
+    _add_along(made, new, numbers, _nearest(known[-MOST_NEAR:], numbers))
+    left = np.array([place for place in range(new.count) if place not in made], dtype=np.intp)
+    leaders = left[_leaders(numbers[left])]
+    _add_alone(made, new, numbers, np.unique(leaders).tolist())
+    rest = [(int(place), made[int(leader)].path) for place, leader in zip(left, leaders, strict=True)]
+    _add_along(made, new, numbers, {place: path for place, path in rest if place not in made and path is not None})
+    _add_alone(made, new, numbers, [place for place in range(new.count) if place not in made])
+    return [made[place] for place in range(new.count)]
 
 
 def _leaders(numbers: Matrix) -> Indices:
     """Return for every machine the first one that is near it, itself where none is, (n,)."""
-    scaled = numbers / np.maximum(np.abs(numbers).max(axis=0), TINY)
+    scaled = numbers / np.maximum(np.abs(numbers).max(axis=0, initial=0.0), TINY)
     leaders, firsts = np.zeros(len(numbers), dtype=np.intp), np.zeros(0, dtype=np.intp)
     for place, row in enumerate(scaled):
         off = np.abs(scaled[firsts] - row).sum(axis=1)
@@ -344,35 +343,45 @@ def _leaders(numbers: Matrix) -> Indices:
     return leaders
 
 
-def _nearest(known: Sequence[_Followed], numbers: Matrix, within: float) -> _Followed | None:
-    """Return what is known nearest to a machine; None where that is far."""
+def _nearest(known: Sequence[_Followed], numbers: Matrix) -> dict[int, Path]:
+    """Return the path of what is known nearest to each machine; none where that is far."""
     if not known:
-        return None
+        return {}
     several = np.array([each.numbers for each in known])
-    off = (np.abs(several - numbers) / np.maximum(np.abs(numbers), TINY)).sum(axis=1)
-    best = int(np.argmin(off))
-    return known[best] if off[best] < within else None
+    off = (np.abs(several - numbers[:, None]) / np.maximum(np.abs(numbers[:, None]), TINY)).sum(axis=2)
+    nearest = np.argmin(np.where(np.isnan(off), np.inf, off), axis=1)
+    pairs = [(place, known[best], off[place, best]) for place, best in enumerate(nearest)]
+    return {place: best.path for place, best, far in pairs if best.path is not None and far < FAR}
 
 
-def _add(
-    made: dict[int, _Followed], new: _Machines[Any, Any, Any], numbers: Matrix, along: Mapping[int, Path | None]
-) -> None:  # fmt: skip
-    """Follow some machines, each along a path where one is given and leads to the end, else step by step."""
-    with_path = {place: path for place, path in along.items() if path is not None}
-    paths: dict[int, Path] = {}
-    if with_path and new.dynamics.step is None:
-        part = new.part(np.array([*with_path]))
-        solution = empty_solution(problem := _problem(part))
-        paths = at_once(problem, [*with_path.values()], solution)
-        places = [*with_path]
-        made |= {places[each]: _one_of(solution, each, numbers[places[each]], path) for each, path in paths.items()}
-    left = [place for place in along if place not in made]
-    if left:
-        part = new.part(np.array(left))
-        solution = _in_steps(part) if new.dynamics.step is not None else solve(_problem(part), keeps_paths=True)
-        paths = solution.paths(_problem(part)) if solution.taken else {}
-        for each, place in enumerate(left):
-            made[place] = _one_of(solution, each, numbers[place], paths.get(each))
+def _add_along(
+    made: dict[int, _Followed], new: _Machines[Any, Any, Any], numbers: Matrix, along: Mapping[int, Path]
+) -> None:
+    """Follow some machines along paths, as far as these lead to the end."""
+    if not along:
+        return
+    places = [*along]
+    problem = _problem(new.part(np.array(places)))
+    solution = empty_solution(problem)
+    for each, path in at_once(problem, [*along.values()], solution).items():
+        made[places[each]] = _one_of(solution, each, numbers[places[each]], path)
+
+
+def _add_alone(
+    made: dict[int, _Followed], new: _Machines[Any, Any, Any], numbers: Matrix, places: Sequence[int]
+) -> None:
+    """Follow some machines step by step."""
+    if not places:
+        return
+    part = new.part(np.array(places))
+    if new.dynamics.step is not None:
+        solution, paths = _in_steps(part), dict[int, Path]()
+    else:
+        problem = _problem(part)
+        solution = solve(problem, keeps_paths=True)
+        paths = solution.paths(problem)
+    for each, place in enumerate(places):
+        made[place] = _one_of(solution, each, numbers[place], paths.get(each))
 
 
 def _one_of(solution: Solution, machine: int, numbers: Matrix, path: Path | None) -> _Followed:
