@@ -18,6 +18,7 @@ from truing.declare.batch import feasible
 from truing.declare.fields import KEY, Float, InputField, hints_of, in_si, input_fields, read, with_values
 from truing.errors import ConvergenceError, DeclarationError, InfeasibleError
 from truing.integration import (
+    ENDLESS,
     GROWS,
     STEP_LIMIT,
     EventRule,
@@ -30,6 +31,11 @@ from truing.integration import (
 from truing.integration_at_once import at_once
 from truing.units import difference_unit
 
+WHAT_NOW = {
+    STEP_LIMIT: "; a coarser tolerance or a larger most_steps would let it go on",
+    ENDLESS: "; end the motion there (ends=True), or let the event set a state in which the machine rests",
+}
+"""What can be done where a motion comes to no end."""
 I = TypeVar("I")  # noqa: E741  # inputs, as in Model[I, R]
 R = TypeVar("R")
 S = TypeVar("S")
@@ -97,7 +103,8 @@ class Event(Generic[S, I]):
     @property
     def rule(self) -> EventRule:
         """The rule as the integrator knows it."""
-        return EventRule({"rises": 1, "falls": -1, "either": 0}[self.when], self.ends, self.then is not None)
+        direction = {"rises": 1, "falls": -1, "either": 0}[self.when]
+        return EventRule(direction, self.ends, self.then is not None, self.name)
 
 
 @dataclass(frozen=True)
@@ -357,14 +364,39 @@ def _nearest(known: Sequence[_Followed], numbers: Matrix) -> dict[int, Path]:
 def _add_along(
     made: dict[int, _Followed], new: _Machines[Any, Any, Any], numbers: Matrix, along: Mapping[int, Path]
 ) -> None:
-    """Follow some machines along paths, as far as these lead to the end."""
+    """Follow some machines along paths, and step by step from where these no longer lead."""
     if not along:
         return
     places = [*along]
     problem = _problem(new.part(np.array(places)))
     solution = empty_solution(problem)
-    for each, path in at_once(problem, [*along.values()], solution).items():
+    followed = at_once(problem, [*along.values()], solution)
+    whole = followed.whole
+    if followed.part:
+        _go_on(problem, followed.part, solution)
+        whole = whole | {each: path for each, path in followed.part.items() if each not in solution.reasons}
+    for each, path in whole.items():
         made[places[each]] = _one_of(solution, each, numbers[places[each]], path)
+
+
+def _go_on(problem: InitialValueProblem, parts: dict[int, Path], solution: Solution) -> None:
+    """Follow machines step by step from the end of a path, and put what they took behind it."""
+    machines, paths = np.array([*parts]), [*parts.values()]
+    begin = np.array([path.t[-1] for path in paths]), np.array([path.interval[-1] for path in paths])
+    begin[1][:] += begin[0] == problem.breaks[begin[1] + 1]
+    own = Solution(solution.states[:, machines], solution.counts[:, machines], solution.first[:, machines])
+    rest = replace(
+        problem, system=problem.system.part(machines), start=np.array([path.y[:, -1] for path in paths]).T, begin=begin,
+    )  # fmt: skip
+    taken = solve(rest, own, keeps_paths=True).paths(rest)
+    solution.states[:, machines], solution.counts[:, machines], solution.first[:, machines] = (
+        own.states, own.counts, own.first,
+    )  # fmt: skip
+    for place, machine in enumerate(machines.tolist()):
+        if place in taken:
+            parts[machine] = parts[machine].then(taken[place])
+        else:
+            solution.reasons[machine] = own.reasons.get(place, (GROWS, float(begin[0][place])))
 
 
 def _add_alone(
@@ -393,19 +425,22 @@ def _one_of(solution: Solution, machine: int, numbers: Matrix, path: Path | None
 
 
 def _problem(machines: _Machines[Any, Any, Any]) -> InitialValueProblem:
-    dynamics, stamps = machines.dynamics, machines.stamps
+    dynamics, stamps, bends = machines.dynamics, machines.stamps, machines.bent()
     sizes = [in_si(spec.size, difference_unit(spec.unit)) for spec in dynamics.state_fields.values()]
     return InitialValueProblem(
-        system=machines, start=machines.start(), stamps=stamps,
-        breaks=stamps if machines.drives else stamps[[0, -1]], sizes=np.array(sizes),
+        system=replace(machines, bends=bends), start=machines.start(), stamps=stamps, breaks=stamps[bends],
+        sizes=np.array(sizes),
         events=[event.rule for event in dynamics.events], tolerance=dynamics.tolerance,
-        most_steps=dynamics.most_steps,
+        most_steps=dynamics.most_steps + len(bends),
     )  # fmt: skip
 
 
 @dataclass(frozen=True)
 class _Machines(Generic[S, I, R]):
-    """The state equation of ``count`` machines as the integrator calls it; ``drives`` by path (k,) or (n, k)."""
+    """The state equation of ``count`` machines as the integrator calls it; ``drives`` by path (k,) or (n, k).
+
+    ``bends`` are the places among the stamps between which the intervals of the integrator run.
+    """
 
     dynamics: Dynamics[S, I, R]
     inputs: I
@@ -415,6 +450,16 @@ class _Machines(Generic[S, I, R]):
     columns: Mapping[tuple[str, ...], Matrix]
     drives: Mapping[tuple[str, ...], Matrix]
     held: frozenset[tuple[str, ...]]
+    bends: Indices
+
+    def bent(self) -> Indices:
+        """Return the places of the stamps at which something that drives changes its course, the ends among them."""
+        bends = np.zeros(len(self.stamps), dtype=bool)
+        bends[[0, -1]] = True
+        for path, series in self.drives.items():
+            changes = (np.diff(series) != 0).reshape(-1, len(bends) - 1).any(axis=0)
+            bends[1:-1] |= changes[:-1] if path in self.held else changes[:-1] | changes[1:]
+        return np.flatnonzero(bends)
 
     @cached_property
     def record(self) -> bytes:
@@ -493,10 +538,11 @@ class _Machines(Generic[S, I, R]):
         values: dict[tuple[str, ...], Any] = {}
         for path, series in self.drives.items():
             rows = (np.arange(len(t)),) if series.ndim > 1 else ()
-            begin = series[(*rows, interval)]
+            begins, ends = self.bends[interval], self.bends[interval + 1]
+            begin = series[(*rows, begins)]
             if path not in self.held:
-                low, high = self.stamps[interval], self.stamps[interval + 1]
-                begin = begin + (series[(*rows, interval + 1)] - begin) * (t - low) / (high - low)
+                low, high = self.stamps[begins], self.stamps[ends]
+                begin = begin + (series[(*rows, ends)] - begin) * (t - low) / (high - low)
             values[path] = begin
         return with_values(self.inputs, values)
 
@@ -509,9 +555,12 @@ def _machines(dynamics: Dynamics[S, I, R], inputs: I) -> _Machines[S, I, R]:
     _demand((np.diff(stamps) > 0).all(), f"{dynamics.times}: the times of a record rise; two are equal or fall")
     drives = {each.path: np.asarray(read(inputs, each.path), dtype=float) for each in dynamics.driving.values()}
     for name, each in dynamics.driving.items():
-        series = drives[each.path]
-        values = series.shape[-1] if series.ndim else 1
-        _demand(values == len(stamps), f"{name} has {values} values at {len(stamps)} {dynamics.times}")
+        series = np.atleast_1d(drives[each.path])
+        if series.shape[-1] == 1:
+            series = np.broadcast_to(series, (*series.shape[:-1], len(stamps)))
+        drives[each.path], values = series, series.shape[-1]
+        wanted = "give one for each, of rows of a file in a column of that name, or one for all"
+        _demand(values == len(stamps), f"{name} has {values} values at {len(stamps)} {dynamics.times}; {wanted}")
         _demand(np.isfinite(series).all(), f"{name} is missing at some of the {dynamics.times}")
     numbers = {each.path: read(inputs, each.path) for each in fields_of.values() if each.varies}
     columns = {path: value for path, value in numbers.items() if np.ndim(value) == 1}
@@ -519,7 +568,7 @@ def _machines(dynamics: Dynamics[S, I, R], inputs: I) -> _Machines[S, I, R]:
     count = max(sizes, default=1)
     columns = {path: np.broadcast_to(value, (count,)) for path, value in columns.items()}
     held = frozenset(each.path for each in dynamics.driving.values() if getattr(each.spec, "between", "") == "hold")
-    return _Machines(dynamics, inputs, stamps, count, not sizes, columns, drives, held)
+    return _Machines(dynamics, inputs, stamps, count, not sizes, columns, drives, held, np.arange(len(stamps)))
 
 
 def _joined(several: Sequence[_Machines[S, I, R]]) -> _Machines[S, I, R]:
@@ -565,7 +614,8 @@ def _say_why(solution: Solution, machines: _Machines[Any, Any, Any]) -> None:
         when = f"t = {min(failed.values()):.6g} s" + ("" if machines.is_single else " at the earliest")
         holds = np.ones(machines.count, dtype=bool)
         holds[list(failed)] = False
-        sentence = f"the motion cannot be followed beyond {when}: {reason}"
+        hint = next((words for part, words in WHAT_NOW.items() if part in reason), "")
+        sentence = f"the motion cannot be followed beyond {when}: {reason}{hint}"
         error = ConvergenceError if reason == STEP_LIMIT else InfeasibleError
         feasible(holds[0] if machines.is_single else holds, sentence, error=error)
 
