@@ -430,10 +430,8 @@ def press_motion(given: MovingPress) -> PressMotion:
     half = half_at(press, crank.angle)
     side, force = side_motion(press, half), press_force(press, crank.angle)
     inertia, slope = reduced_inertia(press, side)
-    forces, pins = in_equilibrium(press, side, crank, force)
-    dragging = press.drive_drag * crank.speed
-    guide = 0.5 * press.guide_friction * np.abs(side.slider.speed) * np.sign(crank.speed)
-    torque = forces.torque + dragging
+    forces, friction = drive_torque(press, side, crank, force)
+    torque = forces.torque
     speed = side.slider.speed * crank.speed
     over = partial(np.trapezoid, x=times, axis=-1)
     return PressMotion(
@@ -454,7 +452,7 @@ def press_motion(given: MovingPress) -> PressMotion:
         reduced_inertia=inertia,
         inertia_slope=slope,
         weight_torque=weight_torque(press, side),
-        friction_torque=pins + guide + dragging,
+        friction_torque=friction,
         crank_torque=torque,
         drive_power=2.0 * torque * crank.speed,
         kinetic_energy=inertia * crank.speed**2,
@@ -465,6 +463,14 @@ def press_motion(given: MovingPress) -> PressMotion:
         press_work=over(force * speed),
         turns=np.ptp(np.asarray(crank.angle)[..., [0, -1]], axis=-1) / TURN,
     )
+
+
+def drive_torque(press: MovingPress, side: SideMotion, crank: CrankCourse, force: Float) -> tuple[JointForces, Float]:
+    """The forces of the joints, with the torque of the drive on one crank in them; and the part that friction takes."""
+    forces, pins = in_equilibrium(press, side, crank, force)
+    oil = press.drive_drag * crank.speed
+    guide = 0.5 * press.guide_friction * np.abs(side.slider.speed) * np.sign(crank.speed)
+    return replace(forces, torque=forces.torque + oil), pins + guide + oil
 
 
 def _answered(forces: JointForces) -> Mapping[str, JointForce]:
