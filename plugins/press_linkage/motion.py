@@ -11,7 +11,7 @@ from functools import partial
 from typing import NamedTuple, TypeVar
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
+from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from press_linkage.kinematics import (
     Half,
@@ -78,7 +78,7 @@ def course(press: MovingPress) -> CrankCourse:
         return _over_angle(press, times - times[0])
     if not np.isfinite(speeds).all():
         return _no_course(times)
-    law = PchipInterpolator(times, TURN * speeds)
+    law = CubicSpline(times, TURN * speeds)
     turned = law.antiderivative()(times)
     return CrankCourse(press.start_angle + turned - turned[0], law(times), law(times, 1))
 

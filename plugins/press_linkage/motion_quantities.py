@@ -97,8 +97,8 @@ class PressMotion:
     time: Float = axis("s", symbol="t", note="time", follows="times")
     # The drive
     crank_angle: Float = over_time("deg", "phi", "crank from the bottom dead centre", method="integral of its speed")
-    drive_speed: Float = over_time("rad/s", "omega", "angular speed of the cranks", method="speed law, monotone cubic "
-                                   "(Fritsch and Carlson) between its points")  # fmt: skip
+    drive_speed: Float = over_time("rad/s", "omega", "angular speed of the cranks", method="law over the angle: "
+                                   "monotone cubic between its points; law over time: cubic spline")  # fmt: skip
     drive_acceleration: Float = over_time("rad/s^2", "alpha", "angular acceleration of the cranks",
                                           method="derivative of the speed law")  # fmt: skip
     # The slider

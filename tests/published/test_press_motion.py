@@ -12,7 +12,7 @@ import numpy as np
 import press_by_hand as by_hand
 import pytest
 from scipy.integrate import quad, solve_ivp
-from scipy.interpolate import PchipInterpolator
+from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from hidden_effects.moving_press import FORCES, LINKS, MovingMachine, curvature, going, joints, needed, slope
 from hidden_effects.rows import Array
@@ -101,7 +101,7 @@ def test_acceleration_is_the_derivative_of_the_speed() -> None:
         answer = press_motion(MovingPress(times=stamps, **law))
         speed, acceleration = np.asarray(answer.drive_speed), np.asarray(answer.drive_acceleration)
         if "crank_speed" in law:
-            curve = PchipInterpolator(stamps, TURN * law["crank_speed"])
+            curve = CubicSpline(stamps, TURN * law["crank_speed"])
             assert speed == pytest.approx(TURN * law["crank_speed"])
             assert acceleration == pytest.approx(curve(stamps, 1))
             turned = [quad(curve, 0, t, epsabs=1e-13, points=[1, 2, 3])[0] for t in stamps]
@@ -289,3 +289,10 @@ def test_what_cannot_be_is_refused_by_name(changed: dict[str, Any], words: str) 
 def test_a_table_over_a_whole_turn_may_name_its_end_twice() -> None:
     angle, value = turn_table(np.radians([-180.0, 0.0, 180.0]), np.array([1.0, 2.0, 1.0]), "force_angle", "force")
     assert (np.degrees(angle).tolist(), value.tolist()) == ([-180.0, 0.0], [1.0, 2.0])
+
+
+def test_the_acceleration_of_a_log_is_that_of_the_crank() -> None:
+    """Eighty readings of a turn that swells by a third: an acceleration that is right to 1e-5 of the largest."""
+    times, whole = np.linspace(0.0, 5.0, 81), TURN / 5
+    answer = press_motion(MovingPress(times=times, crank_speed=0.2 * (1 + 0.3 * np.sin(whole * times))))
+    assert answer.drive_acceleration == pytest.approx(0.3 * whole**2 * np.cos(whole * times), abs=2e-5 * 0.3 * whole**2)
