@@ -42,7 +42,7 @@ S = TypeVar("S")
 T = TypeVar("T")
 MOST_REMEMBERED, MOST_NEAR = 2_000_000, 256
 """So many values of states are remembered; of so many machines the nearest one is looked for."""
-NEAR, FAR, TINY = 0.02, 6, 1e-300
+NEAR, FAR, TINY = 1e-3, 6, 1e-300
 """Sum of the shares by which numbers of machines differ that are followed along one path; and at the most."""
 
 
@@ -327,12 +327,13 @@ def _followed(new: _Machines[Any, Any, Any]) -> list[_Followed]:
     numbers = np.column_stack([np.zeros(new.count), *(each for each in new.numbers.values() if each.ndim == 1)])
     known = [each for key, each in new.dynamics.memory.items() if each.path is not None and key.startswith(new.record)]
     made: dict[int, _Followed] = {}
-    _add_along(made, new, numbers, _nearest(known[-MOST_NEAR:], numbers))
-    left = np.array([place for place in range(new.count) if place not in made], dtype=np.intp)
-    leaders = left[_leaders(numbers[left])]
-    _add_alone(made, new, numbers, np.unique(leaders).tolist())
-    rest = [(int(place), made[int(leader)].path) for place, leader in zip(left, leaders, strict=True)]
-    _add_along(made, new, numbers, {place: path for place, path in rest if place not in made and path is not None})
+    leaders = _leaders(numbers)
+    firsts = np.unique(leaders).tolist()
+    near = _nearest(known[-MOST_NEAR:], numbers)
+    _add_along(made, new, numbers, {place: near[place] for place in firsts if place in near})
+    _add_alone(made, new, numbers, [place for place in firsts if place not in made])
+    rest = [(place, made[int(leader)].path) for place, leader in enumerate(leaders) if place not in made]
+    _add_along(made, new, numbers, {place: path for place, path in rest if path is not None})
     _add_alone(made, new, numbers, [place for place in range(new.count) if place not in made])
     return [made[place] for place in range(new.count)]
 
@@ -362,9 +363,13 @@ def _nearest(known: Sequence[_Followed], numbers: Matrix) -> dict[int, Path]:
 
 
 def _add_along(
-    made: dict[int, _Followed], new: _Machines[Any, Any, Any], numbers: Matrix, along: Mapping[int, Path]
-) -> None:
-    """Follow some machines along paths, and step by step from where these no longer lead."""
+    made: dict[int, _Followed], new: _Machines[Any, Any, Any], numbers: Matrix, along: Mapping[int, Path],
+    *, goes_on: bool = True,
+) -> None:  # fmt: skip
+    """Follow some machines along paths, and step by step from where these no longer lead.
+
+    Machines beside one another then have the same steps, so that their differences are not those of errors.
+    """
     if not along:
         return
     places = [*along]
@@ -372,7 +377,7 @@ def _add_along(
     solution = empty_solution(problem)
     followed = at_once(problem, [*along.values()], solution)
     whole = followed.whole
-    if followed.part:
+    if followed.part and goes_on:
         _go_on(problem, followed.part, solution)
         whole = whole | {each: path for each, path in followed.part.items() if each not in solution.reasons}
     for each, path in whole.items():
@@ -414,6 +419,7 @@ def _add_alone(
         paths = solution.paths(problem)
     for each, place in enumerate(places):
         made[place] = _one_of(solution, each, numbers[place], paths.get(each))
+    _add_along(made, new, numbers, {places[each]: path for each, path in paths.items()}, goes_on=False)
 
 
 def _one_of(solution: Solution, machine: int, numbers: Matrix, path: Path | None) -> _Followed:
