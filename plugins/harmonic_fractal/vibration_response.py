@@ -46,13 +46,15 @@ def _waves(phase: Array) -> Array:
 
 
 BASIS = _waves(_STEP * np.arange(SAMPLES))
-_NEXT = np.roll(BASIS, -1, axis=0)
 _MIDDLE = _STEP * (np.arange(SAMPLES) + 0.5)
 _FLATTENED = np.cos(0.5 * _STEP * np.concatenate([[0], _ORDERS, _ORDERS]))
 """What the mean over a straight piece leaves of each harmonic: taken out again, so contact throughout is exact."""
 _FORCE = _waves(_MIDDLE) / SAMPLES * np.where(_DIAGONAL == 0, 1.0, 2.0) / _FLATTENED
-_BY_BEGIN = np.einsum("na,nb->nab", _FORCE, BASIS).reshape(SAMPLES, -1)
-_BY_END = np.einsum("na,nb->nab", _FORCE, _NEXT).reshape(SAMPLES, -1)
+_TURNED = np.ascontiguousarray(BASIS.T)
+_SLOPES = np.concatenate(
+    [np.einsum("na,nb->nab", _FORCE, basis).reshape(SAMPLES, -1) for basis in (BASIS, np.roll(BASIS, -1, axis=0))]
+)
+"""What slopes of the force in begin and end of each piece (2N) are as slopes of harmonics in harmonics."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,15 +92,20 @@ def _mean_contact(begin: Array, end: Array) -> tuple[Array, Array, Array]:
     return 0.5 * share * inside, np.where(begin > 0.0, of_inner, of_outer), np.where(end > 0.0, of_inner, of_outer)
 
 
+def _row_by_row(rows: Array, by: Array) -> Array:
+    """Return rows (..., m) times a matrix (m, p), each by itself: so it rounds alike whatever else is in the batch."""
+    return np.asarray(np.matmul(rows[..., np.newaxis, :], by)[..., 0, :])
+
+
 def residual(machines: Oscillators, harmonics: Array, ratio: Array) -> tuple[Array, Array, Array]:
     """Return what is left of harmonic balance (n, 2H + 1), its slopes in the harmonics, and in the frequency ratio."""
-    begin = harmonics @ BASIS.T
+    begin = motion_of(harmonics)
     end, gap = np.roll(begin, -1, axis=1), machines.clearance[:, np.newaxis]
     wave = stiffness_wave(machines)[:, 0]
     ahead, behind = _mean_contact(begin - gap, end - gap), _mean_contact(-begin - gap, -end - gap)
-    left = (wave * (ahead[0] - behind[0])) @ _FORCE
-    slope = (wave * (ahead[1] + behind[1])) @ _BY_BEGIN + (wave * (ahead[2] + behind[2])) @ _BY_END
-    slope = slope.reshape(-1, COUNT, COUNT)
+    left = _row_by_row(wave * (ahead[0] - behind[0]), _FORCE)
+    by_begin, by_end = wave * (ahead[1] + behind[1]), wave * (ahead[2] + behind[2])
+    slope = _row_by_row(np.concatenate([by_begin, by_end], axis=1), _SLOPES).reshape(-1, COUNT, COUNT)
     r, cosines, sines = ratio[:, np.newaxis], harmonics[:, _COS], harmonics[:, _SIN]
     drag = 2.0 * machines.damping[:, np.newaxis] * _ORDERS
     left[:, _COS] += drag * r * sines - (r * _ORDERS) ** 2 * cosines
@@ -130,12 +137,11 @@ def balanced(machines: Oscillators, harmonics: Array, ratio: Array) -> tuple[Arr
     is_close = np.zeros(len(ratio), dtype=bool)
     for _ in range(ROUNDS):
         left, slope, _ = residual(machines.part(rows), harmonics[rows], ratio[rows])
-        arrived = np.abs(left).max(axis=1) < CLOSE
-        is_close[rows[arrived]] = True
-        rows, left, slope = rows[~arrived], left[~arrived], slope[~arrived]
+        harmonics[rows] -= np.linalg.solve(slope, left[:, :, np.newaxis])[:, :, 0]
+        is_close[rows] = np.abs(left).max(axis=1) < CLOSE  # and by the step just taken to rounding
+        rows = rows[~is_close[rows]]
         if not len(rows):
             break
-        harmonics[rows] -= np.linalg.solve(slope, left[:, :, np.newaxis])[:, :, 0]
     return harmonics, is_close
 
 
@@ -348,7 +354,7 @@ def _turning_point(machines: Oscillators, low: Array, high: Array, sign: float) 
 
 def motion_of(harmonics: Array) -> Array:
     """Return the motion (..., N) over a period."""
-    return np.asarray(harmonics @ BASIS.T)
+    return _row_by_row(harmonics, _TURNED)
 
 
 def largest_multiplier(machines: Oscillators, harmonics: Array, ratio: Array) -> Array:

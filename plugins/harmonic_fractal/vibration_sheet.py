@@ -5,14 +5,14 @@ from dataclasses import replace
 from functools import partial
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from gear_geometry.drawing import BLUE, GREY, INK, ORANGE, PALE, panels, quiet
 from harmonic_fractal import vibration_response as response
-from harmonic_fractal.vibration import RECORD, Running, Vibration, mesh_quantities, mesh_speed
+from harmonic_fractal.contact import interface_of
+from harmonic_fractal.vibration import RECORD, Running, Vibration, drive_of, mesh_quantities, mesh_speed
 from harmonic_fractal.vibration_effects import EFFECTS, TOLERANCES
 from harmonic_fractal.vibration_run import (
     Response,
@@ -140,24 +140,26 @@ def resonance(record: Record[RunUp, Response]) -> Sequence[Block]:
     ]  # fmt: skip
 
 
-TEN = float(np.log(10.0))
-FLANKS: list[tuple[str, dict[str, float]]] = [
-    ("as stated", {}),
-    ("G ten times as large", {"roughness_deviation": TEN}),
-    ("G a tenth", {"roughness_deviation": -TEN}),
-    ("D larger by 0.05", {"dimension_deviation": 0.05}),
-    ("D smaller by 0.05", {"dimension_deviation": -0.05}),
-    ("teeth rigid", {"tooth_stiffness": np.nan}),
-    ("teeth rigid, G ten times as large", {"tooth_stiffness": np.nan, "roughness_deviation": TEN}),
-    ("teeth rigid, D smaller by 0.05", {"tooth_stiffness": np.nan, "dimension_deviation": -0.05}),
+FLANKS: list[tuple[str, float, float, bool]] = [
+    ("as stated", 0.0, 1.0, False),
+    ("G ten times as large", 0.0, 10.0, False),
+    ("G a tenth", 0.0, 0.1, False),
+    ("D larger by 0.05", 0.05, 1.0, False),
+    ("D smaller by 0.05", -0.05, 1.0, False),
+    ("teeth rigid", 0.0, 1.0, True),
+    ("teeth rigid, G ten times as large", 0.0, 10.0, True),
+    ("teeth rigid, D smaller by 0.05", -0.05, 1.0, True),
 ]
-"""Flanks whose vibration is compared: what is added to the inputs, or put in their place where that is NaN."""
+"""Flanks whose vibration is compared: what is added to D, the factor on G, and whether only flanks give way."""
 
 
-def with_flanks(pair: RunUp, changes: dict[str, float]) -> RunUp:
+def with_flanks(pair: RunUp, more: float, factor: float, *, is_rigid: bool) -> RunUp:
     """Return a pair with other flanks, looked at over the same speeds beside its own resonance."""
-    changed: Any = {name: getattr(pair, name) + change for name, change in changes.items()}
-    other = replace(pair, **changed)
+    rough = interface_of(drive_of(pair))
+    other = replace(
+        pair, surface=None, convention="areal", fractal_dimension=rough.dimension + more,
+        fractal_roughness=rough.roughness * factor, tooth_stiffness=np.nan if is_rigid else pair.tooth_stiffness,
+    )  # fmt: skip
     shift = mesh_quantities(other)["resonance_speed"] / mesh_quantities(pair)["resonance_speed"]
     return replace(other, speeds=np.asarray(pair.speeds) * shift)
 
@@ -168,9 +170,9 @@ def flanks_compared(record: Record[RunUp, Response]) -> Sequence[Block]:
     if not np.isnan(pair.stated_stiffness):
         return []
     rows: list[tuple[str | float | None, ...]] = []
-    for words, changes in FLANKS:
+    for words, more, factor, is_rigid in FLANKS:
         try:
-            rows.append((words, *_compared(with_flanks(pair, changes))))
+            rows.append((words, *_compared(with_flanks(pair, more, factor, is_rigid=is_rigid))))
         except TruingError:
             continue
     table = Table(
