@@ -103,7 +103,7 @@ class GearPair:
     torque: Float = of_drive("torque", default=5.0, note="mean torque at the output", source="a fifth of T_2", above=0,
                              at_least=None)  # fmt: skip
     torque_wave: Float = given(0.0, "N*m", symbol="T_1", note="wave of the torque over a mesh", at_least=0)
-    error_amplitude: Float = given(0.15, "um", symbol="e_1", note="wave of the transmission error over a mesh",
+    error_amplitude: Float = given(0.1, "um", symbol="e_1", note="wave of the transmission error over a mesh",
                                    source="typical", at_least=0, at_most=1e3)  # fmt: skip
     mesh_order: Float = given(None, "", symbol="z_m", note="meshes per turn of the wave generator; else the teeth of "
                               "the circular spline, two more than those of the flexspline", above=0)  # fmt: skip

@@ -15,20 +15,22 @@ from numpy.typing import NDArray
 
 from truing import Array, Float
 
-HARMONICS = 8
+HARMONICS = 7
 """Of the motion: its amplitudes fall with the fourth power of the order, since the force has kinks."""
-SAMPLES = 128
+SAMPLES = 96
 """Of a period; between them the motion is taken as straight, and the force is exact, so it has no steps."""
-CLOSE = 1e-11
-"""Residual force, in parts of that of the scale, at which harmonic balance holds."""
+CLOSE = 1e-7
+"""Residual force, in parts of that of the scale, from which one more round of Newton's iteration leaves rounding."""
 ROUNDS = 12
 """Of Newton's iteration."""
-FIRST, LARGEST, SMALLEST = 0.01, 0.1, 1e-6
+FIRST, LARGEST, SMALLEST = 0.02, 0.15, 1e-6
 """Steps along the curve, as a distance in frequency ratio and harmonics."""
-TURN = 0.97
+TURN = 0.95
 """Cosine of the angle between two steps from which on they are shorter: at folds, and where contact is lost."""
 MOST_STEPS = 3000
 
+SURELY = 0.9
+"""Part of the mean force that a wave may take away for a start in contact."""
 PARTS, NARROWED = 8, 5
 """A fold is looked for in so many parts of a step, and so often again between the two beside the best."""
 
@@ -137,12 +139,18 @@ def balanced(machines: Oscillators, harmonics: Array, ratio: Array) -> tuple[Arr
     is_close = np.zeros(len(ratio), dtype=bool)
     for _ in range(ROUNDS):
         left, slope, _ = residual(machines.part(rows), harmonics[rows], ratio[rows])
-        harmonics[rows] -= np.linalg.solve(slope, left[:, :, np.newaxis])[:, :, 0]
+        harmonics[rows] -= _solved(slope, left)
         is_close[rows] = np.abs(left).max(axis=1) < CLOSE  # and by the step just taken to rounding
         rows = rows[~is_close[rows]]
         if not len(rows):
             break
     return harmonics, is_close
+
+
+def still_in_contact(machines: Oscillators) -> Array:
+    """Return a frequency ratio below the resonance up to which the flanks surely stay in contact, (n,); 0 for none."""
+    mean = SURELY * machines.mean
+    return np.sqrt(np.maximum(mean - machines.force, 0.0) / (machines.error + mean))
 
 
 # The curve of all motions that are connected: followed by its length, since it folds back over the frequency
@@ -227,17 +235,16 @@ def _corrected(machines: Oscillators, guess: Array, direction: Array) -> tuple[A
     The rounds are ROUNDS where it came to nothing.
     """
     point, rows, rounds = guess.copy(), np.arange(len(guess)), np.full(len(guess), ROUNDS)
-    slopes = np.empty((len(guess), COUNT + 1, COUNT + 1))
+    slopes = np.tile(np.eye(COUNT + 1), (len(guess), 1, 1))
     for number in range(ROUNDS):
         left, whole = _bordered(machines.part(rows), point[rows], direction[rows])
-        arrived = np.abs(left).max(axis=1) < CLOSE
-        slopes[rows] = whole
-        rounds[rows[arrived]] = number
-        rows, left, whole = rows[~arrived], left[~arrived], whole[~arrived]
-        if not len(rows):
-            break
         right = np.concatenate([left, np.zeros((len(left), 1))], axis=1)
         point[rows] -= _solved(whole, right)
+        arrived = np.abs(left).max(axis=1) < CLOSE
+        slopes[rows[arrived]], rounds[rows[arrived]] = whole[arrived], number
+        rows = rows[~arrived]
+        if not len(rows):
+            break
     return point, rounds, slopes
 
 
@@ -261,7 +268,9 @@ def _solved(whole: Array, right: Array) -> Array:
     try:
         return np.asarray(np.linalg.solve(whole, right[:, :, np.newaxis])[:, :, 0])
     except np.linalg.LinAlgError:
-        return np.full_like(right, np.nan)
+        if len(whole) == 1:
+            return np.full_like(right, np.nan)
+        return np.concatenate([_solved(whole[row : row + 1], right[row : row + 1]) for row in range(len(whole))])
 
 
 # What a slow run up or down over the curve meets

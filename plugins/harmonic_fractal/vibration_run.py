@@ -16,7 +16,7 @@ from truing import Array, Float, axis, column, feasible, found, given, inputs, r
 from truing.errors import ConvergenceError
 
 SLOWEST = 0.97
-"""Where the curve begins, in parts of the lowest speed."""
+"""Where the curve begins, in parts of the lowest speed, or of one at which the flanks do not part."""
 BEYOND = 1.05
 """Where it ends, in parts of the highest speed, or of the natural frequency where that is higher."""
 
@@ -25,7 +25,7 @@ BEYOND = 1.05
 class RunUp(GearPair):
     """A gear pair that is run slowly up through some speeds and down again."""
 
-    speeds: Float = given(tuple(float(speed) for speed in range(2000, 7001, 100)), "rpm", along="speed", symbol="n",
+    speeds: Float = given(tuple(float(speed) for speed in range(2000, 7001, 250)), "rpm", along="speed", symbol="n",
                           note="speeds of the wave generator at which the vibration is looked at, rising")  # fmt: skip
 
 
@@ -81,7 +81,9 @@ class Runs:
 
 def runs_of(machines: response.Oscillators, ratio: Array) -> Runs:
     """Return the runs of machines (n,) through frequency ratios (n, k)."""
-    curve = response.traced(machines, SLOWEST * ratio[:, 0], BEYOND * np.maximum(ratio[:, -1], 1.0))
+    calm = response.still_in_contact(machines)
+    first = SLOWEST * np.where(calm > 0.0, np.minimum(ratio[:, 0], calm), ratio[:, 0])
+    curve = response.traced(machines, first, BEYOND * np.maximum(ratio[:, -1], 1.0))
     up, down = (response.run(machines, curve, ratio, down=way) for way in (False, True))
     return Runs(machines, ratio, curve, up, down)
 

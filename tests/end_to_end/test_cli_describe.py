@@ -17,7 +17,13 @@ from truing.inputs_file import json_schema
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
 INSTALLED = ["harmonic_fractal", "press_linkage", "roller_screw_shift", "rv_gearing", "rv_wear"]
-MODELS = ["harmonic_fractal", "harmonic_fractal.made_flank", *INSTALLED[1:]]
+MODELS = [
+    "harmonic_fractal",
+    "harmonic_fractal.made_flank",
+    "harmonic_fractal.run_up",
+    "harmonic_fractal.vibration",
+    *INSTALLED[1:],
+]
 
 
 def test_plugins_as_json(calc: Calc) -> None:

@@ -10,9 +10,8 @@ from vibration_in_steps import Machines, run
 
 from harmonic_fractal import vibration_response as response
 from harmonic_fractal.vibration import RECORD, Running, Turned, loaded_at_rest, mesh_quantities
-from harmonic_fractal.vibration_run import RunUp, run_up
+from harmonic_fractal.vibration_run import RunUp
 from harmonic_fractal.vibration_sheet import RUN_UP, VIBRATION
-from truing.errors import InfeasibleError
 from truing.evaluate import evaluate
 from truing.setup import default_setup
 
@@ -40,7 +39,7 @@ def pair(**changes: Any) -> RunUp:
 
 
 def test_the_oscillator_is_that_of_figure_1() -> None:
-    """Teeth and contacts in series, pair by pair: at most what their sums make in series, a little less where unlike."""
+    """Teeth and contacts in series, pair by pair: at most what their sums make in series, less where unlike."""
     both, held = mesh_quantities(pair(circular_inertia="1e-4 kg*m^2")), mesh_quantities(pair())
     assert held["effective_mass"] == pytest.approx(5e-5 / RADIUS**2, rel=1e-12)
     assert both["effective_mass"] == pytest.approx(1 / (RADIUS**2 / 5e-5 + RADIUS**2 / 1e-4), rel=1e-12)
@@ -181,7 +180,7 @@ def compared() -> tuple[Array, Array, Array, Array]:
     asked = np.tile(ratios, (len(CASES), 1))
     up, down = response.run(several, curve, asked), response.run(several, curve, asked, down=True)
     ours = [response.motion_of(runs.harmonics) for runs in (up, down)]
-    wave = several.error[:, np.newaxis, np.newaxis] * np.cos(2 * np.pi * np.arange(128) / 128)
+    wave = several.error[:, np.newaxis, np.newaxis] * np.cos(2 * np.pi * np.arange(response.SAMPLES) / response.SAMPLES)
     balance = np.concatenate([np.ptp(x + wave, axis=-1).T / 2 for x in ours], axis=1)
     plain = Machines(*(getattr(several, name) for name in ("clearance", "mean", "force", "error", "damping")))
     ways = np.tile(np.concatenate([ratios, ratios[::-1]])[:, np.newaxis], len(CASES))  # one run, up and down again
@@ -199,7 +198,7 @@ def test_runs_up_and_down_are_those_of_fixed_steps(compared: tuple[Array, Array,
 
 
 def test_there_is_a_jump_each_way_and_hysteresis_between(compared: tuple[Array, Array, Array, Array]) -> None:
-    balance, steps, (up, down), _ = compared
+    balance, _, (up, down), _ = compared
     assert (up > down).all()
     assert (np.nanmax(np.abs(balance[:, : len(CASES)] - balance[:, len(CASES) :]), axis=0) > 0.1).all()
 
