@@ -10,5 +10,5 @@ from truing import Model, hookimpl
 
 @hookimpl
 def truing_models() -> "list[Model[Any, Any]]":
-    """Offer four calculations: the drive, surfaces of known truth, and its vibration in time and over the speed."""
-    return [HARMONIC_FRACTAL, MADE_FLANK, VIBRATION, RUN_UP]
+    """Offer four calculations: the drive, surfaces of known truth, and its vibration over the speed and in time."""
+    return [HARMONIC_FRACTAL, MADE_FLANK, RUN_UP, VIBRATION]

@@ -35,7 +35,7 @@ PARTS, NARROWED = 8, 5
 """A fold is looked for in so many parts of a step, and so often again between the two beside the best."""
 
 COUNT = 2 * HARMONICS + 1
-_STEP = 2.0 * np.pi / SAMPLES
+_STEP = float(2.0 * np.pi / SAMPLES)
 _ORDERS = np.arange(1, HARMONICS + 1)
 _COS, _SIN = slice(1, HARMONICS + 1), slice(HARMONICS + 1, COUNT)
 _DIAGONAL = np.arange(COUNT)
@@ -47,8 +47,9 @@ def _waves(phase: Array) -> Array:
     return np.concatenate([np.ones((len(phase), 1)), np.cos(turned), np.sin(turned)], axis=1)
 
 
-BASIS = _waves(_STEP * np.arange(SAMPLES))
-_MIDDLE = _STEP * (np.arange(SAMPLES) + 0.5)
+_PLACES: Array = np.arange(SAMPLES, dtype=np.float64)
+BASIS = _waves(_STEP * _PLACES)
+_MIDDLE: Array = _STEP * (_PLACES + 0.5)
 _FLATTENED = np.cos(0.5 * _STEP * np.concatenate([[0], _ORDERS, _ORDERS]))
 """What the mean over a straight piece leaves of each harmonic: taken out again, so contact throughout is exact."""
 _FORCE = _waves(_MIDDLE) / SAMPLES * np.where(_DIAGONAL == 0, 1.0, 2.0) / _FLATTENED
@@ -179,9 +180,8 @@ class _Walk:
 
     def keep(self, on: NDArray[np.bool_]) -> None:
         """Go on with some of them."""
-        self.rows, self.point, self.direction, self.step = (
-            each[on] for each in (self.rows, self.point, self.direction, self.step)
-        )
+        self.rows, self.step = self.rows[on], self.step[on]
+        self.point, self.direction = self.point[on], self.direction[on]
 
 
 def traced(machines: Oscillators, first: Array, last: Array) -> Curve:

@@ -25,7 +25,7 @@ BEYOND = 1.05
 class RunUp(GearPair):
     """A gear pair that is run slowly up through some speeds and down again."""
 
-    speeds: Float = given(tuple(float(speed) for speed in range(2000, 7001, 250)), "rpm", along="speed", symbol="n",
+    speeds: Float = given(tuple(float(speed) for speed in range(2500, 6001, 250)), "rpm", along="speed", symbol="n",
                           note="speeds of the wave generator at which the vibration is looked at, rising")  # fmt: skip
 
 

@@ -27,7 +27,7 @@ INPUTS = {
 
 @dataclass(frozen=True)
 class Bench:
-    """What was set, run by run (n,): temperature, degC, cycles in service, angle of the output, deg; speeds, rpm (k,)."""
+    """What was set, by run (n,): temperature, degC, cycles in service, angle of the output, deg; speeds, rpm (k,)."""
 
     temperature: Array
     cycles: Array
