@@ -728,9 +728,7 @@ def _demand_true_proposals(made: DiagnosisResult, said: str, everything: str) ->
     """An experiment is said with its chance, and with the readings it would need where the budget is too small."""
     experiment = made.experiment
     assert ("with a chance of" in said) is (experiment is not None)
-    assert ("would be needed for 95 %" in said) is (
-        experiment is not None and experiment.needed > experiment.readings
-    )
+    assert ("would be needed for 95 %" in said) is (experiment is not None and experiment.needed > experiment.readings)
     if experiment is not None:
         assert all(together([name]) in said for name in experiment.tells)
         assert f"{experiment.readings} readings" in everything
