@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from truing.studies.allocation import Allocation, Allotted
     from truing.studies.bench import Bench, Outcome
     from truing.studies.checks import Check, Proposal
+    from truing.studies.frequency import Frequency, FrequencyAnswer
     from truing.studies.optimise import Optimise, Optimum
     from truing.studies.reliability import Odds, Reliability
     from truing.studies.sensitivity import Sensitivities, Sensitivity
@@ -57,6 +58,7 @@ _HOMES = {
     "truing.studies.allocation": ("Allocation", "Allotted"),
     "truing.studies.bench": ("Bench", "Outcome"),
     "truing.studies.checks": ("Check", "Proposal"),
+    "truing.studies.frequency": ("Frequency", "FrequencyAnswer"),
     "truing.studies.optimise": ("Optimise", "Optimum"),
     "truing.studies.reliability": ("Odds", "Reliability"),
     "truing.studies.sensitivity": ("Sensitivities", "Sensitivity"),
@@ -79,6 +81,7 @@ __all__ = [  # noqa: RUF022  # what a user calls; then what a plugin needs, in t
     "Sweep", "Swept", "Sensitivity", "Sensitivities", "Reliability", "Odds", "Allocation", "Allotted",
     "Optimise", "Optimum",
     "Surrogate", "Emulated",
+    "Frequency", "FrequencyAnswer",
     "Bench", "Outcome", "Check", "Proposal",
     "hookimpl", "hookspec", "Kernel", "TruingError",
 ]  # fmt: skip

@@ -18,6 +18,8 @@ from truing.inputs_file.values import bounds_in_words
 from truing.kernel import Offer
 from truing.units import unit_text
 
+LONGEST_SERIES = 12
+"""A longer default is shown by its ends."""
 WHERE_MEASURED = (
     ("thermal_drift_of_INPUT", "", "", "where a record varies an input in K"),
     ("periodic_order_of_INPUT", "", "", "where a record turns an input round that is an angle"),
@@ -189,7 +191,11 @@ def _unit(unit: str) -> str:
 
 
 def _input_row(described: dict[str, Any]) -> tuple[str, ...]:
-    default = "optional" if described["default"] is None and described["optional"] else described["default"]
+    default = described["default"]
+    if default == [] or (default is None and described["optional"]):
+        default = "optional"
+    elif isinstance(default, list) and len(default) > LONGEST_SERIES:
+        default = f"{default[0]} .. {default[-1]}, {len(default)} values"
     unit = " | ".join(described["choices"]) or ("a file" if described["kind"] == "file" else _unit(described["unit"]))
     options = f"options: {', '.join(described['options'])}" if described["options"] else ""
     note = "; ".join(text for text in (described["note"], described["bounds"], options, described["source"]) if text)

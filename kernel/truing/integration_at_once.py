@@ -9,7 +9,7 @@ other events than the path, is left to be followed step by step.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from truing.integration import (
     InitialValueProblem,
     OwnDense,
     Path,
+    Slopes,
     Solution,
     Step,
     System,
@@ -42,8 +43,8 @@ CONTRACTS = 0.5
 """A round that is to move more than this share of what the one before moved leads nowhere."""
 MOST_PARTINGS, MOST_PARTS, NEARLY = 4, 8, 0.5
 """So often steps are parted, each into so many at the most, where their error is above this share of what it may be."""
-FAR = 1e4
-"""Derivatives are taken anew where states moved by more than so many tolerances."""
+FAR, SLOW = 1e6, 0.02
+"""Derivatives are taken anew where states move by more than so many tolerances, or than this share of before."""
 
 
 @dataclass(frozen=True)
@@ -52,8 +53,8 @@ class _Grid:
 
     ``t`` (n, N + 1) and ``y`` (d, n, N + 1) hold the ends of the steps. A stretch lies between two ends that are held
     or are events; inside of it times move in proportion: ``share`` (2, n, N) says where in its stretch a step begins
-    and ends, ``stretch`` and ``place`` (n, N) which stretch it is in and the how manieth step of it, ``is_last`` whether
-    it is the last one. ``is_empty`` marks steps of no length.
+    and ends, ``stretch`` and ``place`` (n, N) which stretch it is in and the how manieth of it, ``is_last`` whether it
+    is the last one. ``is_empty`` marks steps of no length.
     """
 
     system: System
@@ -66,6 +67,7 @@ class _Grid:
     place: Indices
     is_last: Mask
     is_empty: Mask
+    slopes: Slopes
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -80,7 +82,7 @@ class _Grid:
         return _Grid(
             self.system.part(flat), self.t[machines], self.y[:, machines], self.interval[machines],
             self.event[machines], self.share[:, machines], self.stretch[machines], self.place[machines],
-            self.is_last[machines], self.is_empty[machines],
+            self.is_last[machines], self.is_empty[machines], self.slopes.some(machines),
         )  # fmt: skip
 
 
@@ -100,24 +102,24 @@ class _Shot:
     @property
     def rate(self) -> Matrix:
         """The rates at the ends, (d, n, N)."""
-        return self.stages[STAGES].reshape(self.reached.shape)
+        return np.asarray(self.stages[STAGES].reshape(self.reached.shape))
 
 
 @dataclass(frozen=True)
-class _Slopes:
-    """Derivatives of the steps: by the state they begin with, (n, N, d, d); of events by state and time, last."""
+class Followed:
+    """Paths by machine: of those that were followed ``whole``, and of those that were followed up to the ``end``."""
 
-    step: Matrix
-    value: Matrix
-    after: Matrix
+    whole: dict[int, Path] = field(default_factory=dict)
+    part: dict[int, Path] = field(default_factory=dict)
 
 
-def at_once(problem: InitialValueProblem, paths: Sequence[Path], solution: Solution) -> dict[int, Path]:
-    """Fill in the solution for the machines that can be followed along these paths; return their own paths.
+def at_once(problem: InitialValueProblem, paths: Sequence[Path], solution: Solution) -> Followed:
+    """Fill in the solution for machines as far as they can be followed along these paths; return their own paths.
 
-    Steps whose error is not within the tolerance are parted, and the machine is followed along the finer path.
+    Steps whose error is not within the tolerance are parted, and the machine is followed along the finer path. Where
+    another event comes than that of the path, or the path is too far away, its first part remains.
     """
-    made: dict[int, Path] = {}
+    followed = Followed()
     left = dict(enumerate(paths))
     with np.errstate(all="ignore"):
         for _ in range(MOST_PARTINGS):
@@ -125,42 +127,50 @@ def at_once(problem: InitialValueProblem, paths: Sequence[Path], solution: Solut
                 break
             machines = np.array([*left])
             own = replace(problem, system=problem.system.part(machines), start=problem.start[:, machines])
-            several = _Several(own, machines, solution)
-            left = _along(several, _grid(own, [*left.values()]), made)
-    return made
+            left = _along(_Several(own, machines, solution, followed), _grid(own, [*left.values()]))
+    return followed
 
 
 @dataclass(frozen=True)
 class _Several:
-    """Machines that are followed together: their problem, which of the solution they are."""
+    """Machines that are followed together: their problem, which of the solution they are, and what is done."""
 
     problem: InitialValueProblem
     machines: Indices
     solution: Solution
+    followed: Followed
 
 
-def _along(several: _Several, grid: _Grid, made: dict[int, Path]) -> dict[int, Path]:
-    """Fill in the machines whose steps meet; return finer paths of those whose steps are too long."""
-    problem, machines = several.problem, np.arange(len(several.machines))
-    before, finer = np.full(len(machines), np.inf), dict[int, Path]()
-    slopes: _Slopes | None = None
-    for _ in range(MOST_ROUNDS):
+def _along(several: _Several, grid: _Grid) -> dict[int, Path]:
+    """Fill in machines as far as their steps meet; return finer paths of those whose steps are too long.
+
+    What a step leads to depends on the steps before it alone, so that the first part of a path meets first.
+    """
+    problem, machines, finer = several.problem, np.arange(len(several.machines)), dict[int, Path]()
+    before, slopes = np.full(grid.shape, np.inf), grid.slopes
+    is_due = np.isnan(slopes.step).any(axis=(1, 2, 3))
+    for count in range(MOST_ROUNDS):
         shot = _shoot(problem, grid)
-        slopes = _slopes_near(several, grid, shot, (slopes, before))
+        _renew(several, grid, shot, slopes, np.flatnonzero(is_due))
         moved_y, moved_t = _newton(grid, shot, slopes)
-        moves = _size(problem, shot, moved_y, moved_t)
-        met = np.flatnonzero(moves < MET)
-        if len(met):
-            own = replace(several, machines=several.machines[machines[met]])
-            finer |= _judged(own, grid.some(met), _some(shot, met), made)
-        t = grid.t + moved_t
-        is_apart = (moves >= MET) & (moves < CONTRACTS * before)
-        on = np.flatnonzero(is_apart & (np.diff(t, axis=1) >= 0).all(axis=1))
+        moves = _sizes(problem, shot, moved_y, moved_t)
+        moves[(np.diff(grid.t, axis=1) < 0) | (grid.t[:, 1:] > problem.stamps[-1])] = np.inf
+        many = (moves < MET).cumprod(axis=1).sum(axis=1)
+        first = np.minimum(many, grid.shape[1] - 1)[:, None]
+        gone = np.take_along_axis(moves, first, 1) / np.take_along_axis(before, first, 1)
+        is_over = (many == grid.shape[1]) | ~(gone[:, 0] < CONTRACTS) | (count == MOST_ROUNDS - 1)
+        over = np.flatnonzero(is_over)
+        if len(over):
+            own = replace(several, machines=several.machines[machines[over]])
+            finer |= _judged(own, replace(grid, slopes=slopes).some(over), _some(shot, over), many[over])
+        on = np.flatnonzero(~is_over)
         if not len(on):
             break
-        grid = replace(grid, t=t, y=grid.y + moved_y).some(on)
-        slopes = _Slopes(slopes.step[on], slopes.value[on], slopes.after[on])
-        machines, before = machines[on], moves[on]
+        largest = (np.where(np.isfinite(each), each, 0.0).max(axis=1) for each in (moves, before))
+        now, then = largest
+        is_due = (now > np.where(then > 0, np.minimum(FAR, SLOW * then), FAR))[on]
+        grid = replace(grid, t=grid.t + moved_t, y=grid.y + moved_y, slopes=slopes).some(on)
+        machines, before, slopes = machines[on], moves[on], grid.slopes
     return finer
 
 
@@ -188,7 +198,24 @@ def _grid(problem: InitialValueProblem, paths: Sequence[Path]) -> _Grid:
     whole = np.where(high > low, high - low, 1.0)
     share = np.array([(t[:, :-1] - low) / whole, np.where(is_last, 1.0, (t[:, 1:] - low) / whole)])
     system = problem.system.part(np.repeat(np.arange(len(paths)), steps))
-    return _Grid(system, t, y, interval, event, share, stretch, number - first, is_last, is_empty)
+    slopes = _known_slopes(paths, steps)
+    return _Grid(system, t, y, interval, event, share, stretch, number - first, is_last, is_empty, slopes)
+
+
+def _known_slopes(paths: Sequence[Path], steps: int) -> Slopes:
+    """Return the derivatives that are known with paths, NaN where they are not."""
+    states = len(paths[0].y)
+    shape = len(paths), steps, states
+    made = Slopes(np.zeros((*shape, states)), np.zeros((*shape[:2], states + 1)), np.zeros((*shape, states + 1)))
+    made.step[:] = np.eye(states)
+    for row, path in enumerate(paths):
+        own = path.slopes
+        if own is None:
+            made.step[row] = np.nan
+        else:
+            many = len(path.event)
+            made.step[row, :many], made.value[row, :many], made.after[row, :many] = own.step, own.value, own.after
+    return made
 
 
 def _some(shot: _Shot, machines: Indices) -> _Shot:
@@ -226,7 +253,7 @@ def _steps(system: System, t: Matrix, y: Matrix, length: Matrix, interval: Indic
     return stages, reached
 
 
-def _slopes(problem: InitialValueProblem, grid: _Grid, shot: _Shot) -> _Slopes:
+def _slopes(problem: InitialValueProblem, grid: _Grid, shot: _Shot) -> Slopes:
     """Take derivatives of all steps, and of all events, by differences."""
     begin, interval = grid.y[:, :, :-1].reshape(len(grid.y), -1), grid.interval.ravel()
     states, many = begin.shape
@@ -242,21 +269,14 @@ def _slopes(problem: InitialValueProblem, grid: _Grid, shot: _Shot) -> _Slopes:
         own = np.flatnonzero(grid.event.ravel() == number)
         if len(own):
             _event_slopes(problem, grid, shot, (number, own), (value, after), is_set=rule.sets)
-    return _Slopes(step, value.reshape(*grid.shape, -1), after.reshape(*grid.shape, states, -1))
+    return Slopes(step, value.reshape(*grid.shape, -1), after.reshape(*grid.shape, states, -1))
 
 
-def _slopes_near(
-    several: _Several, grid: _Grid, shot: _Shot, known: tuple[_Slopes | None, Matrix]
-) -> _Slopes:  # fmt: skip
-    """Return derivatives, taken anew for the machines that moved far."""
-    slopes, moved = known
-    if slopes is None:
-        return _slopes(several.problem, grid, shot)
-    far = np.flatnonzero(moved > FAR)
-    if len(far):
-        new = _slopes(several.problem, grid.some(far), _some(shot, far))
-        slopes.step[far], slopes.value[far], slopes.after[far] = new.step, new.value, new.after
-    return slopes
+def _renew(several: _Several, grid: _Grid, shot: _Shot, slopes: Slopes, machines: Indices) -> None:
+    """Take derivatives of some machines anew, in place."""
+    if len(machines):
+        new = _slopes(several.problem, grid.some(machines), _some(shot, machines))
+        slopes.step[machines], slopes.value[machines], slopes.after[machines] = new.step, new.value, new.after
 
 
 def _event_slopes(
@@ -285,7 +305,7 @@ def _event_slopes(
     after[own] = np.moveaxis((set_to - before[:, None]) / aside, -1, 0)
 
 
-def _newton(grid: _Grid, shot: _Shot, slopes: _Slopes) -> tuple[Matrix, Matrix]:
+def _newton(grid: _Grid, shot: _Shot, slopes: Slopes) -> tuple[Matrix, Matrix]:
     """Return how far states (d, n, N + 1) and times (n, N + 1) are to move so that all steps meet.
 
     Within a stretch all is linear in the states and the time at which it begins and the time at which it ends. The end
@@ -311,7 +331,7 @@ def _newton(grid: _Grid, shot: _Shot, slopes: _Slopes) -> tuple[Matrix, Matrix]:
     return moved_y, moved_t
 
 
-def _within(grid: _Grid, shot: _Shot, slopes: _Slopes, missed: Matrix) -> Matrix:
+def _within(grid: _Grid, shot: _Shot, slopes: Slopes, missed: Matrix) -> Matrix:
     """Return how the state at the end of every step moves with what its stretch begins and ends with, (n, N, d, d + 3).
 
     The columns are the states at its begin, the times of begin and end, and what moves anyway.
@@ -338,7 +358,7 @@ def _within(grid: _Grid, shot: _Shot, slopes: _Slopes, missed: Matrix) -> Matrix
 
 
 def _stretches(
-    grid: _Grid, shot: _Shot, slopes: _Slopes, within: tuple[Matrix, Matrix]
+    grid: _Grid, shot: _Shot, slopes: Slopes, within: tuple[Matrix, Matrix]
 ) -> tuple[Matrix, Matrix]:  # fmt: skip
     """Return how state and time at the end of stretches move with those at their begin, and when they end.
 
@@ -367,54 +387,64 @@ def _stretches(
     return chain, late
 
 
-def _size(problem: InitialValueProblem, shot: _Shot, moved_y: Matrix, moved_t: Matrix) -> Matrix:
-    """Return how far states are to move, in tolerances, by machine; what events come later counts by the rates."""
+def _sizes(problem: InitialValueProblem, shot: _Shot, moved_y: Matrix, moved_t: Matrix) -> Matrix:
+    """Return how far the ends of steps are to move, in tolerances, (n, N); what comes later counts by the rates."""
     allowed = scale_of(problem, shot.after.reshape(len(shot.after), -1)).reshape(shot.after.shape)
     shifted = np.abs(moved_t[:, 1:] * shot.rate)
-    sizes = (np.abs(moved_y[:, :, 1:]) + shifted) / allowed
-    largest = sizes.max(axis=(0, 2))
-    return np.where(np.isfinite(largest), largest, np.inf)
+    sizes = ((np.abs(moved_y[:, :, 1:]) + shifted) / allowed).max(axis=0)
+    return np.where(np.isfinite(sizes), sizes, np.inf)
 
 
-def _judged(several: _Several, grid: _Grid, shot: _Shot, made: dict[int, Path]) -> dict[int, Path]:
-    """Fill in the machines whose steps are within the tolerance and meet no other event; part steps that are not."""
+def _judged(several: _Several, grid: _Grid, shot: _Shot, many: Indices) -> dict[int, Path]:
+    """Fill in machines up to the last of so ``many`` steps that meets no other event; part steps that are too long."""
     problem = several.problem
     begin, reached = grid.y[:, :, :-1].reshape(len(grid.y), -1), shot.reached.reshape(len(grid.y), -1)
     t, end = grid.t[:, :-1].ravel(), grid.t[:, 1:].ravel()
     step = Step(t, begin, shot.length, end, reached, shot.stages[STAGES])
     dense = OwnDense(grid.system, grid.interval.ravel(), step, shot.stages)
     error = error_of(shot.stages, shot.length, scale_of(problem, begin, reached)).reshape(grid.shape)
-    is_close = (error < 1).all(axis=1)
-    is_right = _meets_no_other(problem, grid, dense) if problem.events else np.ones(len(is_close), dtype=bool)
-    for row in np.flatnonzero(is_close & is_right):
-        _write(several, grid, shot, dense, row)
-        made[int(several.machines[row])] = _path(grid, shot, row)
-    return {
-        int(several.machines[row]): _parted(_path(grid, shot, row), dense, error[row], row * grid.shape[1])
-        for row in np.flatnonzero(~is_close & np.isfinite(error).all(axis=1))
-    }
+    right = _steps_without_other(problem, grid, dense) if problem.events else np.full(len(many), grid.shape[1])
+    finer: dict[int, Path] = {}
+    for row, steps in enumerate(np.minimum(many, (~grid.is_empty).sum(axis=1)).tolist()):
+        number, path = int(several.machines[row]), _path(grid, shot, row, steps)
+        if not (error[row, :steps] < 1).all():
+            finer[number] = _parted(path, dense, error[row], row * grid.shape[1])
+            continue
+        path = _path(grid, shot, row, min(steps, int(right[row])))
+        if len(path.event):
+            _write(several, path, shot, dense, row)
+            is_whole = len(path.event) == steps and _is_at_end(problem, path)
+            (several.followed.whole if is_whole else several.followed.part)[number] = path
+    return finer
 
 
-def _write(several: _Several, grid: _Grid, shot: _Shot, dense: OwnDense, row: int) -> None:
-    """Fill in one machine: its states at the stamps, and its events."""
-    number, ends, solution = several.machines[row], grid.t[row, 1:], several.solution
-    stamps = several.problem.stamps
+def _is_at_end(problem: InitialValueProblem, path: Path) -> bool:
+    """Whether a path leads to the end of the record, or to an event that ends it."""
+    return bool(path.t[-1] == problem.stamps[-1] or (path.event[-1] >= 0 and problem.events[path.event[-1]].ends))
+
+
+def _write(several: _Several, path: Path, shot: _Shot, dense: OwnDense, row: int) -> None:
+    """Fill in one machine up to the end of its path: its states at the stamps, and its events."""
+    number, ends, solution = several.machines[row], path.t[1:], several.solution
+    stamps, problem = several.problem.stamps, several.problem
     which = np.searchsorted(ends, stamps[1:])
     within = np.flatnonzero(which < len(ends))
-    flat = row * grid.shape[1] + which[within]
+    flat = row * shot.value.shape[1] + which[within]
     solution.states[:, number, 1 + within] = dense.at(stamps[1 + within], flat)
-    solution.states[:, number, 1 + len(within) :] = shot.after[:, row, -1, None]
-    for event in range(len(several.problem.events)):
-        times = ends[grid.event[row] == event]
+    if path.event[-1] >= 0 and problem.events[path.event[-1]].ends:
+        solution.states[:, number, 1 + len(within) :] = path.y[:, -1, None]
+    for event in range(len(problem.events)):
+        times = ends[path.event == event]
         solution.counts[event, number] = len(times)
         solution.first[event, number] = times[0] if len(times) else np.nan
 
 
-def _path(grid: _Grid, shot: _Shot, row: int) -> Path:
-    """Return the path of one machine."""
-    steps = int((~grid.is_empty[row]).sum())
-    y = np.column_stack([grid.y[:, row, :steps], shot.after[:, row, -1]])
-    return Path(grid.t[row, : steps + 1], y, grid.interval[row, :steps], grid.event[row, :steps])
+def _path(grid: _Grid, shot: _Shot, row: int, steps: int) -> Path:
+    """Return so many steps of the path of one machine."""
+    y = np.column_stack([grid.y[:, row, :steps], shot.after[:, row, max(steps - 1, 0)]])
+    return Path(
+        grid.t[row, : steps + 1], y, grid.interval[row, :steps], grid.event[row, :steps], grid.slopes.of(row, steps)
+    )
 
 
 def _parted(path: Path, dense: OwnDense, error: Matrix, first: int) -> Path:
@@ -429,8 +459,8 @@ def _parted(path: Path, dense: OwnDense, error: Matrix, first: int) -> Path:
     return Path(np.append(begin, path.t[-1]), np.column_stack([y, path.y[:, -1]]), path.interval[which], event)
 
 
-def _meets_no_other(problem: InitialValueProblem, grid: _Grid, dense: OwnDense) -> Mask:
-    """Whether machines meet the events of their path, in the right direction, and no other one."""
+def _steps_without_other(problem: InitialValueProblem, grid: _Grid, dense: OwnDense) -> Indices:
+    """Return after how many steps another event is met than that of the path, or it in the wrong direction, (n,)."""
     (machines, steps), step = grid.shape, dense.step
     shares = np.arange(LOOKS + 1)[:, None] / LOOKS
     times, several = step.t + shares * step.length, np.tile(np.arange(len(step.t)), LOOKS + 1)
@@ -439,7 +469,7 @@ def _meets_no_other(problem: InitialValueProblem, grid: _Grid, dense: OwnDense) 
     is_empty, event = grid.is_empty.ravel(), grid.event.ravel()
     begins_after = np.roll(event, 1) >= 0
     begins_after[::steps] = False
-    is_good = np.ones(machines, dtype=bool)
+    is_right = np.ones((machines, steps), dtype=bool)
     for number, rule in enumerate(problem.events):
         values = system.crossing(number, times.ravel(), states, interval).reshape(LOOKS + 1, -1)
         ends_here = event == number
@@ -447,5 +477,5 @@ def _meets_no_other(problem: InitialValueProblem, grid: _Grid, dense: OwnDense) 
         values[:, is_empty] = np.nan
         values[0, begins_after] = values[-1, ends_here] = np.nan  # what has just passed 0, or is just to pass it
         is_wrong |= passes(values, rule).any(axis=0)
-        is_good &= ~is_wrong.reshape(machines, steps).any(axis=1)
-    return is_good
+        is_right &= ~is_wrong.reshape(machines, steps)
+    return np.asarray(is_right.cumprod(axis=1).sum(axis=1))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property, partial
 from pathlib import Path
 from types import NoneType
@@ -48,6 +48,7 @@ from truing.runs.extension import extended_text
 from truing.runs.folder import demand_place, diagnosis_files, write_outcome
 from truing.setup import Setup
 from truing.studies.bench import Progress
+from truing.studies.frequency import Frequency
 from truing.studies.sweep import Sweep
 from truing.units import difference_unit
 from truing.units.grammar import shown
@@ -155,6 +156,17 @@ class LoadedModel:
         """
         ends = [text_of(self.offer.model, over, end) for end in (low, high)]
         return self.study(Sweep(over=over, at="..".join(ends), points=points), **more)
+
+    def frequency(self, input: str = "", output: str = "", *, over: str = "", at: str = "", **more: Any) -> StudyResult:
+        """Linearise a model that moves: its poles, gain and phase from an input to an output, frequencies over speed.
+
+        ``output`` is a state or a result along time; over an input or condition ``over`` the poles are followed along
+        the range ``at`` ("0..6000 rpm"). Further options are those of ``Frequency`` (``point``, ``frequencies``,
+        ``orders`` ...), everything else is as in ``study``.
+        """
+        names = {field.name for field in fields(Frequency)}
+        options = {name: more.pop(name) for name in names & {*more}}
+        return self.study(Frequency(input=input, output=output, over=over, at=at, **options), **more)
 
     def evaluate(
         self,

@@ -141,7 +141,7 @@ def _input(setup: Setup, field: InputField, value: Any, folder: Path | None) -> 
     if field.kind == "series":
         if getattr(field.spec, "unit", None) is None:
             return [_plain(one) for one in value]
-        return [exact(float(one), field.unit) for one in value]
+        return [exact(float(one), field.unit) for one in value] or None
     return None if value != value else exact(value, field.unit)
 
 
