@@ -17,7 +17,13 @@ from truing.inputs_file import json_schema
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
 INSTALLED = ["harmonic_fractal", "press_linkage", "roller_screw_shift", "rv_gearing", "rv_wear"]
-MODELS = sorted([*INSTALLED, "harmonic_fractal.made_flank", "press_linkage.motion"])
+MODELS = [
+    "harmonic_fractal",
+    "harmonic_fractal.made_flank",
+    "harmonic_fractal.run_up",
+    "harmonic_fractal.vibration",
+    *sorted([*INSTALLED[1:], "press_linkage.motion"]),
+]
 
 
 def test_plugins_as_json(calc: Calc) -> None:

@@ -37,6 +37,13 @@ BOUNDS: dict[str, dict[str, str]] = {
         "at most 50": "spikes",
         "areal or brownian or profile": "kind",
     },
+    "harmonic_fractal.run_up": {
+        "above 0": "ring_inertia damping_ratio torque hardness",
+        "at least 0": "error_amplitude torque_wave form_clearance oil_damping",
+        "below 1": "damping_ratio stiffness_variation",
+        "closing or printed or none": "roughness_clearance",
+    },
+    "harmonic_fractal.vibration": {"above 0": "stated_stiffness mesh_order torque", "at least 0": "speed"},
     "press_linkage.motion": {
         "above 0": "speed speed_share permitted_torque crank_radius",
         "at least 0": "slider_mass counterbalance guide_friction bearing_friction mass_rod inertia_upper_knee",
@@ -144,6 +151,19 @@ IMPOSSIBLE: dict[str, list[tuple[list[str], int, str]]] = {
         (['length = "20 um"'], 3, "a line has fewer than 64 points: make length larger or spacing smaller"),
         (['length = "10 mm"', 'width = "10 mm"'], 4, "the flank has more than 4000000 points"),
         (['longest_wave = "1 nm"'], 3, "the shortest wave is not shorter than the longest one"),
+        (['fractal_roughness = "1e-9 m"'], 3, f"fractal_roughness {CONVENTIONS}"),
+    ],
+    "harmonic_fractal.run_up": [
+        (['speeds = ["2000 rpm", "2000 rpm"]'], 3, "the speeds of a run are above 0 and rise from one to the next"),
+        (["fractal_dimension = 2.04"], 3, "the fractal dimension of both flanks together is below 2.05"),
+        ([AREAL, "fractal_dimension = 2.5", 'fractal_roughness = "1e-9 m"'], 5, "at reference_torque all contacts are "
+         "plastic, so the approach that counts from there is infinite: raise reference_torque"),
+        ([AREAL, 'fractal_roughness = "1e-5 m"', 'roughness_clearance = "none"'], 4, "all contacts are plastic at this "
+         "torque, and the mesh has no stiffness: raise torque"),
+    ],
+    "harmonic_fractal.vibration": [
+        (['times = ["0 s", "1 ms", "1 ms"]'], 3, "the times of a record rise; two are equal or fall"),
+        (['times = ["0 s"]'], 3, "a motion needs two times or more"),
         (['fractal_roughness = "1e-9 m"'], 3, f"fractal_roughness {CONVENTIONS}"),
     ],
     "press_linkage": [
