@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from truing.api.model import Diagnosis, LoadedModel, load
+    from truing.api.plan import Plan
     from truing.api.records import read, record
     from truing.api.run import Run
     from truing.api.study import StudyResult
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "truing.api.model": ("Diagnosis", "LoadedModel", "load"),
+    "truing.api.plan": ("Plan",),
     "truing.api.records": ("read", "record"),
     "truing.api.run": ("Run",),
     "truing.api.study": ("StudyResult",),
@@ -67,7 +69,7 @@ _HOMES = {
 _HOME = {name: module for module, names in _HOMES.items() for name in names}
 
 __all__ = [  # noqa: RUF022  # what a user calls; then what a plugin needs, in the order of its story
-    "load", "LoadedModel", "Run", "StudyResult", "read", "record", "Diagnosis",
+    "load", "LoadedModel", "Run", "StudyResult", "read", "record", "Diagnosis", "Plan",
     "inputs", "results", "given", "found", "axis", "rows", "part", "loaded", "quantity", "Float", "Array",
     "feasible", "either", "column",
     "states", "state", "Dynamics", "Motion", "Event",

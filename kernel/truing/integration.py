@@ -93,6 +93,27 @@ class InitialValueProblem:
 
 
 @dataclass(frozen=True)
+class Slopes:
+    """Derivatives of m steps: by the state that each begins with, (m, d, d); and of the event that ends it.
+
+    Those of its value, (m, d + 1), and of the states after it, (m, d, d + 1), are by the states and the time there. Of
+    n machines all have one more dimension in front.
+    """
+
+    step: Matrix
+    value: Matrix
+    after: Matrix
+
+    def some(self, machines: Indices) -> Slopes:
+        """Return those of some machines."""
+        return Slopes(self.step[machines], self.value[machines], self.after[machines])
+
+    def of(self, machine: int, steps: int) -> Slopes:
+        """Return those of the first steps of one machine."""
+        return Slopes(*(np.array(each[machine, :steps]) for each in (self.step, self.value, self.after)))
+
+
+@dataclass(frozen=True)
 class Path:
     """The m steps of one machine: times (m + 1,) and states (d, m + 1) at which they begin and the last one ends.
 
@@ -103,6 +124,7 @@ class Path:
     y: Matrix
     interval: Indices
     event: Indices
+    slopes: Slopes | None = None
 
     def then(self, rest: Path) -> Path:
         """Return this path and another one behind it, which begins where it ends."""
@@ -124,7 +146,7 @@ class Solution:
     first: Matrix
     reasons: dict[int, tuple[str, float]] = field(default_factory=dict)
     steps: int = 0
-    taken: list[tuple[Matrix, ...]] | None = None
+    taken: list[tuple[Any, ...]] | None = None
     """What was taken, where it is to be kept: machines, begin, end, state at the begin, stretch, event at the end."""
 
     def paths(self, problem: InitialValueProblem) -> dict[int, Path]:
@@ -239,6 +261,10 @@ def _begun(problem: InitialValueProblem, machines: Indices) -> _Going:
     y = np.array(problem.start, dtype=float)
     rate = problem.system.rate(t, y, interval)
     values = [problem.system.crossing(event, t, y, interval) for event in events]
+    if problem.begin is not None:  # an event may just have happened
+        short = 1e-6 * (problem.stamps[-1] - problem.stamps[0])
+        gained = [_gained(event, problem.system, (t, y, interval), short) for event in events]
+        values = [_beyond(value, gain, np.zeros(count, dtype=bool)) for value, gain in zip(values, gained, strict=True)]
     return _Going(
         machine=machines, t=t, y=y, rate=rate, step=_first_step(problem, (t, y, rate), interval),
         interval=interval, stamp=np.searchsorted(problem.stamps, t, side="right"),
@@ -526,11 +552,11 @@ def _happen(problem: InitialValueProblem, system: System, going: _Going, arrival
     return ended
 
 
-def _gained(event: int, system: System, at: tuple[Matrix, Matrix, Indices], short: Matrix) -> Matrix:
-    """Return what the value of an event gains within a short time after time, state and interval, (n,)."""
+def _gained(event: int, system: System, at: tuple[Matrix, Matrix, Indices], short: Matrix | float) -> Matrix:
+    """Return what the value of an event gains within a short time, (n,)."""
     t, y, interval = at
-    later = system.crossing(event, t + short, y + short * system.rate(*at), interval)
-    return later - system.crossing(event, *at)
+    later = system.crossing(event, t + short, y + short * system.rate(t, y, interval), interval)
+    return later - system.crossing(event, t, y, interval)
 
 
 def _beyond(value: Matrix, after: Matrix, gains: Sequence[Matrix]) -> Matrix:

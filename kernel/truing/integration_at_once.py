@@ -21,6 +21,7 @@ from truing.integration import (
     InitialValueProblem,
     OwnDense,
     Path,
+    Slopes,
     Solution,
     Step,
     System,
@@ -42,8 +43,8 @@ CONTRACTS = 0.5
 """A round that is to move more than this share of what the one before moved leads nowhere."""
 MOST_PARTINGS, MOST_PARTS, NEARLY = 4, 8, 0.5
 """So often steps are parted, each into so many at the most, where their error is above this share of what it may be."""
-FAR = 1e4
-"""Derivatives are taken anew where states moved by more than so many tolerances."""
+FAR, SLOW = 1e6, 0.02
+"""Derivatives are taken anew where states move by more than so many tolerances, or than this share of before."""
 
 
 @dataclass(frozen=True)
@@ -66,6 +67,7 @@ class _Grid:
     place: Indices
     is_last: Mask
     is_empty: Mask
+    slopes: Slopes
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -80,7 +82,7 @@ class _Grid:
         return _Grid(
             self.system.part(flat), self.t[machines], self.y[:, machines], self.interval[machines],
             self.event[machines], self.share[:, machines], self.stretch[machines], self.place[machines],
-            self.is_last[machines], self.is_empty[machines],
+            self.is_last[machines], self.is_empty[machines], self.slopes.some(machines),
         )  # fmt: skip
 
 
@@ -100,16 +102,7 @@ class _Shot:
     @property
     def rate(self) -> Matrix:
         """The rates at the ends, (d, n, N)."""
-        return self.stages[STAGES].reshape(self.reached.shape)
-
-
-@dataclass(frozen=True)
-class _Slopes:
-    """Derivatives of the steps: by the state they begin with, (n, N, d, d); of events by state and time, last."""
-
-    step: Matrix
-    value: Matrix
-    after: Matrix
+        return np.asarray(self.stages[STAGES].reshape(self.reached.shape))
 
 
 @dataclass(frozen=True)
@@ -154,11 +147,11 @@ def _along(several: _Several, grid: _Grid) -> dict[int, Path]:
     What a step leads to depends on the steps before it alone, so that the first part of a path meets first.
     """
     problem, machines, finer = several.problem, np.arange(len(several.machines)), dict[int, Path]()
-    before = np.full(grid.shape, np.inf)
-    slopes: _Slopes | None = None
+    before, slopes = np.full(grid.shape, np.inf), grid.slopes
+    is_due = np.isnan(slopes.step).any(axis=(1, 2, 3))
     for count in range(MOST_ROUNDS):
         shot = _shoot(problem, grid)
-        slopes = _slopes_near(several, grid, shot, (slopes, before))
+        _renew(several, grid, shot, slopes, np.flatnonzero(is_due))
         moved_y, moved_t = _newton(grid, shot, slopes)
         moves = _sizes(problem, shot, moved_y, moved_t)
         moves[(np.diff(grid.t, axis=1) < 0) | (grid.t[:, 1:] > problem.stamps[-1])] = np.inf
@@ -169,13 +162,15 @@ def _along(several: _Several, grid: _Grid) -> dict[int, Path]:
         over = np.flatnonzero(is_over)
         if len(over):
             own = replace(several, machines=several.machines[machines[over]])
-            finer |= _judged(own, grid.some(over), _some(shot, over), many[over])
+            finer |= _judged(own, replace(grid, slopes=slopes).some(over), _some(shot, over), many[over])
         on = np.flatnonzero(~is_over)
         if not len(on):
             break
-        grid = replace(grid, t=grid.t + moved_t, y=grid.y + moved_y).some(on)
-        slopes = _Slopes(slopes.step[on], slopes.value[on], slopes.after[on])
-        machines, before = machines[on], moves[on]
+        largest = (np.where(np.isfinite(each), each, 0.0).max(axis=1) for each in (moves, before))
+        now, then = largest
+        is_due = (now > np.where(then > 0, np.minimum(FAR, SLOW * then), FAR))[on]
+        grid = replace(grid, t=grid.t + moved_t, y=grid.y + moved_y, slopes=slopes).some(on)
+        machines, before, slopes = machines[on], moves[on], grid.slopes
     return finer
 
 
@@ -203,7 +198,24 @@ def _grid(problem: InitialValueProblem, paths: Sequence[Path]) -> _Grid:
     whole = np.where(high > low, high - low, 1.0)
     share = np.array([(t[:, :-1] - low) / whole, np.where(is_last, 1.0, (t[:, 1:] - low) / whole)])
     system = problem.system.part(np.repeat(np.arange(len(paths)), steps))
-    return _Grid(system, t, y, interval, event, share, stretch, number - first, is_last, is_empty)
+    slopes = _known_slopes(paths, steps)
+    return _Grid(system, t, y, interval, event, share, stretch, number - first, is_last, is_empty, slopes)
+
+
+def _known_slopes(paths: Sequence[Path], steps: int) -> Slopes:
+    """Return the derivatives that are known with paths, NaN where they are not."""
+    states = len(paths[0].y)
+    shape = len(paths), steps, states
+    made = Slopes(np.zeros((*shape, states)), np.zeros((*shape[:2], states + 1)), np.zeros((*shape, states + 1)))
+    made.step[:] = np.eye(states)
+    for row, path in enumerate(paths):
+        own = path.slopes
+        if own is None:
+            made.step[row] = np.nan
+        else:
+            many = len(path.event)
+            made.step[row, :many], made.value[row, :many], made.after[row, :many] = own.step, own.value, own.after
+    return made
 
 
 def _some(shot: _Shot, machines: Indices) -> _Shot:
@@ -241,7 +253,7 @@ def _steps(system: System, t: Matrix, y: Matrix, length: Matrix, interval: Indic
     return stages, reached
 
 
-def _slopes(problem: InitialValueProblem, grid: _Grid, shot: _Shot) -> _Slopes:
+def _slopes(problem: InitialValueProblem, grid: _Grid, shot: _Shot) -> Slopes:
     """Take derivatives of all steps, and of all events, by differences."""
     begin, interval = grid.y[:, :, :-1].reshape(len(grid.y), -1), grid.interval.ravel()
     states, many = begin.shape
@@ -257,21 +269,14 @@ def _slopes(problem: InitialValueProblem, grid: _Grid, shot: _Shot) -> _Slopes:
         own = np.flatnonzero(grid.event.ravel() == number)
         if len(own):
             _event_slopes(problem, grid, shot, (number, own), (value, after), is_set=rule.sets)
-    return _Slopes(step, value.reshape(*grid.shape, -1), after.reshape(*grid.shape, states, -1))
+    return Slopes(step, value.reshape(*grid.shape, -1), after.reshape(*grid.shape, states, -1))
 
 
-def _slopes_near(
-    several: _Several, grid: _Grid, shot: _Shot, known: tuple[_Slopes | None, Matrix]
-) -> _Slopes:  # fmt: skip
-    """Return derivatives, taken anew for the machines that moved far."""
-    slopes, moved = known
-    if slopes is None:
-        return _slopes(several.problem, grid, shot)
-    far = np.flatnonzero((moved > FAR).any(axis=1))
-    if len(far):
-        new = _slopes(several.problem, grid.some(far), _some(shot, far))
-        slopes.step[far], slopes.value[far], slopes.after[far] = new.step, new.value, new.after
-    return slopes
+def _renew(several: _Several, grid: _Grid, shot: _Shot, slopes: Slopes, machines: Indices) -> None:
+    """Take derivatives of some machines anew, in place."""
+    if len(machines):
+        new = _slopes(several.problem, grid.some(machines), _some(shot, machines))
+        slopes.step[machines], slopes.value[machines], slopes.after[machines] = new.step, new.value, new.after
 
 
 def _event_slopes(
@@ -300,7 +305,7 @@ def _event_slopes(
     after[own] = np.moveaxis((set_to - before[:, None]) / aside, -1, 0)
 
 
-def _newton(grid: _Grid, shot: _Shot, slopes: _Slopes) -> tuple[Matrix, Matrix]:
+def _newton(grid: _Grid, shot: _Shot, slopes: Slopes) -> tuple[Matrix, Matrix]:
     """Return how far states (d, n, N + 1) and times (n, N + 1) are to move so that all steps meet.
 
     Within a stretch all is linear in the states and the time at which it begins and the time at which it ends. The end
@@ -326,7 +331,7 @@ def _newton(grid: _Grid, shot: _Shot, slopes: _Slopes) -> tuple[Matrix, Matrix]:
     return moved_y, moved_t
 
 
-def _within(grid: _Grid, shot: _Shot, slopes: _Slopes, missed: Matrix) -> Matrix:
+def _within(grid: _Grid, shot: _Shot, slopes: Slopes, missed: Matrix) -> Matrix:
     """Return how the state at the end of every step moves with what its stretch begins and ends with, (n, N, d, d + 3).
 
     The columns are the states at its begin, the times of begin and end, and what moves anyway.
@@ -353,7 +358,7 @@ def _within(grid: _Grid, shot: _Shot, slopes: _Slopes, missed: Matrix) -> Matrix
 
 
 def _stretches(
-    grid: _Grid, shot: _Shot, slopes: _Slopes, within: tuple[Matrix, Matrix]
+    grid: _Grid, shot: _Shot, slopes: Slopes, within: tuple[Matrix, Matrix]
 ) -> tuple[Matrix, Matrix]:  # fmt: skip
     """Return how state and time at the end of stretches move with those at their begin, and when they end.
 
@@ -435,12 +440,11 @@ def _write(several: _Several, path: Path, shot: _Shot, dense: OwnDense, row: int
 
 
 def _path(grid: _Grid, shot: _Shot, row: int, steps: int) -> Path:
-    """Return so many steps of the path of one machine; no event is the last one of a part."""
-    event = grid.event[row]
-    if steps < (~grid.is_empty[row]).sum():
-        steps = max(steps - 1, 0) if steps and event[steps - 1] >= 0 else steps
+    """Return so many steps of the path of one machine."""
     y = np.column_stack([grid.y[:, row, :steps], shot.after[:, row, max(steps - 1, 0)]])
-    return Path(grid.t[row, : steps + 1], y, grid.interval[row, :steps], event[:steps])
+    return Path(
+        grid.t[row, : steps + 1], y, grid.interval[row, :steps], grid.event[row, :steps], grid.slopes.of(row, steps)
+    )
 
 
 def _parted(path: Path, dense: OwnDense, error: Matrix, first: int) -> Path:

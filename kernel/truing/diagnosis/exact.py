@@ -44,7 +44,7 @@ WAYS = (1.0, 0.5, 0.25, 0.1)
 """Of the way that the slopes promise, how far the anchor goes: where the model bends, the whole way may lead up."""
 MOST_INPUT_ROUNDS, INPUTS_SETTLED = 20, 1e-7
 """Inputs go with the noise that they leave when a round gains less than so much of the score."""
-NEXT_TO, WIDER, FURTHER_DAMPED = 0.01, 10, 10
+NEXT_TO, WIDER, FURTHER_DAMPED = 1e-4, 0.1, 10
 """Where all derivatives are taken at once: standard deviations by which an input is moved, so many times the step of a
 number, as errors of a followed state are small beside them; and how much more a step is damped that led up."""
 NEARER = 30
