@@ -264,7 +264,7 @@ def _begun(problem: InitialValueProblem, machines: Indices) -> _Going:
     if problem.begin is not None:  # an event may just have happened
         short = 1e-6 * (problem.stamps[-1] - problem.stamps[0])
         gained = [_gained(event, problem.system, (t, y, interval), short) for event in events]
-        values = [_beyond(value, gain, np.zeros(count, dtype=bool)) for value, gain in zip(values, gained, strict=True)]
+        values = [_beyond(value, gain, [gain, gain]) for value, gain in zip(values, gained, strict=True)]
     return _Going(
         machine=machines, t=t, y=y, rate=rate, step=_first_step(problem, (t, y, rate), interval),
         interval=interval, stamp=np.searchsorted(problem.stamps, t, side="right"),
