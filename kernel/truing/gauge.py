@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from truing.declare.dynamics import NotedError
 from truing.declare.fields import Axis
 from truing.errors import Fault, InputError, UsageError
 from truing.evaluate import Rows, evaluate_rows, put_together, rows_alike
@@ -207,16 +208,23 @@ def _read_each(machine: Setup, rows: RowsFile, trials: Sequence[Trial], wanted: 
     asked = {*along, *filter(None, along.values())}
     parts: list[list[Rows]] = [[] for _ in trials]
     order: list[list[NDArray[np.intp]]] = [[] for _ in trials]
+    noted: NotedError | None = None
     for record in _records(machine, rows):
         of_record = _at_places(machine, rows, record)
         series = {name: column[_once(machine, rows, record)] for name, column in rows.series.items()}
         for several, repeats in _calls(record, machine, rows, trials):
             columns = {name: _one_or_each([alike.values[name] for alike in several]) for name in several[0].values}
             changed, size = columns | series, len(several)
-            computed = evaluate_rows(of_record, changed, size, reading=True, wanted=asked, repeats=repeats)
+            try:
+                computed = evaluate_rows(of_record, changed, size, reading=True, wanted=asked, repeats=repeats)
+            except NotedError as error:
+                noted = error
+                continue
             for number, alike in enumerate(several):
                 parts[alike.trial].append(_for_rows(computed, number, alike.places, along=along, rows=rows))
                 order[alike.trial].append(alike.places)
+    if noted is not None:
+        raise noted
     done = [put_together(*each, list(along), len(rows)) for each in zip(parts, order, strict=True)]
     return done if wanted is None else [answer.complete() for answer in done]
 

@@ -9,15 +9,16 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import permutations
 from typing import Any
 
 import numpy as np
 
 from truing.arrays import Indices, Matrix
-from truing.declare.dynamics import following_together
+from truing.declare.dynamics import NotedError, following_together
 from truing.diagnosis.records import Records
 from truing.gauge import Trial, one_machine, read_trials
 from truing.setup import Setup
@@ -134,8 +135,9 @@ def calibration_of(setup: Setup, records: Records) -> Calibration:
     inputs = tolerated_inputs(setup, records)
     if start.model.dynamics is not None:
         with following_together():
-            predict(start, records)
-            deque(_slopes(start, records, inputs), maxlen=0)
+            for asked in (predict, partial(_slopes, inputs=inputs)):
+                with suppress(NotedError):
+                    deque(asked(start, records), maxlen=0)
     base = predict(start, records)
     kind = np.float32 if len(records) > MANY else np.float64
     slopes: dict[str, Any] = {
