@@ -303,6 +303,11 @@ class MachinesAsked:
 _ASKED: ContextVar[MachinesAsked | None] = ContextVar("truing_machines_asked", default=None)
 
 
+def is_noting() -> bool:
+    """Whether machines are noted, to be followed later."""
+    return _ASKED.get() is not None
+
+
 @contextmanager
 def following_together() -> Iterator[MachinesAsked]:
     """Note which machines are asked for inside, where each call ends with ``NotedError``, and follow all at the end.

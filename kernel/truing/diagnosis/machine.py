@@ -7,18 +7,15 @@ prior.
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 from itertools import permutations
 from typing import Any
 
 import numpy as np
 
 from truing.arrays import Indices, Matrix
-from truing.declare.dynamics import NotedError, following_together
 from truing.diagnosis.records import Records
 from truing.gauge import Trial, one_machine, read_trials
 from truing.setup import Setup
@@ -133,11 +130,6 @@ def calibration_of(setup: Setup, records: Records) -> Calibration:
     """Evaluate the model at the start and around it, twice per tolerated input."""
     start = one_machine(setup)
     inputs = tolerated_inputs(setup, records)
-    if start.model.dynamics is not None:
-        with following_together():
-            for asked in (predict, partial(_slopes, inputs=inputs)):
-                with suppress(NotedError):
-                    deque(asked(start, records), maxlen=0)
     base = predict(start, records)
     kind = np.float32 if len(records) > MANY else np.float64
     slopes: dict[str, Any] = {
