@@ -264,7 +264,7 @@ def _begun(problem: InitialValueProblem, machines: Indices) -> _Going:
     if problem.begin is not None:  # an event may just have happened
         short = 1e-6 * (problem.stamps[-1] - problem.stamps[0])
         gained = [_gained(event, problem.system, (t, y, interval), short) for event in events]
-        values = [_beyond(value, gain, np.zeros(count, dtype=bool)) for value, gain in zip(values, gained, strict=True)]
+        values = [_beyond(value, gain, [gain, gain]) for value, gain in zip(values, gained, strict=True)]
     return _Going(
         machine=machines, t=t, y=y, rate=rate, step=_first_step(problem, (t, y, rate), interval),
         interval=interval, stamp=np.searchsorted(problem.stamps, t, side="right"),
@@ -546,12 +546,9 @@ def _happen(problem: InitialValueProblem, system: System, going: _Going, arrival
         after = going.value[number, own]
         for other in range(len(problem.events)):
             going.value[other, own] = part.crossing(other, t, going.y[:, own], interval)
-        is_set = np.zeros(len(own), dtype=bool)
-        if rule.sets and (going.value[number, own] == 0).any():
-            short = 1e-6 * going.step[own]
-            slopes = [_gained(number, part, (t, y, interval), short) for y in (before, going.y[:, own])]
-            is_set = np.abs(slopes[1] - slopes[0]) > 1e-3 * np.abs(slopes[0])
-        going.value[number, own] = _beyond(going.value[number, own], after, is_set)
+        short = 1e-6 * going.step[own]
+        gains = [_gained(number, part, (t, y, interval), short) for y in (before, going.y[:, own])]
+        going.value[number, own] = _beyond(going.value[number, own], after, gains)
     return ended
 
 
@@ -562,12 +559,15 @@ def _gained(event: int, system: System, at: tuple[Matrix, Matrix, Indices], shor
     return later - system.crossing(event, t, y, interval)
 
 
-def _beyond(value: Matrix, after: Matrix, is_set: Mask) -> Matrix:
+def _beyond(value: Matrix, after: Matrix, gains: Sequence[Matrix]) -> Matrix:
     """Return the value of an event that has just happened: what rounding leaves of 0 lies on the side beyond it.
 
-    A machine whose course is set anew (``is_set``) may well begin at 0.
+    ``gains`` is what it gained within a short time before the state was set, and gains after that: a machine whose
+    course is set anew may well begin at 0.
     """
-    is_rounding = (np.abs(value) <= 1e-9 * np.abs(after)) & ~(is_set & (value == 0))
+    is_set = np.abs(gains[1] - gains[0]) > 1e-3 * np.abs(gains[0])
+    is_rounding = np.abs(value) <= np.maximum(1e-9 * np.abs(after), 1e-3 * np.abs(gains[0]))
+    is_rounding &= ~(is_set & (value == 0))
     return np.asarray(np.where(is_rounding, np.copysign(np.maximum(np.abs(value), TINY), after), value))
 
 

@@ -4,6 +4,7 @@ import itertools
 import multiprocessing
 import re
 from collections.abc import Callable
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal
@@ -34,6 +35,7 @@ from truing import (
     given,
     hookimpl,
     inputs,
+    integration,
     normal,
     plus_minus,
     results,
@@ -41,6 +43,7 @@ from truing import (
     states,
 )
 from truing.calculation import calculate
+from truing.declare import dynamics
 from truing.declare.model import PROMISES
 from truing.describe import description
 from truing.errors import DeclarationError
@@ -51,6 +54,8 @@ from truing.report.sheet import make_sheet
 from truing.runs.provenance import provenance_of
 from truing.setup import default_setup
 from truing.testing import CHECKS, conformance, failures
+from truing.testing.declared import formulas_have_the_unit
+from truing.testing.running import motion_is_settled
 from truing.testing.subject import Subject
 
 pytestmark = pytest.mark.usefixtures("kit_shares_processes")
@@ -548,3 +553,34 @@ def test_a_file_whose_name_is_taken_is_found_by_another_process(tmp_path: Path) 
         loaded.append(load_file(file))
     assert [module.__name__ for module in loaded] == ["taken_pin", "truing_file_taken_pin"]
     assert failures(loaded[1].PIN_WEAR) == {}
+
+
+def switched_off(unsaid: Unsaid, kettle: Kettle, time: Float) -> Unsaid:
+    """A heater that goes out at 40 degC: a jump, of which no event says anything."""
+    return Unsaid(temperature=np.where(unsaid.temperature < 313.15, kettle.power, 0.0) / kettle.capacity)
+
+
+def warmed(unsaid: Unsaid, kettle: Kettle, time: Float) -> Unsaid:
+    """The same that turns down smoothly within 20 K."""
+    share = 0.5 - 0.5 * np.tanh((unsaid.temperature - 313.15) / 20)
+    return Unsaid(temperature=share * kettle.power / kettle.capacity)
+
+
+def test_a_motion_whose_slopes_are_not_those_of_the_variational_equation_fails() -> None:
+    """At the jump what is followed turns; the slope of the law along it does not (Aizerman and Gantmakher, 1958)."""
+    for law, holds in ((switched_off, False), (warmed, True)):
+        subject = Subject(replace(KETTLE, function=Dynamics(rate=law, gives=read, settled=1e-3)))
+        with nullcontext() if holds else pytest.raises(AssertionError, match="is not that of the variational equation"):
+            motion_is_settled(subject)
+
+
+def test_formulas_of_a_motion_are_held_against_one_that_is_followed_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    followed: list[int] = []
+
+    def solve(problem: Any, **how: Any) -> Any:
+        followed.append(1)
+        return integration.solve(problem, **how)
+
+    monkeypatch.setattr(dynamics, "solve", solve)
+    formulas_have_the_unit(Subject(replace(KETTLE, function=replace(KETTLE.function))))
+    assert len(followed) == 1

@@ -47,10 +47,13 @@ class Oscillator:
 class Moved:
     """Where it is and how fast; the largest value so far, and when it last came into the band."""
 
-    position: Float = state("m", start="start", symbol="x", note="from where the spring is slack", rate="speed")
-    speed: Float = state(
-        "m/s", start=0, symbol="v", note="of the mass", rate="(force - damping * speed - stiffness * position) / mass"
+    position: Float = state(
+        "m", start="start", symbol="x", note="from where the spring is slack", rate="speed", size=0.001
     )
+    speed: Float = state(
+        "m/s", start=0, symbol="v", note="of the mass", size=0.001,
+        rate="(force - damping * speed - stiffness * position) / mass",
+    )  # fmt: skip
     peak: Float = state("m", start="start", symbol="x_p", note="largest so far", rate="0")
     came: Float = state("s", start=0, symbol="t_b", note="when it last came into the band", rate="0")
 

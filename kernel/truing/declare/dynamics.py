@@ -242,25 +242,32 @@ class Dynamics(Generic[S, I, R]):
         y = np.array([getattr(motion.states, name) for name in self.state_fields])
         return dict(zip(self.state_fields, along.rate(stamps, y, interval), strict=True))
 
-    def start_of(self, inputs: I) -> Matrix:
-        """Return the states in which one machine starts, (d,)."""
-        return _machines(self, inputs).start()[:, 0]
+    def starts_of(self, inputs: I) -> Matrix:
+        """Return the states in which machines start, (d, n); (d, 1) of one."""
+        return _machines(self, inputs).start()
 
-    def law_at(self, inputs: I, states: Matrix) -> Matrix:
-        """Return what the law says at the first time of n machines in these states (d, n); inputs of one or of n."""
+    def law_at(self, inputs: I, states: Matrix, t: float | None = None) -> Matrix:
+        """Return what the law says of n machines in these states (d, n), of one or n inputs; by default at first."""
         machines, several = _machines(self, inputs), np.zeros(states.shape[1], dtype=np.intp)
         machines = machines.part(several) if machines.is_single else machines
-        return machines.rate(np.full(len(several), machines.stamps[0]), states, several)
+        stamps = machines.stamps
+        at = stamps[0] if t is None else t
+        interval = np.clip(np.searchsorted(stamps, at, side="right") - 1, 0, len(stamps) - 2)
+        return machines.rate(np.full(len(several), at), states, several + interval)
+
+    def begun(self, inputs: I, stamps: int) -> I:
+        """Return the inputs of a record that ends after so many stamps."""
+        machines = _machines(self, inputs)
+        series = {self.input_fields[self.times].path: machines.stamps, **machines.drives}
+        return with_values(inputs, {path: values[..., :stamps] for path, values in series.items()})
 
     def shown_at(self, inputs: I, states: Matrix) -> R:
         """Return the results of n machines that stand in these states (d, n) at the first two times."""
-        machines = _machines(self, inputs)
-        series = {self.input_fields[self.times].path: machines.stamps, **machines.drives}
-        inputs = with_values(inputs, {path: values[..., :2] for path, values in series.items()})
+        inputs = self.begun(inputs, 2)
         standing = {name: np.repeat(states[row][:, None], 2, axis=1) for row, name in enumerate(self.state_fields)}
         never = {event.name: np.full(states.shape[1], np.nan) for event in self.events}
-        counts = {name: np.zeros(states.shape[1]) for name in never}
-        return self.gives(inputs, Motion(machines.stamps[:2], self.state_type(**standing), counts, never))
+        counts, stamps = {name: np.zeros(states.shape[1]) for name in never}, _machines(self, inputs).stamps
+        return self.gives(inputs, Motion(stamps, self.state_type(**standing), counts, never))
 
 
 # What was followed is remembered machine by machine: a fit asks for the same ones again, among others

@@ -122,7 +122,7 @@ class Frequency:
     def _point(self, setup: Setup, dynamics: Dynamics[Any, Any, Any]) -> Matrix:
         """Return the states about which the model is linearised, (d,)."""
         inputs, stated = acting_inputs(setup), self.point
-        start = dynamics.start_of(inputs)
+        start = dynamics.starts_of(inputs)[:, 0]
         if isinstance(stated, str):
             return equilibrium(dynamics, inputs, start) if stated == "equilibrium" else start
         known, states = dynamics.state_fields, np.array(start)

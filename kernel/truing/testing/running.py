@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from truing.declare.fields import Axis, Given, InputField, with_values
+from truing.declare.batch import watching
+from truing.declare.dynamics import Dynamics
+from truing.declare.fields import Axis, Given, InputField, read, with_values
+from truing.declare.model import Model
 from truing.declare.sources import Condition
 from truing.errors import InfeasibleError, PluginError, TruingError
 from truing.evaluate import Rows, evaluate, evaluate_rows
 from truing.executors import in_order, open_executor
+from truing.heavy import integrate
 from truing.inputs_file import setup_from_settings
 from truing.inputs_file.values import broken_bound
 from truing.packed import Packed, pack, unpack
@@ -187,10 +192,11 @@ def steps_may_be_halved(subject: Subject) -> None:
 
 
 def motion_is_settled(subject: Subject) -> None:
-    """A tenth of the tolerance of a motion changes no result by more than the sheet says."""
+    """A tenth of the tolerance of a motion changes no result by more than the sheet says, and slopes are its own."""
     dynamics = subject.model.dynamics
     if dynamics is None or dynamics.step is not None:
         return
+    _slopes_are_its_own(subject, dynamics)
     finer = replace(dynamics, tolerance=dynamics.tolerance / 10)
     for point in ({}, *subject.points(POINTS)):
         inputs = subject.at(point).inputs
@@ -201,6 +207,81 @@ def motion_is_settled(subject: Subject) -> None:
             if moved > dynamics.settled * size:
                 what = f"a tenth of the tolerance moves '{name}' by {moved / size:.1g} of its largest value"
                 fail(f"{subject.model.name}: {what}, not {dynamics.settled:g}; state a smaller tolerance, or settled")
+
+
+FEW_STAMPS, FEW_INPUTS = 5, 3
+"""Slopes of a motion are held against one another over so many times, in so many inputs."""
+AGREED = 1e-3
+"""Differences over a step that respects the tolerance agree so far, as a share of the largest slope of a state."""
+
+
+def _slopes_are_its_own(subject: Subject, dynamics: Dynamics[Any, Any, Any]) -> None:
+    """Derivatives of states by differences are those of the variational equation; no event may set a state.
+
+    The step, a share of an input, is the cube root of the tolerance: there what a difference leaves out is about as
+    large as the error of the integration. Differences over the step and twice of it are extrapolated to none; what
+    lies between them is allowed.
+    """
+    setup, step = subject.setup, max(dynamics.tolerance, 1e-12) ** (1 / 3)
+    values = {name: float(setup.nominal(name)) for name in subject.scattering if name in setup.model.input_fields}
+    names = [name for name, value in values.items() if np.isfinite(value) and value != 0][:FEW_INPUTS]
+    inputs, several = dynamics.begun(setup.inputs, FEW_STAMPS), len(names)
+    moved = _moved_inputs(setup.model, inputs, {name: values[name] for name in names}, (step, 2 * step))
+    with watching(4 * several + 1) as log:
+        motion = dynamics.followed(moved)
+    if not names or log.codes.any() or any(np.any(count) for count in motion.counts.values()):
+        return
+    states = np.array([getattr(motion.states, name) for name in dynamics.state_fields])
+    up, down, further_up, further_down = np.split(states[:, 1:], 4, axis=1)
+    near, far = (up - down) / (2 * step), (further_up - further_down) / (4 * step)
+    differences = near + (near - far) / 3
+    varied = _varied(subject, dynamics, inputs, {name: values[name] for name in names})
+    largest = np.abs(varied).max(axis=(1, 2), initial=0.0)[:, None, None]
+    sizes = np.maximum(np.abs(states).max(axis=(1, 2)), 1e-300)[:, None, None]
+    allowed = AGREED * largest + np.abs(near - far) + 100 * dynamics.tolerance / step * sizes
+    wrong = np.abs(differences - varied) > allowed
+    for state, name in {(int(state), int(name)) for state, name, _ in np.argwhere(wrong)}:
+        which = f"state '{list(dynamics.state_fields)[state]}' in '{names[name]}'"
+        why = "the law jumps where no event says so, or it keeps something between calls"
+        fail(
+            f"{subject.model.name}: the slope of {which} by differences is not that of the variational equation; {why}"
+        )
+
+
+def _moved_inputs(model: Model[Any, Any], inputs: Any, values: Mapping[str, float], steps: Sequence[float]) -> Any:
+    """Return inputs of machines: as they are; then by every step, a share, each value up, and each down."""
+    one = np.eye(len(values))
+    rows = np.concatenate([0 * one[:1], *(sign * step * one for step in steps for sign in (1, -1))])
+    columns = {name: value * (1 + rows[:, place]) for place, (name, value) in enumerate(values.items())}
+    return with_values(inputs, {model.input_fields[name].path: column for name, column in columns.items()})
+
+
+def _varied(
+    subject: Subject, dynamics: Dynamics[Any, Any, Any], inputs: Any, values: Mapping[str, float]
+) -> NDArray[np.float64]:
+    """Return the slopes of all states in values, each in shares of itself, by the variational equation, (d, p, k).
+
+    S' = df/dx S + df/dp is the slope of the law along (S, 1), a central difference; scipy integrates states and slopes.
+    """
+    several, short = len(values), 1e-5
+    moved = _moved_inputs(subject.model, inputs, values, [short])
+    stamps = np.asarray(read(inputs, dynamics.input_fields[dynamics.times].path), dtype=float)
+    starts = dynamics.starts_of(moved)
+    slopes = (starts[:, 1 : several + 1] - starts[:, several + 1 :]) / (2 * short)
+
+    def rate(t: float, flat: NDArray[np.float64]) -> NDArray[np.float64]:
+        y, s = flat.reshape(-1, several + 1)[:, :1], short * flat.reshape(-1, several + 1)[:, 1:]
+        law = dynamics.law_at(moved, np.concatenate([y, y + s, y - s], axis=1), t)
+        slope = (law[:, 1 : several + 1] - law[:, several + 1 :]) / (2 * short)
+        return np.concatenate([law[:, :1], slope], axis=1).ravel()
+
+    y = np.concatenate([starts[:, :1], slopes], axis=1).ravel()
+    known = [y]
+    for begin, end in pairwise(stamps.tolist()):
+        inside = np.nextafter(end, begin)  # what drives is that of this interval
+        y = integrate.solve_ivp(rate, (begin, inside), y, method="LSODA", rtol=1e-8, atol=1e-10).y[:, -1]
+        known.append(y)
+    return np.moveaxis(np.array(known).reshape(len(stamps), -1, several + 1)[:, :, 1:], 0, 2)
 
 
 def numerical(subject: Subject) -> list[InputField]:
