@@ -71,7 +71,7 @@ class Unit:
     )
     oil_capacity: Float = given(8.3, "kJ/K", symbol="C_1", note="heat capacity of the oil", above=0)
     housing_capacity: Float = given(28.0, "kJ/K", symbol="C_2", note="heat capacity of housing and gears", above=0)
-    contact: Float = given(60.0, "W/K", symbol="k_1", note="heat transfer from the oil to the housing", above=0)
+    contact: Float = given(30.0, "W/K", symbol="k_1", note="heat transfer from the oil to the housing", above=0)
     still_transfer: Float = given(5.0, "W/K", symbol="k_2", note="heat transfer to still air", at_least=0)
     fan_transfer: Float = given(0.0028, "W/K/rpm", symbol="k_3", note="that of the fan, per speed", at_least=0)
     fill: Float = given(1.0, "", symbol="f", note="share of the oil that is there", above=0)
