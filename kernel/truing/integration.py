@@ -261,6 +261,10 @@ def _begun(problem: InitialValueProblem, machines: Indices) -> _Going:
     y = np.array(problem.start, dtype=float)
     rate = problem.system.rate(t, y, interval)
     values = [problem.system.crossing(event, t, y, interval) for event in events]
+    if problem.begin is not None:  # an event may just have happened
+        short = 1e-6 * (problem.stamps[-1] - problem.stamps[0])
+        gained = [_gained(event, problem.system, (t, y, interval), short) for event in events]
+        values = [_beyond(value, gain, np.zeros(count, dtype=bool)) for value, gain in zip(values, gained, strict=True)]
     return _Going(
         machine=machines, t=t, y=y, rate=rate, step=_first_step(problem, (t, y, rate), interval),
         interval=interval, stamp=np.searchsorted(problem.stamps, t, side="right"),
@@ -551,7 +555,7 @@ def _happen(problem: InitialValueProblem, system: System, going: _Going, arrival
     return ended
 
 
-def _gained(event: int, system: System, at: tuple[Matrix, Matrix, Indices], short: Matrix) -> Matrix:
+def _gained(event: int, system: System, at: tuple[Matrix, Matrix, Indices], short: Matrix | float) -> Matrix:
     """Return what the value of an event gains within a short time, (n,)."""
     t, y, interval = at
     later = system.crossing(event, t + short, y + short * system.rate(t, y, interval), interval)

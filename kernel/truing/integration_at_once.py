@@ -440,12 +440,11 @@ def _write(several: _Several, path: Path, shot: _Shot, dense: OwnDense, row: int
 
 
 def _path(grid: _Grid, shot: _Shot, row: int, steps: int) -> Path:
-    """Return so many steps of the path of one machine; no event is the last one of a part."""
-    event = grid.event[row]
-    if steps < (~grid.is_empty[row]).sum():
-        steps = max(steps - 1, 0) if steps and event[steps - 1] >= 0 else steps
+    """Return so many steps of the path of one machine."""
     y = np.column_stack([grid.y[:, row, :steps], shot.after[:, row, max(steps - 1, 0)]])
-    return Path(grid.t[row, : steps + 1], y, grid.interval[row, :steps], event[:steps], grid.slopes.of(row, steps))
+    return Path(
+        grid.t[row, : steps + 1], y, grid.interval[row, :steps], grid.event[row, :steps], grid.slopes.of(row, steps)
+    )
 
 
 def _parted(path: Path, dense: OwnDense, error: Matrix, first: int) -> Path:

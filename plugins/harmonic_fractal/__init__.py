@@ -1,13 +1,14 @@
-"""Harmonic drive: from the measured roughness of the flanks to contact stiffness, clearance and torsion."""
+"""Harmonic drive: from the measured roughness of the flanks to contact stiffness, clearance, torsion and vibration."""
 
 from typing import Any
 
 from harmonic_fractal.made_sheet import MADE_FLANK
 from harmonic_fractal.model import HARMONIC_FRACTAL
+from harmonic_fractal.vibration_sheet import RUN_UP, VIBRATION
 from truing import Model, hookimpl
 
 
 @hookimpl
 def truing_models() -> "list[Model[Any, Any]]":
-    """Offer two calculations: harmonic_fractal, and harmonic_fractal.made_flank for surfaces of known truth."""
-    return [HARMONIC_FRACTAL, MADE_FLANK]
+    """Offer four calculations: the drive, surfaces of known truth, and its vibration over the speed and in time."""
+    return [HARMONIC_FRACTAL, MADE_FLANK, RUN_UP, VIBRATION]

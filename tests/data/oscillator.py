@@ -6,6 +6,7 @@ from truing import (
     Dynamics,
     Event,
     Float,
+    Frequency,
     Maximise,
     Minimise,
     Model,
@@ -130,6 +131,7 @@ OSCILLATOR = Model(
         Maximise("frequency"),
         Require("overshoot", at_most="60 %", reliability=0.9),
     ],
+    studies=[Frequency(input="force", output="position")],
 )
 
 

@@ -48,14 +48,17 @@ def ask(calc: Calc, monkeypatch: pytest.MonkeyPatch) -> Ask:
     return answers
 
 
+DRIVES = ["harmonic_fractal.made_flank", "harmonic_fractal.run_up", "harmonic_fractal.vibration"]
+
+
 @pytest.mark.parametrize(
     ("line", "offered"),
     [
         ("calc ini", ["init"]),
         ("calc run pre", ["press_linkage"]),
         ("calc describe rv_", ["rv_gearing", "rv_wear"]),
-        ("calc run harmonic_fractal", ["harmonic_fractal", "harmonic_fractal.made_flank"]),
-        ("calc table harmonic_fractal.", ["harmonic_fractal.made_flank"]),
+        ("calc run harmonic_fractal", ["harmonic_fractal", *DRIVES]),
+        ("calc table harmonic_fractal.", DRIVES),
         ("calc run press_linkage --set reading=", ["reading=complete", "reading=printed"]),
         ("calc run -q press_linkage -v --set tolerances.kn", ["tolerances.knee_drive_length="]),
         ("calc run harmonic_fractal.made_flank --set studies.flank_file.f", ["studies.flank_file.file="]),

@@ -40,6 +40,8 @@ I = TypeVar("I")  # noqa: E741  # inputs, as in Model[I, R]
 R = TypeVar("R")
 S = TypeVar("S")
 T = TypeVar("T")
+MOST_NEARBY = 64
+"""More machines in one call, unless they are known, are drawn: nobody asks for them again, and none is remembered."""
 MOST_REMEMBERED, MOST_NEAR = 2_000_000, 256
 """So many values of states are remembered; of so many machines the nearest one is looked for."""
 NEAR, FAR, TINY = 1e-3, 6, 1e-300
@@ -240,6 +242,26 @@ class Dynamics(Generic[S, I, R]):
         y = np.array([getattr(motion.states, name) for name in self.state_fields])
         return dict(zip(self.state_fields, along.rate(stamps, y, interval), strict=True))
 
+    def start_of(self, inputs: I) -> Matrix:
+        """Return the states in which one machine starts, (d,)."""
+        return _machines(self, inputs).start()[:, 0]
+
+    def law_at(self, inputs: I, states: Matrix) -> Matrix:
+        """Return what the law says at the first time of n machines in these states (d, n); inputs of one or of n."""
+        machines, several = _machines(self, inputs), np.zeros(states.shape[1], dtype=np.intp)
+        machines = machines.part(several) if machines.is_single else machines
+        return machines.rate(np.full(len(several), machines.stamps[0]), states, several)
+
+    def shown_at(self, inputs: I, states: Matrix) -> R:
+        """Return the results of n machines that stand in these states (d, n) at the first two times."""
+        machines = _machines(self, inputs)
+        series = {self.input_fields[self.times].path: machines.stamps, **machines.drives}
+        inputs = with_values(inputs, {path: values[..., :2] for path, values in series.items()})
+        standing = {name: np.repeat(states[row][:, None], 2, axis=1) for row, name in enumerate(self.state_fields)}
+        never = {event.name: np.full(states.shape[1], np.nan) for event in self.events}
+        counts = {name: np.zeros(states.shape[1]) for name in never}
+        return self.gives(inputs, Motion(machines.stamps[:2], self.state_type(**standing), counts, never))
+
 
 # What was followed is remembered machine by machine: a fit asks for the same ones again, among others
 
@@ -288,7 +310,7 @@ def following_together() -> Iterator[MachinesAsked]:
     for group in by_record.values():
         machines = _joined(group)
         asked.new += len({*machines.keys()} - {*machines.dynamics.memory})
-        _follow(machines)
+        _follow(machines, _beside_others)
 
 
 def _remembered(machines: _Machines[Any, Any, Any]) -> Solution:
@@ -299,7 +321,9 @@ def _remembered(machines: _Machines[Any, Any, Any]) -> Solution:
         states, events = len(machines.dynamics.state_fields), len(machines.dynamics.events)
         nothing = np.full((events, machines.count), np.nan)
         return Solution(np.full((states, machines.count, len(machines.stamps)), np.nan), nothing, nothing)
-    known = _follow(machines)
+    if machines.count > MOST_NEARBY and machines.keys()[0] not in machines.dynamics.memory:
+        return solve(_problem(machines)) if machines.dynamics.step is None else _in_steps(machines)
+    known = _follow(machines, _step_by_step)
     reasons = {place: each.reason for place, each in enumerate(known) if each.reason}
     return Solution(
         np.stack([each.states for each in known], axis=1), np.stack([each.counts for each in known], axis=1),
@@ -307,14 +331,16 @@ def _remembered(machines: _Machines[Any, Any, Any]) -> Solution:
     )  # fmt: skip
 
 
-def _follow(machines: _Machines[Any, Any, Any]) -> list[_Followed]:
+def _follow(
+    machines: _Machines[Any, Any, Any], follow: Callable[[_Machines[Any, Any, Any]], list[_Followed]]
+) -> list[_Followed]:  # fmt: skip
     """Return what is known of machines, those that are not known followed in one call."""
     memory, keys = machines.dynamics.memory, machines.keys()
     places = {key: place for place, key in enumerate(keys) if key not in memory}
     made = {key: memory[key] for key in keys if key in memory}
     if places:
         new = machines.part(np.array(list(places.values())))
-        made |= dict(zip(places, _followed(new), strict=True))
+        made |= dict(zip(places, follow(new), strict=True))
         most = max(1, MOST_REMEMBERED // max(made[keys[0]].states.size, 1))
         memory.update((key, made[key]) for key in places)
         for old in list(memory)[:-most]:
@@ -322,20 +348,38 @@ def _follow(machines: _Machines[Any, Any, Any]) -> list[_Followed]:
     return [made[key] for key in keys]
 
 
-def _followed(new: _Machines[Any, Any, Any]) -> list[_Followed]:
+def _step_by_step(new: _Machines[Any, Any, Any]) -> list[_Followed]:
+    """Follow machines step by step."""
+    solution = _in_steps(new) if new.dynamics.step is not None else solve(_problem(new))
+    return [_one_of(solution, machine, np.zeros(0), None) for machine in range(new.count)]
+
+
+def _beside_others(new: _Machines[Any, Any, Any]) -> list[_Followed]:
     """Follow machines: along a path that is known, else near one another, else step by step."""
+    if new.dynamics.step is not None:
+        return _step_by_step(new)
     numbers = np.column_stack([np.zeros(new.count), *(each for each in new.numbers.values() if each.ndim == 1)])
     known = [each for key, each in new.dynamics.memory.items() if each.path is not None and key.startswith(new.record)]
     made: dict[int, _Followed] = {}
     leaders = _leaders(numbers)
     firsts = np.unique(leaders).tolist()
-    near = _nearest(known[-MOST_NEAR:], numbers)
+    near = {**_straight(new), **_nearest(known[-MOST_NEAR:], numbers)}
     _add_along(made, new, numbers, {place: near[place] for place in firsts if place in near})
     _add_alone(made, new, numbers, [place for place in firsts if place not in made])
     rest = [(place, made[int(leader)].path) for place, leader in enumerate(leaders) if place not in made]
     _add_along(made, new, numbers, {place: path for place, path in rest if path is not None})
     _add_alone(made, new, numbers, [place for place in range(new.count) if place not in made])
     return [made[place] for place in range(new.count)]
+
+
+def _straight(new: _Machines[Any, Any, Any]) -> dict[int, Path]:
+    """Return a path for machines that are driven: one step from each stamp to the next, at rest where it starts."""
+    if not new.drives or new.dynamics.events:
+        return {}
+    start, steps = new.start(), len(new.stamps) - 1
+    interval, no_event = np.arange(steps), np.full(steps, -1)
+    states = (np.repeat(start[:, place, None], steps + 1, axis=1) for place in range(new.count))
+    return {place: Path(new.stamps, each, interval, no_event) for place, each in enumerate(states)}
 
 
 def _leaders(numbers: Matrix) -> Indices:
@@ -410,13 +454,9 @@ def _add_alone(
     """Follow some machines step by step."""
     if not places:
         return
-    part = new.part(np.array(places))
-    if new.dynamics.step is not None:
-        solution, paths = _in_steps(part), dict[int, Path]()
-    else:
-        problem = _problem(part)
-        solution = solve(problem, keeps_paths=True)
-        paths = solution.paths(problem)
+    problem = _problem(new.part(np.array(places)))
+    solution = solve(problem, keeps_paths=True)
+    paths = solution.paths(problem)
     for each, place in enumerate(places):
         made[place] = _one_of(solution, each, numbers[place], paths.get(each))
     _add_along(made, new, numbers, {places[each]: path for each, path in paths.items()}, goes_on=False)

@@ -30,7 +30,7 @@ SAME = 1e-12
 
 
 def units_are_known(subject: Subject) -> None:
-    """Every unit that is declared is one that Truing knows; history is in a unit of what it is made from."""
+    """Every unit that is declared is one that Truing knows; history is in that of what it is made from, or gains."""
     model = subject.model
     for unread in unread_units(model):
         fail(f"{model.name}: {unread.sentence}")
@@ -42,6 +42,9 @@ def units_are_known(subject: Subject) -> None:
         if made_from and not same_dimension(condition.unit, wanted):
             what = f"{condition.derived}, which is in '{wanted}'" if wanted else "a direction, which has no unit"
             fail(f"{model.name}: condition '{name}' is in '{condition.unit}', but it is {what}")
+        if condition.rate and not same_dimension(f"{units[condition.rate] or '1'}*s", condition.unit):
+            per = f"'{condition.rate}' is in '{units[condition.rate]}'"
+            fail(f"{model.name}: condition '{name}' is in '{condition.unit}', but {per}, which is not that per time")
 
 
 def defaults_keep_their_bounds(subject: Subject) -> None:
