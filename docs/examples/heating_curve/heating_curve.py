@@ -221,13 +221,8 @@ EFFECTS = [
 ]  # fmt: skip
 
 TOLERANCES = [
-    Tolerance("load_loss", normal(sd="0.06 %"), why="of the catalogue"),
     Tolerance("drag", normal(sd="5 %"), why="of the catalogue, for an oil of this grade"),
-    Tolerance("oil_capacity", normal(sd="3 %"), why="filled by the dipstick"),
     Tolerance("housing_capacity", normal(sd="2 %"), why="from weights"),
-    Tolerance("contact", normal(sd="5 %"), why="measured on a clean unit"),
-    Tolerance("still_transfer", normal(sd="5 %"), why="measured on a clean unit"),
-    Tolerance("fan_transfer", normal(sd="5 %"), why="measured on a clean unit"),
     Tolerance("housing_lag", normal(sd="2 K"), why="every record begins with its own"),
 ]
 

@@ -7,11 +7,11 @@ import csv
 import math
 import random
 
-LOAD_LOSS, DRAG, THINNING = 0.0205, 0.78, 0.015
+LOAD_LOSS, DRAG, THINNING = 0.02, 0.78, 0.015
 """Share of the power that is lost; drag torque at 40 degC, N m; share of it that is lost per kelvin."""
-OIL, HOUSING, CONTACT = 8.2e3, 28.3e3, 31.5
+OIL, HOUSING, CONTACT = 8.3e3, 28.3e3, 30.0
 """Heat capacities, J/K, and heat transfer from the oil to the housing, W/K."""
-STILL, FAN = 5.1, 0.0027
+STILL, FAN = 5.0, 0.0028
 """Heat transfer of the clean housing to still air, W/K, and of the fan, W/K per rpm."""
 FOULED, ROUGH = 0.25, 0.008
 """What is hidden: the share of that transfer that dust takes, and what worn flanks lose besides, of the power."""
