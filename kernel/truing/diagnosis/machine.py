@@ -7,6 +7,7 @@ prior.
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from truing.arrays import Indices, Matrix
+from truing.declare.dynamics import following_together
 from truing.diagnosis.records import Records
 from truing.gauge import Trial, one_machine, read_trials
 from truing.setup import Setup
@@ -129,8 +131,12 @@ def tolerated_inputs(setup: Setup, records: Records) -> list[Tolerated]:
 def calibration_of(setup: Setup, records: Records) -> Calibration:
     """Evaluate the model at the start and around it, twice per tolerated input."""
     start = one_machine(setup)
-    base = predict(start, records)
     inputs = tolerated_inputs(setup, records)
+    if start.model.dynamics is not None:
+        with following_together():
+            predict(start, records)
+            deque(_slopes(start, records, inputs), maxlen=0)
+    base = predict(start, records)
     kind = np.float32 if len(records) > MANY else np.float64
     slopes: dict[str, Any] = {
         name: np.zeros((len(records), len(inputs)), dtype=kind, order="F") for name in records.measured
