@@ -51,7 +51,7 @@ def test_all_heat_that_is_lost_is_stored_or_given_off(unit: Any) -> None:
 
 
 def test_at_rest_oil_and_housing_cool_by_two_exponentials(unit: Any) -> None:
-    """Two bodies that pass heat on in proportion to their difference: a matrix of two rows; 1e-4 K are 3e-7 of a level."""
+    """Two bodies that pass on heat by their difference: a matrix of two rows; 1e-4 K are 3e-7 of a level."""
     times = np.linspace(0, 7200, 7)
     cooled = run(unit, times, 0, 0, 22, oil_start="60 degC", housing_lag="7 K")
     change = np.array([[-30 / 8.3e3, 30 / 8.3e3], [30 / 28e3, -35 / 28e3]])

@@ -221,7 +221,6 @@ EFFECTS = [
 ]  # fmt: skip
 
 TOLERANCES = [
-    Tolerance("drag", normal(sd="5 %"), why="of the catalogue, for an oil of this grade"),
     Tolerance("housing_capacity", normal(sd="2 %"), why="from weights"),
     Tolerance("housing_lag", normal(sd="2 K"), why="every record begins with its own"),
 ]

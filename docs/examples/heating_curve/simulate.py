@@ -7,7 +7,7 @@ import csv
 import math
 import random
 
-LOAD_LOSS, DRAG, THINNING = 0.02, 0.78, 0.015
+LOAD_LOSS, DRAG, THINNING = 0.02, 0.8, 0.015
 """Share of the power that is lost; drag torque at 40 degC, N m; share of it that is lost per kelvin."""
 OIL, HOUSING, CONTACT = 8.3e3, 28.3e3, 30.0
 """Heat capacities, J/K, and heat transfer from the oil to the housing, W/K."""
