@@ -7,7 +7,6 @@ prior.
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,7 +16,6 @@ from typing import Any
 import numpy as np
 
 from truing.arrays import Indices, Matrix
-from truing.declare.dynamics import following_together
 from truing.diagnosis.records import Records
 from truing.gauge import Trial, one_machine, read_trials
 from truing.setup import Setup
@@ -132,10 +130,6 @@ def calibration_of(setup: Setup, records: Records) -> Calibration:
     """Evaluate the model at the start and around it, twice per tolerated input."""
     start = one_machine(setup)
     inputs = tolerated_inputs(setup, records)
-    if start.model.dynamics is not None:
-        with following_together():
-            predict(start, records)
-            deque(_slopes(start, records, inputs), maxlen=0)
     base = predict(start, records)
     kind = np.float32 if len(records) > MANY else np.float64
     slopes: dict[str, Any] = {
