@@ -51,19 +51,19 @@ def test_all_heat_that_is_lost_is_stored_or_given_off(unit: Any) -> None:
 
 
 def test_at_rest_oil_and_housing_cool_by_two_exponentials(unit: Any) -> None:
-    """Two bodies that pass heat on in proportion to their difference: eigenvalues of a matrix of two rows."""
+    """Two bodies that pass on heat by their difference: a matrix of two rows; 1e-4 K are 3e-7 of a level."""
     times = np.linspace(0, 7200, 7)
     cooled = run(unit, times, 0, 0, 22, oil_start="60 degC", housing_lag="7 K")
-    change = np.array([[-60 / 8.3e3, 60 / 8.3e3], [60 / 28e3, -65 / 28e3]])
+    change = np.array([[-30 / 8.3e3, 30 / 8.3e3], [30 / 28e3, -35 / 28e3]])
     values, vectors = np.linalg.eig(change)
     expected = (vectors * np.linalg.solve(vectors, [38.0, 31.0])) @ np.exp(np.outer(values, times))
-    assert np.array([cooled.oil, cooled.housing]) - ICE - 22 == pytest.approx(expected, abs=1e-5)
+    assert np.array([cooled.oil, cooled.housing]) - ICE - 22 == pytest.approx(expected, abs=1e-4)
 
 
-@pytest.mark.parametrize(("day", "apart"), [("DAY_1", 720), ("DAY_2", 900)])
+@pytest.mark.parametrize(("day", "apart"), [("DAY_1", 600), ("DAY_2", 540)])
 def test_a_day_is_that_of_a_program_of_its_own(unit: Any, simulation: ModuleType, day: str, apart: int) -> None:
     """Heun's steps of a second; what is left is that the air is taken to run straight between the readings."""
-    times = [apart * row for row in range(19)]
+    times = [apart * row for row in range(28)]
     shift, (oil, housing) = getattr(simulation, day), STARTS[day]
     torque, speed = np.array([simulation.setting(shift, time) for time in times], dtype=float).T
     heated = run(
@@ -77,7 +77,7 @@ def test_a_day_is_that_of_a_program_of_its_own(unit: Any, simulation: ModuleType
     assert heated.oil - ICE == pytest.approx(expected, abs=1e-2)
 
 
-@pytest.mark.parametrize(("day", "apart", "seed"), [("DAY_1", 720, 1), ("DAY_2", 900, 2)])
+@pytest.mark.parametrize(("day", "apart", "seed"), [("DAY_1", 600, 1), ("DAY_2", 540, 2)])
 def test_the_records_are_those_that_the_program_writes(
     simulation: ModuleType, tmp_path: Path, day: str, apart: int, seed: int
 ) -> None:

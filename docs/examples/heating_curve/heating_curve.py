@@ -71,7 +71,7 @@ class Unit:
     )
     oil_capacity: Float = given(8.3, "kJ/K", symbol="C_1", note="heat capacity of the oil", above=0)
     housing_capacity: Float = given(28.0, "kJ/K", symbol="C_2", note="heat capacity of housing and gears", above=0)
-    contact: Float = given(60.0, "W/K", symbol="k_1", note="heat transfer from the oil to the housing", above=0)
+    contact: Float = given(30.0, "W/K", symbol="k_1", note="heat transfer from the oil to the housing", above=0)
     still_transfer: Float = given(5.0, "W/K", symbol="k_2", note="heat transfer to still air", at_least=0)
     fan_transfer: Float = given(0.0028, "W/K/rpm", symbol="k_3", note="that of the fan, per speed", at_least=0)
     fill: Float = given(1.0, "", symbol="f", note="share of the oil that is there", above=0)
@@ -221,13 +221,7 @@ EFFECTS = [
 ]  # fmt: skip
 
 TOLERANCES = [
-    Tolerance("load_loss", normal(sd="0.06 %"), why="of the catalogue"),
-    Tolerance("drag", normal(sd="5 %"), why="of the catalogue, for an oil of this grade"),
-    Tolerance("oil_capacity", normal(sd="3 %"), why="filled by the dipstick"),
     Tolerance("housing_capacity", normal(sd="2 %"), why="from weights"),
-    Tolerance("contact", normal(sd="5 %"), why="measured on a clean unit"),
-    Tolerance("still_transfer", normal(sd="5 %"), why="measured on a clean unit"),
-    Tolerance("fan_transfer", normal(sd="5 %"), why="measured on a clean unit"),
     Tolerance("housing_lag", normal(sd="2 K"), why="every record begins with its own"),
 ]
 

@@ -7,11 +7,11 @@ import csv
 import math
 import random
 
-LOAD_LOSS, DRAG, THINNING = 0.0205, 0.78, 0.015
+LOAD_LOSS, DRAG, THINNING = 0.02, 0.8, 0.015
 """Share of the power that is lost; drag torque at 40 degC, N m; share of it that is lost per kelvin."""
-OIL, HOUSING, CONTACT = 8.2e3, 28.3e3, 63.0
+OIL, HOUSING, CONTACT = 8.3e3, 28.3e3, 30.0
 """Heat capacities, J/K, and heat transfer from the oil to the housing, W/K."""
-STILL, FAN = 5.1, 0.0027
+STILL, FAN = 5.0, 0.0028
 """Heat transfer of the clean housing to still air, W/K, and of the fan, W/K per rpm."""
 FOULED, ROUGH = 0.25, 0.008
 """What is hidden: the share of that transfer that dust takes, and what worn flanks lose besides, of the power."""
@@ -20,7 +20,7 @@ NOISE = 0.15
 
 Shift = list[tuple[float, float, float]]
 """From when on, s, with which torque, N m, at which speed, rpm."""
-DAY_1: Shift = [(0, 100, 1450), (7200, 150, 1450), (12960, 0, 0)]
+DAY_1: Shift = [(0, 100, 1450), (7200, 150, 1450), (12600, 0, 0)]
 DAY_2: Shift = [(0, 40, 1450), (5400, 100, 900), (10800, 0, 0)]
 
 
@@ -73,5 +73,5 @@ def write(name: str, shift: Shift, start: tuple[float, float], times: list[int],
 
 
 if __name__ == "__main__":
-    write("day_1.csv", DAY_1, (20.5, 20.5), [720 * row for row in range(26)], 1)
-    write("day_2.csv", DAY_2, (46.0, 43.0), [900 * row for row in range(19)], 2)
+    write("day_1.csv", DAY_1, (20.5, 20.5), [600 * row for row in range(31)], 1)
+    write("day_2.csv", DAY_2, (46.0, 43.0), [540 * row for row in range(28)], 2)
