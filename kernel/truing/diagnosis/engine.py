@@ -8,7 +8,8 @@ as it was drawn from; estimates, intervals and gains are those of all rows.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
 
@@ -104,7 +105,7 @@ def diagnose(
     _check_options(setup)
     told = progress or silent
     is_short = records.readings < FEWEST_READINGS  # what is calculated of them is not used
-    with one_thread(), np.errstate(all="ignore" if is_short else None):
+    with one_thread(), np.errstate(all="ignore" if is_short else None), _nothing_remembered(setup):
         machine = calibration_of(setup, records)
         told("columns", round(FINE * STAGE_ENDS["columns"]), FINE)
         few = searched(records, seed=setup.seed)
@@ -118,6 +119,17 @@ def diagnose(
         if propose is not None:
             answer = propose(chosen, answer)
         return replace(answer, hindrances=(*competition.extended.budget.told(), *_too_rough(answer, chosen)))
+
+
+@contextmanager
+def _nothing_remembered(setup: Setup) -> Iterator[None]:
+    """Let nothing that was followed before, or in this diagnosis, move a digit of another answer."""
+    memory = setup.model.dynamics.memory if setup.model.dynamics is not None else {}
+    memory.clear()
+    try:
+        yield
+    finally:
+        memory.clear()
 
 
 def laid_out(machine: Calibration) -> Competition:
