@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from truing.api.model import Diagnosis, LoadedModel, load
+    from truing.api.plan import Plan
     from truing.api.records import read, record
     from truing.api.run import Run
     from truing.api.study import StudyResult
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from truing.studies.allocation import Allocation, Allotted
     from truing.studies.bench import Bench, Outcome
     from truing.studies.checks import Check, Proposal
+    from truing.studies.frequency import Frequency, FrequencyAnswer
     from truing.studies.optimise import Optimise, Optimum
     from truing.studies.reliability import Odds, Reliability
     from truing.studies.sensitivity import Sensitivities, Sensitivity
@@ -34,6 +36,7 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "truing.api.model": ("Diagnosis", "LoadedModel", "load"),
+    "truing.api.plan": ("Plan",),
     "truing.api.records": ("read", "record"),
     "truing.api.run": ("Run",),
     "truing.api.study": ("StudyResult",),
@@ -55,6 +58,7 @@ _HOMES = {
     "truing.studies.allocation": ("Allocation", "Allotted"),
     "truing.studies.bench": ("Bench", "Outcome"),
     "truing.studies.checks": ("Check", "Proposal"),
+    "truing.studies.frequency": ("Frequency", "FrequencyAnswer"),
     "truing.studies.optimise": ("Optimise", "Optimum"),
     "truing.studies.reliability": ("Odds", "Reliability"),
     "truing.studies.sensitivity": ("Sensitivities", "Sensitivity"),
@@ -65,7 +69,7 @@ _HOMES = {
 _HOME = {name: module for module, names in _HOMES.items() for name in names}
 
 __all__ = [  # noqa: RUF022  # what a user calls; then what a plugin needs, in the order of its story
-    "load", "LoadedModel", "Run", "StudyResult", "read", "record", "Diagnosis",
+    "load", "LoadedModel", "Run", "StudyResult", "read", "record", "Diagnosis", "Plan",
     "inputs", "results", "given", "found", "axis", "rows", "part", "loaded", "quantity", "Float", "Array",
     "feasible", "either", "column",
     "states", "state", "Dynamics", "Motion", "Event",
@@ -77,6 +81,7 @@ __all__ = [  # noqa: RUF022  # what a user calls; then what a plugin needs, in t
     "Sweep", "Swept", "Sensitivity", "Sensitivities", "Reliability", "Odds", "Allocation", "Allotted",
     "Optimise", "Optimum",
     "Surrogate", "Emulated",
+    "Frequency", "FrequencyAnswer",
     "Bench", "Outcome", "Check", "Proposal",
     "hookimpl", "hookspec", "Kernel", "TruingError",
 ]  # fmt: skip

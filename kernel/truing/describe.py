@@ -12,12 +12,14 @@ from truing.declare.fields import Axis, Given, InputField, Loaded, ResultField
 from truing.declare.goals import Maximise, Minimise, Require, Vary
 from truing.declare.model import Model
 from truing.declare.published import Published
-from truing.declare.sources import Tolerance
+from truing.declare.sources import Condition, Tolerance
 from truing.formulas import symbol_text
 from truing.inputs_file.values import bounds_in_words
 from truing.kernel import Offer
 from truing.units import unit_text
 
+LONGEST_SERIES = 12
+"""A longer default is shown by its ends."""
 WHERE_MEASURED = (
     ("thermal_drift_of_INPUT", "", "", "where a record varies an input in K"),
     ("periodic_order_of_INPUT", "", "", "where a record turns an input round that is an angle"),
@@ -38,12 +40,12 @@ def description(offer: Offer) -> dict[str, Any]:
         **_motion(model),
         "tolerances": [_tolerance(tolerance) for tolerance in model.tolerances.values()],
         "effects": [_effect(effect) for effect in model.effects.values()],
-        "conditions": [_named(condition, CONDITION) for condition in model.conditions.values()],
+        "conditions": [_condition(condition) for condition in model.conditions.values()],
         "built_in": {
             "effects": [_effect(effect) for effect in built_in if not may_stand(effect)],
             "where_measured": [_effect(effect) for effect in built_in if may_stand(effect)],
             "conditions": [
-                _named(condition, CONDITION)
+                _condition(condition)
                 for name, condition in model.known_conditions.items()
                 if name not in model.conditions
             ],
@@ -81,6 +83,7 @@ def _input(field: InputField) -> dict[str, Any]:
         "choices": list(field.choices),
         "options": list(inspect.signature(spec.reader).parameters)[1:] if isinstance(spec, Loaded) else [],
         "bounds": bounds_in_words(field, with_unit=False),
+        "role": getattr(spec, "role", ""),
         **_named(spec, ("note", "source")),
     }
 
@@ -106,6 +109,10 @@ JUDGED = ("within", "verdict", "obtained", "why")
 
 def _named(declared: Any, names: Sequence[str]) -> dict[str, Any]:
     return {name: getattr(declared, name) for name in names}
+
+
+def _condition(condition: Condition) -> dict[str, Any]:
+    return {**_named(condition, CONDITION), "role": condition.does, "rate": condition.rate}
 
 
 def _tolerance(tolerance: Tolerance) -> dict[str, Any]:
@@ -184,7 +191,11 @@ def _unit(unit: str) -> str:
 
 
 def _input_row(described: dict[str, Any]) -> tuple[str, ...]:
-    default = "optional" if described["default"] is None and described["optional"] else described["default"]
+    default = described["default"]
+    if default == [] or (default is None and described["optional"]):
+        default = "optional"
+    elif isinstance(default, list) and len(default) > LONGEST_SERIES:
+        default = f"{default[0]} .. {default[-1]}, {len(default)} values"
     unit = " | ".join(described["choices"]) or ("a file" if described["kind"] == "file" else _unit(described["unit"]))
     options = f"options: {', '.join(described['options'])}" if described["options"] else ""
     note = "; ".join(text for text in (described["note"], described["bounds"], options, described["source"]) if text)
@@ -193,7 +204,9 @@ def _input_row(described: dict[str, Any]) -> tuple[str, ...]:
 
 def _condition_row(condition: dict[str, Any]) -> tuple[str, ...]:
     made = f"made: {condition['derived']}" if condition["derived"] else ""
-    words = "; ".join(text for text in (condition["note"], made) if text)
+    goes = {"goes_on": "only goes on", "follows": "follows from others"}.get(condition["role"], "")
+    rate = f", by {condition['rate']} times time" if condition["rate"] else ""
+    words = "; ".join(text for text in (condition["note"], made, f"{goes}{rate}") if text)
     return (condition["name"], f"reference {condition['reference']:g}", _unit(condition["unit"]), words)
 
 

@@ -167,7 +167,8 @@ def _one_call(
     called = 1 if alike else rows
     with np.errstate(all="ignore"), watching(called) as log:
         model = case.model
-        calculate = model.function if alike or not repeats else partial(results_of, model, repeats=repeats, failed=log)
+        is_known = alike or not repeats or model.dynamics is not None  # what moves has a memory of its own
+        calculate = model.function if is_known else partial(results_of, model, repeats=repeats, failed=log)
         results = _apply(case, columns, calculate, reading=reading)
         flat = model.read_results(results, {*names, *(model.axes[name] for name in names)} & {*model.axes})
         answers = {name: _as_rows(case, name, flat, called) for name in names}

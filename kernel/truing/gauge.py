@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from truing.declare.fields import Axis
-from truing.errors import UsageError
+from truing.errors import Fault, InputError, UsageError
 from truing.evaluate import Rows, evaluate_rows, put_together, rows_alike
 from truing.measurements import RowsFile
 from truing.setup import Setup
@@ -23,6 +23,10 @@ AT_ONCE = 65_536
 """So many rows are one call of the model."""
 TOGETHER = 16
 """So many calculations that each answer for many rows are one call of the model: more no longer fit the cache."""
+MOVING_TOGETHER = 1024
+"""The same of a model that moves: every step of it costs much whatever the number of machines."""
+
+DRIVEN = "a motion is driven by one value at each time"
 
 
 @dataclass(frozen=True)
@@ -45,6 +49,7 @@ def shown_by_gauge(setup: Setup, rows: RowsFile) -> Shown:
     The machine is calibrated; its readings act. What lies nowhere on the axis of a result keeps the reason.
     """
     machine = one_machine(setup)
+    demand_times(machine, rows)
     evaluated = read_by_gauge(machine, rows)
     if not evaluated.results:
         axes = sorted({result.along for result in machine.model.own_result_fields.values() if result.along})
@@ -101,6 +106,59 @@ def _at_places(machine: Setup, rows: RowsFile, record: NDArray[np.intp] | slice 
     return machine.changed(changes) if changes else machine
 
 
+def _clock(machine: Setup, rows: RowsFile) -> NDArray[np.float64] | None:
+    """Return the times of rows that are readings of a motion, NaN where one is empty; nothing where they have none."""
+    dynamics, fields = machine.model.dynamics, machine.model.own_result_fields
+    if dynamics is None:
+        return None
+    axes = [
+        name for name, each in fields.items() if isinstance(each.spec, Axis) and each.spec.follows == dynamics.times
+    ]
+    known = {**{name: rows.axes[name] for name in axes if name in rows.axes}, **rows.series}
+    return next((known[name] for name in (dynamics.times, *axes) if name in known), None)
+
+
+def _once(machine: Setup, rows: RowsFile, record: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Return the rows of a record by rising time, each time once: those at which a motion is driven."""
+    clock = _clock(machine, rows)
+    return record if clock is None else record[np.unique(clock[record], return_index=True)[1]]
+
+
+def demand_times(machine: Setup, rows: RowsFile, where: Callable[[int], Fault] | None = None) -> None:
+    """Raise InputError with every row that keeps a motion from being followed along its record.
+
+    Times fall within a run; or one is missing, or comes again with another value, where a series drives the motion.
+    ``where`` gives file and line of a row, by default those of ``rows``.
+    """
+    clock = _clock(machine, rows)
+    if clock is None:
+        return
+    said: dict[int, str] = {}
+    for record in _records(machine, rows):
+        said |= dict(_untimely(clock, record, {name: each for name, each in rows.series.items() if each is not clock}))
+    if said:
+        faults = ((where or (lambda row: Fault("", rows.file, rows.lines[row])))(row) for row in sorted(said))
+        raise InputError([replace(fault, message=said[row]) for row, fault in zip(sorted(said), faults, strict=True)])
+
+
+def _untimely(
+    clock: NDArray[np.float64], record: NDArray[np.intp], drives: Mapping[str, NDArray[np.float64]]
+) -> Iterator[tuple[int, str]]:
+    """Give the rows of a record that keep a motion from being followed, and why."""
+    for name, values in {"time": clock, **drives}.items() if drives else ():
+        for row in record[np.isnan(values[record])].tolist():
+            yield row, f"{name} is empty, but {DRIVEN}: fill it in, or leave the row out"
+    known = record[np.isfinite(clock[record])]
+    before, after = known[:-1], known[1:]
+    for row in after[clock[after] < clock[before]].tolist():
+        last = clock[before[after == row]][0]
+        fell = f"time falls from {last:.10g} s to {clock[row]:.10g} s within a record"
+        yield row, f"{fell}: sort its rows, or tell records apart by a column 'run'"
+    for name, values in drives.items():
+        for row in after[(clock[after] == clock[before]) & (values[after] != values[before])].tolist():
+            yield row, f"time is {clock[row]:.10g} s again with another {name}, but {DRIVEN}: leave one of them out"
+
+
 def without_place(evaluated: Rows, machine: Setup, rows: RowsFile) -> dict[int, str]:
     """Say which rows lie nowhere on the axis of a result, so that nothing can be read there."""
     reasons: dict[int, str] = {}
@@ -151,7 +209,7 @@ def _read_each(machine: Setup, rows: RowsFile, trials: Sequence[Trial], wanted: 
     order: list[list[NDArray[np.intp]]] = [[] for _ in trials]
     for record in _records(machine, rows):
         of_record = _at_places(machine, rows, record)
-        series = {name: column[record] for name, column in rows.series.items()}
+        series = {name: column[_once(machine, rows, record)] for name, column in rows.series.items()}
         for several, repeats in _calls(record, machine, rows, trials):
             columns = {name: _one_or_each([alike.values[name] for alike in several]) for name in several[0].values}
             changed, size = columns | series, len(several)
@@ -182,11 +240,12 @@ def _calls(
     record: NDArray[np.intp], machine: Setup, rows: RowsFile, trials: Sequence[Trial]
 ) -> Iterator[tuple[list[_Alike], int]]:
     """Give the calculations of some trials of a record that are one call, and how many copies of one trial they are."""
+    together = TOGETHER if machine.model.dynamics is None else MOVING_TOGETHER
     waiting: list[_Alike] = []
     count = 0
     for number, trial in enumerate(trials):
         own = [_Alike(*each, number) for each in _alike(record, machine, {**rows.columns, **trial}, rows)]
-        if waiting and (len(waiting) + len(own) > TOGETHER or own[0].values.keys() != waiting[0].values.keys()):
+        if waiting and (len(waiting) + len(own) > together or own[0].values.keys() != waiting[0].values.keys()):
             yield waiting, count
             waiting, count = [], 0
         waiting, count = waiting + own, count + 1 if len(waiting) == count * len(own) else 0

@@ -25,6 +25,12 @@ LEAST_STEP = 16 * ROUNDING
 """Shortest step, as a share of the time that is reached."""
 LOOKS, MOST_ROUNDS = 8, 60
 """How often a step is looked at for events, and in how many rounds at the most the time of one is found."""
+TOGETHER = 4096
+"""So many machines take their steps together: of more the stages no longer fit the cache."""
+APART = 512
+"""So many machines are looked at one look after another, for the same reason."""
+WRITTEN = 65_536
+"""States at so many stamps are calculated at once."""
 MOST_EVENTS = 10_000
 CLOSE, TINY = 1e-12, 1e-300
 """More events of one machine in one record, or events so close (a share of the record), have no end. What has just
@@ -35,7 +41,8 @@ STIFF, STIFF_STEPS = 5.0, 15
 
 GROWS = "a state grows beyond all bounds"
 STEP_LIMIT = "the step limit is reached"
-ENDLESS = "an event comes again and again without end"
+IS_STIFF = "it is stiff from there on"
+ENDLESS = "comes again and again without end"
 
 
 class System(Protocol):
@@ -62,6 +69,7 @@ class EventRule:
     ends: bool = False
     sets: bool = False
     """Whether it sets the state anew."""
+    name: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,8 +86,52 @@ class InitialValueProblem:
     breaks: Matrix
     sizes: Matrix
     events: Sequence[EventRule] = ()
+    begin: tuple[Matrix, Indices] | None = None
+    """When each machine begins, (n,), and in which stretch, where that is not the first stamp."""
     tolerance: float = 1e-8
     most_steps: int = 100_000
+
+
+@dataclass(frozen=True)
+class Slopes:
+    """Derivatives of m steps: by the state that each begins with, (m, d, d); and of the event that ends it.
+
+    Those of its value, (m, d + 1), and of the states after it, (m, d, d + 1), are by the states and the time there. Of
+    n machines all have one more dimension in front.
+    """
+
+    step: Matrix
+    value: Matrix
+    after: Matrix
+
+    def some(self, machines: Indices) -> Slopes:
+        """Return those of some machines."""
+        return Slopes(self.step[machines], self.value[machines], self.after[machines])
+
+    def of(self, machine: int, steps: int) -> Slopes:
+        """Return those of the first steps of one machine."""
+        return Slopes(*(np.array(each[machine, :steps]) for each in (self.step, self.value, self.after)))
+
+
+@dataclass(frozen=True)
+class Path:
+    """The m steps of one machine: times (m + 1,) and states (d, m + 1) at which they begin and the last one ends.
+
+    ``interval`` (m,) is the stretch between breaks of each, ``event`` (m,) what ended it, -1 where nothing did.
+    """
+
+    t: Matrix
+    y: Matrix
+    interval: Indices
+    event: Indices
+    slopes: Slopes | None = None
+
+    def then(self, rest: Path) -> Path:
+        """Return this path and another one behind it, which begins where it ends."""
+        return Path(
+            np.append(self.t[:-1], rest.t), np.column_stack([self.y[:, :-1], rest.y]),
+            np.append(self.interval, rest.interval), np.append(self.event, rest.event),
+        )  # fmt: skip
 
 
 @dataclass
@@ -94,24 +146,56 @@ class Solution:
     first: Matrix
     reasons: dict[int, tuple[str, float]] = field(default_factory=dict)
     steps: int = 0
+    taken: list[tuple[Any, ...]] | None = None
+    """What was taken, where it is to be kept: machines, begin, end, state at the begin, stretch, event at the end."""
+
+    def paths(self, problem: InitialValueProblem) -> dict[int, Path]:
+        """Return the path of every machine that came to the end of its record, by steps of this method alone."""
+        if not self.taken:
+            return {}
+        machine, t, end, y, interval, event = (np.concatenate(each, axis=-1) for each in zip(*self.taken, strict=True))
+        order = np.argsort(machine, kind="stable")
+        made = {}
+        for number, own in enumerate(np.split(order, np.searchsorted(machine[order], range(1, self.states.shape[1])))):
+            is_whole = len(own) and (
+                end[own[-1]] == problem.stamps[-1] or (event[own[-1]] >= 0 and problem.events[event[own[-1]]].ends)
+            )
+            if is_whole and number not in self.reasons:
+                states = np.column_stack([y[:, own], self.states[:, number, -1]])
+                made[number] = Path(np.append(t[own], end[own[-1]]), states, interval[own], event[own])
+        return made
 
 
-def solve(problem: InitialValueProblem) -> Solution:
-    """Integrate every machine; one that comes to no end has NaN from there on, and a reason."""
-    events, machines = len(problem.events), problem.start.shape[1]
-    solution = Solution(
-        np.full((*problem.start.shape, len(problem.stamps)), np.nan),
-        np.zeros((events, machines)),
-        np.full((events, machines), np.nan),
-    )
-    solution.states[:, :, 0] = problem.start
+def solve(
+    problem: InitialValueProblem, solution: Solution | None = None, *, keeps_paths: bool = False
+) -> Solution:  # fmt: skip
+    """Integrate every machine; one that comes to no end has NaN from there on, and a reason.
+
+    Machines that begin later are given with a solution that holds what is before; of these a stiff one is left there.
+    """
+    solution = solution or empty_solution(problem)
+    solution.taken = [] if keeps_paths else None
     with np.errstate(all="ignore"):
-        _stiff(problem, _march(problem, solution), solution)
+        everyone = np.arange(problem.start.shape[1])
+        for machines in np.split(everyone, range(TOGETHER, len(everyone), TOGETHER)):
+            stiff = _march(problem, machines, solution)
+            if problem.begin is None:
+                _stiff(problem, stiff, solution)
+            else:
+                solution.reasons |= {int(machine): (IS_STIFF, float(problem.begin[0][machine])) for machine in stiff}
     return solution
 
 
+def empty_solution(problem: InitialValueProblem) -> Solution:
+    """Return a solution that knows the starts alone."""
+    events, machines = len(problem.events), problem.start.shape[1]
+    states = np.full((*problem.start.shape, len(problem.stamps)), np.nan)
+    states[:, :, 0] = problem.start
+    return Solution(states, np.zeros((events, machines)), np.full((events, machines), np.nan))
+
+
 @lru_cache(maxsize=1)
-def _method() -> Any:
+def method() -> Any:
     """Return the coefficients; scipy is loaded when they are first needed."""
     return integrate.DOP853
 
@@ -141,7 +225,7 @@ class _Going:
 
 
 @dataclass(frozen=True)
-class _Step:
+class Step:
     """A step that was taken, of some machines: from ``t`` and ``y`` by ``length`` to ``end`` and ``reached``."""
 
     t: Matrix
@@ -153,9 +237,11 @@ class _Step:
     """That at the end."""
 
 
-def _march(problem: InitialValueProblem, solution: Solution) -> Indices:
+def _march(problem: InitialValueProblem, machines: Indices, solution: Solution) -> Indices:
     """Take steps until every machine has come to an end; return those that are left because they are stiff."""
-    system, going = problem.system, _begun(problem)
+    system = problem.system.part(machines)
+    begin = problem.begin and (problem.begin[0][machines], problem.begin[1][machines])
+    going = _begun(replace(problem, system=system, start=problem.start[:, machines], begin=begin), machines)
     stiff: list[Indices] = []
     while len(going.machine):
         ended = _one_step(problem, system, going, solution)
@@ -168,20 +254,27 @@ def _march(problem: InitialValueProblem, solution: Solution) -> Indices:
     return np.concatenate([np.zeros(0, dtype=np.intp), *stiff])
 
 
-def _begun(problem: InitialValueProblem) -> _Going:
+def _begun(problem: InitialValueProblem, machines: Indices) -> _Going:
     count, events = problem.start.shape[1], range(len(problem.events))
-    t, interval = np.full(count, problem.stamps[0]), np.zeros(count, dtype=np.intp)
+    t, interval = problem.begin or (np.full(count, problem.stamps[0]), np.zeros(count, dtype=np.intp))
+    t, interval = np.array(t), np.array(interval)
     y = np.array(problem.start, dtype=float)
     rate = problem.system.rate(t, y, interval)
     values = [problem.system.crossing(event, t, y, interval) for event in events]
+    if problem.begin is not None:  # an event may just have happened
+        short = 1e-6 * (problem.stamps[-1] - problem.stamps[0])
+        gained = [_gained(event, problem.system, (t, y, interval), short) for event in events]
+        values = [_beyond(value, gain, np.zeros(count, dtype=bool)) for value, gain in zip(values, gained, strict=True)]
     return _Going(
-        machine=np.arange(count), t=t, y=y, rate=rate, step=_first_step(problem, t, y, rate), interval=interval,
-        stamp=interval + 1, value=np.array(values).reshape(len(events), count), taken=interval.copy(),
-        at_edge=interval.copy(), last_event=np.full(count, -np.inf),
+        machine=machines, t=t, y=y, rate=rate, step=_first_step(problem, (t, y, rate), interval),
+        interval=interval, stamp=np.searchsorted(problem.stamps, t, side="right"),
+        value=np.array(values).reshape(len(events), count), taken=np.zeros(count, dtype=np.intp),
+        at_edge=np.zeros(count, dtype=np.intp), last_event=np.full(count, -np.inf),
     )  # fmt: skip
 
 
-def _scale(problem: InitialValueProblem, *states: Matrix) -> Matrix:
+def scale_of(problem: InitialValueProblem, *states: Matrix) -> Matrix:
+    """Return what errors of states are held below, (d, n)."""
     largest = problem.sizes[:, None]
     for state in states:
         largest = np.maximum(largest, np.abs(state))
@@ -192,13 +285,14 @@ def _mean_square(errors: Matrix) -> Matrix:
     return np.asarray(np.mean(errors * errors, axis=0))
 
 
-def _first_step(problem: InitialValueProblem, t: Matrix, y: Matrix, rate: Matrix) -> Matrix:
-    """Guess a first step from the rate and how fast it changes (Hairer, Norsett, Wanner, II.4)."""
-    scale, whole = _scale(problem, y), problem.stamps[-1] - problem.stamps[0]
+def _first_step(problem: InitialValueProblem, at: tuple[Matrix, Matrix, Matrix], interval: Indices) -> Matrix:
+    """Guess a first step from time, state and rate, and how fast this changes (Hairer, Norsett, Wanner, II.4)."""
+    t, y, rate = at
+    scale, whole = scale_of(problem, y), problem.stamps[-1] - problem.stamps[0]
     size, slope = (np.sqrt(_mean_square(each / scale)) for each in (y, rate))
     guess = np.where((size < 1e-5) | (slope < 1e-5), 1e-6 * whole, 0.01 * size / slope)
     guess = np.minimum(guess, whole)
-    bent = problem.system.rate(t + guess, y + guess * rate, np.zeros(len(t), dtype=np.intp))
+    bent = problem.system.rate(t + guess, y + guess * rate, interval)
     change = np.maximum(slope, np.sqrt(_mean_square((bent - rate) / scale)) / guess)
     better = np.where(change <= 1e-15 / whole, np.maximum(1e-6 * whole, guess * 1e-3), (0.01 / change) ** (1 / ORDER))
     step = np.minimum(np.minimum(100 * guess, better), whole)
@@ -211,12 +305,12 @@ def _one_step(problem: InitialValueProblem, system: System, going: _Going, solut
     is_last = going.step >= until - going.t
     length = np.where(is_last, until - going.t, going.step)
     end = np.where(is_last, until, going.t + length)
-    stages, last = _stages(system, going, length)
-    reached = going.y + length * _combined(_method().B, stages)
+    stages, last = stages_of(system, (going.t, going.y, going.rate, length), going.interval)
+    reached = going.y + length * combined(method().B, stages)
     stages[STAGES] = system.rate(end, reached, going.interval)
     constant = _mean_square(stages[STAGES] - stages[STAGES - 1]) / _mean_square(reached - last)
     going.at_edge = np.where(length * np.sqrt(constant) > STIFF, going.at_edge + 1, np.maximum(going.at_edge - 1, 0))
-    error = _error(stages, length, _scale(problem, going.y, reached))
+    error = error_of(stages, length, scale_of(problem, going.y, reached))
     is_good = error < 1
     factor = np.clip(np.where(error > 0, SAFETY * error ** (-1 / ORDER), GROW), SHRINK, GROW)
     factor = np.where(np.isfinite(error), factor, SHRINK)
@@ -228,33 +322,37 @@ def _one_step(problem: InitialValueProblem, system: System, going: _Going, solut
     good = np.flatnonzero(is_good & ~ended)
     if len(good):
         own = (going.t, going.y, length, end, reached, stages[STAGES])
-        step = _Step(*(each[..., good] for each in own))
-        dense = _OwnDense(system.part(good), going.interval[good], step, stages[..., good])
+        step = Step(*(each[..., good] for each in own))
+        dense = OwnDense(system.part(good), going.interval[good], step, stages[..., good])
         ended[good] |= _arrive(problem, going, good, dense, solution)
         if going.is_stale:
             going.rate, going.is_stale = system.rate(going.t, going.y, going.interval), False
     return ended
 
 
-def _combined(weights: Matrix, stages: Matrix) -> Matrix:
+def combined(weights: Matrix, stages: Matrix) -> Matrix:
     """Return a weighted sum of stages, (d, n)."""
     return np.asarray((weights @ stages[: len(weights)].reshape(len(weights), -1)).reshape(stages.shape[1:]))
 
 
-def _stages(system: System, going: _Going, length: Matrix) -> tuple[Matrix, Matrix]:
-    """Return the rates at the stages of a step, (16, d, n), the last four left empty; and the state at the last one."""
-    stages, y = np.empty((16, *going.y.shape)), going.y
-    stages[0] = going.rate
+def stages_of(system: System, step: tuple[Matrix, Matrix, Matrix, Matrix], interval: Indices) -> tuple[Matrix, Matrix]:
+    """Return the rates at the stages of a step from t, y, the rate there, by a length; and the state at the last one.
+
+    Shapes (16, d, n), the last four left empty, and (d, n).
+    """
+    t, y, rate, length = step
+    stages, last = np.empty((16, *y.shape)), y
+    stages[0] = rate
     for stage in range(1, STAGES):
-        y = going.y + length * _combined(_method().A[stage, :stage], stages)
-        stages[stage] = system.rate(going.t + _method().C[stage] * length, y, going.interval)
-    return stages, y
+        last = y + length * combined(method().A[stage, :stage], stages)
+        stages[stage] = system.rate(t + method().C[stage] * length, last, interval)
+    return stages, last
 
 
-def _error(stages: Matrix, length: Matrix, scale: Matrix) -> Matrix:
+def error_of(stages: Matrix, length: Matrix, scale: Matrix) -> Matrix:
     """Return the error of a step in multiples of what is allowed, (n,): estimates of two orders in one."""
-    fifth = _mean_square(_combined(_method().E5, stages) / scale)
-    third = _mean_square(_combined(_method().E3, stages) / scale)
+    fifth = _mean_square(combined(method().E5, stages) / scale)
+    third = _mean_square(combined(method().E3, stages) / scale)
     mixed = fifth + 0.01 * third
     return np.asarray(np.where(mixed == 0, 0.0, np.abs(length) * fifth / np.sqrt(np.where(mixed == 0, 1.0, mixed))))
 
@@ -282,6 +380,9 @@ class _Arrival:
 def _arrive(problem: InitialValueProblem, going: _Going, places: Indices, dense: _Dense, solution: Solution) -> Mask:
     """Go where a step ends, or where an event stops it, and fill in the stamps on the way; return who is at the end."""
     arrival = _first_event(problem, dense, going, places)
+    if solution.taken is not None and isinstance(dense, OwnDense):
+        begin = dense.step.t, arrival.t, dense.step.y
+        solution.taken.append((going.machine[places], *begin, dense.interval, arrival.event))
     _write(problem, dense, going, arrival, solution)
     t = arrival.t
     going.t[places], going.rate[:, places] = t, dense.step.rate
@@ -308,8 +409,10 @@ def _write(problem: InitialValueProblem, dense: _Dense, going: _Going, arrival: 
     if not count.any():
         return
     place = np.repeat(np.arange(len(count)), count)
-    stamp = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count) + begin[place]
-    solution.states[:, machine[place], stamp] = dense.at(problem.stamps[stamp], place)
+    stamp = np.arange(len(place)) - np.repeat(np.cumsum(count) - count, count) + begin[place]
+    for first in range(0, len(place), WRITTEN):
+        some = slice(first, first + WRITTEN)
+        solution.states[:, machine[place[some]], stamp[some]] = dense.at(problem.stamps[stamp[some]], place[some])
 
 
 class _Dense(Protocol):
@@ -317,21 +420,21 @@ class _Dense(Protocol):
 
     system: System
     interval: Indices
-    step: _Step
+    step: Step
 
-    def at(self, t: Matrix, place: Indices) -> Matrix:
+    def at(self, t: Matrix, place: Indices | slice) -> Matrix:
         """Return the states of the machines at these places of the step, each at a time of its own, (d, m)."""
 
 
-class _OwnDense:
+class OwnDense:
     """Those of steps of Dormand and Prince, to the seventh order; calculated where they are asked for."""
 
-    def __init__(self, system: System, interval: Indices, step: _Step, stages: Matrix) -> None:
+    def __init__(self, system: System, interval: Indices, step: Step, stages: Matrix) -> None:
         self.system, self.interval, self.step = system, interval, step
         self._stages = stages
         self._parts: Matrix | None = None
 
-    def at(self, t: Matrix, place: Indices) -> Matrix:
+    def at(self, t: Matrix, place: Indices | slice) -> Matrix:
         """Return the states of the machines at these places of the step, each at a time of its own, (d, m)."""
         if self._parts is None:
             self._parts = self._prepared()
@@ -345,13 +448,13 @@ class _OwnDense:
         return np.asarray(y)
 
     def _prepared(self) -> Matrix:
-        step, stages, method = self.step, self._stages, _method()
-        for stage, (weights, share) in enumerate(zip(method.A_EXTRA, method.C_EXTRA, strict=True), STAGES + 1):
-            y = step.y + step.length * _combined(weights[:stage], stages)
+        step, stages, weights_of = self.step, self._stages, method()
+        for stage, (weights, share) in enumerate(zip(weights_of.A_EXTRA, weights_of.C_EXTRA, strict=True), STAGES + 1):
+            y = step.y + step.length * combined(weights[:stage], stages)
             stages[stage] = self.system.rate(step.t + share * step.length, y, self.interval)
         gone = step.reached - step.y
         bend = step.length * stages[0] - gone
-        higher = [step.length * _combined(weights, stages) for weights in method.D]
+        higher = [step.length * combined(weights, stages) for weights in weights_of.D]
         return np.array([gone, bend, 2 * gone - step.length * (step.rate + stages[0]), *higher])
 
 
@@ -365,15 +468,17 @@ def _first_event(problem: InitialValueProblem, dense: _Dense, going: _Going, goo
     if not problem.events:
         return _Arrival(good, event, t, y)
     times = np.linspace(step.t, step.end, LOOKS + 1)
-    several = np.tile(np.arange(len(good)), LOOKS - 1)
-    states = dense.at(times[1:-1].ravel(), several)
-    at = (times[1:].ravel(), np.concatenate([states, step.reached], axis=1))
     several = np.tile(np.arange(len(good)), LOOKS)
+    if len(good) < APART:
+        states = [dense.at(times[1:-1].ravel(), several[: -len(good)])]
+    else:
+        states = [dense.at(look, slice(None)) for look in times[1:-1]]
+    at = (times[1:].ravel(), np.concatenate([*states, step.reached], axis=1))
     system, interval = dense.system.part(several), dense.interval[several]
     for number, rule in enumerate(problem.events):
         values = np.array([going.value[number, good], *system.crossing(number, *at, interval).reshape(LOOKS, -1)])
         going.value[number, good] = values[-1]
-        happens = _passes(values, rule)
+        happens = passes(values, rule)
         places = np.flatnonzero(happens.any(axis=0))
         if len(places):
             look = happens[:, places].argmax(axis=0)
@@ -390,7 +495,7 @@ def _first_event(problem: InitialValueProblem, dense: _Dense, going: _Going, goo
     return _Arrival(good, event, t, y)
 
 
-def _passes(values: Matrix, rule: EventRule) -> Mask:
+def passes(values: Matrix, rule: EventRule) -> Mask:
     """Mark between which of the values (m + 1, n) an event happens, (m, n); one that is known begins at 0 as well."""
     before, after = values[:-1], values[1:]
     if rule.direction == 0:
@@ -430,7 +535,7 @@ def _happen(problem: InitialValueProblem, system: System, going: _Going, arrival
         if not len(places):
             continue
         own, part = arrival.places[places], system.part(places)
-        t, interval = going.t[own], going.interval[own]
+        t, interval, before = going.t[own], going.interval[own], going.y[:, own]
         if rule.sets:
             going.y[:, own] = part.after(number, t, going.y[:, own], interval)
         ended[places] = _count(problem, solution, number, going.machine[own], (going.last_event[own], t))
@@ -441,14 +546,26 @@ def _happen(problem: InitialValueProblem, system: System, going: _Going, arrival
         after = going.value[number, own]
         for other in range(len(problem.events)):
             going.value[other, own] = part.crossing(other, t, going.y[:, own], interval)
-        going.value[number, own] = _beyond(going.value[number, own], after, is_set=rule.sets)
+        is_set = np.zeros(len(own), dtype=bool)
+        if rule.sets and (going.value[number, own] == 0).any():
+            short = 1e-6 * going.step[own]
+            slopes = [_gained(number, part, (t, y, interval), short) for y in (before, going.y[:, own])]
+            is_set = np.abs(slopes[1] - slopes[0]) > 1e-3 * np.abs(slopes[0])
+        going.value[number, own] = _beyond(going.value[number, own], after, is_set)
     return ended
 
 
-def _beyond(value: Matrix, after: Matrix, *, is_set: bool) -> Matrix:
+def _gained(event: int, system: System, at: tuple[Matrix, Matrix, Indices], short: Matrix | float) -> Matrix:
+    """Return what the value of an event gains within a short time, (n,)."""
+    t, y, interval = at
+    later = system.crossing(event, t + short, y + short * system.rate(t, y, interval), interval)
+    return later - system.crossing(event, t, y, interval)
+
+
+def _beyond(value: Matrix, after: Matrix, is_set: Mask) -> Matrix:
     """Return the value of an event that has just happened: what rounding leaves of 0 lies on the side beyond it.
 
-    A state that is set (``is_set``) may well begin anew at 0.
+    A machine whose course is set anew (``is_set``) may well begin at 0.
     """
     is_rounding = (np.abs(value) <= 1e-9 * np.abs(after)) & ~(is_set & (value == 0))
     return np.asarray(np.where(is_rounding, np.copysign(np.maximum(np.abs(value), TINY), after), value))
@@ -465,7 +582,8 @@ def _count(
     whole = problem.stamps[-1] - problem.stamps[0]
     endless = (t - before < CLOSE * whole) | (solution.counts[number, machine] > MOST_EVENTS)
     for place in np.flatnonzero(endless):
-        solution.reasons[int(machine[place])] = (ENDLESS, float(t[place]))
+        reason = f"the event '{problem.events[number].name}' {ENDLESS}"
+        solution.reasons[int(machine[place])] = (reason, float(t[place]))
     return np.asarray(endless)
 
 
@@ -480,8 +598,7 @@ def _stiff(problem: InitialValueProblem, machines: Indices, solution: Solution) 
         solution.states[:, group, 1:] = np.nan
         solution.counts[:, group], solution.first[:, group] = 0, np.nan
         system = problem.system.part(group)
-        going = _begun(replace(problem, system=system, start=problem.start[:, group]))
-        going.machine = group
+        going = _begun(replace(problem, system=system, start=problem.start[:, group]), group)
         reason = _march_as_one(problem, system, going, solution)
         if reason and len(group) > 1:
             waiting += np.array_split(group, 2)
@@ -501,7 +618,7 @@ def _march_as_one(problem: InitialValueProblem, system: System, going: _Going, s
         if solver.status == "failed" or not np.isfinite(reached).all():
             return GROWS
         t, end = (np.full(len(going.t), each) for each in (solver.t_old, solver.t))
-        step = _Step(t, y, end - t, end, reached, going.rate)
+        step = Step(t, y, end - t, end, reached, going.rate)
         ended = _arrive(problem, going, everyone, _SharedDense(system, going.interval, step, solver), solution)
         if ended.all():
             return ""
@@ -532,11 +649,11 @@ def _solver(problem: InitialValueProblem, system: System, going: _Going) -> Any:
 class _SharedDense:
     """The states along a step that all machines share."""
 
-    def __init__(self, system: System, interval: Indices, step: _Step, solver: Any) -> None:
+    def __init__(self, system: System, interval: Indices, step: Step, solver: Any) -> None:
         self.system, self.interval, self.step = system, interval, step
         self._at = solver.dense_output()
 
-    def at(self, t: Matrix, place: Indices) -> Matrix:
+    def at(self, t: Matrix, place: Indices | slice) -> Matrix:
         """Return the states of the machines at these places, each at a time of its own, (d, m)."""
         y = self._at(t).reshape(len(self.interval), -1, len(t))
-        return np.asarray(y[place, :, np.arange(len(t))].T)
+        return np.asarray(y[np.arange(len(y))[place], :, np.arange(len(t))].T)

@@ -58,7 +58,7 @@ class DiagnoseOptions:
     model the search may make; 0 leaves it to how long a call takes.
     By result, ``at_least`` and ``at_most`` mark rows ("column = word") whose true value lies above or below what was
     read, and ``clipped`` holds the ends of the gauge (SI, infinite where there is none). Results in ``lognormal`` are
-    compared as logarithms.
+    compared as logarithms. ``noise`` holds the standard deviation of one reading (SI) for what is planned before data.
     """
 
     per_file: tuple[str, ...] = ()
@@ -69,6 +69,7 @@ class DiagnoseOptions:
     at_most: Mapping[str, str] = field(default_factory=dict)
     clipped: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     lognormal: tuple[str, ...] = ()
+    noise: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def held_out(self) -> tuple[str, str]:

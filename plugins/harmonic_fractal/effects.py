@@ -24,9 +24,10 @@ DIRECTION = Condition(
 )  # fmt: skip
 WAVE_ANGLE = Condition("wave_angle", "deg", reference=0, low=0, high=360,
                        note="angle of the wave generator, against the circular spline")  # fmt: skip
-TEMPERATURE = Condition("temperature", "degC", reference=20, low=-10, high=80,
+TEMPERATURE = Condition("temperature", "degC", reference=20, low=-10, high=80, role="follows",
                         note="temperature of the drive and its lubricant, when measured")  # fmt: skip
-CYCLES = Condition("cycles", "", reference=0, low=0, high=1e8, note="meshes of a pair of teeth in service, since new")
+CYCLES = Condition("cycles", "", reference=0, low=0, high=1e8, role="goes_on",
+                   note="meshes of a pair of teeth in service, since new")  # fmt: skip
 TIME = Condition("time", "h", reference=0, derived="since_start", low=0, high=100,
                  note="time under torque, since the first row")  # fmt: skip
 SPEED = Condition("speed", "rpm", reference=0, low=0, high=6000,

@@ -90,7 +90,7 @@ class Drive:
     engaged_pairs: int = given(60, symbol="N_e", note="engaged pairs of teeth, in two opposite arcs",
                                source="30 % of the teeth", at_least=1, at_most=2000)  # fmt: skip
     torque: Float = given(25.0, "N*m", symbol="T", note="torque at the output; its sign is its sense",
-                          source=CATALOGUE, at_least=-1e6, at_most=1e6)  # fmt: skip
+                          source=CATALOGUE, at_least=-1e6, at_most=1e6, role="set")  # fmt: skip
     reference_torque: Float = given(1.0, "mN*m", symbol="T_0",
                                     note="torque from which the torsion counts; from 0 it would be infinite", above=0,
                                     at_most=1e6)  # fmt: skip

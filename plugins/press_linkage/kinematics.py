@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from press_linkage.quantities import Press, PressSide
+from press_linkage.quantities import Mechanism, Press, PressSide
 from truing import Float
 
 # Where is the slider, exactly? Closed-form kinematics of the press linkage with every size off by its own deviation
@@ -144,7 +144,7 @@ def turned(cosine: Float, sine: Float, by: Float) -> tuple[Float, Float]:
     return cosine * more_cosine - sine * more_sine, sine * more_cosine + cosine * more_sine
 
 
-def crank_at(press: Press, crank_angle: Float) -> tuple[Float, Float]:
+def crank_at(press: Mechanism, crank_angle: Float) -> tuple[Float, Float]:
     """Cosine and sine of theta_11 of the nominal mechanism; the crank angle counts from the bottom dead centre.
 
     The dead centre has crank and rod stretched in line. It is found from nominal sizes: deviations never move the zero.
@@ -156,7 +156,7 @@ def crank_at(press: Press, crank_angle: Float) -> tuple[Float, Float]:
     return turned(cosine, sine, crank_angle)
 
 
-def built(press: Press, crank: tuple[Float, Float], off: PressSide, *, mirror: float = 1.0) -> Parts:
+def built(press: Mechanism, crank: tuple[Float, Float], off: PressSide, *, mirror: float = 1.0) -> Parts:
     """One side with its deviations; *mirror* is -1 for side 2, whose polar angles run the other way."""
     ground = np.cos(press.ground_pivot_angle), np.sin(press.ground_pivot_angle)
 
@@ -233,7 +233,7 @@ def solve(press: Press, crank_angle: Float | None = None) -> Position:
         )
 
 
-def top_crank_angle(press: Press) -> Float:
+def top_crank_angle(press: Mechanism) -> Float:
     """Crank angle of the upper dead centre, crank and rod folded, rad from the lower one, in (-2 pi, 0).
 
     Needs a crank that turns fully (``rotation_demand``), otherwise NaN. The other way round it is 2 pi more.
@@ -301,7 +301,7 @@ def smallest_sine(position: Position) -> Float:
     return least
 
 
-def rotation_demand(press: Press) -> ClosingDemand:
+def rotation_demand(press: Mechanism) -> ClosingDemand:
     """What a full turn of the crank needs, and with it the upper dead centre and the stroke."""
     offset = np.abs(press.crank_pivot_radius - press.platform_half_width)
     return (
@@ -311,7 +311,7 @@ def rotation_demand(press: Press) -> ClosingDemand:
     )
 
 
-def demands(press: Press, position: Position) -> Iterator[ClosingDemand]:
+def demands(press: Mechanism, position: Position) -> Iterator[ClosingDemand]:
     """What must hold in this position with these deviations: nominal sizes, then loop by loop, side by side.
 
     They come in the order of the chain, so the first one that fails names the cause and not a consequence.
@@ -406,9 +406,9 @@ def platform_motion(half: Half) -> LineMotion:
     return LineMotion(speed, (_dot(pull, JointPoint(rod.y, rod.z)) - _dot(swing, swing)) / rod.z)
 
 
-def face_motion(half: Half, platform: LineMotion) -> LineMotion:
-    """Loops II and III: the slider face over one joint, downward, for a given motion of the platform."""
-    drive, upper, lower = (JointPoint(link.y, link.z) for link in (half.drive, half.upper, half.lower))
+def knee_motion(half: Half, platform: LineMotion) -> tuple[JointPoint, JointPoint]:
+    """Loop II: velocity and acceleration of the knee G for a given motion of the platform."""
+    drive, upper = (JointPoint(link.y, link.z) for link in (half.drive, half.upper))
     quarter = JointPoint(-upper.z, upper.y)
     across = _dot(drive, quarter)
     turning = drive.z * platform.speed / across
@@ -417,6 +417,13 @@ def face_motion(half: Half, platform: LineMotion) -> LineMotion:
     inward = turning * turning * _dot(drive, upper)
     gain = (drive.z * platform.acceleration + inward - _dot(swing, swing)) / across
     pull = JointPoint(gain * quarter.y - turning * turning * upper.y, gain * quarter.z - turning * turning * upper.z)
+    return knee, pull
+
+
+def face_motion(half: Half, platform: LineMotion) -> LineMotion:
+    """Loops II and III: the slider face over one joint, downward, for a given motion of the platform."""
+    knee, pull = knee_motion(half, platform)
+    lower = JointPoint(half.lower.y, half.lower.z)
     speed = _dot(lower, knee) / lower.z
     swing = JointPoint(-knee.y, speed - knee.z)
     return LineMotion(speed, (_dot(lower, pull) - _dot(swing, swing)) / lower.z)

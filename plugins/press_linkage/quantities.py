@@ -46,8 +46,8 @@ class PressSide:
 
 
 @inputs
-class Press:
-    """The nominal mechanism, its deviations, and what is asked of the slider."""
+class Mechanism:
+    """The nominal sizes of one side; the other is its mirror image."""
 
     crank_radius: Float = size(0.36, "a", "crank, A to B")
     rod_length: Float = size(1.304, "k_R", "connecting rod, B to E")
@@ -61,7 +61,13 @@ class Press:
     ground_pivot_radius: Float = size(1.393, "r_M", "ground joint of the knee, O to M")
     ground_pivot_angle: Float = given(0.367, "rad", symbol="alpha_2", note="direction of M, from horizontal downward",
                                       source=MISPRINT, above=-1.57, below=1.57)  # fmt: skip
-    crank_angle: Float = given(0.0, "deg", symbol="phi",
+
+
+@inputs
+class Press(Mechanism):
+    """The nominal mechanism, its deviations, and what is asked of the slider."""
+
+    crank_angle: Float = given(0.0, "deg", symbol="phi", role="set",
                                note="crank from the bottom dead centre, growing with theta_11",
                                source="the paper works at the bottom dead centre")  # fmt: skip
     position_limit: Float = given(0.02, "mm", symbol="L_S", note="permitted error of the slider position",

@@ -16,14 +16,14 @@ from truing import Condition, Effect, Float, Unknown
 
 SCREW_SPEED = Condition("screw_speed", "rpm", reference=0, low=10, high=3000,
                         note="of the screw; the sign is its sense of turning")  # fmt: skip
-TEMPERATURE = Condition("temperature", "degC", reference=20, low=15, high=80,
+TEMPERATURE = Condition("temperature", "degC", reference=20, low=15, high=80, role="follows",
                         note="of nut, rollers and lubricant, when measured")  # fmt: skip
 SCREW_ANGLE = Condition(
-    "screw_angle", "deg", reference=0, low=0, high=36000,
+    "screw_angle", "deg", reference=0, low=0, high=36000, role="goes_on",
     note="of the screw, counted on over its turns: the carrier is back at its place after 8 turns of the screw only",
 )  # fmt: skip
 CYCLES = Condition(
-    "cycles", "", reference=0, low=0, high=5e6,
+    "cycles", "", reference=0, low=0, high=5e6, role="goes_on",
     note="load cycles of a tooth of the roller since new, all under the axial load of the row",
 )  # fmt: skip
 

@@ -62,7 +62,7 @@ class Pair:
     )  # fmt: skip
     # The load
     axial_load: Float = given(10.0, "kN", symbol="F_a", note="on the screw; a negative one loads the other flanks",
-                              source="a load of this size of screw")  # fmt: skip
+                              source="a load of this size of screw", role="set")  # fmt: skip
     tangential_share: Float = given(5.1943e-3, "", symbol="kappa_t", note="tangential load of a mesh over the axial "
                                     "load", source=CALIBRATED_LOAD, at_least=0, at_most=1)  # fmt: skip
     mesh_stiffness: Float = given(14.0, "N/(mm*um)", symbol="c_gamma", note="mesh stiffness per face width; acts with "

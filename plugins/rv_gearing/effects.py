@@ -16,10 +16,10 @@ from truing import Condition, Effect, Float, Unknown
 # Torque, speed and the temperature of the oil are inputs of the stage; their columns hold row by row.
 
 INPUT_ANGLE = Condition(
-    "input_angle", "deg", reference=0, low=0, high=39960,
+    "input_angle", "deg", reference=0, low=0, high=39960, role="goes_on",
     note="of the sun, counted on over its turns; at a ratio of 111 one turn of the output is 39960 degrees",
 )  # fmt: skip
-TIME = Condition("time", "h", reference=0, low=0, high=6000, note="at work since new")
+TIME = Condition("time", "h", reference=0, low=0, high=6000, role="goes_on", note="at work since new")
 
 
 # What changes the load of a tooth and so every stress: misalignment, resonance, sharing, width and tip that carry

@@ -89,7 +89,7 @@ class Gearing:
     pin_teeth: Float = given(None, "", symbol="Z_5", note="pins; without them those of the group, or fewest_pins",
                              at_least=4, at_most=1000, whole=True)  # fmt: skip
     # The load of the first stage
-    load_torque: Float = given(None, "N*m", symbol="T_2",
+    load_torque: Float = given(None, "N*m", symbol="T_2", role="set",
                                note="torque at the output, with the sign of its direction; without it that of the "
                                     "power")  # fmt: skip
     input_speed: Float = given(None, "rpm", symbol="n_in", note="speed of the sun; without it that of the output speed",
@@ -127,7 +127,7 @@ class Gearing:
     density: Float = positive(7830.0, "kg/m**3", "rho", "of both gears, for their inertia", "ISO 6336-1:2006, 6.5.9")
     viscosity: Float = positive(100.0, "mm**2/s", "nu_40", "kinematic viscosity of the lubricant at 40 degC")
     oil_temperature: Float = given(40.0, "degC", symbol="theta_oil", note="of the lubricant at work", source=LOST,
-                                   at_least=-60, at_most=250)  # fmt: skip
+                                   at_least=-60, at_most=250, role="follows")  # fmt: skip
     # What is asked
     least_contact_safety: Float = positive(1.1, "", "S_Hmin", "least safety against pitting")
     least_bending_safety: Float = positive(1.25, "", "S_Fmin", "least safety against breakage")

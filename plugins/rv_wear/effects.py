@@ -13,11 +13,11 @@ from truing import Condition, Effect, Float, Unknown
 # Working hours are an input of the reducer and belong to its set of discs; the clock of the bench is the ``time`` of
 # the kernel's own effects.
 
-HOUSING_TEMPERATURE = Condition("housing_temperature", "degC", reference=20, low=15, high=60,
+HOUSING_TEMPERATURE = Condition("housing_temperature", "degC", reference=20, low=15, high=60, role="follows",
                                 note="of the housing with its pins, when measured")  # fmt: skip
-DISC_TEMPERATURE = Condition("disc_temperature", "degC", reference=20, low=15, high=60,
+DISC_TEMPERATURE = Condition("disc_temperature", "degC", reference=20, low=15, high=60, role="follows",
                              note="of the cycloid discs, when measured")  # fmt: skip
-OIL_TEMPERATURE = Condition("oil_temperature", "degC", reference=40, low=20, high=80,
+OIL_TEMPERATURE = Condition("oil_temperature", "degC", reference=40, low=20, high=80, role="follows",
                             note="of the lubricant at work, mean since new")  # fmt: skip
 OUTPUT_ANGLE = Condition("output_angle", "deg", reference=0, low=0, high=360,
                          note="of the output, at which the backlash is read")  # fmt: skip

@@ -48,7 +48,7 @@ class Reducer:
     # Load and material
     output_torque: Float = given(3136.0, "N*m", symbol="T_z", note="torque at the output", source=PAPER, above=0)
     output_speed: Float = given(15.0, "r/min", symbol="n", note="speed of the output", source=PAPER, above=0)
-    working_time: Float = given(6000.0, "h", symbol="T", source=PAPER, at_least=0,
+    working_time: Float = given(6000.0, "h", symbol="T", source=PAPER, at_least=0, role="goes_on",
                                 note="working time of this set of discs; rated life 6000 h")  # fmt: skip
     reversing: Float = given(
         None, "", symbol="f_r", at_least=0, at_most=1,

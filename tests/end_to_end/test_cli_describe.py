@@ -22,7 +22,7 @@ MODELS = [
     "harmonic_fractal.made_flank",
     "harmonic_fractal.run_up",
     "harmonic_fractal.vibration",
-    *INSTALLED[1:],
+    *sorted([*INSTALLED[1:], "press_linkage.motion"]),
 ]
 
 
@@ -129,3 +129,10 @@ def test_what_init_writes_runs(calc: Calc, tmp_path: Path) -> None:
     calc("init", PIN, "-o", "new/wear.toml")
     answer = calc("run", PIN, "--inputs", "new/wear.toml", "-q")
     assert answer.code == 0, answer.err
+
+
+def test_a_long_series_is_shown_by_its_ends_and_one_that_is_not_given_as_optional(calc: Calc) -> None:
+    lines = calc("describe", "press_linkage.motion").out.splitlines()
+    said = {words[0]: line for line in lines if (words := line.split())}
+    assert "0.0 .. 5.0, 121 values" in said["times"]
+    assert " optional " in said["crank_speed"]

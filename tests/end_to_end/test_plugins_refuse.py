@@ -44,6 +44,11 @@ BOUNDS: dict[str, dict[str, str]] = {
         "closing or printed or none": "roughness_clearance",
     },
     "harmonic_fractal.vibration": {"above 0": "stated_stiffness mesh_order torque", "at least 0": "speed"},
+    "press_linkage.motion": {
+        "above 0": "speed speed_share permitted_torque crank_radius",
+        "at least 0": "slider_mass counterbalance guide_friction bearing_friction mass_rod inertia_upper_knee",
+        "at most 3": "centre_lower_knee",
+    },
     "roller_screw_shift": {
         "above 0": "module face_width centre_distance screw_diameter roller_diameter rim_factor "
         "most_sliding_difference",
@@ -166,6 +171,19 @@ IMPOSSIBLE: dict[str, list[tuple[list[str], int, str]]] = {
          "link cannot reach the slider, it needs |l - y_G| < l_h"),
         (['rod_length = "0.5 m"'], 3, "loop I has no bottom dead centre: crank and rod in line do not reach the "
          "platform; it needs crank_pivot_radius - platform_half_width < crank_radius + rod_length"),
+    ],
+    "press_linkage.motion": [
+        (['times = { values = [0, 1, 1], unit = "s" }'], 3, "times: two or more, each later than the one before"),
+        (['times = ["0 s"]'], 3, "times: two or more, each later than the one before"),
+        (['crank_speed = ["10 rpm", "12 rpm"]'], 3, "crank_speed has 2 values at 121 times; it needs one at each"),
+        (['forming_force = ["1 kN"]'], 3, "forming_force has 1 values at 121 times; it needs one at each"),
+        (['crank_speed = []'], 3, "crank_speed is a series; write crank_speed = "),
+        (['speed_share = { values = [100, 0], unit = "%" }'], 3, "speed_share is 0"),
+        (['speed_angle = { values = [0, 400], unit = "deg" }', 'speed_share = { values = [100, 50], unit = "%" }'], 3,
+         "speed_angle: angles rise within one turn"),
+        (['force_angle = { values = [0, 10], unit = "deg" }'], 3, "force has 4 values at 2 of force_angle"),
+        (['bearing_friction = "150 mm"'], 3, "the press locks: its pins rub more than the drive can overcome"),
+        (['lower_knee_length = "0.5 m"'], 3, "loop III, side 1 does not close"),
     ],
     "roller_screw_shift": [
         (["roller_teeth = 20", "ring_teeth = 27"], 4, "the formulas hold for ring_teeth at least 8 above roller_teeth"),

@@ -20,7 +20,7 @@ from truing.inputs_file import setup_from_text
 from truing.setup import default_setup
 
 OFFERS = Kernel.installed(strict=True).offers
-WHOLE = ["roller_screw_shift", "rv_gearing", "rv_wear", "harmonic_fractal"]
+WHOLE = ["roller_screw_shift", "rv_gearing", "rv_wear", "harmonic_fractal", "press_linkage.motion"]
 """Calculations whose sections show all of their results."""
 
 
@@ -55,6 +55,7 @@ ALONE: list[tuple[Drawn, int]] = [  # without any study, and how many figures ar
     (Drawn(plugin="rv_gearing"), 2),
     (Drawn(plugin="rv_wear"), 4),
     (Drawn(plugin="harmonic_fractal"), 2),
+    (Drawn(plugin="press_linkage.motion"), 3),
 ]
 UNUSUAL: list[tuple[Drawn, int]] = [
     (Drawn(plugin="press_linkage", inputs={"crank_angle": "-60 deg", "ground_pivot_angle": "0.117 rad"},
@@ -72,6 +73,9 @@ UNUSUAL: list[tuple[Drawn, int]] = [
     (Drawn(plugin="rv_wear", inputs={
         "pin_count": 12, "eccentricity": "5 mm", "pin_radius": "12 mm", "film_factor": 150.0}), 4),
     (Drawn(plugin="harmonic_fractal", inputs={"drive_compliance": "40 urad/(N*m)", "torque": "-25 N*m"}), 2),
+    (Drawn(plugin="press_linkage.motion", declared=("sweep",), inputs={
+        "times": ["0 s", "1 s", "2 s"], "start_angle": "-10 deg", "crank_speed": ["12 rpm", "0 rpm", "-12 rpm"],
+        "forming_force": ["0 N", "0 N", "0 N"]}), 4),
 ]  # fmt: skip
 
 
@@ -87,7 +91,7 @@ def test_every_figure_is_drawn_without_a_complaint(drawn: Drawn, count: int) -> 
     assert len(titles) == count, titles
 
 
-@pytest.mark.parametrize("plugin", ["press_linkage", *WHOLE[:3]])
+@pytest.mark.parametrize("plugin", ["press_linkage", *WHOLE[:3], "press_linkage.motion"])
 def test_every_line_of_the_example_can_be_switched_on(plugin: str) -> None:
     """Inputs, tolerances, effects with their unknowns, and conditions are all named; with every effect it runs."""
     offer = OFFERS[plugin]

@@ -28,6 +28,7 @@ from truing.diagnosis.reading import read_records
 from truing.diagnosis.records import Records
 from truing.diagnosis.result import DiagnosisResult, FittedUnknown
 from truing.diagnosis.sample import NoiseModel, sample_of
+from truing.experiments.proposal import proposed
 from truing.kernel import Offer, Origin
 from truing.setup import DiagnoseOptions, Setup, default_setup
 
@@ -244,7 +245,7 @@ class Asked:
 
     def diagnosed(self, path: Path, columns: Mapping[str, Array], runs: Sequence[str] = ()) -> DiagnosisResult:
         """Write, read and diagnose."""
-        return diagnose(self.setup, self.records(path, columns, runs))
+        return diagnose(self.setup, self.records(path, columns, runs), propose=proposed)
 
 
 def names_in(found: DiagnosisResult) -> set[str]:

@@ -19,7 +19,10 @@ from truing.diagnosis.result import (
     Amount,
     Calibrated,
     Cause,
+    Chance,
+    Course,
     DiagnosisResult,
+    Experiment,
     Fact,
     FittedUnknown,
     Gain,
@@ -265,6 +268,26 @@ def named() -> DiagnosisResult:
     return replace(made, extended=extended(made, {"rod_heating": {"expansion": 11.8e-6}}))
 
 
+def warmed() -> Experiment:
+    """Two readings of a warm rod, the load reversed between them."""
+    courses = (
+        Course("rod_temperature", "held", 323.15, 323.15), Course("load", "in turn", -5e4, 5e4),
+        Course("crank_angle", "held", 0.5, 0.5),
+    )  # fmt: skip
+    return Experiment(
+        tells=("rod_heating", "warm_up", "sensor_drift"),
+        apart=(("rod_heating", "sensor_drift"), ("warm_up", "sensor_drift")),
+        courses=courses,
+        settings={course.name: course.values(2) for course in courses},
+        units={"rod_temperature": "degC", "load": "kN", "crank_angle": "deg"},
+        takes=Amount(5400.0, "h"),
+        separation=34.0,
+        needed=2,
+        chance=Chance(0.96, 0.902, 0.984, 100, "all explanations fitted again"),
+        results=("slide_position",),
+    )
+
+
 def ambiguous() -> DiagnosisResult:
     """Verdict one of three: another name of the same curve, a rival, a tie that a fact decides; and a unit slip."""
     point = NextPoint(
@@ -276,7 +299,8 @@ def ambiguous() -> DiagnosisResult:
     return replace(
         made, causes=(replace(HEATING, same_as=("warm_up",)),), alternatives=(DRIFTING,), ties=(TIE,),
         ranking=(made.ranking[0], DRIFTING, *made.ranking[1:]),
-        next=(point, replace(point, settings={"load": Amount(5e4, "kN")}, separation=34.0)),
+        next=(point, replace(point, settings={**point.settings, "load": Amount(5e4, "kN")}, separation=34.0)),
+        experiment=warmed(),
         records=replace(made.records, unit_errors=(unit_error,)), stability=0.8,
         inseparable=("time and rod_temperature rise together in every run: their effects cannot be separated here",),
     )  # fmt: skip

@@ -32,12 +32,10 @@ from scipy.stats import binom, norm
 
 from truing.diagnosis.choice import Chosen
 from truing.diagnosis.competition import Competition
-from truing.diagnosis.design import MOST_POINTS, POINTS, NextPoints, next_points
 from truing.diagnosis.fitted import Fit
 from truing.diagnosis.folds import FOLDS, SHORTEST_BLOCK, Folds, carries_over, errors_left_out, folds_of
 from truing.diagnosis.gain import _log_density, nested, sign_flip_p
 from truing.diagnosis.noise import Autocorrelation
-from truing.diagnosis.result import APART
 from truing.diagnosis.sample import Sample, sample_of
 from truing.diagnosis.visibility import inseparable, needed, separation, smallest_visible
 from truing.setup import DiagnoseOptions
@@ -256,70 +254,6 @@ def test_a_bound_below_the_smallest_visible_size_is_not_excited(tmp_path: Path, 
     assert seen["clearance"].smallest is not None
     assert_allclose(seen["clearance"].smallest.value, size * 500 * UM, rtol=1e-9)
     assert seen["clearance"].sight == sight
-
-
-def one_sign(folder: Path, box: dict[str, tuple[float, float]], noise: float, *, is_named: bool = False) -> Chosen:
-    """A clearance of 3 um under a load of one sign: the offset is the same curve. The noise is square to both.
-
-    ``is_named``: as another name for the winner; else as a rival.
-    """
-    bench = wide(40, seed=36)
-    bench = replace(bench, load=np.abs(bench.load) + 1)
-    asked = Asked(drive_model(("clearance",), {}), diagnose=DiagnoseOptions(box=box))
-    columns = bench.shown(3 + noise * np.resize([1, -1], 40))
-    made = asked.competing(folder, columns)
-    best = fit_of(made, "sensor_offset")
-    if is_named:
-        return chosen_as(made, best, same={best.causes[0].tag: ("clearance",)})
-    return chosen_as(made, best, fit_of(made, "clearance"))
-
-
-@pytest.mark.parametrize("is_named", [True, False])
-def test_the_separation_that_is_promised_is_that_of_a_refit_with_the_points_added(
-    tmp_path: Path, is_named: bool
-) -> None:
-    points = next_points(one_sign(tmp_path, {"load": (-10e3, 20e3)}, 1.0, is_named=is_named)).points
-    assert len(points) == POINTS
-    for count, point in enumerate(points, start=1):
-        assert set(point.separates) == {"sensor_offset", "clearance"}
-        assert -10e3 <= point.settings["load"].value < 0
-        signs = np.array([1.0] * 40 + [-1.0] * count)  # of the load: clearance turns round, an offset does not
-        offset = np.full(40 + count, 3.0)
-        left = offset - signs * (signs @ offset) / (signs @ signs)
-        assert_allclose(point.separation, left @ left, rtol=1e-4)
-
-
-@pytest.mark.parametrize("is_named", [True, False])
-def test_where_no_setting_separates_two_causes_none_is_proposed(tmp_path: Path, is_named: bool) -> None:
-    chosen = one_sign(tmp_path, {"load": (1e3, 20e3)}, 1.0, is_named=is_named)
-    assert next_points(chosen) == NextPoints((), (("sensor_offset", "clearance"),))
-
-
-def test_rivals_are_separated_inside_the_box(tmp_path: Path) -> None:
-    bench = wide(80, seed=37)
-    narrow = replace(bench, travel=140 + bench.travel / 15)
-    asked = Asked(drive_model(("lead_error",), {}), diagnose=DiagnoseOptions(box={"travel": (0.0, 0.3)}))
-    error = 0.01 * narrow.travel + np.random.default_rng(37).normal(0, 0.5, 80)
-    made = asked.competing(tmp_path, narrow.shown(error))
-    points = next_points(chosen_as(made, fit_of(made, "lead_error"), fit_of(made, "sensor_offset"))).points
-    assert points
-    travel = [point.settings["travel"].value for point in points]
-    assert all(-1e-12 <= value <= 0.3 + 1e-12 for value in travel)
-    outside = [value for value in travel if not 0.14 <= value <= 0.16]
-    assert len(outside) == len(travel)
-    assert [point.separation for point in points] == sorted(point.separation for point in points)
-
-
-@pytest.mark.parametrize("size", [3.0, 0.8, 0.3, 0.05])
-def test_it_is_said_how_many_points_would_be_needed(tmp_path: Path, size: float) -> None:
-    """After 40 rows of one sign c rows of the other leave 4 * 40 c / (40 + c) of an offset as large as the noise."""
-    proposal = next_points(one_sign(tmp_path, {"load": (-10e3, 20e3)}, noise=3.0 / size))
-    counts = [*range(1, POINTS + 1), *range(2 * POINTS, MOST_POINTS + 1, POINTS)]
-    enough = [count for count in counts if 4 * size**2 * 40 * count / (40 + count) >= APART]
-    assert {point.needed for point in proposal.points} == set(enough[:1])
-    assert bool(proposal.tied) is not bool(enough)
-    is_said = bool(proposal.points) and "points like these would be needed" in proposal.points[-1].why
-    assert is_said is (bool(enough) and enough[0] > POINTS)
 
 
 # Known answers of the algebra of a diagnosis: angles, separation, and what must be seen.

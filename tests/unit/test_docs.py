@@ -19,6 +19,8 @@ import truing
 from truing import (
     Allocation,
     Emulated,
+    Frequency,
+    FrequencyAnswer,
     Kernel,
     Optimise,
     Record,
@@ -56,7 +58,7 @@ HOOKS = sorted(
 )
 STUDIES: dict[type[Any], type[Any]] = {
     Sweep: Swept, Sensitivity: Sensitivities, Reliability: Odds, Allocation: Allotted, Surrogate: Emulated,
-    Optimise: Optimum,
+    Optimise: Optimum, Frequency: FrequencyAnswer,
 }  # fmt: skip
 
 

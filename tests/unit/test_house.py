@@ -195,7 +195,11 @@ def test_the_page_of_the_diagnosis_names_modules_that_are_there() -> None:
     reading = next(part for part in page.split("\n\n") if part.startswith("First the rows are read"))
     named = {*re.findall(r"`([a-z_]+)`", " ".join(heads)), *re.findall(r"\(`([a-z_]+)`\)", reading)}
     assert len(named) > 15
-    assert named <= {file.stem for file in (ROOT / "kernel" / "truing" / "diagnosis").glob("*.py")}
+    rooms = ROOT / "kernel" / "truing"
+    assert named <= {file.stem for file in (rooms / "diagnosis").glob("*.py")}
+    experiments = set(re.findall(r"\n\n`experiments/([a-z_]+)`\.", page))
+    assert len(experiments) > 4
+    assert experiments <= {file.stem for file in (rooms / "experiments").glob("*.py")}
 
 
 def imports_of(file: Path) -> Iterator[str]:

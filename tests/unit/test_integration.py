@@ -102,9 +102,9 @@ def test_a_ball_bounces_when_and_as_often_as_it_must() -> None:
 def test_events_without_end_are_said_with_their_time() -> None:
     """A ball that keeps half of its speed comes to rest after sqrt(2 h / g) (1 + e) / (1 - e)."""
     ball = Machines(lambda t, y, own: [y[1], -own], np.array([9.81]), bounce=0.5)
-    solution = followed(ball, [1, 0], np.linspace(0, 10, 51), events=[EventRule(-1, sets=True)])
+    solution = followed(ball, [1, 0], np.linspace(0, 10, 51), events=[EventRule(-1, sets=True, name="bounces")])
     reason, t = solution.reasons[0]
-    assert reason == ENDLESS
+    assert reason == f"the event 'bounces' {ENDLESS}"
     assert t == pytest.approx(3 * np.sqrt(2 / 9.81), rel=1e-9)
 
 

@@ -46,7 +46,9 @@ LOBES = 13  # of the disc: the eccentric shaft turns 13 times in a turn of the o
 PINS = 14  # of the ring
 ANGLE = Condition("angle", "rad", derived="since_start", note="how far the output has turned")
 TIME = Condition("time", "s", derived="since_start", note="since the record began")
-CONTROLLER = Condition("controller_temperature", "degC", reference=37, note="of the electronics, not of the gear")
+CONTROLLER = Condition(
+    "controller_temperature", "degC", reference=37, role="follows", note="of the electronics, not of the gear"
+)
 
 
 def waves(reducer: Reducer, order: int, angle: Float, amplitudes: dict[str, Float]) -> Reducer:

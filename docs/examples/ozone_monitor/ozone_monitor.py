@@ -45,7 +45,7 @@ def ozone_monitor(monitor: Monitor) -> Ozone:
     return Ozone(ozone=monitor.zero + shown / (1 - monitor.lamp * level**2))
 
 
-NUMBER = Condition("number", "", note="number of the comparison, in the order of the table")
+NUMBER = Condition("number", "", role="goes_on", note="number of the comparison, in the order of the table")
 
 
 def wrong_span(monitor: Monitor, *, share: Float) -> Monitor:

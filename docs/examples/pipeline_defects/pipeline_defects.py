@@ -50,7 +50,9 @@ def pipeline_defects(defect: Defect) -> Reading:
     return Reading(field_size=defect.gauge_factor * np.hypot(echo, defect.smallest))
 
 
-BATCH = Condition("batch_number", "", reference=1, note="the batch in which a defect was sized, in their order")
+BATCH = Condition(
+    "batch_number", "", reference=1, role="goes_on", note="the batch in which a defect was sized, in their order"
+)
 
 
 def compressed_echo(defect: Defect, *, compression: Float, set_size: Float) -> Defect:

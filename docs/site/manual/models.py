@@ -12,7 +12,7 @@ from markupsafe import Markup
 
 from manual.places import DOCS, SITE, place_in_site
 from truing.declare.model import formula_scope
-from truing.describe import description
+from truing.describe import LONGEST_SERIES, description
 from truing.formulas import parse, symbol_mathml
 from truing.formulas.write_mathml import MATHML
 from truing.inputs_file import json_schema
@@ -83,6 +83,8 @@ def _number(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, list):
+        if len(value) > LONGEST_SERIES:
+            return f"{_number(value[0])} … {_number(value[-1])}, {len(value)} values"
         return ", ".join(_number(item) for item in value)
     return f"{value:.10g}" if isinstance(value, float) else str(value)
 

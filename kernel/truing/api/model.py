@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property, partial
 from pathlib import Path
 from types import NoneType
@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 
 from truing.api.findings import NamedCause, Ranking, Residuals, causes_of
 from truing.api.notebook import bullets, fold, heading, html_table, joined, paragraphs, picture, table_html
+from truing.api.plan import Plan
 from truing.api.records import MeasuredRecord
 from truing.api.run import Differences, Run, comparison_of, performed
 from truing.api.study import StudyResult
@@ -28,6 +29,9 @@ from truing.diagnosis.reading import read_records
 from truing.diagnosis.result import Verdict
 from truing.errors import Fault, InputError, UsageError
 from truing.example_file import example_of, example_text
+from truing.experiments.design import BUDGET
+from truing.experiments.planning import planned
+from truing.experiments.proposal import proposed
 from truing.gauge import shown_by_gauge
 from truing.inputs_file import read_setup, setup_from_text
 from truing.inputs_file.assemble import toml_value
@@ -44,7 +48,9 @@ from truing.runs.extension import extended_text
 from truing.runs.folder import demand_place, diagnosis_files, write_outcome
 from truing.setup import Setup
 from truing.studies.bench import Progress
+from truing.studies.frequency import Frequency
 from truing.studies.sweep import Sweep
+from truing.units import difference_unit
 from truing.units.grammar import shown
 
 
@@ -151,6 +157,17 @@ class LoadedModel:
         ends = [text_of(self.offer.model, over, end) for end in (low, high)]
         return self.study(Sweep(over=over, at="..".join(ends), points=points), **more)
 
+    def frequency(self, input: str = "", output: str = "", *, over: str = "", at: str = "", **more: Any) -> StudyResult:
+        """Linearise a model that moves: its poles, gain and phase from an input to an output, frequencies over speed.
+
+        ``output`` is a state or a result along time; over an input or condition ``over`` the poles are followed along
+        the range ``at`` ("0..6000 rpm"). Further options are those of ``Frequency`` (``point``, ``frequencies``,
+        ``orders`` ...), everything else is as in ``study``.
+        """
+        names = {field.name for field in fields(Frequency)}
+        options = {name: more.pop(name) for name in names & {*more}}
+        return self.study(Frequency(input=input, output=output, over=over, at=at, **options), **more)
+
     def evaluate(
         self,
         frame: Any,
@@ -215,9 +232,39 @@ class LoadedModel:
                 report("diagnosis" if steps else stage, step, steps)
 
             started, records = time.time(), read_records(record.files, self.offer, setup)
-            diagnosis = Diagnosis(self.offer, diagnose(setup, records, progress=as_one), started)
+            diagnosis = Diagnosis(self.offer, diagnose(setup, records, progress=as_one, propose=proposed), started)
             report("sheet and PDF" if pdf else "sheet", 0, 0)
             return diagnosis if output is None else replace(diagnosis, note=diagnosis.written(Path(output), pdf=pdf))
+
+    def plan(
+        self,
+        causes: Sequence[str],
+        inputs: str | Path | None = None,
+        *,
+        noise: Mapping[str, Any] | None = None,
+        budget: int = BUDGET,
+        set: Mapping[str, Any] | None = None,
+        progress: Progress | bool = True,
+        **values: Any,
+    ) -> Plan:
+        """Design an experiment that tells causes apart, before any data exist: what ``calc plan`` does.
+
+        ``causes`` names effects, or tolerated inputs as "input:NAME"; ``noise`` holds by result the standard deviation
+        of one reading (a text with a unit, or a number in the declared unit), where the inputs file does not;
+        ``budget`` is how many readings there may be. Raises TruingError with one sentence.
+        """
+        if isinstance(causes, str):
+            raise UsageError(f'causes is a list of names, such as ["{causes}", "sensor_drift"]')
+        known = self.offer.model.result_fields
+        texts = {
+            name: sd if isinstance(sd, str) or name not in known else f"{sd!r} {difference_unit(known[name].unit)}"
+            for name, sd in (noise or {}).items()
+        }
+        stated = {"studies.diagnose.noise": toml_value(texts)} if texts else {}
+        setup = self.setup(inputs, set={**stated, **(set or {})}, **values)
+        with progress_bar(progress) as report, told_by_line(setup):
+            report("experiment", 0, 0)
+            return Plan(self.offer, planned(setup, causes, budget=budget))
 
     def describe(self) -> dict[str, Any]:
         """Return everything the model declares, as ``calc describe --json`` prints it."""

@@ -190,6 +190,28 @@ def diagnose(
     """Find what the simulation gets wrong, name the cause, extend the model and measure the gain."""
 
 
+@_loaded("plan")
+def plan(
+    context: typer.Context,
+    plugin: Plugin,
+    causes: Annotated[
+        str, typer.Option("--causes", metavar="A,B", help="Effects to tell apart, or input:NAME; joined by commas.")
+    ],
+    inputs: Inputs = None,
+    noise: Annotated[
+        list[str] | None,
+        typer.Option("--noise", metavar="RESULT=SD", help="Standard deviation of one reading; one for each gauge."),
+    ] = None,
+    budget: Annotated[int, typer.Option("--budget", help="How many readings there may be.")] = 12,
+    changed: Changed = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Write the readings to take as CSV, to be filled in.")
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Design an experiment that tells causes apart, before any data exist; exit 1 where none does."""
+
+
 @_loaded("models")
 def verify(context: typer.Context, plugin: Plugin, as_json: AsJson = False) -> None:
     """Print every number that the source prints beside ours; exit 0 if every row matches its stated verdict."""

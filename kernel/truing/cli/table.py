@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from types import SimpleNamespace
 
 from truing.api.tables import name_in
@@ -17,8 +17,12 @@ from truing.inputs_file.sentences import told_by_line
 from truing.measurements import EXCEL, PLAIN, RowsFile, read_rows, table_text
 from truing.measurements.csv_text import with_comma
 from truing.measurements.overriding import NAMES, REMARKS
+from truing.measurements.table import RUN
 from truing.setup import Setup
 from truing.texts import one_line
+
+MOST_SAID = 10
+"""What is so of more rows is said once."""
 
 
 def table(settings: Settings, asked: SimpleNamespace) -> int:
@@ -44,13 +48,28 @@ def table(settings: Settings, asked: SimpleNamespace) -> int:
         out(text.removesuffix("\n"))
     else:
         write_files({output: text})
-    for row, reason in shown.reasons.items():
+    for row, reason in _reasons(shown.reasons, read).items():
         say(f"{rows}:{read.lines[row]}: {reason}")
     if read.count.unused:
         settings.say(f"{one_line(rows)}: {one_line(read.count.sentence())}")
     if output is not None:
         settings.say(f"wrote {output}: {len(read)} rows, {len(shown.reasons)} of them failed")
     return 0
+
+
+def _reasons(reasons: Mapping[int, str], read: RowsFile) -> dict[int, str]:
+    """Return why rows failed, by row; what is so of many rows, as of all those of a record, at the first of them."""
+    rows_of: dict[str, list[int]] = {}
+    for row, reason in reasons.items():
+        rows_of.setdefault(reason, []).append(row)
+    said: dict[int, str] = {}
+    for reason, rows in rows_of.items():
+        if len(rows) > MOST_SAID:
+            more = f"so it is in {len(rows) - 1} rows more, the last in line {read.lines[rows[-1]]}"
+            said[rows[0]] = f"{reason} ({more})"
+        else:
+            said |= dict.fromkeys(rows, reason)
+    return dict(sorted(said.items()))
 
 
 def _with_commas(header: str, cells: Sequence[str], setup: Setup) -> Sequence[str]:
@@ -66,5 +85,5 @@ def _say_unused(read: RowsFile, setup: Setup, settings: Settings) -> None:
     for name in read.others:
         if name in setup.model.result_fields:
             settings.say(f"column '{name}' is a result: it is calculated here")
-        elif name not in {*NAMES, *REMARKS}:
+        elif name not in {*NAMES, *REMARKS} and not (name == RUN and (read.series or setup.model.dynamics)):
             settings.say(f"column '{name}' changes nothing and is kept as it stands.{near_miss(name[:80], known)}")

@@ -223,7 +223,7 @@ _STEP = _Kind(
 
 
 TIME = Condition("time", "h", note="since the first row of the file", derived=SINCE_START)
-TEMPERATURE = Condition("temperature", "degC", reference=20, note="where the gauge is")
+TEMPERATURE = Condition("temperature", "degC", reference=20, note="where the gauge is", role="follows")
 ANGLE = Condition("angle", "deg", note="of what turns")
 
 

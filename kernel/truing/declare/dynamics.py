@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import KW_ONLY, dataclass, field, fields, replace
 from functools import cached_property
+from hashlib import blake2b
 from typing import Any, Generic, Literal, TypeVar, cast, dataclass_transform
 
 import numpy as np
@@ -14,13 +17,35 @@ from truing.arrays import Indices, Matrix
 from truing.declare.batch import feasible
 from truing.declare.fields import KEY, Float, InputField, hints_of, in_si, input_fields, read, with_values
 from truing.errors import ConvergenceError, DeclarationError, InfeasibleError
-from truing.integration import GROWS, STEP_LIMIT, EventRule, InitialValueProblem, Solution, solve
+from truing.integration import (
+    ENDLESS,
+    GROWS,
+    STEP_LIMIT,
+    EventRule,
+    InitialValueProblem,
+    Path,
+    Solution,
+    empty_solution,
+    solve,
+)
+from truing.integration_at_once import at_once
 from truing.units import difference_unit
 
+WHAT_NOW = {
+    STEP_LIMIT: "; a coarser tolerance or a larger most_steps would let it go on",
+    ENDLESS: "; end the motion there (ends=True), or let the event set a state in which the machine rests",
+}
+"""What can be done where a motion comes to no end."""
 I = TypeVar("I")  # noqa: E741  # inputs, as in Model[I, R]
 R = TypeVar("R")
 S = TypeVar("S")
 T = TypeVar("T")
+MOST_NEARBY = 64
+"""More machines in one call, unless they are known, are drawn: nobody asks for them again, and none is remembered."""
+MOST_REMEMBERED, MOST_NEAR = 2_000_000, 256
+"""So many values of states are remembered; of so many machines the nearest one is looked for."""
+NEAR, FAR, TINY = 1e-3, 6, 1e-300
+"""Sum of the shares by which numbers of machines differ that are followed along one path; and at the most."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,7 +105,8 @@ class Event(Generic[S, I]):
     @property
     def rule(self) -> EventRule:
         """The rule as the integrator knows it."""
-        return EventRule({"rises": 1, "falls": -1, "either": 0}[self.when], self.ends, self.then is not None)
+        direction = {"rises": 1, "falls": -1, "either": 0}[self.when]
+        return EventRule(direction, self.ends, self.then is not None, self.name)
 
 
 @dataclass(frozen=True)
@@ -174,6 +200,11 @@ class Dynamics(Generic[S, I, R]):
         return input_fields(self.input_type)
 
     @cached_property
+    def memory(self) -> dict[bytes, _Followed]:
+        """What was followed last, by what tells one machine from another."""
+        return {}
+
+    @cached_property
     def driving(self) -> dict[str, InputField]:
         """The input series that the law sees at every moment, by flat name."""
         along = self.input_fields[self.times].spec.along
@@ -192,7 +223,7 @@ class Dynamics(Generic[S, I, R]):
         """
         machines = _machines(self, inputs)
         known = self.state_fields
-        solution = _in_steps(machines) if self.step is not None else solve(_problem(machines))
+        solution = _remembered(machines)
         _say_why(solution, machines)
         one: Any = 0 if machines.is_single else slice(None)
         names = [event.name for event in self.events]
@@ -211,21 +242,251 @@ class Dynamics(Generic[S, I, R]):
         y = np.array([getattr(motion.states, name) for name in self.state_fields])
         return dict(zip(self.state_fields, along.rate(stamps, y, interval), strict=True))
 
+    def start_of(self, inputs: I) -> Matrix:
+        """Return the states in which one machine starts, (d,)."""
+        return _machines(self, inputs).start()[:, 0]
+
+    def law_at(self, inputs: I, states: Matrix) -> Matrix:
+        """Return what the law says at the first time of n machines in these states (d, n); inputs of one or of n."""
+        machines, several = _machines(self, inputs), np.zeros(states.shape[1], dtype=np.intp)
+        machines = machines.part(several) if machines.is_single else machines
+        return machines.rate(np.full(len(several), machines.stamps[0]), states, several)
+
+    def shown_at(self, inputs: I, states: Matrix) -> R:
+        """Return the results of n machines that stand in these states (d, n) at the first two times."""
+        machines = _machines(self, inputs)
+        series = {self.input_fields[self.times].path: machines.stamps, **machines.drives}
+        inputs = with_values(inputs, {path: values[..., :2] for path, values in series.items()})
+        standing = {name: np.repeat(states[row][:, None], 2, axis=1) for row, name in enumerate(self.state_fields)}
+        never = {event.name: np.full(states.shape[1], np.nan) for event in self.events}
+        counts = {name: np.zeros(states.shape[1]) for name in never}
+        return self.gives(inputs, Motion(machines.stamps[:2], self.state_type(**standing), counts, never))
+
+
+# What was followed is remembered machine by machine: a fit asks for the same ones again, among others
+
+
+@dataclass(frozen=True)
+class _Followed:
+    """One machine as it was followed: states (d, k), by event how often and when first, (e,); why it came to no end.
+
+    ``numbers`` are what it differs by from others, ``path`` the steps that it took.
+    """
+
+    states: Matrix
+    counts: Matrix
+    first: Matrix
+    reason: tuple[str, float] | None
+    numbers: Matrix
+    path: Path | None
+
+
+@dataclass
+class MachinesAsked:
+    """Machines that were asked for, and how many of them had to be followed."""
+
+    several: list[_Machines[Any, Any, Any]] = field(default_factory=list)
+    new: int = 0
+
+
+_ASKED: ContextVar[MachinesAsked | None] = ContextVar("truing_machines_asked", default=None)
+
+
+@contextmanager
+def following_together() -> Iterator[MachinesAsked]:
+    """Note which machines are asked for inside, which show NaN there, and follow all of them at the end at once.
+
+    What is asked for again afterwards is known then.
+    """
+    asked = MachinesAsked()
+    token = _ASKED.set(asked)
+    try:
+        yield asked
+    finally:
+        _ASKED.reset(token)
+    by_record: dict[tuple[int, bytes], list[_Machines[Any, Any, Any]]] = {}
+    for machines in asked.several:
+        by_record.setdefault((id(machines.dynamics), machines.record), []).append(machines)
+    for group in by_record.values():
+        machines = _joined(group)
+        asked.new += len({*machines.keys()} - {*machines.dynamics.memory})
+        _follow(machines, _beside_others)
+
+
+def _remembered(machines: _Machines[Any, Any, Any]) -> Solution:
+    """Return what is known of machines; those that are not known are followed, but for where they are noted alone."""
+    asked = _ASKED.get()
+    if asked is not None:
+        asked.several.append(machines)
+        states, events = len(machines.dynamics.state_fields), len(machines.dynamics.events)
+        nothing = np.full((events, machines.count), np.nan)
+        return Solution(np.full((states, machines.count, len(machines.stamps)), np.nan), nothing, nothing)
+    if machines.count > MOST_NEARBY and machines.keys()[0] not in machines.dynamics.memory:
+        return solve(_problem(machines)) if machines.dynamics.step is None else _in_steps(machines)
+    known = _follow(machines, _step_by_step)
+    reasons = {place: each.reason for place, each in enumerate(known) if each.reason}
+    return Solution(
+        np.stack([each.states for each in known], axis=1), np.stack([each.counts for each in known], axis=1),
+        np.stack([each.first for each in known], axis=1), reasons,
+    )  # fmt: skip
+
+
+def _follow(
+    machines: _Machines[Any, Any, Any], follow: Callable[[_Machines[Any, Any, Any]], list[_Followed]]
+) -> list[_Followed]:  # fmt: skip
+    """Return what is known of machines, those that are not known followed in one call."""
+    memory, keys = machines.dynamics.memory, machines.keys()
+    places = {key: place for place, key in enumerate(keys) if key not in memory}
+    made = {key: memory[key] for key in keys if key in memory}
+    if places:
+        new = machines.part(np.array(list(places.values())))
+        made |= dict(zip(places, follow(new), strict=True))
+        most = max(1, MOST_REMEMBERED // max(made[keys[0]].states.size, 1))
+        memory.update((key, made[key]) for key in places)
+        for old in list(memory)[:-most]:
+            del memory[old]
+    return [made[key] for key in keys]
+
+
+def _step_by_step(new: _Machines[Any, Any, Any]) -> list[_Followed]:
+    """Follow machines step by step."""
+    solution = _in_steps(new) if new.dynamics.step is not None else solve(_problem(new))
+    return [_one_of(solution, machine, np.zeros(0), None) for machine in range(new.count)]
+
+
+def _beside_others(new: _Machines[Any, Any, Any]) -> list[_Followed]:
+    """Follow machines: along a path that is known, else near one another, else step by step."""
+    if new.dynamics.step is not None:
+        return _step_by_step(new)
+    numbers = np.column_stack([np.zeros(new.count), *(each for each in new.numbers.values() if each.ndim == 1)])
+    known = [each for key, each in new.dynamics.memory.items() if each.path is not None and key.startswith(new.record)]
+    made: dict[int, _Followed] = {}
+    leaders = _leaders(numbers)
+    firsts = np.unique(leaders).tolist()
+    near = {**_straight(new), **_nearest(known[-MOST_NEAR:], numbers)}
+    _add_along(made, new, numbers, {place: near[place] for place in firsts if place in near})
+    _add_alone(made, new, numbers, [place for place in firsts if place not in made])
+    rest = [(place, made[int(leader)].path) for place, leader in enumerate(leaders) if place not in made]
+    _add_along(made, new, numbers, {place: path for place, path in rest if path is not None})
+    _add_alone(made, new, numbers, [place for place in range(new.count) if place not in made])
+    return [made[place] for place in range(new.count)]
+
+
+def _straight(new: _Machines[Any, Any, Any]) -> dict[int, Path]:
+    """Return a path for machines that are driven: one step from each stamp to the next, at rest where it starts."""
+    if not new.drives or new.dynamics.events:
+        return {}
+    start, steps = new.start(), len(new.stamps) - 1
+    interval, no_event = np.arange(steps), np.full(steps, -1)
+    states = (np.repeat(start[:, place, None], steps + 1, axis=1) for place in range(new.count))
+    return {place: Path(new.stamps, each, interval, no_event) for place, each in enumerate(states)}
+
+
+def _leaders(numbers: Matrix) -> Indices:
+    """Return for every machine the first one that is near it, itself where none is, (n,)."""
+    scaled = numbers / np.maximum(np.abs(numbers).max(axis=0, initial=0.0), TINY)
+    leaders, firsts = np.zeros(len(numbers), dtype=np.intp), np.zeros(0, dtype=np.intp)
+    for place, row in enumerate(scaled):
+        off = np.abs(scaled[firsts] - row).sum(axis=1)
+        if not (off < NEAR).any():
+            firsts = np.append(firsts, place)
+            off = np.append(off, 0.0)
+        leaders[place] = firsts[np.argmin(off)]
+    return leaders
+
+
+def _nearest(known: Sequence[_Followed], numbers: Matrix) -> dict[int, Path]:
+    """Return the path of what is known nearest to each machine; none where that is far."""
+    if not known:
+        return {}
+    several = np.array([each.numbers for each in known])
+    off = (np.abs(several - numbers[:, None]) / np.maximum(np.abs(numbers[:, None]), TINY)).sum(axis=2)
+    nearest = np.argmin(np.where(np.isnan(off), np.inf, off), axis=1)
+    pairs = [(place, known[best], off[place, best]) for place, best in enumerate(nearest)]
+    return {place: best.path for place, best, far in pairs if best.path is not None and far < FAR}
+
+
+def _add_along(
+    made: dict[int, _Followed], new: _Machines[Any, Any, Any], numbers: Matrix, along: Mapping[int, Path],
+    *, goes_on: bool = True,
+) -> None:  # fmt: skip
+    """Follow some machines along paths, and step by step from where these no longer lead.
+
+    Machines beside one another then have the same steps, so that their differences are not those of errors.
+    """
+    if not along:
+        return
+    places = [*along]
+    problem = _problem(new.part(np.array(places)))
+    solution = empty_solution(problem)
+    followed = at_once(problem, [*along.values()], solution)
+    whole = followed.whole
+    if followed.part and goes_on:
+        _go_on(problem, followed.part, solution)
+        whole = whole | {each: path for each, path in followed.part.items() if each not in solution.reasons}
+    for each, path in whole.items():
+        made[places[each]] = _one_of(solution, each, numbers[places[each]], path)
+
+
+def _go_on(problem: InitialValueProblem, parts: dict[int, Path], solution: Solution) -> None:
+    """Follow machines step by step from the end of a path, and put what they took behind it."""
+    machines, paths = np.array([*parts]), [*parts.values()]
+    begin = np.array([path.t[-1] for path in paths]), np.array([path.interval[-1] for path in paths])
+    begin[1][:] += begin[0] == problem.breaks[begin[1] + 1]
+    own = Solution(solution.states[:, machines], solution.counts[:, machines], solution.first[:, machines])
+    rest = replace(
+        problem, system=problem.system.part(machines), start=np.array([path.y[:, -1] for path in paths]).T, begin=begin,
+    )  # fmt: skip
+    taken = solve(rest, own, keeps_paths=True).paths(rest)
+    solution.states[:, machines], solution.counts[:, machines], solution.first[:, machines] = (
+        own.states, own.counts, own.first,
+    )  # fmt: skip
+    for place, machine in enumerate(machines.tolist()):
+        if place in taken:
+            parts[machine] = parts[machine].then(taken[place])
+        else:
+            solution.reasons[machine] = own.reasons.get(place, (GROWS, float(begin[0][place])))
+
+
+def _add_alone(
+    made: dict[int, _Followed], new: _Machines[Any, Any, Any], numbers: Matrix, places: Sequence[int]
+) -> None:
+    """Follow some machines step by step."""
+    if not places:
+        return
+    problem = _problem(new.part(np.array(places)))
+    solution = solve(problem, keeps_paths=True)
+    paths = solution.paths(problem)
+    for each, place in enumerate(places):
+        made[place] = _one_of(solution, each, numbers[place], paths.get(each))
+    _add_along(made, new, numbers, {places[each]: path for each, path in paths.items()}, goes_on=False)
+
+
+def _one_of(solution: Solution, machine: int, numbers: Matrix, path: Path | None) -> _Followed:
+    """Return one machine of a solution."""
+    return _Followed(
+        np.array(solution.states[:, machine]), np.array(solution.counts[:, machine]),
+        np.array(solution.first[:, machine]), solution.reasons.get(machine), numbers, path,
+    )  # fmt: skip
+
 
 def _problem(machines: _Machines[Any, Any, Any]) -> InitialValueProblem:
-    dynamics, stamps = machines.dynamics, machines.stamps
+    dynamics, stamps, bends = machines.dynamics, machines.stamps, machines.bent()
     sizes = [in_si(spec.size, difference_unit(spec.unit)) for spec in dynamics.state_fields.values()]
     return InitialValueProblem(
-        system=machines, start=machines.start(), stamps=stamps,
-        breaks=stamps if machines.drives else stamps[[0, -1]], sizes=np.array(sizes),
+        system=replace(machines, bends=bends), start=machines.start(), stamps=stamps, breaks=stamps[bends],
+        sizes=np.array(sizes),
         events=[event.rule for event in dynamics.events], tolerance=dynamics.tolerance,
-        most_steps=dynamics.most_steps,
+        most_steps=dynamics.most_steps + len(bends),
     )  # fmt: skip
 
 
 @dataclass(frozen=True)
 class _Machines(Generic[S, I, R]):
-    """The state equation of ``count`` machines as the integrator calls it; ``drives`` by path (k,) or (n, k)."""
+    """The state equation of ``count`` machines as the integrator calls it; ``drives`` by path (k,) or (n, k).
+
+    ``bends`` are the places among the stamps between which the intervals of the integrator run.
+    """
 
     dynamics: Dynamics[S, I, R]
     inputs: I
@@ -235,6 +496,39 @@ class _Machines(Generic[S, I, R]):
     columns: Mapping[tuple[str, ...], Matrix]
     drives: Mapping[tuple[str, ...], Matrix]
     held: frozenset[tuple[str, ...]]
+    bends: Indices
+
+    def bent(self) -> Indices:
+        """Return the places of the stamps at which something that drives changes its course, the ends among them."""
+        bends = np.zeros(len(self.stamps), dtype=bool)
+        bends[[0, -1]] = True
+        for path, series in self.drives.items():
+            changes = (np.diff(series) != 0).reshape(-1, len(bends) - 1).any(axis=0)
+            bends[1:-1] |= changes[:-1] if path in self.held else changes[:-1] | changes[1:]
+        return np.flatnonzero(bends)
+
+    @cached_property
+    def record(self) -> bytes:
+        """What tells the record of these machines from that of others: every input that all machines share."""
+        wide = {path for path, value in self.drives.items() if value.ndim > 1}
+        digest = blake2b(digest_size=16)
+        for each in self.dynamics.input_fields.values():
+            if not each.varies and each.path not in wide:
+                value = read(self.inputs, each.path)
+                digest.update(value.tobytes() if isinstance(value, np.ndarray) else f"{value!r}\0".encode())
+        return digest.digest()
+
+    @cached_property
+    def numbers(self) -> dict[tuple[str, ...], Matrix]:
+        """By path what may differ between machines, (n,) or (n, k)."""
+        fields_of = [each for each in self.dynamics.input_fields.values() if each.varies]
+        made = {each.path: np.broadcast_to(read(self.inputs, each.path), (self.count,)) for each in fields_of}
+        return made | {path: value for path, value in self.drives.items() if value.ndim > 1}
+
+    def keys(self) -> list[bytes]:
+        """Return what tells every machine from any other one."""
+        rows = np.column_stack([np.zeros(self.count), *self.numbers.values()])
+        return [self.record + row.tobytes() for row in rows]
 
     def start(self) -> Matrix:
         """Return the states at the first stamp, (d, n)."""
@@ -290,10 +584,11 @@ class _Machines(Generic[S, I, R]):
         values: dict[tuple[str, ...], Any] = {}
         for path, series in self.drives.items():
             rows = (np.arange(len(t)),) if series.ndim > 1 else ()
-            begin = series[(*rows, interval)]
+            begins, ends = self.bends[interval], self.bends[interval + 1]
+            begin = series[(*rows, begins)]
             if path not in self.held:
-                low, high = self.stamps[interval], self.stamps[interval + 1]
-                begin = begin + (series[(*rows, interval + 1)] - begin) * (t - low) / (high - low)
+                low, high = self.stamps[begins], self.stamps[ends]
+                begin = begin + (series[(*rows, ends)] - begin) * (t - low) / (high - low)
             values[path] = begin
         return with_values(self.inputs, values)
 
@@ -306,9 +601,12 @@ def _machines(dynamics: Dynamics[S, I, R], inputs: I) -> _Machines[S, I, R]:
     _demand((np.diff(stamps) > 0).all(), f"{dynamics.times}: the times of a record rise; two are equal or fall")
     drives = {each.path: np.asarray(read(inputs, each.path), dtype=float) for each in dynamics.driving.values()}
     for name, each in dynamics.driving.items():
-        series = drives[each.path]
-        values = series.shape[-1] if series.ndim else 1
-        _demand(values == len(stamps), f"{name} has {values} values at {len(stamps)} {dynamics.times}")
+        series = np.atleast_1d(drives[each.path])
+        if series.shape[-1] == 1:
+            series = np.broadcast_to(series, (*series.shape[:-1], len(stamps)))
+        drives[each.path], values = series, series.shape[-1]
+        wanted = "give one for each, of rows of a file in a column of that name, or one for all"
+        _demand(values == len(stamps), f"{name} has {values} values at {len(stamps)} {dynamics.times}; {wanted}")
         _demand(np.isfinite(series).all(), f"{name} is missing at some of the {dynamics.times}")
     numbers = {each.path: read(inputs, each.path) for each in fields_of.values() if each.varies}
     columns = {path: value for path, value in numbers.items() if np.ndim(value) == 1}
@@ -316,7 +614,21 @@ def _machines(dynamics: Dynamics[S, I, R], inputs: I) -> _Machines[S, I, R]:
     count = max(sizes, default=1)
     columns = {path: np.broadcast_to(value, (count,)) for path, value in columns.items()}
     held = frozenset(each.path for each in dynamics.driving.values() if getattr(each.spec, "between", "") == "hold")
-    return _Machines(dynamics, inputs, stamps, count, not sizes, columns, drives, held)
+    return _Machines(dynamics, inputs, stamps, count, not sizes, columns, drives, held, np.arange(len(stamps)))
+
+
+def _joined(several: Sequence[_Machines[S, I, R]]) -> _Machines[S, I, R]:
+    """Return machines of one record as one batch; what is the same for all of them stays a number."""
+    first, *others = several
+    if not others:
+        return first
+    numbers = {path: np.concatenate([each.numbers[path] for each in several]) for path in first.numbers}
+    alone = {path: value for path, value in numbers.items() if value.ndim == 1}
+    columns = {path: value for path, value in alone.items() if (value != value[0]).any()}
+    inputs = with_values(first.inputs, {path: columns.get(path, value[0]) for path, value in alone.items()})
+    drives = {path: numbers.get(path, value) for path, value in first.drives.items()}
+    count = sum(each.count for each in several)
+    return replace(first, inputs=inputs, count=count, is_single=False, columns=columns, drives=drives)
 
 
 def _demand(holds: Any, sentence: str) -> None:
@@ -348,7 +660,8 @@ def _say_why(solution: Solution, machines: _Machines[Any, Any, Any]) -> None:
         when = f"t = {min(failed.values()):.6g} s" + ("" if machines.is_single else " at the earliest")
         holds = np.ones(machines.count, dtype=bool)
         holds[list(failed)] = False
-        sentence = f"the motion cannot be followed beyond {when}: {reason}"
+        hint = next((words for part, words in WHAT_NOW.items() if part in reason), "")
+        sentence = f"the motion cannot be followed beyond {when}: {reason}{hint}"
         error = ConvergenceError if reason == STEP_LIMIT else InfeasibleError
         feasible(holds[0] if machines.is_single else holds, sentence, error=error)
 

@@ -24,6 +24,9 @@ else:
 
 KEY = "truing"
 Between = Literal["linear", "hold"]
+Role = Literal["set", "goes_on", "follows"]
+"""What a machine lets you do with a quantity: set it, only let it go on (hours, wear), or see it follow from others."""
+ROLES: tuple[Role, ...] = typing.get_args(Role)
 InputKind = Literal["float", "whole", "integer", "switch", "choice", "text", "series", "file"]
 
 
@@ -46,6 +49,7 @@ class Given:
     stated_with: str = ""
     halving: float | None = None
     halving_but: Mapping[str, str] = field(default_factory=dict)
+    role: Role | Literal[""] = ""
 
     def initial(self) -> Any:
         """Return the default as the function sees it: SI, NaN where nothing is given."""
@@ -140,6 +144,7 @@ def given(
     stated_with: str = "",
     halving: float | None = None,
     halving_but: Mapping[str, str] | None = None,
+    role: Role | Literal[""] = "",
 ) -> Any:
     """Declare an input with its default and unit; ``None`` makes it optional (NaN inside).
 
@@ -148,11 +153,12 @@ def given(
     ``stated_with`` names the input that tells what this one means: a file that states one must state the other too.
     ``halving`` makes it a numerical step, tolerance or grid: the share of a result that halving it (doubling a count)
     changes at the most wherever the model answers; ``halving_but`` gives quantities for results that move otherwise.
+    ``role`` says of what a measurement varies how it gets there, as that of a ``Condition`` does.
     """
     spec = Given(
         default=default, unit=unit, symbol=symbol, note=note, source=source, above=above, below=below,
         at_least=at_least, at_most=at_most, whole=whole, along=along, between=between, stated_with=stated_with,
-        halving=halving, halving_but=halving_but or {},
+        halving=halving, halving_but=halving_but or {}, role=role,
     )  # fmt: skip
     return field(default_factory=spec.initial, metadata={KEY: spec})
 
@@ -317,6 +323,11 @@ class InputField:
     def varies(self) -> bool:
         """Whether the input may be an array inside a batch."""
         return self.kind in {"float", "whole"}
+
+    @property
+    def does(self) -> Role:
+        """What a machine lets you do with it where a measurement varies it: see ``Condition.does``."""
+        return (isinstance(self.spec, Given) and self.spec.role) or "set"
 
     @property
     def is_count(self) -> bool:

@@ -16,6 +16,7 @@ from truing.declare.blocks import Block
 from truing.declare.builtin import builtin_effects
 from truing.declare.dynamics import Dynamics
 from truing.declare.fields import (
+    ROLES,
     Axis,
     Found,
     InputField,
@@ -334,6 +335,7 @@ def check_model(model: Model[Any, Any]) -> None:
         *_of_dynamics(model),
         *_of_companions(model),
         *_of_halving(model),
+        *_of_roles(model),
         *_of_errors(model),
         *(fault for objective in model.objectives for fault in _of_objective(objective, model)),
         *_of_sheet(model),
@@ -439,6 +441,19 @@ def _of_halving(model: Model[Any, Any]) -> Iterator[str]:
         for result in but:
             if result not in fields:
                 yield f"the halving of '{name}' names '{result}', which is no result.{near_miss(result, fields)}"
+
+
+def _of_roles(model: Model[Any, Any]) -> Iterator[str]:
+    """Say which roles are none, and which rates name nothing that could be a speed."""
+    known = {**model.input_fields, **model.conditions}
+    for name, input_field in model.input_fields.items():
+        if (role := getattr(input_field.spec, "role", "")) not in {"", *ROLES}:
+            meant = near_miss(role, ROLES)
+            yield f"the input '{name}' has the role '{role}'; the roles are {', '.join(ROLES)}.{meant}"
+    for name, condition in model.conditions.items():
+        if condition.rate and (condition.rate == name or condition.rate not in known):
+            meant = near_miss(condition.rate, known)
+            yield f"the condition '{name}' has the rate '{condition.rate}', which is no input or condition.{meant}"
 
 
 def _of_errors(model: Model[Any, Any]) -> Iterator[str]:

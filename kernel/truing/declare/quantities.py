@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
@@ -10,11 +11,12 @@ from typing import Any
 
 from truing.declare.fields import Given, InputField, ResultField
 from truing.declare.goals import Require, Vary, prices_in
-from truing.declare.model import TOTAL_PRICE, Model
+from truing.declare.model import TOTAL_PRICE, Model, rate_scope
 from truing.declare.near_miss import near_miss
 from truing.declare.spreads import Target
-from truing.errors import UnitError, UsageError
-from truing.units import check_unit, difference_unit, read_quantity, same_dimension
+from truing.errors import DeclarationError, UnitError, UsageError
+from truing.formulas import Formula, evaluate_quantities, parse
+from truing.units import check_unit, difference_unit, human_dimension, pint_quantity, read_quantity, same_dimension
 
 BOUNDS = ("above", "below", "at_least", "at_most")
 
@@ -31,6 +33,7 @@ class Unread:
 def unread_quantities(model: Model[Any, Any]) -> Iterator[Unread]:
     """Give everything that a model declares with a unit and that is no unit, no quantity, or one of another kind."""
     yield from unread_units(model)
+    yield from _motion(model)
     yield from unread_goals(model)
     yield from _spreads(model)
     yield from _not_finite(model)
@@ -65,6 +68,54 @@ def _declared_units(model: Model[Any, Any]) -> Iterator[tuple[str, str, Any]]:
         for price in prices_in(tolerance.price):
             yield tolerance.name, f"the width of tolerance '{tolerance.name}'", price.width
             yield tolerance.name, f"the price of tolerance '{tolerance.name}'", price.unit
+
+
+def _motion(model: Model[Any, Any]) -> Iterator[Unread]:
+    """Give starts of states that are of another kind than the state, and rates that are not the state per second."""
+    dynamics = model.dynamics
+    if dynamics is None:
+        return
+    for name, spec in dynamics.state_fields.items():
+        begins = model.input_fields.get(str(spec.start))
+        if not _is_known(spec.unit) or (begins is not None and not _is_known(begins.unit)):
+            continue
+        if begins is not None and not same_dimension(begins.unit, spec.unit):
+            kinds = f"is in '{spec.unit or '1'}' and starts at '{spec.start}', which is in '{begins.unit or '1'}'"
+            yield Unread(name, spec.start, f"state '{name}' {kinds}")
+        elif begins is None and isinstance(spec.start, str):
+            yield from _quantity(name, spec.start, spec.unit, f"the start of state '{name}'")
+        if spec.rate:
+            sentence = _misfit(model, parse(spec.rate), rate_unit(spec.unit, in_steps=dynamics.step is not None))
+            yield from [Unread(name, spec.rate, f"the rate of state '{name}' {sentence}")] if sentence else ()
+
+
+def rate_unit(unit: str, *, in_steps: bool) -> str:
+    """Return the unit of the rate of a state; in steps the law gives the state itself."""
+    return f"{difference_unit(unit) or '1'}{'' if in_steps else '/s'}"
+
+
+def _misfit(model: Model[Any, Any], formula: Formula, unit: str) -> str:
+    """Say what a rate is in if not in its unit; nothing where a part of it cannot be read, which is said elsewhere."""
+    scope = rate_scope(model)
+    if not _is_known(*(scope[name].unit for name in formula.names)):
+        return ""
+    defaults = {name: getattr(scope[name].spec, "default", 1.0) for name in formula.names}
+    values = {name: value if isinstance(value, float) else 1.0 for name, value in defaults.items()}
+    try:
+        quantity = evaluate_quantities(
+            formula, {name: pint_quantity(value, scope[name].unit) for name, value in values.items()}
+        )
+    except (UnitError, DeclarationError) as error:
+        return f"cannot be: {error}"
+    if has_dimension(quantity, formula, unit):
+        return ""
+    return f"({formula.text}) gives {quantity.dimensionality}, not {human_dimension(unit)} ('{unit}')"
+
+
+def has_dimension(quantity: Any, formula: Formula, unit: str) -> bool:
+    """Tell whether what a formula gives is of the dimension of a unit; a literal 0 is of every one."""
+    is_nothing = isinstance(formula.right, ast.Constant) and formula.right.value == 0
+    return is_nothing or bool(quantity.dimensionality == pint_quantity(1.0, unit).dimensionality)
 
 
 def _bounds(fields: Mapping[str, InputField]) -> Iterator[Unread]:

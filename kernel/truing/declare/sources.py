@@ -9,6 +9,7 @@ from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Concatenate, Generic, Literal, TypeAlias, TypeVar
 
+from truing.declare.fields import ROLES, Role
 from truing.declare.goals import Price, PriceByChoice
 from truing.declare.near_miss import near_miss
 from truing.declare.spreads import Spread
@@ -90,8 +91,11 @@ class Condition:
 
     ``derived`` makes it, once, from whole runs in time order: "since_start" (what its own column has gained since the
     first row of the file), or "running_maximum of load", "cumulative of load", "direction of travel", "last_reversal of
-    travel". ``low`` and ``high`` (in ``unit``) are the range in which it can be set, for the next measurement.
-    Raises DeclarationError for another text, for a range upside down, and for a temperature level that is gained.
+    travel". ``low`` and ``high`` (in ``unit``) are the range in which it can be measured, for the next experiment.
+    ``role`` says how it gets there: it is "set", it only "goes_on" (time, cycles, wear so far), or it "follows" from
+    others (a temperature after hours of work). ``rate`` names what it gains with time (revolutions: the speed).
+    Raises DeclarationError for another text, for a range upside down, for a temperature level that is gained, for what
+    counts and is to be set, and for a rate of what does not go on.
     """
 
     name: str
@@ -101,9 +105,17 @@ class Condition:
     derived: str = ""
     low: float | None = None
     high: float | None = None
+    role: Role | Literal[""] = ""
+    rate: str = ""
 
     def __post_init__(self) -> None:
         _check_condition(self)
+
+    @property
+    def does(self) -> Role:
+        """Its role: as declared, else "goes_on" of what counts, "follows" of other histories, "set" of the rest."""
+        counts = self.history == SINCE_START or bool(self.rate)
+        return self.role or ("goes_on" if counts else "follows" if self.derived else "set")
 
     @property
     def history(self) -> str:
@@ -126,6 +138,7 @@ def _check_condition(condition: Condition) -> None:
     low, high = condition.low, condition.high
     if low is not None and high is not None and not low < high:
         raise DeclarationError(f"condition '{condition.name}': its range goes from {low} to {high}; lower first")
+    _check_role(condition)
     if not condition.derived:
         return
     word, of, column = condition.derived.partition(" of ")
@@ -140,6 +153,22 @@ def _check_condition(condition: Condition) -> None:
         raise DeclarationError(
             f"condition '{condition.name}' is in {condition.unit}, a temperature level, but what is gained is a "
             "difference: declare it in K"
+        )
+
+
+def _check_role(condition: Condition) -> None:
+    """Refuse a role that is none, or that what is derived cannot have, and a rate of what does not go on."""
+    name, wanted = condition.name, condition.role
+    if wanted not in {"", *ROLES}:
+        meant = near_miss(wanted, ROLES)
+        raise DeclarationError(f"condition '{name}' has the role '{wanted}'; the roles are {', '.join(ROLES)}.{meant}")
+    if condition.derived and wanted == "set":
+        raise DeclarationError(
+            f"condition '{name}' is derived by '{condition.derived}', so it cannot be set; leave out its role"
+        )
+    if condition.rate and condition.does != "goes_on":
+        raise DeclarationError(
+            f"condition '{name}' has the rate '{condition.rate}', but it does not go on; its role is \"goes_on\""
         )
 
 

@@ -14,13 +14,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from math import comb, log, sqrt
 
 import numpy as np
 
 from truing.arrays import Matrix
 from truing.diagnosis.causes import Candidate
-from truing.diagnosis.competition import MARGIN, MOST_CAUSES, Competition, exchange
+from truing.diagnosis.competition import MARGIN, MOST_CAUSES, Competition, exchange_each
 from truing.diagnosis.conditional import ConditionalGain, Pass, conditional_on
 from truing.diagnosis.fitted import Fit, differ
 from truing.diagnosis.folds import Folds, carries_over, ends_of, folds_of
@@ -379,7 +380,9 @@ def choose(competition: Competition, *, seed: int) -> Chosen:
             competition, _named_weakest(competition, best if named.key == best.key else _exchanged(competition, named))
         )
     best = competition.exact(best)
-    near = [Rival(competition.exact(rival.fit), rival.behind) for rival in _rivals(competition, best, seed)]
+    rivals = _rivals(competition, best, seed)
+    ends = competition.extended.side_by_side([partial(competition.exact, rival.fit) for rival in rivals])
+    near = [Rival(fit, rival.behind) for fit, rival in zip(ends, rivals, strict=True)]
     near = [rival for rival in near if not _adds_nothing(competition, best, rival.fit)]
     return Chosen(competition, best, tuple(near), _same(competition, best), decision.law, decision.p_further)
 
@@ -414,8 +417,7 @@ def _exchanged(competition: Competition, best: Fit) -> Fit:
     """Exchange every cause of the winner for every other one, and take what is better."""
     kinds = _kinds(best)
     for _ in range(2):
-        for index in range(len(best.causes)):
-            exchange(competition, best, index)
+        exchange_each(competition, best)
         top = next(iter(competition.ranked(lambda fit: is_sensible(fit) and _kinds(fit) == kinds)), best)
         if top.key == best.key:
             break

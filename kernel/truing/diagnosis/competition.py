@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import chain, combinations, compress
 from math import lgamma, log, log1p
 from typing import NamedTuple
@@ -48,6 +49,8 @@ ROWS_PER_NUMBER = 4
 """Fewer rows for every number are followed by any curve, noise or not."""
 AT_ONCE, ROWS_AT_ONCE = 8, 20_000
 """So many fits ask the model together, of records of no more than so many rows among all."""
+MOVING_AT_ONCE = 64
+"""So many fits of a model that moves ask it together: many machines take hardly longer than one."""
 AGAIN, TO_THE_END = "fits in the noise that was learnt", "fits to the end"
 """What a budget that has ended leaves out, in words."""
 SINGLES = 12
@@ -60,6 +63,10 @@ JOINED = 6
 """So many of the most promising causes are fitted beside an explanation."""
 STARTS = 2
 """So many of the best explanations of one size get one more cause."""
+
+
+def _any(_: Candidate) -> bool:
+    return True
 
 
 class Start(NamedTuple):
@@ -169,6 +176,8 @@ class Competition:
     @property
     def at_once(self) -> int:
         """So many fits ask the model together; where calls are counted, one after another."""
+        if self.extended.is_moving:
+            return MOVING_AT_ONCE
         rows = len(self.sample.machine.records)
         return 1 if self.extended.budget.is_dear else max(1, min(AT_ONCE, ROWS_AT_ONCE // rows))
 
@@ -209,7 +218,7 @@ class Competition:
             self.tries[tag] = max(self.tries.get(tag, 1.0), each.tries)
         return made
 
-    def forward(self, at: Fit, count: int, accept: Callable[[Candidate], bool] = lambda _: True) -> None:
+    def forward(self, at: Fit, count: int, accept: Callable[[Candidate], bool] = _any) -> None:
         """Fit the most promising causes beside an explanation; half as many beside several."""
         if len(at.causes) >= MOST_CAUSES or not self.extended.allows(self.stage):
             return
@@ -221,6 +230,10 @@ class Competition:
             elif at.cost - starts[0][0] < fit.cost - MARGIN:  # it begins elsewhere
                 wanted += beside(at, cause, starts[:1])
         self.fit_each(wanted)
+
+    def forward_each(self, several: Sequence[Fit], count: int, accept: Callable[[Candidate], bool] = _any) -> None:
+        """Fit the most promising causes beside several explanations."""
+        self.extended.side_by_side([partial(self.forward, at, count, accept) for at in several])
 
     def promising(self, seen: Mapping[str, ConditionalGain]) -> list[Candidate]:
         """Return causes by what their curves promise once they are paid for, of those of one curve the weakest."""
@@ -241,7 +254,8 @@ class Competition:
 
     def backward(self, fit: Fit) -> Fit:
         """Leave out what is no longer needed."""
-        less = [each for index in range(len(fit.causes)) if (each := self.without(fit, index)) is not None]
+        tried = self.extended.side_by_side([partial(self.without, fit, index) for index in range(len(fit.causes))])
+        less = [each for each in tried if each is not None]
         best = min(less, key=self.score, default=fit)
         return self.backward(best) if len(fit.causes) > 1 and self.score(best) < self.score(fit) else fit
 
@@ -360,16 +374,21 @@ def _distinct(
 def _pairs(competition: Competition) -> None:
     several = {fit.key: fit for fit in (*_distinct(competition, 1, BEAM), *_registered(competition, BEAM))}
     placed = {cause for fit in several.values() for cause in fit.causes if cause.kept}
-    for at in list(several.values())[:BEAM]:
-        competition.forward(at, JOINED, placed.__contains__)
-    pairs = sorted(combinations(several.values(), 2), key=lambda pair: sum(map(competition.score, pair)))
-    competition.fit_each(
-        [
-            Start(one.causes + other.causes, one.values + other.values, one)
-            for one, other in pairs
-            if one.causes[0].is_registered or other.causes[0].is_registered  # two shapes: no second name is needed
-        ]
-    )
+
+    def in_places() -> None:
+        competition.forward_each(list(several.values())[:BEAM], JOINED, placed.__contains__)
+
+    def as_alone() -> None:
+        pairs = sorted(combinations(several.values(), 2), key=lambda pair: sum(map(competition.score, pair)))
+        competition.fit_each(
+            [
+                Start(one.causes + other.causes, one.values + other.values, one)
+                for one, other in pairs
+                if one.causes[0].is_registered or other.causes[0].is_registered  # two shapes: no second name is needed
+            ]
+        )
+
+    competition.extended.side_by_side([in_places, as_alone])
 
 
 def _registered(competition: Competition, count: int) -> list[Fit]:
@@ -379,8 +398,7 @@ def _registered(competition: Competition, count: int) -> list[Fit]:
 
 def _beside_firsts(competition: Competition) -> None:
     firsts = {fit.key: fit for fit in (*_distinct(competition, 1, FIRSTS), *_registered(competition, FIRSTS // 2))}
-    for at in firsts.values():
-        competition.forward(at, JOINED, _is_quick)
+    competition.forward_each([*firsts.values()], JOINED, _is_quick)
 
 
 def _is_quick(cause: Candidate) -> bool:
@@ -391,8 +409,7 @@ def _is_quick(cause: Candidate) -> bool:
 def _more(competition: Competition) -> None:
     now = competition.ranked()[0]
     while 1 <= len(now.causes) < MOST_CAUSES:
-        for at in _distinct(competition, len(now.causes), STARTS):
-            competition.forward(at, JOINED)
+        competition.forward_each(_distinct(competition, len(now.causes), STARTS), JOINED)
         best = competition.best(len(now.causes) + 1)
         if best is None or competition.score(best) >= competition.score(now):
             return
@@ -405,10 +422,15 @@ def _more(competition: Competition) -> None:
 def _exchanged(competition: Competition) -> None:
     for _ in range(2):
         now = competition.ranked()[0]
-        for index in range(len(now.causes)):
-            exchange(competition, now, index)
+        exchange_each(competition, now)
         if competition.ranked()[0].key == now.key:
             return
+
+
+def exchange_each(competition: Competition, now: Fit) -> None:
+    """Exchange every cause of an explanation for others."""
+    tasks = [partial(exchange, competition, now, index) for index in range(len(now.causes))]
+    competition.extended.side_by_side(tasks)
 
 
 def exchange(competition: Competition, now: Fit, index: int) -> None:

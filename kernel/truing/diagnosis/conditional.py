@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from math import prod
 from typing import Any
 
@@ -213,6 +214,8 @@ def conditional_on(fit: Fit, extended: Extended) -> Conditional:
 def look(curves: ResponseCurves, at: Fit, causes: Sequence[Candidate]) -> Mapping[str, ConditionalGain]:
     """Compare all causes with what an explanation leaves, by their tag."""
     conditional = conditional_on(at, curves.extended)
+    effects = [cause for cause in causes if cause.effect is not None] if curves.extended.is_moving else []
+    curves.extended.side_by_side([partial(curves.of, cause, at) for cause in effects])
     bundles = (curves.of(cause, at) for cause in causes)  # one after another: those of effects may be large
     made = {tag: each for group in _grouped(bundles) for tag, each in compared(group, conditional)}
     passes: dict[tuple[TermTable, int], Pass] = {}

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import product
 
 import numpy as np
@@ -260,20 +259,19 @@ class _Place:
         self.extended, self.causes, self.machine = extended, causes, extended.machine
         self.values = [conditional.of(cause) for cause in causes]
         self.moved = conditional.moved if causes else np.zeros_like(conditional.moved)
+        self._base: Matrix | None = None
+        """What the gauges show with the explanation alone, (1, readings), SI."""
 
     def _stacked(self, causes: tuple[Candidate, ...], points: Sequence[Sequence[Matrix]]) -> Matrix:
         """Return what the gauges show with some causes on at several points, (points, readings), SI."""
         made = self.extended.at(causes, [(values, self.moved) for values in points])
         return np.array([np.concatenate([each[name] for name in self.machine.records.measured]) for each in made])
 
-    @cached_property
-    def _base(self) -> Matrix:
-        """What the gauges show with the explanation alone, (1, readings), SI."""
-        return self._stacked(self.causes, [self.values])
-
     def changes(self, cause: Candidate, points: Matrix) -> Matrix:
         """Return what a cause changes at some points (M, numbers), (M, readings)."""
-        base = self._base  # asked for first: what was shown last is where a fit goes on
+        if self._base is None:  # asked for first: what was shown last is where a fit goes on
+            self._base = self._stacked(self.causes, [self.values])
+        base = self._base
         return np.asarray(self._stacked((*self.causes, cause), [[*self.values, point] for point in points]) - base)
 
     @property

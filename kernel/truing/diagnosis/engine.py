@@ -8,8 +8,9 @@ as it was drawn from; estimates, intervals and gains are those of all rows.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -18,7 +19,6 @@ from truing.declare.near_miss import near_miss
 from truing.diagnosis.causes import effects_of, followed_by, inputs_of
 from truing.diagnosis.choice import Chosen, Rival, choose
 from truing.diagnosis.competition import Competition, Start, competition_of, search
-from truing.diagnosis.design import next_points, with_results
 from truing.diagnosis.extended import Extended, probe
 from truing.diagnosis.findings import (
     alternative_of,
@@ -44,6 +44,8 @@ from truing.studies.bench import FINE, Progress, part_of, silent
 
 LONG = 2500
 """A record of more readings is searched on about so many of them."""
+Proposer = Callable[[Chosen, DiagnosisResult], DiagnosisResult]
+"""Adds to an answer what to measure next."""
 RANKED = 8
 """So many of the best explanations are fitted to all rows beside the chosen one and its rivals."""
 TOO_ROUGH = 6**0.5
@@ -91,10 +93,13 @@ def on_all_rows(chosen: Chosen, machine: Calibration) -> Chosen:
     return replace(chosen, competition=competition, best=competition.exact(best), rivals=rivals, of_some_rows=chosen)
 
 
-def diagnose(setup: Setup, records: Records, *, progress: Progress | None = None) -> DiagnosisResult:
+def diagnose(
+    setup: Setup, records: Records, *, progress: Progress | None = None, propose: Proposer | None = None
+) -> DiagnosisResult:
     """Show what the model gets wrong on these records, name the cause, extend the model, measure the gain.
 
-    The same records, setup and seed give the same answer. Raises UsageError where an option names what is not there.
+    ``propose`` adds what to measure next. The same records, setup and seed give the same answer. Raises UsageError
+    where an option names what is not there.
     """
     _check_options(setup)
     told = progress or silent
@@ -110,6 +115,8 @@ def diagnose(setup: Setup, records: Records, *, progress: Progress | None = None
         chosen = on_all_rows(choose(competition, seed=setup.seed), machine)
         told("significance", round(FINE * STAGE_ENDS["significance"]), FINE)
         answer = _answer(chosen, setup, told)
+        if propose is not None:
+            answer = propose(chosen, answer)
         return replace(answer, hindrances=(*competition.extended.budget.told(), *_too_rough(answer, chosen)))
 
 
@@ -144,7 +151,9 @@ def _answer(chosen: Chosen, setup: Setup, progress: Progress) -> DiagnosisResult
     units = units_of(chosen)
     causes = by_share(chosen, causes_of(chosen, best))
     judged = nested(chosen, part_of(progress, "diagnosis", STAGE_ENDS["significance"], STAGE_ENDS["gain"]))
-    points, ties = with_results(chosen, next_points(chosen))
+    alternatives = [
+        partial(alternative_of, chosen, rival, with_sizes=rank < SIZED) for rank, rival in enumerate(chosen.rivals)
+    ]
     progress("gain", FINE, FINE)
     return DiagnosisResult(
         setup=setup,
@@ -153,17 +162,13 @@ def _answer(chosen: Chosen, setup: Setup, progress: Progress) -> DiagnosisResult
         units=units,
         wrong=wrong_of(chosen, units),
         causes=causes,
-        alternatives=tuple(
-            alternative_of(chosen, rival, with_sizes=rank < SIZED) for rank, rival in enumerate(chosen.rivals)
-        ),
+        alternatives=tuple(chosen.competition.extended.side_by_side(alternatives)),
         remainder=remainder_of(chosen, units),
         seen=tuple(smallest_visible(chosen)),
         not_measured=_not_measured(machine),
         calibrated=calibrated_of(best),
         gain=gains_of(chosen, judged, units),
         stability=judged.stability,
-        next=tuple(points),
-        ties=tuple(ties),
         contradictions=contradictions_of(chosen),
         thinned=thinned_of(chosen),
         trades=trades_of(chosen),
@@ -185,7 +190,8 @@ def _ranking(chosen: Chosen) -> tuple[Alternative, ...]:
     top = competition.score(competition.known[chosen.best.key])
     others = [fit for fit in competition.ranked() if fit.key != chosen.best.key][: RANKED - 1]
     ranked = [Rival(chosen.best, 0.0), *(Rival(fit, max(0.0, competition.score(fit) - top)) for fit in others)]
-    return tuple(alternative_of(chosen, each) for each in ranked)
+    tasks = [partial(alternative_of, chosen, each) for each in ranked]
+    return tuple(competition.extended.side_by_side(tasks))
 
 
 def units_of(chosen: Chosen) -> dict[str, str]:

@@ -10,7 +10,7 @@ of its mean square is what a fit makes small.
 from __future__ import annotations
 
 from collections.abc import Generator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import inf
 from typing import Any, TypeVar
 
@@ -30,8 +30,8 @@ Asking = Generator[Request, Any, T]
 
 EXACTLY, CLOSELY, ROUGHLY = 1e-5, 1e-3, 1e-2
 """A fit ends where a step promises less than so much of the score."""
-MOST_STEPS, MOST_ROUGH = 40, 12
-"""So many steps are taken to an exact end, and to a rough one."""
+MOST_STEPS, MOST_ROUGH, MOST_ROUGH_AT_ONCE = 40, 12, 6
+"""So many steps are taken to an exact end, and to a rough one; of these with all derivatives at every point."""
 MOVED = 0.1
 """Sum of squares, in units of the noise, that slopes of the inputs may miss before their anchor is moved."""
 MOST_ANCHORS = 3
@@ -44,6 +44,9 @@ WAYS = (1.0, 0.5, 0.25, 0.1)
 """Of the way that the slopes promise, how far the anchor goes: where the model bends, the whole way may lead up."""
 MOST_INPUT_ROUNDS, INPUTS_SETTLED = 20, 1e-7
 """Inputs go with the noise that they leave when a round gains less than so much of the score."""
+NEXT_TO, WIDER, FURTHER_DAMPED = 1e-4, 0.1, 10
+"""Where all derivatives are taken at once: standard deviations by which an input is moved, so many times the step of a
+number, as errors of a followed state are small beside them; and how much more a step is damped that led up."""
 NEARER = 30
 """So often a start at which the model fails is halved: what is left of it is rounding."""
 FIRST_DAMPING, LARGEST_DAMPING = 1e-3, 1e8
@@ -111,6 +114,19 @@ def held_without(fit: Fit, index: int, sample: Sample, extended: Extended) -> Fi
     return replace(fit, causes=causes, values=values, predicted=predicted, slopes={}, moves={}).in_sample(sample)
 
 
+@dataclass(frozen=True)
+class _Looked:
+    """A point, numbers as the fit sees them and directions: what the model shows there, and its derivatives, SI."""
+
+    u: Matrix
+    b: Matrix
+    shown: dict[str, Matrix]
+    drawn: dict[str, Matrix]
+    moves: dict[str, Matrix]
+    left: Matrix
+    cost: float
+
+
 class Fitting:
     """One fit on its way: the numbers as the fit sees them, what is left, and its derivatives."""
 
@@ -136,6 +152,7 @@ class Fitting:
         self.slopes = sample.drawn if self.moves is sample.moves else sample.curve(self.moves)
         is_alike = near is not None and len(near.inputs) == self.slopes.shape[1]
         self.anchor = np.array(near.inputs) if near is not None and is_alike else np.zeros(self.slopes.shape[1])
+        self.is_at_once = extended.is_moving and not extended.grain
         self.damping = FIRST_DAMPING
         self.drawn: dict[str, Matrix] = {}
         self.predicted: dict[str, Matrix] = {}
@@ -161,7 +178,7 @@ class Fitting:
         amplitudes = np.array([number.is_amplitude for number in self.numbers], dtype=bool)
         for halving in range(NEARER):
             tried = np.where(amplitudes, u / 2**halving, u)
-            (shown,) = yield self.asked([tried], self.anchor)
+            shown, *_ = yield self._around(tried, self.anchor) if self.is_at_once else self.asked([tried], self.anchor)
             bare = self.bare(shown)
             if np.isfinite(bare).all():
                 self.u, self.predicted, self.b = tried, shown, self.anchor
@@ -256,6 +273,9 @@ class Fitting:
 
     def settle(self, until: float) -> Asking[None]:
         """Step down until little is promised; then move the anchor of the inputs, where slopes miss what they do."""
+        if self.is_at_once:
+            yield from self._settle_at_once(until)
+            return
         if until < ROUGHLY and len(self.b):  # with the causes on, and where the inputs begin
             yield from self._draw_inputs()
         bends = False
@@ -267,6 +287,80 @@ class Fitting:
             bends = True
         if bends and until < ROUGHLY and not self.extended.grain:
             self._together(until)
+
+    # Of a model of which many calculations take hardly longer than one: all derivatives at every point that is tried
+
+    def _around(self, u: Matrix, b: Matrix) -> Request:
+        """Return a point and its neighbours in every free number and in every direction of the inputs."""
+        steps = self._steps(u)
+        points = [(u, b), *((u + steps[index] * np.eye(len(u))[index], b) for index in np.flatnonzero(self.free))]
+        points += [(u, b + NEXT_TO * unit) for unit in np.eye(len(b))]
+        return self.causes, [(parts_of(self.causes, self.outward(u)), moved_by(self.sample, b)) for u, b in points]
+
+    def _steps(self, u: Matrix) -> Matrix:
+        steps = WIDER * steps_of(u, self.log, is_rough=False)
+        return np.asarray(np.where(u + steps > self.high, -steps, steps))
+
+    def look_at(self, tried: Sequence[tuple[Matrix, Matrix]]) -> Asking[list[_Looked]]:
+        """Return what the model shows at several points, with all derivatives there."""
+        requests = [self._around(*each) for each in tried]
+        answers = iter((yield self.causes, [point for _, points in requests for point in points]))
+        looked = []
+        for (u, b), (_, points) in zip(tried, requests, strict=True):
+            shown, *several = (next(answers) for _ in points)
+            left = self.sample.left(shown)
+            cost = self.sample.cost(left, b) if np.isfinite(left).all() else inf
+            places = np.flatnonzero(self.free)
+            drawn, moves = {}, {}
+            for name, base in shown.items():
+                rises = np.nan_to_num(
+                    np.column_stack([each[name] - base for each in several] or [np.zeros((len(base), 0))])
+                )
+                drawn[name] = np.zeros((len(base), len(u)))
+                drawn[name][:, places] = rises[:, : len(places)] / self._steps(u)[places]
+                moves[name] = rises[:, len(places) :] / NEXT_TO
+            looked.append(_Looked(u, b, shown, drawn, moves, left, cost))
+        return looked
+
+    def stand_at(self, point: _Looked) -> None:
+        """Go to a point."""
+        self.u, self.anchor, self.b, self.predicted, self.moves = point.u, point.b, point.b, point.shown, point.moves
+        self.slopes = self.sample.curve(point.moves, point.shown)
+        self.left, self.cost = point.left, point.cost
+        self._draw(point.drawn)
+
+    def _ahead(self, damping: float, share: float) -> tuple[tuple[Matrix, Matrix], float]:
+        """Return where a damped step leads, the inputs so much of their way, and the cost that is promised."""
+        self.damping = damping
+        standing = self.b, self.left
+        bare = self.bare(self.predicted)
+        self.b, self.left, _ = self.calibrated(bare)
+        u = np.clip(self.u + self.step()[0], self.low, self.high)
+        b, _, cost = self.calibrated(bare + self.slope @ (u - self.u))
+        self.b, self.left = standing
+        return (u, self.anchor + share * (b - self.anchor)), cost
+
+    def _settle_at_once(self, until: float) -> Asking[None]:
+        """Step down with numbers and inputs together until little is promised."""
+        (now,) = yield from self.look_at([(self.u, self.anchor)])
+        self.stand_at(now)
+        damping = FIRST_DAMPING
+        tries: Sequence[float] = WAYS[:1]
+        for _ in range(MOST_STEPS if until < ROUGHLY else MOST_ROUGH_AT_ONCE):
+            ahead = [self._ahead(damping * FURTHER_DAMPED**place, share) for place, share in enumerate(tries)]
+            promised = self.cost - ahead[0][1]
+            if promised < until or damping > LARGEST_DAMPING:
+                return
+            best = min((yield from self.look_at([point for point, _ in ahead])), key=lambda point: point.cost)
+            gained = self.cost - best.cost
+            if gained > 0:
+                self.stand_at(best)
+                damping = max(damping / 5, 1e-12) if gained > GOOD * promised else damping * 3
+                tries = WAYS[:1]
+                if gained < until:
+                    return
+            else:
+                damping, tries = max(damping, 1e-6) * FURTHER_DAMPED ** len(tries), WAYS[1:]
 
     def _together(self, until: float) -> None:
         """Fit numbers and inputs at once, all with the model itself: where slopes of the inputs mislead."""
@@ -443,6 +537,10 @@ def slopes_at(fit: Fit, extended: Extended) -> tuple[Matrix, Matrix]:
     def asking() -> Asking[tuple[Matrix, Matrix]]:
         state = Fitting(fit.sample, extended, fit.causes, fit, held=())
         yield from state.begin(np.concatenate(fit.values) if fit.causes else np.zeros(0))
+        if state.is_at_once:
+            (there,) = yield from state.look_at([(state.u, state.anchor)])
+            state.stand_at(there)
+            return -state.slope, state.slopes
         yield from state.derivatives()
         return -state.slope, (yield from state.slopes_of_inputs())
 

@@ -7,22 +7,27 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import accumulate
 from math import inf, log10
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from truing.arrays import Indices, Matrix
+from truing.declare.dynamics import following_together
 from truing.declare.sources import Effect
 from truing.diagnosis.causes import Candidate, at_rest
 from truing.diagnosis.machine import Calibration, Tolerated, predict_each
+from truing.diagnosis.side_by_side import asked_beside, side_by_side
 from truing.errors import PluginError
 from truing.gauge import Trial
 from truing.repeated import REMEMBERED as REPEATED
 from truing.repeated import forget, processor_seconds
 from truing.setup import Setup, SwitchedOn, effect_column
 
+T = TypeVar("T")
 REMEMBERED = 64
 """So many setups with moved inputs are kept, and what the model showed at so many points."""
+MOVING_REMEMBERED = 2048
+"""The same of a model that moves, of which many points are asked for at once."""
 ROWS_KEPT = 1_000_000
 """So many rows of what the model showed are kept."""
 LEAST_PER_EFFECT = 40
@@ -133,6 +138,15 @@ class Extended:
 
     def at_each(self, requests: Sequence[Request]) -> list[Predictions]:
         """Return the same for several requests; those of the same causes are one call of the model."""
+        return asked_beside((self, requests), lambda _: self._at_each(requests))
+
+    def side_by_side(self, several: Sequence[Callable[[], T]]) -> list[T]:
+        """Return what several tasks make that ask for predictions; of a model that moves they ask together."""
+        if not self.is_moving or len(several) < 2:
+            return [task() for task in several]
+        return side_by_side(several, _answered)
+
+    def _at_each(self, requests: Sequence[Request]) -> list[Predictions]:
         every = [_asked(*request) for request in requests]
         new, waiting = [], set(self._shown)
         for asked in every:
@@ -140,8 +154,11 @@ class Extended:
             waiting.update(rest)
             if rest:
                 new.append(_Asked(asked.causes, list(rest.values()), list(rest)))
-        for group in _grouped(new):
-            for asked in group:
+        groups = _grouped(new)
+        if self.is_moving:
+            self._follow_together(groups)
+        for group in groups:
+            for asked in group if not self.is_moving else ():
                 self._count(asked.causes, asked.points)
             answers = self._called(group[0].causes, [point for asked in group for point in asked.points])
             self._shown.update(zip((key for asked in group for key in asked.keys), answers, strict=True))
@@ -154,9 +171,24 @@ class Extended:
         ]
 
     @property
+    def is_moving(self) -> bool:
+        """Whether the model follows states along its record, so that machines of all kinds are one call of it."""
+        return self.machine.start.model.dynamics is not None
+
+    def _follow_together(self, groups: Sequence[Sequence[_Asked]]) -> None:
+        """Follow in one call what several groups of requests need."""
+        if not groups:
+            return
+        with following_together() as asked:
+            for group in groups:
+                self._called(group[0].causes, [point for each in group for point in each.points])
+        self.calls += asked.new > 0
+
+    @property
     def _most_shown(self) -> int:
         """So many answers of the model are kept."""
-        return min(REMEMBERED, max(1, ROWS_KEPT // max(len(self.machine.records), 1)))
+        most = MOVING_REMEMBERED if self.is_moving else REMEMBERED
+        return min(most, max(1, ROWS_KEPT // max(len(self.machine.records), 1)))
 
     def _with_shapes(
         self, shown: Mapping[str, Matrix], causes: Sequence[Candidate], values: Sequence[Matrix]
@@ -262,6 +294,16 @@ class Extended:
         inputs = zip(self.machine.inputs, off, strict=True)
         settings = ((given.name, given.file, self._value(given, sds)) for given, sds in inputs)
         return _columns(settings, self.machine.records.file_of)
+
+
+def _answered(asked: list[tuple[Extended, Sequence[Request]]]) -> list[list[Predictions]]:
+    """Answer what several tasks ask, those of one extended model together."""
+    answers: dict[int, list[Predictions]] = {}
+    for extended in {id(extended): extended for extended, _ in asked}.values():
+        own = [(index, requests) for index, (each, requests) in enumerate(asked) if each is extended]
+        made = iter(extended.at_each([request for _, requests in own for request in requests]))
+        answers |= {index: [next(made) for _ in requests] for index, requests in own}
+    return [answers[index] for index in range(len(asked))]
 
 
 def _asked(causes: Sequence[Candidate], points: Sequence[Point]) -> _Asked:

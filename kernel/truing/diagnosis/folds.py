@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from math import log, sqrt
 
 import numpy as np
@@ -83,7 +84,11 @@ def refitted(fits: Sequence[Fit], extended: Extended, test: Mask) -> list[Fit | 
     rest = {key: sample.of_rows(~test) for key, sample in samples.items()}
     if not all(len(channel) for sample in rest.values() for channel in sample.channels):
         return [None] * len(fits)
-    return [alone(extended, refitting(fit, rest[id(fit.sample)], extended)) for fit in fits]
+
+    def again(fit: Fit) -> Fit | None:
+        return alone(extended, refitting(fit, rest[id(fit.sample)], extended))
+
+    return extended.side_by_side([partial(again, fit) for fit in fits])
 
 
 def errors_left_out(fit: Fit, extended: Extended, folds: Folds) -> Matrix:
@@ -93,9 +98,9 @@ def errors_left_out(fit: Fit, extended: Extended, folds: Folds) -> Matrix:
     """
     made = np.full(fit.sample.rows, np.nan)
     rows = np.concatenate([channel.rows for channel in fit.sample.channels])
-    for fold in range(folds.count):
-        test = folds.test(fold)
-        (again,) = refitted([fit], extended, test)
+    tests = [folds.test(fold) for fold in range(folds.count)]
+    tasks = [partial(refitted, [fit], extended, test) for test in tests]
+    for test, (again,) in zip(tests, extended.side_by_side(tasks), strict=True):
         if again is not None:
             made = np.where(test[rows], fit.sample.left(again.predicted), made)
     return made
@@ -107,7 +112,7 @@ def carries_over(at: Fit, more: Fit, extended: Extended, folds: Folds) -> float:
     What the inputs no longer have to move counts as well: an explanation that fits by moving them far predicts as well
     as the true one, and is unlikely all the same.
     """
-    errors = (errors_left_out(each, extended, folds) for each in (at, more))
+    errors = extended.side_by_side([partial(errors_left_out, each, extended, folds) for each in (at, more)])
     before, after = (more.sample.losses(each, more.left) for each in errors)
     fallen = (before - after)[np.isfinite(before - after)]
     if len(fallen) < 2:

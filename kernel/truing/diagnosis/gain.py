@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from math import hypot, log, pi, sqrt
 
 import numpy as np
@@ -81,10 +82,14 @@ def nested(chosen: Chosen, done: Callable[[int, int], None] = lambda count, of: 
     size = len(competition.sample.machine.records)
     judged = {name: HeldOutAnswers(*(np.full(size, np.nan) for _ in range(4))) for name in competition.sample.noise}
     several, same = contenders(chosen), 0
-    for fold in range(folds.count):
+    tests = [folds.test(fold) for fold in range(folds.count)]
+
+    def without(fold: int) -> list[Fit | None]:
         done(fold, folds.count)
-        test = folds.test(fold)
-        base, *again = refitted([chosen.null, *several], competition.extended, test)
+        return refitted([chosen.null, *several], competition.extended, tests[fold])
+
+    tasks = [partial(without, fold) for fold in range(folds.count)]
+    for test, (base, *again) in zip(tests, competition.extended.side_by_side(tasks), strict=True):
         if base is None:
             continue
         best = _chosen_again(chosen, base, [fit for fit in again if fit is not None])
@@ -236,7 +241,8 @@ def contradictions_of(chosen: Chosen) -> tuple[Contradiction, ...]:
     turn = _in_turn(best.sample)
     rows = np.arange(len(best.sample.mask))
     left_out = [np.isin(rows, half) for half in (turn[len(turn) // 2 :], turn[: len(turn) // 2])]
-    fitted = [fit for test in left_out for fit in refitted([best], extended, test) if fit is not None]
+    halves = extended.side_by_side([partial(refitted, [best], extended, test) for test in left_out])
+    fitted = [fit for half in halves for fit in half if fit is not None]
     if len(fitted) < 2:
         return ()
     certain = [certainty_of(fit, extended) for fit in fitted]
@@ -283,7 +289,10 @@ def thinned_of(chosen: Chosen) -> tuple[Thinned, ...]:
         sample = _thinned(best.sample, turn[begin::2])
         if not all(len(channel) for channel in sample.channels):  # a result was read in the other rows alone
             continue
-        ahead = {fit: _score(chosen, fit, sample) for fit in (best, *others)}
+        judged = chosen.competition.extended.side_by_side(
+            [partial(_score, chosen, fit, sample) for fit in (best, *others)]
+        )
+        ahead = dict(zip((best, *others), judged, strict=True))
         top = min(ahead, key=ahead.__getitem__)
         if ahead[top] < ahead[best] - CLOSE < np.inf:
             thinned.append(Thinned(said, top.names, ahead[best] - ahead[top]))

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from math import exp, log, log1p, sqrt
 
 import numpy as np
@@ -162,7 +163,7 @@ def ends_of(fit: Fit, extended: Extended, certainty: Certainty, index: int) -> E
 def shape_interval(fit: Fit, extended: Extended, certainty: Certainty, index: int) -> Ends:
     """Return the 95 % profile interval of a number in SI; an end is None where the profile stays open to its bound."""
     profile = _Profile(fit, extended, certainty, index)
-    low, high = (profile.end(bound) for bound in profile.bounds)
+    low, high = extended.side_by_side([partial(profile.end, bound) for bound in profile.bounds])
     return low, high
 
 
@@ -188,7 +189,7 @@ def whole_left(fit: Fit, extended: Extended, index: int) -> list[Fit]:
     number, own = numbers_of(fit)[index], round(value_of(fit, index))
     ends = max(number.low, own - MOST_WHOLE), min(number.high, own + MOST_WHOLE)
     others = [value for value in range(round(ends[0]), round(ends[1]) + 1) if value != own]
-    fits = (_kept_at(fit, extended, index, float(value)) for value in others)
+    fits = extended.side_by_side([partial(_kept_at, fit, extended, index, float(value)) for value in others])
     return [each for each in fits if each is not None and each.cost < fit.cost + WHOLE]
 
 

@@ -33,7 +33,7 @@ from truing.diagnosis.data_rows import (
 from truing.diagnosis.records import FEWEST_READINGS, Covariate, Records, Role
 from truing.diagnosis.unit_errors import factor_that_works, suspected_unit_errors
 from truing.errors import Fault, InputError
-from truing.gauge import one_machine, read_by_gauge
+from truing.gauge import demand_times, one_machine, read_by_gauge
 from truing.inputs_file.files import digest_of
 from truing.kernel import Offer
 from truing.measurements import TableSource, TableText
@@ -282,8 +282,9 @@ def _enough_values(joined: DataRows, setup: Setup) -> DataRows:
 
 def _answered(joined: DataRows, setup: Setup) -> DataRows:
     """Hold the rows against the model as it stands; leave out those in which it fails."""
-    measured = joined.named("measured")
-    shown = read_by_gauge(one_machine(setup), rows_of(joined), measured)
+    measured, machine = joined.named("measured"), one_machine(setup)
+    demand_times(machine, rows_of(joined), lambda row: Fault("", joined.files[joined.file_of[row]], joined.lines[row]))
+    shown = read_by_gauge(machine, rows_of(joined), measured)
     notes: list[str] = []
     joined = replace(joined, answers=shown.results)
     if shown.failed.any():

@@ -8,6 +8,8 @@ from itertools import chain, product
 from math import isnan, sqrt
 from typing import Literal
 
+import numpy as np
+
 from truing.arrays import Matrix
 from truing.diagnosis.records import FEWEST_READINGS, Records
 from truing.numbers import format_number, with_unit
@@ -15,6 +17,7 @@ from truing.setup import Setup
 from truing.units import difference_unit, from_si, same_dimension, to_si
 
 ResidualPattern = Literal["bias", "trend", "order", "step", "wave", "spread", "autocorrelation", "outlier"]
+Way = Literal["held", "ramp", "to and fro", "in turn"]
 Visibility = Literal["visible", "hidden in the tolerances", "not excited", "cannot be fitted"]
 FAMILIES = (
     ("m", "mm", "um", "nm"),
@@ -201,6 +204,65 @@ class NextPoint:
 
 
 @dataclass(frozen=True)
+class Course:
+    """How one input or condition goes over an experiment, SI: held, from start to end, there and back, both in turn."""
+
+    name: str
+    way: Way
+    start: float
+    end: float
+
+    def values(self, readings: int) -> Matrix:
+        """Return its value at every reading, evenly spaced, (readings,)."""
+        share: Matrix = np.linspace(0.0, 1.0, readings)
+        if self.way == "to and fro":
+            share = np.asarray(1 - np.abs(1 - 2 * share))
+        elif self.way == "in turn":
+            share = np.asarray(np.arange(readings) % 2.0)
+        return self.start + (self.end - self.start) * share
+
+
+@dataclass(frozen=True)
+class Chance:
+    """How often an experiment named the right one of several explanations: of so many simulated ones, with Wilson's 95
+    % interval. ``by`` says how each was judged."""
+
+    value: float
+    low: float
+    high: float
+    draws: int
+    by: str
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """Readings that can be taken one after another, and what they tell apart.
+
+    ``tells`` names the explanations, ``apart`` the pairs of them. ``settings`` has by name the value at every reading,
+    (n,) SI; ``courses`` how it goes, of what is made from others as well. ``takes`` is the time from the first reading
+    to the last, where it is known. ``separation`` is that of the two least apart, ``needed`` how many readings like
+    these would suffice. ``sizes`` are the believed unknowns ("EFFECT.UNKNOWN") where no record tells them.
+    """
+
+    tells: tuple[str, ...]
+    apart: tuple[tuple[str, str], ...]
+    courses: tuple[Course, ...]
+    settings: Mapping[str, Matrix]
+    units: Mapping[str, str]
+    takes: Amount | None
+    separation: float
+    needed: int
+    chance: Chance
+    results: tuple[str, ...]
+    sizes: Mapping[str, Amount] = field(default_factory=dict)
+
+    @property
+    def readings(self) -> int:
+        """How many readings it has."""
+        return len(next(iter(self.settings.values())))
+
+
+@dataclass(frozen=True)
 class Fact:
     """What would have to be so if an explanation is the right one: a quantity that may be known from elsewhere.
 
@@ -305,13 +367,14 @@ class DiagnosisResult:
     calibrated: tuple[Calibrated, ...]
     gain: tuple[Gain, ...]
     stability: float
-    next: tuple[NextPoint, ...]
     curves: tuple[ResultCurves, ...]
     p_any: float | None = None
     p_second: float | None = None
     ranking: tuple[Alternative, ...] = ()
     inseparable: tuple[str, ...] = ()
+    next: tuple[NextPoint, ...] = ()
     ties: tuple[Tie, ...] = ()
+    experiment: Experiment | None = None
     contradictions: tuple[Contradiction, ...] = ()
     thinned: tuple[Thinned, ...] = ()
     trades: tuple[Trade, ...] = ()

@@ -27,7 +27,7 @@ from truing.inputs_file.values import (
     written,
 )  # fmt: skip
 from truing.setup import DiagnoseOptions, column_and_word
-from truing.units import split_quantity
+from truing.units import difference_unit, split_quantity
 from truing.units.grammar import shown
 
 
@@ -147,13 +147,12 @@ def diagnose_section(model: Model[Any, Any]) -> FileSection:
     effects, of_model = model.known_effects, f"of {model.name}"
     numbers = {name: field.unit for name, field in model.input_fields.items() if field.varies}
     unknowns = [f"{name}.{unknown.name}" for name, effect in effects.items() for unknown in effect.unknowns]
-    own = _Known(
-        f"effect, unknown or number among the inputs {of_model}",
-        {**dict.fromkeys([*effects, *unknowns], ""), **numbers},
-    )
+    known = {**dict.fromkeys([*effects, *unknowns], ""), **numbers}
+    own = _Known(f"effect, unknown or number among the inputs {of_model}", known)
     conditions = {name: condition.unit for name, condition in model.known_conditions.items()}
     settable = _Known(f"condition and no number among the inputs {of_model}", {**numbers, **conditions})
     units = {name: model.own_result_fields[name].unit for name in model.measurable}
+    deviations = {name: f"1 {difference_unit(unit)}".strip() for name, unit in units.items()}
     results = _Known(f"result {of_model} that can be measured in rows", units)
     beyond = "Rows whose true value lies {} what was read, by result: a column of the data and the word it holds there."
     options: dict[str, tuple[str, Callable[[str, Any], Any], dict[str, Any]]] = {
@@ -168,6 +167,8 @@ def diagnose_section(model: Model[Any, Any]) -> FileSection:
                     partial(_by_name, results, _ends), _texts(dict.fromkeys(units, "0..10"))),
         "lognormal": ("Results whose errors are in proportion: they are compared as logarithms.",
                       partial(_names, results), {**_LIST, "items": {"enum": list(units)}}),
+        "noise": ("Standard deviation of one reading, by result, for an experiment that is planned before any data.",
+                  partial(_by_name, results, _deviation), _texts(deviations)),
         "at_least": (beyond.format("above"), partial(_by_name, results, _mark),
                      _texts(dict.fromkeys(units, "outcome = runout"))),
         "at_most": (beyond.format("below"), partial(_by_name, results, _mark),
@@ -232,6 +233,18 @@ def _count(option: str, raw: Any) -> int:
     if not isinstance(raw, int) or isinstance(raw, bool) or raw < 0:
         raise SentenceError(f"{option} = {written(raw)} is no number of calls; write {option} = 1000")
     return raw
+
+
+def _deviation(option: str, name: str, raw: Any, unit: str) -> float:
+    """Take the standard deviation of a result, SI."""
+    own = difference_unit(unit)
+    try:
+        value = float(read_number(name, raw, own))
+    except (UnitError, SentenceError) as error:
+        raise SentenceError(f"{option}: {error}") from None
+    if not value > 0:
+        raise SentenceError(f'{option}: {name} = {written(raw)} is no standard deviation; write {name} = "1 {own}"')
+    return value
 
 
 def _range(model: Model[Any, Any], option: str, name: str, raw: Any, unit: str) -> tuple[float, float]:

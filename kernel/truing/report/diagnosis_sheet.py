@@ -15,6 +15,7 @@ from truing.diagnosis.result import (
     Alternative,
     Amount,
     DiagnosisResult,
+    Experiment,
     FittedUnknown,
     NoiseSummary,
     explanations_of,
@@ -26,9 +27,11 @@ from truing.report.diagnosis_words import (
     amount_text,
     cause_text,
     certainty,
+    experiment_text,
     explanation,
     fitted_text,
     headline,
+    is_result_first,
     listed,
     number_texts,
     p_text,
@@ -42,7 +45,6 @@ from truing.report.diagnosis_words import (
     shared_words,
     spoken,
     tie_text,
-    together,
     verdict_word,
 )
 from truing.report.document import Banner, BlockView, Chapter, Document, Paragraph, TableView, table_of
@@ -458,23 +460,46 @@ def _next(diagnosis: DiagnosisResult) -> ChapterParts:
 
 
 def _points(diagnosis: DiagnosisResult) -> ChapterParts:
-    reasons = list(dict.fromkeys(point.why for point in diagnosis.next if point.why))
-    for index, point in enumerate(diagnosis.next, start=1):
-        yield f"{index}. {settings_text(point)}: {pair_text(point)} (λ then {score_text(point.separation)})"
-    for reason in reasons:
-        yield from _both(f"   {reason}")
-    names = list(dict.fromkeys(name for point in diagnosis.next for name in (*point.measure, *point.settings)))
-    rows = []
-    for index, point in enumerate(diagnosis.next, start=1):
-        settings = ["measure" if name in point.measure else amount_text(point.settings.get(name), 4) for name in names]
-        pair = " / ".join(together([name]) for name in point.separates)
-        rows.append((str(index), *settings, pair, score_text(point.separation)))
-    heads = ("Point", *(spoken(name).capitalize() for name in names), "Separates", "λ then")
-    note = (
-        "λ then is the separation to expect once all points up to this one are measured; from "
-        f"{APART:.0f} on the two are apart."
-    )
-    yield table_of("Settings to measure", heads, rows, (*range(1, len(names) + 1), len(names) + 2), note)
+    """Write the further results and the experiment, with its readings as a table to be taken to the machine."""
+    ways = [_results, _experiment]
+    for way in ways if is_result_first(diagnosis) else reversed(ways):
+        yield from way(diagnosis)
+
+
+def _results(diagnosis: DiagnosisResult) -> ChapterParts:
+    for point in (point for point in diagnosis.next if point.measure):
+        then = f"(λ then {score_text(point.separation)})"
+        yield from _both(f"measure {settings_text(point)}: {pair_text(point)} {then}")
+        yield from _both(f"   {point.why}")
+
+
+def _experiment(diagnosis: DiagnosisResult) -> ChapterParts:
+    experiment, readings = diagnosis.experiment, [point for point in diagnosis.next if not point.measure]
+    if experiment is None or not readings:
+        return
+    yield from _both(experiment_text(experiment))
+    yield from _both(f"   {max(readings, key=lambda point: len(point.why)).why}")
+    yield readings_table(experiment, [point.separation for point in readings])
+
+
+def readings_table(experiment: Experiment, separations: Sequence[float] = ()) -> TableView:
+    """Write the readings of an experiment, with the separation to expect after each, and what its chance means."""
+    names = list(experiment.settings)
+    units = experiment.units
+    rows = [
+        (
+            str(index + 1),
+            *(amount_text(Amount(float(experiment.settings[name][index]), units[name]), 4) for name in names),
+            *(score_text(each) for each in separations[index : index + 1]),
+        )
+        for index in range(experiment.readings)
+    ]
+    chance = experiment.chance
+    note = f"The chance is that of {chance.draws} simulated experiments, each explanation true in turn: {chance.by}."
+    if separations:
+        note += f" λ then is the separation to expect after a reading; from {APART:.0f} on all are told apart."
+    heads = ("Reading", *(spoken(name).capitalize() for name in names), *(["λ then"] if separations else []))
+    return table_of("Readings to take", heads, rows, (*range(1, len(heads)),), note)
 
 
 # Data

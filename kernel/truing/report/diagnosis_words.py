@@ -13,7 +13,9 @@ from truing.diagnosis.result import (
     Alternative,
     Amount,
     Cause,
+    Chance,
     DiagnosisResult,
+    Experiment,
     FittedUnknown,
     Gain,
     NextPoint,
@@ -284,21 +286,13 @@ def _gain_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
 
 
 def _next_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
-    """Say what tells the explanations apart; that it does only where it is predicted to pass the limit."""
-    results = [point for point in diagnosis.next if point.measure]
-    settings = [point for point in diagnosis.next if not point.measure]
-    for point in results:
-        yield f"measure {settings_text(point)}: it separates {pair_text(point)}."
-    if settings:
-        needed, first = settings[0].needed, settings_text(settings[0])
-        pairs = listed([pair_text(point) for point in settings])
-        if needed > len(settings):
-            yield f"{needed} points like {first} would be needed to separate {pairs}."
-        elif needed < 2:
-            yield f"measure next at {first}: it separates {pairs}."
-        else:
-            places = "; ".join(settings_text(point) for point in settings[:needed])
-            yield f"measure next at {places}: these {needed} points together separate {pairs}."
+    """Say what tells the explanations apart, with which chance."""
+    said = [
+        f"measure {settings_text(each)}: it separates {pair_text(each)}." for each in diagnosis.next if each.measure
+    ]
+    ways = [said, [] if diagnosis.experiment is None else [f"{experiment_text(diagnosis.experiment)}."]]
+    for sentences in ways if is_result_first(diagnosis) else reversed(ways):
+        yield from sentences
     yield from map(tie_text, diagnosis.ties)
     if diagnosis.next or diagnosis.ties:
         return
@@ -306,6 +300,55 @@ def _next_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
         yield "no other explanation comes near; there is nothing left to separate."
     if diagnosis.verdict == "one_of":
         yield "no setting can be proposed that tells them apart; another record, of other conditions, may."
+
+
+def is_result_first(diagnosis: DiagnosisResult) -> bool:
+    """Whether a further result is proposed before the experiment, which leaves something open that it does not."""
+    return bool(diagnosis.next and diagnosis.next[0].measure)
+
+
+def experiment_text(experiment: Experiment) -> str:
+    """Say an experiment: what is held, what is varied from where to where, how long, what it tells, how surely."""
+    count, takes = experiment.readings, experiment.takes
+    said = f"{count} readings" + (f" in {amount_text(readable(takes), 2)}" if takes is not None and takes.value else "")
+    tells = f"tell {told_apart(experiment)} apart with a chance of {chance_text(experiment.chance)}"
+    enough = f"{experiment.needed} readings" if experiment.needed else "more than a hundred readings"
+    more = f"; {enough} like these would be needed for 95 %" if experiment.needed != count else ""
+    return f"{'; '.join(course_texts(experiment))}: {said} {tells}{more}"
+
+
+def course_texts(experiment: Experiment) -> list[str]:
+    """Say what is held, then what is varied from where to where; the time that passes is said with the readings."""
+    held = [course for course in experiment.courses if course.way == "held"]
+    varied = [course for course in experiment.courses if course.way != "held" and course.name != "time"]
+    said = [f"hold {', '.join(f'{spoken(each.name)} {_end(experiment, each.name, each.start)}' for each in held)}"]
+    for course in varied:
+        begin, end = (_end(experiment, course.name, value) for value in (course.start, course.end))
+        words = {"ramp": f"from {begin} to {end}", "to and fro": f"from {begin} to {end} and back"}
+        said.append(f"{spoken(course.name)} {words.get(course.way, f'{begin} and {end} in turn')}")
+    return said if held else said[1:] or ["as it stands"]
+
+
+def _end(experiment: Experiment, name: str, value: float) -> str:
+    return amount_text(Amount(value, experiment.units[name]), 4)
+
+
+def chance_text(chance: Chance) -> str:
+    """Write a chance with its interval, in percent."""
+    value, low, high = (pretty(format_number(round(100 * each), 3)) for each in (chance.value, chance.low, chance.high))
+    return f"{value} % (95 %: {low}{TO}{high})"
+
+
+def told_apart(experiment: Experiment) -> str:
+    """Say what an experiment tells apart: explanations, and in one breath those that stay one."""
+    apart = {frozenset(pair) for pair in experiment.apart}
+    groups: list[list[str]] = []
+    for name in experiment.tells:
+        fitting = [group for group in groups if not any(frozenset((name, other)) in apart for other in group)]
+        if not fitting:
+            groups.append([])
+        (fitting or groups)[-1 if not fitting else 0].append(name)
+    return listed([listed([together([name]) for name in group], "or") for group in groups])
 
 
 def pair_text(point: NextPoint) -> str:

@@ -10,6 +10,7 @@ from typing import Any
 from truing.diagnosis.result import (
     Amount,
     DiagnosisResult,
+    Experiment,
     FittedUnknown,
     Gain,
     Wrong,
@@ -17,11 +18,12 @@ from truing.diagnosis.result import (
     explanations_of,
     shared_of,
 )
+from truing.experiments.planning import Planned
 from truing.runs.documents import clean
 from truing.runs.provenance import provenance_of
-from truing.units import from_si
+from truing.units import difference_unit, from_si
 
-SCHEMA = "truing.diagnosis/1"
+SCHEMA, PLAN_SCHEMA = "truing.diagnosis/1", "truing.plan/1"
 
 
 def diagnosis_document(diagnosis: DiagnosisResult) -> dict[str, Any]:
@@ -162,6 +164,7 @@ def _use(diagnosis: DiagnosisResult) -> dict[str, Any]:
         "next": [
             _named(point, "settings", "measure", "separates", "why", "separation", "needed") for point in diagnosis.next
         ],
+        "experiment": None if diagnosis.experiment is None else experiment_document(diagnosis.experiment),
         "ties": [
             {
                 "explanations": list(tie.explanations),
@@ -169,6 +172,43 @@ def _use(diagnosis: DiagnosisResult) -> dict[str, Any]:
             }
             for tie in diagnosis.ties
         ],
+    }
+
+
+def experiment_document(experiment: Experiment) -> dict[str, Any]:
+    """Return an experiment as data: courses and readings in the units that stand beside them."""
+    units = experiment.units
+    return {
+        **_named(experiment, "tells", "apart"),
+        "courses": {
+            course.name: {
+                "way": course.way,
+                "from": _value(course.start, units[course.name]),
+                "to": _value(course.end, units[course.name]),
+            }
+            for course in experiment.courses
+        },
+        **_named(experiment, "results", "readings", "takes", "separation", "needed", "chance", "sizes"),
+        "settings": {
+            name: {"values": [_value(value, units[name])["value"] for value in values.tolist()], "unit": units[name]}
+            for name, values in experiment.settings.items()
+        },
+    }
+
+
+def plan_document(plan: Planned) -> dict[str, Any]:
+    """Return a planned experiment as data: the same inputs, causes, budget and seed give the same document."""
+    provenance = provenance_of(plan.setup)
+    units = {name: difference_unit(plan.setup.print_unit(name)) for name in plan.noise}
+    return {
+        "schema": PLAN_SCHEMA,
+        "plugin": {"name": provenance.plugin, "version": provenance.plugin_version, "model": plan.setup.model.name},
+        "kernel": provenance.kernel,
+        "input_hash": provenance.input_hash,
+        "seed": provenance.seed,
+        **_named(plan, "causes", "budget"),
+        "noise": {name: _value(sd, units[name]) for name, sd in plan.noise.items()},
+        "experiment": None if plan.experiment is None else experiment_document(plan.experiment),
     }
 
 

@@ -88,7 +88,7 @@ def _sections(setup: Setup, folder: Path | None) -> Iterator[tuple[str, dict[str
 
 def _of_diagnosis(setup: Setup) -> dict[str, Any]:
     """Return what is asked of a diagnosis, without what is as by default."""
-    options = setup.diagnose
+    options, fields = setup.diagnose, setup.model.own_result_fields
     box = {name: "..".join(str(exact(end, setup.unit_of(name))) for end in ends) for name, ends in options.box.items()}
     clipped = {
         name: "..".join(
@@ -100,6 +100,7 @@ def _of_diagnosis(setup: Setup) -> dict[str, Any]:
         "per_file": list(options.per_file), "hold_out": options.hold_out, "box": box,
         "at_least": dict(options.at_least), "at_most": dict(options.at_most), "clipped": clipped,
         "lognormal": list(options.lognormal), "budget": options.budget,
+        "noise": {name: str(exact(sd, difference_unit(fields[name].unit))) for name, sd in options.noise.items()},
     }  # fmt: skip
     return {name: value for name, value in said.items() if value}
 
@@ -140,7 +141,7 @@ def _input(setup: Setup, field: InputField, value: Any, folder: Path | None) -> 
     if field.kind == "series":
         if getattr(field.spec, "unit", None) is None:
             return [_plain(one) for one in value]
-        return [exact(float(one), field.unit) for one in value]
+        return [exact(float(one), field.unit) for one in value] or None
     return None if value != value else exact(value, field.unit)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -14,7 +13,7 @@ import numpy as np
 from truing.declare.fields import Found, Given, InputField, ResultField
 from truing.declare.goals import Vary
 from truing.declare.model import formula_scope, rate_scope
-from truing.declare.quantities import unread_goals, unread_units
+from truing.declare.quantities import has_dimension, rate_unit, unread_goals, unread_units
 from truing.errors import DeclarationError, InputError, TruingError, UnitError
 from truing.evaluate import evaluate
 from truing.example_file import example_text
@@ -25,13 +24,13 @@ from truing.inputs_file.values import broken_bound
 from truing.runs.inputs_written import complete_inputs
 from truing.setup import Setup
 from truing.testing.subject import Subject, fail
-from truing.units import difference_unit, from_si, pint_quantity, read_quantity, same_dimension
+from truing.units import from_si, pint_quantity, read_quantity, same_dimension
 
 SAME = 1e-12
 
 
 def units_are_known(subject: Subject) -> None:
-    """Every unit that is declared is one that Truing knows; history is in a unit of what it is made from."""
+    """Every unit that is declared is one that Truing knows; history is in that of what it is made from, or gains."""
     model = subject.model
     for unread in unread_units(model):
         fail(f"{model.name}: {unread.sentence}")
@@ -43,6 +42,9 @@ def units_are_known(subject: Subject) -> None:
         if made_from and not same_dimension(condition.unit, wanted):
             what = f"{condition.derived}, which is in '{wanted}'" if wanted else "a direction, which has no unit"
             fail(f"{model.name}: condition '{name}' is in '{condition.unit}', but it is {what}")
+        if condition.rate and not same_dimension(f"{units[condition.rate] or '1'}*s", condition.unit):
+            per = f"'{condition.rate}' is in '{units[condition.rate]}'"
+            fail(f"{model.name}: condition '{name}' is in '{condition.unit}', but {per}, which is not that per time")
 
 
 def defaults_keep_their_bounds(subject: Subject) -> None:
@@ -149,10 +151,10 @@ def formulas_of(subject: Subject) -> Iterator[tuple[ResultField, Formula, bool, 
     dynamics = subject.model.dynamics
     if dynamics is None:
         return
-    scope, per = rate_scope(subject.model), "/s" if dynamics.step is None else ""
+    scope = rate_scope(subject.model)
     for name, spec in dynamics.state_fields.items():
         if spec.rate:
-            unit = f"{difference_unit(spec.unit) or '1'}{per}"
+            unit = rate_unit(spec.unit, in_steps=dynamics.step is not None)
             rate = ResultField(name=f"rate of {name}", path=(name,), spec=Found(unit=unit), symbol=spec.symbol)
             yield rate, parse(spec.rate), False, scope
 
@@ -168,12 +170,11 @@ def formulas_have_the_unit(subject: Subject) -> None:
             quantity = evaluate_quantities(formula, quantities)
         except (UnitError, DeclarationError) as error:
             fail(f"{subject.model.name}: formula of '{result.name}': {error}")
-        declared = pint_quantity(1.0, result.unit)
-        is_nothing = isinstance(formula.right, ast.Constant) and formula.right.value == 0
-        if formula.left is None and quantity.dimensionality != declared.dimensionality and not is_nothing:
+        if formula.left is None and not has_dimension(quantity, formula, result.unit):
+            declared = pint_quantity(1.0, result.unit).dimensionality
             fail(
                 f"{subject.model.name}: the formula of '{result.name}' gives {quantity.dimensionality}, "
-                f"but the result is declared in '{result.unit}' ({declared.dimensionality})"
+                f"but the result is declared in '{result.unit}' ({declared})"
             )
 
 

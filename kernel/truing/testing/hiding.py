@@ -28,6 +28,7 @@ from truing.diagnosis.records import Records
 from truing.diagnosis.result import DiagnosisResult
 from truing.errors import Fault, InputError, TruingError, UsageError
 from truing.evaluate import evaluate
+from truing.experiments.proposal import proposed
 from truing.gauge import one_machine, read_by_gauge
 from truing.inputs_file import setup_from_settings, setup_from_text
 from truing.inputs_file.values import broken_bound
@@ -250,7 +251,7 @@ class Hidden:
         """Diagnose the record, once, and predict the rows held out."""
         records = records_of(self.setup, self.measured, MEASURED)
         start = perf_counter()
-        diagnosis = diagnose(self.setup, records)
+        diagnosis = diagnose(self.setup, records, propose=proposed)
         seconds = perf_counter() - start
         document = json.loads(json.dumps(diagnosis_document(diagnosis)))
         if not self.held_out:

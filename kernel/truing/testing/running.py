@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import cache, partial
 from itertools import pairwise
 from typing import Any
 
@@ -196,7 +197,7 @@ def motion_is_settled(subject: Subject) -> None:
         before, after = (subject.model.read_results(each(inputs)) for each in (dynamics, finer))
         for name, value in before.items():
             here, there = np.asarray(value, dtype=float), np.asarray(after[name], dtype=float)
-            moved, size = np.nanmax(np.abs(here - there), initial=0.0), np.nanmax(np.abs(there), initial=0.0)
+            moved, size = (np.max(np.nan_to_num(np.abs(each)), initial=0.0) for each in (here - there, there))
             if moved > dynamics.settled * size:
                 what = f"a tenth of the tolerance moves '{name}' by {moved / size:.1g} of its largest value"
                 fail(f"{subject.model.name}: {what}, not {dynamics.settled:g}; state a smaller tolerance, or settled")
@@ -300,6 +301,7 @@ def compare(name: str, batch: Batch) -> None:
     except PluginError as error:
         fail(f"{name}: a batch in which {batch.what} fails as a whole: {error}")
     singles = [batch.alone(row) for row in range(batch.rows)]
+    moves = cache(partial(rounding, batch))
     for row, alone in enumerate(singles):
         here, there = reason(together, row), reason(alone, 0)
         if here != there:
@@ -312,8 +314,9 @@ def compare(name: str, batch: Batch) -> None:
         if values.ndim == 1 and not _differs(values, np.array(inner), values):
             continue
         for row, number in enumerate(inner):
-            outer = values[row][: len(number)] if np.ndim(number) else values[row]
-            if _differs(outer, number, values) and _differs(outer, number, values, rounding(batch, row, result)):
+            cut = slice(len(number)) if np.ndim(number) else ...
+            outer = values[row][cut]
+            if _differs(outer, number, values) and _differs(outer, number, values, moves(row)[result][cut]):
                 fail(
                     f"{name}: where {batch.what}, '{result}' of row {row} is {_short(outer)} in a batch and "
                     f"{_short(number)} alone; write np.where, not if, on anything that may vary"
@@ -326,22 +329,24 @@ def reason(rows: Rows, row: int) -> str:
     return rows.reasons.get(row) or "; ".join(f"no '{name}': {why}" for name, why in lacking.items())
 
 
-def rounding(batch: Batch, row: int, result: str) -> Any:
-    """Return how far rounding alone moves a result of a row: by the last digit of each of its numbers, in turn.
+def rounding(batch: Batch, row: int) -> Mapping[str, Any]:
+    """Return how far rounding alone moves each result of a row: by the last digit of each of its numbers, in turn.
 
     So all that is calculated of it is rounded anew, by half a unit in the last place; the vector path of a function may
-    be off by up to eight times that.
+    be off by up to eight times that. The row and those beside it are one batch: they are equal but for these digits.
     """
     own = {name: values[row] for name, values in batch.columns.items()}
     fields = batch.setup.model.input_fields
     numbers = {name: batch.setup.nominal(name) for name, field in fields.items() if field.varies} | own
-    before = batch.alone(row).results[result][0]
-    total = np.zeros(np.shape(before))
-    for name, value in numbers.items():
-        if isinstance(value, float) and np.isfinite(value):
-            after = single(batch.setup, {**own, name: float(np.nextafter(value, np.inf))}).results[result][0]
-            total += np.nan_to_num(np.abs(after - before)) if np.shape(after) == np.shape(before) else 0.0
-    return 8 * total
+    moving = [name for name, value in numbers.items() if isinstance(value, float) and np.isfinite(value)]
+    columns = {
+        name: np.repeat(value, len(moving) + 1)
+        for name, value in (own | {name: numbers[name] for name in moving}).items()
+    }
+    for place, name in enumerate(moving, 1):
+        columns[name][place] = np.nextafter(numbers[name], np.inf)
+    rows = evaluate_rows(batch.setup, columns, len(moving) + 1, reading=True)
+    return {result: 8 * np.nansum(np.abs(values[1:] - values[0]), axis=0) for result, values in rows.results.items()}
 
 
 def _differs(here: Any, there: Any, values: np.ndarray[Any, Any], most: Any = 0.0) -> bool:
