@@ -13,7 +13,6 @@ import numpy as np
 from harmonic_fractal import vibration_response as response
 from harmonic_fractal.vibration import GearPair, Mesh, mesh_quantities
 from truing import Array, Float, axis, column, feasible, found, given, inputs, results
-from truing.errors import ConvergenceError
 
 SLOWEST = 0.97
 """Where the curve begins, in parts of the lowest speed, or of one at which the flanks do not part."""
@@ -157,7 +156,6 @@ def run_up(pair: RunUp) -> Response:
         shown.pop("is_whole")[own] > 0.0,
         "the curve of the vibration over the speed cannot be followed to its end: raise damping_ratio, or leave out "
         "the lowest speeds",
-        error=ConvergenceError,
     )
     units = {"amplitude": column(scale), "force": column(force), "jump": resonance}
     values = {name: (units.get(name.partition("_")[0], 1.0) * value)[own] for name, value in shown.items()}
