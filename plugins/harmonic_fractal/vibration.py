@@ -86,7 +86,7 @@ class GearPair:
         "closing", note="what roughness adds to either side: the distance of the mean planes that is left under the "
         "load, equation 7 as printed, or nothing",
     )  # fmt: skip
-    reference_torque: Float = of_drive("reference_torque")
+    reference_torque: Float = of_drive("reference_torque", default=50.0)
     # What vibrates
     ring_inertia: Float = given(5e-5, "kg*m^2", symbol="J_1", note="moment of inertia of the toothed ring of the "
                                 "flexspline; the load hangs behind the soft cup", source="steel ring, size 20",
