@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
@@ -10,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from truing.declare.dynamics import NotedError, following_together, is_noting
 from truing.declare.fields import Axis
 from truing.errors import Fault, InputError, UsageError
 from truing.evaluate import Rows, evaluate_rows, put_together, rows_alike
@@ -207,16 +210,23 @@ def _read_each(machine: Setup, rows: RowsFile, trials: Sequence[Trial], wanted: 
     asked = {*along, *filter(None, along.values())}
     parts: list[list[Rows]] = [[] for _ in trials]
     order: list[list[NDArray[np.intp]]] = [[] for _ in trials]
+    noted: NotedError | None = None
     for record in _records(machine, rows):
         of_record = _at_places(machine, rows, record)
         series = {name: column[_once(machine, rows, record)] for name, column in rows.series.items()}
         for several, repeats in _calls(record, machine, rows, trials):
             columns = {name: _one_or_each([alike.values[name] for alike in several]) for name in several[0].values}
             changed, size = columns | series, len(several)
-            computed = evaluate_rows(of_record, changed, size, reading=True, wanted=asked, repeats=repeats)
+            try:
+                computed = evaluate_rows(of_record, changed, size, reading=True, wanted=asked, repeats=repeats)
+            except NotedError as error:
+                noted = error
+                continue
             for number, alike in enumerate(several):
                 parts[alike.trial].append(_for_rows(computed, number, alike.places, along=along, rows=rows))
                 order[alike.trial].append(alike.places)
+    if noted is not None:
+        raise noted
     done = [put_together(*each, list(along), len(rows)) for each in zip(parts, order, strict=True)]
     return done if wanted is None else [answer.complete() for answer in done]
 
@@ -336,6 +346,16 @@ def read_trials(
     A trial sets inputs and conditions to one value or to (n,), unknowns of effects that are on (``effect_column``) to
     (n,), in SI and in place of what machine and rows say.
     """
+    if len(trials) > 1 and machine.model.dynamics is not None and not is_noting():
+        with following_together(), suppress(NotedError):
+            deque(_answers(machine, rows, trials, wanted), maxlen=0)
+    yield from _answers(machine, rows, trials, wanted)
+
+
+def _answers(
+    machine: Setup, rows: RowsFile, trials: Sequence[Trial], wanted: Collection[str]
+) -> Iterator[Mapping[str, NDArray[np.float64]]]:
+    """Give what the gauge shows, in as few calls as there can be."""
     count = min(len(trials), AT_ONCE // max(len(rows), 1))
     if count < 2 or any(name in rows.series for trial in trials for name in trial):
         yield from (_read_alone(machine, rows, trial, wanted) for trial in trials)

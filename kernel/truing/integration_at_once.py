@@ -33,8 +33,8 @@ from truing.integration import (
     stages_of,
 )
 
-MOST_ROUNDS = 8
-"""So many rounds of Newton's method are taken."""
+FIRST_ROUNDS, MOST_ROUNDS = 3, 10
+"""So many rounds of Newton's method are taken, however they go, and at the most."""
 MET = 0.02
 """Steps meet when the states are to move by less than this share of the tolerance."""
 ASIDE = 1e-6
@@ -158,7 +158,8 @@ def _along(several: _Several, grid: _Grid) -> dict[int, Path]:
         many = (moves < MET).cumprod(axis=1).sum(axis=1)
         first = np.minimum(many, grid.shape[1] - 1)[:, None]
         gone = np.take_along_axis(moves, first, 1) / np.take_along_axis(before, first, 1)
-        is_over = (many == grid.shape[1]) | ~(gone[:, 0] < CONTRACTS) | (count == MOST_ROUNDS - 1)
+        is_lost = ~(gone[:, 0] < CONTRACTS) & (count >= FIRST_ROUNDS)
+        is_over = (many == grid.shape[1]) | is_lost | (count == MOST_ROUNDS - 1)
         over = np.flatnonzero(is_over)
         if len(over):
             own = replace(several, machines=several.machines[machines[over]])

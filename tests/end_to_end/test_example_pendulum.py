@@ -14,7 +14,7 @@ import pytest
 from scipy.special import ellipk
 
 from shared import ROOT, Calc
-from truing import load
+from truing import load, read
 
 HOME = ROOT / "docs" / "examples" / "geared_pendulum"
 WEIGHT = 1.2 * 9.80665 * 0.5
@@ -99,3 +99,20 @@ def test_what_changes_within_a_run_is_refused_with_its_line(calc: Calc, tmp_path
     answer = calc("table", HOME / "geared_pendulum.py", "-i", HOME / "inputs.toml", "--rows", "rows.csv")
     assert answer.code == 2
     assert "rows.csv:3: tip_mass changes within a run, but a record is one calculation" in answer.err
+
+
+def test_two_records_with_other_times_starts_and_masses_are_one_diagnosis(
+    pendulum: Any, simulation: ModuleType, tmp_path: Path, monkeypatch: Any
+) -> None:
+    """Dry friction alone is hidden; the second arm is let go where nobody wrote it down, and each start is fitted."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(simulation, "OIL", 0.0)
+    simulation.write("one.csv", 1.2, 60.5, [0.2 * row for row in range(21)], 11)
+    simulation.write("two.csv", 0.6, 58.0, [0.13 * row for row in range(24)], 12)
+    record = read([tmp_path / "one.csv", tmp_path / "two.csv"], pendulum)
+    found = pendulum.diagnose(record, per_file=["release"], progress=False).document
+    assert [cause["effect"] for cause in found["causes"]] == ["dry_friction"]
+    (torque,) = found["causes"][0]["unknowns"]
+    assert torque["interval"][0] < simulation.DRY < torque["interval"][1]
+    starts = [each for each in found["calibrated"] if each["input"] == "release"]
+    assert [each["value"] for each in starts] == pytest.approx([60.5, 58.0], abs=0.3)

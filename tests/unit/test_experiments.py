@@ -2,19 +2,30 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
-from diagnosis_models import Asked, chosen_as, drive_model, fit_of, wide
+from diagnosis_models import Asked, Deflection, Drive, chosen_as, drive, drive_model, fit_of, wide
 from numpy.testing import assert_allclose
+from scipy.stats import binomtest
 
+from truing import Condition, Effect, Float, Model, Unknown
 from truing.diagnosis.choice import Chosen
+from truing.diagnosis.machine import Calibration
+from truing.diagnosis.records import Covariate, Records
 from truing.diagnosis.result import Experiment
+from truing.errors import DeclarationError, UsageError
 from truing.experiments.design import BUDGET, ENOUGH, MOST_READINGS
+from truing.experiments.planning import planned
 from truing.experiments.proposal import next_experiment
-from truing.setup import DiagnoseOptions
+from truing.experiments.reach import Reach, reach_of
+from truing.measurements import RowsFile
+from truing.setup import DiagnoseOptions, Setup, default_setup
 
 
 def one_sign(folder: Path, box: dict[str, tuple[float, float]], noise: float, *, is_named: bool = False) -> Chosen:
@@ -81,13 +92,178 @@ def test_rivals_are_separated_inside_the_box(tmp_path: Path) -> None:
 def test_it_is_said_how_many_readings_would_be_needed(tmp_path: Path, size: float) -> None:
     """After 40 rows of one sign c rows of the other leave 4 * 40 c / (40 + c) of an offset as large as the noise."""
     experiment, points, tied = next_experiment(one_sign(tmp_path, {"load": (-10e3, 20e3)}, noise=3.0 / size))
-    enough = [c for c in range(4, MOST_READINGS + 1) if 4 * size**2 * 40 * c / (40 + c) >= ENOUGH]
-    if not enough:
+    least = [c for c in range(4, MOST_READINGS) if 4 * size**2 * 40 * c / (40 + c) >= ENOUGH]
+    if not least:
         assert (experiment, points) == (None, [])
         assert tied
         return
     assert experiment is not None
-    assert experiment.needed == enough[0]
-    assert experiment.readings == min(enough[0], BUDGET)
-    is_said = "readings like these would be needed" in points[-1].why
-    assert is_said is (enough[0] > BUDGET)
+    assert experiment.needed >= least[0]
+    assert experiment.readings == min(experiment.needed, BUDGET)
+    assert experiment.chance.value > (0.9 if experiment.needed <= BUDGET else 0.3)
+
+
+# What a machine can do from where it stands
+
+
+PRESS: dict[str, Any] = {
+    "strokes": Condition("strokes", "", derived="since_start", low=0, high=1e5, rate="speed"),
+    "hours": Condition("hours", "h", role="goes_on", low=0, high=50),
+    "warmth": Condition("warmth", "degC", reference=20, low=10, high=60, role="follows"),
+    "angle": Condition("angle", "deg"),
+    "speed": Condition("speed", "rpm", low=5, high=60),
+    "way": Condition("way", "", derived="direction of angle"),
+}
+
+
+def at_work() -> Reach:
+    """What a record of four hours allows: it stands at 4 h, 2400 strokes and 30 hours, and has warmed up to 40 degC."""
+    effects = [
+        Effect(f"of_{name}", on_results=partial(more, name), needs=[need], unknowns=[Unknown("size", -1, 1)])
+        for name, need in PRESS.items()
+    ]
+    model = Model(name="drive", title="", function=drive, errors=effects)
+    hour = np.linspace(0, 4, 41)
+    columns = {
+        "time": 3600 * hour, "strokes": 600 * hour, "hours": 3600 * (26 + hour), "angle": 0.4 * np.sin(9 * hour),
+        "warmth": 293.15 + 20 * (1 - np.exp(-hour)), "speed": np.full(41, 10 / 60) + 0.01 * hour,
+        "way": np.sign(np.cos(9 * hour)), "load": 1e3 * np.cos(hour),
+    }  # fmt: skip
+    setup = default_setup(model)
+    units = {"time": "h", "load": "kN"}
+    covariates = {
+        name: Covariate(name, values, units.get(name, ""), "time" if name == "time" else "condition")
+        for name, values in columns.items()
+    }
+    zeros = np.zeros(41, dtype=np.intp)
+    rows = RowsFile("", columns, {}, {}, tuple(range(41)))
+    records = Records(
+        files=("a",), rows=rows, file_of=zeros, run_of=zeros, lines=zeros, measured={}, sigma={},
+        covariates=covariates, held_out=zeros.astype(bool),
+    )  # fmt: skip
+    return reach_of(Calibration(setup, setup, records, {}, (), {}))
+
+
+def more(name: str, screw: Drive, base: Deflection, *, size: Float, **seen: Float) -> Deflection:
+    return replace(base, deflection=base.deflection + size * seen[name])
+
+
+def test_histories_go_on_and_sums_agree() -> None:
+    """Whatever course every quantity takes: time and hours together, strokes as the speed times the time."""
+    reach = at_work()
+    rng = np.random.default_rng(3)
+    choices = {quantity.name: quantity.courses(12) for quantity in reach.quantities}
+    for _ in range(40):
+        drawn = {name: courses[int(rng.integers(len(courses)))] for name, courses in choices.items()}
+        made = reach.columns([drawn], 12)
+        assert (np.diff(made["time"]) > 0).all()
+        assert made["time"][0] > 4 * 3600
+        assert_allclose(made["hours"], 30 * 3600 + made["time"] - 4 * 3600)
+        turned = 2400 + np.cumsum([0, *np.diff(made["time"]) * (made["speed"][1:] + made["speed"][:-1]) / 2])
+        assert_allclose(made["strokes"], turned + made["speed"][0] * (made["time"][0] - 4 * 3600))
+        assert np.ptp(made["angle"]) <= 2 * np.pi + 1e-9
+        assert 283.15 - 1e-9 <= made["warmth"].min() <= made["warmth"].max() <= 333.15 + 1e-9
+        pace = 20 * (1 - np.exp(-1)) / 3600  # K/s, in the first hour, the fastest quarter of the record
+        assert np.abs(np.diff(made["warmth"]) / np.diff(made["time"])).max() <= 1.01 * pace
+        assert set(np.unique(made["way"])) <= {-1.0, 0.0, 1.0}
+        moved = np.diff(made["angle"])
+        assert_allclose(made["way"][1:][moved != 0], np.sign(moved[moved != 0]))
+
+
+def test_what_is_at_its_end_goes_no_farther() -> None:
+    """Hours may go to 50 and stand at 30, so that no record takes more than 20 h."""
+    longest = max(course.end for course in at_work().quantities[0].courses(12))
+    assert at_work().quantities[0].name == "time"
+    assert longest <= (4 + 20) * 3600
+
+
+@pytest.mark.parametrize(
+    ("stated", "sentence"),
+    [
+        ({"role": "sets"}, "has the role 'sets'; the roles are set, goes_on, follows. Did you mean 'set'?"),
+        ({"role": "set", "derived": "since_start"}, "is derived by 'since_start', so it cannot be set"),
+        ({"role": "follows", "rate": "speed"}, "has the rate 'speed', but it does not go on"),
+    ],
+)  # fmt: skip
+def test_a_role_that_cannot_be_is_refused(stated: dict[str, Any], sentence: str) -> None:
+    with pytest.raises(DeclarationError, match=re.escape(sentence)):
+        Condition("wear", "", **stated)
+
+
+def test_a_rate_and_the_role_of_an_input_are_checked_when_the_model_is_made() -> None:
+    effect = Effect(
+        "wear", on_results=partial(more, "wear"), unknowns=[Unknown("size", -1, 1)],
+        needs=[Condition("wear", "", rate="lod")],
+    )  # fmt: skip
+    with pytest.raises(DeclarationError, match=r"rate 'lod', which is no input or condition. Did you mean 'load'\?"):
+        Model(name="drive", title="", function=drive, errors=[effect])
+
+
+# The chance that is claimed, held against experiments simulated by plain least squares
+
+
+def test_the_claimed_chance_holds_on_fresh_simulations(tmp_path: Path) -> None:
+    """A clearance and an offset at noise 1.2 times as large as they are: 200 experiments made and judged by hand."""
+    chosen = one_sign(tmp_path, {"load": (-10e3, 20e3)}, noise=1.2 * 3)
+    experiment = found(chosen)
+    rng, count, right = np.random.default_rng(9), experiment.readings, 0
+    signs = np.append(np.ones(40), np.sign(experiment.settings["load"]))
+    old = 3 + 1.2 * 3 * np.resize([1, -1], 40)
+    for draw in range(200):
+        true, rival = (np.ones(40 + count), signs) if draw % 2 else (signs, np.ones(40 + count))
+        size = rng.normal(3, 3.6 / np.sqrt(40))
+        readings = np.append(old, true[40:] * size + rng.normal(0, 3.6, count))
+        losses = []
+        for curve in (true, rival):
+            left = readings - curve * max((curve @ readings) / (curve @ curve), 0.0 if curve is signs else -np.inf)
+            losses.append(left**2 / np.mean(left**2) + np.log(np.mean(left**2)))
+        apart = losses[1] - losses[0]
+        right += np.sum(apart) >= max(6.0, np.sqrt(6) / 2 * np.sqrt(40 + count) * np.std(apart))
+    low, high = binomtest(right, 200).proportion_ci(0.95, method="wilson")
+    assert experiment.chance.value > 0.3
+    assert low <= experiment.chance.high
+    assert high >= experiment.chance.low
+
+
+# An experiment before any data
+
+
+def planning(noise: float, **options: Any) -> Setup:
+    conditions = ("thermal_growth", "lead_error", "clearance", "wear")
+    box = {"load": (-10e3, 10e3), "travel": (0.0, 0.3), "time": (0.0, 36e3), **options}
+    asked = DiagnoseOptions(box=box, noise={"deflection": noise} if noise else {})
+    return replace(default_setup(drive_model(conditions)), diagnose=asked)
+
+
+def test_a_plan_varies_what_tells_the_causes_apart() -> None:
+    plan = planned(planning(1e-6), ["clearance", "sensor_offset"])
+    assert plan.experiment is not None
+    load = plan.experiment.settings["load"]
+    assert load.min() < 0 < load.max()  # a clearance turns round with the load, an offset does not
+    assert plan.experiment.chance.value > 0.9
+    assert 8 <= plan.experiment.readings <= 12
+    assert_allclose(plan.experiment.sizes["clearance.gap"].value, 5e-6, rtol=0.3)  # five standard deviations
+
+
+def test_causes_of_one_curve_are_not_told_apart() -> None:
+    one_way = {"load": (1e3, 10e3)}
+    assert planned(planning(1e-6, **one_way), ["clearance", "sensor_offset"]).experiment is None
+
+
+@pytest.mark.parametrize(
+    ("causes", "noise", "budget", "sentence"),
+    [
+        (["clearence", "wear"], 1e-6, 12, "has no effect 'clearence', and no tolerance of it as input:NAME. Did you"),
+        (["clearance"], 1e-6, 12, "an experiment tells two causes or more apart"),
+        (["clearance", "wear"], 1e-6, 1, "a budget of 1 readings tells nothing apart; allow 2"),
+        (["clearance", "wear"], 0.0, 12, "no noise is known: state the standard deviation of one reading"),
+        (["clearance", "wear"], 1.0, 12, "'clearance' cannot be seen in deflection: at its bounds it moves no reading"),
+        (["warm_up", "wear"], 1e-6, 12, "drive has no effect 'warm_up'"),
+        (["sensor_offset", "periodic_order"], 1e-6, 12, "nothing says where 'angle' can be measured"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_planned_is_said_in_a_sentence(
+    causes: list[str], noise: float, budget: int, sentence: str
+) -> None:
+    with pytest.raises(UsageError, match=re.escape(sentence)):
+        planned(planning(noise), causes, budget=budget)

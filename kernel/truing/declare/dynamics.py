@@ -16,7 +16,7 @@ import numpy as np
 from truing.arrays import Indices, Matrix
 from truing.declare.batch import feasible
 from truing.declare.fields import KEY, Float, InputField, hints_of, in_si, input_fields, read, with_values
-from truing.errors import ConvergenceError, DeclarationError, InfeasibleError
+from truing.errors import ConvergenceError, DeclarationError, InfeasibleError, TruingError
 from truing.integration import (
     ENDLESS,
     GROWS,
@@ -281,6 +281,10 @@ class _Followed:
     path: Path | None
 
 
+class NotedError(TruingError):
+    """A call that ended where its machines were noted."""
+
+
 @dataclass
 class MachinesAsked:
     """Machines that were asked for, and how many of them had to be followed."""
@@ -292,9 +296,14 @@ class MachinesAsked:
 _ASKED: ContextVar[MachinesAsked | None] = ContextVar("truing_machines_asked", default=None)
 
 
+def is_noting() -> bool:
+    """Whether machines are noted, to be followed later."""
+    return _ASKED.get() is not None
+
+
 @contextmanager
 def following_together() -> Iterator[MachinesAsked]:
-    """Note which machines are asked for inside, which show NaN there, and follow all of them at the end at once.
+    """Note which machines are asked for inside, where each call ends with ``NotedError``, and follow all at the end.
 
     What is asked for again afterwards is known then.
     """
@@ -314,13 +323,11 @@ def following_together() -> Iterator[MachinesAsked]:
 
 
 def _remembered(machines: _Machines[Any, Any, Any]) -> Solution:
-    """Return what is known of machines; those that are not known are followed, but for where they are noted alone."""
+    """Return what is known of machines; those that are not known are followed, or noted alone: ``NotedError``."""
     asked = _ASKED.get()
     if asked is not None:
         asked.several.append(machines)
-        states, events = len(machines.dynamics.state_fields), len(machines.dynamics.events)
-        nothing = np.full((events, machines.count), np.nan)
-        return Solution(np.full((states, machines.count, len(machines.stamps)), np.nan), nothing, nothing)
+        raise NotedError("these machines are followed later, with others")
     if machines.count > MOST_NEARBY and machines.keys()[0] not in machines.dynamics.memory:
         return solve(_problem(machines)) if machines.dynamics.step is None else _in_steps(machines)
     known = _follow(machines, _step_by_step)

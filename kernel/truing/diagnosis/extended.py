@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from itertools import accumulate
 from math import inf, log10
@@ -12,7 +13,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from truing.arrays import Indices, Matrix
-from truing.declare.dynamics import following_together
+from truing.declare.dynamics import NotedError, following_together
 from truing.declare.sources import Effect
 from truing.diagnosis.causes import Candidate, at_rest
 from truing.diagnosis.machine import Calibration, Tolerated, predict_each
@@ -181,7 +182,8 @@ class Extended:
             return
         with following_together() as asked:
             for group in groups:
-                self._called(group[0].causes, [point for each in group for point in each.points])
+                with suppress(NotedError):
+                    self._called(group[0].causes, [point for each in group for point in each.points])
         self.calls += asked.new > 0
 
     @property

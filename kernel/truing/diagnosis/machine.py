@@ -129,8 +129,8 @@ def tolerated_inputs(setup: Setup, records: Records) -> list[Tolerated]:
 def calibration_of(setup: Setup, records: Records) -> Calibration:
     """Evaluate the model at the start and around it, twice per tolerated input."""
     start = one_machine(setup)
-    base = predict(start, records)
     inputs = tolerated_inputs(setup, records)
+    base = predict(start, records)
     kind = np.float32 if len(records) > MANY else np.float64
     slopes: dict[str, Any] = {
         name: np.zeros((len(records), len(inputs)), dtype=kind, order="F") for name in records.measured

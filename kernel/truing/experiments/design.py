@@ -93,7 +93,7 @@ def designed(stand: Stand) -> Designed | None:
                       for _ in range(TRIED_FEW if few else TRIED))]  # fmt: skip
     ends = [plain | {name: course} for name, each in choices.items() for course in each[1:]] if not few else []
     fought = stand.duels([*first, *ends])
-    pairs = {duel.names for duel in fought if float(np.max(duel.after(MOST_READINGS / LOOKED_AT))) >= APART}
+    pairs = _decided({duel.names: float(np.max(duel.after(MOST_READINGS / LOOKED_AT))) for duel in fought})
     if not pairs:
         return None
 
@@ -113,6 +113,15 @@ def designed(stand: Stand) -> Designed | None:
     return _sized(stand, best, pairs)
 
 
+def _decided(separations: Mapping[tuple[str, str], float]) -> set[tuple[str, str]]:
+    """Return the pairs that are told apart whichever of the two is true."""
+    return {
+        (one, other)
+        for (one, other), separation in separations.items()
+        if min(separation, separations.get((other, one), separation)) >= APART
+    }
+
+
 def _effort(stand: Stand, courses: Mapping[str, Course]) -> float:
     """Return what an experiment must be worth more than a plainer one."""
     effort = 0.0
@@ -129,12 +138,12 @@ def _sized(stand: Stand, courses: Mapping[str, Course], pairs: set[tuple[str, st
     """Take as many readings as tell the pairs apart, within the budget; pairs that these never do are left out."""
     fewest = min(stand.fewest, stand.budget)
     counts: dict[tuple[str, str], int] = {}
-    for duel in stand.duels([courses]):
-        most = float(duel.after(MOST_READINGS / LOOKED_AT)[0])
-        if duel.names in pairs and most >= APART:
-            enough = min(ENOUGH, NEARLY * most)
-            reached = (count for count in range(fewest, MOST_READINGS) if duel.after(count / LOOKED_AT)[0] >= enough)
-            counts[duel.names] = next(reached, MOST_READINGS)
+    live = [duel for duel in stand.duels([courses]) if duel.names in pairs]
+    most = {duel.names: float(duel.after(MOST_READINGS / LOOKED_AT)[0]) for duel in live}
+    for duel in (duel for duel in live if duel.names in _decided(most)):
+        enough = min(ENOUGH, NEARLY * most[duel.names])
+        reached = (count for count in range(fewest, MOST_READINGS) if duel.after(count / LOOKED_AT)[0] >= enough)
+        counts[duel.names] = next(reached, MOST_READINGS)
     if not counts:
         return None
     return Designed(stand.reach.settled(courses), min(max(counts.values()), stand.budget), tuple(counts))

@@ -187,7 +187,7 @@ def _range(setup: Setup, name: str) -> tuple[float, float]:
         return setup.diagnose.box[name]
     unit = setup.unit_of(name)
     for study in setup.model.studies:
-        if isinstance(study, Sweep) and study.over == name:
+        if isinstance(study, Sweep) and study.over == name and study.at:
             values = read_range(study.at, unit, 2)
             return float(values.min()), float(values.max())
     for goal in setup.model.objectives:
