@@ -86,7 +86,7 @@ class GearPair:
         "closing", note="what roughness adds to either side: the distance of the mean planes that is left under the "
         "load, equation 7 as printed, or nothing",
     )  # fmt: skip
-    reference_torque: Float = of_drive("reference_torque")
+    reference_torque: Float = of_drive("reference_torque", default=50.0)
     # What vibrates
     ring_inertia: Float = given(5e-5, "kg*m^2", symbol="J_1", note="moment of inertia of the toothed ring of the "
                                 "flexspline; the load hangs behind the soft cup", source="steel ring, size 20",
@@ -248,7 +248,7 @@ def clearance_by_roughness(pair: GearPair, contact: rough_contact.Contact, force
 class Running(GearPair):
     """A gear pair that runs, at one speed or faster and faster."""
 
-    times: Float = given(tuple(5e-6 * row for row in range(21)), "s", along="time", note="when it is looked at")
+    times: Float = given(tuple(5e-6 * row for row in range(13)), "s", along="time", note="when it is looked at")
     speed: Float = given(4500.0, "rpm", symbol="n", note="speed of the wave generator at time 0", at_least=0)
     acceleration: Float = given(0.0, "rpm/s", symbol="a_n", note="by which the speed rises, or falls")
 
@@ -365,7 +365,8 @@ ALONG = ("error_amplitude", "stiffness_variation", "damping_ratio", "oil_damping
 
 def vibration(running: Running, motion: Motion[Turned]) -> Vibration:
     """Return the record with its forces."""
-    in_rows = replace(running, **{name: column(getattr(running, name)) for name in ALONG})
+    columns: dict[str, Any] = {name: column(getattr(running, name)) for name in ALONG}
+    in_rows = replace(running, **columns)
     acting = acting_on(motion.states, in_rows, motion.time)
     return Vibration(
         **mesh_quantities(running),

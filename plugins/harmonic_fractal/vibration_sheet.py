@@ -23,8 +23,7 @@ from harmonic_fractal.vibration_run import (
     runs_of,
     transmission_error,
 )
-from truing import Array, Block, Drawing, Model, Record, Section, Table
-from truing.errors import TruingError
+from truing import Array, Block, Drawing, Model, Record, Section, Table, TruingError
 
 MICRO, KILO = 1e6, 1e3
 TURN = 60.0  # rpm per turn in a second

@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.optimize import fsolve
-from vibration_in_steps import Machines, run
 
 from harmonic_fractal import vibration_response as response
 from harmonic_fractal.vibration import RECORD, Running, Turned, loaded_at_rest, mesh_quantities
 from harmonic_fractal.vibration_run import RunUp
 from harmonic_fractal.vibration_sheet import RUN_UP, VIBRATION
+from hidden_effects.vibration_in_steps import Machines, run
 from truing.evaluate import evaluate
 from truing.setup import default_setup
 
