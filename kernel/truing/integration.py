@@ -611,7 +611,10 @@ def _march_as_one(problem: InitialValueProblem, system: System, going: _Going, s
     everyone, solver = np.arange(len(going.t)), _solver(problem, system, going)
     while True:
         y = going.y
-        solver.step()
+        try:
+            solver.step()
+        except (RuntimeError, ValueError):  # its matrix is singular, or no longer finite
+            return GROWS
         going.taken += 1
         solution.steps += 1
         reached = solver.y.reshape(len(going.t), -1).T

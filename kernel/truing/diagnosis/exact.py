@@ -313,9 +313,8 @@ class Fitting:
             places = np.flatnonzero(self.free)
             drawn, moves = {}, {}
             for name, base in shown.items():
-                rises = np.nan_to_num(
-                    np.column_stack([each[name] - base for each in several] or [np.zeros((len(base), 0))])
-                )
+                rises = np.column_stack([each[name] - base for each in several] or [np.zeros((len(base), 0))])
+                rises = np.where(np.isfinite(rises), rises, 0.0)
                 drawn[name] = np.zeros((len(base), len(u)))
                 drawn[name][:, places] = rises[:, : len(places)] / self._steps(u)[places]
                 moves[name] = rises[:, len(places) :] / NEXT_TO
