@@ -106,7 +106,8 @@ class GearPair:
     error_amplitude: Float = given(0.1, "um", symbol="e_1", note="wave of the transmission error over a mesh",
                                    source="typical", at_least=0, at_most=1e3)  # fmt: skip
     mesh_order: Float = given(None, "", symbol="z_m", note="meshes per turn of the wave generator; else the teeth of "
-                              "the circular spline, two more than those of the flexspline", above=0)  # fmt: skip
+                              "the circular spline, two more than those of the flexspline", above=0,
+                              at_most=1e4)  # fmt: skip
 
 
 @results
@@ -249,7 +250,8 @@ class Running(GearPair):
     """A gear pair that runs, at one speed or faster and faster."""
 
     times: Float = given(tuple(5e-6 * row for row in range(13)), "s", along="time", note="when it is looked at")
-    speed: Float = given(4500.0, "rpm", symbol="n", note="speed of the wave generator at time 0", at_least=0)
+    speed: Float = given(4500.0, "rpm", symbol="n", note="speed of the wave generator at time 0", at_least=0,
+                         at_most=1e5)  # fmt: skip
     acceleration: Float = given(0.0, "rpm/s", symbol="a_n", note="by which the speed rises, or falls")
 
 

@@ -43,7 +43,12 @@ BOUNDS: dict[str, dict[str, str]] = {
         "below 1": "damping_ratio stiffness_variation",
         "closing or printed or none": "roughness_clearance",
     },
-    "harmonic_fractal.vibration": {"above 0": "stated_stiffness mesh_order torque", "at least 0": "speed"},
+    "harmonic_fractal.vibration": {
+        "above 0": "stated_stiffness mesh_order torque",
+        "at least 0": "speed",
+        "at most 10000": "mesh_order",
+        "at most 100000": "speed",
+    },
     "press_linkage.motion": {
         "above 0": "speed speed_share permitted_torque crank_radius",
         "at least 0": "slider_mass counterbalance guide_friction bearing_friction mass_rod inertia_upper_knee",

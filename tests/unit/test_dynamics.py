@@ -91,9 +91,13 @@ def test_a_machine_that_cannot_be_followed_fails_alone_with_its_time() -> None:
         InfeasibleError, match=r"not be followed beyond t = 34\.1\d* s: a state grows beyond all bounds"
     ):
         evaluate(default_setup(model, loss=1.0))
-    rows = evaluate_rows(default_setup(model), {"loss": np.array([1.0, 100.0])}, 2)
-    assert rows.failed.tolist() == [True, False]
-    assert "at the earliest" in rows.reasons[0]
+    losses = np.array([1.0, 100.0, 2.0])
+    rows = evaluate_rows(default_setup(model), {"loss": losses}, 3)
+    assert rows.failed.tolist() == [True, False, True]
+    alone = [evaluate_rows(default_setup(model), {"loss": losses[[row]]}, 1).reasons[0] for row in (0, 2)]
+    assert [rows.reasons[0], rows.reasons[2]] == alone
+    assert "t = 34.1" in alone[0]
+    assert "t = 68.2" in alone[1]
 
 
 def test_the_step_limit_is_an_error_of_convergence() -> None:

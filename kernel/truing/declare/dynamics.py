@@ -668,14 +668,15 @@ def _in_steps(machines: _Machines[Any, Any, Any]) -> Solution:
 
 
 def _say_why(solution: Solution, machines: _Machines[Any, Any, Any]) -> None:
-    """Let the machines that came to no end fail, each with its reason; a single one ends the calculation."""
-    for reason in sorted({reason for reason, _ in solution.reasons.values()}):
-        failed = {at: t for at, (why, t) in solution.reasons.items() if why == reason}
-        when = f"t = {min(failed.values()):.6g} s" + ("" if machines.is_single else " at the earliest")
+    """Let the machines that came to no end fail, each with its reason and time; a single one ends the calculation."""
+    failed: dict[tuple[str, str], list[int]] = {}
+    for at, (reason, t) in sorted(solution.reasons.items()):
+        failed.setdefault((reason, f"{t:.6g}"), []).append(at)
+    for (reason, when), places in failed.items():
         holds = np.ones(machines.count, dtype=bool)
-        holds[list(failed)] = False
+        holds[places] = False
         hint = next((words for part, words in WHAT_NOW.items() if part in reason), "")
-        sentence = f"the motion cannot be followed beyond {when}: {reason}{hint}"
+        sentence = f"the motion cannot be followed beyond t = {when} s: {reason}{hint}"
         error = ConvergenceError if reason == STEP_LIMIT else InfeasibleError
         feasible(holds[0] if machines.is_single else holds, sentence, error=error)
 
