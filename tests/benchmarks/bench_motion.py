@@ -1,7 +1,7 @@
 """What does a record cost: a pendulum with dry friction, with ever more readings of the same swings.
 
 Run it: ``python -m pytest tests/benchmarks/bench_motion.py -s``. A record is one calculation, so that readings cost
-what reading and comparing them costs, and no steps. Held is that ten times the readings take less than ten times as long.
+what reading and comparing them costs, and no steps: ten times the readings take less than ten times as long.
 """
 
 import importlib.util

@@ -105,7 +105,7 @@ WRONG: list[tuple[str, list[str]]] = [
             "what was hidden is not the curve of 'running_in': look for a sign, a unit, the place where it acts",
         ],
     ),
-    ("late", [f"but {OFFSET}", "cannot be told apart from 'sensor_offset': measure at load"]),
+    ("late", [f"but {OFFSET}", "cannot be told apart from 'sensor_offset': nothing that can be measured here"]),
     ("small", ["'sensor_offset' (depth 0.1 um) was hidden, but nothing was found; too small: it is seen from"]),
     ("idle", ["'other' (loss 20 um) was hidden, but nothing was found; not excited: vary an input that brings it out"]),
     (

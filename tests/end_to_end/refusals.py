@@ -8,8 +8,9 @@ from shared import Answer
 
 
 def listing(folder: Path) -> list[tuple[str, int]]:
-    """Return everything below a folder, with its size."""
-    return sorted((str(path.relative_to(folder)), path.lstat().st_size) for path in folder.rglob("*"))
+    """Return everything below a folder, with its size; but for what Python keeps of a module that it has read."""
+    files = (path for path in folder.rglob("*") if "__pycache__" not in path.parts)
+    return sorted((str(path.relative_to(folder)), path.lstat().st_size) for path in files)
 
 
 def sentences(answer: Answer) -> list[str]:

@@ -30,6 +30,8 @@ VERBS = {
     "compare differs": "compare one two",
     "table": "table bar.py -i bar.toml --rows rows.csv",
     "diagnose": "diagnose bar.py --data measured.csv",
+    "plan": "plan bar.py --causes heating,sensor_offset --noise stress=1MPa "
+    '--set studies.diagnose.box={bar_temperature="20..80degC",load="2..11kN"}',
     "describe": "describe bar.py",
     "explain": "explain bar.py stress",
     "init": "init bar.py",

@@ -156,7 +156,7 @@ def begun(setup, records):
 engine._check_options = lambda setup: None
 engine.calibration_of = begun
 try:
-    engine.diagnose(None, SimpleNamespace(readings=99))
+    engine.diagnose(SimpleNamespace(model=SimpleNamespace(dynamics=None)), SimpleNamespace(readings=99))
 except Held as held:
     import scipy.linalg
     print(held, len(threadpool_info()))
