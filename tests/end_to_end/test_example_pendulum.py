@@ -94,6 +94,16 @@ def test_every_run_is_a_motion_on_its_own_times(pendulum: Any, calc: Calc, tmp_p
     assert shown == pytest.approx(np.degrees(np.concatenate(expected)), abs=1e-9)
 
 
+def test_the_sheet_draws_what_changes(calc: Calc, tmp_path: Path) -> None:
+    """Three states over time, and the second over the first; still, nothing is drawn."""
+    assert calc("run", HOME / "geared_pendulum.py", "-i", HOME / "inputs.toml", "-o", "swings").code == 0
+    sheet = (tmp_path / "swings" / "sheet.html").read_text(encoding="utf-8")
+    assert all(words in sheet for words in ("States over time", "Phase: one state over the other"))
+    still = ("--set", "release=0 deg", "-o", "still")
+    assert calc("run", HOME / "geared_pendulum.py", "-i", HOME / "inputs.toml", *still).code == 0
+    assert "States over time" not in (tmp_path / "still" / "sheet.html").read_text(encoding="utf-8")
+
+
 def test_what_changes_within_a_run_is_refused_with_its_line(calc: Calc, tmp_path: Path) -> None:
     (tmp_path / "rows.csv").write_text("run,time [s],tip_mass [kg]\na,0,1.2\na,0.5,1.3\n", encoding="utf-8")
     answer = calc("table", HOME / "geared_pendulum.py", "-i", HOME / "inputs.toml", "--rows", "rows.csv")

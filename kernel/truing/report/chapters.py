@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
 
 import numpy as np
 
+from truing.arrays import Matrix
 from truing.calculation import Calculation
 from truing.declare.blocks import Block, Drawing, Table, Words
 from truing.declare.fields import Axis, Found
 from truing.declare.model import Section
 from truing.errors import PluginError
+from truing.evaluate import acting_inputs
 from truing.kernel.blame import spoken_place
 from truing.numbers import RESULT_DIGITS, format_ends, format_number, format_value, pretty
 from truing.report.document import (
@@ -33,7 +35,9 @@ from truing.report.document import (
     with_source,
 )
 from truing.report.equations import equation_of, state_equation
-from truing.report.figures import draw
+from truing.report.figures import draw, phase, states_over_time
+from truing.studies.drawings import labelled
+from truing.units import from_si
 
 RANK = {"short": 0, "normal": 1, "full": 2}
 LONGEST_TABLE = {"short": 20, "normal": 60, "full": 1000}
@@ -130,7 +134,24 @@ def _state_equation(writing: Writing) -> Iterator[Chapter]:
             f"than {pretty(settled)} % of its largest value."
         )
         entries.append(Paragraph(said))
+    moving = _moving_states(writing.calculation)
+    if len(moving) > 1:
+        entries.append(writing.figures.view("States over time", partial(states_over_time, moving), ""))
+    if len(moving) > 2:
+        entries.append(writing.figures.view("Phase", partial(phase, moving), "Phase: one state over the other"))
     yield Chapter("State equation", tuple(entries))
+
+
+def _moving_states(calculation: Calculation) -> Mapping[str, Matrix]:
+    """Return the time and every state that changes, by their labels, in the units in which they are declared."""
+    dynamics = calculation.setup.model.dynamics
+    assert dynamics is not None
+    motion = dynamics.followed(acting_inputs(calculation.setup))
+    states = {
+        labelled(name, unit_as_said(spec.unit)): from_si(getattr(motion.states, name), spec.unit)
+        for name, spec in dynamics.state_fields.items()
+    }
+    return {"time, s": motion.time} | {label: values for label, values in states.items() if np.ptp(values) > 0}
 
 
 def _of_section(writing: Writing, section: Section) -> Chapter:

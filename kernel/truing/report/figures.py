@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from html import escape
 from io import StringIO
@@ -17,15 +17,19 @@ from typing import Any
 import matplotlib as mpl
 from matplotlib.backends.backend_mixed import MixedModeRenderer
 from matplotlib.backends.backend_svg import FigureCanvasSVG, RendererSVG
+from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties, findfont, get_font
 from matplotlib.mathtext import MathTextParser
 from matplotlib.text import Text
 
+from truing.arrays import Matrix
 from truing.errors import PluginError
 from truing.formulas.symbols import printable
 from truing.kernel.blame import spoken_place
 from truing.report.figure_layout import arranged
 
+MOST_STATES = 6
+"""So many states are drawn over time."""
 STYLE = {
     "svg.hashsalt": "truing",
     "font.family": "DejaVu Sans",
@@ -73,6 +77,32 @@ def styled() -> Iterator[None]:
     look.update(STYLE)
     with mpl.rc_context(look):
         yield
+
+
+def states_over_time(states: Mapping[str, Matrix]) -> Figure:
+    """Draw what changes over the first of these, (k,) each by their labels, one below another."""
+    (label, time), *several = states.items()
+    figure = Figure(figsize=(6.4, 0.8 + 1.4 * max(len(several[:MOST_STATES]), 1)), layout="constrained")
+    panels = figure.subplots(max(len(several[:MOST_STATES]), 1), 1, sharex=True, squeeze=False)[:, 0]
+    for panel, (name, values) in zip(panels, several, strict=False):
+        panel.plot(time, values, linewidth=1.2)
+        panel.set_ylabel(name)
+        panel.grid(alpha=0.3)
+    panels[-1].set_xlabel(label)
+    return figure
+
+
+def phase(states: Mapping[str, Matrix]) -> Figure:
+    """Draw the second state that changes over the first, the time left out; a point marks where it begins."""
+    figure = Figure(figsize=(4.2, 3.6), layout="constrained")
+    panel = figure.subplots()
+    (across, x), (up, y) = [*states.items()][1:3]
+    panel.plot(x, y, linewidth=1.0)
+    panel.plot(x[:1], y[:1], marker="o", markersize=4)
+    panel.set_xlabel(across)
+    panel.set_ylabel(up)
+    panel.grid(alpha=0.3)
+    return figure
 
 
 def draw(what: Callable[[], Any], *, title: str, ident: str) -> str:
