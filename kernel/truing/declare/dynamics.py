@@ -42,8 +42,8 @@ S = TypeVar("S")
 T = TypeVar("T")
 MOST_NEARBY = 64
 """More machines in one call, unless they are known, are drawn: nobody asks for them again, and none is remembered."""
-MOST_REMEMBERED, MOST_NEAR = 2_000_000, 256
-"""So many values of states are remembered; of so many machines the nearest one is looked for."""
+MOST_REMEMBERED, MOST_MACHINES, MOST_NEAR = 10_000_000, 4096, 256
+"""So many values of states, and so many machines, are remembered; of so many the nearest one is looked for."""
 NEAR, FAR, TINY = 1e-3, 6, 1e-300
 """Sum of the shares by which numbers of machines differ that are followed along one path; and at the most."""
 
@@ -355,7 +355,7 @@ def _follow(
     if places:
         new = machines.part(np.array(list(places.values())))
         made |= dict(zip(places, follow(new), strict=True))
-        most = max(1, MOST_REMEMBERED // max(made[keys[0]].states.size, 1))
+        most = min(MOST_MACHINES, max(1, MOST_REMEMBERED // max(made[keys[0]].states.size, 1)))
         memory.update((key, made[key]) for key in places)
         for old in list(memory)[:-most]:
             del memory[old]
