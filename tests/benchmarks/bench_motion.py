@@ -6,6 +6,7 @@ what reading and comparing them costs, and no steps: ten times the readings take
 
 import importlib.util
 import sys
+from itertools import count as count_from
 from itertools import pairwise
 from pathlib import Path
 from types import ModuleType
@@ -37,11 +38,12 @@ def test_readings_cost_less_than_in_proportion(tmp_path: Path, monkeypatch: pyte
     """One call of the model, the gauge at every row, and a whole diagnosis, by readings."""
     monkeypatch.chdir(tmp_path)
     pendulum, simulate, seconds = truing.load(HOME / "geared_pendulum.py"), simulation(), {}
+    anew = count_from(1)  # what was followed before is known
     for count in READINGS:
         times = np.linspace(0, SECONDS, count)
         simulate.write(f"{count}.csv", 1.2, 60.5, times.tolist(), 11)
         record = truing.read([tmp_path / f"{count}.csv"], pendulum)
-        called = least(lambda times=times: pendulum.run(times=times, coulomb="0.11 N*m"))
+        called = least(lambda times=times: pendulum.run(times=times, coulomb=f"{0.11 + 1e-9 * next(anew)} N*m"))
         found = least(lambda record=record: pendulum.diagnose(record, progress=False), rounds=1)
         seconds[count] = called[0], found[0]
         print(f"{count:6d} readings: one run {called[0]:.3f} s, diagnosis {found[0]:.1f} s")
