@@ -213,7 +213,8 @@ def _read_each(machine: Setup, rows: RowsFile, trials: Sequence[Trial], wanted: 
     noted: NotedError | None = None
     for record in _records(machine, rows):
         of_record = _at_places(machine, rows, record)
-        series = {name: column[_once(machine, rows, record)] for name, column in rows.series.items()}
+        driven = _once(machine, rows, record) if rows.series else record
+        series = {name: column[driven] for name, column in rows.series.items()}
         for several, repeats in _calls(record, machine, rows, trials):
             columns = {name: _one_or_each([alike.values[name] for alike in several]) for name in several[0].values}
             changed, size = columns | series, len(several)

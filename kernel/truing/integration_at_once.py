@@ -77,8 +77,7 @@ class _Grid:
 
     def some(self, machines: Indices) -> _Grid:
         """Return some of the machines."""
-        steps = self.shape[1]
-        flat = (machines[:, None] * steps + np.arange(steps)).ravel()
+        flat = _steps_of(machines, self.shape[1])
         return _Grid(
             self.system.part(flat), self.t[machines], self.y[:, machines], self.interval[machines],
             self.event[machines], self.share[:, machines], self.stretch[machines], self.place[machines],
@@ -219,9 +218,13 @@ def _known_slopes(paths: Sequence[Path], steps: int) -> Slopes:
     return made
 
 
+def _steps_of(machines: Indices, steps: int) -> Indices:
+    """Return where all steps of some machines are, one machine behind another."""
+    return np.asarray((machines[:, None] * steps + np.arange(steps)).ravel())
+
+
 def _some(shot: _Shot, machines: Indices) -> _Shot:
-    steps = shot.value.shape[1]
-    flat = (machines[:, None] * steps + np.arange(steps)).ravel()
+    flat = _steps_of(machines, shot.value.shape[1])
     return _Shot(
         shot.length[flat], shot.stages[:, :, flat], shot.reached[:, machines], shot.after[:, machines],
         shot.value[machines],

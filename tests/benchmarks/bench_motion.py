@@ -4,18 +4,16 @@ Run it: ``python -m pytest tests/benchmarks/bench_motion.py -s``. A record is on
 what reading and comparing them costs, and no steps: ten times the readings take less than ten times as long.
 """
 
-import importlib.util
-import sys
 from itertools import count as count_from
 from itertools import pairwise
 from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 import pytest
 from timed import least
 
 import truing
+from end_to_end.simulated import module_of
 
 HOME = Path(__file__).parents[2] / "docs" / "examples" / "geared_pendulum"
 READINGS = (63, 630, 6300)
@@ -23,21 +21,10 @@ SECONDS = 4.0
 """Of each record: three swings."""
 
 
-def simulation() -> ModuleType:
-    """The program of the example that makes records."""
-    spec = importlib.util.spec_from_file_location("simulate_swings", HOME / "simulate.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules["simulate_swings"] = module
-    spec.loader.exec_module(module)
-    return module
-
-
 def test_readings_cost_less_than_in_proportion(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """One call of the model, the gauge at every row, and a whole diagnosis, by readings."""
     monkeypatch.chdir(tmp_path)
-    pendulum, simulate, seconds = truing.load(HOME / "geared_pendulum.py"), simulation(), {}
+    pendulum, simulate, seconds = truing.load(HOME / "geared_pendulum.py"), module_of(HOME / "simulate.py"), {}
     anew = count_from(1)  # what was followed before is known
     for count in READINGS:
         times = np.linspace(0, SECONDS, count)

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import csv
-import importlib.util
-import sys
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -12,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.special import ellipk
+from simulated import module_of
 
 from shared import ROOT, Calc
 from truing import load, read
@@ -29,13 +28,7 @@ def pendulum() -> Any:
 @pytest.fixture(scope="module")
 def simulation() -> ModuleType:
     """The program that makes the records."""
-    spec = importlib.util.spec_from_file_location("simulate", HOME / "simulate.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules["simulate"] = module
-    spec.loader.exec_module(module)
-    return module
+    return module_of(HOME / "simulate.py")
 
 
 @pytest.mark.parametrize("release", [1.0, 60.0, 175.0])

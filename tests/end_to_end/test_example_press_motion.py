@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
@@ -13,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from shown_in_docs import EXAMPLES
+from simulated import module_of
 
 from truing import load
 
@@ -22,13 +21,7 @@ HOME = EXAMPLES / "press_motion"
 @pytest.fixture(scope="module")
 def simulation() -> ModuleType:
     """The program that makes the records."""
-    spec = importlib.util.spec_from_file_location("simulate_press", HOME / "simulate.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules["simulate_press"] = module
-    spec.loader.exec_module(module)
-    return module
+    return module_of(HOME / "simulate.py")
 
 
 def test_the_records_are_those_that_the_program_writes(

@@ -325,7 +325,7 @@ def following_together() -> Iterator[MachinesAsked]:
         by_record.setdefault((id(machines.dynamics), machines.record), []).append(machines)
     for group in by_record.values():
         machines = _joined(group)
-        asked.new += len({*machines.keys()} - {*machines.dynamics.memory})
+        asked.new += len({*machines.keys} - {*machines.dynamics.memory})
         _follow(machines, _beside_others)
 
 
@@ -335,8 +335,8 @@ def _remembered(machines: _Machines[Any, Any, Any]) -> Solution:
     if asked is not None:
         asked.several.append(machines)
         raise NotedError("these machines are followed later, with others")
-    if machines.count > MOST_NEARBY and machines.keys()[0] not in machines.dynamics.memory:
-        return solve(_problem(machines)) if machines.dynamics.step is None else _in_steps(machines)
+    if machines.count > MOST_NEARBY and machines.keys[0] not in machines.dynamics.memory:
+        return _all_steps(machines)
     known = _follow(machines, _step_by_step)
     reasons = {place: each.reason for place, each in enumerate(known) if each.reason}
     return Solution(
@@ -349,7 +349,7 @@ def _follow(
     machines: _Machines[Any, Any, Any], follow: Callable[[_Machines[Any, Any, Any]], list[_Followed]]
 ) -> list[_Followed]:  # fmt: skip
     """Return what is known of machines, those that are not known followed in one call."""
-    memory, keys = machines.dynamics.memory, machines.keys()
+    memory, keys = machines.dynamics.memory, machines.keys
     places = {key: place for place, key in enumerate(keys) if key not in memory}
     made = {key: memory[key] for key in keys if key in memory}
     if places:
@@ -362,9 +362,13 @@ def _follow(
     return [made[key] for key in keys]
 
 
+def _all_steps(machines: _Machines[Any, Any, Any]) -> Solution:
+    return solve(_problem(machines)) if machines.dynamics.step is None else _in_steps(machines)
+
+
 def _step_by_step(new: _Machines[Any, Any, Any]) -> list[_Followed]:
     """Follow machines step by step."""
-    solution = _in_steps(new) if new.dynamics.step is not None else solve(_problem(new))
+    solution = _all_steps(new)
     return [_one_of(solution, machine, np.zeros(0), None) for machine in range(new.count)]
 
 
@@ -539,8 +543,9 @@ class _Machines(Generic[S, I, R]):
         made = {each.path: np.broadcast_to(read(self.inputs, each.path), (self.count,)) for each in fields_of}
         return made | {path: value for path, value in self.drives.items() if value.ndim > 1}
 
+    @cached_property
     def keys(self) -> list[bytes]:
-        """Return what tells every machine from any other one."""
+        """What tells every machine from any other one."""
         rows = np.column_stack([np.zeros(self.count), *self.numbers.values()])
         return [self.record + row.tobytes() for row in rows]
 

@@ -295,7 +295,11 @@ class Fitting:
         steps = self._steps(u)
         points = [(u, b), *((u + steps[index] * np.eye(len(u))[index], b) for index in np.flatnonzero(self.free))]
         points += [(u, b + NEXT_TO * unit) for unit in np.eye(len(b))]
-        return self.causes, [(parts_of(self.causes, self.outward(u)), moved_by(self.sample, b)) for u, b in points]
+        return self.causes, [self._setting(u, b) for u, b in points]
+
+    def _setting(self, u: Matrix, b: Matrix) -> tuple[list[Matrix], Matrix]:
+        """Return a point as the model is asked for it."""
+        return parts_of(self.causes, self.outward(u)), moved_by(self.sample, b)
 
     def _steps(self, u: Matrix) -> Matrix:
         steps = WIDER * steps_of(u, self.log, is_rough=False)
@@ -399,7 +403,7 @@ class Fitting:
     def _weighted(self, points: Sequence[Matrix], roots: Matrix) -> Matrix:
         """Return what is left at several points and how far the inputs are off there, (points, rows + K)."""
         parted = [self._parted(x) for x in points]
-        settings = [(parts_of(self.causes, self.outward(u)), moved_by(self.sample, b)) for u, b in parted]
+        settings = [self._setting(u, b) for u, b in parted]
         made = self.extended.at(self.causes, settings)
         left = [np.append(roots * self.sample.left(each), b) for each, (_, b) in zip(made, parted, strict=True)]
         return np.where(np.isfinite(left), left, FAILED)
