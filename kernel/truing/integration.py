@@ -27,8 +27,6 @@ LOOKS, MOST_ROUNDS = 8, 60
 """How often a step is looked at for events, and in how many rounds at the most the time of one is found."""
 TOGETHER = 4096
 """So many machines take their steps together: of more the stages no longer fit the cache."""
-APART = 512
-"""So many machines are looked at one look after another, for the same reason."""
 WRITTEN = 65_536
 """States at so many stamps are calculated at once."""
 MOST_EVENTS = 10_000
@@ -41,7 +39,6 @@ STIFF, STIFF_STEPS = 5.0, 15
 
 GROWS = "a state grows beyond all bounds"
 STEP_LIMIT = "the step limit is reached"
-IS_STIFF = "it is stiff from there on"
 ENDLESS = "comes again and again without end"
 
 
@@ -171,7 +168,7 @@ def solve(
 ) -> Solution:  # fmt: skip
     """Integrate every machine; one that comes to no end has NaN from there on, and a reason.
 
-    Machines that begin later are given with a solution that holds what is before; of these a stiff one is left there.
+    Machines that begin later are given with a solution that holds what is before.
     """
     solution = solution or empty_solution(problem)
     solution.taken = [] if keeps_paths else None
@@ -179,10 +176,7 @@ def solve(
         everyone = np.arange(problem.start.shape[1])
         for machines in np.split(everyone, range(TOGETHER, len(everyone), TOGETHER)):
             stiff = _march(problem, machines, solution)
-            if problem.begin is None:
-                _stiff(problem, stiff, solution)
-            else:
-                solution.reasons |= {int(machine): (IS_STIFF, float(problem.begin[0][machine])) for machine in stiff}
+            _stiff(problem, stiff, solution)
     return solution
 
 
@@ -264,7 +258,8 @@ def _begun(problem: InitialValueProblem, machines: Indices) -> _Going:
     if problem.begin is not None:  # an event may just have happened
         short = 1e-6 * (problem.stamps[-1] - problem.stamps[0])
         gained = [_gained(event, problem.system, (t, y, interval), short) for event in events]
-        values = [_beyond(value, gain, [gain, gain]) for value, gain in zip(values, gained, strict=True)]
+        beyond = [_beyond(value, gain, [gain, gain]) for value, gain in zip(values, gained, strict=True)]
+        values = [np.where(t > problem.stamps[0], *each) for each in zip(beyond, values, strict=True)]
     return _Going(
         machine=machines, t=t, y=y, rate=rate, step=_first_step(problem, (t, y, rate), interval),
         interval=interval, stamp=np.searchsorted(problem.stamps, t, side="right"),
@@ -425,13 +420,17 @@ class _Dense(Protocol):
     def at(self, t: Matrix, place: Indices | slice) -> Matrix:
         """Return the states of the machines at these places of the step, each at a time of its own, (d, m)."""
 
+    def looks(self) -> Matrix:
+        """Return the states of all machines at ``LOOKS`` times of their steps, evenly from after the begin to the end,
+        (d, LOOKS, n)."""
+
 
 class OwnDense:
     """Those of steps of Dormand and Prince, to the seventh order; calculated where they are asked for."""
 
     def __init__(self, system: System, interval: Indices, step: Step, stages: Matrix) -> None:
         self.system, self.interval, self.step = system, interval, step
-        self._stages = stages
+        self._stages, self._is_complete = stages, False
         self._parts: Matrix | None = None
 
     def at(self, t: Matrix, place: Indices | slice) -> Matrix:
@@ -447,15 +446,44 @@ class OwnDense:
         y += self.step.y[:, place]
         return np.asarray(y)
 
-    def _prepared(self) -> Matrix:
+    def looks(self) -> Matrix:
+        """Return the states of all machines at ``LOOKS`` times of their steps, (d, LOOKS, n)."""
+        self._add_stages()
+        step, stages = self.step, self._stages
+        gone = (_weights_of_looks() @ stages.reshape(len(stages), -1)).reshape(LOOKS - 1, *step.y.shape)
+        states = np.concatenate([step.y + step.length * gone, step.reached[None]])
+        return states.swapaxes(0, 1)
+
+    def _add_stages(self) -> None:
+        """Calculate the rates that the states within the steps take beyond those at the stages."""
+        if self._is_complete:
+            return
         step, stages, weights_of = self.step, self._stages, method()
         for stage, (weights, share) in enumerate(zip(weights_of.A_EXTRA, weights_of.C_EXTRA, strict=True), STAGES + 1):
             y = step.y + step.length * combined(weights[:stage], stages)
             stages[stage] = self.system.rate(step.t + share * step.length, y, self.interval)
+        self._is_complete = True
+
+    def _prepared(self) -> Matrix:
+        self._add_stages()
+        step, stages = self.step, self._stages
         gone = step.reached - step.y
         bend = step.length * stages[0] - gone
-        higher = [step.length * combined(weights, stages) for weights in weights_of.D]
+        higher = [step.length * combined(weights, stages) for weights in method().D]
         return np.array([gone, bend, 2 * gone - step.length * (step.rate + stages[0]), *higher])
+
+
+@lru_cache(maxsize=1)
+def _weights_of_looks() -> Matrix:
+    """Return by what each stage takes part in the state at each look but the last, (LOOKS - 1, 16)."""
+    rate, last = np.eye(16)[[0, STAGES]]
+    gone = np.append(method().B, np.zeros(16 - STAGES))
+    parts = [gone, rate - gone, 2 * gone - last - rate, *method().D]
+    share = np.arange(1, LOOKS)[:, None] / LOOKS
+    weights = np.zeros((LOOKS - 1, 16))
+    for number in range(len(parts) - 1, -1, -1):
+        weights = (weights + parts[number]) * (share if number % 2 == 0 else 1 - share)
+    return weights
 
 
 # Events: what passes 0 within a step is bracketed, the earliest of each machine ends its step there
@@ -467,24 +495,16 @@ def _first_event(problem: InitialValueProblem, dense: _Dense, going: _Going, goo
     event, t, y = np.full(len(good), -1), np.array(step.end), np.array(step.reached)
     if not problem.events:
         return _Arrival(good, event, t, y)
-    times = np.linspace(step.t, step.end, LOOKS + 1)
-    several = np.tile(np.arange(len(good)), LOOKS)
-    if len(good) < APART:
-        states = [dense.at(times[1:-1].ravel(), several[: -len(good)])]
-    else:
-        states = [dense.at(look, slice(None)) for look in times[1:-1]]
-    at = (times[1:].ravel(), np.concatenate([*states, step.reached], axis=1))
-    system, interval = dense.system.part(several), dense.interval[several]
+    times, states = np.linspace(step.t, step.end, LOOKS + 1), dense.looks()
     for number, rule in enumerate(problem.events):
-        values = np.array([going.value[number, good], *system.crossing(number, *at, interval).reshape(LOOKS, -1)])
+        values = np.array([going.value[number, good], *values_at_looks(number, dense, times[1:], states)])
         going.value[number, good] = values[-1]
         happens = passes(values, rule)
         places = np.flatnonzero(happens.any(axis=0))
         if len(places):
             look = happens[:, places].argmax(axis=0)
-            going.value[number, good[places]] = values[
-                look + 1, places
-            ]  # just beyond: it may come back in the same step
+            beyond = values[look + 1, places]
+            going.value[number, good[places]] = beyond  # it may come back in the same step
             ends = [(times[each, places], values[each, places]) for each in (look, look + 1)]
             when = _crossed(number, dense, places, ends)
             sooner = (when < t[places]) | (event[places] < 0)
@@ -493,6 +513,12 @@ def _first_event(problem: InitialValueProblem, dense: _Dense, going: _Going, goo
     if len(happened):
         y[:, happened] = dense.at(t[happened], happened)
     return _Arrival(good, event, t, y)
+
+
+def values_at_looks(event: int, dense: _Dense, times: Matrix, states: Matrix) -> Matrix:
+    """Return the value of an event at several times (m, n) of steps, in states (d, m, n), (m, n)."""
+    pairs = zip(times, states.swapaxes(0, 1), strict=True)
+    return np.array([dense.system.crossing(event, t, y, dense.interval) for t, y in pairs])
 
 
 def passes(values: Matrix, rule: EventRule) -> Mask:
@@ -598,7 +624,7 @@ def _stiff(problem: InitialValueProblem, machines: Indices, solution: Solution) 
         solution.states[:, group, 1:] = np.nan
         solution.counts[:, group], solution.first[:, group] = 0, np.nan
         system = problem.system.part(group)
-        going = _begun(replace(problem, system=system, start=problem.start[:, group]), group)
+        going = _begun(replace(problem, system=system, start=solution.states[:, group, 0], begin=None), group)
         reason = _march_as_one(problem, system, going, solution)
         if reason and len(group) > 1:
             waiting += np.array_split(group, 2)
@@ -660,3 +686,8 @@ class _SharedDense:
         """Return the states of the machines at these places, each at a time of its own, (d, m)."""
         y = self._at(t).reshape(len(self.interval), -1, len(t))
         return np.asarray(y[np.arange(len(y))[place], :, np.arange(len(t))].T)
+
+    def looks(self) -> Matrix:
+        """Return the states of all machines at ``LOOKS`` times of their step, (d, LOOKS, n)."""
+        times = np.linspace(self.step.t[0], self.step.end[0], LOOKS + 1)[1:]
+        return np.asarray(self._at(times).reshape(len(self.interval), -1, LOOKS).transpose(1, 2, 0))

@@ -8,7 +8,7 @@ other events than the path, is left to be followed step by step.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -31,6 +31,7 @@ from truing.integration import (
     passes,
     scale_of,
     stages_of,
+    values_at_looks,
 )
 
 FIRST_ROUNDS, MOST_ROUNDS = 3, 10
@@ -41,8 +42,10 @@ ASIDE = 1e-6
 """Share of a state, or of its size, and of the record, by which it is moved for a derivative."""
 CONTRACTS = 0.5
 """A round that is to move more than this share of what the one before moved leads nowhere."""
-MOST_PARTINGS, MOST_PARTS, NEARLY = 4, 8, 0.5
-"""So often steps are parted, each into so many at the most, where their error is above this share of what it may be."""
+MOST_GUESSES = 8
+"""So often a machine is followed along a path that is better than the one before."""
+MOST_PARTS, NEARLY = 8, 0.5
+"""Steps are parted into so many at the most, where their error is above this share of what it may be."""
 FAR, SLOW = 1e6, 0.02
 """Derivatives are taken anew where states move by more than so many tolerances, or than this share of before."""
 
@@ -112,30 +115,31 @@ class Followed:
     part: dict[int, Path] = field(default_factory=dict)
 
 
-def at_once(problem: InitialValueProblem, paths: Sequence[Path], solution: Solution) -> Followed:
-    """Fill in the solution for machines as far as they can be followed along these paths; return their own paths.
+def at_once(problem: InitialValueProblem, paths: Mapping[int, Path], solution: Solution) -> Followed:
+    """Fill in the solution for some machines as far as they can be followed along paths; return their own paths.
 
     Steps whose error is not within the tolerance are parted, and the machine is followed along the finer path. Where
     another event comes than that of the path, or the path is too far away, its first part remains.
     """
     followed = Followed()
-    left = dict(enumerate(paths))
+    left = dict(paths)
     with np.errstate(all="ignore"):
-        for _ in range(MOST_PARTINGS):
+        for _ in range(MOST_GUESSES):
             if not left:
                 break
-            machines = np.array([*left])
+            machines, guesses = np.array([*left]), [*left.values()]
             own = replace(problem, system=problem.system.part(machines), start=problem.start[:, machines])
-            left = _along(_Several(own, machines, solution, followed), _grid(own, [*left.values()]))
+            left = _along(_Several(own, machines, left, solution, followed), _grid(own, guesses))
     return followed
 
 
 @dataclass(frozen=True)
 class _Several:
-    """Machines that are followed together: their problem, which of the solution they are, and what is done."""
+    """Machines that are followed together: their problem, which of the solution they are, along what, what is done."""
 
     problem: InitialValueProblem
     machines: Indices
+    guesses: Mapping[int, Path]
     solution: Solution
     followed: Followed
 
@@ -401,7 +405,7 @@ def _sizes(problem: InitialValueProblem, shot: _Shot, moved_y: Matrix, moved_t: 
 
 def _judged(several: _Several, grid: _Grid, shot: _Shot, many: Indices) -> dict[int, Path]:
     """Fill in machines up to the last of so ``many`` steps that meets no other event; part steps that are too long."""
-    problem = several.problem
+    problem, followed = several.problem, several.followed
     begin, reached = grid.y[:, :, :-1].reshape(len(grid.y), -1), shot.reached.reshape(len(grid.y), -1)
     t, end = grid.t[:, :-1].ravel(), grid.t[:, 1:].ravel()
     step = Step(t, begin, shot.length, end, reached, shot.stages[STAGES])
@@ -415,11 +419,30 @@ def _judged(several: _Several, grid: _Grid, shot: _Shot, many: Indices) -> dict[
             finer[number] = _parted(path, dense, error[row], row * grid.shape[1])
             continue
         path = _path(grid, shot, row, min(steps, int(right[row])))
-        if len(path.event):
+        before = followed.part.pop(number, None)
+        if before is not None and before.t[-1] >= path.t[-1]:
+            followed.part[number] = before
+        elif len(path.event):
             _write(several, path, shot, dense, row)
             is_whole = len(path.event) == steps and _is_at_end(problem, path)
-            (several.followed.whole if is_whole else several.followed.part)[number] = path
+            (followed.whole if is_whole else followed.part)[number] = path
+            if not is_whole and right[row] >= steps:
+                finer |= _onward(problem, number, path, several.guesses[number])
     return finer
+
+
+def _onward(problem: InitialValueProblem, number: int, path: Path, guess: Path) -> dict[int, Path]:
+    """Return a path that goes on from the end of what is known as the guess does; none where series set the times."""
+    known, late = len(path.event), path.t[-1] - guess.t[len(path.event)]
+    t = guess.t[known:] + late
+    steps = int((t[:-1] < problem.stamps[-1]).sum())
+    if len(problem.breaks) > 2 or not steps:
+        return {}
+    event = np.array(guess.event[known : known + steps])
+    if t[steps] > problem.stamps[-1] or event[-1] < 0:
+        t[steps], event[-1] = problem.stamps[-1], -1
+    y = np.column_stack([path.y[:, -1], guess.y[:, known + 1 : known + steps + 1]])
+    return {number: path.then(Path(t[: steps + 1], y, guess.interval[known : known + steps], event))}
 
 
 def _is_at_end(problem: InitialValueProblem, path: Path) -> bool:
@@ -466,16 +489,14 @@ def _parted(path: Path, dense: OwnDense, error: Matrix, first: int) -> Path:
 def _steps_without_other(problem: InitialValueProblem, grid: _Grid, dense: OwnDense) -> Indices:
     """Return after how many steps another event is met than that of the path, or it in the wrong direction, (n,)."""
     (machines, steps), step = grid.shape, dense.step
-    shares = np.arange(LOOKS + 1)[:, None] / LOOKS
-    times, several = step.t + shares * step.length, np.tile(np.arange(len(step.t)), LOOKS + 1)
-    states = dense.at(times.ravel(), several)
-    system, interval = grid.system.part(several), dense.interval[several]
+    times = step.t + np.arange(LOOKS + 1)[:, None] / LOOKS * step.length
+    states = np.concatenate([step.y[:, None], dense.looks()], axis=1)
     is_empty, event = grid.is_empty.ravel(), grid.event.ravel()
     begins_after = np.roll(event, 1) >= 0
     begins_after[::steps] = False
     is_right = np.ones((machines, steps), dtype=bool)
     for number, rule in enumerate(problem.events):
-        values = system.crossing(number, times.ravel(), states, interval).reshape(LOOKS + 1, -1)
+        values = values_at_looks(number, dense, times, states)
         ends_here = event == number
         is_wrong = ends_here & (values[-2] * rule.direction > 0)
         values[:, is_empty] = np.nan

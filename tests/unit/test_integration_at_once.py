@@ -78,7 +78,7 @@ def path_of(problem: InitialValueProblem) -> Path:
 
 def along(problem: InitialValueProblem, path: Path) -> tuple[Followed, Solution]:
     solution = empty_solution(problem)
-    return at_once(problem, [path] * problem.start.shape[1], solution), solution
+    return at_once(problem, dict.fromkeys(range(problem.start.shape[1]), path), solution), solution
 
 
 def test_machines_follow_the_path_of_one_nearby() -> None:
@@ -107,13 +107,29 @@ def test_events_come_when_they_must() -> None:
     assert solution.states[0] == pytest.approx(gravity[:, None] * since * (2 * first[:, None] - since) / 2, abs=1e-9)
 
 
-@pytest.mark.parametrize(("gravity", "end"), [(9.0, 4.1), (10.5, 4.9)])
-def test_a_path_leads_up_to_where_other_events_come(gravity: float, end: float) -> None:
-    """Of another gravity a ball bounces less or more often in the record: its path ends before, and is right so far.
+def height_of_ball(gravity: float, t: Matrix) -> Matrix:
+    """Height at some times of a ball that falls from 1 m."""
+    first = np.sqrt(2 / gravity)
+    since = (t + first) % (2 * first)
+    return np.asarray(gravity * since * (2 * first - since) / 2)
+
+
+def test_a_path_leads_beyond_the_record_where_less_happens() -> None:
+    """Of less gravity a ball bounces less often in the record."""
+    stamps, rules = np.linspace(0, 4.1, 42), [EventRule(-1, sets=True)]
+    path = path_of(problem_of(Balls(np.array([9.81])), [1, 0], stamps, 1, events=rules))
+    followed, solution = along(problem_of(Balls(np.array([9.0])), [1, 0], stamps, 1, events=rules), path)
+    assert path.event.tolist().count(0) == 5
+    assert (solution.counts[0, 0], [*followed.whole], followed.part) == (4, [0], {})
+    assert solution.states[0, 0] == pytest.approx(height_of_ball(9.0, stamps), abs=1e-9)
+
+
+def test_a_path_leads_up_to_where_other_events_come() -> None:
+    """Of more gravity a ball bounces more often in the record: its path ends before, and is right so far.
 
     From there it is followed step by step.
     """
-    stamps, rules = np.linspace(0, end, 42), [EventRule(-1, sets=True)]
+    gravity, stamps, rules = 10.5, np.linspace(0, 4.9, 42), [EventRule(-1, sets=True)]
     path = path_of(problem_of(Balls(np.array([9.81])), [1, 0], stamps, 1, events=rules))
     problem = problem_of(Balls(np.array([gravity])), [1, 0], stamps, 1, events=rules)
     followed, solution = along(problem, path)
@@ -121,8 +137,7 @@ def test_a_path_leads_up_to_where_other_events_come(gravity: float, end: float) 
     assert not followed.whole
     bounces = np.floor((stamps[-1] - first) / (2 * first) + 1)
     assert solution.counts[0, 0] >= bounces - 1
-    since = (stamps + first) % (2 * first)
-    height = gravity * since * (2 * first - since) / 2
+    height = height_of_ball(gravity, stamps)
     is_known = stamps <= part.t[-1]
     assert solution.states[0, 0, is_known] == pytest.approx(height[is_known], abs=1e-9)
     assert np.isnan(solution.states[0, 0, ~is_known]).all()

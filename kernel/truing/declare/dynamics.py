@@ -382,11 +382,8 @@ def _beside_others(new: _Machines[Any, Any, Any]) -> list[_Followed]:
     leaders = _leaders(numbers)
     firsts = np.unique(leaders).tolist()
     near = {**_straight(new), **_nearest(known[-MOST_NEAR:], numbers)}
-    _add_along(made, new, numbers, {place: near[place] for place in firsts if place in near})
-    _add_alone(made, new, numbers, [place for place in firsts if place not in made])
-    rest = [(place, made[int(leader)].path) for place, leader in enumerate(leaders) if place not in made]
-    _add_along(made, new, numbers, {place: path for place, path in rest if path is not None})
-    _add_alone(made, new, numbers, [place for place in range(new.count) if place not in made])
+    _add(made, new, numbers, {place: near.get(place) for place in firsts})
+    _add(made, new, numbers, {place: made[int(first)].path for place, first in enumerate(leaders) if place not in made})
     return [made[place] for place in range(new.count)]
 
 
@@ -418,66 +415,68 @@ def _nearest(known: Sequence[_Followed], numbers: Matrix) -> dict[int, Path]:
     if not known:
         return {}
     several = np.array([each.numbers for each in known])
-    off = (np.abs(several - numbers[:, None]) / np.maximum(np.abs(numbers[:, None]), TINY)).sum(axis=2)
+    size = np.maximum(np.abs(several), np.abs(numbers[:, None]))
+    off = (np.abs(several - numbers[:, None]) / np.maximum(size, TINY)).sum(axis=2)
     nearest = np.argmin(np.where(np.isnan(off), np.inf, off), axis=1)
     pairs = [(place, known[best], off[place, best]) for place, best in enumerate(nearest)]
     return {place: best.path for place, best, far in pairs if best.path is not None and far < FAR}
 
 
-def _add_along(
-    made: dict[int, _Followed], new: _Machines[Any, Any, Any], numbers: Matrix, along: Mapping[int, Path],
-    *, goes_on: bool = True,
-) -> None:  # fmt: skip
-    """Follow some machines along paths, and step by step from where these no longer lead.
+def _add(
+    made: dict[int, _Followed], new: _Machines[Any, Any, Any], numbers: Matrix, along: Mapping[int, Path | None]
+) -> None:
+    """Follow some machines along paths, and step by step from where these no longer lead, or where there is none.
 
     Machines beside one another then have the same steps, so that their differences are not those of errors.
     """
     if not along:
         return
-    places = [*along]
-    problem = _problem(new.part(np.array(places)))
+    places = np.array([*along])
+    problem = _problem(new.part(places))
     solution = empty_solution(problem)
-    followed = at_once(problem, [*along.values()], solution)
-    whole = followed.whole
-    if followed.part and goes_on:
-        _go_on(problem, followed.part, solution)
-        whole = whole | {each: path for each, path in followed.part.items() if each not in solution.reasons}
-    for each, path in whole.items():
-        made[places[each]] = _one_of(solution, each, numbers[places[each]], path)
+    known = {row: path for row, path in enumerate(along.values()) if path is not None}
+    followed = at_once(problem, known, solution)
+    rest = [row for row in range(len(places)) if row not in followed.whole]
+    parts = {row: followed.part.get(row) or _nothing_of(problem, row) for row in rest}
+    whole = followed.whole | _gone_on(problem, parts, solution)
+    for row, place in enumerate(places.tolist()):
+        made[place] = _one_of(solution, row, numbers[place], whole.get(row))
 
 
-def _go_on(problem: InitialValueProblem, parts: dict[int, Path], solution: Solution) -> None:
-    """Follow machines step by step from the end of a path, and put what they took behind it."""
+def _gone_on(problem: InitialValueProblem, parts: Mapping[int, Path], solution: Solution) -> dict[int, Path]:
+    """Follow machines step by step from the ends of their paths; return the whole paths of those that have one.
+
+    Those that had none yet are followed along it once more, for its derivatives.
+    """
+    if not parts:
+        return {}
     machines, paths = np.array([*parts]), [*parts.values()]
-    begin = np.array([path.t[-1] for path in paths]), np.array([path.interval[-1] for path in paths])
-    begin[1][:] += begin[0] == problem.breaks[begin[1] + 1]
+    t, interval = np.array([path.t[-1] for path in paths]), np.array([path.interval[-1:].sum() for path in paths])
+    interval += t == problem.breaks[interval + 1]
     own = Solution(solution.states[:, machines], solution.counts[:, machines], solution.first[:, machines])
-    rest = replace(
-        problem, system=problem.system.part(machines), start=np.array([path.y[:, -1] for path in paths]).T, begin=begin,
-    )  # fmt: skip
+    start = np.array([path.y[:, -1] for path in paths]).T
+    rest = replace(problem, system=problem.system.part(machines), start=start, begin=(t, interval))
     taken = solve(rest, own, keeps_paths=True).paths(rest)
-    solution.states[:, machines], solution.counts[:, machines], solution.first[:, machines] = (
-        own.states, own.counts, own.first,
-    )  # fmt: skip
-    for place, machine in enumerate(machines.tolist()):
-        if place in taken:
-            parts[machine] = parts[machine].then(taken[place])
-        else:
-            solution.reasons[machine] = own.reasons.get(place, (GROWS, float(begin[0][place])))
+    _put(own, np.arange(len(machines)), solution, machines)
+    solution.reasons.update((int(machines[row]), reason) for row, reason in own.reasons.items())
+    whole = {int(machines[row]): paths[row].then(path) for row, path in taken.items()}
+    again = empty_solution(problem)
+    new = {row: whole[row] for row, path in parts.items() if row in whole and not len(path.event)}
+    followed = at_once(problem, new, again).whole
+    _put(again, [*followed], solution, [*followed])
+    return whole | followed
 
 
-def _add_alone(
-    made: dict[int, _Followed], new: _Machines[Any, Any, Any], numbers: Matrix, places: Sequence[int]
-) -> None:
-    """Follow some machines step by step."""
-    if not places:
-        return
-    problem = _problem(new.part(np.array(places)))
-    solution = solve(problem, keeps_paths=True)
-    paths = solution.paths(problem)
-    for each, place in enumerate(places):
-        made[place] = _one_of(solution, each, numbers[place], paths.get(each))
-    _add_along(made, new, numbers, {places[each]: path for each, path in paths.items()}, goes_on=False)
+def _put(made: Solution, rows: Sequence[int] | Indices, solution: Solution, machines: Sequence[int] | Indices) -> None:
+    """Put some machines of one solution into their places in another one."""
+    solution.states[:, machines] = made.states[:, rows]
+    solution.counts[:, machines], solution.first[:, machines] = made.counts[:, rows], made.first[:, rows]
+
+
+def _nothing_of(problem: InitialValueProblem, machine: int) -> Path:
+    """Return the path of a machine that stands where it starts."""
+    none = np.zeros(0, dtype=np.intp)
+    return Path(problem.stamps[:1], problem.start[:, [machine]], none, none)
 
 
 def _one_of(solution: Solution, machine: int, numbers: Matrix, path: Path | None) -> _Followed:
