@@ -252,10 +252,12 @@ def _calls(
 ) -> Iterator[tuple[list[_Alike], int]]:
     """Give the calculations of some trials of a record that are one call, and how many copies of one trial they are."""
     together = TOGETHER if machine.model.dynamics is None else MOVING_TOGETHER
+    known = _at_record(machine, rows.columns, record)
     waiting: list[_Alike] = []
     count = 0
     for number, trial in enumerate(trials):
-        own = [_Alike(*each, number) for each in _alike(record, machine, {**rows.columns, **trial}, rows)]
+        columns = known | _at_record(machine, trial, record)
+        own = [_Alike(*each, number) for each in _alike(record, machine, columns, rows)]
         if waiting and (len(waiting) + len(own) > together or own[0].values.keys() != waiting[0].values.keys()):
             yield waiting, count
             waiting, count = [], 0
@@ -287,37 +289,42 @@ def _places_alike(columns: tuple[tuple[Any, ...], ...], rows: int) -> list[NDArr
     return rows_alike(columns, rows)
 
 
+def _at_record(machine: Setup, columns: Mapping[str, Any], record: NDArray[np.intp]) -> dict[str, Any]:
+    """Return what the columns that are looked at say in the rows of a record: one value, or where it varies all."""
+    return {name: _one_or_all(column, record) for name, column in _seen_columns(machine, columns).items()}
+
+
+def _one_or_all(column: Any, places: NDArray[np.intp]) -> Any:
+    """Return the one value that a column has at these places, else a tuple of all; NaN is a value of its own."""
+    if isinstance(column, list):
+        values: Any = [column[place] for place in places]
+        is_one = all(value == values[0] for value in values)
+    elif not getattr(column, "ndim", 0):
+        return _plain(column)
+    elif column.strides == (0,) and column[0] == column[0]:
+        return float(column[0])
+    else:
+        values = column[places]
+        is_one = bool((values == values[0]).all())
+    return _plain(values[0]) if is_one else tuple(_plain(value) for value in values)
+
+
+def _plain(value: Any) -> Any:
+    return value if isinstance(value, (str, bool, int)) else float(value)
+
+
 def _alike(
-    record: NDArray[np.intp], machine: Setup, given: Mapping[str, Any], rows: RowsFile
+    record: NDArray[np.intp], machine: Setup, columns: Mapping[str, Any], rows: RowsFile
 ) -> Iterator[tuple[NDArray[np.intp], dict[str, Any]]]:
     """Give the rows of a record that share their values, and these. Raises UsageError for an input that changes."""
-    columns = _seen_columns(machine, given)
-    varying = [name for name, column in columns.items() if _varies(column, record)]
-    for name in varying if _is_by_run(machine, rows) else ():
+    varying = {name: values for name, values in columns.items() if isinstance(values, tuple)}
+    for name, values in varying.items() if _is_by_run(machine, rows) else ():
         if name in machine.model.input_fields:
-            column = columns[name]
-            line = next(rows.lines[row] for row in record if column[row] != column[record[0]])
+            line = next(rows.lines[row] for row, value in zip(record, values, strict=True) if value != values[0])
             raise UsageError(f"{rows.file}:{line}: {name} changes within a run, but a record is one calculation")
-    differing = tuple(tuple(columns[name][row] for row in record.tolist()) for name in varying)
-    for places in _places_alike(differing, len(record)):
-        yield record[places], {name: _value_at(column, record[places[0]]) for name, column in columns.items()}
-
-
-def _is_column(column: Any) -> bool:
-    return isinstance(column, list) or getattr(column, "ndim", 0) > 0
-
-
-def _varies(column: Any, places: NDArray[np.intp]) -> bool:
-    """Whether a column has more than one value at these places; NaN is a value of its own."""
-    if isinstance(column, list):
-        return any(column[row] != column[places[0]] for row in places)
-    few = places[:1] if getattr(column, "strides", ()) == (0,) else places
-    return _is_column(column) and bool((column[few] != column[places[0]]).any())
-
-
-def _value_at(column: Any, row: int) -> Any:
-    value = column[row] if _is_column(column) else column
-    return value if isinstance(value, (str, bool, int)) else float(value)
+    for places in _places_alike(tuple(varying.values()), len(record)):
+        own = {name: values[places[0]] for name, values in varying.items()}
+        yield record[places], {**columns, **own}
 
 
 def _readable(machine: Setup, rows: RowsFile, wanted: Collection[str] | None) -> Iterator[str]:

@@ -539,7 +539,8 @@ class _Machines(Generic[S, I, R]):
     def numbers(self) -> dict[tuple[str, ...], Matrix]:
         """By path what may differ between machines, (n,) or (n, k)."""
         fields_of = [each for each in self.dynamics.input_fields.values() if each.varies]
-        made = {each.path: np.broadcast_to(read(self.inputs, each.path), (self.count,)) for each in fields_of}
+        values = {each.path: read(self.inputs, each.path) for each in fields_of}
+        made = {path: value if np.ndim(value) else np.full(self.count, value) for path, value in values.items()}
         return made | {path: value for path, value in self.drives.items() if value.ndim > 1}
 
     @cached_property
