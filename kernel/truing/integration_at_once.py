@@ -46,6 +46,8 @@ MOST_GUESSES = 8
 """So often a machine is followed along a path that is better than the one before."""
 MOST_PARTS, NEARLY = 8, 0.5
 """Steps are parted into so many at the most, where their error is above this share of what it may be."""
+MOST_STEPS = 20_000
+"""A path that needs more of them is left to be followed step by step: it may be stiff."""
 FAR, SLOW = 1e6, 0.02
 """Derivatives are taken anew where states move by more than so many tolerances, or than this share of before."""
 
@@ -416,7 +418,7 @@ def _judged(several: _Several, grid: _Grid, shot: _Shot, many: Indices) -> dict[
     for row, steps in enumerate(np.minimum(many, (~grid.is_empty).sum(axis=1)).tolist()):
         number, path = int(several.machines[row]), _path(grid, shot, row, steps)
         if not (error[row, :steps] < 1).all():
-            finer[number] = _parted(path, dense, error[row], row * grid.shape[1])
+            finer |= _parted(number, path, dense, (error[row], row * grid.shape[1]))
             continue
         path = _path(grid, shot, row, min(steps, int(right[row])))
         before = followed.part.pop(number, None)
@@ -474,16 +476,22 @@ def _path(grid: _Grid, shot: _Shot, row: int, steps: int) -> Path:
     )
 
 
-def _parted(path: Path, dense: OwnDense, error: Matrix, first: int) -> Path:
-    """Return a path with shorter steps where their errors are too large, or nearly so."""
-    error = error[: len(path.event)]
+def _parted(number: int, path: Path, dense: OwnDense, where: tuple[Matrix, int]) -> dict[int, Path]:
+    """Return a path with shorter steps where their errors are too large, or nearly so; none where it gets too long.
+
+    ``where`` holds the errors of its steps, and where in all steps it begins.
+    """
+    error, first = where[0][: len(path.event)], where[1]
     parts = np.where(error > NEARLY, np.ceil((error / NEARLY) ** (1 / ORDER)).clip(2, MOST_PARTS), 1).astype(np.intp)
+    if parts.sum() > MOST_STEPS:
+        return {}
     which = np.repeat(np.arange(len(parts)), parts)
     part = np.arange(len(which)) - np.repeat(np.cumsum(parts) - parts, parts)
     begin = path.t[which] + part / parts[which] * (path.t[which + 1] - path.t[which])
     y = np.where(part == 0, path.y[:, which], dense.at(begin, first + which))
     event = np.where(part == parts[which] - 1, path.event[which], -1)
-    return Path(np.append(begin, path.t[-1]), np.column_stack([y, path.y[:, -1]]), path.interval[which], event)
+    y, t = np.column_stack([y, path.y[:, -1]]), np.append(begin, path.t[-1])
+    return {number: Path(t, y, path.interval[which], event)}
 
 
 def _steps_without_other(problem: InitialValueProblem, grid: _Grid, dense: OwnDense) -> Indices:

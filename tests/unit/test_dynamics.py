@@ -164,3 +164,29 @@ def test_a_field_that_is_no_state_is_refused() -> None:
         @states
         class Odd:
             warmth: Float = given(1.0, "K")
+
+
+def without_events(law: Dynamics[Water, Kettle, Heated]) -> Dynamics[Water, Kettle, Heated]:
+    return replace(law, events=(), gives=warmed)
+
+
+def warmed(kettle: Kettle, motion: Motion[Water]) -> Heated:
+    """The record alone."""
+    return Heated(time=motion.time, warm=motion.states.temperature, hot_at=0.0)
+
+
+@pytest.mark.parametrize("power", [[1000.0] * 11, [1000.0] * 5 + [0.0] * 6])
+@pytest.mark.parametrize("loss", [10.0, 1e7])
+def test_one_that_is_driven_is_followed_as_many_are(power: list[float], loss: float) -> None:
+    """All stamps at once or one after another, where nothing changes and where it is stiff: a lag of 0.4 ms."""
+    setup = default_setup(replace(KETTLE, function=without_events(HEATING)), power=np.array(power))
+    alone = evaluate_rows(setup, {"loss": np.array([loss])}, 1).results["warm"][0]
+    losses = np.full(100, loss)
+    many = evaluate_rows(setup, {"loss": losses}, 100).results["warm"]
+    assert alone == pytest.approx(many[0], rel=1e-8)
+    expected, warm = [293.15], 293.15
+    for each in power[:-1]:
+        end = 293.15 + each / loss
+        warm = end + (warm - end) * np.exp(-loss * 60 / 4000)
+        expected.append(warm)
+    assert alone == pytest.approx(expected, rel=1e-7)

@@ -28,7 +28,7 @@ from truing.integration import (
     empty_solution,
     solve,
 )
-from truing.integration_at_once import at_once
+from truing.integration_at_once import MOST_STEPS, at_once
 from truing.units import difference_unit
 
 WHAT_NOW = {
@@ -44,6 +44,8 @@ MOST_NEARBY = 64
 """More machines in one call, unless they are known, are drawn: nobody asks for them again, and none is remembered."""
 MOST_REMEMBERED, MOST_MACHINES, MOST_NEAR = 10_000_000, 4096, 256
 """So many values of states, and so many machines, are remembered; of so many the nearest one is looked for."""
+MOST_DRIVEN = 16
+"""So many driven machines are followed at all stamps at once; of more the stamps one after another take less time."""
 NEAR, FAR, TINY = 1e-3, 6, 1e-300
 """Sum of the shares by which numbers of machines differ that are followed along one path; and at the most."""
 
@@ -337,7 +339,7 @@ def _remembered(machines: _Machines[Any, Any, Any]) -> Solution:
         raise NotedError("these machines are followed later, with others")
     if machines.count > MOST_NEARBY and machines.keys[0] not in machines.dynamics.memory:
         return _all_steps(machines)
-    known = _follow(machines, _step_by_step)
+    known = _follow(machines, _by_themselves)
     reasons = {place: each.reason for place, each in enumerate(known) if each.reason}
     return Solution(
         np.stack([each.states for each in known], axis=1), np.stack([each.counts for each in known], axis=1),
@@ -366,6 +368,16 @@ def _all_steps(machines: _Machines[Any, Any, Any]) -> Solution:
     return solve(_problem(machines)) if machines.dynamics.step is None else _in_steps(machines)
 
 
+def _by_themselves(new: _Machines[Any, Any, Any]) -> list[_Followed]:
+    """Follow a few machines that are driven at all stamps at once, others step by step."""
+    straight = _straight(new) if new.count <= MOST_DRIVEN else {}
+    if not straight:
+        return _step_by_step(new)
+    made: dict[int, _Followed] = {}
+    _add(made, new, _numbers(new), straight)
+    return [made[place] for place in range(new.count)]
+
+
 def _step_by_step(new: _Machines[Any, Any, Any]) -> list[_Followed]:
     """Follow machines step by step."""
     solution = _all_steps(new)
@@ -376,7 +388,7 @@ def _beside_others(new: _Machines[Any, Any, Any]) -> list[_Followed]:
     """Follow machines: along a path that is known, else near one another, else step by step."""
     if new.dynamics.step is not None:
         return _step_by_step(new)
-    numbers = np.column_stack([np.zeros(new.count), *(each for each in new.numbers.values() if each.ndim == 1)])
+    numbers = _numbers(new)
     known = [each for key, each in new.dynamics.memory.items() if each.path is not None and key.startswith(new.record)]
     made: dict[int, _Followed] = {}
     leaders = _leaders(numbers)
@@ -387,12 +399,18 @@ def _beside_others(new: _Machines[Any, Any, Any]) -> list[_Followed]:
     return [made[place] for place in range(new.count)]
 
 
+def _numbers(new: _Machines[Any, Any, Any]) -> Matrix:
+    """Return what machines differ by, (n, numbers)."""
+    return np.column_stack([np.zeros(new.count), *(each for each in new.numbers.values() if each.ndim == 1)])
+
+
 def _straight(new: _Machines[Any, Any, Any]) -> dict[int, Path]:
     """Return a path for machines that are driven: one step from each stamp to the next, at rest where it starts."""
-    if not new.drives or new.dynamics.events:
+    if not new.drives or new.dynamics.events or new.dynamics.step is not None or len(new.stamps) > MOST_STEPS:
         return {}
     start, steps = new.start(), len(new.stamps) - 1
-    interval, no_event = np.arange(steps), np.full(steps, -1)
+    interval = np.searchsorted(new.bent(), np.arange(steps), side="right") - 1
+    no_event = np.full(steps, -1)
     states = (np.repeat(start[:, place, None], steps + 1, axis=1) for place in range(new.count))
     return {place: Path(new.stamps, each, interval, no_event) for place, each in enumerate(states)}
 
