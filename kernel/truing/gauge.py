@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from truing.declare.dynamics import NotedError, following_together, is_noting
 from truing.declare.fields import Axis
+from truing.declare.following import NotedError, following_together, is_noting
 from truing.errors import Fault, InputError, UsageError
 from truing.evaluate import Rows, evaluate_rows, put_together, rows_alike
 from truing.measurements import RowsFile

@@ -43,7 +43,7 @@ from truing import (
     states,
 )
 from truing.calculation import calculate
-from truing.declare import dynamics
+from truing.declare import following
 from truing.declare.model import PROMISES
 from truing.describe import description
 from truing.errors import DeclarationError
@@ -581,6 +581,6 @@ def test_formulas_of_a_motion_are_held_against_one_that_is_followed_once(monkeyp
         followed.append(1)
         return integration.solve(problem, **how)
 
-    monkeypatch.setattr(dynamics, "solve", solve)
+    monkeypatch.setattr(following, "solve", solve)
     formulas_have_the_unit(Subject(replace(KETTLE, function=replace(KETTLE.function))))
     assert len(followed) == 1

@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from truing.arrays import Indices, Matrix
-from truing.declare.dynamics import NotedError, following_together
+from truing.declare.following import NotedError, following_together
 from truing.declare.sources import Effect
 from truing.diagnosis.causes import Candidate, at_rest
 from truing.diagnosis.machine import Calibration, Tolerated, predict_each
