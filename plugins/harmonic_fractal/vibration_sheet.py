@@ -23,7 +23,7 @@ from harmonic_fractal.vibration_run import (
     runs_of,
     transmission_error,
 )
-from truing import Array, Block, Drawing, Model, Record, Section, Table, TruingError
+from truing import Array, Block, Drawing, Frequency, Model, Record, Section, Table, TruingError
 
 MICRO, KILO = 1e6, 1e3
 TURN = 60.0  # rpm per turn in a second
@@ -227,6 +227,9 @@ VIBRATION = Model(
             "damping_force", "losses_of_contact", "back_impacts",
             blocks=history,
         ),
+    ],
+    studies=[
+        Frequency(input="torque", output="mesh_force", point="start", over="torque", at="1..50 N*m"),
     ],
     cites=LITERATURE,
     example=Path(__file__).with_name("vibration.toml"),

@@ -12,6 +12,8 @@ from harmonic_fractal.vibration import RECORD, Running, Turned, loaded_at_rest, 
 from harmonic_fractal.vibration_run import RunUp
 from harmonic_fractal.vibration_sheet import RUN_UP, VIBRATION
 from hidden_effects.vibration_in_steps import Machines, run
+from truing import FrequencyAnswer
+from truing.calculation import calculate
 from truing.evaluate import evaluate
 from truing.setup import default_setup
 
@@ -50,6 +52,24 @@ def test_the_oscillator_is_that_of_figure_1() -> None:
     assert stiff["mesh_stiffness"] == pytest.approx(stiff["rough_stiffness"], rel=1e-4)
     stated = mesh_quantities(pair(stated_stiffness="3.8e8 N/m", roughness_clearance="none", form_clearance="0.1 mm"))
     assert (stated["mesh_stiffness"], stated["clearance"]) == (3.8e8, pytest.approx(5e-5))
+
+
+def test_small_oscillations_are_those_of_figure_1_linearised() -> None:
+    """Poles, dynamic factor and natural frequency over torque by their closed forms, stiffness by the other model."""
+    answer = calculate(default_setup(VIBRATION)).outcomes["frequency"]
+    assert isinstance(answer, FrequencyAnswer)
+    mesh = mesh_quantities(pair(torque="5 N*m"))
+    natural, damping = np.sqrt(mesh["mesh_stiffness"] / mesh["effective_mass"]), 0.03
+    pole = answer.poles[0]
+    assert abs(pole) == pytest.approx(natural, rel=1e-6)
+    assert -pole.real / abs(pole) == pytest.approx(damping, rel=1e-6)
+    ratio = 2 * np.pi * answer.frequencies / natural
+    expected = 1 / (1 - ratio**2 + 2j * damping * ratio) / RADIUS
+    assert answer.response == pytest.approx(expected, rel=1e-5)
+    assert answer.campbell is not None
+    stiffness = [mesh_quantities(pair(torque=f"{each} N*m"))["mesh_stiffness"] for each in answer.campbell.axis[::20]]
+    over_torque = np.sqrt(np.array(stiffness) / mesh["effective_mass"] * (1 - damping**2)) / (2 * np.pi)
+    assert answer.campbell.frequencies[::20, 0] == pytest.approx(over_torque, rel=1e-6)
 
 
 # A linear oscillator: frequency response, and how it gets there
