@@ -35,7 +35,7 @@ from truing.numbers import ABSENT, format_difference, format_ends, format_value,
 from truing.published import compare_one, same_run
 from truing.report.document import Value, plain_text
 from truing.report.equations import equation_of
-from truing.report.sheet import input_value
+from truing.report.given import input_value
 from truing.runs.documents import clean
 from truing.setup import Setup, SwitchedOn
 from truing.studies.bench import Progress, silent

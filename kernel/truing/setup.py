@@ -180,10 +180,14 @@ class InputsSource:
 
 @dataclass(frozen=True, kw_only=True)
 class SheetOptions:
-    """What stands at the head of the sheet, by name, and how much of everything: "short", "normal" or "full"."""
+    """What stands at the head of the sheet, by name, and how much of everything: "short", "normal" or "full".
+
+    ``paper`` is what it is printed on, "A4" or "letter".
+    """
 
     head: Mapping[str, str] = field(default_factory=dict)
     detail: str = "normal"
+    paper: str = "A4"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -106,7 +106,9 @@ class MadeFlank:
                            method="stated, or by rule")  # fmt: skip
     shortest: Float = found("um", symbol="lambda_n", note="shortest wave of the sum; Brownian motion has shorter ones",
                             method="stated, or by rule")  # fmt: skip
-    rms_height: Float = found("nm", symbol="S_q", note=f"root mean square height {PLANE}", method="of the points")
+    rms_height: Float = found(
+        "nm", symbol="S_q", note=f"root mean square height {PLANE}", method="of the points", key=True
+    )
     height: Float = found("nm", symbol="S_z", note=f"from the lowest to the highest point {PLANE}",
                           method="of the points")  # fmt: skip
     lag: Float = rows("lag", unit="um")

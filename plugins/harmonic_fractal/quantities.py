@@ -157,11 +157,11 @@ class Stiffness:
     spacing: Float = found("um", symbol="dx_s", note="sampling interval behind D and G",
                            method="of the flank that was measured, else as stated")  # fmt: skip
     dimension: Float = found("", symbol="D", note="fractal dimension of both flanks together",
-                             method="sum of both structure functions, fitted by one power law")  # fmt: skip
+                             method="sum of both structure functions, fitted by one power law", key=True)  # fmt: skip
     profile_dimension: Float = found("", symbol="D_s", note="fractal dimension of profiles", formula="dimension - 1",
                                      source="equation 5 of the patent")  # fmt: skip
     roughness: Float = found("m", symbol="G", note="fractal roughness of both, areal convention",
-                             method="as the dimension")  # fmt: skip
+                             method="as the dimension", key=True)  # fmt: skip
     # One pair of teeth
     equivalent_modulus: Float = found(
         "GPa", symbol="E", note="equivalent modulus of both bodies", source=HERTZ,
@@ -223,6 +223,7 @@ class Stiffness:
         "N/m", symbol="K", note="normal stiffness of one pair of rough flanks", source=PATENT_6,
         formula="tip_factor * equivalent_modulus * sqrt(2 * critical_area / pi) * (dimension - 1) / (dimension - 2)"
         " * domain_factor**((3 - dimension) / 2) * max(area_ratio**((dimension - 1) / 2) - sqrt(area_ratio), 0)",
+        key=True,
     )  # fmt: skip
     load_exponent: Float = found(
         "", symbol="m", note="load exponent d ln K/d ln F at this load; 0 where there is no stiffness",
@@ -240,7 +241,7 @@ class Stiffness:
     clearance: Float = found("nm", symbol="b", note="clearance of equation 7, as printed; it grows with the load",
                              source=PATENT_7,
                              formula="clearance_multiple * roughness**(dimension - 2) * sqrt(log(density))"
-                                     " * (2 * clearance_radius)**(3 - dimension)")  # fmt: skip
+                                     " * (2 * clearance_radius)**(3 - dimension)", key=True)  # fmt: skip
     rough_height: Float = found("um", symbol="S_1", note="height of the flank, lowest to highest point",
                                 method="as stated, else measured, else of its fractal patch")  # fmt: skip
     mating_rough_height: Float = found("um", symbol="S_2", note="height of the mating flank; 0 if smooth",
@@ -275,7 +276,7 @@ class Stiffness:
     normal_stiffness: Float = found("N/m", symbol="K_n", note="stiffness of all engaged pairs along their normals",
                                     method=SHARES)  # fmt: skip
     mesh_stiffness: Float = found("N*m/rad", symbol="K_mesh", note="stiffness of all engaged pairs about the axis",
-                                  formula="normal_stiffness * effective_radius**2")  # fmt: skip
+                                  formula="normal_stiffness * effective_radius**2", key=True)  # fmt: skip
     mesh_torsion: Float = found("urad", symbol="theta_m", note="torsion of the mesh, from the reference torque on",
                                 method="integral of dT/K_mesh by Gauss and Legendre")  # fmt: skip
     # The drive
@@ -296,11 +297,11 @@ class Stiffness:
     torsional_stiffness: Float = found(
         "N*m/rad", symbol="K_theta", note="stiffness of the mesh in series with the drive, at the torque",
         formula="normal_stiffness * effective_radius**2"
-        " / (1 + series_compliance * normal_stiffness * effective_radius**2)",
+        " / (1 + series_compliance * normal_stiffness * effective_radius**2)", key=True,
     )  # fmt: skip
     torsion: Float = found(
         "urad", symbol="theta", note="torsion of the drive, from the reference torque on; 0 below",
-        formula="mesh_torsion + sign(torque) * series_compliance * max(abs(torque) - reference_torque, 0)",
+        formula="mesh_torsion + sign(torque) * series_compliance * max(abs(torque) - reference_torque, 0)", key=True,
     )  # fmt: skip
     rough_torsion: Float = found("urad", symbol="theta_r", note="torsion of the rough contacts alone, all else rigid",
                                  method="as that of the mesh")  # fmt: skip
@@ -310,4 +311,5 @@ class Stiffness:
                                        method="the piece in which the torque lies", source=CATALOGUES)  # fmt: skip
     rough_share: Float = found("%", symbol="q_theta",
                                note="share of the catalogue's torsion that the rough contacts explain",
-                               formula="cases(rough_torsion / catalogue_torsion, abs(torque) > 0, 0)")  # fmt: skip
+                               formula="cases(rough_torsion / catalogue_torsion, abs(torque) > 0, 0)",
+                               key=True)  # fmt: skip

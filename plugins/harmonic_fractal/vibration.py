@@ -125,14 +125,15 @@ class Mesh:
     rough_stiffness: Float = found("N/m", symbol="K_r", note="stiffness of all pairs if only their rough contacts gave "
                                    "way", method="sum over the engaged pairs")  # fmt: skip
     mesh_stiffness: Float = found("N/m", symbol="K", note="stiffness of the mesh along its normals at the torque",
-                                  method="as stated, else sum over the engaged pairs, each in series with its tooth"
+                                  method="as stated, else sum over the engaged pairs, each in series with its tooth",
+                                  key=True
                                   )  # fmt: skip
     rough_share: Float = found("%", symbol="q_r", note="share of the compliance of the mesh that is of rough contacts",
-                               formula="mesh_stiffness / rough_stiffness")  # fmt: skip
+                               formula="mesh_stiffness / rough_stiffness", key=True)  # fmt: skip
     rough_clearance: Float = found("nm", symbol="b_r", note="clearance by roughness, to either side",
                                    method="by roughness_clearance")  # fmt: skip
     clearance: Float = found("um", symbol="b", note="clearance of the backlash function, to either side",
-                             source=FIGURE_2, formula="form_clearance / 2 + rough_clearance")  # fmt: skip
+                             source=FIGURE_2, formula="form_clearance / 2 + rough_clearance", key=True)  # fmt: skip
     wave_force: Float = found("N", symbol="F_2", note="wave of the force of the mesh by that of the torque, which acts "
                               "on the flexspline",
                               formula="effective_mass * effective_radius * torque_wave / ring_inertia")  # fmt: skip
@@ -144,12 +145,12 @@ class Mesh:
                            formula="damping_ratio + oil_damping / (2 * sqrt(mesh_stiffness * effective_mass))"
                            )  # fmt: skip
     natural_frequency: Float = found("Hz", symbol="f_n", note="natural frequency in contact, undamped",
-                                     formula="sqrt(mesh_stiffness / effective_mass) / (2 * pi)")  # fmt: skip
+                                     formula="sqrt(mesh_stiffness / effective_mass) / (2 * pi)", key=True)  # fmt: skip
     order: Float = found("", symbol="z", note="meshes per turn of the wave generator",
                          method="as stated, else teeth of the circular spline")  # fmt: skip
     resonance_speed: Float = found("rpm", symbol="n_0", note="speed of the wave generator at which the mesh frequency "
                                    "is the natural one",
-                                   formula="natural_frequency / order")  # fmt: skip
+                                   formula="natural_frequency / order", key=True)  # fmt: skip
 
 
 SHARED = [each.name for each in fields(GearPair) if each.name in {one.name for one in fields(Drive)}]
@@ -293,9 +294,9 @@ class Vibration(Mesh):
         " * sin(mesh_phase))",
     )  # fmt: skip
     losses_of_contact: Float = found("", symbol="N_1", note="times at which the driving flanks part", digits=4,
-                                     method="located events")  # fmt: skip
+                                     method="located events", key=True)  # fmt: skip
     back_impacts: Float = found("", symbol="N_2", note="times at which the other flanks are hit", digits=4,
-                                method="located events")  # fmt: skip
+                                method="located events", key=True)  # fmt: skip
 
 
 def deflection_of(turned: Turned, running: Running) -> Float:

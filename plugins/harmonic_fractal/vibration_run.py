@@ -52,14 +52,18 @@ class Response(Mesh):
                                  method="product of the transitions over a period")  # fmt: skip
     multiplier_down: Float = found("", symbol="mu_dn", note="the same on the way down", along="speed",
                                    method="product of the transitions over a period")  # fmt: skip
-    largest_amplitude: Float = found("um", symbol="y_max", note="largest of both runs", method="of the speeds stated")
-    largest_force: Float = found("N", symbol="F_max", note="largest of both runs", method="of the speeds stated")
+    largest_amplitude: Float = found(
+        "um", symbol="y_max", note="largest of both runs", method="of the speeds stated", key=True
+    )
+    largest_force: Float = found(
+        "N", symbol="F_max", note="largest of both runs", method="of the speeds stated", key=True
+    )
     most_impacts: Float = found("", symbol="s_max", note="most flanks that are hit in either run", digits=1,
-                                method="of the speeds stated")  # fmt: skip
+                                method="of the speeds stated", key=True)  # fmt: skip
     jump_up: Float = found("rpm", symbol="n_up", note="speed of the largest jump on the way up",
-                           method="where the curve of all motions turns back")  # fmt: skip
+                           method="where the curve of all motions turns back", key=True)  # fmt: skip
     jump_down: Float = found("rpm", symbol="n_dn", note="speed of the largest jump on the way down",
-                             method="where the curve of all motions turns back")  # fmt: skip
+                             method="where the curve of all motions turns back", key=True)  # fmt: skip
     hysteresis: Float = found("rpm", symbol="n_h", note="speeds between the two jumps", formula="jump_up - jump_down")
 
 

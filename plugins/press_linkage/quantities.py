@@ -108,11 +108,11 @@ class Slider:
     slider_position: Float = found(
         "mm", digits=7, symbol="z_2", note="slider height, downward from O",
         formula="(face_height_1 + face_height_2) / 2",
-        source="Eq. (7), reconstructed",
+        source="Eq. (7), reconstructed", key=True,
     )  # fmt: skip
     slider_tilt: Float = found("urad", symbol="theta", note="slider tilt, positive with side 1 lower",
                                formula="(face_height_1 - face_height_2) / (2 * slider_half_width)",
-                               source="Eq. (8), reconstructed")  # fmt: skip
+                               source="Eq. (8), reconstructed", key=True)  # fmt: skip
     permitted_tilt: Float = found(
         "deg", symbol="L_theta", note="permitted tilt in force",
         method="tilt_limit where it is given; otherwise 0.0013 degree (complete) or 0.001324 degree (printed)",
@@ -140,7 +140,7 @@ class Cycle:
     tdc_position: Float = found("mm", digits=7, symbol="z_2,T", note="slider at the top dead centre",
                                 method="exact position at the angle above")  # fmt: skip
     stroke: Float = found("mm", digits=7, symbol="H", note="stroke of the slider",
-                          formula="bdc_position - tdc_position")  # fmt: skip
+                          formula="bdc_position - tdc_position", key=True)  # fmt: skip
     smallest_sine: Float = found(
         "", symbol="s_min", note="closest approach to a singular position over the turn (0 is singular)",
         method="least of the sines of theta_21, theta_18 and theta_19 - theta_17, both sides",
@@ -159,10 +159,12 @@ class PressChances:
                                method="tilt of this press; by stated deviations and effects")  # fmt: skip
     position_reliability: Float = found("", symbol="R_S", note="chance that the position error stays within its limit",
                                         formula="Phi((position_limit - position_offset) / position_sd) - "
-                                                "Phi((-position_limit - position_offset) / position_sd)")  # fmt: skip
+                                                "Phi((-position_limit - position_offset) / position_sd)",
+                                                key=True)  # fmt: skip
     tilt_reliability: Float = found(
         "", symbol="R_theta", note="chance that the tilt stays within its limit",
         formula="Phi((permitted_tilt - tilt_offset) / tilt_sd) - Phi((-permitted_tilt - tilt_offset) / tilt_sd)",
+        key=True,
     )  # fmt: skip
 
 
@@ -172,9 +174,9 @@ class Synthesis:
 
     adjustments: Float = found("", symbol="n", note="adjustments made, each one grade of one link", method="the rule")
     position_reliability_final: Float = found("", symbol="R_S'", note="position reliability with the tightened links",
-                                              method="first order, as above")  # fmt: skip
+                                              method="first order, as above", key=True)  # fmt: skip
     tilt_reliability_final: Float = found("", symbol="R_theta'", note="tilt reliability with the tightened links",
-                                          method="first order, as above")  # fmt: skip
+                                          method="first order, as above", key=True)  # fmt: skip
     coefficient_lower_knee_length: Float = found("", symbol="r_lh", note="lower knee link", source=ORDER)
     coefficient_upper_knee_length: Float = found("", symbol="r_lm", note="upper knee link", source=ORDER)
     coefficient_knee_drive_length: Float = found("", symbol="r_lg", note="knee drive", source=ORDER)
@@ -305,9 +307,9 @@ class ErrorInfluence:
     )
     position_sd: Float = found(
         "um", symbol="sigma_S", note="standard deviation of the slider position", source="Eq. (11), reconstructed",
-        formula="sqrt(variance_links + variance_joints_along + variance_joints_across + variance_other)",
+        formula="sqrt(variance_links + variance_joints_along + variance_joints_across + variance_other)", key=True,
     )  # fmt: skip
     tilt_sd: Float = found(
         "urad", symbol="sigma_theta", note="standard deviation of the slider tilt", source="Eq. (12), reconstructed",
-        method="root of the sum of (derivative times standard deviation) squared over all sources",
+        method="root of the sum of (derivative times standard deviation) squared over all sources", key=True,
     )  # fmt: skip

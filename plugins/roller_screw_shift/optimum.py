@@ -647,7 +647,7 @@ def reach(symbol: str, what: str, unit: str = "") -> Any:
 
 def optimal(symbol: str, what: str, unit: str = "") -> Any:
     """Declare a number at the optimum."""
-    return found(unit, symbol=symbol, note=f"{what} at the optimum", method=BOX)
+    return found(unit, symbol=symbol, note=f"{what} at the optimum", method=BOX, key="shift" in what)
 
 
 @results

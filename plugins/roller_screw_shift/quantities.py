@@ -161,7 +161,7 @@ class Meshing:
     contact_ratio: Float = found(
         "", symbol="epsilon", note="contact ratio", source="equation 8 of the paper, not legible; ISO 21771",
         formula="(roller_teeth * (tan(tip_angle_roller) - tan(mounted_angle))"
-        " - ring_teeth * (tan(tip_angle_ring) - tan(mounted_angle))) / (2 * pi)",
+        " - ring_teeth * (tan(tip_angle_ring) - tan(mounted_angle))) / (2 * pi)", key=True,
     )  # fmt: skip
     half_angle_roller: Float = found(
         "deg", symbol="gamma", note="half the angle of the tooth of the roller at its tip", source=INVOLUTE,
@@ -209,7 +209,7 @@ class Meshing:
     sliding_roller: Float = found("", symbol="eta_E",
                                   note="specific sliding of the roller that counts, its largest on the path of contact",
                                   formula="max(root_sliding_roller, tips_count * tip_sliding_roller)",
-                                  source="sliding changes in one direction along the path")  # fmt: skip
+                                  source="sliding changes in one direction along the path", key=True)  # fmt: skip
     root_sliding_ring: Float = found(
         "", symbol="eta_I,f", note="specific sliding at the root of the ring, where the tip of the roller meets it; "
         "magnitude", source="1 - v_E/v_I of the speeds along the flanks",
@@ -323,12 +323,12 @@ class Meshing:
     )  # fmt: skip
     root_stress_roller: Float = found(
         "MPa", symbol="sigma_FE", note="root stress of the roller",
-        formula="nominal_stress_roller * face_load_factor * dynamic_factor * sharing_factor / carrying_share",
+        formula="nominal_stress_roller * face_load_factor * dynamic_factor * sharing_factor / carrying_share", key=True,
     )  # fmt: skip
     root_stress_ring: Float = found(
         "MPa", symbol="sigma_FI", note="root stress of the ring",
         formula="nominal_stress_ring * face_load_factor * dynamic_factor * sharing_factor * rim_factor"
-        " / carrying_share",
+        " / carrying_share", key=True,
     )  # fmt: skip
     # Objectives
     shift_sum: Float = found("", symbol="f_1", note="to be large: sum of the shifts; the difference is fixed",
@@ -388,4 +388,5 @@ class Meshing:
     backlash: Float = found("um", symbol="j_t",
                             note="arc between the free flanks at the pitch circle as mounted; below 0 the teeth jam. "
                                  "Centres farther apart close an internal pair", source=INVOLUTE,
-                            formula="2 * mounted_distance * (inv(working_angle) - inv(mounted_angle))")  # fmt: skip
+                            formula="2 * mounted_distance * (inv(working_angle) - inv(mounted_angle))",
+                            key=True)  # fmt: skip

@@ -26,7 +26,7 @@ class Duty:
 
     pins: Float = found("", symbol="Z_5", note="pins", method="those stated, else those of the group", digits=4)
     ratio: Float = found("", symbol="i", note="input turns over output turns", source="equation 1 of the paper",
-                         formula="1 + teeth_planet * pins / teeth_sun")  # fmt: skip
+                         formula="1 + teeth_planet * pins / teeth_sun", key=True)  # fmt: skip
     pin_ratio: Float = found("", symbol="k", note="pins over teeth of the disc", formula="pins / (pins - 1)")
     mesh_efficiency: Float = found(
         "", symbol="eta_16", note="efficiency of both meshes", source="equation 8 of the paper",
@@ -46,7 +46,8 @@ class Duty:
         formula="either(stated_sun_torque, asked_torque / (ratio * mesh_efficiency * bearing_efficiency**3))",
     )  # fmt: skip
     output_torque: Float = found("N*m", symbol="T_2", note="torque at the output",
-                                 formula="sun_torque * ratio * mesh_efficiency * bearing_efficiency**3")  # fmt: skip
+                                 formula="sun_torque * ratio * mesh_efficiency * bearing_efficiency**3",
+                                 key=True)  # fmt: skip
     tangential_force: Float = found("N", symbol="F_t", note="tangential force of one mesh, without load factors",
                                     formula="2 * sun_torque / (planets * reference_diameter_sun)")  # fmt: skip
     pitch_line_velocity: Float = found("m/s", symbol="v", note="pitch line velocity relative to the carrier",

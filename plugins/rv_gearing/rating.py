@@ -94,7 +94,7 @@ class Strength:
     contact_stress: Float = found("MPa", symbol="sigma_H", note="contact stress of the sun", method="as of the sun")
     transmission_error: Float = found("um", symbol="TE", note="along the line of action", method=BASE)
     efficiency: Float = found("", symbol="eta", note="input to output", source="equations 6 and 7 of the paper",
-                              formula="mesh_efficiency * bearing_efficiency**3")  # fmt: skip
+                              formula="mesh_efficiency * bearing_efficiency**3", key=True)  # fmt: skip
     flank_temperature: Float = found("degC", symbol="theta_M", note="of the flanks", method="that of the oil")
     backlash: Float = found(
         "um", symbol="j_n", note="along the line of action; 0 at the centre distance without backlash",
@@ -108,9 +108,9 @@ class Strength:
         " * sqrt(tangential_force / (reference_diameter_sun * carrying_width) * (tooth_ratio + 1) / tooth_ratio)",
     )  # fmt: skip
     contact_safety: Float = found("", symbol="S_H", note="least safety against pitting of both gears",
-                                  formula="min(contact_safety_sun, contact_safety_planet)")  # fmt: skip
+                                  formula="min(contact_safety_sun, contact_safety_planet)", key=True)  # fmt: skip
     root_safety: Float = found("", symbol="S_F", note="least safety against breakage of both gears, load at the tip",
-                               formula="min(root_safety_sun, root_safety_planet)")  # fmt: skip
+                               formula="min(root_safety_sun, root_safety_planet)", key=True)  # fmt: skip
     root_safety_outer: Float = found(
         "", symbol="S_F,B", note="least safety against breakage of both gears, load at the outer single contact",
         formula="min(root_safety_outer_sun, root_safety_outer_planet)",
@@ -251,9 +251,9 @@ class Rating:
     """What the first stage may be loaded with."""
 
     torque_capacity: Float = found("N*m", symbol="T_2,max", note="output torque at which the first safety is used up",
-                                   method=SOUGHT)  # fmt: skip
+                                   method=SOUGHT, key=True)  # fmt: skip
     power_capacity: Float = found("kW", symbol="P_max", note="input power at this torque and the speed of the run",
-                                  method="in proportion to the torque")  # fmt: skip
+                                  method="in proportion to the torque", key=True)  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -40,7 +40,8 @@ class History:
                               method="equations 13 to 16")  # fmt: skip
 
     wear_place: Float = found("%", symbol="x_h", note="place of the deepest wear in the loaded part of the flank",
-                              method="0 where the contact of the new mesh begins, 100 % where it ends")  # fmt: skip
+                              method="0 where the contact of the new mesh begins, 100 % where it ends",
+                              key=True)  # fmt: skip
     history_time: Float = axis("h", symbol="T", note="working time")
     wear_history: Float = found("um", symbol="h_max", along="history_time", note="deepest wear",
                                 method="equations 13 to 16 up to each time")  # fmt: skip
@@ -83,18 +84,19 @@ class Chances:
     """How often the backlash stays within its limit, and the normal distribution beside it."""
 
     accuracy_reliability: Float = found("%", symbol="R_T", note="share of machines within the permitted backlash",
-                                        method=COUNTED)  # fmt: skip
+                                        method=COUNTED, key=True)  # fmt: skip
     normal_reliability: Float = found("%", symbol="R_N", note="the same for a normal distribution",
                                       method="first order; equation 21 is linear",
-                                      formula="Phi((permitted_backlash - backlash_mean) / backlash_sd)")  # fmt: skip
-    backlash_mean: Float = found("arcmin", symbol="mu", note="mean of the machines", method="first order")
+                                      formula="Phi((permitted_backlash - backlash_mean) / backlash_sd)",
+                                      key=True)  # fmt: skip
+    backlash_mean: Float = found("arcmin", symbol="mu", note="mean of the machines", method="first order", key=True)
     backlash_sd: Float = found("arcmin", symbol="sigma", note="standard deviation of the machines",
-                               method="first order")  # fmt: skip
+                               method="first order", key=True)  # fmt: skip
     sampled_mean: Float = found("arcmin", symbol="mu_d", note="mean of the machines drawn", method="Monte Carlo")
     sampled_sd: Float = found("arcmin", symbol="sigma_d", note="standard deviation of the machines drawn",
                               method="Monte Carlo")  # fmt: skip
     largest_backlash: Float = found("arcmin", symbol="Delta phi_d", note="largest among the machines drawn",
-                                    method="Monte Carlo")  # fmt: skip
+                                    method="Monte Carlo", key=True)  # fmt: skip
     reliability_time: Float = axis("h", symbol="T", note="working time")
     reliability_history: Float = found("%", symbol="R_T", along="reliability_time",
                                        note="share within the permitted backlash", method=COUNTED)  # fmt: skip

@@ -233,7 +233,7 @@ class Front:
     knee_equidistant: Float = found("um", symbol="Delta r_rp,k", note="equidistant modification at the knee",
                                     method=KNEE)  # fmt: skip
     smallest_wear: Float = found("um", symbol="h_f", note="smallest wear on the front",
-                                 method="where no zone may be wider than it is now")  # fmt: skip
+                                 method="where no zone may be wider than it is now", key=True)  # fmt: skip
     front_cost: Float = axis("yuan", symbol="C", note="cost of the designs of the front")
     front_wear: Float = found("um", symbol="h_max", along="front_cost", note="deepest wear of the designs of the front",
                               method=ORDER)  # fmt: skip

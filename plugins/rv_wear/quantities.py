@@ -158,7 +158,7 @@ class Wear:
                                formula="4 * disc_torque / (short_width * (pin_count - 1) * pin_circle_radius)",
                                source="equation 1")  # fmt: skip
     max_force: Float = found("N", symbol="F_max", note="force at the longest arm, unworn, the worst position",
-                             method="torque balance of all loaded pins, equations 1b to 4")  # fmt: skip
+                             method="torque balance of all loaded pins, equations 1b to 4", key=True)  # fmt: skip
     approach: Float = found("um", symbol="delta_max", note="approach of disc and pin under that force",
                             method="line contact, equation 1b")  # fmt: skip
     largest_force: Float = found("N", symbol="F_i", note="largest force on a pin, unworn", method="equation 2")
@@ -170,7 +170,8 @@ class Wear:
     coefficient: Float = found("1/Pa", symbol="k", note="wear coefficient at the longest arm, unworn",
                                method="regression of Janakiraman, Li and Kahraman, equations 9 and 10")  # fmt: skip
     max_wear: Float = found("um", symbol="h_max", note="deepest wear, of the flank that is loaded longer",
-                            method="equations 13 to 16: wear, new profile, new forces, step by step")  # fmt: skip
+                            method="equations 13 to 16: wear, new profile, new forces, step by step",
+                            key=True)  # fmt: skip
     wear_angle: Float = found("deg", symbol="psi_h", note="phase angle of the deepest wear", method="as the wear")
     backlash_wear: Float = found("um", symbol="h_phi", note="wear that is felt at a flank as lost motion",
                                  method="deepest wear, mean of both flanks, with the shares of the inputs")  # fmt: skip
@@ -203,5 +204,5 @@ class Wear:
                                     source=EQUATION_21, formula="bearing_clearance / centre_distance")  # fmt: skip
     backlash: Float = found(
         "arcmin", symbol="Delta phi", note="backlash at the output", source=EQUATION_21,
-        formula="backlash_involute + backlash_gearing + backlash_of_wear + backlash_bearing",
+        formula="backlash_involute + backlash_gearing + backlash_of_wear + backlash_bearing", key=True,
     )  # fmt: skip

@@ -18,7 +18,7 @@ from harmonic_fractal.surface import Direction, Lines, Surface, without_line
 from harmonic_fractal.uncertainty import SurfaceValidity
 from truing import Drawing, Table
 from truing.calculation import Calculation, calculate
-from truing.report.sheet import input_value
+from truing.report.given import input_value
 from truing.setup import default_setup
 
 SPACING = 0.5e-6

@@ -37,7 +37,7 @@ from truing.executors import open_executor
 from truing.fits import tolerance
 from truing.measurements import CasesFile, RowCount, StatedCase
 from truing.prices import price_of, prices_at
-from truing.report.sheet import least_margin
+from truing.report.limits import least_margin
 from truing.runs.documents import results_document
 from truing.runs.provenance import provenance_of
 from truing.setup import Setup, SwitchedOn, default_setup

@@ -37,7 +37,7 @@ from truing.calculation import calculate
 from truing.declare.spreads import Off, read_spread
 from truing.errors import UsageError
 from truing.fits import GRADES, tolerance
-from truing.report.sheet import check_rows
+from truing.report.limits import check_rows
 from truing.setup import Setup, default_setup
 from truing.studies.sampling import Tally
 

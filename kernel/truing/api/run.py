@@ -27,8 +27,9 @@ from truing.measurements import read_cases
 from truing.numbers import format_value, with_unit
 from truing.progress import progress_bar
 from truing.report.document import plain_text
+from truing.report.limits import check_table
 from truing.report.run import run_info, sheet_of, sheets_of, write_sheet
-from truing.report.sheet import banner_of, cases_table, check_table
+from truing.report.sheet import banner_of, cases_table
 from truing.runs.comparison import Change, compared, in_order, words_of
 from truing.runs.documents import results_document
 from truing.runs.folder import demand_place, run_files, write_outcome

@@ -17,7 +17,8 @@ from truing.cli.load import find_model, say_example
 from truing.errors import UsageError
 from truing.numbers import ABSENT, format_ends, format_value, with_unit
 from truing.report.document import Value
-from truing.report.sheet import check_rows, least_margin, sentence_of_cases
+from truing.report.limits import check_rows, least_margin
+from truing.report.sheet import sentence_of_cases
 from truing.runs.partial import is_partial, partial_folder
 from truing.runs.provenance import provenance_of
 from truing.setup import Setup

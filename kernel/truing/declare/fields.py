@@ -72,7 +72,10 @@ class Loaded:
 
 @dataclass(frozen=True, kw_only=True)
 class Found:
-    """One result as declared; ``formula`` is what the sheet prints and a test evaluates, with so many ``digits``."""
+    """One result as declared; ``formula`` is what the sheet prints and a test evaluates, with so many ``digits``.
+
+    A ``key`` result stands on page one.
+    """
 
     unit: str
     symbol: str = ""
@@ -83,6 +86,7 @@ class Found:
     method: str = ""
     source: str = ""
     digits: int = 5
+    key: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -184,14 +188,16 @@ def found(
     method: str = "",
     source: str = "",
     digits: int = 5,
+    key: bool = False,
 ) -> Any:
     """Declare a result; with ``numeric`` every name in the formula is its number in its declared unit.
 
-    ``digits`` are the significant ones of print: more of them for a position that is known to a hundredth.
+    ``digits`` are the significant ones of print: more of them for a position that is known to a hundredth. A ``key``
+    result stands on page one of the sheet.
     """
     spec = Found(
         unit=unit, symbol=symbol, note=note, formula=formula, numeric=numeric, along=along, method=method,
-        source=source, digits=digits,
+        source=source, digits=digits, key=key,
     )  # fmt: skip
     return field(metadata={KEY: spec})
 

@@ -111,7 +111,8 @@ class Record(Generic[I, R]):
 class Section:
     """A part of the sheet: results by name with their formulas, words, and what ``figure`` draws.
 
-    ``figure(record)`` returns a matplotlib Figure; ``blocks(record)`` a sequence of words, tables and drawings.
+    ``figure(record)`` returns a matplotlib Figure; ``blocks(record)`` a sequence of words, tables and drawings. The
+    first figure of a ``key`` section stands on page one; where none is marked, that of the first section with one.
     """
 
     title: str
@@ -121,6 +122,7 @@ class Section:
     blocks: Callable[[Record[Any, Any]], Sequence[Block]] | None
     level: Level
     caption: str
+    key: bool
 
     def __init__(
         self,
@@ -131,10 +133,11 @@ class Section:
         blocks: Callable[[Record[Any, Any]], Sequence[Block]] | None = None,
         level: Level = "normal",
         caption: str = "",
+        key: bool = False,
     ) -> None:
         values = {"title": title, "names": names, "text": text, "figure": figure, "blocks": blocks, "level": level}
-        for key, value in {**values, "caption": caption}.items():
-            object.__setattr__(self, key, value)
+        for name, value in {**values, "caption": caption, "key": key}.items():
+            object.__setattr__(self, name, value)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import MISSING
 from functools import lru_cache, partial
 from typing import Any
@@ -38,6 +38,7 @@ HEAD = (
     "project", "drawing", "revision", "prepared_by", "checked_by", "approved_by", "date", "company", "logo",
 )  # fmt: skip
 DETAILS = ("short", "normal", "full")
+PAPERS = ("A4", "letter")
 
 
 @lru_cache(maxsize=16)
@@ -68,18 +69,23 @@ def _text(name: str, raw: Any, _: InputsRead) -> str:
 
 def _sheet(_: Model[Any, Any]) -> dict[str, FileEntry]:
     entries = {name: FileEntry(partial(_head_text, name), {"type": ["string", "number"]}) for name in HEAD}
-    schema = {"enum": list(DETAILS), "default": "normal", "description": "How much the sheet shows."}
-    return {**entries, "detail": FileEntry(_detail, schema)}
+    detail = {"enum": list(DETAILS), "default": "normal", "description": "How much the sheet shows."}
+    paper = {"enum": list(PAPERS), "default": "A4", "description": "What the sheet is printed on."}
+    return {
+        **entries,
+        "detail": FileEntry(partial(_one_of, "detail", DETAILS), detail),
+        "paper": FileEntry(partial(_one_of, "paper", PAPERS), paper),
+    }
 
 
 def _head_text(name: str, raw: Any, reading: InputsRead) -> str:
     return _text(name, raw if isinstance(raw, (bool, list, dict)) else str(raw), reading)
 
 
-def _detail(raw: Any, _: InputsRead) -> str:
-    if raw not in DETAILS:
-        meant = near_miss(raw[:80], DETAILS) if isinstance(raw, str) else ""
-        raise SentenceError(f"detail: choose {', '.join(DETAILS[:-1])} or {DETAILS[-1]}.{meant}")
+def _one_of(name: str, words: Sequence[str], raw: Any, _: InputsRead) -> str:
+    if raw not in words:
+        meant = near_miss(raw[:80], words) if isinstance(raw, str) else ""
+        raise SentenceError(f"{name}: choose {', '.join(words[:-1])} or {words[-1]}.{meant}")
     return str(raw)
 
 

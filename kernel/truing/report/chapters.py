@@ -46,6 +46,9 @@ DEPARTURES = {
     False: "in the calculation: the printed formula gives another number",
 }
 """Why a calculation has another number than the printed formula, with and without an effect on the results."""
+MOST_MAIN = 36
+"""So many results stand on a short sheet: they fit on its second page."""
+ON_PAGE_ONE = Paragraph("Its figure is on page one.", "aside")
 AXIS_ROWS = {"short": 0, "normal": 12, "full": 25}
 
 
@@ -78,6 +81,41 @@ class Writing:
     calculation: Calculation
     detail: str
     figures: Figures
+    made: dict[str, list[Block] | BaseException] = field(default_factory=dict)
+    """What the blocks of a section are, by its title."""
+    front: list[Any] = field(default_factory=list)
+    """The figure or drawing that stands on page one."""
+
+
+def front_figure(writing: Writing) -> FigureView | None:
+    """Draw the figure of page one: the first of a section that is marked, else of all sections of normal detail."""
+    sections = writing.calculation.setup.model.sheet
+    marked = [section for section in sections if section.key]
+    for section in marked or [section for section in sections if RANK[section.level] <= 1]:
+        drawing = _first_drawing(writing, section)
+        if drawing is not None:
+            writing.front.append(section.figure or drawing)
+            view = writing.figures.view(drawing.title, drawing.draw, drawing.caption or drawing.title)
+            return view if isinstance(view, FigureView) else None
+    return None
+
+
+def _first_drawing(writing: Writing, section: Section) -> Drawing | None:
+    if section.figure is not None:
+        return Drawing(section.title, partial(section.figure, writing.calculation.record), section.caption)
+    made = _made(writing, section)
+    blocks = [] if isinstance(made, BaseException) else made
+    return next((block for block in blocks if isinstance(block, Drawing)), None)
+
+
+def _made(writing: Writing, section: Section) -> list[Block] | BaseException:
+    """Return the blocks of a section, which are made once, or what failed."""
+    if section.blocks is not None and section.title not in writing.made:
+        try:
+            writing.made[section.title] = list(section.blocks(writing.calculation.record))
+        except Exception as error:  # said where they are to stand
+            writing.made[section.title] = error
+    return writing.made.get(section.title, [])
 
 
 def result_chapters(writing: Writing) -> Iterator[Chapter]:
@@ -158,11 +196,20 @@ def _of_section(writing: Writing, section: Section) -> Chapter:
     names = [name for name in section.names if name in writing.calculation.answers]
     record = writing.calculation.record
     blocks: list[BlockView] = [*([Paragraph(section.text)] if section.text else []), *_results(writing, names)]
-    if section.figure is not None:
+    if section.figure is not None and section.figure in writing.front:
+        blocks.append(ON_PAGE_ONE)
+    elif section.figure is not None:
         blocks.append(writing.figures.view(section.title, partial(section.figure, record), section.caption))
     if section.blocks is not None:
-        blocks += _guarded(writing, section.title, partial(section.blocks, record))
+        blocks += _guarded(writing, section.title, partial(_blocks_of, writing, section))
     return Chapter(section.title, tuple(blocks))
+
+
+def _blocks_of(writing: Writing, section: Section) -> list[Block]:
+    made = _made(writing, section)
+    if isinstance(made, BaseException):
+        raise made
+    return made
 
 
 def _main_results(writing: Writing) -> Iterator[Chapter]:
@@ -174,7 +221,38 @@ def _main_results(writing: Writing) -> Iterator[Chapter]:
     )
     scalars = [name for name in dict.fromkeys(names) if _is_scalar(writing.calculation.answers.get(name))]
     if scalars:
-        yield Chapter("Main results", tuple(_entry(writing, name, with_formula=False) for name in scalars))
+        shown, left = scalars[:MOST_MAIN], len(scalars) - MOST_MAIN
+        note = f'{left} further results stand on a sheet of detail "normal".' if left > 0 else ""
+        table = result_table(writing.calculation, shown)
+        yield Chapter("Main results", (replace(table, note=note),))
+
+
+def result_table(calculation: Calculation, names: Sequence[str]) -> TableView:
+    """Write results with their values alone."""
+    columns = (
+        Column("Symbol", kind="symbol"), Column("Result", kind="name"), Column("Value", kind="number"),
+        Column("Unit", kind="units"),
+    )  # fmt: skip
+    rows: list[tuple[Text, ...]] = []
+    for name in names:
+        field = calculation.setup.model.result_fields[name]
+        value = _value_of(calculation, name)
+        symbol = Marked("symbol", field.symbol) if field.symbol else ""
+        rows.append((symbol, label_of(field.spec.note, name), value.text, value.unit))
+    return TableView("", columns, tuple(rows), kind="key")
+
+
+def _value_of(calculation: Calculation, name: str) -> Value:
+    """Write a result: a number, the ends of what runs along an axis, or that there is none."""
+    setup, answer = calculation.setup, calculation.answers.get(name)
+    field, unit = setup.model.result_fields[name], setup.print_unit(name)
+    if answer is None or name in calculation.absent:
+        return Value("no value")
+    if np.ndim(answer) == 0:
+        digits = field.digits if isinstance(field.spec, Found) else 5
+        return Value(*format_value(answer, unit, digits))
+    low, high, printed = format_ends(answer, unit)
+    return Value(f"{pretty(low)} … {pretty(high)}", printed) if low else Value("no finite value")
 
 
 def _studies(writing: Writing) -> Iterator[Chapter]:
@@ -268,9 +346,14 @@ def _view(writing: Writing, block: Block) -> BlockView:
     if isinstance(block, Words):
         return Paragraph(block.text, block.kind)
     if isinstance(block, Drawing):
-        caption = f"{block.title}. {block.caption}" if block.caption else block.title
-        return writing.figures.view(block.title, block.draw, caption)
+        if any(block is each for each in writing.front):
+            return ON_PAGE_ONE
+        return writing.figures.view(block.title, block.draw, _caption(block))
     return table_view(block, LONGEST_TABLE[writing.detail])
+
+
+def _caption(drawing: Drawing) -> str:
+    return f"{drawing.title}. {drawing.caption}" if drawing.caption else drawing.title
 
 
 def table_view(table: Table, most: int) -> TableView:

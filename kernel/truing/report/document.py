@@ -252,6 +252,10 @@ class Document:
     banner: Banner
     alarms: tuple[str, ...] = ()
     """Suspected errors in the units of a record."""
+    front: tuple[Chapter, ...] = ()
+    """What stands on page one, before the signatures."""
     chapters: tuple[Chapter, ...]
     warnings: tuple[str, ...]
     provenance: Provenance
+    paper: str = "A4"
+    """On which it is printed: a name that CSS knows."""

@@ -32,13 +32,17 @@ UNBROKEN = 30
 def html_of(document: Document) -> str:
     """Write a document as a page."""
     has_contents = document.detail != "short" and len(document.chapters) > LONG
-    return page("sheet.html.j2", document.head.footer, sheet=document, has_contents=has_contents)
+    return page(
+        "sheet.html.j2", document.head.footer, paper=document.paper, sheet=document, has_contents=has_contents
+    )  # fmt: skip
 
 
-def page(template: str, footer: str, *, styles: Sequence[str] = ("sheet.css",), **said: Any) -> str:
+def page(
+    template: str, footer: str, *, styles: Sequence[str] = ("sheet.css",), paper: str = "A4", **said: Any
+) -> str:  # fmt: skip
     """Write a page from its template; the footer stands in the margin of every page but the first."""
     style = "".join((template_folder() / name).read_text(encoding="utf-8") for name in styles)
-    style += f'\n@page {{ @top-left {{ content: "{css_text(footer)}"; }} }}'
+    style += f'\n@page {{ size: {paper}; @top-left {{ content: "{css_text(footer)}"; }} }}'
     style += "\n@page :first { @top-left { content: none; } }\n"
     return with_room(_environment().get_template(template).render(style=_markup(style), **said)) + "\n"
 

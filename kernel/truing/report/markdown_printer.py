@@ -35,6 +35,8 @@ LINE = 60.0
 def markdown_of(document: Document) -> str:
     """Write a document as Markdown: parts with an empty line between."""
     parts = [*_head(document)]
+    for chapter in document.front:
+        parts += [f"## {escaped(chapter.title)}", *_blocks(chapter.blocks)]
     for chapter in document.chapters:
         parts += [f"## {chapter.number} {escaped(chapter.title)}", *_blocks(chapter.blocks)]
     return "\n\n".join(parts) + "\n"

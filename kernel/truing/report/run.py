@@ -12,7 +12,8 @@ from typing import Any
 from truing.atomic import write_files
 from truing.calculation import Calculation
 from truing.cases import CasesTable
-from truing.errors import OutputError
+from truing.errors import OutputError, TruingError
+from truing.inputs_file import read_setup
 from truing.kernel import Offer
 from truing.published import compare_published
 from truing.report.document import Document
@@ -21,6 +22,7 @@ from truing.report.markdown_printer import markdown_of
 from truing.report.pdf import pdf_bytes
 from truing.report.sheet import make_sheet
 from truing.runs.provenance import provenance_of
+from truing.setup import Setup
 from truing.studies.bench import Progress, silent
 
 
@@ -36,7 +38,18 @@ def sheet_of(
     verified = compare_published(offer, progress=progress, known=calculation)
     progress("sheet", 0, 0)
     provenance = provenance_of(calculation.setup, date=time.strftime("%Y-%m-%d", time.localtime(started)))
-    return make_sheet(calculation, provenance=provenance, verified=verified, cases=cases)
+    example = example_setup(offer)
+    return make_sheet(calculation, provenance=provenance, verified=verified, cases=cases, example=example)
+
+
+def example_setup(offer: Offer) -> Setup | None:
+    """Return what the shipped example says; None where there is none, or where it cannot be read."""
+    if offer.model.example is None:
+        return None
+    try:
+        return read_setup(offer.model.example, offer)
+    except TruingError:
+        return None
 
 
 def sheets_of(document: Document, folder: Path, *, pdf: bool) -> tuple[dict[str, str | bytes], str]:

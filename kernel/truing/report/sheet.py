@@ -3,30 +3,21 @@
 from __future__ import annotations
 
 from base64 import b64encode
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from pathlib import Path, PurePath
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
 
 from truing.calculation import Calculation
 from truing.cases import CaseResult, CasesTable
-from truing.declare.fields import Given, InputField
-from truing.declare.goals import Require
 from truing.declare.published import rules_of
-from truing.evaluate import acting_inputs
-from truing.inputs_file.values import halving_in_words
 from truing.numbers import (
     ABSENT,
-    RESULT_DIGITS,
     STATED_DIGITS,
-    format_chance,
-    format_difference,
     format_number,
     format_value,
     with_unit,
 )
 from truing.published import ComparedRow, parted
-from truing.report.chapters import LONGEST_TABLE, Figures, Writing, numbered, result_chapters
+from truing.report.chapters import LONGEST_TABLE, Figures, Writing, front_figure, numbered, result_chapters
 from truing.report.document import (
     Banner,
     BlockView,
@@ -37,18 +28,18 @@ from truing.report.document import (
     Items,
     Marked,
     Paragraph,
-    Piece,
     TableView,
     Text,
     Value,
     joined,
-    label_of,
-    with_source,
 )
+from truing.report.given import effect_blocks, input_blocks, tolerance_table
+from truing.report.limits import check_table, check_value, least_margin
+from truing.report.page_one import MOST_CHECKS, MOST_WARNINGS, page_one
 from truing.runs.provenance import Provenance
-from truing.setup import Setup, SwitchedOn
-from truing.studies.checks import HEADLINES, SHORT, Check, check_name, requirements
-from truing.studies.verdicts import NO_RESULT, NO_STUDY, sentence_of
+from truing.setup import Setup
+from truing.studies.checks import HEADLINES, SHORT
+from truing.studies.verdicts import sentence_of
 from truing.units import unit_text
 
 HEAD_FIELDS = ("project", "drawing", "revision", "company", "customer", "date")
@@ -64,15 +55,19 @@ SHEET = "Calculation sheet"
 
 def make_sheet(
     calculation: Calculation, *, provenance: Provenance, verified: Sequence[ComparedRow] = (),
-    cases: CasesTable | None = None,
+    cases: CasesTable | None = None, example: Setup | None = None,
 ) -> Document:  # fmt: skip
-    """Say everything that stands on the sheet of a calculation, at the level of detail of its setup."""
+    """Say everything that stands on the sheet of a calculation, at the level of detail of its setup.
+
+    ``example`` is the shipped one, against which the inputs are compared.
+    """
     setup = calculation.setup
     detail = setup.sheet.detail if setup.sheet.detail in LONGEST_TABLE else "normal"
     figures = Figures()
-    results = list(result_chapters(Writing(calculation, detail, figures)))
+    writing = Writing(calculation, detail, figures)
+    figure = front_figure(writing)
+    results = list(result_chapters(writing))
     warnings = tuple(_warnings(calculation, cases, figures.failures))
-    front = _front(calculation, cases, detail)
     findings = setup.model.findings
     back = []
     if verified and detail != "short":
@@ -84,7 +79,8 @@ def make_sheet(
         *setup.model.cites,
         *(text for each in calculation.outcomes.values() for text in getattr(each, "cites", ())),
     ]
-    end = end_chapters(warnings, provenance, () if detail == "short" else tuple(dict.fromkeys(cites)))
+    further = warnings if len(warnings) > MOST_WARNINGS else ()
+    end = end_chapters(further, provenance, () if detail == "short" else tuple(dict.fromkeys(cites)))
     head = head_of(setup, provenance)
     return Document(
         kind=SHEET,
@@ -93,9 +89,11 @@ def make_sheet(
         detail=detail,
         summary=setup.model.summary,
         banner=banner_of(calculation, cases),
-        chapters=numbered([*front, *results, *back, *end]),
+        front=tuple(page_one(calculation, example, figure, warnings)),
+        chapters=numbered([*_given(calculation, cases, detail), *results, *back, *end]),
         warnings=warnings,
         provenance=provenance,
+        paper=setup.sheet.paper,
     )
 
 
@@ -187,10 +185,10 @@ def _warnings(calculation: Calculation, cases: CasesTable | None, failures: Sequ
     yield from failures
 
 
-def _front(calculation: Calculation, cases: CasesTable | None, detail: str) -> Iterator[Chapter]:
+def _given(calculation: Calculation, cases: CasesTable | None, detail: str) -> Iterator[Chapter]:
     setup = calculation.setup
-    if calculation.checks:
-        yield Chapter("Checks", (check_table(calculation),), "checks")
+    if len(calculation.checks) > MOST_CHECKS:
+        yield Chapter("All checks", (check_table(calculation),), "all-checks")
     if cases is not None:
         yield Chapter("Cases", (cases_table(calculation, cases, LONGEST_TABLE[detail]),), "cases")
     if detail == "short":
@@ -250,270 +248,6 @@ def _case_row(setup: Setup, case: CaseResult, varied: Sequence[str], checks: Seq
     margin = least_margin(case.checks)
     shown = [texts.get(name, "–") for name in checks]
     return (case_name(case), *values, *shown, with_unit(margin.text, margin.unit), verdict_text)
-
-
-# What the sheet says of what was asked, of limits, of published numbers, and of where the numbers come from
-
-
-PLACES = {"inputs": "on the inputs", "results": "on the results", "reading": "on the reading"}
-LONGEST_SERIES = 8
-NOT_GIVEN = "not given"
-FEW = 6
-"""So many inputs at a default of 0 still have rows of their own."""
-
-
-@dataclass(frozen=True)
-class CheckRow:
-    """A limit and how far it is kept: the check, symbol and note of what it is on, and its numbers as printed.
-
-    ``proposed`` is the value of the design that a study proposes, ``remark`` says which study would decide the limit,
-    or what its bound is called.
-    """
-
-    check: Check
-    symbol: str
-    note: str
-    value: Value
-    limit: Value
-    margin: Value
-    proposed: Value | None
-    remark: str
-
-
-def input_blocks(setup: Setup, detail: str) -> Iterator[BlockView]:
-    """Say every input; of many that are not given or at a default of 0 only the names, but on a full sheet."""
-    fields = setup.model.input_fields
-    values = {
-        name: input_value(setup, fields[name], value) for name, value in setup.model.read_inputs(setup.inputs).items()
-    }
-    idle = [
-        name
-        for name, value in values.items()
-        if name not in setup.source.stated and value.text in {"0", NOT_GIVEN} and not fields[name].spec.source
-    ]
-    if detail == "full" or len(idle) <= FEW:
-        idle = []
-    shown = {name: value for name, value in values.items() if name not in idle}
-    calibrated = any(name in setup.calibrated for name in shown)
-    columns = (
-        Column("Symbol", kind="symbol"), Column("Input", kind="name"), Column("Value", kind="number"),
-        Column("Unit", kind="units"), *((Column("Calibrated", kind="number"),) if calibrated else ()),
-        Column("Given", kind="given"), Column("Source"),
-    )  # fmt: skip
-    rows = tuple(_input_row(setup, name, value, calibrated=calibrated) for name, value in shown.items())
-    title = "What the calculation starts from; 'stated' stands in the inputs file, 'default' is the model's own value"
-    yield TableView(title, columns, rows, kind="inputs")
-    if idle:
-        called = joined(
-            Marked("symbol", fields[name].symbol) if fields[name].symbol else Marked("code", name) for name in idle
-        )
-        words = "Not given, or left at their default of 0 (inputs.toml names them): "
-        yield Paragraph((words, *called, "."), "aside")
-
-
-def _input_row(setup: Setup, name: str, value: Value, *, calibrated: bool) -> tuple[Text, ...]:
-    field = setup.model.input_fields[name]
-    note = "; ".join(part for part in (field.spec.note, halving_in_words(field)) if part)
-    fitted = setup.calibrated.get(name)
-    own = "" if fitted is None else format_value(fitted, setup.print_unit(name), STATED_DIGITS)[0]
-    return (
-        Marked("symbol", field.symbol) if field.symbol else "", label_of(note, name), value.text, value.unit,
-        *((own,) if calibrated else ()), "stated" if name in setup.source.stated else "default", field.spec.source,
-    )  # fmt: skip
-
-
-def input_value(setup: Setup, field: InputField, value: Any) -> Value:
-    """Write one input: a number in its printed unit, a choice, a switch, a file, a series (a long one by its ends)."""
-    if field.kind == "file":
-        if field.name in setup.source.tables:
-            return Value(PurePath(setup.source.tables[field.name]["file"]).name)
-        return Value(NOT_GIVEN if value is None else "default")
-    if isinstance(value, bool):
-        return Value("yes" if value else "no")
-    if isinstance(value, str) or (isinstance(field.spec, Given) and field.spec.unit is None):
-        return Value(str(value))
-    unit = setup.print_unit(field.name)
-    if field.kind == "series":
-        texts = [format_value(float(number), unit) for number in value] or [(ABSENT, "")]
-        (first, shown_unit), (last, _) = texts[0], texts[-1]
-        if len(texts) <= LONGEST_SERIES:
-            return Value(", ".join(text for text, _ in texts), shown_unit)
-        return Value(f"{first} … {last} ({len(texts)} values)", shown_unit)
-    if value != value:
-        return Value(NOT_GIVEN)
-    return Value(*format_value(value, unit, STATED_DIGITS))
-
-
-def tolerance_table(setup: Setup) -> TableView:
-    """Say every tolerance that scatters: the standard deviation of what it is on, and how far the mean lies off."""
-    columns = (
-        Column("Tolerance", kind="name"), Column("On"), Column("Spread"), Column("Standard deviation", kind="number"),
-        Column("Why"),
-    )  # fmt: skip
-    rows = []
-    for name, distributions in setup.distributions().items():
-        tolerance = setup.model.tolerances[name]
-        sds, shifts = [], []
-        for on, distribution in distributions.items():
-            unit, shift = setup.print_unit(on), distribution.mean - float(setup.nominal(on))
-            sds.append(Value(*format_difference(distribution.sd, unit, 4)))
-            if abs(shift) > 1e-12 * max(abs(float(setup.nominal(on))), distribution.sd):
-                number, printed = format_difference(shift, unit, 4)
-                shifts.append(Value(number if number.startswith("-") else f"+{number}", printed))
-        scatter: list[Piece] = [*joined(dict.fromkeys(sds))]
-        for mean in dict.fromkeys(shifts):
-            scatter += [Marked("break", ", "), "mean ", mean]
-        targets = ", ".join(on.replace("_", " ") for on in distributions)
-        why = with_source(tolerance.why, tolerance.source)
-        rows.append((name.replace("_", " "), targets, setup.spread_of(name).text, tuple(scatter), why))
-    return TableView("How the inputs scatter about their nominal values", columns, tuple(rows), kind="tolerances")
-
-
-def effect_blocks(setup: Setup) -> Iterator[BlockView]:
-    """Say every condition with its reference, and every effect that is on with its unknowns and what it changes."""
-    if setup.conditions:
-        title = "Conditions, and the references at which their effects vanish"
-        columns = (Column("Condition", kind="name"), Column("Value", kind="number"), Column("Reference", kind="number"))
-        rows: list[tuple[Text, ...]] = []
-        for name, value in setup.conditions.items():
-            condition, unit = setup.model.known_conditions[name], setup.print_unit(name)
-            values = (Value(*format_value(number, unit, STATED_DIGITS)) for number in (value, condition.zero))
-            rows.append((label_of(condition.note, name), *values))
-        yield TableView(title, columns, tuple(rows))
-    if not setup.effects:
-        yield Paragraph("No effect is on.")
-        return
-    heads = (Column("Effect", kind="name"), Column("Acts"), Column("Unknowns"), Column("Why"))
-    yield TableView("Effects that are on", heads, tuple(map(_effect_row, setup.effects)), kind="effects")
-    changed = list(_changed_inputs(setup))
-    if changed:
-        yield Paragraph(("With them the calculation runs with ", *joined(changed, "; "), "."), "aside")
-
-
-def _effect_row(active: SwitchedOn) -> tuple[Text, ...]:
-    effect = active.effect
-    unknowns: list[Text] = []
-    for unknown in active.unknowns:
-        value = Value(*format_value(active.values[unknown.name], unknown.unit, RESULT_DIGITS))
-        sd = active.sds.get(unknown.name)
-        scatter = (" ± ", Value(*format_difference(sd, unknown.unit, 3)), " ", Marked("aside", "(sd)")) if sd else ()
-        unknowns.append((unknown.name.replace("_", " ") + " = ", value, *scatter))
-    why = with_source(effect.why or effect.looks_like, effect.source)
-    return (effect.name.replace("_", " "), PLACES[effect.place], joined(unknowns, Marked("break", ", ")), why)
-
-
-def _changed_inputs(setup: Setup) -> Iterator[Text]:
-    """Say which inputs the effects that are on change, and to what."""
-    if not any(active.effect.place == "inputs" for active in setup.effects):
-        return
-    stated, acting = (setup.model.read_inputs(inputs) for inputs in (setup.inputs, acting_inputs(setup)))
-    for name, field in setup.model.input_fields.items():
-        before, after = stated[name], acting[name]
-        if field.varies and before != after and not (before != before and after != after):
-            unit = setup.print_unit(name)
-            old, new = (Value(*format_value(value, unit, digits)) for value, digits in ((before, 10), (after, 7)))
-            what = Marked("symbol", field.symbol) if field.symbol else name.replace("_", " ")
-            yield what, " = ", new, " instead of ", old
-
-
-def check_table(calculation: Calculation) -> TableView:
-    """Say every limit, and what is left of it."""
-    has_proposal = calculation.decided.proposal is not None
-    columns = (
-        Column("Check", kind="name"), Column("As stated" if has_proposal else "Value", kind="number"),
-        *((Column("As proposed", kind="number"),) if has_proposal else ()), Column("must be", kind="relation"),
-        Column("Limit", kind="number"), Column("Margin", kind="number"), Column("Verdict", kind="verdict-cell"),
-    )  # fmt: skip
-    rows: list[tuple[Text, ...]] = []
-    for row in check_rows(calculation):
-        check = row.check
-        remark = "; ".join(filter(None, (row.remark, check.method)))
-        label = label_of(row.note, check.name, row.symbol)[:-1]
-        about = (*label, Marked("bracketed code", check.compared or check.name))
-        about += (Marked("break", ", "), Marked("aside", remark)) if remark else ()
-        proposed = (row.proposed or "",) if has_proposal else ()
-        rows.append((about, row.value, *proposed, check.relation, row.limit, row.margin, Marked("state", check.state)))
-    margin = "in per cent of the limit" if relative_margins(calculation.checks) else "the distance to the limit"
-    title = f"Limits, and what is left of them. A margin is {margin}; above zero is safe"
-    states = tuple(check.state for check in calculation.checks)
-    return TableView(title, columns, tuple(rows), states=states, kind="checks")
-
-
-def check_rows(calculation: Calculation) -> Iterator[CheckRow]:
-    """Say every limit with what is left of it."""
-    setup = calculation.setup
-    fields = setup.model.result_fields
-    requires = requirements(setup)
-    named = {check_name(require, requires): require for require in requires}
-    relative = relative_margins(calculation.checks)
-    for check in calculation.checks:
-        require = named.get(check.name)
-        field = fields.get(check.name if require is None else require.result)
-        calculated = require is not None and not check.chance and require.limit in fields
-        yield CheckRow(
-            check=check,
-            symbol=field.symbol if field is not None and field.name == check.compared else "",
-            note=field.spec.note if field is not None else check.note,
-            value=check_value(check, check.value),
-            limit=check_value(check, check.limit, RESULT_DIGITS if calculated else STATED_DIGITS),
-            margin=margin_value(check, relative=relative),
-            proposed=None if check.proposed is None else check_value(check, check.proposed.value),
-            remark=_remark(check, require, setup),
-        )
-
-
-def check_value(check: Check, number: float, digits: int = RESULT_DIGITS) -> Value:
-    """Write a value or a limit of a check: a probability in per cent, a flag as yes or no."""
-    if number != number:
-        return Value(ABSENT)
-    if check.flag:
-        return Value("yes" if number >= 1 else "no")
-    if check.chance:
-        return Value(format_chance(number), "%")
-    return Value(format_number(number, digits), unit_text(check.unit))
-
-
-def relative_margins(checks: Iterable[Check]) -> bool:
-    """Tell whether the margins of a sheet are shares of their limits: where no limit is 0, else all are distances."""
-    return all(check.limit for check in checks if not check.flag)
-
-
-def margin_value(check: Check, *, relative: bool) -> Value:
-    """Write a margin, with per cent or its unit; a flag has none, and a value on its limit says so."""
-    if check.flag or check.margin != check.margin:
-        return Value(ABSENT)
-    if check.margin == 0:
-        return Value("on the limit")
-    if relative:
-        return Value(format_number(100 * check.margin, 3), "%")
-    distance = abs(check.value - check.limit) * (1 if check.margin > 0 else -1)
-    return (
-        Value(format_number(100 * distance, 3), "%")
-        if check.chance
-        else Value(format_number(distance, 3), unit_text(check.unit))
-    )
-
-
-def least_margin(checks: Sequence[Check]) -> Value:
-    """Write the smallest margin of the checks that are decided, as ``margin_value`` does."""
-    decided = [check for check in checks if not check.undecided]
-    if not decided:
-        return Value(ABSENT)
-    return margin_value(min(decided, key=lambda check: check.margin), relative=relative_margins(checks))
-
-
-def _remark(check: Check, require: Require | None, setup: Setup) -> str:
-    """Say which study would decide a limit; else what the bound of a probability is called."""
-    if check.undecided == NO_RESULT:
-        return "not decided: the result does not exist"
-    if check.undecided == NO_STUDY:
-        return f"{NO_STUDY} decides it"
-    if check.undecided:
-        return f"not decided: {check.undecided} would"
-    if require is None or not check.chance:
-        return check.note if check.note and check.compared else ""
-    known = require.limit in {*setup.model.input_fields, *setup.model.result_fields}
-    return f"bound: {require.limit.replace('_', ' ')}" if known else ""
 
 
 def published_blocks(setup: Setup, verified: Sequence[ComparedRow]) -> Iterator[BlockView]:

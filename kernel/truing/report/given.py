@@ -1,0 +1,168 @@
+"""What a calculation was given: inputs, tolerances in force, conditions and effects."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import PurePath
+from typing import Any
+
+from truing.declare.fields import Given, InputField
+from truing.evaluate import acting_inputs
+from truing.inputs_file.values import halving_in_words
+from truing.numbers import ABSENT, RESULT_DIGITS, STATED_DIGITS, format_difference, format_value
+from truing.report.document import (
+    BlockView,
+    Column,
+    Marked,
+    Paragraph,
+    Piece,
+    TableView,
+    Text,
+    Value,
+    joined,
+    label_of,
+    with_source,
+)
+from truing.setup import Setup, SwitchedOn
+
+PLACES = {"inputs": "on the inputs", "results": "on the results", "reading": "on the reading"}
+LONGEST_SERIES = 8
+NOT_GIVEN = "not given"
+FEW = 6
+"""So many inputs at a default of 0 still have rows of their own."""
+
+
+def input_blocks(setup: Setup, detail: str) -> Iterator[BlockView]:
+    """Say every input; of many that are not given or at a default of 0 only the names, but on a full sheet."""
+    fields = setup.model.input_fields
+    values = {
+        name: input_value(setup, fields[name], value) for name, value in setup.model.read_inputs(setup.inputs).items()
+    }
+    idle = [
+        name
+        for name, value in values.items()
+        if name not in setup.source.stated and value.text in {"0", NOT_GIVEN} and not fields[name].spec.source
+    ]
+    if detail == "full" or len(idle) <= FEW:
+        idle = []
+    shown = {name: value for name, value in values.items() if name not in idle}
+    calibrated = any(name in setup.calibrated for name in shown)
+    columns = (
+        Column("Symbol", kind="symbol"), Column("Input", kind="name"), Column("Value", kind="number"),
+        Column("Unit", kind="units"), *((Column("Calibrated", kind="number"),) if calibrated else ()),
+        Column("Given", kind="given"), Column("Source"),
+    )  # fmt: skip
+    rows = tuple(_input_row(setup, name, value, calibrated=calibrated) for name, value in shown.items())
+    title = "What the calculation starts from; 'stated' stands in the inputs file, 'default' is the model's own value"
+    yield TableView(title, columns, rows, kind="inputs")
+    if idle:
+        called = joined(
+            Marked("symbol", fields[name].symbol) if fields[name].symbol else Marked("code", name) for name in idle
+        )
+        words = "Not given, or left at their default of 0 (inputs.toml names them): "
+        yield Paragraph((words, *called, "."), "aside")
+
+
+def _input_row(setup: Setup, name: str, value: Value, *, calibrated: bool) -> tuple[Text, ...]:
+    field = setup.model.input_fields[name]
+    note = "; ".join(part for part in (field.spec.note, halving_in_words(field)) if part)
+    fitted = setup.calibrated.get(name)
+    own = "" if fitted is None else format_value(fitted, setup.print_unit(name), STATED_DIGITS)[0]
+    return (
+        Marked("symbol", field.symbol) if field.symbol else "", label_of(note, name), value.text, value.unit,
+        *((own,) if calibrated else ()), "stated" if name in setup.source.stated else "default", field.spec.source,
+    )  # fmt: skip
+
+
+def input_value(setup: Setup, field: InputField, value: Any) -> Value:
+    """Write one input: a number in its printed unit, a choice, a switch, a file, a series (a long one by its ends)."""
+    if field.kind == "file":
+        if field.name in setup.source.tables:
+            return Value(PurePath(setup.source.tables[field.name]["file"]).name)
+        return Value(NOT_GIVEN if value is None else "default")
+    if isinstance(value, bool):
+        return Value("yes" if value else "no")
+    if isinstance(value, str) or (isinstance(field.spec, Given) and field.spec.unit is None):
+        return Value(str(value))
+    unit = setup.print_unit(field.name)
+    if field.kind == "series":
+        texts = [format_value(float(number), unit) for number in value] or [(ABSENT, "")]
+        (first, shown_unit), (last, _) = texts[0], texts[-1]
+        if len(texts) <= LONGEST_SERIES:
+            return Value(", ".join(text for text, _ in texts), shown_unit)
+        return Value(f"{first} … {last} ({len(texts)} values)", shown_unit)
+    if value != value:
+        return Value(NOT_GIVEN)
+    return Value(*format_value(value, unit, STATED_DIGITS))
+
+
+def tolerance_table(setup: Setup) -> TableView:
+    """Say every tolerance that scatters: the standard deviation of what it is on, and how far the mean lies off."""
+    columns = (
+        Column("Tolerance", kind="name"), Column("On"), Column("Spread"), Column("Standard deviation", kind="number"),
+        Column("Why"),
+    )  # fmt: skip
+    rows = []
+    for name, distributions in setup.distributions().items():
+        tolerance = setup.model.tolerances[name]
+        sds, shifts = [], []
+        for on, distribution in distributions.items():
+            unit, shift = setup.print_unit(on), distribution.mean - float(setup.nominal(on))
+            sds.append(Value(*format_difference(distribution.sd, unit, 4)))
+            if abs(shift) > 1e-12 * max(abs(float(setup.nominal(on))), distribution.sd):
+                number, printed = format_difference(shift, unit, 4)
+                shifts.append(Value(number if number.startswith("-") else f"+{number}", printed))
+        scatter: list[Piece] = [*joined(dict.fromkeys(sds))]
+        for mean in dict.fromkeys(shifts):
+            scatter += [Marked("break", ", "), "mean ", mean]
+        targets = ", ".join(on.replace("_", " ") for on in distributions)
+        why = with_source(tolerance.why, tolerance.source)
+        rows.append((name.replace("_", " "), targets, setup.spread_of(name).text, tuple(scatter), why))
+    return TableView("How the inputs scatter about their nominal values", columns, tuple(rows), kind="tolerances")
+
+
+def effect_blocks(setup: Setup) -> Iterator[BlockView]:
+    """Say every condition with its reference, and every effect that is on with its unknowns and what it changes."""
+    if setup.conditions:
+        title = "Conditions, and the references at which their effects vanish"
+        columns = (Column("Condition", kind="name"), Column("Value", kind="number"), Column("Reference", kind="number"))
+        rows: list[tuple[Text, ...]] = []
+        for name, value in setup.conditions.items():
+            condition, unit = setup.model.known_conditions[name], setup.print_unit(name)
+            values = (Value(*format_value(number, unit, STATED_DIGITS)) for number in (value, condition.zero))
+            rows.append((label_of(condition.note, name), *values))
+        yield TableView(title, columns, tuple(rows))
+    if not setup.effects:
+        yield Paragraph("No effect is on.")
+        return
+    heads = (Column("Effect", kind="name"), Column("Acts"), Column("Unknowns"), Column("Why"))
+    yield TableView("Effects that are on", heads, tuple(map(_effect_row, setup.effects)), kind="effects")
+    changed = list(_changed_inputs(setup))
+    if changed:
+        yield Paragraph(("With them the calculation runs with ", *joined(changed, "; "), "."), "aside")
+
+
+def _effect_row(active: SwitchedOn) -> tuple[Text, ...]:
+    effect = active.effect
+    unknowns: list[Text] = []
+    for unknown in active.unknowns:
+        value = Value(*format_value(active.values[unknown.name], unknown.unit, RESULT_DIGITS))
+        sd = active.sds.get(unknown.name)
+        scatter = (" ± ", Value(*format_difference(sd, unknown.unit, 3)), " ", Marked("aside", "(sd)")) if sd else ()
+        unknowns.append((unknown.name.replace("_", " ") + " = ", value, *scatter))
+    why = with_source(effect.why or effect.looks_like, effect.source)
+    return (effect.name.replace("_", " "), PLACES[effect.place], joined(unknowns, Marked("break", ", ")), why)
+
+
+def _changed_inputs(setup: Setup) -> Iterator[Text]:
+    """Say which inputs the effects that are on change, and to what."""
+    if not any(active.effect.place == "inputs" for active in setup.effects):
+        return
+    stated, acting = (setup.model.read_inputs(inputs) for inputs in (setup.inputs, acting_inputs(setup)))
+    for name, field in setup.model.input_fields.items():
+        before, after = stated[name], acting[name]
+        if field.varies and before != after and not (before != before and after != after):
+            unit = setup.print_unit(name)
+            old, new = (Value(*format_value(value, unit, digits)) for value, digits in ((before, 10), (after, 7)))
+            what = Marked("symbol", field.symbol) if field.symbol else name.replace("_", " ")
+            yield what, " = ", new, " instead of ", old
