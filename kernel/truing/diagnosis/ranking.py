@@ -1,0 +1,31 @@
+"""The order of what competes: by score, and where nothing but rounding parts the scores by what is fixed.
+
+Two causes may draw one curve. Their scores are then the same but for how the processor rounds and where each fit
+stopped, and neither may say which of the two comes first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from itertools import groupby
+from math import inf
+from typing import Any, TypeVar
+
+T = TypeVar("T")
+
+SAME = 1e-3
+"""Scores that differ by no more are the same: fits go no farther, and a report shows tenths."""
+
+
+def in_order(several: Iterable[T], score: Callable[[T], float], place: Callable[[T], Any] = lambda _: 0) -> list[T]:
+    """Return what competes, the lowest score first; of one score the first place first, and then as they came."""
+    scored = sorted((score(each), index, each) for index, each in enumerate(several))
+    least = -inf
+
+    def lowest(entry: tuple[float, int, T]) -> float:
+        nonlocal least
+        least = least if entry[0] <= least + SAME else entry[0]
+        return least
+
+    groups = (sorted(same, key=lambda entry: (place(entry[2]), entry[1])) for _, same in groupby(scored, lowest))
+    return [each for group in groups for *_, each in group]
