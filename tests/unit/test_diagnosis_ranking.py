@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import inf
 from pathlib import Path
 
@@ -59,6 +60,19 @@ def test_explanations_of_one_curve_are_ranked_by_name_however_scores_are_rounded
         assert best is not None
         assert best.names == ("sensor_offset",)
         assert made.fairest.names == ("sensor_offset",)
+
+
+@pytest.mark.parametrize(("gained", "is_kept"), [(0.0, False), (1e-10, False), (2 * SAME, True)])
+def test_of_two_ways_to_one_explanation_the_first_gives_the_name_unless_the_other_is_better(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, gained: float, is_kept: bool
+) -> None:
+    made = twins(tmp_path, 0.0, monkeypatch)
+    ones = (np.ones(1), np.ones(1))
+    first = made.keep(replace(made.null, causes=made.causes, values=ones))
+    assert first is not None
+    other = replace(first, causes=first.causes[::-1], cost=first.cost - gained)
+    kept = made.keep(other)
+    assert kept is (other if is_kept else first)
 
 
 @pytest.mark.parametrize("worth", [0.0, 0.5 * SAME, 3.1415925, -740.25, 1e6])

@@ -27,7 +27,7 @@ from truing.diagnosis.exact import CLOSELY, EXACTLY, ROUGHLY, fitting, held_with
 from truing.diagnosis.extended import Extended, shape_added
 from truing.diagnosis.fitted import Fit, differ, signs_of_wrong
 from truing.diagnosis.learning import as_noise, learnt
-from truing.diagnosis.ranking import in_order
+from truing.diagnosis.ranking import SAME, in_order
 from truing.diagnosis.sample import Sample, sample_of
 from truing.studies.bench import StepProgress, unheard
 
@@ -163,11 +163,11 @@ class Competition:
     # ---- fits
 
     def keep(self, fit: Fit | None) -> Fit | None:
-        """Keep a fit where it is better than what is known of its causes."""
+        """Keep a fit where it is better than what is known of its causes; of one score the first stays."""
         if fit is None:
             return None
         before = self.known.get(fit.key)
-        allowed = 0.0 if fit.key in self.fresh else MARGIN  # what was rough may have promised too much
+        allowed = -SAME if fit.key in self.fresh else MARGIN  # what was rough may have promised too much
         if before is None or fit.cost < before.cost + allowed:
             self.known[fit.key] = fit
         self.fresh.add(fit.key)
