@@ -8,11 +8,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from diagnosis_models import Asked, Deflection, Drive, drive, wide
+from diagnosis_models import Asked, Deflection, Drive, drive, drive_model, wide
 
 from truing import Effect, Float, Model, Unknown
 from truing.diagnosis.competition import Competition, search
+from truing.diagnosis.noise import spread_of
 from truing.diagnosis.ranking import SAME, in_order
+from truing.report.diagnosis_sheet import _sizes
 
 BENCH = wide(60, seed=3)
 LAST_DIGITS = [-1e-10, 0.0, 1e-10]
@@ -94,3 +96,26 @@ def test_what_has_no_finite_score_comes_last() -> None:
     scores = [inf, 2.0, inf, 1.0, -inf]
     assert in_order(range(5), scores.__getitem__, lambda index: -index) == [4, 3, 1, 2, 0]
     assert in_order([], float) == []
+
+
+def test_of_drivers_that_are_one_the_first_is_named() -> None:
+    """A speed in other units, from another zero: the correlations differ in their last digits, either way."""
+    for seed in range(20):
+        rng = np.random.default_rng(seed)
+        speed = rng.uniform(1, 10, 80)
+        left = speed * rng.normal(0, 1, 80)
+        drivers = {"speed": speed, "turns": 9.5 * speed - 0.3}
+        for names in (["speed", "turns"], ["turns", "speed"]):
+            assert spread_of(left, {name: drivers[name] for name in names}).driver == names[0]
+
+
+def test_of_inputs_that_moved_as_far_the_first_is_told_first(tmp_path: Path) -> None:
+    """Two deviations of one sum: what rounds in the fit of the one rounds otherwise in that of the other."""
+    made = Asked(drive_model([])).diagnosed(tmp_path, BENCH.shown(np.random.default_rng(3).normal(0, 1, len(BENCH))))
+    for off in LAST_DIGITS:
+        moved = tuple(
+            replace(each, of_its_sd=sign * (0.5 + move))
+            for each, sign, move in zip(made.calibrated, (-1, 1), (0.0, off), strict=True)
+        )
+        said = [words for words in _sizes(replace(made, calibrated=moved)) if isinstance(words, str)]
+        assert said[-1].endswith("contact by −0.5, shaft by 0.5")

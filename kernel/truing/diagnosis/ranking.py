@@ -1,7 +1,7 @@
-"""The order of what competes: by score, and where nothing but rounding parts the scores by what is fixed.
+"""What comes first: by a score, and where nothing but rounding parts the scores by what is fixed.
 
-Two causes may draw one curve. Their scores are then the same but for how the processor rounds and where each fit
-stopped, and neither may say which of the two comes first.
+Two causes may draw one curve, and two sides of a machine may move alike. Their scores are then the same but for how the
+processor rounds and where a fit stopped, and neither may say which of the two comes first.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ SAME = 1e-3
 
 
 def in_order(several: Iterable[T], score: Callable[[T], float], place: Callable[[T], Any] = lambda _: 0) -> list[T]:
-    """Return what competes, the lowest score first; of one score the first place first, and then as they came."""
+    """Return several things, the lowest score first; of one score the first place first, and then as they came."""
     scored = sorted((score(each), index, each) for index, each in enumerate(several))
     least = -inf
 
