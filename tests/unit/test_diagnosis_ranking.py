@@ -13,7 +13,7 @@ from diagnosis_models import Asked, Deflection, Drive, drive, drive_model, wide
 from truing import Effect, Float, Model, Unknown
 from truing.diagnosis.competition import Competition, search
 from truing.diagnosis.noise import spread_of
-from truing.diagnosis.ranking import SAME, in_order
+from truing.diagnosis.ranking import SAME, lowest_first
 from truing.report.diagnosis_sheet import _sizes
 
 BENCH = wide(60, seed=3)
@@ -82,20 +82,20 @@ def test_of_two_ways_to_one_explanation_the_first_gives_the_name_unless_the_othe
 def test_equals_stand_by_place_and_then_as_they_came(worth: float, off: float) -> None:
     """Wherever the score lies: an order by rounded scores would have an edge where the last digits decide."""
     scores = {"b": worth + off, "a": worth, "c": worth + 2 * SAME, "best": worth - 1.0}
-    assert in_order(scores, scores.__getitem__, str) == ["best", "a", "b", "c"]
-    assert in_order(scores, scores.__getitem__) == ["best", "b", "a", "c"]
+    assert lowest_first(scores, scores.__getitem__, str) == ["best", "a", "b", "c"]
+    assert lowest_first(scores, scores.__getitem__) == ["best", "b", "a", "c"]
 
 
 def test_a_row_of_near_scores_is_not_one_score() -> None:
     """What counts is the distance from the best of them: else many small steps would make one place of all."""
     scores = [step * 0.6 * SAME for step in range(6)]
-    assert in_order(scores, float, lambda score: -score) == [scores[i] for i in (1, 0, 3, 2, 5, 4)]
+    assert lowest_first(scores, float, lambda score: -score) == [scores[i] for i in (1, 0, 3, 2, 5, 4)]
 
 
 def test_what_has_no_finite_score_comes_last() -> None:
     scores = [inf, 2.0, inf, 1.0, -inf]
-    assert in_order(range(5), scores.__getitem__, lambda index: -index) == [4, 3, 1, 2, 0]
-    assert in_order([], float) == []
+    assert lowest_first(range(5), scores.__getitem__, lambda index: -index) == [4, 3, 1, 2, 0]
+    assert lowest_first([], float) == []
 
 
 def test_of_drivers_that_are_one_the_first_is_named() -> None:

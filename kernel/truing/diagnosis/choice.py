@@ -451,7 +451,7 @@ def _taking_least(competition: Competition, best: Fit) -> Fit:
         return best
     near = [fit for fit in competition.known.values() if competition.score(fit) < competition.score(best) + CLOSE]
     alike = [fit for fit in near if len(fit.causes) == len(best.causes) and _says_the_same(best, fit)]
-    return competition.in_order(alike, lambda fit: -_worth_of_names(competition, fit))[0]
+    return competition.best_first(alike, lambda fit: -_worth_of_names(competition, fit))[0]
 
 
 def _worth_of_names(competition: Competition, fit: Fit) -> float:
@@ -501,7 +501,7 @@ def _felt(fit: Fit, cause: Candidate) -> int:
 def rivals_of(competition: Competition, best: Fit, near: Iterable[Fit]) -> tuple[Rival, ...]:
     """Return what lies near the winner, the nearest first, and how far it lies behind."""
     top = competition.score(best)
-    return tuple(Rival(fit, max(0.0, competition.score(fit) - top)) for fit in competition.in_order(near))
+    return tuple(Rival(fit, max(0.0, competition.score(fit) - top)) for fit in competition.best_first(near))
 
 
 def unsure(one: Fit, other: Fit) -> float:

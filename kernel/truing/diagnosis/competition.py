@@ -27,7 +27,7 @@ from truing.diagnosis.exact import CLOSELY, EXACTLY, ROUGHLY, fitting, held_with
 from truing.diagnosis.extended import Extended, shape_added
 from truing.diagnosis.fitted import Fit, differ, signs_of_wrong
 from truing.diagnosis.learning import as_noise, learnt
-from truing.diagnosis.ranking import SAME, in_order
+from truing.diagnosis.ranking import SAME, lowest_first
 from truing.diagnosis.sample import Sample, sample_of
 from truing.studies.bench import StepProgress, unheard
 
@@ -138,13 +138,13 @@ class Competition:
             self.owned[fit] = as_noise(self.sample, fit.predicted)
         return self.owned[fit] + float(fit.inputs @ fit.inputs) + self.price(fit)
 
-    def in_order(self, several: Iterable[Fit], score: Callable[[Fit], float] | None = None) -> list[Fit]:
+    def best_first(self, several: Iterable[Fit], score: Callable[[Fit], float] | None = None) -> list[Fit]:
         """Return explanations, the best first; of one score those under the weakest names."""
-        return in_order(several, score or self.score, attrgetter("weakest_first"))
+        return lowest_first(several, score or self.score, attrgetter("weakest_first"))
 
     def ranked(self, accept: Callable[[Fit], bool] = lambda _: True) -> list[Fit]:
         """Return what was fitted and is accepted, the best first."""
-        return self.in_order(fit for fit in self.known.values() if accept(fit))
+        return self.best_first(fit for fit in self.known.values() if accept(fit))
 
     def best(self, size: int) -> Fit | None:
         """Return the best explanation of so many causes."""
@@ -158,7 +158,7 @@ class Competition:
     @property
     def fairest(self) -> Fit:
         """What is best where every explanation has the noise that it leaves: the noise is learnt from it."""
-        return self.in_order(self.known.values(), self.own_score)[0]
+        return self.best_first(self.known.values(), self.own_score)[0]
 
     # ---- fits
 
@@ -242,7 +242,7 @@ class Competition:
             for cause in self.causes
             if cause.tag in seen and seen[cause.tag].starts and seen[cause.tag].starts[0][0] > LEAST_PROMISE
         }
-        return in_order(worth, lambda cause: -worth[cause], attrgetter("weakest_first"))
+        return lowest_first(worth, lambda cause: -worth[cause], attrgetter("weakest_first"))
 
     def without(self, fit: Fit, index: int) -> Fit | None:
         """Fit an explanation without one of its causes."""
@@ -255,7 +255,7 @@ class Competition:
     def backward(self, fit: Fit) -> Fit:
         """Leave out what is no longer needed."""
         tried = self.extended.side_by_side([partial(self.without, fit, index) for index in range(len(fit.causes))])
-        best = next(iter(self.in_order(each for each in tried if each is not None)), fit)
+        best = next(iter(self.best_first(each for each in tried if each is not None)), fit)
         return self.backward(best) if len(fit.causes) > 1 and self.score(best) < self.score(fit) else fit
 
     # ---- noise
@@ -378,7 +378,7 @@ def _pairs(competition: Competition) -> None:
         competition.forward_each(list(several.values())[:BEAM], JOINED, placed.__contains__)
 
     def as_alone() -> None:
-        pairs = in_order(combinations(several.values(), 2), lambda pair: sum(map(competition.score, pair)))
+        pairs = lowest_first(combinations(several.values(), 2), lambda pair: sum(map(competition.score, pair)))
         competition.fit_each(
             [
                 Start(one.causes + other.causes, one.values + other.values, one)

@@ -22,7 +22,7 @@ from truing.diagnosis.gain import floor_of
 from truing.diagnosis.intervals import Certainty, certainty_of, ends_of, numbers_of, places_of, value_of
 from truing.diagnosis.machine import Calibration
 from truing.diagnosis.noise import robust_sd
-from truing.diagnosis.ranking import in_order
+from truing.diagnosis.ranking import lowest_first
 from truing.diagnosis.records import Covariate
 from truing.diagnosis.result import (
     Alternative,
@@ -209,7 +209,7 @@ def by_share(chosen: Chosen, causes: tuple[Cause, ...]) -> tuple[Cause, ...]:
     if not squares.sum() > 0:
         return causes
     weighed = [replace(cause, share=float(share)) for cause, share in zip(causes, squares / squares.sum(), strict=True)]
-    return tuple(in_order(weighed, lambda cause: -cause.share))
+    return tuple(lowest_first(weighed, lambda cause: -cause.share))
 
 
 def added_by(fit: Fit, extended: Extended) -> dict[str, dict[str, Matrix]]:

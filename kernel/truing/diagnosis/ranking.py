@@ -17,7 +17,7 @@ SAME = 1e-3
 """Scores that differ by no more are the same: fits go no farther, and a report shows tenths."""
 
 
-def in_order(several: Iterable[T], score: Callable[[T], float], place: Callable[[T], Any] = lambda _: 0) -> list[T]:
+def lowest_first(several: Iterable[T], score: Callable[[T], float], place: Callable[[T], Any] = lambda _: 0) -> list[T]:
     """Return several things, the lowest score first; of one score the first place first, and then as they came."""
     scored = sorted((score(each), index, each) for index, each in enumerate(several))
     least = -inf

@@ -16,7 +16,7 @@ import numpy as np
 from truing.arrays import Matrix
 from truing.diagnosis.extended import Extended, elsewhere
 from truing.diagnosis.machine import Calibration
-from truing.diagnosis.ranking import in_order
+from truing.diagnosis.ranking import lowest_first
 from truing.diagnosis.result import APART, Course
 from truing.experiments.duels import Duel, Explained, duels, machine_there
 from truing.experiments.reach import Reach
@@ -115,7 +115,7 @@ def designed(stand: Stand) -> Designed | None:
 
 
 def _most_worth(experiments: Sequence[dict[str, Course]], worth: Matrix) -> dict[str, Course]:
-    return experiments[in_order(range(len(worth)), lambda index: -float(worth[index]))[0]]
+    return experiments[lowest_first(range(len(worth)), lambda index: -float(worth[index]))[0]]
 
 
 def _decided(separations: Mapping[tuple[str, str], float]) -> set[tuple[str, str]]:
