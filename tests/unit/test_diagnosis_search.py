@@ -453,7 +453,7 @@ def test_a_rival_stays_open_where_the_rows_contradict_one_another(
     behind = sorted(made.score(found) - made.score(best) for found in made.ranked(lambda each: len(each.causes) == 1))
     assert behind[0] == 0
     assert CLOSE < behind[1] < 60
-    assert _rivals(made, best, 1) == []
+    assert _rivals(made, best, 1) == ()
     monkeypatch.setattr(choice, "unsure", lambda one, other: 1.01 * behind[1] / SURE)
     (open_one,) = _rivals(made, best, 1)
     assert open_one.behind == pytest.approx(behind[1])

@@ -142,9 +142,9 @@ class Candidate:
         return self.shape is None
 
     @property
-    def weakest_first(self) -> tuple[int, bool, int]:
+    def weakest_first(self) -> tuple[int, bool, int, str]:
         """Which of several names for one curve is taken: fewest numbers, the kernel's, the first declared."""
-        return self.size, not self.is_kernel, self.order
+        return self.size, not self.is_kernel, self.order, self.tag
 
 
 def si_bounds(unknown: Unknown) -> tuple[float, float]:

@@ -12,7 +12,7 @@ row (Q. H. Vuong, Likelihood ratio tests for model selection and non-nested hypo
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from math import comb, log, sqrt
@@ -382,9 +382,8 @@ def choose(competition: Competition, *, seed: int) -> Chosen:
     best = competition.exact(best)
     rivals = _rivals(competition, best, seed)
     ends = competition.extended.side_by_side([partial(competition.exact, rival.fit) for rival in rivals])
-    near = [Rival(fit, rival.behind) for fit, rival in zip(ends, rivals, strict=True)]
-    near = [rival for rival in near if not _adds_nothing(competition, best, rival.fit)]
-    return Chosen(competition, best, tuple(near), _same(competition, best), decision.law, decision.p_further)
+    near = rivals_of(competition, best, [fit for fit in ends if not _adds_nothing(competition, best, fit)])
+    return Chosen(competition, best, near, _same(competition, best), decision.law, decision.p_further)
 
 
 def _certain(competition: Competition, best: Fit) -> Fit:
@@ -443,7 +442,7 @@ def _registered(competition: Competition, best: Fit) -> Fit:
             and competition.score(fit) < competition.score(best) + CLOSE
         )
     )
-    return min(near, key=lambda fit: (len(fit.causes), competition.score(fit)), default=best)
+    return min(near, key=lambda fit: len(fit.causes), default=best)
 
 
 def _taking_least(competition: Competition, best: Fit) -> Fit:
@@ -452,7 +451,7 @@ def _taking_least(competition: Competition, best: Fit) -> Fit:
         return best
     near = [fit for fit in competition.known.values() if competition.score(fit) < competition.score(best) + CLOSE]
     alike = [fit for fit in near if len(fit.causes) == len(best.causes) and _says_the_same(best, fit)]
-    return max(alike, key=lambda fit: _worth_of_names(competition, fit))
+    return competition.best_first(alike, lambda fit: -_worth_of_names(competition, fit))[0]
 
 
 def _worth_of_names(competition: Competition, fit: Fit) -> float:
@@ -465,7 +464,7 @@ def _worth_of_names(competition: Competition, fit: Fit) -> float:
 def _named_weakest(competition: Competition, best: Fit) -> Fit:
     """Return the explanation under the weakest of its names, where several causes draw one curve."""
     alike = [fit for fit in _like(competition, best) if competition.score(fit) < competition.score(best) + 1.0]
-    return min([best, *alike], key=lambda fit: sorted(cause.weakest_first for cause in fit.causes))
+    return min([best, *alike], key=lambda fit: fit.weakest_first)
 
 
 def _like(competition: Competition, best: Fit) -> Iterator[Fit]:
@@ -499,20 +498,26 @@ def _felt(fit: Fit, cause: Candidate) -> int:
     return int((np.linalg.svd(drawn, compute_uv=False) > ALIKE).sum())
 
 
+def rivals_of(competition: Competition, best: Fit, near: Iterable[Fit]) -> tuple[Rival, ...]:
+    """Return what lies near the winner, the nearest first, and how far it lies behind."""
+    top = competition.score(best)
+    return tuple(Rival(fit, max(0.0, competition.score(fit) - top)) for fit in competition.best_first(near))
+
+
 def unsure(one: Fit, other: Fit) -> float:
     """Return the standard error of the difference of two scores, from how it differs from row to row."""
     losses = [each.sample.losses(each.left, each.left) for each in (one, other)]
     return sqrt(one.sample.rows) * float(np.std(losses[0] - losses[1]))
 
 
-def _rivals(competition: Competition, best: Fit, seed: int) -> list[Rival]:
+def _rivals(competition: Competition, best: Fit, seed: int) -> tuple[Rival, ...]:
     """Return what lies near the winner and is neither another name for it nor a vaguer word.
 
     What may be there as well is not told where it, in the place of a cause of the winner, explains as much; a shape
     not beside a registered one.
     """
     if not best.causes:
-        return []
+        return ()
     alike = {fit.key for fit in _like(competition, best)}
     top = competition.score(best)
     near: list[Fit] = []
@@ -522,7 +527,7 @@ def _rivals(competition: Competition, best: Fit, seed: int) -> list[Rival]:
         if fit.key not in alike and _is_near(competition, best, fit):
             near.append(fit)
     more = [fit for fit in _with_more(competition, best, seed) if not any(fit.key > other.key for other in near)]
-    return [Rival(fit, max(0.0, competition.score(fit) - top)) for fit in sorted((*near, *more), key=competition.rank)]
+    return rivals_of(competition, best, (*near, *more))
 
 
 def _with_more(competition: Competition, best: Fit, seed: int) -> list[Fit]:

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from itertools import chain, combinations, compress
 from math import lgamma, log, log1p
+from operator import attrgetter
 from typing import NamedTuple
 
 import numpy as np
@@ -26,6 +27,7 @@ from truing.diagnosis.exact import CLOSELY, EXACTLY, ROUGHLY, fitting, held_with
 from truing.diagnosis.extended import Extended, shape_added
 from truing.diagnosis.fitted import Fit, differ, signs_of_wrong
 from truing.diagnosis.learning import as_noise, learnt
+from truing.diagnosis.ranking import SAME, lowest_first
 from truing.diagnosis.sample import Sample, sample_of
 from truing.studies.bench import StepProgress, unheard
 
@@ -33,8 +35,6 @@ MOST_CAUSES = 5
 """So many causes are named at most; what another one would explain stays in the remainder."""
 MARGIN = 6.0
 """What every sign of a wrong explanation costs, in score: a Bayes factor of about 20."""
-SCORE_DIGITS = 6
-"""Decimal places of a score by which explanations are put in order: less is rounding."""
 UNREGISTERED = 4.0
 """What a shape that nobody registered costs beside its numbers."""
 LEAST_PROMISE = 4.0
@@ -132,23 +132,23 @@ class Competition:
         """Return how unlikely an explanation is: its cost, and its price."""
         return fit.cost + self.price(fit)
 
-    def rank(self, fit: Fit) -> float:
-        """Return the score as explanations are put in order by it: those that only rounding parts stay as they came."""
-        return round(self.score(fit), SCORE_DIGITS)
-
     def own_score(self, fit: Fit) -> float:
         """Return the same where what is left counts as noise with the memory that suits it best."""
         if fit not in self.owned:
             self.owned[fit] = as_noise(self.sample, fit.predicted)
         return self.owned[fit] + float(fit.inputs @ fit.inputs) + self.price(fit)
 
+    def best_first(self, several: Iterable[Fit], score: Callable[[Fit], float] | None = None) -> list[Fit]:
+        """Return explanations, the best first; of one score those under the weakest names."""
+        return lowest_first(several, score or self.score, attrgetter("weakest_first"))
+
     def ranked(self, accept: Callable[[Fit], bool] = lambda _: True) -> list[Fit]:
         """Return what was fitted and is accepted, the best first."""
-        return sorted((fit for fit in self.known.values() if accept(fit)), key=self.rank)
+        return self.best_first(fit for fit in self.known.values() if accept(fit))
 
     def best(self, size: int) -> Fit | None:
         """Return the best explanation of so many causes."""
-        return min((fit for fit in self.known.values() if len(fit.causes) == size), key=self.rank, default=None)
+        return next(iter(self.ranked(lambda fit: len(fit.causes) == size)), None)
 
     @property
     def null(self) -> Fit:
@@ -158,16 +158,16 @@ class Competition:
     @property
     def fairest(self) -> Fit:
         """What is best where every explanation has the noise that it leaves: the noise is learnt from it."""
-        return min(self.known.values(), key=self.own_score)
+        return self.best_first(self.known.values(), self.own_score)[0]
 
     # ---- fits
 
     def keep(self, fit: Fit | None) -> Fit | None:
-        """Keep a fit where it is better than what is known of its causes."""
+        """Keep a fit where it is better than what is known of its causes; of one score the first stays."""
         if fit is None:
             return None
         before = self.known.get(fit.key)
-        allowed = 0.0 if fit.key in self.fresh else MARGIN  # what was rough may have promised too much
+        allowed = -SAME if fit.key in self.fresh else MARGIN  # what was rough may have promised too much
         if before is None or fit.cost < before.cost + allowed:
             self.known[fit.key] = fit
         self.fresh.add(fit.key)
@@ -242,7 +242,7 @@ class Competition:
             for cause in self.causes
             if cause.tag in seen and seen[cause.tag].starts and seen[cause.tag].starts[0][0] > LEAST_PROMISE
         }
-        return sorted(worth, key=lambda cause: (-worth[cause], cause.weakest_first))
+        return lowest_first(worth, lambda cause: -worth[cause], attrgetter("weakest_first"))
 
     def without(self, fit: Fit, index: int) -> Fit | None:
         """Fit an explanation without one of its causes."""
@@ -255,8 +255,7 @@ class Competition:
     def backward(self, fit: Fit) -> Fit:
         """Leave out what is no longer needed."""
         tried = self.extended.side_by_side([partial(self.without, fit, index) for index in range(len(fit.causes))])
-        less = [each for each in tried if each is not None]
-        best = min(less, key=self.score, default=fit)
+        best = next(iter(self.best_first(each for each in tried if each is not None)), fit)
         return self.backward(best) if len(fit.causes) > 1 and self.score(best) < self.score(fit) else fit
 
     # ---- noise
@@ -379,7 +378,7 @@ def _pairs(competition: Competition) -> None:
         competition.forward_each(list(several.values())[:BEAM], JOINED, placed.__contains__)
 
     def as_alone() -> None:
-        pairs = sorted(combinations(several.values(), 2), key=lambda pair: sum(map(competition.score, pair)))
+        pairs = lowest_first(combinations(several.values(), 2), lambda pair: sum(map(competition.score, pair)))
         competition.fit_each(
             [
                 Start(one.causes + other.causes, one.values + other.values, one)

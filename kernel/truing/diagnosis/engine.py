@@ -18,7 +18,7 @@ import numpy as np
 from truing.arrays import one_thread
 from truing.declare.near_miss import near_miss
 from truing.diagnosis.causes import effects_of, followed_by, inputs_of
-from truing.diagnosis.choice import Chosen, Rival, choose
+from truing.diagnosis.choice import Chosen, Rival, choose, rivals_of
 from truing.diagnosis.competition import Competition, Start, competition_of, search
 from truing.diagnosis.extended import Extended, probe
 from truing.diagnosis.findings import (
@@ -84,14 +84,14 @@ def on_all_rows(chosen: Chosen, machine: Calibration) -> Chosen:
     competition.fit_each([Start(fit.causes, fit.values, None) for fit in {fit.key: fit for fit in wanted}.values()])
     competition.renew()
     competition.refresh()
-    best = competition.known.get(chosen.best.key, competition.null)
+    best = competition.exact(competition.known.get(chosen.best.key, competition.null))
     ends = [
         competition.exact(competition.known[rival.fit.key])
         for rival in chosen.rivals
         if rival.fit.key in competition.known
     ]
-    rivals = tuple(Rival(fit, max(0.0, competition.score(fit) - competition.score(best))) for fit in ends)
-    return replace(chosen, competition=competition, best=competition.exact(best), rivals=rivals, of_some_rows=chosen)
+    rivals = rivals_of(competition, best, ends)
+    return replace(chosen, competition=competition, best=best, rivals=rivals, of_some_rows=chosen)
 
 
 def diagnose(
@@ -199,9 +199,8 @@ def _answer(chosen: Chosen, setup: Setup, progress: Progress) -> DiagnosisResult
 def _ranking(chosen: Chosen) -> tuple[Alternative, ...]:
     """Return the best explanations, the winner first, every one with how far it lies behind."""
     competition = chosen.competition
-    top = competition.score(competition.known[chosen.best.key])
     others = [fit for fit in competition.ranked() if fit.key != chosen.best.key][: RANKED - 1]
-    ranked = [Rival(chosen.best, 0.0), *(Rival(fit, max(0.0, competition.score(fit) - top)) for fit in others)]
+    ranked = [Rival(chosen.best, 0.0), *rivals_of(competition, competition.known[chosen.best.key], others)]
     tasks = [partial(alternative_of, chosen, each) for each in ranked]
     return tuple(competition.extended.side_by_side(tasks))
 

@@ -22,6 +22,7 @@ from truing.diagnosis.gain import floor_of
 from truing.diagnosis.intervals import Certainty, certainty_of, ends_of, numbers_of, places_of, value_of
 from truing.diagnosis.machine import Calibration
 from truing.diagnosis.noise import robust_sd
+from truing.diagnosis.ranking import lowest_first
 from truing.diagnosis.records import Covariate
 from truing.diagnosis.result import (
     Alternative,
@@ -208,7 +209,7 @@ def by_share(chosen: Chosen, causes: tuple[Cause, ...]) -> tuple[Cause, ...]:
     if not squares.sum() > 0:
         return causes
     weighed = [replace(cause, share=float(share)) for cause, share in zip(causes, squares / squares.sum(), strict=True)]
-    return tuple(sorted(weighed, key=lambda cause: -cause.share))
+    return tuple(lowest_first(weighed, lambda cause: -cause.share))
 
 
 def added_by(fit: Fit, extended: Extended) -> dict[str, dict[str, Matrix]]:
@@ -370,23 +371,22 @@ def _structure(chosen: Chosen, name: str, unit: str) -> Iterator[ResidualFinding
     Shapes that explain little beside the best explanation are its shadows (a jump has waves of every order).
     """
     competition = chosen.competition
-    alone = [fit for fit in competition.known.values() if len(fit.causes) == 1]
+    alone = competition.ranked(lambda fit: len(fit.causes) == 1)
     offsets = [fit for fit in alone if fit.causes[0].name == "sensor_offset"]
     constant = [fit for fit in offsets if gauged(fit.causes[0], [name])]
     plain = min(competition.score(fit) for fit in (competition.null, *constant))  # what a trend must beat to be one
     best: dict[tuple[str, ...], tuple[float, Fit]] = {}
     for fit in alone:
         label, gain = _label(fit, name), plain - competition.score(fit)
-        is_found = bool(label) and chosen.law.p_of(gain) <= SIGNIFICANT
-        if is_found and (label not in best or gain > best[label][0]):
-            best[label] = (gain, fit)
+        if label and chosen.law.p_of(gain) <= SIGNIFICANT:
+            best.setdefault(label, (gain, fit))
     singles: dict[str, float] = {}
     for label, (gain, _) in best.items():
         if len(label) == 2:
             singles[label[1]] = max(gain, singles.get(label[1], gain))
     least = SHADOW * (plain - competition.score(competition.ranked()[0]))
     kept = []
-    for label, (gain, fit) in sorted(best.items(), key=lambda pair: -pair[1][0]):
+    for label, (gain, fit) in best.items():
         plainer = max((singles[each] + PAIR_BETTER for each in label[1:] if each in singles), default=gain)
         if gain >= least and (len(label) != 3 or gain >= plainer):
             kept.append((gain, fit))

@@ -54,6 +54,11 @@ class Fit:
         return sum(cause.size for cause in self.causes)
 
     @property
+    def weakest_first(self) -> tuple[int, list[tuple[int, bool, int, str]]]:
+        """Which of several explanations that are as good is taken: fewest causes, under the weakest of their names."""
+        return len(self.causes), sorted(cause.weakest_first for cause in self.causes)
+
+    @property
     def moved(self) -> Matrix:
         """How far each tolerated input is moved, in standard deviations from its mean."""
         return moved_by(self.sample, self.inputs)

@@ -121,7 +121,7 @@ def _chosen_again(chosen: Chosen, base: Fit, again: list[Fit]) -> Fit:
     if not again:
         return base
     own = next((fit for fit in again if fit.key == chosen.best.key), None)
-    top = min(again, key=competition.score)
+    top = competition.best_first(again)[0]
     best = own if own is not None and competition.score(own) < competition.score(top) + CLOSE else top
     return best if competition.score(best) < competition.score(base) else base
 
@@ -293,7 +293,7 @@ def thinned_of(chosen: Chosen) -> tuple[Thinned, ...]:
             [partial(_score, chosen, fit, sample) for fit in (best, *others)]
         )
         ahead = dict(zip((best, *others), judged, strict=True))
-        top = min(ahead, key=ahead.__getitem__)
+        top = chosen.competition.best_first(ahead, ahead.__getitem__)[0]
         if ahead[top] < ahead[best] - CLOSE < np.inf:
             thinned.append(Thinned(said, top.names, ahead[best] - ahead[top]))
     return tuple(thinned)

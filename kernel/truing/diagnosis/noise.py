@@ -19,6 +19,7 @@ from scipy.optimize import minimize_scalar
 from scipy.special import erfcx, gammaln, log_ndtr, ndtri, stdtr
 
 from truing.arrays import Indices, Mask, Matrix, Sides
+from truing.diagnosis.ranking import lowest_first
 
 TAILS = {3.0: 1.9, 4.0: 2.1, 6.0: 2.5, 10.0: 3.0, inf: 4.5}
 """Degrees of freedom of Student's t, and where innovations are clipped, in standard deviations."""
@@ -207,7 +208,7 @@ def spread_of(innovations: Matrix, drivers: dict[str, Matrix]) -> SpreadTrend:
     if not tried or len(u) < 20 or not np.ptp(sizes) > 0:
         return SpreadTrend()
     alike = {name: abs(float(np.corrcoef(z, sizes)[0, 1])) for name, z in tried.items()}
-    name = max(alike, key=alike.__getitem__)  # of drivers that are one the first
+    name = lowest_first(alike, lambda driver: -alike[driver])[0]  # of drivers that are one the first
     off = alike[name] * sqrt((len(u) - 2) / max(1 - alike[name] ** 2, 1e-300))
     p_value = min(1.0, 2 * float(stdtr(len(u) - 2, -off)) * len(tried))
     if p_value >= SPREAD_LEVEL:

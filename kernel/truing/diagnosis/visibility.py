@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import combinations
 from math import asin, comb, degrees, inf, log, sqrt
+from operator import itemgetter
 
 import numpy as np
 from scipy.optimize import lsq_linear
@@ -21,6 +22,7 @@ from truing.diagnosis.extended import Extended
 from truing.diagnosis.fitted import Fit, inward
 from truing.diagnosis.intervals import Certainty, certainty_of, numbers_of, places_of, value_of
 from truing.diagnosis.machine import Calibration
+from truing.diagnosis.ranking import lowest_first
 from truing.diagnosis.result import APART, Amount, Trade, Visibility, VisibleSize
 
 POWER, LEVEL = 0.9, 0.05
@@ -227,7 +229,7 @@ def trades_of(chosen: Chosen) -> tuple[Trade, ...]:
     alike[:, [cause.tolerated for cause in best.causes if cause.tolerated >= 0]] = 0.0
     for cause in named:
         places = [places_of(best, cause)[index] for index in cause.amplitudes]
-        number, column = np.unravel_index(int(np.argmax(np.abs(alike[places]))), (len(places), len(inputs)))
+        (number, column), _ = lowest_first(np.ndenumerate(-np.abs(alike[places])), itemgetter(1))[0]
         correlation = float(alike[places[number], column])
         values = np.array([value_of(best, index) for index in places]) / certainty.units[places]
         inverse = np.linalg.pinv(certainty.covariance[np.ix_(places, places)], hermitian=True)

@@ -16,6 +16,7 @@ import numpy as np
 from truing.arrays import Matrix
 from truing.diagnosis.extended import Extended, elsewhere
 from truing.diagnosis.machine import Calibration
+from truing.diagnosis.ranking import lowest_first
 from truing.diagnosis.result import APART, Course
 from truing.experiments.duels import Duel, Explained, duels, machine_there
 from truing.experiments.reach import Reach
@@ -102,15 +103,19 @@ def designed(stand: Stand) -> Designed | None:
         gained = np.mean([np.log1p(duel.after(stand.budget / LOOKED_AT)) for duel in live], axis=0)
         return np.asarray(gained - np.array([_effort(stand, courses) for courses in experiments]))
 
-    best = [*first, *ends][int(np.argmax(worth([*first, *ends], fought)))]
+    best = _most_worth([*first, *ends], worth([*first, *ends], fought))
     for _ in range(0 if few else PASSES):
         before = best
         for name, courses in choices.items():
             tried = [best | {name: course} for course in courses]
-            best = tried[int(np.argmax(worth(tried, stand.duels(tried))))]
+            best = _most_worth(tried, worth(tried, stand.duels(tried)))
         if best == before:
             break
     return _sized(stand, best, pairs)
+
+
+def _most_worth(experiments: Sequence[dict[str, Course]], worth: Matrix) -> dict[str, Course]:
+    return experiments[lowest_first(range(len(worth)), lambda index: -float(worth[index]))[0]]
 
 
 def _decided(separations: Mapping[tuple[str, str], float]) -> set[tuple[str, str]]:

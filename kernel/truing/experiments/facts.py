@@ -11,7 +11,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
-from math import sqrt
+from math import log, sqrt
 from typing import Any
 
 import numpy as np
@@ -23,6 +23,7 @@ from truing.diagnosis.extended import switched_on
 from truing.diagnosis.findings import in_unit
 from truing.diagnosis.fitted import Fit, input_value
 from truing.diagnosis.machine import Calibration, Predicted, calibration_of, predict
+from truing.diagnosis.ranking import lowest_first
 from truing.diagnosis.result import APART, Amount, Fact, NextPoint, Tie, readable_unit
 from truing.experiments.duels import name_of
 from truing.units import read_quantity
@@ -120,7 +121,7 @@ def result_to_measure(
         pairs = (
             _gap(there, name, (a, b), one[name] - other[name]) for (a, one), (b, other) in combinations(predictions, 2)
         )
-        gaps = sorted((gap for gap in pairs if gap is not None), key=lambda gap: gap.clearness)
+        gaps = lowest_first((gap for gap in pairs if gap is not None), lambda gap: log(gap.clearness))
         if gaps:
             parted = sum(predictions[0][0] in gap.names for gap in gaps)
             is_goal, clearness = name in goals, float(f"{gaps[0].clearness:.2g}")

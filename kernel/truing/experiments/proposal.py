@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from math import ceil
+from operator import attrgetter
 
 import numpy as np
 
@@ -15,6 +17,7 @@ from truing.diagnosis.conditional import look
 from truing.diagnosis.exact import alone, fitting, held_without
 from truing.diagnosis.findings import in_unit
 from truing.diagnosis.fitted import Fit
+from truing.diagnosis.ranking import lowest_first
 from truing.diagnosis.result import Amount, Chance, DiagnosisResult, Experiment, NextPoint, readable_unit
 from truing.diagnosis.sample import Sample
 from truing.experiments.chances import Simulation
@@ -141,7 +144,7 @@ def points_of(stand: Stand, experiment: Experiment, live: Sequence[Duel]) -> Ite
     """Give the readings in their order: which pair is then least apart, and how far apart all are."""
     results = len(stand.spreads)
     for count in range(1, experiment.readings + 1):
-        weakest = min(live, key=lambda duel: duel.up_to((count - 1) * results))
+        weakest = lowest_first(live, partial(Duel.up_to, values=(count - 1) * results))[0]
         why = _why(stand, experiment, count - 1, weakest)
         amounts = {
             name: Amount(float(values[count - 1]), experiment.units[name])
@@ -179,7 +182,7 @@ def _renamed(chosen: Chosen) -> Iterator[Fit]:
             fits = [competition.known[key] for key in keys if key in competition.known]
             fits = fits or [fit for other in others for fit in _exchanged(competition, best, index, other)]
             if fits:
-                yield min(fits, key=lambda fit: fit.cost)
+                yield competition.best_first(fits, attrgetter("cost"))[0]
 
 
 def _exchanged(competition: Competition, best: Fit, index: int, other: Candidate) -> Iterator[Fit]:

@@ -10,6 +10,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from truing.diagnosis.ranking import lowest_first
 from truing.diagnosis.result import (
     APART,
     Alternative,
@@ -378,7 +379,7 @@ def _sizes(diagnosis: DiagnosisResult) -> ChapterParts:
         sizes = [fitted_text(unknown) for unknowns in alternative.unknowns.values() for unknown in unknowns]
         if sizes:
             yield from _both(f"or {explanation(alternative)}, {'; '.join(sizes)}")
-    moved = sorted(diagnosis.calibrated, key=lambda calibrated: -abs(calibrated.of_its_sd))[:MOST_MOVED]
+    moved = lowest_first(diagnosis.calibrated, lambda calibrated: -abs(calibrated.of_its_sd))[:MOST_MOVED]
     if moved:
         shifts = ", ".join(f"{spoken(calibrated.name)} by {score_text(calibrated.of_its_sd)}" for calibrated in moved)
         yield f"moved most within their tolerances (in standard deviations): {shifts}"
