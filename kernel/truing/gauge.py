@@ -186,10 +186,15 @@ def _row_by_row(machine: Setup, rows: RowsFile, trials: Sequence[Trial], wanted:
             continue
         if values is None and not all(name in trial for trial in trials):
             values = machine.nominal(name)
-        columns[name] = np.concatenate([np.broadcast_to(trial.get(name, values), len(rows)) for trial in trials])
+        columns[name] = np.concatenate([_in_each(trial.get(name, values), len(rows)) for trial in trials])
     machine = _at_places(machine, rows)
     answer = evaluate_rows(machine, columns, count * len(rows), reading=True, wanted=names, repeats=count)
     return answer if wanted is None else answer.complete()
+
+
+def _in_each(value: Any, rows: int) -> Any:
+    """Return a column as it is, and one value in each of so many rows."""
+    return value if getattr(value, "shape", ()) == (rows,) else np.broadcast_to(value, rows)
 
 
 @dataclass(frozen=True)
