@@ -289,7 +289,12 @@ def _records(machine: Setup, rows: RowsFile) -> Sequence[NDArray[np.intp]]:
 @lru_cache(maxsize=16)
 def _places_alike(columns: tuple[tuple[Any, ...], ...], rows: int) -> list[NDArray[np.intp]]:
     """Return the places of rows that share their values; a fit asks for the same ones again and again."""
-    return rows_alike(columns, rows)
+    if not columns:
+        return rows_alike(columns, rows)
+    places: dict[tuple[Any, ...], list[int]] = {}
+    for row, values in enumerate(zip(*columns, strict=True)):  # all of them can be keys: those of the cache are
+        places.setdefault(values, []).append(row)
+    return [np.array(each) for each in places.values()]
 
 
 def _alike(
@@ -303,7 +308,7 @@ def _alike(
             column = columns[name]
             line = next(rows.lines[row] for row in record if column[row] != column[record[0]])
             raise UsageError(f"{rows.file}:{line}: {name} changes within a run, but a record is one calculation")
-    differing = tuple(tuple(columns[name][row] for row in record.tolist()) for name in varying)
+    differing = tuple(tuple(_values_at(columns[name], record)) for name in varying)
     for places in _places_alike(differing, len(record)):
         yield record[places], {name: _value_at(column, record[places[0]]) for name, column in columns.items()}
 
@@ -318,6 +323,10 @@ def _varies(column: Any, places: NDArray[np.intp]) -> bool:
         return any(column[row] != column[places[0]] for row in places)
     few = places[:1] if getattr(column, "strides", ()) == (0,) else places
     return _is_column(column) and bool((column[few] != column[places[0]]).any())
+
+
+def _values_at(column: Any, places: NDArray[np.intp]) -> list[Any]:
+    return [column[row] for row in places] if isinstance(column, list) else column[places].tolist()
 
 
 def _value_at(column: Any, row: int) -> Any:
