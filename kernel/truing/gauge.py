@@ -245,7 +245,7 @@ def _for_rows(
     for name, axis in along.items():
         value = computed.results[name][number]
         at_places = _read_at(rows.axes[axis][places], computed.results[axis][number], value) if axis else value
-        results[name] = np.broadcast_to(at_places, places.shape)
+        results[name] = _in_each(at_places, len(places))
     all_rows = range(len(places))
     reasons = dict.fromkeys(all_rows, computed.reasons[number]) if computed.failed[number] else {}
     lacking = {name: dict.fromkeys(all_rows, why[number]) for name, why in computed.absent.items() if number in why}
@@ -321,8 +321,10 @@ def _varies(column: Any, places: NDArray[np.intp]) -> bool:
     """Whether a column has more than one value at these places; NaN is a value of its own."""
     if isinstance(column, list):
         return any(column[row] != column[places[0]] for row in places)
-    few = places[:1] if getattr(column, "strides", ()) == (0,) else places
-    return _is_column(column) and bool((column[few] != column[places[0]]).any())
+    if not _is_column(column):
+        return False
+    first = column[places[0]]
+    return bool(first != first if column.strides == (0,) else (column[places] != first).any())
 
 
 def _values_at(column: Any, places: NDArray[np.intp]) -> list[Any]:
