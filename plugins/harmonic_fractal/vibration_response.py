@@ -196,7 +196,7 @@ def traced(machines: Oscillators, first: Array, last: Array) -> Curve:
     walk.direction[:, -1] = 1.0
     points: list[list[Array]] = [[point] for point in walk.point]
     is_whole = np.zeros(len(first), dtype=bool)
-    walk.keep(is_close & (_least_way(machines, first, last) < FARTHEST))
+    walk.keep(is_close & (least_way(machines, first, last) < FARTHEST))
     walk.direction = _direction(_bordered(machines.part(walk.rows), walk.point, walk.direction)[1])
     for _ in range(MOST_STEPS):
         if not len(walk.rows):
@@ -209,7 +209,7 @@ def traced(machines: Oscillators, first: Array, last: Array) -> Curve:
     return _stacked(points, is_whole)
 
 
-def _least_way(machines: Oscillators, first: Array, last: Array) -> Array:
+def least_way(machines: Oscillators, first: Array, last: Array) -> Array:
     """Return how long a curve is at least: its frequencies, and up to the resonance where that lies on the way.
 
     Clearance changes the force by 1 at most, which hardly matters to the motion there where that is long.
