@@ -23,9 +23,9 @@ for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Add the size of the torture tests: ``python -m pytest tests/torture --torture=full``."""
+    """Add the size of torture tests and of long pages: ``python -m pytest --torture=full``."""
     parser.addoption(
-        "--torture", choices=["modest", "full"], default="modest", help="size of the tests in tests/torture"
+        "--torture", choices=["modest", "full"], default="modest", help="size of the tests that can be large"
     )
 
 
