@@ -23,9 +23,9 @@ for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Add the size of the torture tests: ``python -m pytest tests/torture --torture=full``."""
+    """Add the size of torture tests and of long pages: ``python -m pytest --torture=full``."""
     parser.addoption(
-        "--torture", choices=["modest", "full"], default="modest", help="size of the tests in tests/torture"
+        "--torture", choices=["modest", "full"], default="modest", help="size of the tests that can be large"
     )
 
 
@@ -35,9 +35,15 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> WorkSteal
     return WorkStealingScheduling(config, log)
 
 
+FIRST = ("torture", "test_tutorial")
+"""Tests that fork, while this process is small: the larger it is, the longer a fork takes; then the longest ones, so
+that no worker is left alone with them."""
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Let the tests that fork come first, while this process is small: the larger it is, the longer a fork takes."""
-    items.sort(key=lambda item: "torture" not in item.path.parts)
+    """Put first what is to come first."""
+    order = {name: place for place, name in enumerate(FIRST)}
+    items.sort(key=lambda item: min(order.get(name, len(FIRST)) for name in (item.path.stem, *item.path.parts)))
 
 
 def pytest_collection_finish() -> None:

@@ -186,10 +186,15 @@ def _row_by_row(machine: Setup, rows: RowsFile, trials: Sequence[Trial], wanted:
             continue
         if values is None and not all(name in trial for trial in trials):
             values = machine.nominal(name)
-        columns[name] = np.concatenate([np.broadcast_to(trial.get(name, values), len(rows)) for trial in trials])
+        columns[name] = np.concatenate([_in_each(trial.get(name, values), len(rows)) for trial in trials])
     machine = _at_places(machine, rows)
     answer = evaluate_rows(machine, columns, count * len(rows), reading=True, wanted=names, repeats=count)
     return answer if wanted is None else answer.complete()
+
+
+def _in_each(value: Any, rows: int) -> Any:
+    """Return a column as it is, and one value in each of so many rows."""
+    return value if getattr(value, "shape", ()) == (rows,) else np.broadcast_to(value, rows)
 
 
 @dataclass(frozen=True)
@@ -240,7 +245,7 @@ def _for_rows(
     for name, axis in along.items():
         value = computed.results[name][number]
         at_places = _read_at(rows.axes[axis][places], computed.results[axis][number], value) if axis else value
-        results[name] = np.broadcast_to(at_places, places.shape)
+        results[name] = _in_each(at_places, len(places))
     all_rows = range(len(places))
     reasons = dict.fromkeys(all_rows, computed.reasons[number]) if computed.failed[number] else {}
     lacking = {name: dict.fromkeys(all_rows, why[number]) for name, why in computed.absent.items() if number in why}
@@ -286,7 +291,12 @@ def _records(machine: Setup, rows: RowsFile) -> Sequence[NDArray[np.intp]]:
 @lru_cache(maxsize=16)
 def _places_alike(columns: tuple[tuple[Any, ...], ...], rows: int) -> list[NDArray[np.intp]]:
     """Return the places of rows that share their values; a fit asks for the same ones again and again."""
-    return rows_alike(columns, rows)
+    if not columns:
+        return rows_alike(columns, rows)
+    places: dict[tuple[Any, ...], list[int]] = {}
+    for row, values in enumerate(zip(*columns, strict=True)):  # all of them can be keys: those of the cache are
+        places.setdefault(values, []).append(row)
+    return [np.array(each) for each in places.values()]
 
 
 def _at_record(machine: Setup, columns: Mapping[str, Any], record: NDArray[np.intp]) -> dict[str, Any]:
@@ -304,8 +314,8 @@ def _one_or_all(column: Any, places: NDArray[np.intp]) -> Any:
     elif column.strides == (0,) and column[0] == column[0]:
         return float(column[0])
     else:
-        values = column[places]
-        is_one = bool((values == values[0]).all())
+        own = column[places]
+        is_one, values = bool((own == own[0]).all()), own.tolist()
     return _plain(values[0]) if is_one else tuple(_plain(value) for value in values)
 
 

@@ -28,6 +28,8 @@ FIRST, LARGEST, SMALLEST = 0.02, 0.15, 1e-6
 TURN = 0.95
 """Cosine of the angle between two steps from which on they are shorter: at folds, and where contact is lost."""
 MOST_STEPS = 3000
+FARTHEST = 2 * MOST_STEPS * LARGEST
+"""A way so long is not set out on: these steps end at half of it."""
 
 SURELY = 0.9
 """Part of the mean force that a wave may take away for a start in contact."""
@@ -194,7 +196,7 @@ def traced(machines: Oscillators, first: Array, last: Array) -> Curve:
     walk.direction[:, -1] = 1.0
     points: list[list[Array]] = [[point] for point in walk.point]
     is_whole = np.zeros(len(first), dtype=bool)
-    walk.keep(is_close)
+    walk.keep(is_close & (least_way(machines, first, last) < FARTHEST))
     walk.direction = _direction(_bordered(machines.part(walk.rows), walk.point, walk.direction)[1])
     for _ in range(MOST_STEPS):
         if not len(walk.rows):
@@ -205,6 +207,15 @@ def traced(machines: Oscillators, first: Array, last: Array) -> Curve:
         is_whole[walk.rows[ended]] = True
         walk.keep(~ended & (walk.step >= SMALLEST))
     return _stacked(points, is_whole)
+
+
+def least_way(machines: Oscillators, first: Array, last: Array) -> Array:
+    """Return how long a curve is at least: its frequencies, and up to the resonance where that lies on the way.
+
+    Clearance changes the force by 1 at most, which hardly matters to the motion there where that is long.
+    """
+    resonant = (machines.force + machines.error) / (2.0 * machines.damping)
+    return np.maximum(last - first, np.where(first < 1.0, resonant, 0.0))
 
 
 def _stacked(points: list[list[Array]], is_whole: NDArray[np.bool_]) -> Curve:

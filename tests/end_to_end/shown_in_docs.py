@@ -13,6 +13,9 @@ What is no command and no file is executed or read as ``read_in_docs.py`` says.
 A page with ``<!-- needs data: NAME as FILE -->`` is about measurements that are not shipped. Where the environment
 variable TRUING_MEASURED names a folder with NAME/data.csv, that file is copied to FILE; else the page is skipped.
 
+A page with ``<!-- long: WHY -->`` is run at full size only, ``--torture=full``: it takes longer than it is worth every
+time, and WHY names the test that asks for less of the same every time.
+
 In a ``console`` block every line that begins with ``$`` is a command; what follows is compared with what it prints.
 A line ``...`` stands for any lines, ``...`` within a line for any text.
 
@@ -149,6 +152,15 @@ class Desk:
 
 
 NEEDED = re.compile(r"^<!-- needs data: (\S+) as (\S+) -->$", re.MULTILINE)
+
+
+LONG = re.compile(r"^<!-- long: (.+) -->$", re.MULTILINE)
+
+
+def takes_long(page: Path) -> str:
+    """Return why a page is run at full size only, or nothing."""
+    found = LONG.search(page.read_text(encoding="utf-8"))
+    return found[1] if found else ""
 
 
 def missing_data(page: Path) -> str:

@@ -110,8 +110,8 @@ def test_two_records_with_other_times_starts_and_masses_are_one_diagnosis(
     """Dry friction alone is hidden; the second arm is let go where nobody wrote it down, and each start is fitted."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(simulation, "OIL", 0.0)
-    simulation.write("one.csv", 1.2, 60.5, [0.2 * row for row in range(21)], 11)
-    simulation.write("two.csv", 0.6, 58.0, [0.13 * row for row in range(24)], 12)
+    simulation.write("one.csv", 1.2, 60.5, [0.2 * row for row in range(12)], 11)
+    simulation.write("two.csv", 0.6, 58.0, [0.13 * row for row in range(14)], 12)
     record = read([tmp_path / "one.csv", tmp_path / "two.csv"], pendulum)
     found = pendulum.diagnose(record, per_file=["release"], progress=False).document
     assert [cause["effect"] for cause in found["causes"]] == ["dry_friction"]

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import re
+import shutil
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from measured import documented
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from shown_in_docs import EXAMPLES
@@ -16,6 +19,8 @@ from truing.kernel.loading import load_file
 EXAMPLE = EXAMPLES / "cascaded_tanks"
 STORY = (EXAMPLE / "README.md").read_text(encoding="utf-8")
 Array = NDArray[np.float64]
+FIRST = 200
+"""Rows of the estimation record in which both tanks run over, and no more."""
 HIGH = slice(60, 200)
 """Rows of the estimation record in which the pump runs fastest."""
 WHOLE = slice(0, 1024)
@@ -126,7 +131,7 @@ def test_the_records_are_whole(name: str, volts: float, levels: float) -> None:
     assert rows[:, 2].max() == 10.0
 
 
-# What the story shows is what the commands print: the pages of the manual are run. Here it is held against other hands.
+# What the story shows is what the commands print: at full size the page is run. Here it is held against other hands.
 
 FREE, BY_HAND, POWER = 0.669, 0.381, 0.370
 """Least squares on the estimation record by another hand, Runge-Kutta of fourth order: the error (V) on the other one
@@ -164,3 +169,21 @@ def test_what_was_found_is_worth_something_on_the_record_that_was_not_fitted() -
     assert drawn > FREE
     assert extended < 0.65 * FREE
     assert extended < 1.1 * BY_HAND  # by hand the lower tank has no rim
+
+
+def test_from_the_first_rows_both_overflows_are_named(tmp_path: Path) -> None:
+    """All that runs over runs over the rims; what the outlets lose takes the whole record, at full size."""
+    for name in ("cascaded_tanks.py", "inputs.toml"):
+        shutil.copy(EXAMPLE / name, tmp_path)
+    head, *rows = (EXAMPLE / "estimation.csv").read_text(encoding="utf-8").splitlines()
+    (tmp_path / "first.csv").write_text("\n".join([head, *rows[:FIRST]]) + "\n", encoding="utf-8")
+    found = documented(tmp_path, "cascaded_tanks.py", "first.csv")
+    unknowns = {cause["effect"]: cause["unknowns"] for cause in found["causes"]}
+    assert set(unknowns) == {"overflow", "lower_overflow"}
+    for spill in (each["spill"] for each in unknowns.values()):
+        low, high = spill["interval95"]
+        assert low <= 1
+        assert high is None or high == 1
+        assert spill["value"] == pytest.approx(1, abs=0.1)
+    level = found["gain"]["level"]
+    assert level["rmse_after"]["value"] < 0.5 * level["rmse_before"]["value"]

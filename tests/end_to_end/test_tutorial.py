@@ -10,7 +10,19 @@ from pathlib import Path
 
 import pytest
 from read_in_docs import why_not
-from shown_in_docs import EXAMPLES, ROOT, blocks, check_page, commands, desk_in, grown, matches, missing_data, refreshed
+from shown_in_docs import (
+    EXAMPLES,
+    ROOT,
+    blocks,
+    check_page,
+    commands,
+    desk_in,
+    grown,
+    matches,
+    missing_data,
+    refreshed,
+    takes_long,
+)
 
 TUTORIAL = ROOT / "docs" / "tutorial" / "first_calculation.md"
 EVERY = sorted([*(ROOT / "docs").rglob("*.md"), *ROOT.glob("*.md")])
@@ -20,9 +32,11 @@ PAGES = [page for page in PAGES if any(not block.mark.startswith("not run") for 
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
-def test_a_page_does_what_it_shows(page: Path, page_done: Callable[[Path], Path]) -> None:
+def test_a_page_does_what_it_shows(page: Path, page_done: Callable[[Path], Path], full_torture: bool) -> None:
     if why := missing_data(page):
         pytest.skip(why)
+    if not full_torture and (why := takes_long(page)):
+        pytest.skip(f"{why}; at full size only")
     faults = json.loads((page_done(page) / "faults.json").read_text(encoding="utf-8"))
     assert not faults, "\n".join(faults)
 
@@ -144,6 +158,13 @@ def test_a_block_that_nothing_reads_is_found(block: str, tmp_path: Path) -> None
 
 def test_a_reason_that_names_a_test_names_one_that_is_there() -> None:
     for page in EVERY:
-        for block in blocks(page):
-            for name in re.findall(r"tests/[\w/]+\.py", block.marked("not run")):
-                assert (ROOT / name).is_file(), f"{page.name}:{block.line}: {name}"
+        whys = [(f"{page.name}:{block.line}", block.marked("not run")) for block in blocks(page)]
+        for place, why in [*whys, (page.name, takes_long(page))]:
+            for name in re.findall(r"tests/[\w/]+\.py", why):
+                assert (ROOT / name).is_file(), f"{place}: {name}"
+
+
+def test_what_is_run_at_full_size_only_is_asked_for_in_part_by_another_test() -> None:
+    for page in EVERY:
+        if why := takes_long(page):
+            assert re.search(r"tests/[\w/]+\.py", why), f"{page.name}: {why} names no test"

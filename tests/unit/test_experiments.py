@@ -20,9 +20,10 @@ from truing.diagnosis.machine import Calibration
 from truing.diagnosis.records import Covariate, Records
 from truing.diagnosis.result import Experiment
 from truing.errors import DeclarationError, UsageError
+from truing.experiments.chances import Simulation
 from truing.experiments.design import BUDGET, ENOUGH, MOST_READINGS
 from truing.experiments.planning import planned
-from truing.experiments.proposal import next_experiment
+from truing.experiments.proposal import among, designed_for, next_experiment
 from truing.experiments.reach import Reach, reach_of
 from truing.measurements import RowsFile
 from truing.setup import DiagnoseOptions, Setup, default_setup
@@ -223,6 +224,25 @@ def test_the_claimed_chance_holds_on_fresh_simulations(tmp_path: Path) -> None:
     assert experiment.chance.value > 0.3
     assert low <= experiment.chance.high
     assert high >= experiment.chance.low
+
+
+@pytest.mark.parametrize("is_long", [False, True], ids=["by fits", "by derivatives"])
+def test_whether_a_chance_is_reached_is_decided_as_by_all_draws(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, is_long: bool
+) -> None:
+    if is_long:
+        monkeypatch.setattr("truing.experiments.chances.LONG", 0)
+    chosen = one_sign(tmp_path, {"load": (-10e3, 20e3)}, noise=1.2 * 3)
+    stand, best = designed_for(chosen)
+    assert stand is not None
+    assert best is not None
+    machine = stand.machine_of([best.courses], best.readings)
+    apart = among(stand, {frozenset(pair) for pair in best.pairs})
+    simulation = Simulation(chosen.competition, stand.several, apart, machine, has_record=True)
+    value = simulation.chance(1).value
+    assert 0 < value < 1
+    decided = [simulation.reaches(value + more, 1) for more in (-0.5, -0.005, 0.0, 0.005, 0.5)]
+    assert decided == [True, True, True, False, False]
 
 
 # An experiment before any data

@@ -263,3 +263,24 @@ def test_one_harmonic_alone_misses_some_per_cent(ratio: float, one_term: float, 
     single = by_one_term(ratio, 0.05, 0.1, 0.05, found)
     assert (single, found) == (pytest.approx(one_term, abs=1e-4), pytest.approx(ours, abs=1e-4))
     assert abs(found - stepped) < 0.05 * abs(single - stepped)
+
+
+@pytest.mark.parametrize("error", [0.05, 2.0])
+def test_a_curve_is_as_long_as_is_said_before_it_is_followed(error: float) -> None:
+    several, last = machines([{"error": error}]), np.array([1.6])
+    first = 0.97 * response.still_in_contact(several)
+    curve = response.traced(several, first, last)
+    assert curve.is_whole.all()
+    whole = np.concatenate([curve.harmonics[0], curve.ratio[0][:, np.newaxis]], axis=1)
+    length = np.linalg.norm(np.diff(whole, axis=0), axis=1).sum()
+    assert response.least_way(several, first, last)[0] < length
+
+
+def test_a_curve_beyond_all_steps_is_not_set_out_on() -> None:
+    """Beside one that is followed: a motion of thousands at the resonance, and a speed as many times as high."""
+    several = machines([{}, {"error": 200.0}, {}])
+    first, last = 0.97 * response.still_in_contact(several), np.array([1.6, 1.6, 2000.0])
+    assert response.balanced(several, response.linear(several, first), first)[1].all()
+    curve = response.traced(several, first, last)
+    assert curve.is_whole.tolist() == [True, False, False]
+    assert np.ptp(curve.ratio[1:], axis=1).tolist() == [0, 0]

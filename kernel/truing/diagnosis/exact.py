@@ -15,7 +15,7 @@ from math import inf
 from typing import Any, TypeVar
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg.lapack import dgesv, dpotrf, dpotrs
 from scipy.optimize import least_squares
 
 from truing.arrays import Matrix
@@ -195,7 +195,7 @@ class Fitting:
             roots = self.sample.roots(left, squares)
             weighted = self.slopes * roots[:, None]
             downward = weighted.T @ (roots * left) - b
-            moved = np.linalg.solve(_plus_one(weighted.T @ weighted), downward)
+            *_, moved, _ = dgesv(_plus_one(weighted.T @ weighted), downward)  # numpy's checks take far longer
             b = b + self.sample.stride * moved
             left = bare - self.slopes @ b
             squares = self.sample.squares(left)
@@ -245,9 +245,9 @@ class Fitting:
         right = -(roots * self.left)
         normal, gradient = slope.T @ slope, slope.T @ right
         if len(self.b):
-            factor, cross = cho_factor(_plus_one(slopes.T @ slopes)), slopes.T @ slope
-            normal = normal - cross.T @ cho_solve(factor, cross)
-            gradient = gradient - cross.T @ cho_solve(factor, slopes.T @ right + self.b)
+            factor, cross = dpotrf(_plus_one(slopes.T @ slopes))[0], slopes.T @ slope  # not with scipy's checks
+            normal = normal - cross.T @ dpotrs(factor, cross)[0]
+            gradient = gradient - cross.T @ dpotrs(factor, slopes.T @ right + self.b)[0]
         curvature = normal.diagonal()
         damped = normal.copy()
         np.fill_diagonal(damped, curvature + (self.damping + 1e-12) * curvature)

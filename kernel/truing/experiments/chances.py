@@ -41,8 +41,10 @@ DRAWS = 100
 """So many experiments are simulated: a chance of 95 % has a standard error of 2 %."""
 AT_ONCE = 20_000
 """Rows of one call of the model: so many fits go together as they allow."""
-Judge = Callable[[int, Mapping[str, Matrix]], tuple[Matrix, Matrix]]
-"""Scores of all explanations (draws, explanations) and how unsure their difference from the truth is, from readings."""
+FEW = 10
+"""So many draws are judged at one time where a few that are wrong end a simulation."""
+Judge = Callable[[int, Sequence[int], Mapping[str, Matrix]], tuple[Matrix, Matrix]]
+"""How far other explanations are behind the true one (draws, others), and how unsure that is, from readings."""
 LONG = 2500
 """A record of more rows is not fitted again a hundred times."""
 RANGE = 50.0
@@ -67,21 +69,38 @@ class Simulation:
 
     def chance(self, seed: int, draws: int = DRAWS) -> Chance:
         """Return how often the right one is named, of so many draws."""
+        right = sum(int(named.sum()) for named in self._named(seed, draws, draws))
+        return Chance(right / draws, *wilson(right, draws), draws, ROUGH if self._is_dear else EXACTLY)
+
+    def reaches(self, least: float, seed: int, draws: int = DRAWS) -> bool:
+        """Whether the chance is at least so much: it ends with the draw from which on it cannot be."""
+        wrong = 0
+        for named in self._named(seed, draws, FEW):
+            wrong += int((~named).sum())
+            if (draws - wrong) / draws < least:
+                return False
+        return True
+
+    @property
+    def _is_dear(self) -> bool:
+        return self.competition.extended.budget.is_dear or len(self.competition.sample.machine.records) > LONG
+
+    def _named(self, seed: int, draws: int, size: int) -> Iterator[Mask]:
+        """Give in which draws the right one is named, at most so many at a time."""
         generator = np.random.Generator(np.random.SFC64(seed))
         tried = elsewhere(self.competition.extended, self.machine)
-        is_dear = self.competition.extended.budget.is_dear or len(self.competition.sample.machine.records) > LONG
-        judge = self._by_slopes(tried) if is_dear else self._exactly()
-        right = 0
+        judge = self._by_slopes(tried) if self._is_dear else self._exactly()
         truths = sorted({place for pair in self.apart for place in pair})
         for index, truth in enumerate(truths):
             count = draws // len(truths) + (index < draws % len(truths))
-            scores, doubt = judge(truth, self.readings_of(tried, truth, count, generator))
+            drawn = self.readings_of(tried, truth, count, generator)
             others = [place for place in range(len(self.several)) if frozenset((truth, place)) in self.apart]
-            behind = scores[:, others] - scores[:, [truth]]
             is_more = [self.several[truth].fit.key < self.several[other].fit.key for other in others]
-            least = np.where(is_more, 0.0, np.maximum(CLOSE, SURE * doubt[:, others]))
-            right += int((behind >= least).all(axis=1).sum())
-        return Chance(right / draws, *wilson(right, draws), draws, ROUGH if is_dear else EXACTLY)
+            for begin in range(0, count, size):
+                some = {name: values[begin : begin + size] for name, values in drawn.items()}
+                behind, doubt = judge(truth, others, some)
+                least = np.where(is_more, 0.0, np.maximum(CLOSE, SURE * doubt))
+                yield np.asarray((behind >= least).all(axis=1))
 
     def readings_of(self, tried: Extended, truth: int, count: int, generator: np.random.Generator) -> dict[str, Matrix]:
         """Return what the gauges read in so many experiments in which an explanation is true, by result (count, n)."""
@@ -126,14 +145,14 @@ class Simulation:
                 asking = [fitting(each, extended, near.causes, near.values, near, until=ROUGHLY) for each in some]
                 yield from together(extended, asking)
 
-        def judged(truth: int, drawn: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
+        def judged(truth: int, others: Sequence[int], drawn: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
             count = len(next(iter(drawn.values())))
             every = [{name: each[draw] for name, each in drawn.items()} for draw in range(count)]
             samples = [_with_readings(sample, readings) for readings in every]
-            fits = [list(fitted(of, samples)) for of in self.several]
-            scores = [[inf if fit is None else fit.cost + price(fit) for fit in each] for each in fits]
-            doubts = [[_doubt(own, fit) for own, fit in zip(fits[truth], each, strict=True)] for each in fits]
-            return np.array(scores).T, np.array(doubts).T
+            own, *fits = (list(fitted(self.several[place], samples)) for place in (truth, *others))
+            true, *scores = ([inf if fit is None else fit.cost + price(fit) for fit in each] for each in (own, *fits))
+            doubts = [[_doubt(*pair) for pair in zip(own, each, strict=True)] for each in fits]
+            return (np.array(scores) - true).T, np.array(doubts).T
 
         return judged
 
@@ -150,20 +169,19 @@ class Simulation:
             ready.append((said.shown, np.eye(len(rows)) - reached @ reached.T))
         prices = [of.fit.cost + self.competition.price(of.fit) for of in self.several]
 
-        def judged(truth: int, drawn: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
-            del truth
+        def judged(truth: int, others: Sequence[int], drawn: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
             values = np.stack([drawn[channel.name] for channel in sample.channels], axis=1)
             scores = []
             for price, (shown, weight) in zip(prices, ready, strict=True):
                 off = ((values - shown) / spreads[:, None]).reshape(len(values), -1)
                 scores.append(price + np.einsum("di,ij,dj->d", off, weight, off))
-            return np.array(scores).T, np.zeros((len(values), len(scores)))
+            return np.array([scores[other] - scores[truth] for other in others]).T, np.zeros((len(values), len(others)))
 
         return judged
 
 
 def _doubt(own: Fit | None, other: Fit | None) -> float:
-    return 0.0 if own is None or other is None or own is other else unsure(own, other)
+    return 0.0 if own is None or other is None else unsure(own, other)
 
 
 def _root(of: Explained) -> Matrix:

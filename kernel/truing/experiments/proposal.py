@@ -103,7 +103,7 @@ def grown(stand: Stand, best: Designed, competition: Competition, *, has_record:
         return Simulation(competition, stand.several, apart, machine, has_record)
 
     needed = best.readings
-    while needed <= MOST_READINGS and simulated(needed).chance(seed).value < CHANCE:
+    while needed <= MOST_READINGS and not simulated(needed).reaches(CHANCE, seed):
         more = min(stand.budget, ceil(GROWTH * needed))
         needed = more if needed < stand.budget else MORE * needed
     best = replace(best, readings=min(needed, stand.budget), needed=needed if needed <= MOST_READINGS else 0)
