@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -185,11 +186,11 @@ def _grid(problem: InitialValueProblem, paths: Sequence[Path]) -> _Grid:
     steps = max(len(path.event) for path in paths)
     fills = [steps - len(path.event) for path in paths]
     pairs = list(zip(paths, fills, strict=True))
-    t = np.array([np.pad(path.t, (0, fill), mode="edge") for path, fill in pairs])
-    y = np.stack([np.pad(path.y, ((0, 0), (0, fill)), mode="edge") for path, fill in pairs], axis=1)
+    t = np.array([_filled_up(path.t, fill) for path, fill in pairs])
+    y = np.stack([_filled_up(path.y, fill) for path, fill in pairs], axis=1)
     y[:, :, 0] = problem.start
-    interval = np.array([np.pad(path.interval, (0, fill), mode="edge") for path, fill in pairs])
-    event = np.array([np.pad(path.event, (0, fill), constant_values=-1) for path, fill in pairs])
+    interval = np.array([_filled_up(path.interval, fill) for path, fill in pairs])
+    event = np.array([np.append(path.event, np.full(fill, -1)) for path, fill in pairs])
     is_last = (event >= 0) | (np.diff(interval, axis=1, append=-1) != 0)
     number = np.arange(steps)
     is_empty = number >= np.array([[len(path.event)] for path in paths])
@@ -206,6 +207,11 @@ def _grid(problem: InitialValueProblem, paths: Sequence[Path]) -> _Grid:
     system = problem.system.part(np.repeat(np.arange(len(paths)), steps))
     slopes = _known_slopes(paths, steps)
     return _Grid(system, t, y, interval, event, share, stretch, number - first, is_last, is_empty, slopes)
+
+
+def _filled_up(values: Matrix | Indices, count: int) -> Any:
+    """Return values along the last axis with the last one so many times more."""
+    return np.concatenate([values, np.repeat(values[..., -1:], count, axis=-1)], axis=-1) if count else values
 
 
 def _known_slopes(paths: Sequence[Path], steps: int) -> Slopes:

@@ -68,19 +68,6 @@ def make_sheet(
     figure = front_figure(writing)
     results = list(result_chapters(writing))
     warnings = tuple(_warnings(calculation, cases, figures.failures))
-    findings = setup.model.findings
-    back = []
-    if verified and detail != "short":
-        back.append(Chapter("Paper against this calculation", tuple(published_blocks(setup, verified)), "published"))
-    if findings and detail != "short":
-        items = Items("findings", tuple(each.text for each in findings), tuple(each.title for each in findings))
-        back.append(Chapter("Findings", (items,), "findings"))
-    cites = [
-        *setup.model.cites,
-        *(text for each in calculation.outcomes.values() for text in getattr(each, "cites", ())),
-    ]
-    further = warnings if len(warnings) > MOST_WARNINGS else ()
-    end = end_chapters(further, provenance, () if detail == "short" else tuple(dict.fromkeys(cites)))
     head = head_of(setup, provenance)
     return Document(
         kind=SHEET,
@@ -90,11 +77,29 @@ def make_sheet(
         summary=setup.model.summary,
         banner=banner_of(calculation, cases),
         front=tuple(page_one(calculation, example, figure, warnings)),
-        chapters=numbered([*_given(calculation, cases, detail), *results, *back, *end]),
+        chapters=numbered(
+            [*_given(calculation, cases, detail), *results, *_back(calculation, verified, warnings, provenance)]
+        ),
         warnings=warnings,
         provenance=provenance,
         paper=setup.sheet.paper,
     )
+
+
+def _back(
+    calculation: Calculation, verified: Sequence[ComparedRow], warnings: Sequence[str], provenance: Provenance
+) -> Iterator[Chapter]:  # fmt: skip
+    """Write what stands behind the results: the paper's numbers, findings, many warnings, literature, provenance."""
+    setup = calculation.setup
+    is_short = setup.sheet.detail == "short"
+    if verified and not is_short:
+        yield Chapter("Paper against this calculation", tuple(published_blocks(setup, verified)), "published")
+    if setup.model.findings and not is_short:
+        texts, titles = zip(*((each.text, each.title) for each in setup.model.findings), strict=True)
+        yield Chapter("Findings", (Items("findings", texts, titles),), "findings")
+    cites = [text for each in calculation.outcomes.values() for text in getattr(each, "cites", ())]
+    references = () if is_short else tuple(dict.fromkeys([*setup.model.cites, *cites]))
+    yield from end_chapters(warnings if len(warnings) > MOST_WARNINGS else (), provenance, references)
 
 
 def head_of(setup: Setup, provenance: Provenance) -> Head:
