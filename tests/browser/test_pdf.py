@@ -18,10 +18,11 @@ POINT = 25.4 / 72
 ONE = pytest.mark.parametrize("sheet", ["hostile"], indirect=True)  # what does not depend on the sheet
 
 
-def words_of(pdf: Path) -> str:
+def words_of(pdf: Path, page: int = 0) -> str:
     if shutil.which("pdftotext") is None:
         missed("pdftotext is not on this machine (Debian: poppler-utils): the words of the PDF were not read")
-    done = subprocess.run(["pdftotext", "-enc", "UTF-8", str(pdf), "-"], capture_output=True, check=True)
+    pages = ["-f", str(page), "-l", str(page)] if page else []
+    done = subprocess.run(["pdftotext", *pages, "-enc", "UTF-8", str(pdf), "-"], capture_output=True, check=True)
     return re.sub(r"\s+", " ", done.stdout.decode("utf-8"))
 
 
@@ -38,6 +39,20 @@ def test_the_print_is_complete(sheet: Path, printed: Path) -> None:
     assert len(headings) > 7
     assert [title for _, title in headings if unescaped(title) not in text] == []
     assert re.search(r"Calculated \d{4}-\d\d-\d\d", text)
+
+
+def test_page_one_holds_the_answer_and_the_signatures(sheet: Path, printed: Path) -> None:
+    """Verdict, limits, key results, figure and room to sign are on page one; the contents follow on the next."""
+    first, second = words_of(printed, page=1), words_of(printed, page=2)
+    html = sheet.read_text(encoding="utf-8")
+    front = re.findall(
+        r'<section id="[^"]+" class="front" aria-labelledby="[^"]+">\s*<h2 id="[^"]+">([^<]+)</h2>', html
+    )
+    assert len(front) > 1
+    assert [title for title in [*front, "Prepared", "Checked", "Approved"] if unescaped(title) not in first] == []
+    (contents,) = re.findall(r'<nav class="contents".*?</nav>', html, re.DOTALL)
+    titles = re.findall(r"</span> ([^<]+)</a>", contents)
+    assert [title for title in titles if unescaped(title) not in second] == []
 
 
 def unescaped(text: str) -> str:
@@ -64,7 +79,9 @@ def test_the_paper_is_a4_unless_letter_is_asked_for(sheet: Path, chromium: Path,
     assert sizes_of(pdf) == {(210, 297)}
     test_the_print_is_complete(sheet, pdf)
     test_pages_are_numbered_and_named(sheet, pdf)
-    pdf.write_bytes(pdf_bytes(copy.read_text(encoding="utf-8"), chromium, paper="letter"))
+    text = copy.read_text(encoding="utf-8")
+    assert text.count("@page { size: A4;") == 1
+    pdf.write_bytes(pdf_bytes(text.replace("@page { size: A4;", "@page { size: letter;"), chromium))
     assert sizes_of(pdf) == {(216, 279)}
     assert sorted(path.name for path in copy.parent.iterdir()) == ["sheet.html", "sheet.pdf"]
     assert copy.read_bytes() == sheet.read_bytes()

@@ -87,7 +87,7 @@ class Writing:
     """The figure or drawing that stands on page one."""
 
 
-def front_figure(writing: Writing) -> FigureView | None:
+def front_figure(writing: Writing) -> Chapter | None:
     """Draw the figure of page one: the first of a section that is marked, else of all sections of normal detail."""
     sections = writing.calculation.setup.model.sheet
     marked = [section for section in sections if section.key]
@@ -96,7 +96,7 @@ def front_figure(writing: Writing) -> FigureView | None:
         if drawing is not None:
             writing.front.append(section.figure or drawing)
             view = writing.figures.view(drawing.title, drawing.draw, drawing.caption or drawing.title)
-            return view if isinstance(view, FigureView) else None
+            return Chapter(drawing.title, (view,), "key-figure")
     return None
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,6 @@ from truing.report.document import (
     BlockView,
     Chapter,
     Column,
-    FigureView,
     Items,
     Marked,
     Paragraph,
@@ -29,32 +29,65 @@ from truing.setup import Setup
 
 MOST_CHECKS, MOST_RESULTS, MOST_CHANGES, MOST_WARNINGS = 8, 10, 6, 3
 """So many limits, results, changed inputs and warnings stand on page one; what is more stands behind it."""
-MOST_ROWS, FEWEST_RESULTS = 20, 4
-"""So many rows of all of them have room on a page; results give way first, down to so few."""
+LINES, FEWEST_LINES = 25, 9
+"""Lines of tables and lists that have room on a page, and those that are kept for results and figure."""
+WIDE, NARROW = 90, 28
+"""Characters of a line: over the whole page, and in the table of results beside the figure."""
+LINE, CAPTION, HIGHEST = 4.6, 14.0, 66.0
+"""Height of a line, of the words below a figure, and of a figure at the most, mm."""
 SAME = 1e-12
 """Share by which two inputs differ only by how they are rounded."""
 
 
+@dataclass(frozen=True)
+class PageOne:
+    """What stands between the verdict and the signatures; on paper the figure is so high, mm."""
+
+    chapters: tuple[Chapter, ...]
+    figure_height: float
+
+
 def page_one(
-    calculation: Calculation, example: Setup | None, figure: FigureView | None, warnings: Sequence[str]
-) -> Iterator[Chapter]:  # fmt: skip
-    """Give what stands between the verdict and the signatures."""
-    if calculation.checks:
-        yield Chapter("Checks", (check_table(calculation, most=MOST_CHECKS),), "checks")
-    changed = [] if example is None else changed_inputs(calculation.setup, example)
-    others = (len(calculation.checks), MOST_CHECKS), (len(changed), MOST_CHANGES), (len(warnings), MOST_WARNINGS)
-    room = MOST_ROWS - sum(min(count, most) for count, most in others)
-    results = key_results(calculation)[: min(max(room, FEWEST_RESULTS), MOST_RESULTS)]
-    if results:
-        yield Chapter("Key results", (result_table(calculation, results),), "key-results")
-    if figure is not None:
-        yield Chapter(figure.title, (figure,), "key-figure")
-    if example is not None:
-        yield Chapter("Inputs against the example", tuple(_changed(calculation.setup, example, changed)), "changes")
+    calculation: Calculation, example: Setup | None, figure: Chapter | None, warnings: Sequence[str]
+) -> PageOne:  # fmt: skip
+    """Put page one together: what there is besides leaves its room to the key results and the figure."""
+    setup = calculation.setup
+    checks = [Chapter("Checks", (check_table(calculation, most=MOST_CHECKS),), "checks")] if calculation.checks else []
+    changed = [] if example is None else changed_inputs(setup, example)
+    besides = sum(2 if check.chance else 1 for check in calculation.checks[:MOST_CHECKS])
+    besides += sum(_lines(setup.model.input_fields[name].spec.note, WIDE) for name in changed[:MOST_CHANGES])
+    besides += sum(_lines(text, WIDE) for text in warnings[:MOST_WARNINGS])
+    room = max(LINES - besides, FEWEST_LINES)
+    results = list(_fitting(calculation, key_results(calculation), room, NARROW if figure else WIDE))
+    keys = [Chapter("Key results", (result_table(calculation, results),), "key-results")] if results else []
+    changes = () if example is None else tuple(_changed(setup, example, changed))
+    chapters = [
+        *checks, *keys, *([figure] if figure else []),
+        *([Chapter("Inputs against the example", changes, "changes")] if changes else []), *_warned(warnings),
+    ]  # fmt: skip
+    return PageOne(tuple(chapters), min(HIGHEST, LINE * room - CAPTION))
+
+
+def _warned(warnings: Sequence[str]) -> Iterator[Chapter]:
+    left = len(warnings) - MOST_WARNINGS
+    more = (f"{left} more are in the chapter of warnings.",) if left > 0 else ()
     if warnings:
-        shown, left = tuple(warnings[:MOST_WARNINGS]), len(warnings) - MOST_WARNINGS
-        more = (f"{left} more are in the chapter of warnings.",) if left > 0 else ()
-        yield Chapter("Warnings", (Items("warnings", (*shown, *more)),), "warnings" if left <= 0 else "first-warnings")
+        items = Items("warnings", (*warnings[:MOST_WARNINGS], *more))
+        yield Chapter("Warnings", (items,), "first-warnings" if more else "warnings")
+
+
+def _lines(text: str, width: int) -> int:
+    return max(1, -(-len(text) // width))
+
+
+def _fitting(calculation: Calculation, names: Sequence[str], room: int, width: int) -> Iterator[str]:
+    """Give the first results whose rows have room together."""
+    fields = calculation.setup.model.result_fields
+    for name in names[:MOST_RESULTS]:
+        room -= _lines(fields[name].spec.note, width)
+        if room < 0:
+            return
+        yield name
 
 
 def key_results(calculation: Calculation) -> list[str]:

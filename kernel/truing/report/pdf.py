@@ -62,8 +62,8 @@ def sandbox_arguments() -> list[str]:
     return ["--no-sandbox"] if is_root else []
 
 
-def pdf_bytes(html: str, browser: Path | None = None, *, paper: str = "A4") -> bytes:
-    """Print the text of a sheet on "A4" or "letter" paper and return the PDF.
+def pdf_bytes(html: str, browser: Path | None = None) -> bytes:
+    """Print the text of a sheet, on the paper that it names, and return the PDF.
 
     The browser runs once, unseen, with an empty profile and no word to the network.
     Raises OutputError with one sentence: no browser (and how to print without), or what went wrong.
@@ -73,7 +73,7 @@ def pdf_bytes(html: str, browser: Path | None = None, *, paper: str = "A4") -> b
         raise OutputError(f"no Chromium, Chrome or Edge was found for the PDF (CHROME_PATH names one); {HOW_TO_PRINT}")
     with tempfile.TemporaryDirectory(prefix="truing-print-", ignore_cleanup_errors=True) as folder:
         page, made = Path(folder, "sheet.html"), Path(folder, "sheet.pdf")
-        page.write_text(html.replace("</style>", f"@page {{ size: {paper} }}\n</style>", 1), encoding="utf-8")
+        page.write_text(html, encoding="utf-8")
         command = [
             str(browser), *QUIET, *sandbox_arguments(), f"--user-data-dir={Path(folder, 'profile')}",
             f"--print-to-pdf={made}", page.as_uri(),

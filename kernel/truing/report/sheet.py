@@ -68,7 +68,7 @@ def make_sheet(
     figure = front_figure(writing)
     results = list(result_chapters(writing))
     warnings = tuple(_warnings(calculation, cases, figures.failures))
-    head = head_of(setup, provenance)
+    head, first = head_of(setup, provenance), page_one(calculation, example, figure, warnings)
     return Document(
         kind=SHEET,
         title=head.title,
@@ -76,7 +76,8 @@ def make_sheet(
         detail=detail,
         summary=setup.model.summary,
         banner=banner_of(calculation, cases),
-        front=tuple(page_one(calculation, example, figure, warnings)),
+        front=first.chapters,
+        figure_height=first.figure_height,
         chapters=numbered(
             [*_given(calculation, cases, detail), *results, *_back(calculation, verified, warnings, provenance)]
         ),
