@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import typing
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import MISSING, dataclass, field, replace
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias, TypeVar, dataclass_transform
@@ -408,7 +409,16 @@ def _flat(cls: type[Any], word: str, allowed: tuple[type[Any], ...]) -> dict[str
         if not isinstance(visited.spec, allowed):
             raise DeclarationError(f"'{name}' of {_spoken(cls)} is no {word}: the class must be declared by @{word}s")
         fields[name] = visited
-    return fields
+    notes = Counter(visited.spec.note for visited in fields.values() if not isinstance(visited.spec, Part))
+    return {name: _told_apart(visited, notes) for name, visited in fields.items()}
+
+
+def _told_apart(visited: _Place, notes: Mapping[str, int]) -> _Place:
+    """Say of which part a field is, where fields of several parts have the same note."""
+    spec = visited.spec
+    if isinstance(spec, Part) or not spec.note or not visited.scope or notes[spec.note] < 2:
+        return visited
+    return replace(visited, spec=replace(spec, note=f"{spec.note}, {visited.scope.replace('_', ' ')}"))
 
 
 def hints_of(annotated: Any) -> dict[str, Any]:

@@ -36,6 +36,7 @@ from truing.report.document import (
 )
 from truing.report.equations import equation_of, state_equation
 from truing.report.figures import draw, phase, states_over_time
+from truing.report.limits import MOST_CHECKS
 from truing.studies.drawings import labelled
 from truing.units import from_si
 
@@ -46,8 +47,9 @@ DEPARTURES = {
     False: "in the calculation: the printed formula gives another number",
 }
 """Why a calculation has another number than the printed formula, with and without an effect on the results."""
-MOST_MAIN = 36
-"""So many results stand on a short sheet: they fit on its second page."""
+MOST_MAIN, FEWEST_MAIN, LINE_OF_RESULTS, HEADING = 28, 8, 80, 5
+"""So many lines of results, of so many characters, stand on a short sheet, fewer below a chapter of limits: they fit on
+its second page. A heading takes the room of so many lines."""
 ON_PAGE_ONE = Paragraph("Its figure is on page one.", "aside")
 AXIS_ROWS = {"short": 0, "normal": 12, "full": 25}
 
@@ -221,7 +223,12 @@ def _main_results(writing: Writing) -> Iterator[Chapter]:
     )
     scalars = [name for name in dict.fromkeys(names) if _is_scalar(writing.calculation.answers.get(name))]
     if scalars:
-        shown, left = scalars[:MOST_MAIN], len(scalars) - MOST_MAIN
+        notes = [model.result_fields[name].spec.note for name in scalars]
+        lines = np.cumsum([max(1, -(-len(note) // LINE_OF_RESULTS)) for note in notes])
+        checks = len(writing.calculation.checks)
+        room = MOST_MAIN - (checks + HEADING if checks > MOST_CHECKS else 0)
+        shown = scalars[: int(np.searchsorted(lines, max(room, FEWEST_MAIN), side="right"))]
+        left = len(scalars) - len(shown)
         note = f'{left} further results stand on a sheet of detail "normal".' if left > 0 else ""
         table = result_table(writing.calculation, shown)
         yield Chapter("Main results", (replace(table, note=note),))

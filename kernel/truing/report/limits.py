@@ -14,6 +14,9 @@ from truing.studies.checks import Check, check_name, requirements
 from truing.studies.verdicts import NO_RESULT, NO_STUDY
 from truing.units import unit_text
 
+MOST_CHECKS = 8
+"""So many limits stand on page one; of more those of which least is left, and all in a chapter of their own."""
+
 
 @dataclass(frozen=True)
 class CheckRow:

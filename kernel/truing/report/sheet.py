@@ -34,8 +34,8 @@ from truing.report.document import (
     joined,
 )
 from truing.report.given import effect_blocks, input_blocks, tolerance_table
-from truing.report.limits import check_table, check_value, least_margin
-from truing.report.page_one import MOST_CHECKS, MOST_WARNINGS, page_one
+from truing.report.limits import MOST_CHECKS, check_table, check_value, least_margin
+from truing.report.page_one import MOST_WARNINGS, page_one
 from truing.runs.provenance import Provenance
 from truing.setup import Setup
 from truing.studies.checks import HEADLINES, SHORT
