@@ -5,14 +5,21 @@ from __future__ import annotations
 import re
 import shutil
 import subprocess
+from dataclasses import replace
 from html import unescape
 from pathlib import Path
 
 import pytest
 
 from shared import missed
+from truing.calculation import calculate
 from truing.errors import OutputError
+from truing.kernel import Kernel
+from truing.report.html_printer import html_of
 from truing.report.pdf import find_browser, pdf_bytes
+from truing.report.sheet import make_sheet
+from truing.runs.provenance import provenance_of
+from truing.setup import SheetOptions, default_setup
 
 POINT = 25.4 / 72
 ONE = pytest.mark.parametrize("sheet", ["hostile"], indirect=True)  # what does not depend on the sheet
@@ -53,6 +60,15 @@ def test_page_one_holds_the_answer_and_the_signatures(sheet: Path, printed: Path
     (contents,) = re.findall(r'<nav class="contents".*?</nav>', html, re.DOTALL)
     titles = re.findall(r"</span> ([^<]+)</a>", contents)
     assert [title for title in titles if unescaped(title) not in second] == []
+
+
+@pytest.mark.parametrize("name", ["press_linkage", "rv_gearing", "roller_screw_shift", "harmonic_fractal", "rv_wear"])
+def test_a_short_sheet_has_two_pages(name: str, chromium: Path) -> None:
+    """Its studies are left out: they say nothing on a short sheet."""
+    setup = replace(default_setup(Kernel.installed().offer(name).model), studies=(), sheet=SheetOptions(detail="short"))
+    sheet = make_sheet(calculate(setup), provenance=provenance_of(setup, date="2026-11-26"), example=setup)
+    printed = pdf_bytes(html_of(sheet), chromium)
+    assert len(re.findall(rb"/Type /Page\b(?!s)", printed)) == 2
 
 
 def unescaped(text: str) -> str:

@@ -617,3 +617,29 @@ def test_what_has_no_width_and_a_width_that_is_none_are_refused() -> None:
     for width in (0.0, -1e-6, math.nan, math.inf):
         with pytest.raises(UsageError, match="the width of the tolerance of 'length' must lie above zero"):
             with_width(normal(sd="1 um"), LENGTH, width)
+
+
+@inputs
+class Wheel:
+    """A wheel."""
+
+    bore: Float = given(30.0, "mm", note="bore")
+    teeth: int = given(18, note="teeth")
+
+
+@inputs
+class Wheels:
+    """Two wheels, and a third number with a note that a part has, too."""
+
+    front: Wheel = part(Wheel)
+    rear_left: Wheel = part(Wheel)
+    pegs: int = given(3, note="pegs")
+
+
+def test_fields_of_several_parts_say_of_which_they_are() -> None:
+    fields = input_fields(Wheels)
+    notes = {name: field.spec.note for name, field in fields.items()}
+    assert notes == {
+        "bore_front": "bore, front", "teeth_front": "teeth, front", "bore_rear_left": "bore, rear left",
+        "teeth_rear_left": "teeth, rear left", "pegs": "pegs",
+    }  # fmt: skip

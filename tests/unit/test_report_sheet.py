@@ -16,16 +16,18 @@ from markdown_it import MarkdownIt
 from markdown_it.token import Token
 
 from press_linkage.model import PRESS_LINKAGE
+from roller_screw_shift.model import ROLLER_SCREW_SHIFT
 from truing import Section, Table
 from truing.calculation import calculate
 from truing.cases import run_cases
+from truing.declare.fields import with_values
 from truing.executors import open_executor
 from truing.formulas.symbols import printable
 from truing.inputs_file import read_setup, setup_from_text
 from truing.kernel import Kernel, Offer
 from truing.measurements import read_cases
 from truing.published import compare_published
-from truing.report.document import Document, ResultEntry, TableView
+from truing.report.document import Document, FigureView, Marked, Paragraph, ResultEntry, TableView
 from truing.report.html_printer import css_text, html_of, with_room
 from truing.report.markdown_printer import escaped, markdown_of
 from truing.report.sheet import logo_of, make_sheet
@@ -212,6 +214,55 @@ def test_detail_chooses_the_chapters(setup: Setup, detail: str, shown: list[str]
     assert [title for title in shown if title not in first + titles] == []
     assert [title for title in hidden if title in titles] == []
     assert [int(chapter.number) for chapter in sheet.chapters] == list(range(1, len(titles) + 1))
+
+
+# Page one
+
+
+def front_of(setup: Setup, example: Setup | None = None) -> dict[str, Any]:
+    """The blocks of page one by the title of their chapter."""
+    return {chapter.title: chapter.blocks for chapter in sheet_of(setup, example=example).front}
+
+
+def test_page_one_has_the_limits_the_key_results_the_figure_and_what_was_changed() -> None:
+    example = replace(default_setup(PRESS_LINKAGE), studies=())
+    changed = replace(example, inputs=with_values(example.inputs, {("crank_angle",): 0.1}))
+    same, front = front_of(example, example), front_of(changed, example)
+    assert [*front] == ["Checks", "Key results", "Mechanism and slider", "Inputs against the example"]
+    (results,) = front["Key results"]
+    (name, symbol) = "slider_position", Marked("symbol", "z_2")
+    assert [row[1][-1].text for row in results.rows] == [name, "slider_tilt"]  # the others are of studies
+    assert results.rows[0][0] == symbol
+    (inputs,) = front["Inputs against the example"]
+    assert [(row[1][-1].text, row[2].text, row[3].text) for row in inputs.rows] == [("crank_angle", "5.729577951", "0")]
+    assert [block.text for block in same["Inputs against the example"]] == [
+        "All inputs are those of the shipped example."
+    ]
+
+
+def test_of_many_limits_those_of_which_least_is_left_stand_on_page_one() -> None:
+    setup = replace(default_setup(ROLLER_SCREW_SHIFT), studies=())
+    sheet = sheet_of(setup)
+    (shown,) = next(chapter.blocks for chapter in sheet.front if chapter.title == "Checks")
+    (every,) = next(chapter.blocks for chapter in sheet.chapters if chapter.title == "All checks")
+    margins = sorted(check.margin for check in calculate(setup).checks)
+    assert (len(shown.rows), len(every.rows)) == (8, 11) == (8, len(margins))
+    assert [float(row[4].text) for row in shown.rows] == pytest.approx(margins[:8], rel=1e-2)
+
+
+def test_a_figure_of_page_one_is_drawn_once(setup: Setup) -> None:
+    """Its section refers to it; a model without key results or limits has its first results there."""
+    sheet = sheet_of(replace(setup, sheet=SheetOptions(detail="full")))
+    figures = [
+        block
+        for chapter in (*sheet.front, *sheet.chapters)
+        for block in chapter.blocks
+        if isinstance(block, FigureView)
+    ]
+    assert [figure.number for figure in figures] == [*range(1, len(figures) + 1)]
+    assert [chapter.ident for chapter in sheet.front if figures[0] in chapter.blocks] == ["key-figure"]
+    said = [block.text for chapter in sheet.chapters for block in chapter.blocks if isinstance(block, Paragraph)]
+    assert said.count("Its figure is on page one.") == 1
 
 
 def blocks_of(sheet: Document, kind: type[Any]) -> list[Any]:
