@@ -184,6 +184,7 @@ class Effect(Generic[I, R]):
     of which nothing is stated is off: a function with ``**unknowns`` is called without it, any other with 0.
     ``reads`` names inputs or axes of results, beside the conditions, that a place ``along`` may lie on.
     ``acts_at_reference``: its conditions say where it acts (an angle) or temper it, and do not take it away.
+    ``remedy`` is what to do about it: "shim the joint; the tilt then comes back to 0 at every load".
     """
 
     name: str
@@ -197,6 +198,7 @@ class Effect(Generic[I, R]):
     reads: Sequence[str] = ()
     acts_at_reference: bool = False
     looks_like: str = ""
+    remedy: str = ""
     why: str = ""
     source: str = ""
 
