@@ -62,9 +62,10 @@ from truing.inputs_file import setup_from_text
 from truing.kernel import Origin
 from truing.kernel.loading import load_file
 from truing.report.chapters import Figures
-from truing.report.diagnosis_figures import main_covariates, thinned
+from truing.report.diagnosis_figures import main_covariates, said_by, telling_covariate, thinned
 from truing.report.diagnosis_sheet import diagnosis_chapters, make_diagnosis_sheet
 from truing.report.diagnosis_words import (
+    NO_REMEDY,
     amount_text,
     certainty,
     explanation,
@@ -439,8 +440,9 @@ def plain(text: str) -> str:
 @pytest.mark.parametrize("name", ["none", "ambiguous", "remainder"])
 def test_html_and_markdown_say_the_same_with_all_figures_drawn(name: str) -> None:
     sheet, page = page_of(name)
-    views = [block for chapter in sheet.chapters for block in chapter.blocks if isinstance(block, FigureView)]
-    assert len(views) >= 3
+    chapters = [*sheet.front, *sheet.chapters]
+    views = [block for chapter in chapters for block in chapter.blocks if isinstance(block, FigureView)]
+    assert len(views) >= 4
     assert [view.number for view in views] == list(range(1, len(views) + 1))
     assert not [text for text in sheet.warnings if "figure" in text]
     titles = [chapter.title for chapter in sheet.chapters]
@@ -570,6 +572,45 @@ def test_a_gain_is_told_with_what_speaks_against_it(change: Mapping[str, Any], w
 )  # fmt: skip
 def test_residuals_are_drawn_over_what_is_guilty(sample: str, expected: list[str]) -> None:
     assert [item.name for item in main_covariates(SAMPLES[sample]())] == expected
+
+
+@pytest.mark.parametrize(("sample", "over"), [("named", "rod_temperature"), ("unknown", "rod_temperature")])
+def test_page_one_shows_what_the_model_misses_over_what_tells_most(sample: str, over: str) -> None:
+    made = SAMPLES[sample]()
+    curves = made.curves[0]
+    covariate = telling_covariate(made, curves)
+    assert covariate is not None
+    assert covariate.name == over
+    sheet = page_of(sample)[0]
+    assert sheet.front[0].title == f"{spoken(curves.result).capitalize()} over {spoken(over)}"
+
+
+def test_the_say_of_a_covariate_is_what_the_analysis_of_variance_gives() -> None:
+    """Eight groups of five: sums of squares by hand; all of it where the groups explain everything, none of noise."""
+    places, rng = np.repeat(np.arange(8.0), 5), np.random.default_rng(1_600_400)
+    noise = rng.normal(0, 1, 40)
+    values = 0.5 * places + noise
+    within = sum(float(np.sum((group - group.mean()) ** 2)) for group in values.reshape(8, 5))
+    assert said_by(places, values) == pytest.approx(1 - within / 32 / np.var(values, ddof=1), rel=1e-12)
+    assert said_by(places, np.sin(places)) == pytest.approx(1.0)
+    assert said_by(places, noise) < 0.3
+    assert said_by(places, np.ones(40)) == 0.0
+
+
+def test_what_to_do_about_a_cause_is_said_on_page_one_on_the_terminal_and_in_the_file() -> None:
+    made = named()
+    effect = made.setup.model.known_effects[made.causes[0].effect]
+    told = replace(effect, remedy="Let the press run warm for an hour; the slider then stands where it should.")
+    errors = [told if each.name == effect.name else each for each in made.setup.model.errors]
+    told_about = replace(made, setup=replace(made.setup, model=replace(made.setup.model, errors=errors)))
+    sheet = sheet_of(told_about)
+    (items,) = next(chapter.blocks for chapter in sheet.front if chapter.ident == "what-to-do")
+    assert items.texts == (told.remedy,)
+    assert any(told.remedy in line for line in report(told_about, Path("runs/x")))
+    assert written(told_about)["causes"][0]["remedy"] == told.remedy
+    (silent,) = next(chapter.blocks for chapter in page_of("named")[0].front if chapter.ident == "what-to-do")
+    assert silent.texts == (NO_REMEDY,)
+    assert written(made)["causes"][0]["remedy"] == ""
 
 
 def test_a_condition_with_few_values_shows_no_course() -> None:

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from truing.api.notebook import plotted, table_html
 from truing.api.tables import frame_of, quantity_of
 from truing.diagnosis import result as found
+from truing.diagnosis.result import stated_remedy
 from truing.errors import UsageError
 from truing.report.diagnosis_figures import (
     against_simulated,
@@ -36,12 +37,16 @@ class Fitted:
 
 @dataclass(frozen=True)
 class NamedCause:
-    """A cause that is named: its effect, its unknowns by name, its share of the correction, and what draws the same."""
+    """A cause that is named: its effect, its unknowns by name, its share of the correction, and what draws the same.
+
+    ``remedy`` is what the effect states is to be done about it, or nothing.
+    """
 
     effect: str
     unknowns: Mapping[str, Fitted]
     share: float
     same_as: tuple[str, ...]
+    remedy: str = ""
 
 
 @dataclass(frozen=True)
@@ -120,5 +125,7 @@ def causes_of(diagnosis: found.DiagnosisResult) -> tuple[NamedCause, ...]:
             low, high = (None if end is None else float(from_si(end, unit)) for end in ends)
             value = float(from_si(unknown.value, unit))
             fitted[unknown.name] = Fitted(value, (low, high), unit, quantity_of(unknown.value, unit))
-        causes.append(NamedCause(cause.effect, fitted, cause.share, cause.same_as))
+        causes.append(
+            NamedCause(cause.effect, fitted, cause.share, cause.same_as, stated_remedy(diagnosis, cause.effect))
+        )
     return tuple(causes)

@@ -667,3 +667,9 @@ def _nearly(diagnosis: DiagnosisResult) -> str:
     named = f", {' + '.join(best)}," if best else ""
     chance = "less than 0.001" if diagnosis.p_any < 0.001 else f"{diagnosis.p_any:.2g}"
     return f"the best explanation{named} would come about by chance with a probability of {chance}"
+
+
+def stated_remedy(diagnosis: DiagnosisResult, cause: str) -> str:
+    """Return what an effect states is to be done about it, or nothing."""
+    effect = diagnosis.setup.model.known_effects.get(cause)
+    return effect.remedy if effect is not None else ""

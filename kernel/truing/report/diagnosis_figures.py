@@ -135,6 +135,69 @@ def over_covariate(diagnosis: DiagnosisResult, curves: ResultCurves, covariate: 
     return figure
 
 
+PIECES = 8
+"""A covariate is cut into so many pieces of as many rows where its say in a curve is judged."""
+AS_MUCH = 0.1
+"""A covariate that says less than another one by no more than this share of the variance is taken where a cause
+follows it."""
+
+
+def telling_covariate(diagnosis: DiagnosisResult, curves: ResultCurves) -> Covariate | None:
+    """Return the covariate over which what the model misses has the clearest course; None where there is none.
+
+    It is measured by the share of the variance that lies between pieces of the covariate, corrected for their number.
+    """
+    missed = curves.after - curves.before if has_changed(curves) else curves.measured - curves.before
+    able = [each for each in diagnosis.records.covariates.values() if _places(each) >= MOST_PLACES]
+    able = [each for each in able if each.role != "order"] or able
+    shares = {each.name: said_by(each.values, missed) for each in able}
+    followed = {each.name for each in main_covariates(diagnosis)}
+    return max(able, key=lambda each: shares[each.name] + AS_MUCH * (each.name in followed), default=None)
+
+
+def said_by(places: Matrix, values: Matrix) -> float:
+    """Return the share of the variance of values (n,) that lies between pieces of places (n,), adjusted; 0 to 1."""
+    known = np.isfinite(places) & np.isfinite(values)
+    places, values = places[known], values[known]
+    if len(values) <= PIECES or np.ptp(values) == 0:
+        return 0.0
+    ends = np.unique(np.quantile(places, np.linspace(0, 1, PIECES + 1)[1:-1]))
+    piece = np.searchsorted(ends, places, side="right")
+    count = len(np.unique(piece))
+    means = np.array([values[piece == number].mean() if (piece == number).any() else 0.0 for number in range(PIECES)])
+    left = float(np.sum((values - means[piece]) ** 2)) / max(len(values) - count, 1)
+    return max(0.0, 1.0 - left / float(np.var(values, ddof=1)))
+
+
+def convincing(diagnosis: DiagnosisResult, curves: ResultCurves, covariate: Covariate) -> Figure:
+    """Draw measured, model before and model after over a covariate; below it what each of them misses."""
+    unit, *missed, floor = _residuals(diagnosis, curves)
+    kept = thinned(len(curves.measured))
+    place = from_si(covariate.values, covariate.unit)[kept]
+    shown_unit = diagnosis.setup.print_unit(curves.result)
+    series = [(curves.before, missed[0], BEFORE, "the model as it is")]
+    if has_changed(curves):
+        series.append((curves.after, missed[1], AFTER, "with the cause"))
+    figure = Figure(figsize=(6.4, 4.6), layout="constrained")
+    upper, lower = figure.subplots(2, sharex=True, height_ratios=(2, 3))
+    upper.plot(place, from_si(curves.measured, shown_unit)[kept], "o", color=QUIET, markersize=4.5,
+               fillstyle="none", label="measured")  # fmt: skip
+    lower.axhspan(-floor, floor, color="#e4e7ea", linewidth=0, label="noise")
+    lower.axhline(0.0, color=NEUTRAL, linewidth=0.7)
+    order = np.argsort(place, kind="stable")
+    style = "-" if len(np.unique(place[np.isfinite(place)])) == len(place) else "."
+    for model, left, colour, words in series:
+        values = from_si(model, shown_unit)[kept]
+        upper.plot(place[order], values[order], style, color=colour, markersize=3.5, linewidth=1.2, label=words)
+        lower.plot(place, left[kept], ".", color=colour, markersize=3.5)
+    _mark_censored(diagnosis, curves.result, lower, places=place, values=series[-1][1][kept], colour=series[-1][2])
+    upper.set_ylabel(_label(curves.result, shown_unit))
+    lower.set_ylabel(f"measured − model\n[{unit_text(unit)}]" if unit else "measured − model")
+    lower.set_xlabel(_label(covariate.name, covariate.unit))
+    upper.legend(loc="best", fontsize=7.5)
+    return figure
+
+
 def against_simulated(diagnosis: DiagnosisResult, curves: ResultCurves) -> Figure:
     """Draw measured against simulated, and beside it their difference, where the error can be seen."""
     difference_unit, wrong_before, wrong_after, _ = _residuals(diagnosis, curves)

@@ -20,6 +20,7 @@ from truing.diagnosis.result import (
     FittedUnknown,
     NoiseSummary,
     explanations_of,
+    stated_remedy,
 )
 from truing.numbers import ABSENT, STATED_DIGITS, format_number, pretty
 from truing.report import diagnosis_figures as figures
@@ -41,6 +42,7 @@ from truing.report.diagnosis_words import (
     prose,
     readable,
     reasons,
+    remedy_of,
     score_text,
     settings_text,
     shared_words,
@@ -48,13 +50,16 @@ from truing.report.diagnosis_words import (
     tie_text,
     verdict_word,
 )
-from truing.report.document import Banner, BlockView, Chapter, Document, Paragraph, TableView, table_of
+from truing.report.document import Banner, BlockView, Chapter, Document, Items, Paragraph, TableView, table_of
 from truing.report.sheet import end_chapters, head_of, logo_of
 from truing.runs.diagnosis_document import file_labels
 from truing.runs.folder import data_digests
 from truing.runs.provenance import Provenance, provenance_of
 
 DIAGNOSIS = "Diagnosis"
+FRONT_FIGURE = 95.0
+"""Height of the figure of page one on paper, mm."""
+DOUBT = "Whether this is the cause is open: settle that before anything is changed on the machine."
 
 
 def diagnosis_sheet_of(diagnosis: DiagnosisResult, started: float) -> Document:
@@ -67,6 +72,7 @@ def diagnosis_sheet_of(diagnosis: DiagnosisResult, started: float) -> Document:
 def make_diagnosis_sheet(diagnosis: DiagnosisResult, *, provenance: Provenance) -> Document:
     """Say everything that stands on the sheet of a diagnosis."""
     drawn = Figures()
+    front = tuple(_page_one(diagnosis, drawn))
     chapters = list(diagnosis_chapters(diagnosis, drawn))
     warnings = tuple(filter(None, [logo_of(diagnosis.setup)[1], *drawn.failures]))
     head = head_of(diagnosis.setup, provenance)
@@ -80,10 +86,31 @@ def make_diagnosis_sheet(diagnosis: DiagnosisResult, *, provenance: Provenance) 
         summary=data_words(diagnosis),
         banner=Banner(mood, verdict_word(diagnosis), tuple(headline(diagnosis))),
         alarms=tuple(unit_error.text for unit_error in diagnosis.records.unit_errors),
+        front=front,
+        figure_height=FRONT_FIGURE,
+        paper=diagnosis.setup.sheet.paper,
         chapters=numbered([*chapters, *end_chapters(warnings, provenance)]),
         warnings=warnings,
         provenance=provenance,
     )
+
+
+def _page_one(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[Chapter]:
+    """Give the picture of the result that gains most, over what tells most, and what to do about each cause."""
+    shown = figures.shown_curves(diagnosis)
+    gained = {gain.result: gain.rmse_before.value - gain.rmse_after.value for gain in diagnosis.gain}
+    curves = max(shown, key=lambda each: gained.get(each.result, 0.0), default=None)
+    covariate = None if curves is None else figures.telling_covariate(diagnosis, curves)
+    if curves is not None and covariate is not None:
+        title = f"{spoken(curves.result).capitalize()} over {spoken(covariate.name)}"
+        caption = f"{title}. Below: what the model misses.{figures.thinning_words(diagnosis, curves)}"
+        view = drawn.view(title, partial(figures.convincing, diagnosis, curves, covariate), caption)
+        yield Chapter(title, (view,), "key-figure")
+    if diagnosis.causes:
+        labels, texts = zip(*((spoken(each.effect), remedy_of(diagnosis, each.effect)) for each in diagnosis.causes),
+                            strict=True)  # fmt: skip
+        doubt = () if diagnosis.verdict == "named" else (Paragraph(DOUBT),)
+        yield Chapter("What to do", (*doubt, Items("findings", texts, labels)), "what-to-do")
 
 
 def questions(diagnosis: DiagnosisResult) -> dict[str, tuple[str, ...]]:
@@ -264,6 +291,10 @@ def _named(diagnosis: DiagnosisResult) -> ChapterParts:
     for cause, (name, _, alike, _) in zip(diagnosis.causes, rows, strict=True):
         if cause.same_as:
             yield f"the same curve as {name} on this data: {alike}"
+    for cause in diagnosis.causes:
+        remedy = stated_remedy(diagnosis, cause.effect)
+        if remedy:
+            yield f"what to do about {spoken(cause.effect)}: {remedy}"
     shown = slice(None) if len(rows) > 1 else slice(-1)
     note = "Share: of the mean squares of what the named causes add to the model, over all rows in units of the noise."
     yield table_of("Named", heads[shown], [row[shown] for row in rows], (3,), note if len(rows) > 1 else "")

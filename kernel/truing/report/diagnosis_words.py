@@ -25,6 +25,7 @@ from truing.diagnosis.result import (
     further_of,
     reads_well,
     shared_of,
+    stated_remedy,
 )
 from truing.numbers import ABSENT, format_number, format_value, pretty, with_unit
 from truing.units import from_si, unit_text
@@ -152,6 +153,17 @@ def cause_text(cause: Cause) -> str:
     """Say a cause with its size."""
     sizes = "; ".join(fitted_text(unknown) for unknown in cause.unknowns)
     return f"{spoken(cause.effect)}, {sizes}" if sizes else spoken(cause.effect)
+
+
+NO_REMEDY = "Nobody registered what to do about it; with it on, the calculation is right: see the extended model."
+
+
+def remedy_of(diagnosis: DiagnosisResult, cause: str) -> str:
+    """Say what to do about a cause."""
+    if cause.startswith("input:"):
+        name = cause.removeprefix("input:").replace("_", " ")
+        return f"Measure the {name}: it must lie outside of its tolerance."
+    return stated_remedy(diagnosis, cause) or NO_REMEDY
 
 
 def verdict_word(diagnosis: DiagnosisResult) -> str:

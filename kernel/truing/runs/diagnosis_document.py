@@ -9,6 +9,7 @@ from typing import Any
 
 from truing.diagnosis.result import (
     Amount,
+    Cause,
     DiagnosisResult,
     Experiment,
     FittedUnknown,
@@ -17,6 +18,7 @@ from truing.diagnosis.result import (
     doubts,
     explanations_of,
     shared_of,
+    stated_remedy,
 )
 from truing.experiments.planning import Planned
 from truing.runs.documents import clean
@@ -51,10 +53,7 @@ def diagnosis_document(diagnosis: DiagnosisResult) -> dict[str, Any]:
         "shared": list(shared_of(diagnosis)),
         "undecided": list(doubts(diagnosis)) if diagnosis.verdict == "undecided" else [],
         **_named(diagnosis, "p_any", "p_second"),
-        "causes": [
-            {"effect": cause.effect, "unknowns": _unknowns(cause.unknowns, labels), **_named(cause, "same_as", "share")}
-            for cause in diagnosis.causes
-        ],
+        "causes": [_cause(diagnosis, cause, labels) for cause in diagnosis.causes],
         **_compared(diagnosis),
         **_named(diagnosis, "inseparable", "remainder"),
         **_seen(diagnosis),
@@ -222,6 +221,13 @@ def _gain(gain: Gain) -> dict[str, Any]:
 
 
 # Pieces of a diagnosis as data
+
+
+def _cause(diagnosis: DiagnosisResult, cause: Cause, labels: Mapping[str, str]) -> dict[str, Any]:
+    return {
+        "effect": cause.effect, "unknowns": _unknowns(cause.unknowns, labels), **_named(cause, "same_as", "share"),
+        "remedy": stated_remedy(diagnosis, cause.effect),
+    }  # fmt: skip
 
 
 def _named(piece: Any, *names: str) -> dict[str, Any]:
