@@ -240,7 +240,7 @@ def test_a_number_of_any_length_is_refused_quickly() -> None:
         ("profile = []", 'profile is a series; write profile = ["1 um", ...]'),
         ('profile = ["1 um", "2 N"]', "profile[2]: '2 N' is a force (N), expected a length (µm)"),
         ('orders = [1, "a"]', "orders[2] = 'a' is no whole number"),
-        ('teeth = 20', "stage has no input 'teeth'. Did you mean 'teeth_sun' (z_1, number of teeth)?"),
+        ('teeth = 20', "stage has no input 'teeth'. Did you mean 'teeth_sun' (z_1, number of teeth, sun)?"),
     ],
 )  # fmt: skip
 def test_a_wrong_value_of_other_kinds(folder: Path, line: str, sentence: str) -> None:
@@ -447,7 +447,7 @@ def test_the_schema_is_valid_and_says_what_editors_need() -> None:
     inputs = schema["$defs"]["Inputs"]
     assert inputs["required"] == ["surface"]
     assert inputs["properties"]["bore_sun"]["default"] == "30 mm"
-    assert inputs["properties"]["bore_sun"]["description"] == "d_1: bore; above 0 mm"
+    assert inputs["properties"]["bore_sun"]["description"] == "d_1: bore, sun; above 0 mm"
     assert inputs["properties"]["reading"]["enum"] == ["printed", "complete"]
     assert inputs["properties"]["teeth_sun"]["minimum"] == 5
     assert inputs["properties"]["face_factor"]["description"] == "K_H: face load factor; at least 1; optional"
