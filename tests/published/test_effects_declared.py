@@ -37,3 +37,10 @@ def test_every_effect_says_what_it_looks_like_why_and_whence(plugin: str) -> Non
             assert need.note
             assert need.low is not None
             assert need.high is not None
+
+
+@pytest.mark.parametrize("plugin", EFFECTS)
+def test_every_effect_says_in_one_or_two_short_sentences_what_to_do(plugin: str) -> None:
+    for name, effect in OFFERS[plugin].model.effects.items():
+        assert re.fullmatch(r"[A-Z][^.]*\.( [A-Z][^.]*\.)?", effect.remedy), name
+        assert len(effect.remedy) <= 160, name
