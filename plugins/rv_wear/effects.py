@@ -315,8 +315,7 @@ EFFECTS: list[Effect[Reducer, Wear]] = [
     Effect("friction_hysteresis", on_reading=friction_hysteresis, needs=[DIRECTION],
            unknowns=[Unknown("lag", -1, 1, "arcmin", "added in the sense of the output angle, taken off against it")],
            looks_like="two readings of one backlash, by the way in which the output was brought there",
-           remedy="Bring the output there from both sides and take the mean of both readings; the way then no longer "
-                  "matters.",
+           remedy="Bring the output to its place from both sides and take the mean; the way then no longer matters.",
            why="friction in the mesh and the seals keeps the output from coming to rest in the middle",
            source="friction torque over stiffness, with the sign of the motion"),
 ]  # fmt: skip
