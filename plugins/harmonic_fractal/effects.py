@@ -293,6 +293,8 @@ EFFECTS: list[Effect[Drive, Stiffness]] = [
            unknowns=[Unknown("compliance", 0, 1000, "urad/(N*m)", "1 over a stiffness; 1.4 to 530 in the catalogue")],
            looks_like="the torsion grows in proportion to the torque, alike in both senses; nothing of the mesh "
                       "itself",
+           remedy="Twist a solid dummy to find the rig's share and take it off; state the rest as drive_compliance. "
+                  "The torsion then fits at any torque.",
            why="cup, wave generator, its bearing and the test rig are springs in series with the mesh, and much "
                "softer",
            source=CATALOGUE),
@@ -301,12 +303,16 @@ EFFECTS: list[Effect[Drive, Stiffness]] = [
                      Unknown("torque_scale", 0.04, 8, "",
                              f"torque after which 63 % of them have come to bear, {PARTS}")],
            looks_like="the mesh stiffens with the torque more than its flanks do, most where its teeth bend",
+           remedy="State the gain as engaged_gain and its torque as engaged_torque; the mesh stiffness then fits at "
+                  "small and at large torques.",
            why="the flexspline gives way under its load and lays more teeth against those of the circular spline",
            source="parallel pairs of teeth: at one torque the stiffness grows with their number to the power 1 - m"),
     Effect("oil_film", on_inputs=oil_film, needs=[SPEED, TEMPERATURE], acts_at_reference=True,
            unknowns=[Unknown("stiffness", 0, 200, "kN/um", "of a pair full of oil at 1000 rpm, 20 degC, T_2; 5 to 60")],
            looks_like="the mesh is stiffer while it turns, most at a low speed and with warm oil, by one amount at "
                       "any torque; it is lost again where it creeps, and nothing is left at rest",
+           remedy="Keep the effect on for a drive that turns, and measure the flanks at rest; the mesh stiffness "
+                  "there is as calculated without oil.",
            why="oil between the flanks cannot leave in time and carries beside the asperities",
            source=f"{DOWSON}; share of a film at a fixed gap: Reynolds 1886; load shared with asperities: Johnson, "
                   "K. L., Greenwood, J. A., Poon, S. Y., A simple theory of asperity contact in elastohydrodynamic "
@@ -317,17 +323,23 @@ EFFECTS: list[Effect[Drive, Stiffness]] = [
                      Unknown("cycle_scale", 1e3, 1e7, "", "cycles after which 63 % is done")],
            looks_like="the mesh stiffens with the cycles, soon and then no more; the structure function falls with "
                       "them",
+           remedy="Run the drive in before measuring, and map its flanks again; the mesh stiffness then no longer "
+                  "changes with the cycles.",
            why="the first load cycles flatten the highest asperities of new flanks",
            source="running-in of machined surfaces: D rises and G falls"),
     Effect("modulus_temperature", on_inputs=modulus_temperature, needs=[TEMPERATURE],
            unknowns=[Unknown("softening", 0, 2e-3, "1/K", "of steel 2.5e-4 to 4e-4")],
            looks_like="torsion too large by one share when warm, of flanks, teeth and cup alike",
+           remedy="Measure at one temperature of the drive, or keep the effect on in the inputs file; readings of "
+                  "warm and cold days then agree.",
            why="Young's modulus falls with the temperature",
            source="handbook: elasticity of steel over temperature"),
     Effect("creep", on_results=creep, needs=[TIME],
            unknowns=[Unknown("share", 0, 0.2, "", "of the elastic torsion, per e-fold of time; 0.002 to 0.02"),
                      Unknown("time_scale", 1e-3, 10, "h", "time from which it counts")],
            looks_like="the torsion grows with time in proportion to itself, fast at first and ever more slowly",
+           remedy="Check the joints, and read the torsion at a fixed time after the torque comes on; readings at one "
+                  "torque then agree.",
            why="joints, bearing and bonded cup settle under a torque that stays",
            source="logarithmic creep"),
     Effect("ellipticity", on_results=ellipticity, needs=[WAVE_ANGLE], acts_at_reference=True,
@@ -336,17 +348,23 @@ EFFECTS: list[Effect[Drive, Stiffness]] = [
            parts=[("cosine", "sine"), ("stiffness_cosine", "stiffness_sine")],
            looks_like="two waves per turn of the wave generator, of the torsion at any torque, or of the mesh "
                       "stiffness",
+           remedy="Measure both lobes of the wave generator and the bores it sits in, and replace what is off; the "
+                  "two waves per turn are gone then.",
            why="the two lobes of the wave generator, or the bores it sits in, are not alike",
            source="second harmonic of the shape of the wave generator"),
     Effect("eccentricity", on_results=eccentricity, needs=[WAVE_ANGLE], acts_at_reference=True,
            unknowns=parts_of_wave(1000, "urad"),
            looks_like="one wave of the torsion per turn of the wave generator, at any torque",
+           remedy="Centre the wave generator and its coupling on the axis of the drive; the one wave per turn is gone "
+                  "then.",
            why="the wave generator, or its coupling, is off the axis of the drive",
            source="first harmonic of an eccentricity"),
     Effect("hysteresis", on_results=hysteresis, needs=[DIRECTION, REVERSAL_TORQUE, PEAK_TORQUE],
            unknowns=[Unknown("loop", 0, 2000, "urad", "whole width; 290 to 870 (1 to 3 arcmin)"), FRICTION_SCALE],
            looks_like="the torsion is smaller on the way up than on the way down at the same torque, and turns round "
                       "within a short way of it",
+           remedy="If the loop is wider than the catalogue's, check the lubricant and what rubs until it is narrower. "
+                  "If not, keep the effect on.",
            why="teeth, bearing and cup rub before they slip",
            source=f"{MASING}; {CATALOGUE}"),
     Effect("viscous_hysteresis", on_results=viscous_hysteresis,
@@ -355,11 +373,15 @@ EFFECTS: list[Effect[Drive, Stiffness]] = [
                      FRICTION_SCALE,
                      Unknown("thinning", 0.01, 0.08, "1/K", "of the lubricant's viscosity; 0.02 to 0.05")],
            looks_like="a loop of the torsion that is wider the faster and the colder the drive runs; none at rest",
+           remedy="Warm the drive up before measuring, or use a thinner lubricant that its maker allows; the loop is "
+                  "then narrower at the same speed.",
            why="the lubricant drags in proportion to its viscosity and to the speed",
            source=f"viscous drag; {MASING}"),
     Effect("lost_motion", on_results=lost_motion,
            unknowns=[Unknown("play", 0, 1000, "urad", "half of it; to 290 (1 arcmin) in catalogues"), PLAY_SCALE],
            looks_like="the torsion jumps about no torque, and is shifted in its sense by one amount at larger ones",
+           remedy="If the play exceeds the catalogue's, replace the splines; the jump about no torque is then "
+                  "smaller. If not, keep the effect on.",
            why="the teeth have play, which they cross one after another",
            source=CATALOGUE),
     Effect("first_load_set", on_results=first_load_set, needs=[PEAK_TORQUE],
@@ -369,18 +391,24 @@ EFFECTS: list[Effect[Drive, Stiffness]] = [
            parts=[("set", "exponent"), ("stiffening",)],
            looks_like="a torsion that stays when the torque goes, and grows only with a new peak; a mesh that is "
                       "stiffer below the peak than it was when it was reached",
+           remedy="Load the new drive once to its highest torque and set the zero afterwards; torsion and stiffness "
+                  "then repeat below that peak.",
            why="the highest asperities flow under the first load, and lie flat from then on",
            source="plastic contact of rough surfaces"),
     Effect("flank_wear", on_results=flank_wear, needs=[CYCLES],
            unknowns=[Unknown("rate", 0, 20, "um", "depth on either flank per million cycles in service"),
                      PLAY_SCALE],
            looks_like="a lost motion that grows in proportion to the cycles",
+           remedy="Check the lubricant, and replace the splines when their play is too large; the lost motion is then "
+                  "that of a new drive.",
            why="the flanks slide on one another with every wave",
            source=ARCHARD),
     Effect("thermal_preload", on_results=thermal_preload, needs=[TEMPERATURE],
            unknowns=[Unknown("expansion", -20, 20, "um/(m*K)",
                              "linear, of the circular spline less that of the flexspline")],
            looks_like="a lost motion that grows, or shrinks, in proportion to the temperature",
+           remedy="Warm the drive up before measuring, or fit splines that expand alike; the lost motion then stays "
+                  "the same.",
            why="the two splines are of different metal and move apart, or together, as they get warm",
            source="linear expansion; play of teeth that move apart, 2 tan(alpha) times the distance"),
     Effect("lateral_filter", on_inputs=lateral_filter,
@@ -388,23 +416,31 @@ EFFECTS: list[Effect[Drive, Stiffness]] = [
                              "standard deviation of its weight; 0.187 of the cutoff of ISO 16610-21")],
            looks_like="the structure function is too low, by a share at lags below a few widths and by one amount "
                       "above",
+           remedy="State the resolution of the instrument as spot_width, or measure with a finer spot; the structure "
+                  "function then fits at short lags.",
            why="a stylus, a spot of light or a filter averages over the finest roughness",
            source="Gaussian weight on a power law; ISO 16610-21"),
     Effect("waviness", on_results=waviness,
            unknowns=[Unknown("square", 0, 4, "um^2", "of its amplitude A, since it enters so; A is 0.05 to 1 um"),
                      Unknown("wavelength", 3, 3000, "um", "30 to 500")],
            looks_like="the structure function has a hump at half a wavelength, and a dip at a whole one",
+           remedy="Look for chatter or feed marks of this wavelength on the machine that cuts the flanks; on flanks "
+                  "cut without them the hump is gone.",
            why="chatter and feed of the tool leave waves on a flank",
            source="structure function of a sine"),
     Effect("rig_drift", on_reading=rig_drift, needs=[TIME],
            unknowns=[Unknown("rate", -500, 500, "urad/h", "1 to 30")],
            looks_like="the torsion moves with time, whatever the torque, as with a sensor that drifts",
+           remedy="Let the rig warm up, read the torsion at no torque now and then, and take its drift off; repeated "
+                  "readings then agree.",
            why="the rig gets warm and bends",
            source="linear growth with time"),
     Effect("instrument_noise", on_reading=instrument_noise,
            unknowns=[Unknown("variance", 0, 1e4, "nm^2",
                              "square of the noise of one height, since it enters so; 1 to 2500")],
            looks_like="the structure function is too high by one amount at any lag, which is an offset",
+           remedy="Average several maps of the same patch, or use a quieter instrument; the structure function then "
+                  "falls by one amount at every lag.",
            why="every height has the noise of its instrument",
            source="structure function of white noise: twice its variance"),
 ]  # fmt: skip

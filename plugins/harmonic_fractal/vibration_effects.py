@@ -44,21 +44,29 @@ EFFECTS: list[Effect[Any, Any]] = [
            unknowns=[Unknown("damping", 0, 5000, "N*s/m", "at 20 degC; 200 is 0.01 of the critical one here"),
                      Unknown("thinning", 0.01, 0.08, "1/K", "of the viscosity; 0.02 to 0.05")],
            looks_like="the peak is lower and the jump smaller than without oil, most when cold",
+           remedy="Keep the effect on in the inputs file, and run up at one temperature; peak and jump are then the "
+                  "same in every run.",
            why="oil between the flanks resists their approach and their parting",
            source="squeeze film: Reynolds 1886; viscosity falls by e over 1/thinning"),
     Effect("eccentric_load", on_inputs=eccentric_load, needs=[OUTPUT_ANGLE], acts_at_reference=True,
            unknowns=[Unknown("cosine", -50, 50, "N*m", "of the torque, with the cosine of the output's angle"),
                      Unknown("sine", -50, 50, "N*m", "the same with its sine")],
            looks_like="jumps and resonance move to and fro with the angle of the output",
+           remedy="Balance the load at the output, or bring its centre onto the axis; jumps and resonance then stay "
+                  "at one speed.",
            why="the centre of the load is beside the axis, and the mesh is stiffer and later to part under more torque",
            source="weight times lever"),
     Effect("clearance_wear", on_inputs=clearance_wear, needs=[CYCLES],
            unknowns=[Unknown("rate", 0, 50, "um", "of play, both flanks together, per million cycles in service")],
            looks_like="only where both flanks are hit: that part of the curve moves to lower speeds with the cycles",
+           remedy="Check the lubricant and replace the worn splines; where both flanks are hit the curve is then that "
+                  "of a new drive.",
            why="the flanks slide on one another with every wave", source=ARCHARD),
     Effect("profile_wear", on_inputs=profile_wear, needs=[CYCLES],
            unknowns=[Unknown("rate", 0, 5, "um", "of the transmission error, per million cycles in service")],
            looks_like="the whole curve grows with the cycles, and it jumps at a lower speed",
+           remedy="Check the lubricant and replace the worn splines; amplitudes and the speed of the jump are then "
+                  "those of a new drive.",
            why="sliding is uneven over the height of a flank, and so is wear", source=ARCHARD),
 ]  # fmt: skip
 

@@ -223,12 +223,16 @@ EFFECTS: list[Effect[Press, Slider]] = [
            unknowns=[Unknown("expansion", -20, 20, "um/(m*K)",
                              "of the links, less that of the frame and the gauge's support")],
            looks_like="the slider sinks with the temperature of the links, nearly alike at every crank angle; no tilt",
+           remedy="Warm the press up before its height is set, or correct it by the temperature of the links; the "
+                  "slider then no longer sinks.",
            why="friction heats the joints and links of a press at work; its frame stays colder",
            source=EXPANSION),
     Effect("warm_up", on_inputs=warm_up, needs=[TIME],
            unknowns=[Unknown("rise", -1000, 1000, "um/m", "strain of the links when warm, counted from the first row"),
                      Unknown("time_constant", 0.1, 20, "h", "after it 63 % of the strain is there")],
            looks_like="the slider sinks fast at first, then ever more slowly, with time and not with strokes; no tilt",
+           remedy="Let the press run warm before its height is set, or correct it over the time at work; the slider "
+                  "then no longer sinks.",
            why="a press that starts cold heats its links until loss and gain of heat are in balance",
            source="linear expansion of a body that heats up at a rate in proportion to what is left (Newton's law of "
                   "cooling)"),
@@ -238,18 +242,24 @@ EFFECTS: list[Effect[Press, Slider]] = [
                      Unknown("expansion_2", -20, 20, "um/(m*K)",
                              "of the links of side 2, and half of the platform arm")],
            looks_like="the slider sinks and tilts with the temperature of the links, lower on the warmer side",
+           remedy="Oil both sides alike, and shield the warmer one from sun or furnace; the slider then no longer "
+                  "tilts as the links get warm.",
            why="one side is oiled less, stands in the sun or beside a furnace: its links are warmer than was measured",
            source=EXPANSION),
     Effect("crank_phase", on_inputs=crank_phase,
            unknowns=[Unknown("phase", -20, 20, "mrad", "both cranks ahead of the angle that is shown")],
            looks_like="the slider is too low before the bottom dead centre and too high after it, by its speed per "
                       "angle; next to nothing at the dead centre; no tilt",
+           remedy="Set the zero of the encoder at the dead centre, and check the coupling for slip; the height is "
+                  "then right before and after it.",
            why="the zero of the encoder was set beside the dead centre, or a coupling has slipped",
            source="kinematics of the linkage"),
     Effect("encoder_eccentricity", on_inputs=encoder_eccentricity,
            unknowns=[Unknown("sine", -10, 10, "mrad", "cranks ahead in proportion to the sine of the crank angle"),
                      Unknown("cosine", -10, 10, "mrad", "cranks ahead in proportion to the cosine of the crank angle")],
            looks_like="like an error of the crank phase that changes once per turn, alike in both directions; no tilt",
+           remedy="Centre the disc of the encoder on its shaft, or correct its angle by this wave; the error once per "
+                  "turn is gone then.",
            why="the disc of the encoder sits off the centre of its shaft",
            source="first harmonic of the angle error of an encoder mounted off centre"),
     Effect("drive_backlash", on_inputs=drive_backlash, needs=[DIRECTION],
@@ -257,6 +267,8 @@ EFFECTS: list[Effect[Press, Slider]] = [
                      Unknown("play_after", -10, 10, "mrad", "at the crank, after the bottom dead centre")],
            looks_like="at the same crank angle the slider stands higher on its way down than on its way up; nothing "
                       "at the dead centre; no tilt",
+           remedy="Take the play out of gears and couplings, and look at the lag of the servo drive; heights on the "
+                  "way down and up then agree.",
            why="gears and couplings between encoder and crank have play, or the servo drive lags behind its command; "
                "what acts before and after the dead centre may be different flanks",
            source="reversal error of a drive: half the play to either side"),
@@ -264,6 +276,8 @@ EFFECTS: list[Effect[Press, Slider]] = [
            unknowns=[Unknown("compliance", 0, 5, "1/GN", "1/(EA) of rods and knee links, equal sections")],
            looks_like="the slider gives way in proportion to the forming force, upward under a positive one; no "
                       "tilt; an unbalanced weight adds a constant force",
+           remedy="Correct the height in proportion to the forming force, and keep the effect on in the inputs file; "
+                  "the height then fits at any force.",
            why="links are bars: a steel bar of 200 cm² has 0.24 1/GN",
            source="Hooke's law of the bar; link forces by virtual work"),
     Effect("joint_clearance", on_inputs=joint_clearance, needs=[FORMING_FORCE],
@@ -271,6 +285,8 @@ EFFECTS: list[Effect[Press, Slider]] = [
            looks_like="the slider jumps when the load changes its sign, however small it is: where forming force and "
                       "counterbalance pass its weight; while the sign stays, a lift that varies little with the "
                       "crank angle; no tilt",
+           remedy="Renew loose pins or bores, or set a counterbalance with which the load keeps its sign; the jump is "
+                  "then smaller or gone.",
            why="the pin of a loaded joint lies on one side of its bore, and on the other when the load reverses",
            source="joint as a link of zero mass of the length of its clearance; sign of the link force by virtual "
                   "work"),
@@ -278,6 +294,8 @@ EFFECTS: list[Effect[Press, Slider]] = [
            unknowns=[Unknown("wear", 0, 500, "um", "radial clearance that every joint gains per million strokes")],
            looks_like="the slider rises in proportion to the strokes where it is pushed up and sinks where it is "
                       "pulled down, whatever the time; no tilt",
+           remedy="Renew worn pins and bores, and check that oil reaches them; the slider is then back at its height "
+                  "and moves less with the strokes.",
            why="joints wear in proportion to load and sliding path, so evenly with the strokes once they have run in",
            source="Archard, J. F., Contact and rubbing of flat surfaces, Journal of Applied Physics 24 (1953) 981"),
     Effect("slider_inertia", on_inputs=slider_inertia, needs=[SPEED],
@@ -287,6 +305,8 @@ EFFECTS: list[Effect[Press, Slider]] = [
            looks_like="an elastic deflection that grows with the square of the speed and follows the acceleration of "
                       "the slider over the crank angle: deeper at the bottom dead centre the faster the press runs; "
                       "no tilt",
+           remedy="Set the height at the working speed, or correct it by the square of the speed; the slider is then "
+                  "right at the dead centre.",
            why="a heavy slider loads its links by its own acceleration",
            source="d'Alembert: elastic deflection under the inertia of the slider, +m z'' omega^2 upward"),
     Effect("die_inclination", on_results=die_inclination,
@@ -294,6 +314,8 @@ EFFECTS: list[Effect[Press, Slider]] = [
                      Unknown("height", -1000, 1000, "um", "added to the position")],
            parts=[("inclination",), ("height",)],
            looks_like="the same tilt, or the same height, at every crank angle, load, temperature and time",
+           remedy="Level die and bolster, and check for shims that do not belong there; the constant tilt or height "
+                  "is gone then.",
            why="the die or the bolster is not level, or stands on a shim",
            source="geometry"),
 ]  # fmt: skip

@@ -41,32 +41,44 @@ EFFECTS: list[Effect[MovingPress, PressMotion]] = [
            unknowns=[Unknown("friction", 0, 500, "kN", "of all guides together")],
            looks_like="a torque that follows the travel of the slider per crank angle, against the drive on the way "
                       "down and up alike, whatever speed and force; nothing at the dead centres",
+           remedy="Oil the guides, check the gibs, and see whether the work pushes the slider aside; less torque is "
+                  "then needed in mid-stroke.",
            why="gibs are set too tight, the slider is pushed aside by the work, or the guides run dry",
            source="Coulomb friction"),
     Effect("bearing_friction", on_inputs=bearing_friction,
            unknowns=[Unknown("friction_radius", 0, 50, "mm", "friction coefficient times radius of the pins")],
            looks_like="the torque is larger where joints carry much, above all under the force of the work near the "
                       "bottom dead centre, where guide friction does nothing",
+           remedy="Check that oil reaches the pins, and renew those that are scored; less torque is then needed under "
+                  "the force of the work.",
            why="pins run with little oil; 0.1 on a radius of 100 mm are 10 mm",
            source="Coulomb friction of a pin in its bore"),
     Effect("drive_drag", on_inputs=drive_drag,
            unknowns=[Unknown("drag", 0, 50, "kN*m*s", "torque of one crank per angular speed")],
            looks_like="a constant torque at constant speed, in proportion to the speed",
+           remedy="Let gears and bearings of the drive warm up, or check the viscosity of their oil; less torque is "
+                  "then needed at constant speed.",
            why="gears churn cold oil, plain bearings of the crankshaft are viscous",
            source="viscous friction"),
     Effect("counterbalance_loss", on_inputs=counterbalance_loss,
            unknowns=[Unknown("loss", -50, 100, "%", "share of the force of the cylinders that is missing")],
            looks_like="the drive is pulled on the way down and must lift on the way up; no change with the speed",
+           remedy="Check the gauge, set the pressure for this tool, and look for leaks; the torque is then as "
+                  "calculated on the way down and up.",
            why="the pressure was set for a lighter tool, or a cylinder leaks",
            source="virtual work"),
     Effect("heavier_slider", on_inputs=heavier_slider,
            unknowns=[Unknown("mass", -10, 50, "t", "of the slider beyond what is stated")],
            looks_like="as a lack of counterbalance, and beside it inertia that grows with the square of the speed",
+           remedy="Weigh the upper die, state the mass as slider_mass, and set the counterbalance for it; the torque "
+                  "then fits at every speed.",
            why="the upper die is heavier than its record says",
            source="weight and inertia"),
     Effect("crank_phase", on_inputs=crank_phase,
            unknowns=[Unknown("phase", -100, 100, "mrad", "cranks ahead of the angle that is stated")],
            looks_like="the whole torque comes earlier",
+           remedy="Set the zero of the encoder at the dead centre, and check the coupling for slip; the torque then "
+                  "comes at its crank angle.",
            why="the zero of the encoder was set beside the dead centre, or a coupling has slipped",
            source="kinematics of the linkage"),
 ]  # fmt: skip

@@ -227,6 +227,8 @@ EFFECTS: list[Effect[Pair, Meshing]] = [
            looks_like="both root stresses too high by one amount at any load, like an offset or a roller ahead of "
                       "the others, and by less than that at small loads, where a part of the face lifts off; a tilt "
                       "by the load is like a gain of both",
+           remedy="Align the roller in its carrier; a tilt that grows with the load needs a stiffer one. Both root "
+                  "stresses are then lower.",
            why="the roller is tilted in its carrier, and bends and tilts further under its load",
            source="ISO 6336-1, method C: face load factor of a misaligned pair"),
     Effect("mesh_resonance", on_inputs=mesh_resonance, needs=[SCREW_SPEED],
@@ -234,6 +236,8 @@ EFFECTS: list[Effect[Pair, Meshing]] = [
                      Unknown("resonance_speed", 200, 6000, "rpm", "of the screw"),
                      Unknown("damping", 0.03, 0.3, "", "damping ratio; 0.04 to 0.1")],
            looks_like="both root stresses have a peak at one speed of the screw, by the same share at any load",
+           remedy="Run the screw away from this speed, or fit gears with smaller errors of their teeth; the peak of "
+                  "the stresses is then lower or not met.",
            why="the teeth shake the rollers on the stiffness of their mesh, once per tooth",
            source="one degree of freedom shaken by its base: displacement of the mesh"),
     Effect("roller_load_sharing", on_inputs=roller_load_sharing,
@@ -241,6 +245,7 @@ EFFECTS: list[Effect[Pair, Meshing]] = [
                              "of the flank of this roller before the mean of the others; 1 to 5")],
            looks_like="both root stresses off by one amount at any load, like an offset; a roller that stays behind "
                       "carries nothing at small loads",
+           remedy="Fit rollers whose teeth stand alike to their threads; the root stresses of all rollers then agree.",
            why="the teeth of the rollers do not stand alike to their threads, so that some carry more than others",
            source="rollers on a rigid carrier: equilibrium of loads by the stiffness of their meshes"),
     Effect("interrupted_tooth", on_inputs=interrupted_tooth, needs=[SCREW_ANGLE], acts_at_reference=True,
@@ -248,12 +253,16 @@ EFFECTS: list[Effect[Pair, Meshing]] = [
                      Unknown("phase", 180, 540, "deg", "angle of the roller at which that is, and one turn away")],
            looks_like="both root stresses swing once per turn of the roller, in proportion to the load, with crests "
                       "narrower than their troughs",
+           remedy="Rate the teeth with the effect on; rollers whose thread ends before the teeth show no swing of the "
+                  "stress with their turns.",
            why="the thread of a roller runs through the teeth at its ends",
            source="geometry: share of the face that a groove takes from it"),
     Effect("rim_compliance", on_inputs=rim_compliance,
            unknowns=[Unknown("softness", 0, 1.5, "", "rim factor less 1; 0.17 with a rim of 3 modules, 0.64 of 2")],
            looks_like="the root stress of the ring is too high by one share, and nothing else: as with a gain of its "
                       "gauge, which another gauge or a weight on the tooth tells apart",
+           remedy="Confirm it with a second gauge on the ring, then state rim_factor or make the rim thicker; the "
+                  "stress of the ring then fits.",
            why="the ring is thin behind its teeth and bends as a whole",
            source="ISO 6336-3: rim factor Y_B = 1.15 ln(8.324 m/s_R) of an internal gear, 1.75 < s_R/m < 3.5"),
     Effect("thermal_centre_distance", on_inputs=thermal_centre_distance, needs=[TEMPERATURE],
@@ -261,17 +270,23 @@ EFFECTS: list[Effect[Pair, Meshing]] = [
                              "linear, of screw and nut less that of the ring; steel 11.5")],
            looks_like="the backlash shrinks as the screw gets warm and comes back when it cools: 0.2 um per kelvin "
                       "with steel beside a cold ring; a thermal drift of its gauge looks the same",
+           remedy="Leave backlash for the warm screw, and read it at one temperature; readings then agree, and the "
+                  "warm teeth do not jam.",
            why="the threads hold the rollers at their distance, and are warmer than the ring, or of another metal",
            source="linear expansion; backlash of an internal involute pair, ISO 21771"),
     Effect("roller_runout", on_results=roller_runout, needs=[SCREW_ANGLE], acts_at_reference=True,
            unknowns=wave_unknowns(200, "um", "the angle of the roller"),
            looks_like="transmission error with one wave per turn of the roller against the carrier, 1.875 per turn "
                       "of the screw",
+           remedy="Replace the roller whose teeth are off the axis of its thread; the wave once per turn of the "
+                  "roller is gone then.",
            why="the teeth of a roller are off the axis of its thread",
            source=HARMONIC),
     Effect("carrier_runout", on_results=carrier_runout, needs=[SCREW_ANGLE], acts_at_reference=True,
            unknowns=wave_unknowns(200, "um", "the angle of the carrier"),
            looks_like="transmission error with one wave per turn of the carrier, 0.375 per turn of the screw",
+           remedy="Centre the ring in the nut and the carrier on the screw; the wave once per turn of the carrier is "
+                  "gone then.",
            why="the ring is off the axis of the nut, or the carrier off that of the screw",
            source=HARMONIC),
     Effect("axial_migration", on_results=axial_migration, needs=[SCREW_ANGLE],
@@ -279,18 +294,24 @@ EFFECTS: list[Effect[Pair, Meshing]] = [
                              "creep of the roller per turn of the screw over the lead; to 2")],
            looks_like="the roller moves along the screw in proportion to the angle turned, and back when that goes "
                       "back",
+           remedy="Fit rollers whose threads have the pitch diameter that the ratio of the teeth asks for; the roller "
+                  "then no longer creeps.",
            why="the teeth keep one ratio, the pitch diameters of the threads as made another",
            source="kinematics of the planetary roller screw"),
     Effect("flank_wear", on_results=flank_wear, needs=[CYCLES],
            unknowns=[Unknown("rate", 0, 50, "um", "depth per million cycles at 51.943 N and a specific sliding of 1")],
            looks_like="the depth of wear grows with load and cycles, whatever the time, and the backlash about twice "
                       "as fast with ten rollers of a fifth of the ring's teeth",
+           remedy="Check lubricant and load, and replace rollers and ring that are worn too deep; the backlash is "
+                  "then that of a new screw.",
            why="flanks slide on one another away from the pitch point",
            source=ARCHARD),
     Effect("mesh_friction", on_results=mesh_friction, needs=[SCREW_SPEED, TEMPERATURE], acts_at_reference=True,
            unknowns=[Unknown("factor", 0, 20, "", "friction over that of the formula")],
            looks_like="torque against the turning that grows a little more than in proportion to the load, falls "
                       "slowly with the speed and hardly rises with the temperature",
+           remedy="Keep the effect on; if the factor exceeds that of a sound screw, renew the lubricant and look at "
+                  "the flanks until the torque falls.",
            why="flanks slide on one another away from the pitch point",
            source=FRICTION),
 ]  # fmt: skip

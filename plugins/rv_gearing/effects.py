@@ -262,6 +262,8 @@ EFFECTS: list[Effect[Gearing, Strength]] = [
            parts=[("misalignment",), ("per_load",)],
            looks_like="all stresses too high by a share that falls with the load; with shafts that bend, by one "
                       "share at any load, which the tolerances or a gain of the gauge may be as well",
+           remedy="Align the bores of the carrier and check bearing play; shafts that bend need more stiffness. All "
+                  "stresses are then lower.",
            why="sun and planet axes are not parallel: bores of the carrier, bearing play, and a shaft that bends",
            source=FACE),
     Effect("structural_resonance", on_inputs=structural_resonance,
@@ -270,6 +272,8 @@ EFFECTS: list[Effect[Gearing, Strength]] = [
                      Unknown("damping", 0.03, 0.3, "", "damping ratio")],
            looks_like="all stresses have a peak at one speed of the input, by the same share at any load; nothing at "
                       "rest and below the peak four times as much at twice the speed",
+           remedy="Keep the input away from this speed, or stiffen shaft, carrier or housing; the peak is then not "
+                  "met or lies higher.",
            why="shaft, carrier or housing have a frequency of their own, which the teeth of the sun meet at that "
                "speed",
            source=RESONANCE),
@@ -277,23 +281,31 @@ EFFECTS: list[Effect[Gearing, Strength]] = [
            unknowns=[Unknown("lead", 0, 100, "um", "of one planet before the mean of all, along the line of action")],
            looks_like="all stresses too high at small loads, hardly at large ones; root stresses by nearly the same "
                       "amount at any load, like an offset",
+           remedy="Assemble the planets so that all of them touch at once; the stresses at small loads are then as "
+                  "calculated.",
            why="planets stand unevenly on their cranks; the first one to touch carries until its mesh has given way",
            source=STIFFNESS),
     Effect("crowned_contact", on_inputs=crowned_contact,
            unknowns=[Unknown("full_line_load", 0, 200, "N/mm", "force over width from which all of it carries")],
            looks_like="all stresses too high at small loads, and right from some load on",
+           remedy="Keep the effect on in the inputs file, or grind less crown where small loads matter; the stresses "
+                  "at small loads are then lower.",
            why="crowned teeth touch in the middle of their width; the contact grows with the load",
            source="Hertz, point contact of crowned flanks that spreads over the face; width as the cube root of the "
                   "force"),
     Effect("relief_error", on_inputs=relief_error,
            unknowns=[Unknown("missing", -50, 50, "um", "of the relief of the tip")],
            looks_like="root stresses off by the same amount at any load, like an offset; contact stress as calculated",
+           remedy="Measure the tip relief of both gears and grind it as drawn; the root stresses are then as "
+                  "calculated at every load.",
            why="the tips were ground back less than was meant, or more: the load meets the tooth higher, or lower",
            source=STIFFNESS),
     Effect("centre_distance_growth", on_inputs=centre_distance_growth,
            unknowns=[Unknown("expansion", -40, 40, "um/(m*K)",
                              "linear, of housing and carrier less that of the gears; aluminium less steel 12")],
            looks_like="the backlash grows with the temperature of the oil, back and forth, and never with the hours",
+           remedy="Read the backlash at one temperature of the oil, or keep the effect on in the inputs file; "
+                  "readings of warm and cold days then agree.",
            why="the parts that hold the gears apart expand more than the gears, or get warmer",
            source="linear expansion; backlash of an involute pair on its working centre distance, ISO 21771"),
     Effect("speed_dependent_loss", on_results=speed_dependent_loss,
@@ -301,23 +313,31 @@ EFFECTS: list[Effect[Gearing, Strength]] = [
                      Unknown("viscous", 0, 50, "N*m",
                              "holding back the sun at 100 mm²/s and 1000 r/min; as the power 2/3")],
            looks_like="efficiency falls towards small torques, and the more so the faster and the colder",
+           remedy="Measure warm, and check seals, bearing preload and oil; if one was at fault, the efficiency at "
+                  "small torques then rises.",
            why="seals, preloaded bearings and oil hold back an idle reducer too; catalogues print less than the "
                "formula",
            source=PALMGREN),
     Effect("flash_temperature", on_results=flash_temperature,
            unknowns=[Unknown("friction", 0, 0.5, "", "mean coefficient of the flanks; 0.03 to 0.1 in oil")],
            looks_like="flanks warmer than the oil, with the load to the power 3/4 and the root of the speed",
+           remedy="If the friction exceeds that of oiled flanks, renew the oil and check the flanks; they then run "
+                  "cooler. If not, keep the effect on.",
            why="flanks slide on one another at the ends of the path of contact, and friction heats them",
            source=BLOK),
     Effect("sun_runout", on_results=sun_runout, needs=[INPUT_ANGLE], acts_at_reference=True,
            unknowns=wave_unknowns(1000, "um", "the angle of the sun against the carrier"),
            looks_like="transmission error with one wave per turn of the sun against the carrier, a little slower "
                       "than the input shaft",
+           remedy="Centre the sun on its axis or replace it; the wave once per turn of the sun against the carrier is "
+                  "gone then.",
            why="the teeth of the sun are off the axis on which it turns",
            source=HARMONIC),
     Effect("planet_runout", on_results=planet_runout, needs=[INPUT_ANGLE], acts_at_reference=True,
            unknowns=wave_unknowns(1000, "um", "the angle of the planet"),
            looks_like="transmission error with one wave per turn of the planet, z1/z2 of those of the sun",
+           remedy="Replace the planet whose teeth are off the axis of its crank; the wave once per turn of the planet "
+                  "is gone then.",
            why="the teeth of a planet are off the axis of its crank",
            source=HARMONIC),
     Effect("mesh_ripple", on_results=mesh_ripple, needs=[INPUT_ANGLE], acts_at_reference=True,
@@ -326,6 +346,8 @@ EFFECTS: list[Effect[Gearing, Strength]] = [
            parts=[("cosine", "sine"), ("second_cosine", "second_sine")],
            looks_like="a fast ripple of the transmission error: one wave, or two, for every tooth of the sun that "
                       "passes",
+           remedy="Measure profile and pitch of the sun's teeth, and regrind or replace the sun; the ripple with the "
+                  "passing teeth is then smaller.",
            why="one pair of teeth and two carry in turn, and flanks have errors of form",
            source="kinematics of the mesh"),
     Effect("output_eccentricity", on_results=output_eccentricity, needs=[INPUT_ANGLE], acts_at_reference=True,
@@ -334,34 +356,46 @@ EFFECTS: list[Effect[Gearing, Strength]] = [
            parts=[("cosine", "sine"), ("tooth_cosine", "tooth_sine")],
            looks_like="a slow wave of the transmission error over one turn of the output, or one for every tooth of "
                       "the discs",
+           remedy="Centre carrier and encoder of the output; a wave with the teeth of the discs asks for better "
+                  "discs. The wave is then gone or smaller.",
            why="carrier or encoder of the output are off their axis; errors of the second stage come through to the "
                "first",
            source=HARMONIC),
     Effect("ratio_drift", on_results=ratio_drift, needs=[INPUT_ANGLE],
            unknowns=[Unknown("miscount", -1e-3, 1e-3, "", "of the ratio, relative")],
            looks_like="transmission error in proportion to the angle that was turned, and it never comes back",
+           remedy="Evaluate with the exact ratio of the teeth, and check the encoders for lost counts; the error then "
+                  "no longer adds up.",
            why="the ratio in the evaluation is rounded, or an encoder loses counts: an error of counting alone",
            source="kinematics: relative error of the ratio times angle and base radius of the sun"),
     Effect("wind_up", on_results=wind_up,
            unknowns=[Unknown("compliance", 0, 100, "um/(N*m)", "at the base circle of the sun, by its torque")],
            looks_like="transmission error in proportion to the torque, with its sign",
+           remedy="Put the encoder at the sun, or take the twist off in proportion to the torque; the error then no "
+                  "longer follows the torque.",
            why="the shaft between the encoder and the sun twists",
            source="Hooke's law"),
     Effect("lost_motion", on_results=lost_motion,
            unknowns=[Unknown("play", 0, 1000, "um", "along the line of action, from flank to flank"),
                      Unknown("torque_scale", 1, 500, "N*m", "at the output; at it 76 % of the play is taken up")],
            looks_like="transmission error jumps where the torque changes its sign, and stays; so much more backlash",
+           remedy="Find the play in teeth, splines and bearings, and replace or preload what is loose; the jump about "
+                  "no torque is then smaller.",
            why="teeth, splines and bearings have play, which the torque takes up to one side or the other",
            source="lost motion of catalogues; hyperbolic tangent for the rounded jump"),
     Effect("wear_drift", on_results=wear_drift, needs=[TIME],
            unknowns=[Unknown("rate", 0, 50, "nm/h", "that each loaded flank loses")],
            looks_like="transmission error drifts with the hours, to the side of the torque; the backlash grows twice "
                       "as fast",
+           remedy="Look for micropitting, renew the oil, and replace worn gears; error and backlash are then those of "
+                  "a new reducer.",
            why="flanks wear, or peel by micropitting",
            source=ARCHARD),
     Effect("mesh_stiffening", on_results=mesh_stiffening,
            unknowns=[Unknown("share", 0, 10, "", "of the calculated deflection of the teeth")],
            looks_like="transmission error grows with the torque, with its sign, faster about zero than farther out",
+           remedy="Keep the effect on in the inputs file; the transmission error then fits at any torque, near zero "
+                  "too.",
            why="teeth give way, and the more so while they hardly touch",
            source=STIFFNESS),
 ]  # fmt: skip

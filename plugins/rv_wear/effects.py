@@ -190,6 +190,8 @@ EFFECTS: list[Effect[Reducer, Wear]] = [
     Effect("thermal_clearance", on_inputs=thermal_clearance, needs=[HOUSING_TEMPERATURE, DISC_TEMPERATURE],
            unknowns=[Unknown("expansion", -40, 40, "um/(m*K)", "linear, of housing and disc alike; steel 11.5")],
            looks_like="the backlash follows the difference of both temperatures, back and forth, and never the hours",
+           remedy="Read the backlash when housing and discs are equally warm, or take the heat off by both "
+                  "temperatures; it then follows the hours alone.",
            why="the discs turn in warm oil and the housing stands in cold air: the clearance between them closes",
            source="linear expansion; steel 11.5 um/(m*K), 0.063 arcmin per kelvin of difference"),
     Effect("runout", on_inputs=runout, needs=[CRANK_ANGLE], acts_at_reference=True,
@@ -198,6 +200,8 @@ EFFECTS: list[Effect[Reducer, Wear]] = [
                              "of the offset, as a crank angle; half a turn more is the same")],
            looks_like="the backlash dips twice per turn of the crank, by 0.08 arcmin per micrometre, where the throw "
                       "stands across the offset; the mean of both ends of the play stays",
+           remedy="Centre the pins, or the bore that holds them, on the axis of the output; the two dips per turn of "
+                  "the crank are gone then.",
            why="the circle of the pins, or the bore of the housing that holds it, is off the axis of the output; two "
                "opposite discs then touch at opposite ends of the play",
            source="geometry of two opposite cycloid discs, derived on the theory page of the calculation"),
@@ -205,12 +209,16 @@ EFFECTS: list[Effect[Reducer, Wear]] = [
            unknowns=[Unknown("wear", 0, 10, "um",
                              "clearance that the crank bearings gain per million output turns at 3136 N*m")],
            looks_like="the backlash grows evenly with torque, speed and hours; the flanks wear no deeper",
+           remedy="Open the reducer, measure the crank bearings and replace worn ones; the backlash is then less by "
+                  "the clearance they had gained.",
            why="the crank bearings carry the mesh forces; their raceways wear at a steady rate once they have run in",
            source=ARCHARD),
     Effect("running_in", on_inputs=running_in,
            unknowns=[Unknown("depth", 0, 5, "um", "lost beside the law of wear when all is run in"),
                      Unknown("run_in_time", 50, 2000, "h", "after it 63 % of that depth is lost")],
            looks_like="wear and backlash gain early and soon no more; then they run parallel to the calculation",
+           remedy="Run new discs in before the record begins, or keep the effect on; from then on wear and backlash "
+                  "go as calculated.",
            why="a ground flank loses its asperities first, faster than a smooth one wears",
            source="two phases of wear; lost motion of reducers on endurance tests grows fastest in the first 600 h"),
     Effect("wear_temperature", on_inputs=wear_temperature, needs=[OIL_TEMPERATURE],
@@ -218,6 +226,8 @@ EFFECTS: list[Effect[Reducer, Wear]] = [
                              "decrease of the pressure-viscosity coefficient; oils 0.004 to 0.008")],
            looks_like="warm reducers wear faster: the slope over the hours follows the oil, not the reading of the "
                       "day",
+           remedy="Keep the oil cooler, or keep the effect on in the inputs file; a reducer with cooler oil then "
+                  "wears more slowly.",
            why="the wear coefficient falls with the seventh power of the pressure-viscosity coefficient, which falls "
                "with temperature",
            source=REGRESSION),
@@ -226,31 +236,43 @@ EFFECTS: list[Effect[Reducer, Wear]] = [
                              "film thickness over that of the formula; below about 3 no film is felt")],
            looks_like="less wear at high speed and in cold oil; the flank wears on where disc and pin move against "
                       "one another, so with pins that stand still the deepest wear never vanishes",
+           remedy="Keep the effect on in the inputs file, and measure the wear at low speed or in hot oil too; there "
+                  "it is as calculated without a film.",
            why="a film that is thicker than the roughness keeps the surfaces apart",
            source=DOWSON),
     Effect("pin_rolling", on_inputs=pin_rolling,
            unknowns=[Unknown("rolling", 0, 1, "", "share of the sliding that the pins take over")],
            looks_like="all wear is slower by one share, that of the flank and what is felt of it",
+           remedy="Rule duty_share out by the log of the load, mark the pins and see whether they turn. If so, keep "
+                  "the effect on; all wear then fits.",
            why="pins that lie in half-round grooves turn when their friction there is smaller than on the flank",
            source=KINEMATICS),
     Effect("pin_wear", on_inputs=pin_wear,
            unknowns=[Unknown("ratio", 0, 2, "", "wear of the pins over that of the disc")],
            looks_like="the backlash gains more than the wear of the disc explains, by one share of it",
+           remedy="Open the reducer, measure the pins and replace worn ones; the backlash then fits the wear of the "
+                  "disc.",
            why="pins are as hard as the disc and each meets its teeth at the same places",
            source=ARCHARD),
     Effect("lost_motion_share", on_inputs=lost_motion_share,
            unknowns=[Unknown("loss", 0, 0.95, "", "share of the deepest wear that is not felt")],
            looks_like="the backlash gains less than the wear of the disc explains, by one share of it",
+           remedy="Keep the effect on in the inputs file, and measure the wear of a flank as well; its depth is as "
+                  "calculated.",
            why="the play ends where the first pin touches, and that is not where the flank is worn most",
            source="take-up of a mesh: the smallest clearance over its lever arm, of all pins"),
     Effect("lubricant_ageing", on_inputs=lubricant_ageing,
            unknowns=[Unknown("rate", 0, 5, "1e-3/h", "growth of the momentary wear coefficient, over that when new")],
            looks_like="wear that does not slow down with the hours, or even hastens",
+           remedy="Renew the lubricant and flush the debris out; the wear per hour is then again that of fresh "
+                  "lubricant.",
            why="additives are used up, and debris stays in the grease",
            source="linear growth of the wear coefficient with the age of the lubricant"),
     Effect("load_exponent", on_inputs=load_exponent,
            unknowns=[Unknown("exponent", -1, 1, "", "added to the power of the torque that the depth follows")],
            looks_like="right at the rated torque, too much below and too little above it, or the other way round",
+           remedy="Keep the effect on in the inputs file, and test at one more torque; the wear there is then as "
+                  "calculated.",
            why="the regression of the wear coefficient was fitted to other contacts than these",
            source=REGRESSION),
     Effect("duty_share", on_inputs=duty_share,
@@ -259,6 +281,8 @@ EFFECTS: list[Effect[Reducer, Wear]] = [
                                   "evenly")],
            looks_like="wear and backlash gain less, as if the reducer had worked fewer hours, like less sliding; the "
                       "log of the load tells: state it as the input reversing, and the question is answered",
+           remedy="State how both flanks share the hours, by the log of the load, as reversing; wear and backlash "
+                  "then fit without the effect.",
            why="robots turn to and fro: what one flank wears the other does not",
            source="wear of both flanks, each after its own time"),
     Effect("pin_pass_ripple", on_results=pin_pass_ripple, needs=[OUTPUT_ANGLE], acts_at_reference=True,
@@ -269,22 +293,29 @@ EFFECTS: list[Effect[Reducer, Wear]] = [
            parts=[("disc_cosine", "disc_sine"), ("pin_cosine", "pin_sine")],
            looks_like="a fast ripple over the output angle: as many waves per turn as the disc has teeth, or as "
                       "there are pins",
+           remedy="Average the backlash over whole waves of the output angle, and replace discs or pins with large "
+                  "errors; the ripple is then smaller.",
            why="teeth and pins have their own errors, and each of them passes once",
            source=KINEMATICS),
     Effect("wind_up", on_reading=wind_up, needs=[MEASURING_TORQUE],
            unknowns=[Unknown("compliance", 0, 20, "arcmin/(kN*m)", "of the reducer; catalogues 0.5 to 5")],
            looks_like="the reading grows in proportion to the measuring torque",
+           remedy="Read the backlash under less torque, or take off twice the torque over the stiffness; readings "
+                  "under any torque then agree.",
            why="a backlash that is read under torque contains the twist to either side",
            source="Hooke's law: twice the torque over the stiffness"),
     Effect("stiffening", on_reading=stiffening, needs=[MEASURING_TORQUE],
            unknowns=[Unknown("twist", 0, 2, "arcmin", "until all contacts carry"),
                      Unknown("torque_scale", 10, 1000, "N*m", "measuring torque after which 63 % of it is there")],
            looks_like="the reading grows with a small measuring torque and hardly any more with a large one",
+           remedy="Read the backlash always under the same measuring torque, and keep the effect on in the inputs "
+                  "file; the readings then agree.",
            why="pins, teeth and rollers come to bear one after another: a reducer is soft about its middle",
            source="lost motion and stiffness of catalogues: a torsion curve that is steep about zero"),
     Effect("friction_hysteresis", on_reading=friction_hysteresis, needs=[DIRECTION],
            unknowns=[Unknown("lag", -1, 1, "arcmin", "added in the sense of the output angle, taken off against it")],
            looks_like="two readings of one backlash, by the way in which the output was brought there",
+           remedy="Bring the output to its place from both sides and take the mean; the way then no longer matters.",
            why="friction in the mesh and the seals keeps the output from coming to rest in the middle",
            source="friction torque over stiffness, with the sign of the motion"),
 ]  # fmt: skip

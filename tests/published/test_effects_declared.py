@@ -14,6 +14,7 @@ EFFECTS = {
     "press_linkage.motion": 6,
 }  # fmt: skip
 """How many effects each calculation has."""
+WITH_EFFECTS = [name for name, offer in OFFERS.items() if name.partition(".")[0] in EFFECTS and offer.model.effects]
 
 
 @pytest.mark.parametrize("plugin", EFFECTS)
@@ -37,3 +38,10 @@ def test_every_effect_says_what_it_looks_like_why_and_whence(plugin: str) -> Non
             assert need.note
             assert need.low is not None
             assert need.high is not None
+
+
+@pytest.mark.parametrize("calculation", WITH_EFFECTS)
+def test_every_effect_says_in_one_or_two_short_sentences_what_to_do(calculation: str) -> None:
+    for name, effect in OFFERS[calculation].model.effects.items():
+        assert re.fullmatch(r"[A-Z][^.]*\.( [A-Z][^.]*\.)?", effect.remedy), name
+        assert len(effect.remedy) <= 160, name

@@ -119,7 +119,7 @@ def test_every_model_gets_the_six_over_each_of_its_results() -> None:
         "step",
     ]  # fmt: skip
     assert all(effect.place == "reading" for effect in effects.values())
-    assert all(effect.looks_like and effect.why and effect.source for effect in effects.values())
+    assert all(effect.looks_like and effect.remedy and effect.why and effect.source for effect in effects.values())
     names = ("height_left", "height_right", "warmth")
     for plain in ("sensor_offset", "sensor_gain", "sensor_drift", "thermal_drift"):
         assert effects[plain].parts == tuple((name,) for name in names)

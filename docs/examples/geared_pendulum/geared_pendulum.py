@@ -166,14 +166,19 @@ def air(pendulum: Pendulum, *, drag: Float) -> Pendulum:
 EFFECTS = [
     Effect(
         "dry_friction", on_inputs=dry_friction, looks_like="every swing is shorter by the same angle; it rests askew",
+        remedy="Check seals, bearing preload and lubricant; with less friction the arm comes to rest nearer to the "
+               "vertical.",
         unknowns=[Unknown("torque", 0, 1, "N*m", note="of gear and bearings, seen from the shaft")],
     ),
     Effect(
         "oil", on_inputs=oil, looks_like="every swing is shorter by the same share",
+        remedy="Warm the oil up or use a thinner one; each swing is then shorter by a smaller share.",
         unknowns=[Unknown("damping", 0, 0.5, "N*m*s", note="torque per speed")],
     ),
     Effect(
         "air", on_inputs=air, looks_like="the first swings die away fastest",
+        remedy="Keep the effect on in the inputs file, or make the arm slimmer; the first swings then die away more "
+               "slowly.",
         unknowns=[Unknown("drag", 0, 0.1, "N*m*s^2", note="torque per square of the speed")],
     ),
 ]  # fmt: skip

@@ -97,6 +97,7 @@ HARMONIC_STALL = Model(
             "loss",
             on_inputs=loss,
             looks_like="less torque than motor times ratio, from the start",
+            remedy="Check teeth, wave generator and lubricant; more torque then arrives from the start.",
             unknowns=[Unknown("share", 0, 0.95, "")],
         ),
         Effect(
@@ -104,6 +105,7 @@ HARMONIC_STALL = Model(
             on_inputs=relaxation,
             needs=[HELD],
             looks_like="with a gear, torque that falls by the same step in every decade of time",
+            remedy="Fit a gear of a material that creeps less; the torque then falls by less in every decade.",
             unknowns=[Unknown("per_decade", 0, 0.3, "", note="share of the torque in each decade of time")],
         ),
         Effect(
@@ -111,6 +113,7 @@ HARMONIC_STALL = Model(
             on_inputs=creep,
             needs=[HELD],
             looks_like="with a gear, torque that falls towards an end",
+            remedy="Fit a gear that creeps less, or wait for the end of its creep; the torque then stays.",
             unknowns=[Unknown("share", 0, 0.5, ""), Unknown("after", 0.2, 200, "s")],
         ),
         Effect(
@@ -118,6 +121,7 @@ HARMONIC_STALL = Model(
             on_inputs=motor_fades,
             needs=[HELD],
             looks_like="torque that falls with time, without a gear too",
+            remedy="Cool the motor, or warm it up before the test; its torque without a gear then stays.",
             unknowns=[Unknown("per_decade", 0, 0.3, "", note="share of the torque in each decade of time")],
         ),
     ],

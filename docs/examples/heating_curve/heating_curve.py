@@ -204,18 +204,22 @@ def rough_mesh(unit: Unit, *, extra: Float) -> Unit:
 EFFECTS = [
     Effect(
         "low_oil", on_inputs=low_oil, looks_like="the oil warms and cools faster, further ahead of the housing",
+        remedy="Find the leak and fill the oil up; it then warms and cools more slowly, and closer to the housing.",
         unknowns=[Unknown("missing", 0, 0.8, note="share of the oil that is not there")],
     ),
     Effect(
         "fouling", on_inputs=fouling, looks_like="warmer, and slower to cool at rest as well",
+        remedy="Clean the housing; the unit then runs cooler, and cools faster at rest as well.",
         unknowns=[Unknown("share", 0, 0.8, note="share of the heat transfer that is lost")],
     ),
     Effect(
         "blocked_fan", on_inputs=blocked_fan, looks_like="warmer while it runs, and it cools at rest as it should",
+        remedy="Clear the fan and its guard; the unit then runs cooler, and cools at rest as before.",
         unknowns=[Unknown("share", 0, 1, note="share of its heat transfer that the fan lacks")],
     ),
     Effect(
         "rough_mesh", on_inputs=rough_mesh, looks_like="warmer under load, in proportion to the power",
+        remedy="Look at flanks and bearings, and replace what is worn; the unit then runs cooler under load.",
         unknowns=[Unknown("extra", 0, 5, "%", note="share of the power that is lost besides")],
     ),
 ]  # fmt: skip

@@ -192,18 +192,23 @@ def loose_flange(drive: Drive, *, compliance: Float, grip: Float) -> Drive:
 EFFECTS = [
     Effect(
         "worn_flanks", on_inputs=worn_flanks, looks_like="the branches part, and jump near a torque of zero",
+        remedy="Replace the worn gears or reset their play; the jump of the branches near a torque of zero is then "
+               "smaller.",
         unknowns=[Unknown("depth", 0, 5, "arcmin", note="play that is added")],
     ),
     Effect(
         "dry_friction", on_inputs=dry_friction, looks_like="the loop is wider everywhere; it stands still after a turn",
+        remedy="Check lubricant, seals and preload of the gearing; the loop is then narrower everywhere.",
         unknowns=[Unknown("torque", 0, 40, "N*m", note="friction that is added")],
     ),
     Effect(
         "soft_housing", on_inputs=soft_housing, looks_like="a steeper loop, no wider",
+        remedy="Look for a crack in the housing, and repair or replace it; the loop is then less steep.",
         unknowns=[Unknown("share", 0, 2, note="by which it gives way more")],
     ),
     Effect(
         "loose_flange", on_inputs=loose_flange, looks_like="a bend in each branch at the same torque after a turn",
+        remedy="Tighten the bolts of the flange to their torque; the bend in each branch is gone then.",
         unknowns=[
             Unknown("compliance", 0, 0.1, "arcmin/(N*m)", note="of the flange as it slips"),
             Unknown("grip", 15, 150, "N*m", note="torque from which on it slips"),

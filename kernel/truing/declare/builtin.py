@@ -51,6 +51,7 @@ class _Kind:
     unknowns: Mapping[str, Unknown]
     added: Callable[[Mapping[str, Float], Float], Float]
     looks_like: str
+    remedy: str
     why: str
     source: str
     is_from_zero: bool = False
@@ -125,6 +126,7 @@ def _made(
             needs=needs,
             reads=[seen.name] if seen is not None and not needs else [],
             looks_like=kind.looks_like.format(seen=seen.name if seen is not None else ""),
+            remedy=kind.remedy,
             why=kind.why,
             source=kind.source,
         )
@@ -183,19 +185,27 @@ def _size(unit: str, note: str, name: str = "{}") -> Unknown:
 _SENSOR = "linear model of a gauge: gain, offset and drift"
 _OFFSET = _Kind(
     "sensor_offset", {"size": _size("difference", "zero of the gauge of {}")}, _constant,
-    "the same everywhere", "the zero of the gauge is off", _SENSOR,
+    "the same everywhere",
+    "Set the zero of the gauge against a known reference; the constant error is gone then.",
+    "the zero of the gauge is off", _SENSOR,
 )  # fmt: skip
 _GAIN = _Kind(
     "sensor_gain", {"size": Unknown("{}", -1, 1, note="of what the gauge of {} shows, too much")}, _in_proportion,
-    "in proportion to what is measured", "the gauge is scaled wrongly", _SENSOR,
+    "in proportion to what is measured",
+    "Calibrate the gauge at several known values and correct its scale; the error in proportion is gone then.",
+    "the gauge is scaled wrongly", _SENSOR,
 )  # fmt: skip
 _DRIFT = _Kind(
     "sensor_drift", {"size": _size("difference/h", "drift of the gauge of {}")}, _in_proportion,
-    "grows steadily with {seen}", "the zero of the gauge moves with time", _SENSOR, is_from_zero=True,
+    "grows steadily with {seen}",
+    "Let the gauge settle, and set its zero again during the record; readings of one state then agree at any time.",
+    "the zero of the gauge moves with time", _SENSOR, is_from_zero=True,
 )  # fmt: skip
 _THERMAL = _Kind(
     "thermal_drift", {"size": _size("difference/K", "drift of the gauge of {} with temperature")}, _in_proportion,
-    "follows {seen}", "the gauge, or what holds it, moves with temperature",
+    "follows {seen}",
+    "Keep gauge and holder at one temperature, or correct the reading; it then no longer follows the temperature.",
+    "the gauge, or what holds it, moves with temperature",
     "temperature coefficient of a zero, linear", is_from_zero=True,
 )  # fmt: skip
 _ORDER = _Kind(
@@ -206,6 +216,7 @@ _ORDER = _Kind(
         "order": Unknown("{}_order", 1, HIGHEST_ORDER, note="waves per turn", whole=True),
     },
     _wave, "a wave over {seen}, one to three times a turn",
+    "Centre, straighten or replace what turns, in machine or gauge; the wave over the angle is gone then.",
     "something that turns is off its centre, bent or out of round", "Fourier orders of a rotation",
 )  # fmt: skip
 _STEP = _Kind(
@@ -214,7 +225,9 @@ _STEP = _Kind(
         "size": _size("difference", "height of the step of {}"),
         "after": Unknown("{}_after", 0, LONGEST, "h", note="when the step comes", along="time"),
     },
-    _jump, "a jump at one moment of {seen}, steady before and after", "something slipped or was touched",
+    _jump, "a jump at one moment of {seen}, steady before and after",
+    "Find and fasten what slipped or was touched, and set the zero again; readings before and after then agree.",
+    "something slipped or was touched",
     "a step in the mean of a record",
 )  # fmt: skip
 
