@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from truing.arrays import one_thread
 from truing.declare.fields import read
 from truing.declare.model import Record
 from truing.errors import InfeasibleError
@@ -54,6 +55,7 @@ class Calculation:
         )  # fmt: skip
 
 
+@one_thread()
 def calculate(setup: Setup, *, executor: Executor | None = None, progress: Progress = silent) -> Calculation:
     """Run the calculation and the studies of the setup, in order.
 

@@ -9,6 +9,7 @@ from concurrent.futures import Executor, Future
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
+from truing.arrays import one_thread
 from truing.executors.kept import BatchLog, key_of
 
 J = TypeVar("J")
@@ -23,6 +24,7 @@ class Timed(Generic[A]):
     seconds: float
 
 
+@one_thread()
 def answer_all(function: Callable[[J], A], jobs: Sequence[J]) -> Timed[A]:
     """Answer jobs one after the other, up to one that fails; where that is the first, its error is raised."""
     answers: list[A] = []

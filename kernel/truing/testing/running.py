@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from truing.arrays import one_thread
 from truing.declare.batch import watching
 from truing.declare.dynamics import Dynamics
 from truing.declare.fields import Axis, Given, InputField, read, with_values
@@ -81,6 +82,7 @@ def serial_equals_parallel(subject: Subject) -> None:
                 fail(f"{subject.model.name}: '{name}' is different in another process; avoid globals and set order")
 
 
+@one_thread()
 def _drawn_rows(job: tuple[Packed, int]) -> Rows:
     packed, batch = job
     setup = unpack(packed)
