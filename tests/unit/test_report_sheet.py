@@ -27,7 +27,8 @@ from truing.inputs_file import read_setup, setup_from_text
 from truing.kernel import Kernel, Offer
 from truing.measurements import read_cases
 from truing.published import compare_published
-from truing.report.document import Document, FigureView, Marked, Paragraph, ResultEntry, TableView
+from truing.report.chapters import with_notes
+from truing.report.document import Column, Document, FigureView, Marked, Paragraph, ResultEntry, TableView, plain_text
 from truing.report.html_printer import css_text, html_of, with_room
 from truing.report.markdown_printer import escaped, markdown_of
 from truing.report.sheet import logo_of, make_sheet
@@ -459,3 +460,12 @@ def test_a_hostile_text_stays_in_its_cell() -> None:
 def test_marks_that_other_readers_obey_do_not_stand_in_the_source() -> None:
     for mark in ("<", ">", "$", "|", "{", "}", "https://", "mailto:", "www."):
         assert mark not in escaped(f"a {mark} b {mark}c")
+
+
+def test_tables_of_studies_say_what_a_quantity_is() -> None:
+    table = TableView("", (Column("source"), Column("crank_angle")), (("crank_radius", "no name"), ("IT7", "stroke")))
+    named = with_notes(table, PRESS_LINKAGE)
+    assert [column.title for column in named.columns] == ["source", "crank angle"]
+    assert plain_text(named.rows[0][0]) == "crank, A to B a (crank_radius)"
+    assert plain_text(named.rows[1][1]) == "stroke of the slider H (stroke)"
+    assert (named.rows[0][1], named.rows[1][0]) == ("no name", "IT7")

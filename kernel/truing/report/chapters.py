@@ -12,8 +12,8 @@ import numpy as np
 from truing.arrays import Matrix
 from truing.calculation import Calculation
 from truing.declare.blocks import Block, Drawing, Table, Words
-from truing.declare.fields import Axis, Found
-from truing.declare.model import Section
+from truing.declare.fields import Axis, Found, InputField, ResultField
+from truing.declare.model import Model, Section
 from truing.errors import PluginError
 from truing.evaluate import acting_inputs
 from truing.kernel.blame import spoken_place
@@ -356,7 +356,22 @@ def _view(writing: Writing, block: Block) -> BlockView:
         if any(block is each for each in writing.front):
             return ON_PAGE_ONE
         return writing.figures.view(block.title, block.draw, _caption(block))
-    return table_view(block, LONGEST_TABLE[writing.detail])
+    return with_notes(table_view(block, LONGEST_TABLE[writing.detail]), writing.calculation.setup.model)
+
+
+def with_notes(table: TableView, model: Model[Any, Any]) -> TableView:
+    """Say what a quantity is where a cell is nothing but its name, and name columns without underscores."""
+    known: dict[str, InputField | ResultField] = {**model.input_fields, **model.result_fields}
+
+    def said(cell: Text) -> Text:
+        field = known.get(cell) if isinstance(cell, str) else None
+        return cell if field is None or not field.spec.note else label_of(field.spec.note, str(cell), field.symbol)
+
+    columns = tuple(
+        replace(column, title=column.title.replace("_", " ") if column.title in known else column.title)
+        for column in table.columns
+    )
+    return replace(table, columns=columns, rows=tuple(tuple(map(said, row)) for row in table.rows))
 
 
 def _caption(drawing: Drawing) -> str:
