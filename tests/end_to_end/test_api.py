@@ -98,7 +98,7 @@ def test_an_input_may_be_called_like_an_argument(tmp_path: Path) -> None:
     taken = truing.load(tmp_path / "taken.py")
     assert taken.run(set={"draws": "3 mm", "workers": "4 mm"}).si["sum"] == pytest.approx(7e-3)
     assert taken.run(draws="3 mm").si["sum"] == pytest.approx(4e-3)
-    swept = taken.sweep("workers", 1, 3, 3)
+    swept = taken.sweep("workers", (1, 3), points=3)
     assert swept.frame()["sum [mm]"].tolist() == pytest.approx([2, 3, 4])
 
 
@@ -113,7 +113,7 @@ def test_an_inputs_file_and_values_in_its_place(pin: truing.LoadedModel, tmp_pat
 
 
 def test_a_sweep_and_a_study_of_ones_own(pin: truing.LoadedModel) -> None:
-    swept = pin.sweep("load", "56 N", "0.084 kN", 3)
+    swept = pin.sweep("load", ("56 N", "0.084 kN"), points=3)
     frame = swept.frame()
     assert frame["load [N]"].tolist() == pytest.approx([56, 70, 84])
     assert frame["pressure [MPa]"].tolist() == pytest.approx([2, 2.5, 3])
@@ -226,8 +226,8 @@ REFUSED = [
     (lambda pin: pin.run(load=float("nan")), "load=nan N: load: 'nan N' is not a finite number"),
     (lambda pin: pin.run("absent.toml"), "absent.toml: no such file"),
     (lambda pin: pin.run()["presure"], "pin_wear has no result 'presure'. Did you mean 'pressure'"),
-    (lambda pin: pin.sweep("load", "1 N", "2 kg"), "the range '1 N..2 kg'"),
-    (lambda pin: pin.sweep("lod", 1, 2), "'lod' is no input of pin_wear. Did you mean 'load'"),
+    (lambda pin: pin.sweep("load", "1 N..2 kg"), "the range '1 N..2 kg'"),
+    (lambda pin: pin.sweep("lod", (1, 2)), "'lod' is no input of pin_wear. Did you mean 'load'"),
     (lambda pin: pin.run(resume=True), "resume needs output, the folder that is written"),
     (lambda pin: pin.run(workers=2, cluster="tcp://here:1"), "cluster and workers exclude each other"),
     (lambda pin: pin.run(workers=0), "'processes:0' is no place to compute"),

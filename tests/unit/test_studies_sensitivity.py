@@ -221,7 +221,10 @@ def test_failed_points_keep_their_reason():
     assert written["results"]["side"]["values"][0] is None
     assert written["failed"] == [{"row": 0, "reason": "no square has a negative area"}]
     assert "1 of 5 points" in found.warnings()[0]
-    assert any(isinstance(block, Words) and "number 1" in block.text for block in found.blocks())
+    assert any(
+        isinstance(block, Words) and "1 at -1 m²: no square has a negative area" in block.text
+        for block in found.blocks()
+    )
 
 
 def test_a_condition_is_swept_and_effects_follow():
@@ -245,7 +248,7 @@ def test_results_are_printed_in_the_chosen_unit_and_drawn_where_no_section_shows
     assert found.as_json()["results"]["gap"] == {"unit": "um", "values": pytest.approx([0, 1e4, 2e4], abs=1e-6)}
     assert found.as_json()["axis"] == pytest.approx([20, 30, 40])
     drawing = next(block for block in found.blocks() if isinstance(block, Drawing))
-    assert [len(axes.lines) for axes in drawing.draw().axes] == [1, 1]
+    assert [len(axes.lines) for axes in drawing.draw().axes] == [2, 3]  # the stated value, and one limit
     assert not any(isinstance(block, Drawing) for block in replace(found, shown=False).blocks())
 
 

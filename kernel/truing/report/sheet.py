@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from base64 import b64encode
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from truing.calculation import Calculation
@@ -17,13 +18,22 @@ from truing.numbers import (
     with_unit,
 )
 from truing.published import ComparedRow, parted
-from truing.report.chapters import LONGEST_TABLE, Figures, Writing, front_figure, numbered, result_chapters
+from truing.report.chapters import (
+    LONGEST_TABLE,
+    Figures,
+    Writing,
+    front_figure,
+    numbered,
+    result_chapters,
+    study_chapters,
+)
 from truing.report.document import (
     Banner,
     BlockView,
     Chapter,
     Column,
     Document,
+    FigureView,
     Head,
     Items,
     Marked,
@@ -84,6 +94,33 @@ def make_sheet(
         provenance=provenance,
         paper=setup.sheet.paper,
     )
+
+
+def study_sheet(calculation: Calculation, *, provenance: Provenance) -> Document:
+    """Say what a study that was asked alone has found: its first figure on page one, and the inputs behind it."""
+    setup, figures = calculation.setup, Figures()
+    detail = setup.sheet.detail if setup.sheet.detail in LONGEST_TABLE else "normal"
+    (chapter,) = list(study_chapters(Writing(calculation, detail, figures))) or [Chapter("Study", ())]
+    first = next((block for block in chapter.blocks if isinstance(block, FigureView)), None)
+    rest = tuple(block for block in chapter.blocks if block is not first)
+    warnings = tuple(_warnings(calculation, None, figures.failures))
+    head = head_of(setup, provenance)
+    alone = "Asked alone: the limits are judged by a run of the calculation."
+    return Document(
+        kind=chapter.title,
+        title=head.title,
+        head=head,
+        detail=detail,
+        summary=setup.model.summary,
+        banner=Banner("none", chapter.title, (alone,)),
+        front=() if first is None else (Chapter(first.title, (first,), "key-figure"),),
+        chapters=numbered([
+            replace(chapter, blocks=rest), *_inputs_behind(setup, detail), *end_chapters(warnings, provenance)
+        ]),
+        warnings=warnings,
+        provenance=provenance,
+        paper=setup.sheet.paper,
+    )  # fmt: skip
 
 
 def _back(
@@ -196,6 +233,10 @@ def _given(calculation: Calculation, cases: CasesTable | None, detail: str) -> I
         yield Chapter("All checks", (check_table(calculation),), "all-checks")
     if cases is not None:
         yield Chapter("Cases", (cases_table(calculation, cases, LONGEST_TABLE[detail]),), "cases")
+    yield from _inputs_behind(setup, detail)
+
+
+def _inputs_behind(setup: Setup, detail: str) -> Iterator[Chapter]:
     if detail == "short":
         return
     yield Chapter("Inputs", tuple(input_blocks(setup, detail)), "inputs")
