@@ -18,7 +18,7 @@ from measured import calc_here, read_document
 from shown_in_docs import Desk
 
 import truing
-from shared import TESTS, Calc, process
+from shared import ROOT, TESTS, Calc, process
 from truing.studies.sweep import Swept
 
 PIN = TESTS / "data" / "pin_wear.py"
@@ -100,6 +100,28 @@ def test_an_input_may_be_called_like_an_argument(tmp_path: Path) -> None:
     assert taken.run(draws="3 mm").si["sum"] == pytest.approx(4e-3)
     swept = taken.sweep("workers", (1, 3), points=3)
     assert swept.frame()["sum [mm]"].tolist() == pytest.approx([2, 3, 4])
+
+
+def test_a_budget_of_ones_own_leaves_a_sheet_and_its_options_stand_in_a_file(tmp_path: Path) -> None:
+    spring = ROOT / "docs" / "examples" / "coil_spring.py"
+    asked = truing.Uncertainty(of="stress", degrees={"wire_diameter": 9.0}, draws=0)
+    budget = truing.load(spring).study(asked, output=tmp_path / "budget")
+    assert isinstance(budget.outcome, truing.Budgets)
+    page = (tmp_path / "budget" / "sheet.md").read_text(encoding="utf-8")
+    assert budget.outcome.sentence("stress") in page
+    assert "**Uncertainty budget of the stress**" in page
+    assert not (tmp_path / "budget" / "points.csv").exists()
+    declares = "from dataclasses import replace\n" + spring.read_text(encoding="utf-8").replace(
+        "return [COIL_SPRING]", "return [replace(COIL_SPRING, studies=[Uncertainty()], sheet=[])]"
+    ).replace("    Unknown,", "    Uncertainty,\n    Unknown,")
+    (tmp_path / "declares.py").write_text(declares, encoding="utf-8")
+    options = {"of": "stress", "degrees": "{ wire_diameter = 9 }", "draws": "0"}
+    run = truing.load(tmp_path / "declares.py").run(
+        output=tmp_path / "run", set={f"studies.uncertainty.{name}": text for name, text in options.items()}
+    )
+    assert run.document["studies"]["uncertainty"] == budget.document["studies"]["uncertainty"]
+    again = truing.load(tmp_path / "declares.py").run(tmp_path / "run" / "inputs.toml")
+    assert again.document == run.document
 
 
 def test_an_inputs_file_and_values_in_its_place(pin: truing.LoadedModel, tmp_path: Path) -> None:

@@ -29,6 +29,7 @@ from truing import (
     Surrogate,
     Sweep,
     Table,
+    Uncertainty,
     errors,
     hookspecs,
 )
@@ -46,6 +47,7 @@ from truing.studies.optimise import Optimum
 from truing.studies.reliability import Curve, Odds
 from truing.studies.sensitivity import Sensitivities
 from truing.studies.sweep import Swept
+from truing.studies.uncertainty import Budgets
 from truing.testing import CHECKS
 from truing.units import read_quantity, same_dimension, to_si
 
@@ -58,7 +60,7 @@ HOOKS = sorted(
 )
 STUDIES: dict[type[Any], type[Any]] = {
     Sweep: Swept, Sensitivity: Sensitivities, Reliability: Odds, Allocation: Allotted, Surrogate: Emulated,
-    Optimise: Optimum, Frequency: FrequencyAnswer,
+    Optimise: Optimum, Frequency: FrequencyAnswer, Uncertainty: Budgets,
 }  # fmt: skip
 
 
