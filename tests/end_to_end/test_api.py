@@ -108,7 +108,8 @@ def test_a_budget_of_ones_own_leaves_a_sheet_and_its_options_stand_in_a_file(tmp
     budget = truing.load(spring).study(asked, output=tmp_path / "budget")
     assert isinstance(budget.outcome, truing.Budgets)
     page = (tmp_path / "budget" / "sheet.md").read_text(encoding="utf-8")
-    assert budget.outcome.sentence("stress") in page
+    assert page.count(budget.outcome.sentence("stress")) == 2  # above and below the table
+    assert "JCGM 100:2008" in page
     assert "**Uncertainty budget of the stress**" in page
     assert not (tmp_path / "budget" / "points.csv").exists()
     declares = "from dataclasses import replace\n" + spring.read_text(encoding="utf-8").replace(

@@ -175,3 +175,14 @@ def test_a_word_and_a_series_are_not_swept(refused: Refused) -> None:
     for name, model in (("reading", "press_linkage"), ("surface", "harmonic_fractal")):
         (said,) = refused("sweep", model, name, "1..2", "-q")
         assert f"'{name}' cannot be swept; only a number can" in said
+
+
+def test_of_very_many_points_a_figure_shows_the_extremes(bolt: truing.LoadedModel) -> None:
+    swept = bolt.sweep("torque", "50..100 N*m", points=100_000).outcome
+    assert isinstance(swept, Swept)
+    swept.results["preload"][54_321] = 9e9  # type: ignore[index]
+    (panel,) = curves(swept, ["preload"])().axes
+    curve = panel.lines[0]
+    assert len(curve.get_xdata()) <= 2002
+    assert curve.get_ydata().max() == pytest.approx(9e6)
+    assert curve.get_xdata()[[0, -1]] == pytest.approx([50, 100])

@@ -105,6 +105,7 @@ def study_sheet(calculation: Calculation, *, provenance: Provenance) -> Document
     rest = tuple(block for block in chapter.blocks if block is not first)
     warnings = tuple(_warnings(calculation, None, figures.failures))
     head = head_of(setup, provenance)
+    found = [block.text for block in rest if isinstance(block, Paragraph) and block.kind == "finding"]
     alone = "Asked alone: the limits are judged by a run of the calculation."
     return Document(
         kind=chapter.title,
@@ -112,10 +113,11 @@ def study_sheet(calculation: Calculation, *, provenance: Provenance) -> Document
         head=head,
         detail=detail,
         summary=setup.model.summary,
-        banner=Banner("none", chapter.title, (alone,)),
+        banner=Banner("none", chapter.title, (*found, alone)),
         front=() if first is None else (Chapter(first.title, (first,), "key-figure"),),
         chapters=numbered([
-            replace(chapter, blocks=rest), *_inputs_behind(setup, detail), *end_chapters(warnings, provenance)
+            replace(chapter, blocks=rest), *_inputs_behind(setup, detail),
+            *end_chapters(warnings, provenance, _references(calculation)),
         ]),
         warnings=warnings,
         provenance=provenance,
@@ -134,9 +136,13 @@ def _back(
     if setup.model.findings and not is_short:
         texts, titles = zip(*((each.text, each.title) for each in setup.model.findings), strict=True)
         yield Chapter("Findings", (Items("findings", texts, titles),), "findings")
-    cites = [text for each in calculation.outcomes.values() for text in getattr(each, "cites", ())]
-    references = () if is_short else tuple(dict.fromkeys([*setup.model.cites, *cites]))
+    references = () if is_short else _references(calculation)
     yield from end_chapters(warnings if len(warnings) > MOST_WARNINGS else (), provenance, references)
+
+
+def _references(calculation: Calculation) -> tuple[str, ...]:
+    cites = [text for each in calculation.outcomes.values() for text in getattr(each, "cites", ())]
+    return tuple(dict.fromkeys([*calculation.setup.model.cites, *cites]))
 
 
 def head_of(setup: Setup, provenance: Provenance) -> Head:

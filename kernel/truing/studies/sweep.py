@@ -37,6 +37,8 @@ FAR = 3.0
 ROUNDS, PARTS, MOST_BRACKETS = 2, 8, 40
 """How a crossing is narrowed: the interval is parted so often, into so many parts, for at most so many crossings."""
 MOST_REASONS = 5
+MOST_SEEN = 2000
+"""So many points of a line are drawn: more cannot be seen."""
 Floats = NDArray[np.float64]
 
 
@@ -545,7 +547,7 @@ def curves(swept: Swept, names: Sequence[str]) -> Callable[[], Figure]:
 
 def _draw_result(panel: Any, swept: Swept, name: str) -> None:
     """Draw the lines of one result, then its limits within what is then seen."""
-    lines = list(_lines(swept.columns, swept.over))
+    lines = [_thinned(line, swept.results[name]) for line in _lines(swept.columns, swept.over)]
     shades = colormaps["viridis"](np.linspace(0.0, 0.85, len(lines))) if swept.by else [BLUE]
     for line, colour in zip(lines, shades, strict=True):
         label = format_value(swept.by_axis[line[0]], swept.units[swept.by], STATED_DIGITS)[0] if swept.by else None
@@ -566,6 +568,15 @@ def _draw_result(panel: Any, swept: Swept, name: str) -> None:
         for end, is_low in ((limit.low, True), (limit.high, False)):
             if limit.result == name and np.isfinite(end).all():
                 _draw_limit(panel, swept, replace(limit, low=_printed(swept, end, name)), lines, is_low=is_low)
+
+
+def _thinned(line: NDArray[np.intp], values: Floats) -> NDArray[np.intp]:
+    """Return the rows of a line that can be seen: of very many the smallest and the largest of each part."""
+    if len(line) <= MOST_SEEN:
+        return line
+    parts = [part[np.argsort(values[part])] for part in np.array_split(line, MOST_SEEN // 2)]  # NaN comes last
+    kept = np.concatenate([line[[0, -1]], *(part[[0, -1]] for part in parts)])
+    return line[np.isin(line, kept)]
 
 
 def _printed(swept: Swept, values: Any, name: str) -> Floats:

@@ -23,6 +23,7 @@ from truing.studies.sampling import Scatter, ScatterSource, scatter_of
 from truing.studies.sensitivity import asked_results
 from truing.units import difference_unit, from_si, unit_factor, unit_text
 
+GUIDE = "JCGM 100:2008, Evaluation of measurement data – Guide to the expression of uncertainty in measurement (GUM)."
 SHAPES = {"normal": "normal", "uniform": "rectangular", "lognormal": "lognormal"}
 APART = 0.03
 """Share by which drawn machines may scatter otherwise than to first order before it is a warning."""
@@ -203,6 +204,7 @@ class Budgets(Outcome):
     units: Mapping[str, str]
     draws: int
     remarks: tuple[str, ...] = ()
+    cites: tuple[str, ...] = (GUIDE,)
 
     def as_json(self) -> dict[str, Any]:
         """Return each budget in printed units; degrees of freedom that are infinite are null."""
