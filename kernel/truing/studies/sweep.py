@@ -236,8 +236,8 @@ def _limited(setup: Setup, answers: Mapping[str, Any], points: _Points) -> list[
     changes = {*points.columns} & {*setup.model.input_fields} - {*sockets_of(setup)}
     found = []
     for require in requires:
-        values = points.results.get(require.result)
-        is_known = require.limit in points.results or require.limit not in setup.model.result_fields
+        values, bound = points.results.get(require.result), points.results.get(require.limit)
+        is_known = require.limit not in setup.model.result_fields if bound is None else bound.ndim == 1
         if values is None or values.ndim > 1 or not is_known or (require.kind == "within" and changes):
             continue
         centre = of_design(setup, require.result, dict(answers)) if require.kind == "within" else 0.0
@@ -252,11 +252,11 @@ def _limit_words(require: Require, setup: Setup, low: Floats, high: Floats) -> s
     """Say a limit as it stands in a figure: ≥ 28 kN, or its name where it moves."""
     relation = {"at_most": "≤ ", "at_least": "≥ ", "within": "nominal ± "}[require.kind]
     amounts = {"at_most": high, "at_least": low, "within": (high - low) / 2}[require.kind]
-    if np.ptp(amounts) > 0:
+    if _moves(amounts) or not np.isfinite(amounts).any():
         return relation + spoken(require.limit)
     unit = setup.print_unit(require.result)
     unit = difference_unit(unit) if require.kind == "within" else unit
-    number, unit = format_value(float(amounts[0]), unit, STATED_DIGITS)
+    number, unit = format_value(float(np.nanmax(amounts)), unit, STATED_DIGITS)
     return relation + with_unit(pretty(number), unit)
 
 
@@ -414,6 +414,8 @@ class Swept(Outcome):
             part = names[start : start + MOST_PANELS]
             which = ": " + ", ".join(map(spoken, part)) if len(names) > MOST_PANELS else ""
             blocks.append(Drawing(f"Along the {spoken(self.over)}{which}", curves(self, part)))
+        if len(names) < len(self.moving()) and names:
+            blocks.append(Words(f"{len(self.moving()) - len(names)} further results change; named, they are drawn."))
         return [*blocks, *(Words(text, "warning") for text in self.gaps())]
 
     def gaps(self) -> list[str]:
@@ -559,14 +561,14 @@ def _draw_result(panel: Any, swept: Swept, name: str) -> None:
         for limit in swept.limits
         if limit.result == name
         for end in (limit.low, limit.high)
-        if np.isfinite(end).all()
+        if np.isfinite(end).any()
     ]
     values = _printed(swept, swept.results[name], name)
     bottom, top = _seen(values[np.isfinite(values)], ends)
     panel.set_ylim(bottom, top)
     for limit in swept.limits:
         for end, is_low in ((limit.low, True), (limit.high, False)):
-            if limit.result == name and np.isfinite(end).all():
+            if limit.result == name and np.isfinite(end).any():
                 _draw_limit(panel, swept, replace(limit, low=_printed(swept, end, name)), lines, is_low=is_low)
 
 
@@ -587,8 +589,8 @@ def _seen(values: Floats, ends: Sequence[Floats]) -> tuple[float, float]:
     """Return what is seen of a panel: all of the curve, and limits that are not too far from it."""
     low, high = (float(values.min()), float(values.max())) if values.size else (0.0, 1.0)
     reach = FAR * (high - low or abs(high) or 1.0)
-    near = [end for end in ends if low - reach <= end.max() and end.min() <= high + reach]
-    low, high = min([low, *(float(end.min()) for end in near)]), max([high, *(float(end.max()) for end in near)])
+    near = [end for end in ends if low - reach <= np.nanmax(end) and np.nanmin(end) <= high + reach]
+    low, high = min([low, *map(np.nanmin, near)]), max([high, *map(np.nanmax, near)])
     room = 0.08 * (high - low or abs(high) or 1.0)
     return low - room, high + room
 
@@ -599,19 +601,22 @@ def _draw_limit(
     """Draw one end of a limit (its ``low``, in the printed unit) with its name, and shade lightly what lies beyond."""
     end, (bottom, top) = limit.low, panel.get_ylim()
     beyond = bottom if is_low else top
-    if end.max() < bottom or end.min() > top:
-        place, where = (1.0, "top") if end.min() > top else (0.0, "bottom")
+    if np.nanmax(end) < bottom or np.nanmin(end) > top:
+        place, where = (1.0, "top") if np.nanmin(end) > top else (0.0, "bottom")
         words = f"{limit.words} (beyond the figure)"
         panel.text(0.01, place, words, transform=panel.transAxes, va=where, color=ORANGE, fontsize=7.5)
         return
-    alike = all(np.array_equal(end[line], end[lines[0]]) for line in lines)
+    alike = all(np.array_equal(end[line], end[lines[0]], equal_nan=True) for line in lines)
     for line in lines[:1] if alike else lines:
         x = _printed(swept, swept.axis[line], swept.over)
         panel.plot(x, end[line], color=ORANGE, linestyle="--", linewidth=1.0)
         if alike:
             panel.fill_between(x, end[line], beyond, color=ORANGE, alpha=0.1, linewidth=0)
-    x = _printed(swept, swept.axis[lines[0]], swept.over)
-    panel.annotate(
-        limit.words, (x[0], end[lines[0][0]]), xytext=(3, -2 if is_low else 2), textcoords="offset points",
-        va="top" if is_low else "bottom", color=ORANGE, fontsize=7.5,
-    )  # fmt: skip
+    first = lines[0][np.argmax(np.isfinite(end[lines[0]]))]
+    how: dict[str, Any] = {
+        "xytext": (3, -2 if is_low else 2),
+        "textcoords": "offset points",
+        "va": "top" if is_low else "bottom",
+    }
+    at = (_printed(swept, swept.axis[first], swept.over), end[first])
+    panel.annotate(limit.words, at, color=ORANGE, fontsize=7.5, **how)
