@@ -8,9 +8,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from study_models import CHAIN, JOINT, STRENGTH, UNIFORMS, setup_of
+from study_models import CHAIN, JOINT, ROOT, STRENGTH, UNIFORMS, setup_of
 
-from truing import Float, Model, Tolerance, Uncertainty, Words, found, given, inputs, normal, results, uniform
+from truing import Float, Model, Tolerance, Uncertainty, Words, feasible, found, given, inputs, normal, results, uniform
 from truing.calculation import calculate
 from truing.errors import UsageError
 from truing.setup import SwitchedOn
@@ -156,6 +156,33 @@ def test_what_is_written_has_no_infinities_and_what_does_not_scatter_no_budget()
     (words,) = budgets_of(still, Uncertainty(of="gap")).blocks()
     assert isinstance(words, Words)
     assert "Nothing that scatters moves the gap" in words.text
+
+
+def test_drawn_machines_without_an_answer_are_counted() -> None:
+    found = budgets_of(ROOT, Uncertainty(draws=1000))
+    answered = found.budgets["side"].answered
+    assert 800 < answered < 880  # a normal square of mean and standard deviation 1 is above 0 with 84 %
+    assert f"{answered} machines drawn" in found.blocks()[0].note
+    assert f"; {1000 - answered} more have no answer." in found.blocks()[0].note
+
+
+def needle(at: Comparison) -> Gauge:
+    """An answer at the nominal point alone."""
+    feasible(at.random == 0, "the needle has fallen")
+    return Gauge(length=at.standard + at.random)
+
+
+def test_a_result_without_a_derivative_has_no_budget_and_says_so() -> None:
+    model = Model(name="needle", title="Needle", function=needle, errors=[Tolerance("random", normal(sd="1 nm"))])
+    found = budgets_of(model, Uncertainty(draws=100))
+    assert found.budgets["length"].answered == 0
+    (words,) = found.blocks()
+    assert isinstance(words, Words)
+    assert words.text == "The length has no budget: there is no derivative by random."
+    assert any("does not exist" in text for text in found.warnings())
+    assert json.loads(json.dumps(found.as_json(), allow_nan=False))["length"]["expanded_uncertainty"] is None
+    with pytest.raises(UsageError, match="no derivative by random"):
+        found.sentence("length")
 
 
 @pytest.mark.parametrize(

@@ -16,6 +16,7 @@ from truing.errors import UsageError
 from truing.numbers import format_number, pretty, with_unit
 from truing.setup import Setup
 from truing.studies.bench import Bench, Outcome
+from truing.studies.checks import as_number
 from truing.studies.drawings import bars
 from truing.studies.first_order import exact_slopes, slopes, unknown_columns
 from truing.studies.reading import per, printed, printed_step, spoken
@@ -63,15 +64,18 @@ class Uncertainty:
         results = tuple(name for name in asked if name not in bench.absent)
         derivatives = slopes(setup, results, scatter.columns, scatter)
         exact = exact_slopes(setup)
-        drawn = bench.rows(scatter.draw(setup.seed, 0, self.draws), self.draws, *results) if self.draws else {}
+        machines = self.draws if scatter.causes else 0
+        drawn = bench.rows(scatter.draw(setup.seed, 0, machines), machines, *results) if machines else {}
         self._demand_known(scatter)
         budgets = {}
         for result in results:
             slope = {**derivatives.of[result], **{name: float(of) for name, of in exact.get(result, {}).items()}}
             sources = tuple(self._sources(scatter, slope))
             shift = sum(slope[column] * moved for column, moved in scatter.shifts().items())
-            sd = float(np.nanstd(drawn[result])) if self.draws and scatter.causes else math.nan
-            budgets[result] = Budget(float(derivatives.nominal[result]) + shift, sources, self.level, sd)
+            answers = np.array([]) if result not in drawn else drawn[result][np.isfinite(drawn[result])]
+            value = float(derivatives.nominal[result]) + shift
+            sd = float(answers.std()) if len(answers) > 1 else math.nan
+            budgets[result] = Budget(value, sources, self.level, drawn=sd, answered=len(answers))
         missing = [f"'{name}' has no uncertainty: {bench.absent[name]}" for name in asked if name in bench.absent]
         return Budgets(
             name=self.name,
@@ -107,7 +111,7 @@ class Uncertainty:
                     shape=shape or SHAPES[cause.distributions[part[0]].shape],
                     u=math.nan if alone is None else float(np.sqrt(covariance[alone, alone])),
                     sensitivity=math.nan if alone is None else float(own[0]),
-                    contribution=float(np.sqrt(max(own @ covariance[np.ix_(part, part)] @ own, 0.0))),
+                    contribution=float(np.sqrt(np.maximum(own @ covariance[np.ix_(part, part)] @ own, 0.0))),
                     degrees=float(self.degrees.get(name, self.degrees.get(cause.name, math.inf))),
                 )
 
@@ -156,12 +160,16 @@ class BudgetSource:
 
 @dataclass(frozen=True)
 class Budget:
-    """The sources of one result's uncertainty in SI; ``drawn`` is the standard deviation of drawn machines, or NaN."""
+    """The sources of one result's uncertainty in SI.
+
+    ``drawn`` is the standard deviation of drawn machines, of which ``answered`` have an answer; NaN where none has.
+    """
 
     value: float
     sources: tuple[BudgetSource, ...]
     level: float
     drawn: float = math.nan
+    answered: int = 0
 
     @property
     def combined(self) -> float:
@@ -193,6 +201,14 @@ class Budget:
     def ranked(self) -> list[BudgetSource]:
         """Return the sources, the largest contribution first."""
         return sorted(self.sources, key=lambda source: -source.contribution)
+
+
+def _no_budget(result: str, budget: Budget) -> Words:
+    """Say why a result has no budget: nothing moves it, or it has no derivative by some source."""
+    lacking = [source.name for source in budget.sources if math.isnan(source.contribution)]
+    if not lacking:
+        return Words(f"Nothing that scatters moves the {spoken(result)}: it has no uncertainty here.")
+    return Words(f"The {spoken(result)} has no budget: there is no derivative by {', '.join(lacking)}.", "warning")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -232,10 +248,10 @@ class Budgets(Outcome):
             "distribution": source.shape,
             "standard_uncertainty": u,
             "unit": u_unit,
-            "sensitivity": sensitivity,
+            "sensitivity": as_number(sensitivity),
             "sensitivity_unit": of_unit,
             "contribution": printed_step(source.contribution, unit),
-            "share": budget.share(source),
+            "share": as_number(budget.share(source)),
             "degrees_of_freedom": source.degrees if math.isfinite(source.degrees) else None,
         }
 
@@ -251,8 +267,8 @@ class Budgets(Outcome):
         """Return for each result its budget, the sentence that states it with U, and a bar for each source."""
         blocks: list[Block] = []
         for result, budget in self.budgets.items():
-            if not budget.combined:
-                blocks.append(Words(f"Nothing that scatters moves the {spoken(result)}: it has no uncertainty here."))
+            if not budget.combined > 0:
+                blocks.append(_no_budget(result, budget))
                 continue
             unit = difference_unit(self.units[result])
             sizes = {source.name: source.contribution / unit_factor(unit) for source in budget.sources}
@@ -262,10 +278,15 @@ class Budgets(Outcome):
         return blocks
 
     def sentence(self, result: str) -> str:
-        """State a result as the Guide asks: value and expanded uncertainty to two digits, k and level."""
+        """State a result as the Guide asks: value and expanded uncertainty to two digits, k and level.
+
+        Raises UsageError where it has no uncertainty.
+        """
         budget, unit = self.budgets[result], self.units[result]
-        expanded = printed_step(budget.expanded, unit) or 0.0
-        decimals = 1 - math.floor(math.log10(expanded)) if expanded else 0
+        if not budget.combined > 0:
+            raise UsageError(_no_budget(result, budget).text)
+        expanded = budget.expanded / unit_factor(difference_unit(unit))
+        decimals = 1 - math.floor(math.log10(expanded))
         value, half = (
             pretty(f"{round(number, decimals):.{max(decimals, 0)}f}")
             for number in (float(from_si(budget.value, unit)), expanded)
@@ -305,14 +326,17 @@ class Budgets(Outcome):
             "First order: what the result bends is left out.",
         ]
         if math.isfinite(budget.drawn):
-            words.append(f"{self.draws} machines drawn from the model itself have u = {said(budget.drawn)}.")
+            without = self.draws - budget.answered
+            left_out = f"; {without} more have no answer" if without else ""
+            drawn = f"{budget.answered} machines drawn from the model itself have u = {said(budget.drawn)}"
+            words.append(f"{drawn}{left_out}.")
         return " ".join(words)
 
     def warnings(self) -> Sequence[str]:
         """Say where drawn machines scatter otherwise than to first order, and where there is no derivative."""
         bent = []
         for result, budget in self.budgets.items():
-            chance = 3 / math.sqrt(2 * self.draws) if self.draws else 0.0
+            chance = 3 / math.sqrt(2 * budget.answered) if budget.answered else 0.0
             apart = budget.drawn / budget.combined - 1 if budget.combined else 0.0
             if abs(apart) > max(APART, chance):
                 words = (
