@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from truing.studies.sensitivity import Sensitivities, Sensitivity
     from truing.studies.surrogate import Emulated, Surrogate
     from truing.studies.sweep import Sweep, Swept
+    from truing.studies.uncertainty import Budgets, Uncertainty
     from truing.units import quantity
 
 _HOMES = {
@@ -64,6 +65,7 @@ _HOMES = {
     "truing.studies.sensitivity": ("Sensitivities", "Sensitivity"),
     "truing.studies.surrogate": ("Emulated", "Surrogate"),
     "truing.studies.sweep": ("Sweep", "Swept"),
+    "truing.studies.uncertainty": ("Budgets", "Uncertainty"),
     "truing.units": ("quantity",),
 }  # fmt: skip
 _HOME = {name: module for module, names in _HOMES.items() for name in names}
@@ -82,6 +84,7 @@ __all__ = [  # noqa: RUF022  # what a user calls; then what a plugin needs, in t
     "Optimise", "Optimum",
     "Surrogate", "Emulated",
     "Frequency", "FrequencyAnswer",
+    "Uncertainty", "Budgets",
     "Bench", "Outcome", "Check", "Proposal",
     "hookimpl", "hookspec", "Kernel", "TruingError",
 ]  # fmt: skip

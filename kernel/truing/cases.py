@@ -24,13 +24,14 @@ from truing.studies.reliability import Reliability
 from truing.studies.sensitivity import Sensitivity
 from truing.studies.surrogate import Surrogate
 from truing.studies.sweep import Sweep
+from truing.studies.uncertainty import Uncertainty
 from truing.studies.verdicts import Decided, decide, worst
 
 BLOCK = 2**10
 """How many cases one array call calculates."""
 UNDECIDED = Decided(())
 """What is decided of a case that cannot be calculated."""
-DECIDE_NOTHING = (Optimise, Sensitivity, Surrogate, Sweep)
+DECIDE_NOTHING = (Optimise, Sensitivity, Surrogate, Sweep, Uncertainty)
 DECIDE_CHANCES = (Allocation, Reliability)
 """Studies that decide no other limits than those on a chance."""
 

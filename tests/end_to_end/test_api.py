@@ -18,7 +18,7 @@ from measured import calc_here, read_document
 from shown_in_docs import Desk
 
 import truing
-from shared import TESTS, Calc, process
+from shared import ROOT, TESTS, Calc, process
 from truing.studies.sweep import Swept
 
 PIN = TESTS / "data" / "pin_wear.py"
@@ -98,8 +98,31 @@ def test_an_input_may_be_called_like_an_argument(tmp_path: Path) -> None:
     taken = truing.load(tmp_path / "taken.py")
     assert taken.run(set={"draws": "3 mm", "workers": "4 mm"}).si["sum"] == pytest.approx(7e-3)
     assert taken.run(draws="3 mm").si["sum"] == pytest.approx(4e-3)
-    swept = taken.sweep("workers", 1, 3, 3)
+    swept = taken.sweep("workers", (1, 3), points=3)
     assert swept.frame()["sum [mm]"].tolist() == pytest.approx([2, 3, 4])
+
+
+def test_a_budget_of_ones_own_leaves_a_sheet_and_its_options_stand_in_a_file(tmp_path: Path) -> None:
+    spring = ROOT / "docs" / "examples" / "coil_spring.py"
+    asked = truing.Uncertainty(of="stress", degrees={"wire_diameter": 9.0}, draws=0)
+    budget = truing.load(spring).study(asked, output=tmp_path / "budget")
+    assert isinstance(budget.outcome, truing.Budgets)
+    page = (tmp_path / "budget" / "sheet.md").read_text(encoding="utf-8")
+    assert page.count(budget.outcome.sentence("stress")) == 2  # above and below the table
+    assert "JCGM 100:2008" in page
+    assert "**Uncertainty budget of the stress**" in page
+    assert not (tmp_path / "budget" / "points.csv").exists()
+    declares = "from dataclasses import replace\n" + spring.read_text(encoding="utf-8").replace(
+        "return [COIL_SPRING]", "return [replace(COIL_SPRING, studies=[Uncertainty()], sheet=[])]"
+    ).replace("    Unknown,", "    Uncertainty,\n    Unknown,")
+    (tmp_path / "declares.py").write_text(declares, encoding="utf-8")
+    options = {"of": "stress", "degrees": "{ wire_diameter = 9 }", "draws": "0"}
+    run = truing.load(tmp_path / "declares.py").run(
+        output=tmp_path / "run", set={f"studies.uncertainty.{name}": text for name, text in options.items()}
+    )
+    assert run.document["studies"]["uncertainty"] == budget.document["studies"]["uncertainty"]
+    again = truing.load(tmp_path / "declares.py").run(tmp_path / "run" / "inputs.toml")
+    assert again.document == run.document
 
 
 def test_an_inputs_file_and_values_in_its_place(pin: truing.LoadedModel, tmp_path: Path) -> None:
@@ -113,7 +136,7 @@ def test_an_inputs_file_and_values_in_its_place(pin: truing.LoadedModel, tmp_pat
 
 
 def test_a_sweep_and_a_study_of_ones_own(pin: truing.LoadedModel) -> None:
-    swept = pin.sweep("load", "56 N", "0.084 kN", 3)
+    swept = pin.sweep("load", ("56 N", "0.084 kN"), points=3)
     frame = swept.frame()
     assert frame["load [N]"].tolist() == pytest.approx([56, 70, 84])
     assert frame["pressure [MPa]"].tolist() == pytest.approx([2, 2.5, 3])
@@ -226,8 +249,8 @@ REFUSED = [
     (lambda pin: pin.run(load=float("nan")), "load=nan N: load: 'nan N' is not a finite number"),
     (lambda pin: pin.run("absent.toml"), "absent.toml: no such file"),
     (lambda pin: pin.run()["presure"], "pin_wear has no result 'presure'. Did you mean 'pressure'"),
-    (lambda pin: pin.sweep("load", "1 N", "2 kg"), "the range '1 N..2 kg'"),
-    (lambda pin: pin.sweep("lod", 1, 2), "'lod' is no input of pin_wear. Did you mean 'load'"),
+    (lambda pin: pin.sweep("load", "1 N..2 kg"), "the range '1 N..2 kg'"),
+    (lambda pin: pin.sweep("lod", (1, 2)), "'lod' is no input of pin_wear. Did you mean 'load'"),
     (lambda pin: pin.run(resume=True), "resume needs output, the folder that is written"),
     (lambda pin: pin.run(workers=2, cluster="tcp://here:1"), "cluster and workers exclude each other"),
     (lambda pin: pin.run(workers=0), "'processes:0' is no place to compute"),

@@ -144,12 +144,12 @@ import truing
 DIAGNOSED
 pin = truing.load(sys.argv[1])
 made = diagnosed(pin, pyarrow.table)
-runs = [pin.run(), pin.sweep("load", 50, 90, 3), pin.run(load=50).compare(pin.run())]
+runs = [pin.run(), pin.sweep("load", (50, 90), points=3), pin.run(load=50).compare(pin.run())]
 cases = pin.run(cases=pyarrow.table({"load [N]": [50.0, 60.0]})).case_frame()
 for frame in [*made[1:], *(run.frame() for run in runs), cases]:
     assert type(frame).__module__.split(".")[0] == "pyarrow", type(frame)
 assert not [name for name in blocked if sys.modules.get(name)]
-assert pin.sweep("load", 50, 90, 3).plot()._repr_png_().startswith(b"\\x89PNG")
+assert pin.sweep("load", (50, 90), points=3).plot()._repr_png_().startswith(b"\\x89PNG")
 assert "matplotlib.pyplot" not in sys.modules
 print(json.dumps(made[0].document))
 """

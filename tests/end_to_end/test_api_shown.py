@@ -55,7 +55,7 @@ def shown_by(name: str, diagnosis: truing.Diagnosis) -> Iterator[Any]:
     elif name == "run":
         yield from (pin.run(load="84 N"), pin.run(load="84 N").compare(pin.run()), press.run(set={"studies.run": "[]"}))
     elif name == "study":
-        yield from (pin.sweep("load", 50, 90, 3), pin.study(truing.Reliability(draws=4096)))
+        yield from (pin.sweep("load", (50, 90), points=3), pin.study(truing.Reliability(draws=4096)))
         yield pin.study(truing.Sensitivity())
     else:
         yield from (truing.read(PRESS / "measured.csv", press), diagnosis, diagnosis.ranking)
@@ -94,7 +94,7 @@ def test_a_name_of_a_stranger_is_text() -> None:
 def test_figures_look_like_those_of_the_sheet_whatever_the_user_has_set() -> None:
     pin = truing.load(TESTS / "data" / "pin_wear.py")
     with mpl.rc_context({"font.size": 30.0, "axes.spines.top": True}):
-        figure = pin.sweep("load", 50, 90, 3).plot("pressure")
+        figure = pin.sweep("load", (50, 90), points=3).plot("pressure")
     assert isinstance(figure, Figure)
     assert not figure.axes[0].spines["top"].get_visible()
     assert figure.axes[0].xaxis.label.get_fontsize() == 9.0

@@ -67,6 +67,8 @@ DRIVES = ["harmonic_fractal.made_flank", "harmonic_fractal.run_up", "harmonic_fr
             "calc run harmonic_fractal --set mating_surface.spacing_",
             ["mating_surface.spacing_x=", "mating_surface.spacing_y="],
         ),
+        ("calc sweep rv_wear work", ["working_time"]),
+        ("calc sweep rv_wear backl", []),
         ("calc explain pr", ["press_linkage."]),
         ("calc explain press_linkage.slider_t", ["press_linkage.slider_tilt"]),
         ("calc explain press_linkage slider_t", ["slider_tilt"]),

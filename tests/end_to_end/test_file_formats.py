@@ -28,7 +28,7 @@ from truing.runs.diagnosis_document import diagnosis_document
 
 NAMES = sorted(file.name.removesuffix(".schema.json") for file in FORMATS.glob("*.schema.json"))
 SPRING = ROOT / "docs" / "examples" / "coil_spring.py"
-PRINTED = {"run": "results", "diagnose": "diagnosis", "index": "listing", "explain": ""}
+PRINTED = {"run": "results", "diagnose": "diagnosis", "index": "listing", "explain": "", "sweep": "results"}
 """Verbs whose --json has another name than the verb, or a form for each kind of thing, which its own page shows."""
 
 

@@ -32,6 +32,7 @@ VERBS = {
     "diagnose": "diagnose bar.py --data measured.csv",
     "plan": "plan bar.py --causes heating,sensor_offset --noise stress=1MPa "
     '--set studies.diagnose.box={bar_temperature="20..80degC",load="2..11kN"}',
+    "sweep": "sweep bar.py load 2..12kN",
     "describe": "describe bar.py",
     "explain": "explain bar.py stress",
     "init": "init bar.py",

@@ -29,6 +29,7 @@ from truing import (
     Surrogate,
     Sweep,
     Table,
+    Uncertainty,
     errors,
     hookspecs,
 )
@@ -46,6 +47,7 @@ from truing.studies.optimise import Optimum
 from truing.studies.reliability import Curve, Odds
 from truing.studies.sensitivity import Sensitivities
 from truing.studies.sweep import Swept
+from truing.studies.uncertainty import Budgets
 from truing.testing import CHECKS
 from truing.units import read_quantity, same_dimension, to_si
 
@@ -58,7 +60,7 @@ HOOKS = sorted(
 )
 STUDIES: dict[type[Any], type[Any]] = {
     Sweep: Swept, Sensitivity: Sensitivities, Reliability: Odds, Allocation: Allotted, Surrogate: Emulated,
-    Optimise: Optimum, Frequency: FrequencyAnswer,
+    Optimise: Optimum, Frequency: FrequencyAnswer, Uncertainty: Budgets,
 }  # fmt: skip
 
 
@@ -208,6 +210,26 @@ def test_the_json_of_the_studies_is_json() -> None:
     assert len(shown) == len(STUDIES)
     for text in shown:
         json.loads(text)
+
+
+def shape(document: Any) -> Any:
+    """A document without its numbers and texts: the keys of every level, a list by its first item."""
+    if isinstance(document, dict):
+        return {key: shape(item) for key, item in document.items()}
+    return [shape(document[0])] if isinstance(document, list) and document else None
+
+
+@pytest.mark.parametrize(
+    ("title", "study"),
+    [
+        ("Sweep", Sweep(over="compression", at="0, 5, 10 mm", results="force")),
+        ("Uncertainty", Uncertainty(of="force")),
+    ],
+)
+def test_the_json_of_a_study_of_the_spring_is_as_shown(title: str, study: Any) -> None:
+    (text,) = re.findall(r"```json\n(.*?)```", sections(page("studies.md"))[title], re.DOTALL)
+    found = truing.load(DOCS / "examples" / "coil_spring.py").study(study, progress=False)
+    assert shape(found.outcome.as_json()) == shape(json.loads(text))
 
 
 def test_every_check_built_in_effect_condition_and_history_has_its_row() -> None:

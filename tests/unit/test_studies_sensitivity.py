@@ -9,7 +9,20 @@ import pytest
 from study_models import CHAIN, ISHIGAMI, JOINT, ROOT, STACK, WEAR, Sum, Three, Two, setup_of
 
 from shared import ROUNDING
-from truing import Model, Sensitivity, Sweep, Tolerance, normal
+from truing import (
+    Float,
+    Model,
+    Require,
+    Sensitivity,
+    Sweep,
+    Tolerance,
+    feasible,
+    found,
+    given,
+    inputs,
+    normal,
+    results,
+)
 from truing.calculation import calculate
 from truing.declare.blocks import Drawing, Table, Words
 from truing.declare.spreads import Off
@@ -221,7 +234,10 @@ def test_failed_points_keep_their_reason():
     assert written["results"]["side"]["values"][0] is None
     assert written["failed"] == [{"row": 0, "reason": "no square has a negative area"}]
     assert "1 of 5 points" in found.warnings()[0]
-    assert any(isinstance(block, Words) and "number 1" in block.text for block in found.blocks())
+    assert any(
+        isinstance(block, Words) and "1 at -1 m²: no square has a negative area" in block.text
+        for block in found.blocks()
+    )
 
 
 def test_a_condition_is_swept_and_effects_follow():
@@ -245,7 +261,7 @@ def test_results_are_printed_in_the_chosen_unit_and_drawn_where_no_section_shows
     assert found.as_json()["results"]["gap"] == {"unit": "um", "values": pytest.approx([0, 1e4, 2e4], abs=1e-6)}
     assert found.as_json()["axis"] == pytest.approx([20, 30, 40])
     drawing = next(block for block in found.blocks() if isinstance(block, Drawing))
-    assert [len(axes.lines) for axes in drawing.draw().axes] == [1, 1]
+    assert [len(axes.lines) for axes in drawing.draw().axes] == [2, 3]  # the stated value, and one limit
     assert not any(isinstance(block, Drawing) for block in replace(found, shown=False).blocks())
 
 
@@ -255,6 +271,44 @@ def test_the_table_says_where_the_extremes_are_and_results_along_their_own_axis_
     assert table.rows[0] == ["gap", "mm", pytest.approx(0, abs=1e-12), pytest.approx(50), pytest.approx(20), 30]
     found = swept(WEAR, Sweep(over="rate", at="1, 2 um/h"))
     assert 1e6 * found.results["course"] == pytest.approx(np.array([[2, 8, 18], [4, 16, 36]]))
+
+
+@inputs
+class Rope:
+    """What pulls, and how thick the rope is."""
+
+    pull: Float = given(5.0, "kN", at_least=0)
+    area: Float = given(100.0, "mm^2")
+
+
+@results
+class Pulled:
+    """What it must hold, and what it can."""
+
+    force: Float = found("kN")
+    strength: Float = found("kN")
+
+
+def rope(at: Rope) -> Pulled:
+    """A rope is as strong as it is thick."""
+    feasible(at.area >= 0, "nothing is left of the rope")
+    return Pulled(force=at.pull + 0 * at.area, strength=at.area * 100e6)
+
+
+ROPE = Model(name="rope", title="Rope", function=rope, objectives=[Require("force", at_most="strength")])
+
+
+def test_a_limit_that_is_a_result_is_drawn_where_it_exists_and_met_where_both_are_equal():
+    found = swept(ROPE, Sweep(over="area", at="-50, 0, 40, 100, 150 mm^2"))
+    (crossing,) = found.crossings
+    assert (crossing.limit, crossing.kept) == ("force", "above")
+    assert crossing.at == pytest.approx(50e-6, rel=1e-9)
+    assert found.limit_table().rows == [["force", "≤ strength", pytest.approx(50), "above it"]]
+    panel = next(block for block in found.blocks() if isinstance(block, Drawing)).draw().axes[0]
+    limit = next(line for line in panel.lines if line.get_linestyle() == "--")
+    assert limit.get_ydata() == pytest.approx([np.nan, 0, 4, 10, 15], nan_ok=True)
+    assert "≤ strength" in [text.get_text() for text in panel.texts]
+    assert found.gaps() == ["1 of 5 points have no answer: 1 at -50 mm²: nothing is left of the rope."]
 
 
 @pytest.mark.parametrize(

@@ -137,25 +137,51 @@ class LoadedModel:
         inputs: str | Path | None = None,
         *,
         workers: int | None = None,
+        output: str | Path | None = None,
         set: Mapping[str, Any] | None = None,
         progress: Progress | bool = True,
         **values: Any,
     ) -> StudyResult:
-        """Run one study, whether the model declares it or not, and return what it found."""
+        """Run one study, whether the model declares it or not, and return what it found.
+
+        ``output`` is a folder for the sheet of this study and its numbers, complete or absent, whatever happens.
+        """
         if not hasattr(study, "run"):
             raise UsageError(f"{study!r:.60} is no study; hand in one, such as truing.Sensitivity()")
         setup = replace(self.setup(inputs, set=set, **values), studies=(study,))
-        run = performed(setup, self.offer, progress, workers=workers)
-        return replace(run.studies[study.name], warnings=run.warnings)
+        run = performed(setup, self.offer, progress, workers=workers, output=output, alone=True)
+        return replace(run.studies[study.name], warnings=run.warnings, document=run.document)
 
-    def sweep(self, over: str, low: Any, high: Any, points: int = 181, **more: Any) -> StudyResult:
-        """Evaluate every result along one input or condition, from ``low`` to ``high``, at evenly spaced points.
+    def sweep(
+        self,
+        input: str,
+        at: Any,
+        *,
+        over: tuple[str, Any] | None = None,
+        results: str | Sequence[str] = (),
+        points: int = 181,
+        **more: Any,
+    ) -> StudyResult:
+        """Evaluate results along an input or condition, whether the model declares it or not: what ``calc sweep`` does.
 
-        The ends are texts with units or numbers in the declared unit; everything else is as in ``study``. A point
-        without an answer keeps its reason.
+        ``at`` is a range, "50..100 N*m" or two ends (texts with units, or numbers in the declared unit), evenly divided
+        into ``points``, or a list "50, 60, 80 N*m". ``over`` is a second input with its range: a line for each of its
+        values. ``results`` names what is shown; without it every result that changes. Everything else is as in
+        ``study``. A point without an answer keeps its reason.
         """
-        ends = [text_of(self.offer.model, over, end) for end in (low, high)]
-        return self.study(Sweep(over=over, at="..".join(ends), points=points), **more)
+        by, by_at = over or ("", "")
+        chosen = (results,) if isinstance(results, str) else tuple(results)
+        lines = self._range(by, by_at)
+        sweep = Sweep(over=input, at=self._range(input, at), by=by, by_at=lines, results=chosen, points=points)
+        return self.study(sweep, **more)
+
+    def _range(self, input: str, at: Any) -> str:
+        """Return a range as text. Raises UsageError for what is neither a text nor two ends."""
+        if isinstance(at, str):
+            return at
+        if not isinstance(at, Sequence) or len(at) != 2:
+            raise UsageError(f'{input}: {at!r:.60} is no range; write "low..high unit" or (low, high)')
+        return "..".join(text_of(self.offer.model, input, end) for end in at)
 
     def frequency(self, input: str = "", output: str = "", *, over: str = "", at: str = "", **more: Any) -> StudyResult:
         """Linearise a model that moves: its poles, gain and phase from an input to an output, frequencies over speed.

@@ -26,7 +26,7 @@ from truing.kernel import Offer
 from truing.measurements import read_cases
 from truing.numbers import format_value, with_unit
 from truing.progress import progress_bar
-from truing.report.document import plain_text
+from truing.report.document import Document, plain_text
 from truing.report.limits import check_table
 from truing.report.run import run_info, sheet_of, sheets_of, write_sheet
 from truing.report.sheet import banner_of, cases_table
@@ -42,6 +42,8 @@ from truing.units import from_si
 
 FIRST = 12
 """So many results are shown, in the order declared; a click shows the others."""
+POINTS = "points.csv"
+"""The points of a sweep that was asked alone, in its folder."""
 COLUMNS = ("name", "symbol", "value", "unit", "note")
 
 
@@ -52,7 +54,7 @@ class Run:
     ``run["stress"]`` is a quantity of pint in the unit that the sheet prints, ``run.si["stress"]`` the bare number or
     array in SI. Of a run with cases the results are those of the governing one, and ``cases`` holds all.
     ``calculation`` has everything in SI, ``computed`` is what run.json says of the workers, and ``note`` what became of
-    a PDF.
+    a PDF. A run is ``alone`` where one study was asked and nothing else.
     """
 
     offer: Offer
@@ -61,6 +63,7 @@ class Run:
     cases: CasesTable | None = None
     computed: Mapping[str, Any] = field(default_factory=lambda: {"resumed": 0, "warnings": []})
     note: str = ""
+    alone: bool = False
 
     def __repr__(self) -> str:
         return f"<Run of {self.offer.name}: {self.verdict}, {len(self.checks)} limits, {len(self.si)} results>"
@@ -130,8 +133,7 @@ class Run:
 
     def sheet(self, path: str | Path) -> Path:
         """Write the calculation sheet as HTML, Markdown or PDF, as the name ends. Raises OutputError."""
-        make = partial(sheet_of, self.calculation, self.offer, started=self.started, cases=self.cases)
-        return write_sheet(path, make)
+        return write_sheet(path, partial(self._sheet, silent))
 
     def save(self, folder: str | Path, *, pdf: bool = False, excel: bool = False) -> Path:
         """Write the folder that ``calc run`` writes: inputs, results, sheets, arrays; an earlier run there goes.
@@ -148,11 +150,14 @@ class Run:
 
     def written(self, folder: Path, *, pdf: bool, excel: bool, progress: Progress = silent) -> str:
         """Write the folder and return what became of the PDF."""
-        sheet = sheet_of(self.calculation, self.offer, started=self.started, cases=self.cases, progress=progress)
+        sheet = self._sheet(progress)
         if pdf:
             progress("printing", 0, 0)
         sheets, note = sheets_of(sheet, folder, pdf=pdf)
         files = run_files(self.calculation, self.document, sheets, excel=excel)
+        if self.alone:
+            (study,) = self.studies.values()
+            files |= {POINTS: text} if (text := study.points_text()) else {}
         info = {**run_info(self.started), **self.computed}
         write_outcome(
             folder, "run", self._setup, self.document, provenance=sheet.provenance, run_info=info, files=files
@@ -175,6 +180,10 @@ class Run:
         said = " ".join(map(plain_text, banner.sentences))
         title = heading(self._setup.model.title) + paragraphs([f"{banner.headline}. {said}"])
         return joined(title, warned, limits, results, more, fold("All cases", every))
+
+    def _sheet(self, progress: Progress) -> Document:
+        how: dict[str, Any] = {"started": self.started, "cases": self.cases, "alone": self.alone}
+        return sheet_of(self.calculation, self.offer, progress=progress, **how)
 
     @property
     def _setup(self) -> Setup:
@@ -206,12 +215,14 @@ def performed(
     resume: bool = False,
     pdf: bool = False,
     excel: bool = False,
+    alone: bool = False,
 ) -> Run:
     """Run the calculation of a setup, and write the folder ``output`` where it is named, whole or not at all.
 
     ``cases`` is a file or a dataframe. With ``resume`` finished batches are kept beside the folder until then, and
-    those of an interrupted run are taken up. Raises TruingError; what is impossible is said at the input that is to
-    blame, and UsageError for what does not go together.
+    those of an interrupted run are taken up. A setup of one study may ask it ``alone``: the sheet is then that of the
+    study. Raises TruingError; what is impossible is said at the input that is to blame, and UsageError for what does
+    not go together.
     """
     if cluster and workers is not None:
         raise UsageError("cluster and workers exclude each other: a cluster has its own workers")
@@ -225,7 +236,7 @@ def performed(
         keeping = kept_batches(folder, identity_of(setup, code_of(setup))) if resume else keeping
     place = f"dask:{cluster}" if cluster else "serial" if workers in (None, 1) else f"processes:{workers}"
     with progress_bar(progress) as report, told_by_line(setup), keeping as log:
-        run = _calculated(setup, offer, cases, place=place, progress=report, log=log)
+        run = replace(_calculated(setup, offer, cases, place=place, progress=report, log=log), alone=alone)
         if folder is not None:
             return replace(run, note=run.written(folder, pdf=pdf, excel=excel, progress=report))
         return run

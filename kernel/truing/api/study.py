@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
 from matplotlib.figure import Figure
 
 from truing.api.notebook import MOST_ROWS, fold, heading, joined, paragraphs, picture, plotted, table_html
@@ -14,21 +13,25 @@ from truing.api.tables import frame_of
 from truing.declare.blocks import Drawing, Table, Words
 from truing.declare.near_miss import near_miss
 from truing.errors import UsageError
+from truing.measurements import table_text
 from truing.report.chapters import table_view
 from truing.studies.bench import Outcome
 from truing.studies.sweep import Swept, curves
-from truing.units import from_si
 
 MOST_CURVES = 6
 
 
 @dataclass(frozen=True)
 class StudyResult:
-    """What one study of a run found. ``outcome`` holds its numbers in SI, ``warnings`` what speaks against them."""
+    """What one study of a run found. ``outcome`` holds its numbers in SI, ``warnings`` what speaks against them.
+
+    ``document`` is what results.json holds, where the study was asked alone.
+    """
 
     title: str
     outcome: Outcome
     warnings: tuple[str, ...] = ()
+    document: Mapping[str, Any] = field(default_factory=dict, repr=False)
 
     def __repr__(self) -> str:
         return f"<StudyResult: {self.title}>"
@@ -40,15 +43,15 @@ class StudyResult:
         Raises UsageError where there is no such table.
         """
         if isinstance(self.outcome, Swept) and not title:
-            shown = {name: values for name, values in self.outcome.results.items() if values.ndim == 1}
-            units = self.outcome.units
-            return frame_of({
-                f"{name} [{units[name] or '1'}]": np.asarray(from_si(values, units[name])).tolist()
-                for name, values in {self.outcome.over: self.outcome.axis, **shown}.items()
-            })  # fmt: skip
+            return frame_of({name: values.tolist() for name, values in self.outcome.printed_columns().items()})
         tables = {block.title: block for block in self.outcome.blocks() if isinstance(block, Table)}
         table = _chosen(title, tables, "table")
         return frame_of({name: [row[index] for row in table.rows] for index, name in enumerate(_headers(table))})
+
+    def points_text(self) -> str:
+        """Return every point of a sweep as the text of a CSV file, its numbers exact; nothing for another study."""
+        columns = self.outcome.printed_columns() if isinstance(self.outcome, Swept) else {}
+        return table_text([*columns], [*columns.values()]) if columns else ""
 
     def plot(self, *names: str) -> Figure:
         """Draw the study: of a sweep the results that are named, or those that change; else the figure of that title.

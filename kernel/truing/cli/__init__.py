@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import sys
 from collections.abc import Callable, Sequence
@@ -16,6 +17,8 @@ from truing.cli.candidates import answer_the_shell
 from truing.cli.console import Settings, after_output, close_stream, hear_endings, lose_output, ready_streams
 
 FLAGS = {"--traceback": "traceback", "-v": "verbose", "--verbose": "verbose", "-q": "quiet", "--quiet": "quiet"}
+NEGATIVE = re.compile(r"-\.?\d")
+"""How a number below 0 begins, such as that of a range: behind a blank it is not taken for an option."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -47,7 +50,7 @@ def _run(words: list[str], *, is_program: bool) -> int:
         return answer_the_shell(app)
     end = words.index("--") if "--" in words else len(words)
     said = {FLAGS[word] for word in words[:end] if word in FLAGS}
-    kept = [word for word in words[:end] if word not in FLAGS] + words[end:]
+    kept = [f" {word}" if NEGATIVE.match(word) else word for word in words[:end] if word not in FLAGS] + words[end:]
     code: object = 0
     try:
         _command()(args=kept, prog_name="calc", obj=Settings(**dict.fromkeys(said, True)))

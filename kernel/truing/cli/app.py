@@ -144,6 +144,29 @@ def run(
     """Run the calculation and its studies and write the calculation sheet."""
 
 
+@_loaded("sweep")
+def sweep(
+    context: typer.Context,
+    plugin: Plugin,
+    input: Annotated[str, typer.Argument(help="The input or condition.", autocompletion=candidates.varied)],
+    range: Annotated[str, typer.Argument(help="Its range, LOW..HIGH, or values joined by commas.")],
+    unit: Annotated[str, typer.Argument(help="The unit, where it does not stand in RANGE.")] = "",
+    over: Annotated[
+        tuple[str, str] | None,
+        typer.Option("--over", metavar="INPUT RANGE", help="A second input: a line for each of its values."),
+    ] = None,
+    results: Annotated[
+        str, typer.Option("--results", metavar="A,B", help="What is shown; without it all results that change.")
+    ] = "",
+    steps: Annotated[int, typer.Option("--steps", help="How many points a range has.")] = 181,
+    inputs: Inputs = None,
+    changed: Changed = None,
+    output: Annotated[Path | None, typer.Option("-o", "--output", help="The folder (default runs/STEM_sweep).")] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Draw how results run along an input, with their limits; the model need not declare it."""
+
+
 @_loaded("watch")
 def watch(
     context: typer.Context,

@@ -85,6 +85,12 @@ def names_inside(context: typer.Context, incomplete: str) -> Iterator[OfferedWor
 
 
 @silent
+def varied(context: typer.Context, incomplete: str) -> Iterator[OfferedWord]:
+    """Offer the numbers among the inputs, and the conditions, of the calculation that is typed already."""
+    yield from _inside.varied(context)
+
+
+@silent
 def changes(context: typer.Context, incomplete: str) -> Iterator[OfferedWord]:
     """Offer what ``--set`` takes for the plugin that is typed already: NAME=, section by section, and choices."""
     yield from _inside.changes(context, incomplete)

@@ -31,6 +31,14 @@ def names_inside(context: typer.Context) -> Iterator[OfferedWord]:
     return _declared(_typed_model(context))
 
 
+def varied(context: typer.Context) -> Iterator[OfferedWord]:
+    """Offer the numbers among the inputs, and the conditions, of the calculation that is typed already."""
+    model = _typed_model(context)
+    numbers = (name for name, field in model.input_fields.items() if field.varies or field.kind == "integer")
+    notes = dict(_declared(model))
+    yield from ((name, notes.get(name, "a condition")) for name in (*numbers, *model.conditions))
+
+
 def changes(context: typer.Context, incomplete: str) -> Iterator[OfferedWord]:
     """Offer what ``--set`` takes for the plugin that is typed already: NAME=, section by section, and choices."""
     model = _typed_model(context)

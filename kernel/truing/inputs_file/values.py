@@ -135,6 +135,12 @@ def keep_bounds(input_field: InputField, value: float) -> None:
 
 def broken_bound(input_field: InputField, value: float) -> str:
     """Return what to say of a value in SI that breaks a declared bound, or nothing."""
+    demand, unit = broken_demand(input_field, value), input_field.unit
+    return f"{input_field.name} is {_quantity(from_si(value, unit), unit)}; it {demand}" if demand else ""
+
+
+def broken_demand(input_field: InputField, value: float) -> str:
+    """Return what a value in SI must be and is not ("must be above 0 N"), or nothing."""
     spec = input_field.spec
     if not isinstance(spec, Given) or value != value:
         return ""
@@ -146,12 +152,10 @@ def broken_bound(input_field: InputField, value: float) -> str:
         ("at most", spec.at_most, -1),
     ):
         if bound is not None and _breaks(value, to_si(bound, unit), sign, strict=words in {"above", "below"}):
-            here = _quantity(from_si(value, unit), unit)
-            return f"{input_field.name} is {here}; it must be {words} {_quantity(bound, unit)}"
+            return f"must be {words} {_quantity(bound, unit)}"
     number = from_si(value, unit)
-    if spec.whole and abs(number - round(number)) > 1e-9 * max(1.0, abs(number)):
-        return f"{input_field.name} is {_quantity(number, unit)}; it must be a whole number"
-    return ""
+    is_whole = not spec.whole or abs(number - round(number)) <= 1e-9 * max(1.0, abs(number))
+    return "" if is_whole else "must be a whole number"
 
 
 def _breaks(value: float, limit: float, sign: int, *, strict: bool) -> bool:

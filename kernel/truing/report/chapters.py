@@ -136,7 +136,7 @@ def result_chapters(writing: Writing) -> Iterator[Chapter]:
     if rank == 0:
         yield from _main_results(writing)
         return
-    yield from _studies(writing)
+    yield from study_chapters(writing)
     rest = [
         name
         for name in writing.calculation.setup.model.result_fields
@@ -262,7 +262,8 @@ def _value_of(calculation: Calculation, name: str) -> Value:
     return Value(f"{pretty(low)} … {pretty(high)}", printed) if low else Value("no finite value")
 
 
-def _studies(writing: Writing) -> Iterator[Chapter]:
+def study_chapters(writing: Writing) -> Iterator[Chapter]:
+    """Write what the studies say, a chapter each."""
     for name, outcome in writing.calculation.outcomes.items():
         blocks = _guarded(writing, f"study {name}", outcome.blocks)
         if blocks:

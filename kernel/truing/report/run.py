@@ -20,7 +20,7 @@ from truing.report.document import Document
 from truing.report.html_printer import html_of
 from truing.report.markdown_printer import markdown_of
 from truing.report.pdf import pdf_bytes
-from truing.report.sheet import make_sheet
+from truing.report.sheet import make_sheet, study_sheet
 from truing.runs.provenance import provenance_of
 from truing.setup import Setup
 from truing.studies.bench import Progress, silent
@@ -32,12 +32,19 @@ def sheet_of(
     *,
     started: float,
     cases: CasesTable | None = None,
+    alone: bool = False,
     progress: Progress = silent,
 ) -> Document:
-    """Return the sheet of a finished calculation, the numbers that the paper prints compared."""
+    """Return the sheet of a finished calculation, the numbers that the paper prints compared.
+
+    Of a study that was asked ``alone`` it is what that one has found.
+    """
+    provenance = provenance_of(calculation.setup, date=time.strftime("%Y-%m-%d", time.localtime(started)))
+    if alone:
+        progress("sheet", 0, 0)
+        return study_sheet(calculation, provenance=provenance)
     verified = compare_published(offer, progress=progress, known=calculation)
     progress("sheet", 0, 0)
-    provenance = provenance_of(calculation.setup, date=time.strftime("%Y-%m-%d", time.localtime(started)))
     example = example_setup(offer)
     return make_sheet(calculation, provenance=provenance, verified=verified, cases=cases, example=example)
 

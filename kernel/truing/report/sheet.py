@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from base64 import b64encode
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from truing.calculation import Calculation
@@ -17,13 +18,22 @@ from truing.numbers import (
     with_unit,
 )
 from truing.published import ComparedRow, parted
-from truing.report.chapters import LONGEST_TABLE, Figures, Writing, front_figure, numbered, result_chapters
+from truing.report.chapters import (
+    LONGEST_TABLE,
+    Figures,
+    Writing,
+    front_figure,
+    numbered,
+    result_chapters,
+    study_chapters,
+)
 from truing.report.document import (
     Banner,
     BlockView,
     Chapter,
     Column,
     Document,
+    FigureView,
     Head,
     Items,
     Marked,
@@ -87,6 +97,35 @@ def make_sheet(
     )
 
 
+def study_sheet(calculation: Calculation, *, provenance: Provenance) -> Document:
+    """Say what a study that was asked alone has found: its first figure on page one, and the inputs behind it."""
+    setup, figures = calculation.setup, Figures()
+    detail = setup.sheet.detail if setup.sheet.detail in LONGEST_TABLE else "normal"
+    (chapter,) = list(study_chapters(Writing(calculation, detail, figures))) or [Chapter("Study", ())]
+    first = next((block for block in chapter.blocks if isinstance(block, FigureView)), None)
+    rest = tuple(block for block in chapter.blocks if block is not first)
+    warnings = tuple(_warnings(calculation, None, figures.failures))
+    head = head_of(setup, provenance)
+    found = [block.text for block in rest if isinstance(block, Paragraph) and block.kind == "finding"]
+    alone = "Asked alone: the limits are judged by a run of the calculation."
+    return Document(
+        kind=chapter.title,
+        title=head.title,
+        head=head,
+        detail=detail,
+        summary=setup.model.summary,
+        banner=Banner("none", chapter.title, (*found, alone)),
+        front=() if first is None else (Chapter(first.title, (first,), "key-figure"),),
+        chapters=numbered([
+            replace(chapter, blocks=rest), *_inputs_behind(setup, detail),
+            *end_chapters(warnings, provenance, _references(calculation)),
+        ]),
+        warnings=warnings,
+        provenance=provenance,
+        paper=setup.sheet.paper,
+    )  # fmt: skip
+
+
 def _back(
     calculation: Calculation, verified: Sequence[ComparedRow], warnings: Sequence[str], provenance: Provenance
 ) -> Iterator[Chapter]:  # fmt: skip
@@ -98,9 +137,13 @@ def _back(
     if setup.model.findings and not is_short:
         texts, titles = zip(*((each.text, each.title) for each in setup.model.findings), strict=True)
         yield Chapter("Findings", (Items("findings", texts, titles),), "findings")
-    cites = [text for each in calculation.outcomes.values() for text in getattr(each, "cites", ())]
-    references = () if is_short else tuple(dict.fromkeys([*setup.model.cites, *cites]))
+    references = () if is_short else _references(calculation)
     yield from end_chapters(warnings if len(warnings) > MOST_WARNINGS else (), provenance, references)
+
+
+def _references(calculation: Calculation) -> tuple[str, ...]:
+    cites = [text for each in calculation.outcomes.values() for text in getattr(each, "cites", ())]
+    return tuple(dict.fromkeys([*calculation.setup.model.cites, *cites]))
 
 
 def head_of(setup: Setup, provenance: Provenance) -> Head:
@@ -197,6 +240,10 @@ def _given(calculation: Calculation, cases: CasesTable | None, detail: str) -> I
         yield Chapter("All checks", (check_table(calculation),), "all-checks")
     if cases is not None:
         yield Chapter("Cases", (cases_table(calculation, cases, LONGEST_TABLE[detail]),), "cases")
+    yield from _inputs_behind(setup, detail)
+
+
+def _inputs_behind(setup: Setup, detail: str) -> Iterator[Chapter]:
     if detail == "short":
         return
     yield Chapter("Inputs", tuple(input_blocks(setup, detail)), "inputs")

@@ -77,13 +77,19 @@ def _sections(setup: Setup, folder: Path | None) -> Iterator[tuple[str, dict[str
     yield "calibrated", {name: exact(value, setup.unit_of(name)) for name, value in setup.calibrated.items()}
     for active in setup.effects:
         yield f"effects.{active.effect.name}", _effect(active)
-    yield "studies", {"run": [study.name for study in setup.studies], "seed": setup.seed}
     declared = {study.name: study for study in setup.model.studies}
-    for study in setup.studies:
+    known = [study for study in setup.studies if folder is None or _is_declared(study, setup)]
+    yield "studies", {"run": [study.name for study in known], "seed": setup.seed}
+    for study in known:
         yield f"studies.{study.name}", _options(study, declared.get(study.name))
     if diagnose := _of_diagnosis(setup):
         yield "studies.diagnose", diagnose
     yield "units", dict(setup.units)
+
+
+def _is_declared(study: Study, setup: Setup) -> bool:
+    """Tell whether an inputs file may name a study: the model has one of its name and kind."""
+    return any(each.name == study.name and type(each) is type(study) for each in setup.model.studies)
 
 
 def _of_diagnosis(setup: Setup) -> dict[str, Any]:
@@ -185,7 +191,7 @@ def _options(study: Study, declared: Study | None) -> dict[str, Any]:
     said = {}
     for name in options_of(study):
         value = getattr(study, name)
-        if declared is None or value != getattr(declared, name):
+        if declared is None or value != getattr(declared, name, None):
             said[name] = list(value) if isinstance(value, tuple) else value
     return {name: value for name, value in said.items() if isinstance(value, (bool, int, float, str, list, dict))}
 
@@ -210,3 +216,7 @@ def _left_open(setup: Setup, section: str) -> Iterator[str]:
                 yield f"{name} follows {spread.chooser}: {setup.settled(spread).text}"
             elif isinstance(spread, Drawn):
                 yield f"{name} is {spread.text}"
+    for study in setup.studies:
+        if section == "studies" and not _is_declared(study, setup):
+            said = ", ".join(f"{name} = {toml_value(value)}" for name, value in _options(study, None).items() if value)
+            yield f"asked besides, and not declared by the model: {study.name}, {said}"

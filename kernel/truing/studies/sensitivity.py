@@ -50,7 +50,7 @@ class Sensitivity:
     def run(self, bench: Bench) -> Sensitivities:
         """Differentiate in one batch of the model; then Sobol's samples where asked."""
         setup = bench.setup
-        asked = self._results(setup)
+        asked = asked_results(setup, self.of, self.name)
         results = tuple(name for name in asked if name not in bench.absent)
         missing = [f"'{name}' has no derivatives: {bench.absent[name]}" for name in asked if name in bench.absent]
         scatter = scatter_of(setup)
@@ -75,17 +75,19 @@ class Sensitivity:
             still=frozenset(source for source in sources if not scatter.sd_of(source)),
         )
 
-    def _results(self, setup: Setup) -> tuple[str, ...]:
-        if self.of:
-            return single_numbers(setup, self.of, self.name)
-        scalar = scalar_results(setup)
-        goals = [objective.result for objective in setup.model.objectives if not isinstance(objective, Vary)]
-        return tuple(dict.fromkeys(name for name in goals if name in scalar)) or scalar
-
     def _indices(self, bench: Bench, scatter: Scatter, results: Sequence[str]) -> tuple[_Indices, _Indices, list[str]]:
         if not self.sobol or not scatter.causes:
             return {}, {}, []
         return sobol_indices(scatter, results, self.sobol, bench.part(self.name, 0.0, 1.0))
+
+
+def asked_results(setup: Setup, of: str | tuple[str, ...], study: str) -> tuple[str, ...]:
+    """Return the results that are named; else those that an objective is on, else all that are one number."""
+    if of:
+        return single_numbers(setup, of, study)
+    scalar = scalar_results(setup)
+    goals = [objective.result for objective in setup.model.objectives if not isinstance(objective, Vary)]
+    return tuple(dict.fromkeys(name for name in goals if name in scalar)) or scalar
 
 
 _Indices = dict[str, dict[str, float]]
