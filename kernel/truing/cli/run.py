@@ -26,6 +26,7 @@ from truing.studies.bench import files_of
 from truing.studies.checks import EXIT_CODES, HEADLINES, SHORT
 from truing.studies.verdicts import change_words, sentence_of
 from truing.texts import one_line
+from truing.workbooks.reading import file_of
 
 
 def run(settings: Settings, asked: SimpleNamespace) -> int:
@@ -34,7 +35,7 @@ def run(settings: Settings, asked: SimpleNamespace) -> int:
         raise UsageError("--cluster and --workers exclude each other: a cluster has its own workers")
     model = find_model(asked.plugin, settings, asked.changed)
     say_example(asked.inputs, asked.plugin, settings)
-    folder = asked.output or Path("runs") / (asked.inputs.stem if asked.inputs else model.name)
+    folder = asked.output or Path("runs") / (file_of(asked.inputs).stem if asked.inputs else model.name)
     how = {name: getattr(asked, name) for name in ("cases", "workers", "cluster", "resume", "pdf", "excel")}
     with _told_what_is_kept(folder, asked.resume, settings):
         done = model.run(asked.inputs, output=folder, progress=not settings.quiet, **how)
