@@ -7,14 +7,22 @@ import sys
 import zipfile
 from collections.abc import Callable, Mapping, Sequence
 from datetime import datetime, time, timedelta
+from operator import attrgetter
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from sample_models import PIN_OFFER
 
+from truing import Kernel
 from truing.errors import InputError
+from truing.example_file import example_book, example_of
+from truing.inputs_file import read_setup, setup_from_text
+from truing.kernel import Offer
 from truing.measurements import DataTable, read_table
+from truing.runs.inputs_written import complete_inputs
+from truing.setup import Setup
 from truing.workbooks import reading
 
 openpyxl = pytest.importorskip("openpyxl")
@@ -293,3 +301,113 @@ def test_without_the_library_one_sentence_names_the_extra(tmp_path: Path, monkey
         "b.xlsx: a workbook needs openpyxl, which is not installed: pip install 'truing[excel]'; "
         "or save it as CSV UTF-8"
     ]
+
+
+# Inputs
+
+
+def stated(path: Path | str, *overrides: str) -> Setup:
+    return read_setup(Path(path), PIN_OFFER, overrides=overrides)
+
+
+def input_faults(path: Path | str) -> list[str]:
+    with pytest.raises(InputError) as caught:
+        stated(path)
+    return [str(fault).removeprefix(str(Path(path).parent)).lstrip("/\\") for fault in caught.value.faults]
+
+
+NAMES = ["name", "value", "unit", "symbol", "note"]
+
+
+def test_inputs_in_a_workbook_are_those_in_toml(tmp_path: Path) -> None:
+    rows = [
+        ["Wear of the pin, filled in by hand"],
+        ["Value", "NAME", "unit", "note"],
+        [0.08, "load", "kN", "as weighed"],
+        [None, "speed", "m/s", "left as it is"],
+        ["28 mm^2", "area", None, None],
+        [3e-8, "rate", "-", None],
+        ["sd 5 %", "tolerances.load", None, None],
+        [4, "studies.seed", None, None],
+        [7, "sheet.revision", None, None],
+        ["not read", "# a remark", None, None],
+    ]
+    (tmp_path / "wear.toml").write_text(
+        '[inputs]\nload = "0.08 kN"\narea = "28 mm^2"\nrate = 3e-8\n[tolerances]\nload = "sd 5 %"\n'
+        '[studies]\nseed = 4\n[sheet]\nrevision = "7"\n'
+    )
+    found = stated(book(tmp_path / "wear.xlsx", {"inputs": rows, "Sheet2": []}))
+    expected = stated(tmp_path / "wear.toml")
+    assert complete_inputs(found, tmp_path) == complete_inputs(expected, tmp_path)
+    assert found.source.stated == expected.source.stated
+    assert stated(tmp_path / "wear.xlsx", "load=90 N").inputs.load == 90
+
+
+def test_every_fault_of_inputs_in_a_workbook_has_its_cell(tmp_path: Path) -> None:
+    rows = [
+        NAMES,
+        ["load", 80, None],
+        ["laod", 80, "N"],
+        ["speed", "=1/2", "m/s"],
+        ["area", "=A1", "mm^2"],
+        ["time", "2,5", "h"],
+        [None, 3, "h"],
+        ["rate", 1e-8, None],
+        ["rate", 2e-8, None],
+        ["hardness", datetime(2026, 2, 1), "GPa"],
+    ]
+
+    def errors(made: Any) -> None:
+        made["inputs"]["B5"] = "#REF!"
+
+    found = input_faults(book(tmp_path / "b.xlsx", {"inputs": rows}, errors))
+    expected = {
+        "B2": "load = 80 has no unit",
+        "B3": "pin_wear has no input 'laod'. Did you mean 'load'",
+        "B4": "holds a formula whose value was never stored; open the workbook in Excel or LibreOffice, let it calc",
+        "B5": "area: holds the error #REF!; mend it, or empty the cell",
+        "B6": "time",
+        "B7": "'3' has no name; write it in the column 'name'",
+        "A9": "'rate' is given twice (first in B8); write it once",
+        "B10": "hardness",
+    }
+    for cell, sentence in expected.items():
+        assert any(fault.startswith(f"b.xlsx, inputs!{cell}: {sentence}") for fault in found), (cell, found)
+    assert len(found) == len(expected)
+
+
+def test_a_workbook_without_the_columns_of_inputs_is_one_sentence(tmp_path: Path) -> None:
+    path = book(tmp_path / "b.xlsx", {"s": [HEAD, [1, 2]]})
+    assert input_faults(path) == [
+        "b.xlsx, s!A1: no row holds the columns 'name' and 'value'; "
+        "`calc init pin_wear -o inputs.xlsx` writes such a workbook"
+    ]
+
+
+@pytest.mark.parametrize("offer", [PIN_OFFER, *Kernel.installed().offers.values()], ids=attrgetter("name"))
+def test_the_workbook_to_fill_in_says_what_the_example_says(tmp_path: Path, offer: Offer) -> None:
+    text, file, folder = example_of(offer)
+    expected = setup_from_text(text, offer, file=file, folder=folder)
+    path = tmp_path / "inputs.xlsx"
+    path.write_bytes(example_book(offer))
+    found = read_setup(path, offer)
+    assert complete_inputs(found, tmp_path) == complete_inputs(expected, tmp_path)
+    assert found.source.stated == expected.source.stated
+    assert path.read_bytes() == example_book(offer)
+
+
+def test_the_workbook_to_fill_in_offers_choices(tmp_path: Path) -> None:
+    offer = Kernel.installed().offers["rv_wear"]
+    path = tmp_path / "inputs.xlsx"
+    path.write_bytes(example_book(offer))
+    made = openpyxl.load_workbook(path)
+    sheet, lists = made["inputs"], made["choices"]
+    assert [cell.value for cell in sheet[1]] == ["name", "value", "unit", "symbol", "note", "source"]
+    assert sheet.freeze_panes == "A2"
+    assert lists.sheet_state == "hidden"
+    rows = {row[0].value: row[0].row for row in sheet.iter_rows()}
+    offered = {str(rule.sqref): rule.formula1 for rule in sheet.data_validations.dataValidation}
+    column = offered[f"B{rows['load_sharing']}"].split("$")[1]
+    assert [cell.value for cell in lists[column] if cell.value] == list(
+        offer.model.input_fields["load_sharing"].choices
+    )

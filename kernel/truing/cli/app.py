@@ -99,6 +99,9 @@ def init(
     context: typer.Context,
     plugin: Plugin,
     output: OutputFile = None,
+    excel: Annotated[
+        bool, typer.Option("--excel", help="Write a workbook to fill in, as also where FILE ends in .xlsx.")
+    ] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace files that exist.")] = False,
     no_schema: Annotated[bool, typer.Option("--no-schema", help="Write no schema for editors beside it.")] = False,
 ) -> None:

@@ -20,6 +20,7 @@ from truing.measurements.overriding import NAMES, REMARKS
 from truing.measurements.table import RUN
 from truing.setup import Setup
 from truing.texts import one_line
+from truing.workbooks.reading import file_of
 
 MOST_SAID = 10
 """What is so of more rows is said once."""
@@ -30,7 +31,7 @@ def table(settings: Settings, asked: SimpleNamespace) -> int:
     inputs, rows, output, excel = asked.inputs, asked.rows, asked.output, asked.excel
     if excel and output is None:
         raise UsageError("--excel writes a file for a spreadsheet; name it with -o")
-    for path in (inputs, rows):
+    for path in map(file_of, (inputs, rows)):
         if output is not None and output.exists() and path.exists() and output.samefile(path):
             raise OutputError(f"{output} is read by this command; name another file for the output")
     offer = find_offer(asked.plugin, settings)

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import errno
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from hashlib import file_digest
 from pathlib import Path
 
 from truing.declare.near_miss import near_miss
 from truing.errors import Fault, InputError
 from truing.units.grammar import shown
-from truing.workbooks.reading import file_of
+from truing.workbooks.reading import BookSheet, file_of, opened_sheet
 
 LARGEST_INPUTS = 2_000_000
 _SPREADSHEETS = {".xlsx", ".xls", ".xlsm", ".xlsb", ".ods", ".numbers"}
@@ -18,11 +19,15 @@ _ZIP, _OLE = b"PK\x03\x04", b"\xd0\xcf\x11\xe0"
 _UTF16 = (b"\xff\xfe", b"\xfe\xff")
 
 
-def refuse_book(path: Path, *, largest: int) -> None:
-    """Raise InputError with one sentence unless ``path`` is a packed file of acceptable size, as workbooks are."""
-    sentence = _refusal(path, largest, "save the workbook anew", _refusal_of_book)
+@contextmanager
+def opened_book(path: Path, *, largest: int, preferred: str = "") -> Iterator[BookSheet]:
+    """Open a sheet of a workbook, or raise InputError with one sentence."""
+    file = file_of(path)
+    sentence = _refusal(file, largest, "save the workbook anew", _refusal_of_book)
     if sentence:
-        raise InputError([Fault(sentence, str(path))])
+        raise InputError([Fault(sentence, str(file))])
+    with opened_sheet(path, preferred=preferred) as sheet:
+        yield sheet
 
 
 def _refusal_of_book(path: Path, start: bytes, instead: str) -> str:

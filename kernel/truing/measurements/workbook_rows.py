@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from truing.errors import Fault, InputError, UnitError
-from truing.inputs_file.files import refuse_book
+from truing.inputs_file.files import opened_book
 from truing.measurements.csv_text import (
     COMMENT,
     INSTEAD,
@@ -26,7 +26,7 @@ from truing.measurements.csv_text import (
 )
 from truing.units import check_unit, from_si, same_dimension
 from truing.units.names import PURE
-from truing.workbooks.reading import BookSheet, CellRange, cell_text, file_of, opened_sheet
+from truing.workbooks.reading import BookSheet, CellRange, cell_text, in_per_cent
 
 SheetRow = tuple[int, tuple[Any, ...]]
 _NO_UNIT = {"-", "–", "—", "1"}
@@ -113,8 +113,7 @@ class WorkbookTable:
     def _text(self, cell: Any, unit: str | None, place: int) -> str:
         value = cell.value
         if isinstance(value, (int, float)):
-            is_share = unit == "%" and not isinstance(value, bool) and "%" in cell.number_format
-            return repr(float(f"{value!r}e2")) if is_share and "e" not in repr(value) else cell_text(cell)
+            return repr(in_per_cent(cell)) if unit == "%" and not isinstance(value, bool) else cell_text(cell)
         if isinstance(value, (datetime, time, timedelta)) and unit is not None and _is_time(unit):
             return repr(float(from_si(self._seconds(value, place), unit)))
         return cell_text(cell)
@@ -142,7 +141,7 @@ def _is_error(cell: Any) -> bool:
 @contextmanager
 def opened_workbook(path: Path) -> Iterator[WorkbookTable]:
     """Open a table in a workbook. Raises InputError where it cannot be one, or has no header."""
-    with opened_book(path) as sheet:
+    with opened_book(path, largest=LARGEST_TABLE) as sheet:
         rows = sheet.rows()
         head = _head(sheet, rows)
         if head is None:
@@ -158,14 +157,6 @@ def opened_workbook(path: Path) -> Iterator[WorkbookTable]:
         faults = Faults(str(sheet.file), addressed)
         headers = headers_of([texts[place] for place in columns], line, faults)
         yield WorkbookTable(str(path), faults, headers, line, columns, sheet, chain(ahead, rows))
-
-
-@contextmanager
-def opened_book(path: Path, *, preferred: str = "") -> Iterator[BookSheet]:
-    """Open a sheet, once nothing speaks against its file."""
-    refuse_book(file_of(path), largest=LARGEST_TABLE)
-    with opened_sheet(path, preferred=preferred) as sheet:
-        yield sheet
 
 
 # Where the header stands

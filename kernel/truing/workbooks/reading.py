@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from datetime import date, datetime, time
+from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
@@ -263,3 +264,10 @@ def cell_text(cell: Any) -> str:
     if len(text) > LONGEST_TEXT:
         raise ValueError(f"holds {len(text)} characters; at most {LONGEST_TEXT} are read")
     return text if text.isprintable() else " ".join(text.split())
+
+
+def in_per_cent(cell: Any) -> float:
+    """Return the number in a cell whose unit is per cent: 0.07 that is shown as "7 %" is 7."""
+    if "%" not in cell.number_format:
+        return float(cell.value)
+    return float(Decimal(repr(cell.value)) * 100)
