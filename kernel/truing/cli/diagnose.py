@@ -31,8 +31,10 @@ def diagnose(settings: Settings, asked: SimpleNamespace) -> int:
     say_example(asked.inputs, asked.plugin, settings)
     folder = asked.output or Path("runs") / file_of(measured[0]).stem
     record, progress = MeasuredRecord(measured), not settings.quiet
-    done = model.diagnose(record, asked.inputs, output=folder, pdf=asked.pdf, progress=progress)
+    done = model.diagnose(record, asked.inputs, output=folder, pdf=asked.pdf, xlsx=asked.xlsx, progress=progress)
     _say_beside(done, settings)
+    if asked.xlsx:
+        settings.say(f"for a spreadsheet: {folder / 'diagnosis.xlsx'}")
     if asked.as_json:
         out_json(done.document)
     else:

@@ -45,7 +45,8 @@ def watch(settings: Settings, asked: SimpleNamespace) -> int:
     for file in (path for path in map(file_of, (inputs, *measured)) if not path.is_file()):
         refuse_file(file, largest=0, instead="", is_table=False)
     folder = asked.output or Path("runs") / file_of((measured or (inputs,))[0]).stem
-    how = {} if measured else {"cases": asked.cases, "workers": asked.workers, "excel": asked.excel}
+    how = {"xlsx": asked.xlsx}
+    how |= {} if measured else {"cases": asked.cases, "workers": asked.workers, "excel": asked.excel}
     watcher = _Watcher(asked.plugin, inputs, measured, tuple(asked.changed or ()), folder, how, settings)
     demand_place(folder, watcher.kind)
     watched = WatchedFiles(asked.every)

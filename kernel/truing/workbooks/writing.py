@@ -45,18 +45,24 @@ class SheetTable:
 
 def workbook_bytes(sheets: Sequence[SheetTable]) -> bytes:
     """Return a workbook, the same bytes whenever it is made. Raises UsageError where it cannot be."""
+    demand_library()
+    book = openpyxl.Workbook(write_only=True)
+    lists: list[Sequence[Any]] = []
+    for table in sheets:
+        _write(book.create_sheet(table.title), table, lists)
+    if lists:
+        _write_lists(book.create_sheet("choices"), lists)
+    stream = BytesIO()
+    book.save(stream)
+    return _undated(stream.getvalue())
+
+
+def demand_library() -> None:
+    """Raise UsageError where the library is not installed that writes workbooks: asked before a long calculation."""
     try:
-        book = openpyxl.Workbook(write_only=True)
-        lists: list[Sequence[Any]] = []
-        for table in sheets:
-            _write(book.create_sheet(table.title), table, lists)
-        if lists:
-            _write_lists(book.create_sheet("choices"), lists)
-        stream = BytesIO()
-        book.save(stream)
+        assert openpyxl.Workbook
     except ImportError:
         raise UsageError("a workbook needs openpyxl, which is not installed: pip install 'truing[excel]'") from None
-    return _undated(stream.getvalue())
 
 
 def _write(sheet: Any, table: SheetTable, lists: list[Sequence[Any]]) -> None:
