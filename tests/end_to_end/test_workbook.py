@@ -188,20 +188,33 @@ def test_a_planned_experiment_is_a_workbook_to_fill_in(tmp_path: Path) -> None:
     assert {row[head.index("force [N]")] for row in rows} == {None}
 
 
-def test_libreoffice_opens_what_is_written(calc: Calc, tmp_path: Path) -> None:
+def by_libreoffice(book: Path, *, to: str, into: Path) -> None:
+    """Let LibreOffice open a workbook and save it as something else."""
     office = shutil.which("soffice") or shutil.which("libreoffice")
     if office is None:
         pytest.skip("LibreOffice is not installed")
+    profile = f"-env:UserInstallation={(book.parent / 'profile').as_uri()}"
+    words = [office, profile, "--headless", "--convert-to", to, "--outdir", str(into), str(book)]
+    subprocess.run(words, check=True, timeout=300)
+
+
+def test_libreoffice_opens_what_is_written(calc: Calc, tmp_path: Path) -> None:
     write(tmp_path / "job.xlsx", cases=CASES)
     assert calc("run", PIN, "--cases", "job.xlsx", "--xlsx", *QUICK).code == 0
-    book = tmp_path / "runs" / "pin_wear" / "results.xlsx"
-    convert = [
-        "--headless",
-        "--convert-to",
-        "csv:Text - txt - csv (StarCalc):44,34,76,1,,0,false,true,false,false,false,2",
-    ]
-    profile = f"-env:UserInstallation={(tmp_path / 'profile').as_uri()}"
-    subprocess.run([office, profile, *convert, "--outdir", str(tmp_path), str(book)], check=True, timeout=300)
+    second_sheet = "csv:Text - txt - csv (StarCalc):44,34,76,1,,0,false,true,false,false,false,2"
+    by_libreoffice(tmp_path / "runs" / "pin_wear" / "results.xlsx", to=second_sheet, into=tmp_path)
     text = next(tmp_path.glob("results*.csv")).read_text(encoding="utf-8")
     assert text.splitlines()[0].startswith("case,row,load [N]")
     assert [line.split(",")[0] for line in text.splitlines()[1:]] == ["light", "=2+2", "@heavy"]
+
+
+def test_what_libreoffice_saves_reads_as_it_was(calc: Calc, tmp_path: Path) -> None:
+    assert calc("init", PIN, "--excel", "-q").code == 0
+    write(tmp_path / "job.xlsx", cases=CASES)
+    (tmp_path / "saved").mkdir()
+    for name in ("pin_wear.xlsx", "job.xlsx"):
+        by_libreoffice(tmp_path / name, to="xlsx", into=tmp_path / "saved")
+    for folder in (".", "saved"):
+        files = ("--inputs", f"{folder}/pin_wear.xlsx", "--cases", f"{folder}/job.xlsx")
+        assert calc("run", PIN, *files, *QUICK, "-o", f"{folder}/run").code == 0
+    assert results(tmp_path / "run") == results(tmp_path / "saved" / "run")

@@ -223,16 +223,10 @@ class LoadedModel:
         if not isinstance(record, MeasuredRecord):
             made = "truing.read(files, model) or truing.record(dataframe, model)"
             raise UsageError(f"a {type(record).__name__} is no record; make one with {made}")
-        for name, is_asked in {"pdf": pdf, "xlsx": xlsx}.items():
-            if is_asked and output is None:
-                raise UsageError(f"{name} needs output, the folder that is written")
+        _demand_output(output, {"pdf": pdf, "xlsx": xlsx})
         options = {"hold_out": hold_out, "per_file": list(per_file), "budget": budget}
         stated = {f"studies.diagnose.{name}": toml_value(value) for name, value in options.items() if value}
         setup = self.setup(inputs, set={**stated, **(set or {})}, **values)
-        if xlsx:
-            demand_library()
-        if output is not None:
-            demand_place(Path(output), "diagnosis")
         with progress_bar(progress) as report, told_by_line(setup):
 
             def as_one(stage: str, step: int, steps: int) -> None:
@@ -301,6 +295,16 @@ class LoadedModel:
 
     def _settings(self, set: Mapping[str, Any] | None, values: Mapping[str, Any]) -> list[str]:
         return settings_of(self.offer.model, {**(set or {}), **values})
+
+
+def _demand_output(output: str | Path | None, files: Mapping[str, bool]) -> None:
+    """Raise UsageError or OutputError where what is asked for cannot be written, before anything is calculated."""
+    for name in (name for name, is_asked in files.items() if is_asked and output is None):
+        raise UsageError(f"{name} needs output, the folder that is written")
+    if files["xlsx"]:
+        demand_library()
+    if output is not None:
+        demand_place(Path(output), "diagnosis")
 
 
 def _demand_known(rows: RowsFile, setup: Setup) -> None:
