@@ -165,8 +165,8 @@ def test_dates_and_durations_are_times_where_the_unit_is_one_of_time(tmp_path: P
 def test_a_date_where_a_number_belongs_is_said_to_be_one(tmp_path: Path) -> None:
     path = book(tmp_path / "b.xlsx", {"s": [HEAD, [1, datetime(2026, 4, 3)]]})
     assert faults(path) == [
-        "b.xlsx, s!B2: depth: '2026-04-03' is a date and no number; write the number, and format the cell as one "
-        "where it has a format"
+        "b.xlsx, s!B2: depth: '2026-04-03' is a date and no number; a spreadsheet makes dates of numbers: "
+        "format the column as numbers"
     ]
 
 
@@ -255,10 +255,11 @@ def test_a_huge_text_is_not_passed_on() -> None:
         reading.cell_text(SimpleNamespace(value="x" * 32_768, data_type="s"))
 
 
-def test_macros_are_not_looked_at(tmp_path: Path) -> None:
+def test_macros_and_links_are_not_looked_at(tmp_path: Path) -> None:
     path = book(tmp_path / "b.xlsx", {"s": [HEAD, [1, 2]]})
     with zipfile.ZipFile(path, "a") as archive:
         archive.writestr("xl/vbaProject.bin", b"Sub Auto_Open()")
+        archive.writestr("xl/externalLinks/externalLink1.xml", b"no XML at all")
     assert len(read(path.rename(tmp_path / "b.xlsm"))) == 1
 
 

@@ -365,7 +365,7 @@ def read_cell(text: str, *, decimal_comma: bool, may_be_missing_word: bool = Fal
 def _wrong(cell: str) -> str:
     if _DATE.fullmatch(cell):
         return (
-            f"{shown(cell)} is a date and no number; write the number, and format the cell as one where it has a format"
+            f"{shown(cell)} is a date and no number; a spreadsheet makes dates of numbers: format the column as numbers"
         )
     if cell[0] in "<>≤≥":
         words = "write the number, and mark the row in a column of its own (at_least or at_most in [studies.diagnose])"
