@@ -173,9 +173,10 @@ def test_a_date_where_a_number_belongs_is_said_to_be_one(tmp_path: Path) -> None
 def test_a_share_that_is_shown_in_per_cent_is_what_is_shown(tmp_path: Path) -> None:
     def shown(made: Any) -> None:
         made["s"]["A2"].number_format = "0.0%"
+        made["s"]["A4"].number_format = '0.0"%"'
 
-    path = book(tmp_path / "b.xlsx", {"s": [["share [%]"], [0.07], [7]]}, shown)
-    assert column(read(path), "share") == [0.07, 0.07]
+    path = book(tmp_path / "b.xlsx", {"s": [["share [%]"], [0.07], [7], [7]]}, shown)
+    assert column(read(path), "share") == [0.07, 0.07, 0.07]
 
 
 def test_every_fault_of_a_sheet_is_told_at_once_with_its_cell(tmp_path: Path) -> None:

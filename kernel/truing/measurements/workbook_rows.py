@@ -16,6 +16,7 @@ from truing.measurements.csv_text import (
     COMMENT,
     INSTEAD,
     LARGEST_TABLE,
+    MOST_FAULTS,
     ROWS_AT_ONCE,
     DecimalMarks,
     Faults,
@@ -89,8 +90,10 @@ class WorkbookTable:
         ):
             self.left_out.setdefault(COMMENT, []).append(line)
             return False
-        for place in set(filled).difference(self.columns, self._nameless):
+        for place in sorted(set(filled).difference(self.columns, self._nameless)):
             self._nameless.add(place)
+            if len(self._nameless) > MOST_FAULTS:
+                break
             where = "stands in a column whose header is empty"
             cell = self._sheet.address(line, self._sheet.area.first_column + place)
             self.faults.found.append(

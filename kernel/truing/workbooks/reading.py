@@ -30,6 +30,8 @@ MOST_NAMED = 12
 _NAME = re.compile(r"(?P<book>.+?\.xls[xm])(?:#(?P<place>.+))?", re.IGNORECASE | re.DOTALL)
 _RANGE = re.compile(r"\$?([A-Z]{1,3})\$?([1-9]\d{0,6})?:\$?([A-Z]{1,3})\$?([1-9]\d{0,6})?", re.ASCII | re.IGNORECASE)
 _MERGED = re.compile(rb'<(?:\w+:)?mergeCell\s+ref="([A-Z]{1,3}\d{1,7}:[A-Z]{1,3}\d{1,7})"')
+_LITERAL = re.compile(r'"[^"]*"|\\.')
+"""What a number format shows as it stands: a "%" in it multiplies nothing."""
 _PLAIN_TITLE = re.compile(r"[^\W\d]\w*")
 
 
@@ -186,6 +188,8 @@ def _demand_modest(file: Path) -> None:
 def _found(book: Any, file: Path, place: str, preferred: str) -> tuple[Any, CellRange]:
     """Return the sheet and the range that a place names."""
     sheets = {sheet.title.casefold(): sheet for sheet in book.worksheets}
+    if not sheets:
+        raise _refused(file, "holds no sheet of cells that can be read; save it as an Excel workbook (.xlsx)")
     visible = [sheet for sheet in book.worksheets if sheet.sheet_state == "visible"]
     title, mark, cells = place.rpartition("!")
     whole = title or ("" if _range(place) else place)
@@ -221,8 +225,6 @@ def _by_name(book: Any, file: Path, place: str, sheets: dict[str, Any]) -> tuple
 def _listed(sheets: Any) -> str:
     titles = [shown(sheet.title) for sheet in sheets]
     more = f" and {len(titles) - MOST_NAMED} more" if len(titles) > MOST_NAMED else ""
-    if not titles:
-        return "no sheet of cells"
     return f"the sheet{'' if len(titles) == 1 else 's'} {', '.join(titles[:MOST_NAMED])}{more}"
 
 
@@ -268,6 +270,6 @@ def cell_text(cell: Any) -> str:
 
 def in_per_cent(cell: Any) -> float:
     """Return the number in a cell whose unit is per cent: 0.07 that is shown as "7 %" is 7."""
-    if "%" not in cell.number_format:
+    if "%" not in _LITERAL.sub("", cell.number_format):
         return float(cell.value)
     return float(Decimal(repr(cell.value)) * 100)
