@@ -12,18 +12,20 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 from sample_models import PIN_OFFER
 
 from truing import Kernel
-from truing.errors import InputError
+from truing.errors import InputError, UsageError
 from truing.example_file import example_book, example_of
 from truing.inputs_file import read_setup, setup_from_text
 from truing.kernel import Offer
 from truing.measurements import DataTable, read_table
 from truing.runs.inputs_written import complete_inputs
 from truing.setup import Setup
-from truing.workbooks import reading
+from truing.workbooks import reading, writing
+from truing.workbooks.writing import Printed, SheetTable, workbook_bytes
 
 openpyxl = pytest.importorskip("openpyxl")
 
@@ -413,3 +415,35 @@ def test_the_workbook_to_fill_in_offers_choices(tmp_path: Path) -> None:
     assert [cell.value for cell in lists[column] if cell.value] == list(
         offer.model.input_fields["load_sharing"].choices
     )
+
+
+# Writing
+
+
+def test_a_written_workbook_holds_numbers_as_numbers_and_text_as_text(tmp_path: Path) -> None:
+    words = ["=1+1", "+2", "-3", "@SUM(A1)", "#N/A", "#DIV/0!", "plain", "bell\x07", "x" * 40_000]
+    numbers = [Printed(2 / 3, "0.66667"), Printed(1.25e-7, "1.25e-07"), Printed(3137.0, "3137"), np.float64(0.5)]
+    others = [True, None, math.nan, math.inf, 7]
+    rows = [[cell] for cell in (*words, *numbers, *others)]
+    path = tmp_path / "b.xlsx"
+    path.write_bytes(workbook_bytes([SheetTable("s", ["=head"], rows)]))
+    sheet = openpyxl.load_workbook(path)["s"]
+    cells = [row[0] for row in sheet.iter_rows()]
+    assert [(cell.value, cell.data_type) for cell in cells[:8]] == [
+        ("=head", "s"), *((word, "s") for word in words[:7]),
+    ]  # fmt: skip
+    assert all(cell.quotePrefix for cell in cells[:7])
+    assert cells[8].value == "bell\N{REPLACEMENT CHARACTER}"
+    assert len(cells[9].value) == 32_767
+    assert [cell.value for cell in cells[10:]] == [
+        pytest.approx(2 / 3, rel=1e-15), 1.25e-7, 3137, 0.5, True, None, None, "inf", 7,
+    ]  # fmt: skip
+    assert [cell.number_format for cell in cells[10:14]] == ["0.00000", "0.00E+00", "0", "General"]
+    assert sheet.freeze_panes == "A2"
+    assert cells[0].font.b
+
+
+def test_a_sheet_that_is_too_long_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(writing, "MOST_ROWS", 2)
+    with pytest.raises(UsageError, match="3 rows are more than a sheet of a workbook has"):
+        workbook_bytes([SheetTable("s", ["a"], [[1], [2], [3]])])
