@@ -39,15 +39,18 @@ class UnitError(UsageError, ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """One thing wrong with one file: the sentence, and where it stands."""
+    """One thing wrong with one file: the sentence, and where it stands: in a line, or in a cell of a workbook."""
 
     message: str
     file: str = ""
     line: int | None = None
+    cell: str = ""
 
     def __str__(self) -> str:
         if not self.file:
             return self.message
+        if self.cell:
+            return f"{self.file}, {self.cell}: {self.message}"
         return f"{self.file}:{self.line}: {self.message}" if self.line else f"{self.file}: {self.message}"
 
 

@@ -1,8 +1,9 @@
-"""The commented inputs file that ``calc init`` writes: the plugin's own, or one made from the declaration."""
+"""The inputs file that ``calc init`` writes, text or a workbook: the plugin's own, or one made from the declaration."""
 
 from __future__ import annotations
 
 import textwrap
+import tomllib
 from collections.abc import Iterator
 from dataclasses import MISSING
 from pathlib import Path
@@ -11,14 +12,20 @@ from typing import Any
 from truing.declare.fields import InputField
 from truing.declare.model import Model, Study
 from truing.declare.sources import Tolerance, Unknown
-from truing.errors import PluginError
+from truing.errors import PluginError, UnitError
+from truing.formulas import symbol_text
+from truing.formulas.symbols import printable
 from truing.inputs_file.assemble import default_of, spread_text, toml_key, toml_value
+from truing.inputs_file.document import SECTIONS
 from truing.inputs_file.entries import described
 from truing.inputs_file.study_options import options_of
-from truing.inputs_file.values import plain
+from truing.inputs_file.values import bounds_in_words, plain
+from truing.inputs_file.workbook import COLUMNS, SHEET
 from truing.kernel import Offer
 from truing.setup import DEFAULT_SEED
+from truing.units.grammar import split
 from truing.units.names import PURE
+from truing.workbooks.writing import SheetTable, workbook_bytes
 
 WIDTH = 100
 SCHEMA_MARK = "#:schema "
@@ -184,3 +191,63 @@ def _units(model: Model[Any, Any]) -> Iterator[str]:
     if printed:
         yield from _heading("units", "The unit in which a result is printed.")
         yield from (f"# {name} = {toml_value(unit)}" for name, unit in printed.items())
+
+
+# The same as a workbook, to be filled in by somebody who has no Truing
+
+
+def example_book(offer: Offer) -> bytes:
+    """Return a workbook that states what the example does, with a row for every input; read back it is the same.
+
+    An input that the example does not state has no value there; its note says what then holds. Choices and switches
+    offer what they may be. Data files are looked for beside the workbook. Raises PluginError and UsageError.
+    """
+    model, stated = offer.model, tomllib.loads(example_text(offer))
+    rows: list[tuple[Any, ...]] = [("plugin", stated.pop("plugin", offer.name), "", "", "the calculation", "")]
+    given = stated.pop("inputs", {})
+    choices: dict[tuple[int, int], tuple[Any, ...]] = {}
+    for field in model.input_fields.values():
+        if field.choices or field.kind == "switch":
+            choices[len(rows), COLUMNS.index("value")] = tuple(field.choices) or (True, False)
+        value, unit = _parted(given.pop(field.name, None), field)
+        symbol = symbol_text(field.symbol) if field.symbol else ""
+        rows.append((field.name, value, unit, symbol, _noted(field, value), printable(field.spec.source)))
+    rows += [(name, _in_a_cell(value), "", "", "", "") for name, value in given.items()]  # under an old name
+    for section, entries in stated.items():
+        for name, value in _dotted(section, entries, 2 if section in {"effects", "studies"} else 1):
+            rows.append((name, _in_a_cell(value), "", "", SECTIONS.get(section, ""), ""))
+    return workbook_bytes([SheetTable(SHEET, COLUMNS, rows, choices)])
+
+
+def _parted(value: Any, field: InputField) -> tuple[Any, str]:
+    """Return number and unit of a quantity; anything else as a cell holds it, without a unit but with the declared."""
+    unit = "" if field.unit in PURE else field.unit
+    if value is None or field.kind not in {"float", "whole"}:
+        return _in_a_cell(value), unit if field.kind in {"float", "whole"} else ""
+    if not isinstance(value, str):
+        return value, ""
+    try:
+        quantity = split(value)
+    except UnitError:
+        return value, ""
+    return quantity.value, quantity.unit
+
+
+def _noted(field: InputField, value: Any) -> str:
+    default = default_of(field)
+    empty = f"empty: {default if isinstance(default, str) else toml_value(default)}" if default is not None else ""
+    parts = [printable(field.spec.note), bounds_in_words(field), empty if value is None else ""]
+    return "; ".join(part for part in parts if part)
+
+
+def _dotted(name: str, value: Any, depth: int) -> Iterator[tuple[str, Any]]:
+    """Give the entries of a section by the names that ``--set`` calls them by."""
+    if not isinstance(value, dict) or not depth:
+        yield name, value
+        return
+    for key, inner in value.items():
+        yield from _dotted(f"{name}.{key}", inner, depth - 1)
+
+
+def _in_a_cell(value: Any) -> Any:
+    return toml_value(value) if isinstance(value, (dict, list)) else value

@@ -28,6 +28,15 @@ stats: Any = Later("scipy.stats")
 ipython_display: Any = Later("IPython.display")
 integrate: Any = Later("scipy.integrate")
 sparse: Any = Later("scipy.sparse")
+openpyxl: Any = Later(
+    "openpyxl",
+    EMPTY_CELL="openpyxl.cell.read_only",
+    DataValidation="openpyxl.worksheet.datavalidation",
+    Font="openpyxl.styles",
+    WriteOnlyCell="openpyxl.cell",
+    column_index_from_string="openpyxl.utils",
+    get_column_letter="openpyxl.utils",
+)
 pymoo: Any = Later(
     "pymoo",
     Config="pymoo.config",

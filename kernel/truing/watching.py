@@ -17,8 +17,11 @@ from typing import Any
 
 from watchfiles import watch
 
+from truing.errors import InputError
 from truing.inputs_file.files import digest_of
+from truing.inputs_file.workbook import read_book
 from truing.kernel import Offer
+from truing.workbooks.reading import is_workbook
 
 PATIENCE = 1.0
 """How long a file may be away or empty, in seconds: editors put a new one in its place, or empty it before writing."""
@@ -88,8 +91,9 @@ def content_of(path: Path) -> str:
 def files_named_in(inputs: Path, offer: Offer) -> Iterator[Path]:
     """Yield the data files and the logo that an inputs file names, as far as that can be read now."""
     try:
-        document = tomllib.loads(inputs.read_text(encoding="utf-8-sig"))
-    except (OSError, ValueError):
+        is_book = is_workbook(inputs)
+        document = read_book(inputs, offer).data if is_book else tomllib.loads(inputs.read_text(encoding="utf-8-sig"))
+    except (OSError, ValueError, InputError):
         return
     stated = document.get("inputs")
     head = document.get("sheet")

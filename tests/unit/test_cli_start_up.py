@@ -12,7 +12,19 @@ import pytest
 from truing.cli.console import out, out_json, say
 
 # typer brings pydantic, whatever is imported here
-HEAVY = {"numpy", "scipy", "pint", "matplotlib", "jinja2", "sklearn", "pymoo", "press_linkage", "pluggy", "tomlkit"}
+HEAVY = {
+    "numpy",
+    "scipy",
+    "pint",
+    "matplotlib",
+    "jinja2",
+    "sklearn",
+    "pymoo",
+    "press_linkage",
+    "pluggy",
+    "tomlkit",
+    "openpyxl",
+}
 PROBE = """
 import json, sys
 from truing.cli import main

@@ -229,7 +229,7 @@ EMPTY = "is empty; the first line of a table holds the names, with units such as
     [
         *(("rows.csv", content, EMPTY) for content in (b"", b"\n  \n", b"# only words\n")),
         ("rows.csv", b"a\0b", "is a binary file; a table is CSV text in UTF-8"),
-        *((name, b"PK\x03\x04", "is a spreadsheet; save it as CSV UTF-8") for name in ("a.xlsx", "a.csv", "a.ods")),
+        *((name, b"PK\x03\x04", "is a spreadsheet; save it as .xlsx or CSV UTF-8") for name in ("a.csv", "a.ods")),
         ("rows.csv", "time [h]\n1".encode("utf-16"), "is text in UTF-16; save it as UTF-8"),
         ("rows.csv", "note\nPrüfung\n".encode("latin-1"), "is not UTF-8 text; save it as CSV UTF-8"),
         ("rows.csv", b"note\n" + b"x" * 1_000_001, ":2: this line has 1000001 characters; at most 1000000 are "),

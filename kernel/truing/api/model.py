@@ -52,6 +52,7 @@ from truing.studies.frequency import Frequency
 from truing.studies.sweep import Sweep
 from truing.units import difference_unit
 from truing.units.grammar import shown
+from truing.workbooks.writing import demand_library
 
 
 @dataclass(frozen=True)
@@ -115,6 +116,7 @@ class LoadedModel:
         resume: bool = False,
         pdf: bool = False,
         excel: bool = False,
+        xlsx: bool = False,
         set: Mapping[str, Any] | None = None,
         progress: Progress | bool = True,
         **values: Any,
@@ -124,11 +126,12 @@ class LoadedModel:
         ``inputs`` is an inputs file; without one the shipped example runs. ``cases`` is a file or a dataframe, in which
         every row is a case. It is computed in ``workers`` processes, or on the dask ``cluster`` at an address; the
         answer does not depend on it. ``output`` is a folder that is complete or absent, whatever happens; with
-        ``resume`` finished batches are kept beside it, and those of an interrupted run are taken up; ``pdf`` and
-        ``excel`` are as in ``Run.save``. Raises TruingError with one sentence.
+        ``resume`` finished batches are kept beside it, and those of an interrupted run are taken up; ``pdf``,
+        ``excel`` and ``xlsx`` are as in ``Run.save``. Raises TruingError with one sentence.
         """
         setup = self.setup(inputs, set=set, **values)
-        how: dict[str, Any] = {"workers": workers, "cluster": cluster, "resume": resume, "pdf": pdf, "excel": excel}
+        how: dict[str, Any] = {"workers": workers, "cluster": cluster, "resume": resume}
+        how |= {"pdf": pdf, "excel": excel, "xlsx": xlsx}
         return performed(setup, self.offer, progress, output=output, cases=cases, **how)
 
     def study(
@@ -231,6 +234,7 @@ class LoadedModel:
         budget: int = 0,
         output: str | Path | None = None,
         pdf: bool = False,
+        xlsx: bool = False,
         set: Mapping[str, Any] | None = None,
         progress: Progress | bool = True,
         **values: Any,
@@ -239,19 +243,16 @@ class LoadedModel:
 
         ``hold_out`` marks rows that only judge ("judged = yes"), ``per_file`` names what every file has for itself,
         ``budget`` is how many calls of the model the search may make (0: as many as its time allows). Nothing is
-        written without ``output``, a folder that is complete or absent; ``pdf`` prints the sheet there. Raises
-        TruingError with one sentence, or every fault of a file.
+        written without ``output``, a folder that is complete or absent; ``pdf`` prints the sheet there, and
+        ``xlsx`` adds a workbook. Raises TruingError with one sentence, or every fault of a file.
         """
         if not isinstance(record, MeasuredRecord):
             made = "truing.read(files, model) or truing.record(dataframe, model)"
             raise UsageError(f"a {type(record).__name__} is no record; make one with {made}")
-        if pdf and output is None:
-            raise UsageError("pdf needs output, the folder that is written")
+        _demand_output(output, {"pdf": pdf, "xlsx": xlsx})
         options = {"hold_out": hold_out, "per_file": list(per_file), "budget": budget}
         stated = {f"studies.diagnose.{name}": toml_value(value) for name, value in options.items() if value}
         setup = self.setup(inputs, set={**stated, **(set or {})}, **values)
-        if output is not None:
-            demand_place(Path(output), "diagnosis")
         with progress_bar(progress) as report, told_by_line(setup):
 
             def as_one(stage: str, step: int, steps: int) -> None:
@@ -260,7 +261,9 @@ class LoadedModel:
             started, records = time.time(), read_records(record.files, self.offer, setup)
             diagnosis = Diagnosis(self.offer, diagnose(setup, records, progress=as_one, propose=proposed), started)
             report("sheet and PDF" if pdf else "sheet", 0, 0)
-            return diagnosis if output is None else replace(diagnosis, note=diagnosis.written(Path(output), pdf=pdf))
+            if output is None:
+                return diagnosis
+            return replace(diagnosis, note=diagnosis.written(Path(output), pdf=pdf, xlsx=xlsx))
 
     def plan(
         self,
@@ -318,6 +321,16 @@ class LoadedModel:
 
     def _settings(self, set: Mapping[str, Any] | None, values: Mapping[str, Any]) -> list[str]:
         return settings_of(self.offer.model, {**(set or {}), **values})
+
+
+def _demand_output(output: str | Path | None, files: Mapping[str, bool]) -> None:
+    """Raise UsageError or OutputError where what is asked for cannot be written, before anything is calculated."""
+    for name in (name for name, is_asked in files.items() if is_asked and output is None):
+        raise UsageError(f"{name} needs output, the folder that is written")
+    if files["xlsx"]:
+        demand_library()
+    if output is not None:
+        demand_place(Path(output), "diagnosis")
 
 
 def _demand_known(rows: RowsFile, setup: Setup) -> None:
@@ -407,23 +420,23 @@ class Diagnosis:
         """Write the sheet as HTML, Markdown or PDF, as the name ends. Raises OutputError."""
         return write_sheet(path, partial(diagnosis_sheet_of, self.result, self.started))
 
-    def save(self, folder: str | Path, *, pdf: bool = False) -> Path:
+    def save(self, folder: str | Path, *, pdf: bool = False, xlsx: bool = False) -> Path:
         """Write the folder that ``calc diagnose`` writes; an earlier diagnosis there goes. Raises OutputError."""
         target = Path(folder)
         demand_place(target, "diagnosis")
-        note = self.written(target, pdf=pdf)
+        note = self.written(target, pdf=pdf, xlsx=xlsx)
         if note.startswith("no PDF"):
             warnings.warn(note, stacklevel=2)
         return target
 
-    def written(self, folder: Path, *, pdf: bool = False) -> str:
+    def written(self, folder: Path, *, pdf: bool = False, xlsx: bool = False) -> str:
         """Write the folder and return what became of the PDF."""
         sheet = diagnosis_sheet_of(self.result, self.started)
         sheets, note = sheets_of(sheet, folder, pdf=pdf)
         info = {**run_info(self.started), "data": dict(self.result.records.digests)}
         write_outcome(
             folder, "diagnosis", self.result.setup, self.document, provenance=sheet.provenance, run_info=info,
-            files=diagnosis_files(self.result, sheets, folder),
+            files=diagnosis_files(self.result, sheets, folder, xlsx=xlsx),
         )  # fmt: skip
         return note
 

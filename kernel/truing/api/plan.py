@@ -21,7 +21,9 @@ from truing.measurements import table_text
 from truing.report.diagnosis_sheet import readings_table
 from truing.report.diagnosis_words import amount_text, experiment_text, listed, readable, spoken
 from truing.runs.diagnosis_document import plan_document
+from truing.runs.spreadsheet import column_sheet
 from truing.units import difference_unit, from_si
+from truing.workbooks.writing import workbook_bytes
 
 
 @dataclass(frozen=True)
@@ -74,9 +76,16 @@ class Plan:
         return frame_of(self._columns())
 
     def save(self, path: str | Path) -> Path:
-        """Write the readings to take as CSV, to be filled in and diagnosed. Raises UsageError and OutputError."""
+        """Write the readings to take, to be filled in and diagnosed: CSV, or a workbook where the name ends in .xlsx.
+
+        Raises UsageError and OutputError.
+        """
         columns = self._columns()
-        write_files({Path(path): table_text(list(columns), list(columns.values()))})
+        if Path(path).suffix.lower() == ".xlsx":
+            table = column_sheet("readings", columns, self.planned.setup.model)
+            write_files({Path(path): workbook_bytes([table])})
+        else:
+            write_files({Path(path): table_text(list(columns), list(columns.values()))})
         return Path(path)
 
     def _columns(self) -> Mapping[str, list[float]]:

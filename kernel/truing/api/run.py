@@ -39,6 +39,7 @@ from truing.setup import Setup
 from truing.studies.bench import Progress, silent
 from truing.studies.checks import Check, State
 from truing.units import from_si
+from truing.workbooks.writing import demand_library
 
 FIRST = 12
 """So many results are shown, in the order declared; a click shows the others."""
@@ -135,26 +136,26 @@ class Run:
         """Write the calculation sheet as HTML, Markdown or PDF, as the name ends. Raises OutputError."""
         return write_sheet(path, partial(self._sheet, silent))
 
-    def save(self, folder: str | Path, *, pdf: bool = False, excel: bool = False) -> Path:
+    def save(self, folder: str | Path, *, pdf: bool = False, excel: bool = False, xlsx: bool = False) -> Path:
         """Write the folder that ``calc run`` writes: inputs, results, sheets, arrays; an earlier run there goes.
 
-        ``pdf`` prints the sheet where a browser is installed, ``excel`` adds tables for a spreadsheet. Raises
-        OutputError where the folder is something else, or cannot be written.
+        ``pdf`` prints the sheet where a browser is installed, ``excel`` adds CSV for a spreadsheet with a decimal
+        comma, ``xlsx`` a workbook. Raises OutputError where the folder is something else, or cannot be written.
         """
         target = Path(folder)
         demand_place(target)
-        note = self.written(target, pdf=pdf, excel=excel)
+        note = self.written(target, pdf=pdf, excel=excel, xlsx=xlsx)
         if note.startswith("no PDF"):
             warnings.warn(note, stacklevel=2)
         return target
 
-    def written(self, folder: Path, *, pdf: bool, excel: bool, progress: Progress = silent) -> str:
+    def written(self, folder: Path, *, pdf: bool, excel: bool, xlsx: bool = False, progress: Progress = silent) -> str:
         """Write the folder and return what became of the PDF."""
         sheet = self._sheet(progress)
         if pdf:
             progress("printing", 0, 0)
         sheets, note = sheets_of(sheet, folder, pdf=pdf)
-        files = run_files(self.calculation, self.document, sheets, excel=excel)
+        files = run_files(self.calculation, self.document, sheets, excel=excel, xlsx=xlsx)
         if self.alone:
             (study,) = self.studies.values()
             files |= {POINTS: text} if (text := study.points_text()) else {}
@@ -215,6 +216,7 @@ def performed(
     resume: bool = False,
     pdf: bool = False,
     excel: bool = False,
+    xlsx: bool = False,
     alone: bool = False,
 ) -> Run:
     """Run the calculation of a setup, and write the folder ``output`` where it is named, whole or not at all.
@@ -226,9 +228,11 @@ def performed(
     """
     if cluster and workers is not None:
         raise UsageError("cluster and workers exclude each other: a cluster has its own workers")
-    for name, is_asked in {"resume": resume, "pdf": pdf, "excel": excel}.items():
+    for name, is_asked in {"resume": resume, "pdf": pdf, "excel": excel, "xlsx": xlsx}.items():
         if is_asked and output is None:
             raise UsageError(f"{name} needs output, the folder that is written")
+    if xlsx:
+        demand_library()
     folder = None if output is None else Path(output)
     keeping: AbstractContextManager[BatchLog | None] = nullcontext()
     if folder is not None:
@@ -238,7 +242,7 @@ def performed(
     with progress_bar(progress) as report, told_by_line(setup), keeping as log:
         run = replace(_calculated(setup, offer, cases, place=place, progress=report, log=log), alone=alone)
         if folder is not None:
-            return replace(run, note=run.written(folder, pdf=pdf, excel=excel, progress=report))
+            return replace(run, note=run.written(folder, pdf=pdf, excel=excel, xlsx=xlsx, progress=report))
         return run
 
 

@@ -99,6 +99,9 @@ def init(
     context: typer.Context,
     plugin: Plugin,
     output: OutputFile = None,
+    excel: Annotated[
+        bool, typer.Option("--excel", "--xlsx", help="Write a workbook to fill in, as where FILE ends in .xlsx.")
+    ] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace files that exist.")] = False,
     no_schema: Annotated[bool, typer.Option("--no-schema", help="Write no schema for editors beside it.")] = False,
 ) -> None:
@@ -139,6 +142,7 @@ def run(
     ] = False,
     pdf: Pdf = False,
     excel: Excel = False,
+    xlsx: Xlsx = False,
     as_json: AsJson = False,
 ) -> None:
     """Run the calculation and its studies and write the calculation sheet."""
@@ -177,6 +181,7 @@ def watch(
     cases: Cases = None,
     output: RunFolder = None,
     excel: Excel = False,
+    xlsx: Xlsx = False,
     workers: Annotated[int, typer.Option("--workers", min=1, help="Processes that share the work.")] = 1,
     every: Annotated[float, typer.Option("--every", min=0.02, help="Seconds without a change before it runs.")] = 0.5,
 ) -> None:
@@ -188,7 +193,9 @@ def table(
     context: typer.Context,
     plugin: Plugin,
     inputs: Annotated[Path, typer.Option("--inputs", "-i", help="The inputs file.")],
-    rows: Annotated[Path, typer.Option("--rows", help="A CSV file; columns replace inputs and conditions row by row.")],
+    rows: Annotated[
+        Path, typer.Option("--rows", help="CSV or .xlsx; columns replace inputs or conditions row by row.")
+    ],
     output: OutputFile = None,
     changed: Changed = None,
     excel: Excel = False,
@@ -208,6 +215,7 @@ def diagnose(
         Path | None, typer.Option("--output", "-o", help="The folder (default runs/STEM of the first data file).")
     ] = None,
     pdf: Pdf = False,
+    xlsx: Xlsx = False,
     as_json: AsJson = False,
 ) -> None:
     """Find what the simulation gets wrong, name the cause, extend the model and measure the gain."""
@@ -308,12 +316,13 @@ OutputFile: TypeAlias = Annotated[
 Excel: TypeAlias = Annotated[
     bool, typer.Option("--excel", help="Write CSV that a spreadsheet with a decimal comma opens.")
 ]
+Xlsx: TypeAlias = Annotated[bool, typer.Option("--xlsx", help="Add a workbook with the tables to the folder.")]
 Inputs: TypeAlias = Annotated[
     Path | None, typer.Option("--inputs", "-i", help="The inputs file; without it the shipped example.")
 ]
-Cases: TypeAlias = Annotated[Path | None, typer.Option("--cases", help="A CSV file: every row is a case.")]
+Cases: TypeAlias = Annotated[Path | None, typer.Option("--cases", help="CSV or .xlsx: every row is a case.")]
 Data: TypeAlias = Annotated[
-    list[Path] | None, typer.Option("--data", "-d", help="A CSV file of measured rows; may be repeated.")
+    list[Path] | None, typer.Option("--data", "-d", help="Measured rows, CSV or .xlsx; may be repeated.")
 ]
 RunFolder: TypeAlias = Annotated[
     Path | None, typer.Option("--output", "-o", help="The run folder (default runs/STEM).")

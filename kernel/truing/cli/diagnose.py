@@ -16,6 +16,7 @@ from truing.report.diagnosis_sheet import data_line, questions
 from truing.report.diagnosis_words import headline, verdict_word
 from truing.runs.provenance import provenance_of
 from truing.texts import one_line
+from truing.workbooks.reading import file_of
 
 MISSPELT = "Did you mean"
 """A note that must be seen: a column that may be misspelt changes what is found."""
@@ -28,10 +29,12 @@ def diagnose(settings: Settings, asked: SimpleNamespace) -> int:
         raise UsageError("nothing to diagnose: name the measured rows with --data FILE.csv")
     model = find_model(asked.plugin, settings, asked.changed)
     say_example(asked.inputs, asked.plugin, settings)
-    folder = asked.output or Path("runs") / measured[0].stem
+    folder = asked.output or Path("runs") / file_of(measured[0]).stem
     record, progress = MeasuredRecord(measured), not settings.quiet
-    done = model.diagnose(record, asked.inputs, output=folder, pdf=asked.pdf, progress=progress)
+    done = model.diagnose(record, asked.inputs, output=folder, pdf=asked.pdf, xlsx=asked.xlsx, progress=progress)
     _say_beside(done, settings)
+    if asked.xlsx:
+        settings.say(f"for a spreadsheet: {folder / 'diagnosis.xlsx'}")
     if asked.as_json:
         out_json(done.document)
     else:

@@ -13,8 +13,8 @@ from truing.cli.console import Settings, aligned, json_text, out, out_json
 from truing.cli.load import find_model, find_offer
 from truing.declare.published import rules_of
 from truing.describe import sections
-from truing.errors import OutputError
-from truing.example_file import example_text, schema_name, with_schema_line
+from truing.errors import OutputError, UsageError
+from truing.example_file import example_book, example_text, schema_name, with_schema_line
 from truing.inputs_file import json_schema
 from truing.kernel import Kernel, Offer
 from truing.numbers import counted, format_number
@@ -87,14 +87,17 @@ def _described(said: dict[str, Any]) -> Iterator[str]:
 
 def init(settings: Settings, asked: SimpleNamespace) -> int:
     """Write a commented inputs file that holds the shipped example."""
-    output: Path | None = asked.output
     offer = find_offer(asked.plugin, settings)
-    text = example_text(offer)
+    output: Path | None = asked.output or (Path(f"{offer.name}.xlsx") if asked.excel else None)
+    is_book = output is not None and output.suffix.lower() == ".xlsx"
+    if asked.excel and not is_book:
+        raise UsageError(f"--excel writes a workbook; name it like {asked.output.stem}.xlsx")
+    text = "" if is_book else example_text(offer)
     if output is None:
         out(text.rstrip("\n"))
         return 0
-    files = {output: text}
-    if not asked.no_schema:
+    files: dict[Path, str | bytes] = {output: example_book(offer) if is_book else text}
+    if not asked.no_schema and not is_book:
         schema = output.parent / schema_name(offer)
         files = {output: with_schema_line(text, schema.name), schema: json_text(json_schema(offer), indent=None) + "\n"}
     if not asked.force:
@@ -104,12 +107,12 @@ def init(settings: Settings, asked: SimpleNamespace) -> int:
     return 0
 
 
-def _demand_new(output: Path, files: Mapping[Path, str]) -> None:
+def _demand_new(output: Path, files: Mapping[Path, str | bytes]) -> None:
     """Raise OutputError where a file is there already, unless it is a schema that would be the same."""
     if output.exists():
         raise OutputError(f"{output} exists already; choose another name or say --force")
     for path, content in files.items():
-        if path.exists() and not _holds(path, content):
+        if path.exists() and isinstance(content, str) and not _holds(path, content):
             raise OutputError(f"{path} exists already and is another schema; say --force to replace it, or --no-schema")
 
 

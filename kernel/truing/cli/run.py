@@ -26,6 +26,7 @@ from truing.studies.bench import files_of
 from truing.studies.checks import EXIT_CODES, HEADLINES, SHORT
 from truing.studies.verdicts import change_words, sentence_of
 from truing.texts import one_line
+from truing.workbooks.reading import file_of
 
 
 def run(settings: Settings, asked: SimpleNamespace) -> int:
@@ -34,11 +35,12 @@ def run(settings: Settings, asked: SimpleNamespace) -> int:
         raise UsageError("--cluster and --workers exclude each other: a cluster has its own workers")
     model = find_model(asked.plugin, settings, asked.changed)
     say_example(asked.inputs, asked.plugin, settings)
-    folder = asked.output or Path("runs") / (asked.inputs.stem if asked.inputs else model.name)
-    how = {name: getattr(asked, name) for name in ("cases", "workers", "cluster", "resume", "pdf", "excel")}
+    folder = asked.output or Path("runs") / (file_of(asked.inputs).stem if asked.inputs else model.name)
+    how = {name: getattr(asked, name) for name in ("cases", "workers", "cluster", "resume", "pdf", "excel", "xlsx")}
     with _told_what_is_kept(folder, asked.resume, settings):
         done = model.run(asked.inputs, output=folder, progress=not settings.quiet, **how)
-    _say_beside(done, folder if asked.excel else None, settings)
+    tables = ["results.csv", *(["cases.csv"] if done.cases is not None else [])] if asked.excel else []
+    _say_beside(done, [folder / name for name in (*tables, *(["results.xlsx"] if asked.xlsx else []))], settings)
     if asked.as_json:
         out_json(done.document)
     else:
@@ -60,7 +62,7 @@ def _told_what_is_kept(folder: Path, resume: bool, settings: Settings) -> Iterat
         raise
 
 
-def _say_beside(done: Run, tables: Path | None, settings: Settings) -> None:
+def _say_beside(done: Run, tables: Sequence[Path], settings: Settings) -> None:
     """Say what is no result: warnings, cases that failed, what else was written, and where the numbers come from."""
     for warning in done.warnings:
         settings.say(f"warning: {one_line(warning)}")
@@ -69,9 +71,8 @@ def _say_beside(done: Run, tables: Path | None, settings: Settings) -> None:
             say(str(case.fault))
     if done.note:
         settings.say(done.note)
-    if tables is not None:
-        names = ["results.csv", *(["cases.csv"] if done.cases is not None else [])]
-        settings.say(f"for a spreadsheet: {' and '.join(str(tables / name) for name in names)}")
+    if tables:
+        settings.say(f"for a spreadsheet: {' and '.join(map(str, tables))}")
     if done.computed["resumed"]:
         settings.say(f"{done.computed['resumed']} finished batches of an interrupted run were taken up")
     setup = done.calculation.setup

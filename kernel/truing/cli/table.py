@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from types import SimpleNamespace
+from typing import Any
 
 from truing.api.tables import name_in
 from truing.atomic import write_files
@@ -15,11 +16,14 @@ from truing.gauge import shown_by_gauge
 from truing.inputs_file import read_setup
 from truing.inputs_file.sentences import told_by_line
 from truing.measurements import EXCEL, PLAIN, RowsFile, read_rows, table_text
-from truing.measurements.csv_text import with_comma
+from truing.measurements.csv_text import read_cell, with_comma
 from truing.measurements.overriding import NAMES, REMARKS
 from truing.measurements.table import RUN
+from truing.runs.spreadsheet import column_sheet
 from truing.setup import Setup
 from truing.texts import one_line
+from truing.workbooks.reading import file_of
+from truing.workbooks.writing import Printed, workbook_bytes
 
 MOST_SAID = 10
 """What is so of more rows is said once."""
@@ -30,7 +34,7 @@ def table(settings: Settings, asked: SimpleNamespace) -> int:
     inputs, rows, output, excel = asked.inputs, asked.rows, asked.output, asked.excel
     if excel and output is None:
         raise UsageError("--excel writes a file for a spreadsheet; name it with -o")
-    for path in (inputs, rows):
+    for path in map(file_of, (inputs, rows)):
         if output is not None and output.exists() and path.exists() and output.samefile(path):
             raise OutputError(f"{output} is read by this command; name another file for the output")
     offer = find_offer(asked.plugin, settings)
@@ -41,13 +45,18 @@ def table(settings: Settings, asked: SimpleNamespace) -> int:
         shown = shown_by_gauge(setup, read)
     kept = {text: cells for text, cells in read.cells.items() if name_in(text) not in shown.values}
     headers = [*kept, *(f"{name} [{shown.units[name] or '1'}]" for name in shown.values)]
-    cells = [_with_commas(text, column, setup) if excel else column for text, column in kept.items()]
-    columns = [*cells, *shown.values.values()]
-    text = table_text(headers, columns, form=EXCEL if excel else PLAIN)
-    if output is None:
-        out(text.removesuffix("\n"))
+    results = shown.values.values()
+    if output is not None and output.suffix.lower() == ".xlsx":
+        numbers = [_as_numbers(text, column, setup) for text, column in kept.items()]
+        sheet = column_sheet("rows", dict(zip(headers, [*numbers, *results], strict=True)), setup.model)
+        write_files({output: workbook_bytes([sheet])})
     else:
-        write_files({output: text})
+        cells = [_with_commas(text, column, setup) if excel else column for text, column in kept.items()]
+        text = table_text(headers, [*cells, *results], form=EXCEL if excel else PLAIN)
+        if output is None:
+            out(text.removesuffix("\n"))
+        else:
+            write_files({output: text})
     for row, reason in _reasons(shown.reasons, read).items():
         say(f"{rows}:{read.lines[row]}: {reason}")
     if read.count.unused:
@@ -73,10 +82,25 @@ def _reasons(reasons: Mapping[int, str], read: RowsFile) -> dict[int, str]:
 
 
 def _with_commas(header: str, cells: Sequence[str], setup: Setup) -> Sequence[str]:
-    """Return a column as written, its numbers with decimal commas; names of runs and words are no numbers."""
+    """Return a column as written, its numbers with decimal commas."""
+    return cells if _is_word(header, setup) else with_comma(cells)
+
+
+def _is_word(header: str, setup: Setup) -> bool:
+    """Whether a column holds words, also where they look like numbers: those of an input, names of runs and cases."""
     field = setup.model.input_fields.get(name_in(header))
-    is_word = field.kind in {"choice", "text"} if field is not None else name_in(header) in {"run", *NAMES, *REMARKS}
-    return cells if is_word else with_comma(cells)
+    return field.kind in {"choice", "text"} if field is not None else name_in(header) in {RUN, *NAMES, *REMARKS}
+
+
+def _as_numbers(header: str, cells: Sequence[str], setup: Setup) -> Sequence[Any]:
+    """Return a column of numbers as such, shown with the digits that were written; empty cells and words stay."""
+    if _is_word(header, setup):
+        return cells
+    try:
+        values = [read_cell(cell, decimal_comma=False, may_be_missing_word=True) for cell in cells]
+    except ValueError:
+        return cells
+    return [Printed(value, cell.strip()) for value, cell in zip(values, cells, strict=True)]
 
 
 def _say_unused(read: RowsFile, setup: Setup, settings: Settings) -> None:

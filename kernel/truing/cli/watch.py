@@ -27,6 +27,7 @@ from truing.runs.folder import FolderKind, demand_place
 from truing.studies.checks import EXIT_CODES, SHORT
 from truing.texts import one_line
 from truing.watching import WatchedFiles, code_files, files_named_in, forget
+from truing.workbooks.reading import file_of
 
 MOST = 4
 """So many changed results are named."""
@@ -41,10 +42,11 @@ def watch(settings: Settings, asked: SimpleNamespace) -> int:
     measured = tuple(asked.data or ())
     if measured and (asked.cases or asked.excel or asked.workers > 1):
         raise UsageError("--cases, --excel and --workers are for runs; a diagnosis (--data) has none of them")
-    for file in (path for path in (inputs, *measured) if not path.is_file()):
+    for file in (path for path in map(file_of, (inputs, *measured)) if not path.is_file()):
         refuse_file(file, largest=0, instead="", is_table=False)
-    folder = asked.output or Path("runs") / (measured or (inputs,))[0].stem
-    how = {} if measured else {"cases": asked.cases, "workers": asked.workers, "excel": asked.excel}
+    folder = asked.output or Path("runs") / file_of((measured or (inputs,))[0]).stem
+    how = {"xlsx": asked.xlsx}
+    how |= {} if measured else {"cases": asked.cases, "workers": asked.workers, "excel": asked.excel}
     watcher = _Watcher(asked.plugin, inputs, measured, tuple(asked.changed or ()), folder, how, settings)
     demand_place(folder, watcher.kind)
     watched = WatchedFiles(asked.every)
@@ -97,7 +99,7 @@ class _Watcher:
             self.looks -= 1
             self.code |= code_files(offer)
         given = [self.inputs, *self.measured, *filter(None, [self.how.get("cases")])]
-        return [*given, *files_named_in(self.inputs, offer), *sorted(self.code)]
+        return [*map(file_of, given), *files_named_in(self.inputs, offer), *sorted(self.code)]
 
     def loaded_anew(self, offer: Offer, files: Sequence[Path]) -> Offer:
         """Return the calculation as its code is now; where that is broken say so and keep the last that was whole."""

@@ -118,7 +118,7 @@ def _read(path: TableSource, offer: Offer) -> DataRows:
     columns: dict[str, NDArray[Any]] = {}
     for name, values in table.columns.items():
         if sentence := _unknown_unit(name, table, model):
-            faults.add(sentence, table.header_line)
+            faults.add(sentence, table.header_line, name)
         elif name != RUN or name in model.input_fields:
             columns[name] = objects(values) if isinstance(values, tuple) else values
     parts = {name: part_of(name, model, is_number=values.dtype != object) for name, values in columns.items()}

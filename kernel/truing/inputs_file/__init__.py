@@ -14,22 +14,27 @@ from truing.inputs_file.entries import whole_file
 from truing.inputs_file.files import read_text
 from truing.inputs_file.sentences import in_order, read_entries
 from truing.inputs_file.values import FileEntry, FileSection, InputsRead
+from truing.inputs_file.workbook import read_book
 from truing.kernel import Offer
 from truing.setup import Setup
 from truing.units.grammar import shown
+from truing.workbooks.reading import is_workbook
 
 __all__ = ["json_schema", "read_setup", "setup_from_settings", "setup_from_text"]
 
 
 def read_setup(path: Path, offer: Offer, *, overrides: Sequence[str] = (), label: str = "--set") -> Setup:
-    """Read an inputs file for this calculation.
+    """Read an inputs file for this calculation, TOML or a workbook.
 
     ``overrides`` are "name=value" as given with ``--set``: names of inputs or conditions, or dotted names such as
     "tolerances.load", "effects.running_in.extra" and "studies.reliability.draws"; faults of these begin with ``label``.
     Raises InputError with every fault of file and overrides.
     """
-    text = read_text(path, instead=f"`calc init {offer.name}` writes an example")
-    document = read_document(text, str(path))
+    if is_workbook(path):
+        document = read_book(path, offer)
+    else:
+        text = read_text(path, instead=f"`calc init {offer.name}` writes an example")
+        document = read_document(text, str(path))
     apply_overrides(document, offer.model, overrides, label)
     return _setup(document, offer, path.parent)
 

@@ -336,17 +336,17 @@ def apply_overrides(document: InputsDocument, model: Model[Any, Any], overrides:
         if not equals or not name:
             document.faults.append(Fault("write name=value, such as load='3 kN'", override))
             continue
-        path = _path(name, model)
+        path = path_of(name, model)
         if len(path) == 3 and path[0] == "inputs":
-            _open_table(document, path[1], override)
-        _put(document, path, _value(path, value, model), override)
+            open_table(document, path[1], override)
+        put(document, path, value_of(path, value, model), override)
 
 
 def _one_line(text: str) -> str:
     return text if text.isprintable() and len(text) <= 120 else shown(text)[1:-1]
 
 
-def _path(name: str, model: Model[Any, Any]) -> tuple[str, ...]:
+def path_of(name: str, model: Model[Any, Any]) -> tuple[str, ...]:
     """Return the section and name that a dotted name means; a plain name is an input or a condition.
 
     Behind the name of an input that is read from a data file stands an option of its reader.
@@ -365,7 +365,7 @@ def _path(name: str, model: Model[Any, Any]) -> tuple[str, ...]:
     return ("inputs", name)
 
 
-def _value(path: tuple[str, ...], text: str, model: Model[Any, Any]) -> Any:
+def value_of(path: tuple[str, ...], text: str, model: Model[Any, Any]) -> Any:
     """Return the TOML value that a text on the command line means in this place."""
     input_field = model.input_fields.get(path[1]) if path[0] in {"inputs", "calibrated"} else None
     as_toml = path[0] == "studies" or (
@@ -379,7 +379,7 @@ def _value(path: tuple[str, ...], text: str, model: Model[Any, Any]) -> Any:
         return text
 
 
-def _open_table(document: InputsDocument, name: str, override: str) -> None:
+def open_table(document: InputsDocument, name: str, override: str) -> None:
     """Let options stand beside the data file of an input, also where the file is all that was written."""
     inputs = document.data.get("inputs")
     if isinstance(inputs, dict) and isinstance(inputs.get(name), str):
@@ -387,7 +387,8 @@ def _open_table(document: InputsDocument, name: str, override: str) -> None:
     document.places["inputs", name] = (override, None)
 
 
-def _put(document: InputsDocument, path: tuple[str, ...], value: Any, override: str) -> None:
+def put(document: InputsDocument, path: tuple[str, ...], value: Any, override: str) -> None:
+    """Put a value in its place, stated at a place that is no line of the file."""
     inner: Any = document.data
     for length, name in enumerate(path[:-1], start=1):
         inner = inner.setdefault(name, {})

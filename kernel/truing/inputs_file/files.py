@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import errno
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from hashlib import file_digest
 from pathlib import Path
 
 from truing.declare.near_miss import near_miss
 from truing.errors import Fault, InputError
 from truing.units.grammar import shown
+from truing.workbooks.reading import BookSheet, file_of, opened_sheet
 
 LARGEST_INPUTS = 2_000_000
 _SPREADSHEETS = {".xlsx", ".xls", ".xlsm", ".xlsb", ".ods", ".numbers"}
@@ -16,12 +19,31 @@ _ZIP, _OLE = b"PK\x03\x04", b"\xd0\xcf\x11\xe0"
 _UTF16 = (b"\xff\xfe", b"\xfe\xff")
 
 
+@contextmanager
+def opened_book(path: Path, *, largest: int, preferred: str = "") -> Iterator[BookSheet]:
+    """Open a sheet of a workbook, or raise InputError with one sentence."""
+    file = file_of(path)
+    sentence = _refusal(file, largest, "save the workbook anew", _refusal_of_book)
+    if sentence:
+        raise InputError([Fault(sentence, str(file))])
+    with opened_sheet(path, preferred=preferred) as sheet:
+        yield sheet
+
+
+def _refusal_of_book(path: Path, start: bytes, instead: str) -> str:
+    if start.startswith(_OLE):
+        return "is protected by a password, or a workbook of the old kind; save it as .xlsx without a password"
+    if not start.startswith(_ZIP):
+        return f"is {'no workbook' if start else 'empty'}; {instead} as .xlsx"
+    return ""
+
+
 def refuse_file(path: Path, *, largest: int, instead: str, is_table: bool) -> None:
     """Raise InputError with one sentence unless ``path`` is a text file of acceptable size.
 
     Only the first bytes are read. ``instead`` says what to do where the file is empty.
     """
-    sentence = _refusal(path, largest, instead, is_table)
+    sentence = _refusal(path, largest, instead, _refusal_of_table if is_table else _refusal_of_inputs)
     if sentence:
         raise InputError([Fault(sentence, str(path), _first_line(path))])
 
@@ -34,7 +56,7 @@ def _first_line(path: Path) -> int | None:
         return None
 
 
-def _refusal(path: Path, largest: int, instead: str, is_table: bool) -> str:
+def _refusal(path: Path, largest: int, instead: str, judged: Callable[[Path, bytes, str], str]) -> str:
     try:
         if path.is_dir():
             return "is a folder; name a file"
@@ -49,12 +71,20 @@ def _refusal(path: Path, largest: int, instead: str, is_table: bool) -> str:
             start = stream.read(65536)
     except (OSError, ValueError) as error:
         return f"cannot be read: {getattr(error, 'strerror', None) or error}"
-    return _refusal_of_bytes(path, start, instead, is_table)
+    return judged(path, start, instead)
 
 
-def _refusal_of_bytes(path: Path, start: bytes, instead: str, is_table: bool) -> str:
+def _refusal_of_table(path: Path, start: bytes, instead: str) -> str:
+    return _refusal_of_text(path, start, instead, is_table=True)
+
+
+def _refusal_of_inputs(path: Path, start: bytes, instead: str) -> str:
+    return _refusal_of_text(path, start, instead, is_table=False)
+
+
+def _refusal_of_text(path: Path, start: bytes, instead: str, *, is_table: bool) -> str:
     if path.suffix.lower() in _SPREADSHEETS or start.startswith((_ZIP, _OLE)):
-        return f"is a spreadsheet; {'save it' if is_table else 'inputs are a TOML text file; save tables'} as CSV UTF-8"
+        return f"is a spreadsheet; save it as .xlsx{' or CSV UTF-8' if is_table else ', or write inputs as TOML text'}"
     if not start.strip():
         return f"is empty; {instead}"
     if start.startswith(_UTF16):
@@ -104,9 +134,9 @@ def read_text(path: Path, *, instead: str) -> str:
 
 
 def digest_of(path: Path) -> str:
-    """Return the SHA-256 of a file; nothing where it cannot be read."""
+    """Return the SHA-256 of a file, of a workbook as a whole; nothing where it cannot be read."""
     try:
-        with path.open("rb") as stream:
+        with file_of(path).open("rb") as stream:
             return file_digest(stream, "sha256").hexdigest()
     except OSError:
         return ""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
@@ -16,7 +16,7 @@ from hashlib import sha256
 from io import StringIO
 from itertools import chain, islice
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any, Protocol, TextIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +30,7 @@ LARGEST_TABLE = 512_000_000
 LONGEST_LINE = 1_000_000
 MOST_FAULTS = 200
 ROWS_AT_ONCE = 8192
+INSTEAD = "the first line of a table holds the names, with units such as 'load [N]'"
 COMMENT, NOTHING = "begins with '#'", "holds nothing"
 """Why lines behind the header are left out: a remark, or cells that are all empty."""
 _OPEN = re.compile(r' *"[^"]*(?:""[^"]*)*')
@@ -53,13 +54,16 @@ class Faults:
     """The faults of one file; beyond two hundred they are only counted."""
 
     file: str
+    addressed: Callable[[int, str | int], str] | None = None
+    """What a workbook calls a cell, by its row and the name or the place of its column."""
     found: list[Fault] = field(default_factory=list)
     more: int = 0
 
-    def add(self, sentence: str, line: int | None = None) -> None:
-        """Note one fault."""
+    def add(self, sentence: str, line: int | None = None, column: str | int = 0) -> None:
+        """Note one fault of a line, in the column of that name or place where it matters."""
+        cell = self.addressed(line, column) if self.addressed is not None and line is not None else ""
         if len(self.found) < MOST_FAULTS:
-            self.found.append(Fault(sentence, self.file, line))
+            self.found.append(Fault(sentence, self.file, line, cell))
         else:
             self.more += 1
 
@@ -104,9 +108,28 @@ class DecimalMarks:
                 faults.add(f"{name}: {shown(cell)} {either}; write '{cell}0' or '{cell.replace(',', '')}'", line)
 
 
+class OpenTable(Protocol):
+    """An open table: what stands in its header, and its rows in chunks of text; its faults go to ``faults``."""
+
+    faults: Faults
+    headers: tuple[Header, ...]
+    header_line: int
+    marks: DecimalMarks
+
+    @property
+    def decimal_comma(self) -> bool:
+        """Whether a comma in a number is read as a decimal mark."""
+
+    def count(self) -> RowCount:
+        """Return how many rows the file holds as far as it is read, with those that are no rows left out."""
+
+    def chunks(self) -> Iterator[tuple[list[tuple[str, ...]], tuple[int, ...]]]:
+        """Give columns of text with the line of each row, thousands at a time."""
+
+
 @dataclass
 class CsvFile:
-    """An open table: its header is read, its rows come in chunks; faults of its form go to ``faults``.
+    """An open CSV file: its header is read, its rows come in chunks; faults of its form go to ``faults``.
 
     ``left_out`` holds the lines behind the header that are no rows, by reason, as far as the file is read.
     """
@@ -201,16 +224,15 @@ TableSource = Path | TableText
 
 
 @contextmanager
-def opened(path: TableSource) -> Iterator[CsvFile]:
-    """Open a table. Raises InputError where it cannot be one, or has no header."""
-    instead = "the first line of a table holds the names, with units such as 'load [N]'"
+def opened_csv(path: TableSource) -> Iterator[CsvFile]:
+    """Open a CSV file. Raises InputError where it cannot be one, or has no header."""
     if isinstance(path, TableText):
-        yield _table(path, StringIO(path.text, newline=""), instead)
+        yield _table(path, StringIO(path.text, newline=""))
         return
-    refuse_file(path, largest=LARGEST_TABLE, instead=instead, is_table=True)
+    refuse_file(path, largest=LARGEST_TABLE, instead=INSTEAD, is_table=True)
     try:
         with path.open(encoding="utf-8", newline="") as stream:
-            yield _table(path, stream, instead)
+            yield _table(path, stream)
     except UnicodeDecodeError:
         raise InputError([Fault("is not UTF-8 text; save it as CSV UTF-8", str(path), _foreign_line(path))]) from None
     except OSError as error:
@@ -227,14 +249,14 @@ def _foreign_line(path: Path) -> int:
     return 1
 
 
-def _table(path: TableSource, stream: TextIO, instead: str) -> CsvFile:
+def _table(path: TableSource, stream: TextIO) -> CsvFile:
     faults = Faults(str(path))
     beginning = stream.readline()
     lines = _lines(chain([beginning.removeprefix(MARK)], stream), faults)
     header, line = next(((text, line) for text, line in lines if not text.lstrip().startswith("#")), ("", 1))
     if not header:
         faults.raise_any()
-        raise InputError([Fault(f"is empty; {instead}", str(path), 1)])
+        raise InputError([Fault(f"is empty; {INSTEAD}", str(path), 1)])
     outside = re.sub(r'"[^"]*"|\[[^\[\]]*\]', "", header)
     delimiter = next((mark for mark in (";", "\t") if mark in outside), ",")
     is_guarded = delimiter == ";" and beginning.startswith(MARK)
@@ -242,7 +264,7 @@ def _table(path: TableSource, stream: TextIO, instead: str) -> CsvFile:
         cells = _cells(header, delimiter)
     except ValueError as error:
         raise InputError([Fault(str(error), str(path), line)]) from None
-    headers = _headers(unguarded(cells) if is_guarded else cells, line, faults)
+    headers = headers_of(unguarded(cells) if is_guarded else cells, line, faults)
     return CsvFile(faults, headers, line, delimiter, DecimalMarks(delimiter != ","), lines, is_guarded)
 
 
@@ -279,25 +301,26 @@ def _cell_pattern(delimiter: str) -> re.Pattern[str]:
     return re.compile(rf' *(?:{quoted}|(?P<plain>(?! *")[^{delimiter}]*))(?P<more>{delimiter}|$)')
 
 
-def _headers(cells: list[str], line: int, faults: Faults) -> tuple[Header, ...]:
+def headers_of(cells: list[str], line: int, faults: Faults) -> tuple[Header, ...]:
+    """Take the cells of a header apart, without empty ones at its end."""
     while cells and not cells[-1].strip():
         cells = cells[:-1]
     headers: list[Header] = []
     seen: set[str] = set()
     for index, text in enumerate(cell.strip() for cell in cells):
-        name, unit = _name_and_unit(text)
+        name, unit = name_and_unit(text)
         if name is None:
-            faults.add(f"the header {shown(text)} cannot be read; write it like 'load [N]'", line)
+            faults.add(f"the header {shown(text)} cannot be read; write it like 'load [N]'", line, index)
         elif not name:
-            faults.add(f"column {index + 1} has no name", line)
+            faults.add(f"column {index + 1} has no name", line, index)
         elif name in seen:
-            faults.add(f"the column {shown(name)} occurs twice", line)
+            faults.add(f"the column {shown(name)} occurs twice", line, index)
         seen.add(name or "")
         headers.append(Header(name or "", unit, text))
     return tuple(headers)
 
 
-def _name_and_unit(text: str) -> tuple[str | None, str | None]:
+def name_and_unit(text: str) -> tuple[str | None, str | None]:
     """Take "load [N]" apart; the unit is None where none is written, and the name where the text cannot be read."""
     name, bracket, rest = text.partition("[")
     unit = rest.removesuffix("]")
@@ -318,6 +341,7 @@ EITHER = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}", re.ASCII)
 MISSING_WORDS = {"nan", "na", "n/a", "#n/a", "null", "none", "-"}
 _FORMULA = re.compile(r"'*(?P<words>\s*[=+\-@＝＋－＠].+)", re.DOTALL)
 _COMMA = re.compile(r"([+-]?\d*),(\d+(?:[eE][+-]?\d+)?|(?=[eE]|$))(?:[eE][+-]?\d+)?", re.ASCII)
+_DATE = re.compile(r"\d{4}-\d{2}-\d{2}(?:[ T]\d{2}:\d{2}.*)?", re.ASCII)
 _INFINITE = re.compile(r"[+-]?(?:inf|infinity|∞)", re.IGNORECASE)
 
 
@@ -339,6 +363,10 @@ def read_cell(text: str, *, decimal_comma: bool, may_be_missing_word: bool = Fal
 
 
 def _wrong(cell: str) -> str:
+    if _DATE.fullmatch(cell):
+        return (
+            f"{shown(cell)} is a date and no number; a spreadsheet makes dates of numbers: format the column as numbers"
+        )
     if cell[0] in "<>≤≥":
         words = "write the number, and mark the row in a column of its own (at_least or at_most in [studies.diagnose])"
         return f"{shown(cell)} is no number; {words}"

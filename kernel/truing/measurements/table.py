@@ -6,6 +6,7 @@ import csv
 import math
 import re
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from io import StringIO
 from itertools import chain
@@ -22,19 +23,21 @@ from truing.measurements.csv_text import (
     EITHER,
     MARK,
     UNCOUNTED,
-    CsvFile,
     Faults,
     Header,
+    OpenTable,
     RowCount,
     TableSource,
     guarded,
-    opened,
+    opened_csv,
     plain_numbers,
     read_cell,
 )
+from truing.measurements.workbook_rows import opened_workbook
 from truing.units import demand_dimension, difference_unit, human_dimension, si_fault, to_si
 from truing.units.grammar import shown
 from truing.units.names import PURE
+from truing.workbooks.reading import is_workbook
 
 SIGMA = "sigma_"
 RUN = "run"
@@ -98,10 +101,11 @@ def read_table(
     fault is left out of ``columns``. Raises InputError where the file cannot be read at all.
     """
     lines: list[int] = []
-    with opened(path) as file:
+    with _opened(path) as file:
         columns = [_column(header, known, is_measured, words, unknown) for header in file.headers]
-        for fault in (column.fault for column in columns if column.fault):
-            file.faults.add(fault, file.header_line)
+        for index, column in enumerate(columns):
+            if column.fault:
+                file.faults.add(column.fault, file.header_line, index)
         texts: dict[str, list[str]] = {header.text: [] for header in file.headers}
         for cells_of, lines_of in file.chunks():
             lines.extend(lines_of)
@@ -117,14 +121,20 @@ def read_table(
     return table, file.faults
 
 
-def _with_points(cells: Sequence[str], file: CsvFile) -> tuple[str, ...]:
+def _opened(path: TableSource) -> AbstractContextManager[OpenTable]:
+    if isinstance(path, Path) and is_workbook(path):
+        return opened_workbook(path)
+    return opened_csv(path)
+
+
+def _with_points(cells: Sequence[str], file: OpenTable) -> tuple[str, ...]:
     """Return cells as written, those of a column of numbers with a decimal point."""
     if file.decimal_comma and _numbers(cells, file) is not None:
         return tuple(cell.replace(",", ".") for cell in cells)
     return tuple(cells)
 
 
-def _numbers(cells: Sequence[str], file: CsvFile) -> NDArray[np.float64] | None:
+def _numbers(cells: Sequence[str], file: OpenTable) -> NDArray[np.float64] | None:
     """Return cells as numbers where each is a number, empty, or a word for a missing value."""
     comma = file.decimal_comma
     try:
@@ -170,10 +180,10 @@ class _Column:
     header: Header
     fault: str
 
-    def take(self, cells: Sequence[str], lines: Sequence[int], file: CsvFile) -> None:
+    def take(self, cells: Sequence[str], lines: Sequence[int], file: OpenTable) -> None:
         """Take the cells of the next rows; what is wrong with one is a fault with its line."""
 
-    def made(self, lines: Sequence[int], file: CsvFile) -> NDArray[Any] | tuple[str, ...]:
+    def made(self, lines: Sequence[int], file: OpenTable) -> NDArray[Any] | tuple[str, ...]:
         """Return the whole column."""
         return ()
 
@@ -188,19 +198,19 @@ class _Numbers(_Column):
     is_sigma: bool = False
     parts: list[NDArray[np.float64]] = field(default_factory=list)
 
-    def take(self, cells: Sequence[str], lines: Sequence[int], file: CsvFile) -> None:
+    def take(self, cells: Sequence[str], lines: Sequence[int], file: OpenTable) -> None:
         """Take cells: numbers, empty, or where that is allowed a word for a missing value."""
         values = self._read(cells, lines, file)
         if self.is_sigma and (values < 0).any():
             line = lines[int((values < 0).argmax())]
-            file.faults.add(f"{self.header.name}: a standard deviation is 0 or more", line)
+            file.faults.add(f"{self.header.name}: a standard deviation is 0 or more", line, self.header.name)
         if self.fault:
             return
         self.parts.append(self._in_si(values, cells, lines, file.faults))
         if self.item is not None:
             _keep_bounds(self.item, self.parts[-1], lines, file.faults)
 
-    def _read(self, cells: Sequence[str], lines: Sequence[int], file: CsvFile) -> NDArray[np.float64]:
+    def _read(self, cells: Sequence[str], lines: Sequence[int], file: OpenTable) -> NDArray[np.float64]:
         """Return numbers as they stand; what is none is a fault with its line."""
         fast = plain_numbers(cells)
         if fast is not None and not (file.decimal_comma and any("." in cell for cell in cells)):
@@ -211,7 +221,7 @@ class _Numbers(_Column):
                 values[row] = read_cell(cell, decimal_comma=file.decimal_comma, may_be_missing_word=not self.is_strict)
                 file.marks.take(self.header.name, cell.strip(), lines[row])
             except ValueError as error:
-                file.faults.add(f"{self.header.name}: {error}", lines[row])
+                file.faults.add(f"{self.header.name}: {error}", lines[row], self.header.name)
         return values
 
     def _in_si(
@@ -227,10 +237,10 @@ class _Numbers(_Column):
         for row in np.flatnonzero(odd).tolist():
             if fault := si_fault(float(values[row]), float(converted[row]), self.declared or ""):
                 written = f"{cells[row].strip()} {unit}"
-                faults.add(f"{self.header.name}: {shown(written)} {fault}", lines[row])
+                faults.add(f"{self.header.name}: {shown(written)} {fault}", lines[row], self.header.name)
         return converted
 
-    def made(self, lines: Sequence[int], file: CsvFile) -> NDArray[np.float64]:
+    def made(self, lines: Sequence[int], file: OpenTable) -> NDArray[np.float64]:
         """Return the column in SI, NaN where a cell is empty."""
         return np.concatenate([np.empty(0), *self.parts])
 
@@ -242,7 +252,7 @@ def _keep_bounds(input_field: InputField, values: NDArray[np.float64], lines: Se
         broken = {value: broken_bound(input_field, value) for value in distinct}
         for line, value in zip(lines, values.tolist(), strict=True):
             if said := broken.get(value):
-                faults.add(said, line)
+                faults.add(said, line, input_field.name)
 
 
 @dataclass
@@ -253,7 +263,7 @@ class _Words(_Column):
     values: list[Any] = field(default_factory=list)
     read: dict[str, Any] = field(default_factory=lambda: {"": None})
 
-    def take(self, cells: Sequence[str], lines: Sequence[int], file: CsvFile) -> None:
+    def take(self, cells: Sequence[str], lines: Sequence[int], file: OpenTable) -> None:
         """Take cells: each is one of the values that the input may have, or empty."""
         if self.fault:
             return
@@ -266,10 +276,11 @@ class _Words(_Column):
                     file.marks.take(self.header.name, cell, line)
             except ValueError as error:
                 is_named = str(error).startswith(self.header.name)
-                file.faults.add(str(error) if is_named else f"{self.header.name}: {error}", line)
+                said = str(error) if is_named else f"{self.header.name}: {error}"
+                file.faults.add(said, line, self.header.name)
                 self.values.append(None)
 
-    def made(self, lines: Sequence[int], file: CsvFile) -> NDArray[Any]:
+    def made(self, lines: Sequence[int], file: OpenTable) -> NDArray[Any]:
         """Return the values as objects, None where a cell is empty."""
         return np.fromiter(self.values, dtype=object)
 
@@ -281,11 +292,11 @@ class _Texts(_Column):
     is_words: bool
     cells: list[str] = field(default_factory=list)
 
-    def take(self, cells: Sequence[str], lines: Sequence[int], file: CsvFile) -> None:
+    def take(self, cells: Sequence[str], lines: Sequence[int], file: OpenTable) -> None:
         """Take cells, whatever they hold."""
         self.cells.extend(cells)
 
-    def made(self, lines: Sequence[int], file: CsvFile) -> NDArray[np.float64] | tuple[str, ...]:
+    def made(self, lines: Sequence[int], file: OpenTable) -> NDArray[np.float64] | tuple[str, ...]:
         """Return numbers or words; the decimal marks of numbers must be those of the file."""
         is_number = not self.is_words and any(cell.strip() for cell in self.cells)
         values = _numbers(self.cells, file) if is_number else None

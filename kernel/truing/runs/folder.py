@@ -23,7 +23,7 @@ from truing.runs.extension import extended_text
 from truing.runs.inputs_written import complete_inputs
 from truing.runs.new_effect import new_effect_source
 from truing.runs.provenance import Provenance
-from truing.runs.spreadsheet import spreadsheets
+from truing.runs.spreadsheet import diagnosis_workbook, run_workbook, spreadsheets
 from truing.setup import Setup
 from truing.studies.bench import Outcome, files_of
 from truing.units import from_si
@@ -160,22 +160,31 @@ def _loaded(folder: Path, kind: FolderKind) -> dict[str, Any]:
 
 
 def run_files(
-    calculation: Calculation, document: Mapping[str, Any], sheets: Mapping[str, str | bytes], *, excel: bool = False
+    calculation: Calculation,
+    document: Mapping[str, Any],
+    sheets: Mapping[str, str | bytes],
+    *,
+    excel: bool = False,
+    xlsx: bool = False,
 ) -> dict[str, str | bytes]:
-    """Return the files of a run by name: its sheets, large arrays, with ``excel`` tables, and those of its studies."""
-    files = {**sheets, **(spreadsheets(document, calculation.setup.model) if excel else {})}
+    """Return the files of a run by name: sheets, large arrays, tables as they are asked for, those of its studies."""
+    model = calculation.setup.model
+    files = {**sheets, **(spreadsheets(document, model) if excel else {})}
+    if xlsx:
+        files["results.xlsx"] = run_workbook(document, model)
     if large := large_arrays(calculation):
         files["arrays.npz"] = npz_bytes(large)
     return files | study_files(calculation.outcomes, files)
 
 
 def diagnosis_files(
-    diagnosis: DiagnosisResult, sheets: Mapping[str, str | bytes], folder: Path
+    diagnosis: DiagnosisResult, sheets: Mapping[str, str | bytes], folder: Path, *, xlsx: bool = False
 ) -> dict[str, str | bytes]:
-    """Return the files of a diagnosis by name: its sheets and curves, and the extension where there is one."""
+    """Return the files of a diagnosis by name: its sheets and curves, the extension where there is one, a workbook."""
     extension = {"extended.toml": extended_text(diagnosis, folder), "new_effect.py": new_effect_source(diagnosis)}
     curves = npz_bytes(curve_arrays(diagnosis))
-    return {"arrays.npz": curves, **sheets, **{name: text for name, text in extension.items() if text}}
+    book = {"diagnosis.xlsx": diagnosis_workbook(diagnosis)} if xlsx else {}
+    return {"arrays.npz": curves, **sheets, **{name: text for name, text in extension.items() if text}, **book}
 
 
 NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,99}", re.ASCII)
@@ -204,7 +213,7 @@ def study_files(outcomes: Mapping[str, Outcome], taken: Mapping[str, str | bytes
 
 KEPT = (
     "inputs.toml", "results.json", "run.json", "sheet.html", "sheet.md", "sheet.pdf", "arrays.npz", "results.csv",
-    "cases.csv",
+    "cases.csv", "results.xlsx",
 )  # fmt: skip
 """Names that a run folder uses itself, or may use."""
 
