@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from shared import missed
+from truing import load
 from truing.calculation import calculate
 from truing.errors import OutputError
 from truing.kernel import Kernel
@@ -118,3 +119,16 @@ def test_a_browser_that_prints_nothing_or_is_not_there_is_said_in_one_sentence(
         with pytest.raises(OutputError, match=r"^true printed no PDF \(exit 0\); open sheet.html in any browser"):
             pdf_bytes(text, Path(dumb))
     assert list(tmp_path.iterdir()) == []
+
+
+def test_the_figure_of_page_one_is_seen_on_paper(chromium: Path, tmp_path: Path) -> None:
+    """Of a study that is asked alone, whose page one has nothing else."""
+    study = load("press_linkage.motion").sweep("counterbalance", "0..400 kN", points=5, output=tmp_path / "swept")
+    assert study.outcome is not None
+    html = (tmp_path / "swept" / "sheet.html").read_text(encoding="utf-8")
+    printed = tmp_path / "sheet.pdf"
+    printed.write_bytes(pdf_bytes(html, chromium))
+    heights = [float(each) for each in re.findall(r"--high: ([\d.]+)mm", html)]
+    assert heights
+    assert min(heights) > 20
+    assert "Figure 1." in words_of(printed, page=1)

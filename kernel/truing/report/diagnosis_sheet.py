@@ -57,8 +57,6 @@ from truing.runs.folder import data_digests
 from truing.runs.provenance import Provenance, provenance_of
 
 DIAGNOSIS = "Diagnosis"
-FRONT_FIGURE = 95.0
-"""Height of the figure of page one on paper, mm."""
 DOUBT = "Whether this is the cause is open: settle that before anything is changed on the machine."
 
 
@@ -87,7 +85,6 @@ def make_diagnosis_sheet(diagnosis: DiagnosisResult, *, provenance: Provenance) 
         banner=Banner(mood, verdict_word(diagnosis), tuple(headline(diagnosis))),
         alarms=tuple(unit_error.text for unit_error in diagnosis.records.unit_errors),
         front=front,
-        figure_height=FRONT_FIGURE,
         paper=diagnosis.setup.sheet.paper,
         chapters=numbered([*chapters, *end_chapters(warnings, provenance)]),
         warnings=warnings,

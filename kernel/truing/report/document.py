@@ -254,7 +254,7 @@ class Document:
     """Suspected errors in the units of a record."""
     front: tuple[Chapter, ...] = ()
     """What stands on page one, before the signatures."""
-    figure_height: float = 0.0
+    figure_height: float = 95.0
     """How high the figure of page one is on paper, mm."""
     chapters: tuple[Chapter, ...]
     warnings: tuple[str, ...]
