@@ -452,12 +452,17 @@ class Swept(Outcome):
         return [name for name, values in self.results.items() if values.ndim == 1 and np.isfinite(values).any()]
 
     def moving(self) -> list[str]:
-        """Name those that are chosen; else those that change by more than rounding, or whose limit does."""
+        """Name those that are chosen; else those that change by more than rounding, or whose limit does.
+
+        Those that have a limit come first.
+        """
         plain = self._plain()
         if self.chosen:
             return [name for name in self.chosen if name in plain]
         limits = {limit.result for limit in self.limits if _moves(limit.low) or _moves(limit.high)}
-        return [name for name in plain if name in limits or _moves(self.results[name])]
+        moving = [name for name in plain if name in limits or _moves(self.results[name])]
+        limited = {limit.result for limit in self.limits}
+        return sorted(moving, key=lambda name: name not in limited)
 
     def _extremes(self) -> Table:
         inputs = [*self.columns]
