@@ -51,7 +51,7 @@ def test_the_points_are_single_runs_and_the_limit_is_met_where_the_formula_says(
     assert points["preload [kN]"] == pytest.approx(single, rel=1e-15)
     page = (folder / "sheet.md").read_text(encoding="utf-8")
     ((result, limit, met, kept),) = table_of(page, "Limits along the torque")
-    assert (result, limit, kept) == ("preload", "≥ 28 kN", "above it")
+    assert (result, limit, kept) == ("preload $F$ (preload)", "≥ 28 kN", "above it")
     closed = 28e3 * 0.2 * 12e-3
     assert float(met) == pytest.approx(closed, rel=1e-4)
     (crossing,) = json.loads((folder / "results.json").read_text())["studies"]["sweep"]["limits"]["preload"][
