@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
@@ -30,6 +31,8 @@ from truing.report.document import (
     Text,
     Value,
     label_of,
+    lines_of,
+    symbol_cell,
     table_of,
     unit_as_said,
     with_source,
@@ -83,8 +86,8 @@ class Writing:
     calculation: Calculation
     detail: str
     figures: Figures
-    made: dict[str, list[Block] | BaseException] = field(default_factory=dict)
-    """What the blocks of a section are, by its title."""
+    made: dict[str, list[Block]] = field(default_factory=dict)
+    """The blocks of a section, by its title."""
     front: list[Any] = field(default_factory=list)
     """The figure or drawing that stands on page one."""
 
@@ -105,18 +108,15 @@ def front_figure(writing: Writing) -> Chapter | None:
 def _first_drawing(writing: Writing, section: Section) -> Drawing | None:
     if section.figure is not None:
         return Drawing(section.title, partial(section.figure, writing.calculation.record), section.caption)
-    made = _made(writing, section)
-    blocks = [] if isinstance(made, BaseException) else made
-    return next((block for block in blocks if isinstance(block, Drawing)), None)
+    with suppress(Exception):  # it is said where the section stands
+        return next((block for block in _blocks_of(writing, section) if isinstance(block, Drawing)), None)
+    return None
 
 
-def _made(writing: Writing, section: Section) -> list[Block] | BaseException:
-    """Return the blocks of a section, which are made once, or what failed."""
+def _blocks_of(writing: Writing, section: Section) -> list[Block]:
+    """Return the blocks of a section, which are made once."""
     if section.blocks is not None and section.title not in writing.made:
-        try:
-            writing.made[section.title] = list(section.blocks(writing.calculation.record))
-        except Exception as error:  # said where they are to stand
-            writing.made[section.title] = error
+        writing.made[section.title] = list(section.blocks(writing.calculation.record))
     return writing.made.get(section.title, [])
 
 
@@ -207,13 +207,6 @@ def _of_section(writing: Writing, section: Section) -> Chapter:
     return Chapter(section.title, tuple(blocks))
 
 
-def _blocks_of(writing: Writing, section: Section) -> list[Block]:
-    made = _made(writing, section)
-    if isinstance(made, BaseException):
-        raise made
-    return made
-
-
 def _main_results(writing: Writing) -> Iterator[Chapter]:
     """Write the values of the normal sections without their formulas."""
     model = writing.calculation.setup.model
@@ -224,7 +217,7 @@ def _main_results(writing: Writing) -> Iterator[Chapter]:
     scalars = [name for name in dict.fromkeys(names) if _is_scalar(writing.calculation.answers.get(name))]
     if scalars:
         notes = [model.result_fields[name].spec.note for name in scalars]
-        lines = np.cumsum([max(1, -(-len(note) // LINE_OF_RESULTS)) for note in notes])
+        lines = np.cumsum([lines_of(note, LINE_OF_RESULTS) for note in notes])
         checks = len(writing.calculation.checks)
         room = MOST_MAIN - (checks + HEADING if checks > MOST_CHECKS else 0)
         shown = scalars[: int(np.searchsorted(lines, max(room, FEWEST_MAIN), side="right"))]
@@ -244,8 +237,7 @@ def result_table(calculation: Calculation, names: Sequence[str]) -> TableView:
     for name in names:
         field = calculation.setup.model.result_fields[name]
         value = _value_of(calculation, name)
-        symbol = Marked("symbol", field.symbol) if field.symbol else ""
-        rows.append((symbol, label_of(field.spec.note, name), value.text, value.unit))
+        rows.append((symbol_cell(field.symbol), label_of(field.spec.note, name), value.text, value.unit))
     return TableView("", columns, tuple(rows), kind="key")
 
 
@@ -279,18 +271,16 @@ def _results(writing: Writing, names: Sequence[str]) -> Iterator[BlockView]:
     for name in names:
         spec = writing.calculation.setup.model.result_fields[name].spec
         if not (isinstance(spec, Axis) and spec.is_table):
-            yield _entry(writing, name, with_formula=True)
+            yield _entry(writing, name)
     yield from _axis_tables(writing, names)
 
 
-def _entry(writing: Writing, name: str, *, with_formula: bool) -> ResultEntry:
+def _entry(writing: Writing, name: str) -> ResultEntry:
     """Say a result: its formula, and its value where the formula does not end with it."""
     result, answers = writing.calculation.setup.model.result_fields[name], writing.calculation.answers
     absent = writing.calculation.absent.get(name, "")
     is_scalar = _is_scalar(answers[name])
-    equation = (
-        equation_of(writing.calculation.setup, answers, result) if with_formula and not (absent and is_scalar) else None
-    )
+    equation = equation_of(writing.calculation.setup, answers, result) if not (absent and is_scalar) else None
     symbol = (Marked("symbol", result.symbol), " ") if result.symbol else ()
     value: Text = ""
     if absent:

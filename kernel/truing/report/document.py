@@ -61,6 +61,16 @@ def label_of(note: str, name: str, symbol: str = "") -> tuple[Piece, ...]:
     return (note or name.replace("_", " "), *shown, " ", Marked("bracketed code", name))
 
 
+def symbol_cell(symbol: str) -> Text:
+    """Write a symbol alone; nothing where there is none."""
+    return Marked("symbol", symbol) if symbol else ""
+
+
+def lines_of(text: str, width: int) -> int:
+    """Count the lines of so many characters that a text takes, one at the least."""
+    return max(1, -(-len(text) // width))
+
+
 def joined(parts: Iterable[Text], between: Piece = ", ") -> tuple[Piece, ...]:
     """Join texts to one."""
     pieces: list[Piece] = []

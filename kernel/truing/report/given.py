@@ -21,6 +21,7 @@ from truing.report.document import (
     Value,
     joined,
     label_of,
+    symbol_cell,
     with_source,
 )
 from truing.setup import Setup, SwitchedOn
@@ -69,7 +70,7 @@ def _input_row(setup: Setup, name: str, value: Value, *, calibrated: bool) -> tu
     fitted = setup.calibrated.get(name)
     own = "" if fitted is None else format_value(fitted, setup.print_unit(name), STATED_DIGITS)[0]
     return (
-        Marked("symbol", field.symbol) if field.symbol else "", label_of(note, name), value.text, value.unit,
+        symbol_cell(field.symbol), label_of(note, name), value.text, value.unit,
         *((own,) if calibrated else ()), "stated" if name in setup.source.stated else "default", field.spec.source,
     )  # fmt: skip
 

@@ -16,12 +16,13 @@ from truing.report.document import (
     Chapter,
     Column,
     Items,
-    Marked,
     Paragraph,
     TableView,
     Text,
     joined,
     label_of,
+    lines_of,
+    symbol_cell,
 )
 from truing.report.given import input_value
 from truing.report.limits import MOST_CHECKS, check_table
@@ -55,8 +56,8 @@ def page_one(
     checks = [Chapter("Checks", (check_table(calculation, most=MOST_CHECKS),), "checks")] if calculation.checks else []
     changed = [] if example is None else changed_inputs(setup, example)
     besides = sum(2 if check.chance else 1 for check in calculation.checks[:MOST_CHECKS])
-    besides += sum(_lines(setup.model.input_fields[name].spec.note, WIDE) for name in changed[:MOST_CHANGES])
-    besides += sum(_lines(text, WIDE) for text in warnings[:MOST_WARNINGS])
+    besides += sum(lines_of(setup.model.input_fields[name].spec.note, WIDE) for name in changed[:MOST_CHANGES])
+    besides += sum(lines_of(text, WIDE) for text in warnings[:MOST_WARNINGS])
     room = max(LINES - besides, FEWEST_LINES)
     results = list(_fitting(calculation, key_results(calculation), room, NARROW if figure else WIDE))
     keys = [Chapter("Key results", (result_table(calculation, results),), "key-results")] if results else []
@@ -76,15 +77,11 @@ def _warned(warnings: Sequence[str]) -> Iterator[Chapter]:
         yield Chapter("Warnings", (items,), "first-warnings" if more else "warnings")
 
 
-def _lines(text: str, width: int) -> int:
-    return max(1, -(-len(text) // width))
-
-
 def _fitting(calculation: Calculation, names: Sequence[str], room: int, width: int) -> Iterator[str]:
     """Give the first results whose rows have room together."""
     fields = calculation.setup.model.result_fields
     for name in names[:MOST_RESULTS]:
-        room -= _lines(fields[name].spec.note, width)
+        room -= lines_of(fields[name].spec.note, width)
         if room < 0:
             return
         yield name
@@ -112,7 +109,8 @@ def in_order_of_sheet(model: Model[Any, Any]) -> list[str]:
 
 def changed_inputs(setup: Setup, example: Setup) -> list[str]:
     """Return the inputs that are others than those of the example."""
-    return [name for name in setup.model.input_fields if _differs(setup, example, name)]
+    values = _inputs(setup), _inputs(example)
+    return [name for name in setup.model.input_fields if _differs(setup, example, name, values)]
 
 
 def _changed(setup: Setup, example: Setup, names: Sequence[str]) -> Iterator[BlockView]:
@@ -133,11 +131,11 @@ def _change_table(setup: Setup, example: Setup, names: Sequence[str]) -> TableVi
         Column("In the example", kind="number"),
     )  # fmt: skip
     rows: list[tuple[Text, ...]] = []
+    known = [(setup, _inputs(setup)), (example, _inputs(example))]
     for name in names:
         field = setup.model.input_fields[name]
-        symbol = Marked("symbol", field.symbol) if field.symbol else ""
-        values = (input_value(each, field, _inputs(each)[name]) for each in (setup, example))
-        rows.append((symbol, label_of(field.spec.note, name), *values))
+        shown = (input_value(each, field, values[name]) for each, values in known)
+        rows.append((symbol_cell(field.symbol), label_of(field.spec.note, name), *shown))
     return TableView("", columns, tuple(rows), kind="key")
 
 
@@ -145,12 +143,12 @@ def _inputs(setup: Setup) -> Mapping[str, Any]:
     return setup.model.read_inputs(setup.inputs)
 
 
-def _differs(setup: Setup, example: Setup, name: str) -> bool:
+def _differs(setup: Setup, example: Setup, name: str, values: Sequence[Mapping[str, Any]]) -> bool:
     """Whether an input is another one than in the example: another number but for rounding, word or file."""
     if setup.model.input_fields[name].kind == "file":
         own, other = (each.source.tables.get(name, {}) for each in (setup, example))
         return any(own.get(key) != other.get(key) for key in {*own, *other} - {"file"}) or _file(own) != _file(other)
-    own, other = (_inputs(each)[name] for each in (setup, example))
+    own, other = (each[name] for each in values)
     if isinstance(own, (str, bool)) or isinstance(other, (str, bool)):
         return bool(own != other)
     return np.shape(own) != np.shape(other) or not np.allclose(own, other, rtol=SAME, atol=0, equal_nan=True)

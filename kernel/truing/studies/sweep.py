@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from truing.declare.blocks import Block, Drawing, Table, Words
 from truing.declare.goals import Require
-from truing.declare.near_miss import near_miss
 from truing.errors import UsageError
 from truing.evaluate import acting_inputs, evaluate_rows
 from truing.inputs_file.values import broken_demand
@@ -22,7 +21,7 @@ from truing.setup import Setup
 from truing.studies.bench import Bench, Outcome, StepProgress, unheard
 from truing.studies.checks import check_name, limit_of, of_design, requirements, sockets_of
 from truing.studies.drawings import BLUE, GREY, ORANGE, WIDTH, labelled
-from truing.studies.reading import printed, read_range, scattering_name, spoken
+from truing.studies.reading import printed, read_range, scattering_name, single_numbers, spoken
 from truing.units import difference_unit, from_si, unit_text
 
 LARGEST = 1_000_000
@@ -68,7 +67,7 @@ class Sweep:
     def run(self, bench: Bench) -> Swept:
         """Evaluate all points, many at once; an infeasible one keeps its reason. Raises UsageError for a bad range."""
         setup = bench.setup
-        chosen = _chosen(setup, self.results, self.name)
+        chosen = single_numbers(setup, self.results, self.name)
         columns = self._columns(setup)
         points = _evaluated(setup, columns, _wanted(setup, chosen), bench.part(self.name, 0.0, 1.0))
         limited = _limited(setup, bench.answers, points)
@@ -127,18 +126,6 @@ def _points(setup: Setup, over: str, at: str, points: int) -> Floats:
     if len(axis) > LARGEST:
         raise UsageError(f"'{at}' are {len(axis)} points, but a sweep has at most {LARGEST}")
     return axis
-
-
-def _chosen(setup: Setup, named: str | tuple[str, ...], study: str) -> tuple[str, ...]:
-    """Return the results to show, each once. Raises UsageError for one that the function does not have."""
-    known = setup.model.own_result_fields
-    names = (named,) if isinstance(named, str) else tuple(dict.fromkeys(named))
-    for name in names:
-        if name not in known:
-            raise UsageError(f"study '{study}': {setup.model.name} has no result '{name}'.{near_miss(name, known)}")
-        if known[name].along:
-            raise UsageError(f"study '{study}': '{name}' runs along an axis; name a result that is one number")
-    return names
 
 
 def _wanted(setup: Setup, chosen: Sequence[str]) -> set[str] | None:
