@@ -150,9 +150,7 @@ def _cases(cases: Sequence[Mapping[str, Any]]) -> dict[str, list[Any]]:
 def diagnosis_workbook(diagnosis: DiagnosisResult) -> bytes:
     """Return the tables of a diagnosis as the sheets of a workbook: causes, ranking, errors, and every row."""
     document, model = diagnosis_document(diagnosis), diagnosis.setup.model
-    causes: dict[str, list[Any]] = {
-        name: [] for name in ("cause", "unknown", "value", "low 95 %", "high 95 %", "unit", "share")
-    }
+    causes: dict[str, list[Any]] = {name: [] for name in CAUSE_HEADERS}
     for cause in document["causes"]:
         for unknown, fitted in cause["unknowns"].items():
             cells = (cause["effect"], unknown, fitted["value"], *fitted["interval95"], fitted["unit"], cause["share"])
