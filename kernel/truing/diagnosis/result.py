@@ -340,7 +340,7 @@ class Trade:
 
 @dataclass(frozen=True)
 class Alike:
-    """Two effects that draw nearly the same curve on this data: the angle between what the inputs leave of them, rad."""
+    """Two effects that draw nearly one curve on this data: the angle between what the inputs leave of them, rad."""
 
     one: str
     other: str
