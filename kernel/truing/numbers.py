@@ -79,6 +79,20 @@ def format_value(si: Any, unit: str, digits: int = RESULT_DIGITS) -> tuple[str, 
     return format_number(_plain(si) if _is_bare(unit, si) else from_si(_plain(si), unit), digits), unit_text(unit)
 
 
+def digits_in(text: str) -> int:
+    """Count the significant digits of a number as it is written: 3 of 0.0123, 2 of 12, 1 of 1200."""
+    digits = text.lower().partition("e")[0].lstrip("+-").replace(".", "").lstrip("0")
+    return max(len(digits if "." in text else digits.rstrip("0")), 1)
+
+
+def format_stated(si: Any, unit: str, stated: str) -> tuple[str, str]:
+    """Write a stated number (SI) in a unit; in another than it is ``stated`` in with a digit more than it has there."""
+    if unit == stated or unit_text(unit) == unit_text(stated):
+        return format_value(si, unit, STATED_DIGITS)
+    written = format_value(si, stated, STATED_DIGITS)[0]
+    return format_value(si, unit, min(max(digits_in(written) + 1, RESULT_DIGITS), STATED_DIGITS))
+
+
 def format_ends(values: Any, unit: str) -> tuple[str, str, str]:
     """Write the least and the largest of numbers in SI, and the unit; empty texts where none is finite."""
     numbers = np.asarray(values, dtype=float)

@@ -17,6 +17,7 @@ from truing.declare.sources import Effect, Unknown
 from truing.declare.spreads import Distribution, Off, Spread, Target, settled
 from truing.errors import UsageError
 from truing.kernel import Added, Origin
+from truing.units.systems import UnitSystem, in_system
 
 DEFAULT_SEED = 0
 
@@ -166,7 +167,8 @@ class InputsSource:
     ``stated`` names the inputs, conditions and tolerances that are stated; the others have their defaults. ``file`` is
     the inputs file; of an input read from a file, ``files`` holds the SHA-256 of that one and ``tables`` how it is
     read. ``places`` holds file and line of what is stated, by name of input or condition and ``effects.NAME``; "" is
-    where the inputs begin. ``added`` are the effects and checks of other plugins.
+    where the inputs begin. ``added`` are the effects and checks of other plugins. ``units`` holds the units in which
+    inputs and conditions are stated, where these are not the declared ones.
     """
 
     stated: frozenset[str] = frozenset()
@@ -176,18 +178,25 @@ class InputsSource:
     added: tuple[Added, ...] = ()
     warnings: tuple[str, ...] = ()
     places: Mapping[str, tuple[str, int | None]] = field(default_factory=dict, compare=False)
+    units: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, kw_only=True)
 class SheetOptions:
     """What stands at the head of the sheet, by name, and how much of everything: "short", "normal" or "full".
 
-    ``paper`` is what it is printed on, "A4" or "letter".
+    ``paper`` is what it is printed on, "A4" or "letter"; ``units`` the system of units of all that people read, "SI" or
+    "inch", "" for the units that are declared.
     """
 
     head: Mapping[str, str] = field(default_factory=dict)
     detail: str = "normal"
     paper: str = "A4"
+    units: UnitSystem = ""
+
+    def shown(self, unit: str) -> str:
+        """Return the unit in which the sheet shows a quantity that has this one elsewhere."""
+        return in_system(unit, self.units)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -214,6 +223,10 @@ class Setup(Case):
             return self.units[name]
         result = self.model.result_fields.get(name)
         return result.unit if result is not None else self.unit_of(name)
+
+    def stated_unit(self, name: str) -> str:
+        """Return the unit in which an input or condition is stated, the declared one where it has its default."""
+        return self.source.units.get(name) or self.unit_of(name)
 
     def settled(self, spread: Spread) -> Spread:
         """Return a spread itself, or of one that follows a choice the branch that is chosen."""

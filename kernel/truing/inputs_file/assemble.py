@@ -18,6 +18,7 @@ from truing.inputs_file.study_options import diagnose_options
 from truing.inputs_file.values import InputsRead, StatedValues, plain
 from truing.kernel import Offer
 from truing.setup import DEFAULT_SEED, InputsSource, Setup, SheetOptions, SwitchedOn
+from truing.units import split_quantity, unit_text
 from truing.units.names import PURE
 
 
@@ -166,7 +167,7 @@ def make_setup(offer: Offer, reading: InputsRead, studies: tuple[Study, ...], do
         seed=values.get(("studies", "seed"), DEFAULT_SEED),
         diagnose=diagnose_options(model, values),
         units=of("units"),
-        sheet=SheetOptions(detail=head.pop("detail", "normal"), paper=head.pop("paper", "A4"), head=head),
+        sheet=_sheet_options(head),
         source=InputsSource(
             stated=frozenset(names),
             file=document.file,
@@ -175,8 +176,48 @@ def make_setup(offer: Offer, reading: InputsRead, studies: tuple[Study, ...], do
             added=offer.added,
             warnings=tuple(of("warnings").values()),
             places=places_of(model, document),
+            units=stated_units(model, document),
         ),
     )
+
+
+def _sheet_options(head: dict[str, Any]) -> SheetOptions:
+    """Part what the section of the sheet says into options and what stands in the title block."""
+    detail, paper, units = (head.pop(*option) for option in (("detail", "normal"), ("paper", "A4"), ("units", "")))
+    return SheetOptions(detail=detail, paper=paper, units=units, head=head)
+
+
+def stated_units(model: Model[Any, Any], document: InputsDocument) -> dict[str, str]:
+    """Return the unit of each input and condition that is stated in another one than is declared.
+
+    A series whose values have several units has none.
+    """
+    old = renamed(model)
+    declared = {name: field.unit for name, field in model.input_fields.items() if _has_unit(field)}
+    declared |= {name: condition.unit for name, condition in model.known_conditions.items() if name not in declared}
+    units: dict[str, str] = {}
+    for section in ("inputs", "conditions"):
+        entries = document.data.get(section)
+        for key, raw in entries.items() if isinstance(entries, dict) else ():
+            name = old.get(key, key)
+            unit = _unit_of(raw) if name in declared else ""
+            if unit and unit_text(unit) != unit_text(declared[name]):
+                units[name] = unit
+    return units
+
+
+def _has_unit(field: InputField) -> bool:
+    return isinstance(field.spec, Given) and field.spec.unit is not None and field.kind in {"float", "whole", "series"}
+
+
+def _unit_of(raw: Any) -> str:
+    """Return the unit of a quantity of the file, or the one that all of a list have."""
+    if isinstance(raw, dict):
+        return raw["unit"] if isinstance(raw.get("unit"), str) else ""
+    if isinstance(raw, list):
+        units = {_unit_of(each) for each in raw}
+        return units.pop() if len(units) == 1 else ""
+    return split_quantity(raw).unit if isinstance(raw, str) and raw.strip() else ""
 
 
 def _conditions_in_force(

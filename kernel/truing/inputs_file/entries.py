@@ -33,6 +33,7 @@ from truing.setup import DEFAULT_SEED
 from truing.units import demand_dimension, difference_unit, from_si, to_si, unit_factor
 from truing.units.grammar import shown
 from truing.units.names import PURE
+from truing.units.systems import UNIT_SYSTEMS
 
 HEAD = (
     "project", "drawing", "revision", "prepared_by", "checked_by", "approved_by", "date", "company", "logo",
@@ -71,10 +72,12 @@ def _sheet(_: Model[Any, Any]) -> dict[str, FileEntry]:
     entries = {name: FileEntry(partial(_head_text, name), {"type": ["string", "number"]}) for name in HEAD}
     detail = {"enum": list(DETAILS), "default": "normal", "description": "How much the sheet shows."}
     paper = {"enum": list(PAPERS), "default": "A4", "description": "What the sheet is printed on."}
+    units = {"enum": list(UNIT_SYSTEMS), "description": "The units of all that people read; as declared without it."}
     return {
         **entries,
         "detail": FileEntry(partial(_one_of, "detail", DETAILS), detail),
         "paper": FileEntry(partial(_one_of, "paper", PAPERS), paper),
+        "units": FileEntry(partial(_one_of, "units", UNIT_SYSTEMS), units),
     }
 
 

@@ -40,6 +40,7 @@ from truing.report.document import (
 from truing.report.equations import equation_of, state_equation
 from truing.report.figures import draw, phase, states_over_time
 from truing.report.limits import MOST_CHECKS
+from truing.report.sheet_units import AS_DECLARED, SheetUnits
 from truing.studies.drawings import labelled
 from truing.units import from_si
 
@@ -65,6 +66,8 @@ class Figures:
     failures: list[str] = field(default_factory=list)
     skipped: bool = False
     """Whether nothing is drawn: for a printer that has no figures."""
+    units: SheetUnits = AS_DECLARED
+    """The units of the sheet, to which the axes are brought over."""
 
     def view(self, title: str, what: Callable[[], Any], caption: str) -> BlockView:
         """Draw a figure; one that fails is said in its place and does not take the sheet away."""
@@ -73,7 +76,8 @@ class Figures:
             return FigureView(title, "", caption or title, self.count)
         ident = f"f{self.count}"
         try:
-            return FigureView(title, draw(what, title=title, ident=ident), caption or title, self.count)
+            svg = draw(partial(self.units.drawn, what), title=title, ident=ident)
+            return FigureView(title, svg, caption or title, self.count)
         except PluginError as error:
             self.failures.append(str(error))
             return Paragraph(f"The figure '{title}' could not be drawn.", "warning")
@@ -156,6 +160,7 @@ def _state_equation(writing: Writing) -> Iterator[Chapter]:
     for name, spec in dynamics.state_fields.items():
         symbol = (Marked("symbol", spec.symbol), " ") if spec.symbol else ()
         start = str(spec.start) if isinstance(spec.start, str) else f"{spec.start:g} {spec.unit}".strip()
+        start = writing.figures.units.text(start) if not isinstance(spec.start, str) else start
         begins = "as the calculation sets it" if dynamics.start is not None else f"at {start.replace('_', ' ')}"
         equation = state_equation(model, name)
         entries.append(ResultEntry(name, label_of(spec.note, name), equation, (*symbol, f"begins {begins}")))
@@ -187,9 +192,9 @@ def _moving_states(calculation: Calculation) -> Mapping[str, Matrix]:
     dynamics = calculation.setup.model.dynamics
     assert dynamics is not None
     motion = dynamics.followed(acting_inputs(calculation.setup))
+    units = {name: calculation.setup.sheet.shown(spec.unit) for name, spec in dynamics.state_fields.items()}
     states = {
-        labelled(name, unit_as_said(spec.unit)): from_si(getattr(motion.states, name), spec.unit)
-        for name, spec in dynamics.state_fields.items()
+        labelled(name, unit_as_said(unit)): from_si(getattr(motion.states, name), unit) for name, unit in units.items()
     }
     return {"time, s": motion.time} | {label: values for label, values in states.items() if np.ptp(values) > 0}
 
@@ -334,7 +339,7 @@ def _axis_tables(writing: Writing, names: Sequence[str]) -> Iterator[TableView]:
 def _guarded(writing: Writing, title: str, make: Callable[[], Iterable[Block]]) -> list[BlockView]:
     """Write the blocks of a guest; where its code fails that is said in their place, and the sheet goes on."""
     try:
-        return [_view(writing, block) for block in make()]
+        return [_view(writing, writing.figures.units.block(block)) for block in make()]
     except Exception as error:
         writing.figures.failures.append(f"{spoken_place(error)}'{title}' failed: {type(error).__name__}: {error}")
         return [Paragraph(f"What '{title}' says could not be written.", "warning")]
@@ -344,7 +349,7 @@ def _view(writing: Writing, block: Block) -> BlockView:
     if isinstance(block, Words):
         return Paragraph(block.text, block.kind)
     if isinstance(block, Drawing):
-        if any(block is each for each in writing.front):
+        if any(block.draw is each.draw for each in writing.front if isinstance(each, Drawing)):
             return ON_PAGE_ONE
         return writing.figures.view(block.title, block.draw, _caption(block))
     return with_notes(table_view(block, LONGEST_TABLE[writing.detail]), writing.calculation.setup.model)

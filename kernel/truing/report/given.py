@@ -9,7 +9,7 @@ from typing import Any
 from truing.declare.fields import Given, InputField
 from truing.evaluate import acting_inputs
 from truing.inputs_file.values import halving_in_words
-from truing.numbers import ABSENT, RESULT_DIGITS, STATED_DIGITS, format_difference, format_value
+from truing.numbers import ABSENT, RESULT_DIGITS, format_difference, format_stated, format_value
 from truing.report.document import (
     BlockView,
     Column,
@@ -24,7 +24,10 @@ from truing.report.document import (
     symbol_cell,
     with_source,
 )
+from truing.report.sheet_units import SheetUnits
 from truing.setup import Setup, SwitchedOn
+from truing.units import unit_text
+from truing.units.systems import in_system
 
 PLACES = {"inputs": "on the inputs", "results": "on the results", "reading": "on the reading"}
 LONGEST_SERIES = 8
@@ -36,9 +39,8 @@ FEW = 6
 def input_blocks(setup: Setup, detail: str) -> Iterator[BlockView]:
     """Say every input; of many that are not given or at a default of 0 only the names, but on a full sheet."""
     fields = setup.model.input_fields
-    values = {
-        name: input_value(setup, fields[name], value) for name, value in setup.model.read_inputs(setup.inputs).items()
-    }
+    numbers = setup.model.read_inputs(setup.inputs)
+    values = {name: input_value(setup, fields[name], value) for name, value in numbers.items()}
     idle = [
         name
         for name, value in values.items()
@@ -48,14 +50,20 @@ def input_blocks(setup: Setup, detail: str) -> Iterator[BlockView]:
         idle = []
     shown = {name: value for name, value in values.items() if name not in idle}
     calibrated = any(name in setup.calibrated for name in shown)
+    beside = {name: model_value(setup, fields[name], numbers[name]) for name in shown}
+    in_model = any(beside.values())
     columns = (
         Column("Symbol", kind="symbol"), Column("Input", kind="name"), Column("Value", kind="number"),
-        Column("Unit", kind="units"), *((Column("Calibrated", kind="number"),) if calibrated else ()),
+        Column("Unit", kind="units"), *((Column("In the model", kind="number"),) if in_model else ()),
+        *((Column("Calibrated", kind="number"),) if calibrated else ()),
         Column("Given", kind="given"), Column("Source"),
     )  # fmt: skip
-    rows = tuple(_input_row(setup, name, value, calibrated=calibrated) for name, value in shown.items())
+    rows = []
+    for name, value in shown.items():
+        more = [*([beside[name] or ""] if in_model else []), *([_fitted(setup, name)] if calibrated else [])]
+        rows.append(_input_row(setup, name, value, tuple(more)))
     title = "What the calculation starts from; 'stated' stands in the inputs file, 'default' is the model's own value"
-    yield TableView(title, columns, rows, kind="inputs")
+    yield TableView(title, columns, tuple(rows), kind="inputs")
     if idle:
         called = joined(
             Marked("symbol", fields[name].symbol) if fields[name].symbol else Marked("code", name) for name in idle
@@ -64,19 +72,50 @@ def input_blocks(setup: Setup, detail: str) -> Iterator[BlockView]:
         yield Paragraph((words, *called, "."), "aside")
 
 
-def _input_row(setup: Setup, name: str, value: Value, *, calibrated: bool) -> tuple[Text, ...]:
+def _input_row(setup: Setup, name: str, value: Value, more: tuple[Text, ...]) -> tuple[Text, ...]:
     field = setup.model.input_fields[name]
     note = "; ".join(part for part in (field.spec.note, halving_in_words(field)) if part)
-    fitted = setup.calibrated.get(name)
-    own = "" if fitted is None else format_value(fitted, setup.print_unit(name), STATED_DIGITS)[0]
     return (
-        symbol_cell(field.symbol), label_of(note, name), value.text, value.unit,
-        *((own,) if calibrated else ()), "stated" if name in setup.source.stated else "default", field.spec.source,
+        symbol_cell(field.symbol), label_of(note, name), value.text, value.unit, *more,
+        "stated" if name in setup.source.stated else "default", field.spec.source,
     )  # fmt: skip
 
 
+def _fitted(setup: Setup, name: str) -> Text:
+    """Write an input as a diagnosis fitted it, in the unit beside its value; nothing where it did not."""
+    fitted = setup.calibrated.get(name)
+    unit = shown_unit(setup, name)
+    return "" if fitted is None else format_stated(fitted, unit, setup.unit_of(name))[0]
+
+
+def shown_unit(setup: Setup, name: str) -> str:
+    """Return the unit in which an input or condition is shown: as it is stated.
+
+    A unit that the inputs file states for its print wins, and a system to which the stated one does not belong.
+    """
+    stated, system = setup.source.units.get(name, ""), setup.sheet.units
+    if not stated or (not system and name in setup.units):
+        return setup.print_unit(name)
+    return setup.print_unit(name) if system and in_system(stated, system) != stated else stated
+
+
+def model_value(setup: Setup, field: InputField, value: Any) -> Value | None:
+    """Write an input in the unit in which the model prints it, where it is shown in another one; else None."""
+    if setup.source.units.get(field.name) is None:
+        return None
+    unit, shown = setup.print_unit(field.name), shown_unit(setup, field.name)
+    return None if unit_text(unit) == unit_text(shown) else _number_value(field, value, unit, shown)
+
+
+def input_with_model(setup: Setup, field: InputField, value: Any) -> Text:
+    """Write an input as it is stated, and behind it in the unit of the model where that is another one."""
+    beside = model_value(setup, field, value)
+    shown = input_value(setup, field, value)
+    return shown if beside is None else (shown, " ", Marked("aside", "= "), Marked("aside", beside))
+
+
 def input_value(setup: Setup, field: InputField, value: Any) -> Value:
-    """Write one input: a number in its printed unit, a choice, a switch, a file, a series (a long one by its ends)."""
+    """Write one input: a number as it is stated, a choice, a switch, a file, a series (a long one by its ends)."""
     if field.kind == "file":
         if field.name in setup.source.tables:
             return Value(PurePath(setup.source.tables[field.name]["file"]).name)
@@ -85,7 +124,10 @@ def input_value(setup: Setup, field: InputField, value: Any) -> Value:
         return Value("yes" if value else "no")
     if isinstance(value, str) or (isinstance(field.spec, Given) and field.spec.unit is None):
         return Value(str(value))
-    unit = setup.print_unit(field.name)
+    return _number_value(field, value, shown_unit(setup, field.name), setup.stated_unit(field.name))
+
+
+def _number_value(field: InputField, value: Any, unit: str, stated: str) -> Value:
     if field.kind == "series":
         texts = [format_value(float(number), unit) for number in value] or [(ABSENT, "")]
         (first, shown_unit), (last, _) = texts[0], texts[-1]
@@ -94,7 +136,7 @@ def input_value(setup: Setup, field: InputField, value: Any) -> Value:
         return Value(f"{first} … {last} ({len(texts)} values)", shown_unit)
     if value != value:
         return Value(NOT_GIVEN)
-    return Value(*format_value(value, unit, STATED_DIGITS))
+    return Value(*format_stated(value, unit, stated))
 
 
 def tolerance_table(setup: Setup) -> TableView:
@@ -118,7 +160,8 @@ def tolerance_table(setup: Setup) -> TableView:
             scatter += [Marked("break", ", "), "mean ", mean]
         targets = ", ".join(on.replace("_", " ") for on in distributions)
         why = with_source(tolerance.why, tolerance.source)
-        rows.append((name.replace("_", " "), targets, setup.spread_of(name).text, tuple(scatter), why))
+        spread = SheetUnits(setup.sheet.units).text(setup.spread_of(name).text)
+        rows.append((name.replace("_", " "), targets, spread, tuple(scatter), why))
     return TableView("How the inputs scatter about their nominal values", columns, tuple(rows), kind="tolerances")
 
 
@@ -129,27 +172,33 @@ def effect_blocks(setup: Setup) -> Iterator[BlockView]:
         columns = (Column("Condition", kind="name"), Column("Value", kind="number"), Column("Reference", kind="number"))
         rows: list[tuple[Text, ...]] = []
         for name, value in setup.conditions.items():
-            condition, unit = setup.model.known_conditions[name], setup.print_unit(name)
-            values = (Value(*format_value(number, unit, STATED_DIGITS)) for number in (value, condition.zero))
+            condition, unit, stated = (
+                setup.model.known_conditions[name],
+                shown_unit(setup, name),
+                setup.stated_unit(name),
+            )
+            values = (Value(*format_stated(number, unit, stated)) for number in (value, condition.zero))
             rows.append((label_of(condition.note, name), *values))
         yield TableView(title, columns, tuple(rows))
     if not setup.effects:
         yield Paragraph("No effect is on.")
         return
     heads = (Column("Effect", kind="name"), Column("Acts"), Column("Unknowns"), Column("Why"))
-    yield TableView("Effects that are on", heads, tuple(map(_effect_row, setup.effects)), kind="effects")
+    on = tuple(_effect_row(active, setup) for active in setup.effects)
+    yield TableView("Effects that are on", heads, on, kind="effects")
     changed = list(_changed_inputs(setup))
     if changed:
         yield Paragraph(("With them the calculation runs with ", *joined(changed, "; "), "."), "aside")
 
 
-def _effect_row(active: SwitchedOn) -> tuple[Text, ...]:
+def _effect_row(active: SwitchedOn, setup: Setup) -> tuple[Text, ...]:
     effect = active.effect
     unknowns: list[Text] = []
     for unknown in active.unknowns:
-        value = Value(*format_value(active.values[unknown.name], unknown.unit, RESULT_DIGITS))
+        unit = setup.sheet.shown(unknown.unit)
+        value = Value(*format_value(active.values[unknown.name], unit, RESULT_DIGITS))
         sd = active.sds.get(unknown.name)
-        scatter = (" ± ", Value(*format_difference(sd, unknown.unit, 3)), " ", Marked("aside", "(sd)")) if sd else ()
+        scatter = (" ± ", Value(*format_difference(sd, unit, 3)), " ", Marked("aside", "(sd)")) if sd else ()
         unknowns.append((unknown.name.replace("_", " ") + " = ", value, *scatter))
     why = with_source(effect.why or effect.looks_like, effect.source)
     return (effect.name.replace("_", " "), PLACES[effect.place], joined(unknowns, Marked("break", ", ")), why)

@@ -7,12 +7,13 @@ from dataclasses import dataclass
 
 from truing.calculation import Calculation
 from truing.declare.goals import Require
-from truing.numbers import ABSENT, RESULT_DIGITS, STATED_DIGITS, format_chance, format_number
+from truing.numbers import ABSENT, RESULT_DIGITS, STATED_DIGITS, format_chance, format_number, format_stated
 from truing.report.document import Column, Marked, TableView, Text, Value, label_of
+from truing.report.given import shown_unit
 from truing.setup import Setup
 from truing.studies.checks import Check, check_name, requirements
 from truing.studies.verdicts import NO_RESULT, NO_STUDY
-from truing.units import unit_text
+from truing.units import split_quantity, to_si, unit_text
 
 MOST_CHECKS = 8
 """So many limits stand on page one; of more those of which least is left, and all in a chapter of their own."""
@@ -22,8 +23,9 @@ MOST_CHECKS = 8
 class CheckRow:
     """A limit and how far it is kept: the check, symbol and note of what it is on, and its numbers as printed.
 
-    ``proposed`` is the value of the design that a study proposes, ``remark`` says which study would decide the limit,
-    or what its bound is called.
+    A limit that is an input is shown as it is stated, and ``in_model`` in the unit of the value where that is another
+    one. ``proposed`` is the value of the design that a study proposes, ``remark`` says which study would decide the
+    limit, or what its bound is called.
     """
 
     check: Check
@@ -34,6 +36,7 @@ class CheckRow:
     margin: Value
     proposed: Value | None
     remark: str
+    in_model: Value | None = None
 
 
 def check_table(calculation: Calculation, most: int | None = None) -> TableView:
@@ -56,7 +59,9 @@ def check_table(calculation: Calculation, most: int | None = None) -> TableView:
         about = (*label, Marked("bracketed code", check.compared or check.name))
         about += (Marked("break", ", "), Marked("aside", remark)) if remark else ()
         proposed = (row.proposed or "",) if has_proposal else ()
-        rows.append((about, row.value, *proposed, check.relation, row.limit, row.margin, Marked("state", check.state)))
+        in_model = () if row.in_model is None else (" ", Marked("aside", "= "), Marked("aside", row.in_model))
+        numbers = (row.value, *proposed, check.relation, (row.limit, *in_model), row.margin)
+        rows.append((about, *numbers, Marked("state", check.state)))
     margin = "in per cent of the limit" if relative_margins(calculation.checks) else "the distance to the limit"
     title = f"Limits, and what is left of them. A margin is {margin}; above zero is safe"
     note = f"Of {len(shown) + left} limits those of which least is left; all are in their own chapter." if left else ""
@@ -74,17 +79,50 @@ def check_rows(calculation: Calculation) -> Iterator[CheckRow]:
     for check in calculation.checks:
         require = named.get(check.name)
         field = fields.get(check.name if require is None else require.result)
-        calculated = require is not None and not check.chance and require.limit in fields
         yield CheckRow(
             check=check,
             symbol=field.symbol if field is not None and field.name == check.compared else "",
             note=field.spec.note if field is not None else check.note,
             value=check_value(check, check.value),
-            limit=check_value(check, check.limit, RESULT_DIGITS if calculated else STATED_DIGITS),
+            limit=_limit_value(check, require, setup),
+            in_model=_limit_in_model(check, require, setup),
             margin=margin_value(check, relative=relative),
             proposed=None if check.proposed is None else check_value(check, check.proposed.value),
             remark=_remark(check, require, setup),
         )
+
+
+def _limit_value(check: Check, require: Require | None, setup: Setup) -> Value:
+    """Write a limit: one that is an input as that is stated, one that is calculated as results are."""
+    if check.chance or check.flag or check.limit != check.limit or require is None:
+        return check_value(check, check.limit, STATED_DIGITS)
+    if require.limit in setup.model.result_fields:
+        return check_value(check, check.limit)
+    unit = _input_unit(check, require, setup)
+    return Value(*format_stated(to_si(check.limit, check.unit), unit, _stated_unit(check, require, setup)))
+
+
+def _limit_in_model(check: Check, require: Require | None, setup: Setup) -> Value | None:
+    """Write a limit that is an input in the unit of the value, where it is stated in another one; else None."""
+    if check.chance or check.flag or check.limit != check.limit or require is None:
+        return None
+    if unit_text(_input_unit(check, require, setup)) == unit_text(check.unit):
+        return None
+    return Value(*format_stated(to_si(check.limit, check.unit), check.unit, _stated_unit(check, require, setup)))
+
+
+def _input_unit(check: Check, require: Require, setup: Setup) -> str:
+    """Return the unit in which a limit is shown: that of an input that is stated in another one, else the value's."""
+    is_stated = require.limit in setup.model.input_fields and require.limit in setup.source.units
+    return shown_unit(setup, require.limit) if is_stated else check.unit
+
+
+def _stated_unit(check: Check, require: Require, setup: Setup) -> str:
+    """Return the unit in which the number of a limit was written."""
+    if require.limit in setup.model.input_fields:
+        return setup.stated_unit(require.limit)
+    unit = split_quantity(require.limit).unit
+    return unit or setup.model.result_fields[require.result].unit
 
 
 def check_value(check: Check, number: float, digits: int = RESULT_DIGITS) -> Value:

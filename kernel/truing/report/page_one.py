@@ -24,7 +24,7 @@ from truing.report.document import (
     lines_of,
     symbol_cell,
 )
-from truing.report.given import input_value
+from truing.report.given import input_with_model
 from truing.report.limits import MOST_CHECKS, check_table
 from truing.setup import Setup
 
@@ -134,7 +134,7 @@ def _change_table(setup: Setup, example: Setup, names: Sequence[str]) -> TableVi
     known = [(setup, _inputs(setup)), (example, _inputs(example))]
     for name in names:
         field = setup.model.input_fields[name]
-        shown = (input_value(each, field, values[name]) for each, values in known)
+        shown = (input_with_model(each, field, values[name]) for each, values in known)
         rows.append((symbol_cell(field.symbol), label_of(field.spec.note, name), *shown))
     return TableView("", columns, tuple(rows), kind="key")
 

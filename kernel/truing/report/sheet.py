@@ -12,8 +12,8 @@ from truing.cases import CaseResult, CasesTable
 from truing.declare.published import rules_of
 from truing.numbers import (
     ABSENT,
-    STATED_DIGITS,
     format_number,
+    format_stated,
     format_value,
     with_unit,
 )
@@ -46,11 +46,12 @@ from truing.report.document import (
 from truing.report.given import effect_blocks, input_blocks, tolerance_table
 from truing.report.limits import MOST_CHECKS, check_table, check_value, least_margin
 from truing.report.page_one import MOST_WARNINGS, page_one
+from truing.report.sheet_units import SheetUnits, as_printed, cases_as_printed, sheet_units
 from truing.runs.provenance import Provenance
 from truing.setup import Setup
 from truing.studies.checks import HEADLINES, SHORT
 from truing.studies.verdicts import sentence_of
-from truing.units import unit_text
+from truing.units import from_si, to_si, unit_text
 
 HEAD_FIELDS = ("project", "drawing", "revision", "company", "customer", "date")
 ALWAYS = {"project", "drawing", "revision", "date"}
@@ -71,9 +72,11 @@ def make_sheet(
 
     ``example`` is the shipped one, against which the inputs are compared.
     """
+    figures = Figures(units=sheet_units(calculation.setup))
+    cases = cases_as_printed(cases, calculation.setup)
+    calculation = as_printed(calculation)
     setup = calculation.setup
     detail = setup.sheet.detail if setup.sheet.detail in LONGEST_TABLE else "normal"
-    figures = Figures()
     writing = Writing(calculation, detail, figures)
     figure = front_figure(writing)
     results = list(result_chapters(writing))
@@ -99,7 +102,8 @@ def make_sheet(
 
 def study_sheet(calculation: Calculation, *, provenance: Provenance) -> Document:
     """Say what a study that was asked alone has found: its first figure on page one, and the inputs behind it."""
-    setup, figures = calculation.setup, Figures()
+    figures, calculation = Figures(units=sheet_units(calculation.setup)), as_printed(calculation)
+    setup = calculation.setup
     detail = setup.sheet.detail if setup.sheet.detail in LONGEST_TABLE else "normal"
     (chapter,) = list(study_chapters(Writing(calculation, detail, figures))) or [Chapter("Study", ())]
     first = next((block for block in chapter.blocks if isinstance(block, FigureView)), None)
@@ -266,7 +270,7 @@ def cases_table(calculation: Calculation, cases: CasesTable, most: int) -> Table
     """Write all cases: what each changes, its checks, its smallest margin; the governing one is marked."""
     setup = calculation.setup
     checks = list(dict.fromkeys(check.name for case in cases.cases for check in case.checks))
-    numbers = [(name.replace("_", " "), format_value(0.0, setup.unit_of(name))[1]) for name in cases.varied]
+    numbers = [(name.replace("_", " "), format_value(0.0, setup.print_unit(name))[1]) for name in cases.varied]
     firsts = {check.name: check for case in reversed(cases.cases) for check in case.checks}
     numbers += [
         (name.replace("_", " "), "%" if firsts[name].chance else unit_text(firsts[name].unit)) for name in checks
@@ -292,7 +296,8 @@ def _case_row(setup: Setup, case: CaseResult, varied: Sequence[str], checks: Seq
     for name in varied:
         value = case.values.get(name, setup.nominal(name))
         is_word = isinstance(value, (str, bool))
-        values.append(str(value) if is_word else format_value(value, setup.unit_of(name), STATED_DIGITS)[0])
+        units = setup.print_unit(name), setup.unit_of(name)
+        values.append(str(value) if is_word else format_stated(value, *units)[0])
     if case.reason is not None:
         return (case_name(case), *values, *("–" for _ in checks), "–", f"cannot be calculated: {case.reason}")
     texts = {check.name: check_value(check, check.value).text for check in case.checks}
@@ -306,17 +311,32 @@ def _case_row(setup: Setup, case: CaseResult, varied: Sequence[str], checks: Seq
 def published_blocks(setup: Setup, verified: Sequence[ComparedRow]) -> Iterator[BlockView]:
     """Say what the paper prints beside what the calculation gives, first for the settings of this run."""
     own, elsewhere = parted(setup, verified)
+    units = SheetUnits(setup.sheet.units)
     rules = "; ".join(rules_of(row.published for row in verified).values())
     yield Paragraph(f"Judged by kind of figure: {rules}.", "aside")
     if own:
-        yield _compared("Printed for the settings of this run", own, with_settings=False)
+        yield _compared("Printed for the settings of this run", own, units, with_settings=False)
     if elsewhere:
         title = "Printed for other settings, calculated with those"
         alone = "Calculated with the settings that each number is printed for; this run has others"
-        yield _compared(title if own else alone, elsewhere, with_settings=True)
+        yield _compared(title if own else alone, elsewhere, units, with_settings=True)
 
 
-def _compared(title: str, compared: Sequence[ComparedRow], *, with_settings: bool) -> TableView:
+def _side_by_side(row: ComparedRow, unit: str) -> tuple[str, str, str]:
+    """Write the number of the paper, ours with one digit more, and the unit: that of the paper, or of the sheet."""
+    printed = row.published
+    paper = format_number(printed.value, 10)
+    digits = len(paper.partition("e")[0].replace(".", "").replace("-", "").lstrip("0"))
+    value = row.value
+    if unit != printed.unit:
+        value, own = (float(from_si(to_si(each, printed.unit), unit)) for each in (value, printed.value))
+        paper = format_number(own, max(digits, 4))
+    return paper, format_number(value, max(digits + 1, 4)), unit_text(unit) if unit else ""
+
+
+def _compared(
+    title: str, compared: Sequence[ComparedRow], units: SheetUnits, *, with_settings: bool
+) -> TableView:  # fmt: skip
     columns = (
         Column("Quantity", kind="name"), Column("Where"), Column("Paper", kind="number"), Column("Ours", kind="number"),
         Column("Unit", kind="units"), Column("Ratio", kind="number"), Column("Verdict", kind="verdict-cell"),
@@ -335,12 +355,8 @@ def _compared(title: str, compared: Sequence[ComparedRow], *, with_settings: boo
         ratio = f"{row.ratio:.4f}" if row.ratio is not None else ABSENT
         verdict = ("matches" if row.matches else "differs") + ("" if row.as_stated else ", not as stated")
         settings = ", ".join(f"{name.replace('_', ' ')} = {text}" for name, text in printed.settings.items())
-        said = "as above" if printed.settings == before else settings or "defaults"
-        unit = unit_text(printed.unit) if printed.unit else ""
-        paper = format_number(printed.value, 10)
-        digits = len(paper.partition("e")[0].replace(".", "").replace("-", "").lstrip("0"))
-        ours = format_number(row.value, max(digits + 1, 4))  # with one digit more than the paper prints
-        cells = (name, printed.where, paper, ours, unit, ratio, verdict)
+        said = "as above" if printed.settings == before else units.text(settings) or "defaults"
+        cells = (name, printed.where, *_side_by_side(row, units.unit(printed.unit)), ratio, verdict)
         rows.append((*cells, said) if with_settings else cells)
         before = printed.settings
     states = tuple("agrees" if row.matches else "differs" for row in compared)

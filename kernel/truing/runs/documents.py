@@ -12,10 +12,11 @@ import numpy as np
 from truing.calculation import Calculation
 from truing.cases import CasesTable
 from truing.declare.fields import InputField
+from truing.numbers import STATED_DIGITS
 from truing.runs.provenance import Provenance
 from truing.setup import Setup, SwitchedOn
 from truing.studies.checks import Check, Proposal
-from truing.units import difference_unit, from_si, unit_factor
+from truing.units import difference_unit, from_si, unit_factor, unit_text
 from truing.units.names import PURE
 
 SCHEMA = "truing.results/1"
@@ -40,9 +41,15 @@ def results_document(
         "kernel": provenance.kernel,
         "input_hash": provenance.input_hash,
         "seed": provenance.seed,
-        "inputs": {name: _input_value(setup, model.input_fields[name], value) for name, value in inputs.items()},
+        "inputs": {
+            name: {**_input_value(setup, model.input_fields[name], value), **_as_stated(setup, name, value)}
+            for name, value in inputs.items()
+        },
         "tolerances": _tolerances(setup),
-        "conditions": _values(setup, setup.conditions),
+        "conditions": {
+            name: {**said, **_as_stated(setup, name, setup.conditions[name])}
+            for name, said in _values(setup, setup.conditions).items()
+        },
         "effects": {active.effect.name: _effect_values(active) for active in setup.effects},
         "results": {name: _result(calculation, name) for name in model.result_fields if name in calculation.answers},
         "verdict": calculation.verdict if cases is None else cases.verdict,
@@ -146,6 +153,20 @@ def _input_value(setup: Setup, field: InputField, value: Any) -> dict[str, Any]:
     if field.kind == "series":
         return _value(np.asarray(value, dtype=float), setup.print_unit(field.name))
     return _value(value, setup.print_unit(field.name))
+
+
+def _as_stated(setup: Setup, name: str, value: Any) -> dict[str, Any]:
+    """Return a value once more in the unit in which it is stated, where that is not the one that is printed."""
+    unit = setup.source.units.get(name, "")
+    if not unit or unit_text(unit) == unit_text(setup.print_unit(name)):
+        return {}
+    numbers = np.asarray(from_si(np.asarray(value, dtype=float), unit))
+    return {"stated": {"value": clean(np.vectorize(_rounded)(numbers)), "unit": unit}}
+
+
+def _rounded(number: float) -> float:
+    """Free a number of what its way through SI has left: 63 lbf·ft and not 63.00000000000001."""
+    return float(f"{number:.{STATED_DIGITS}g}")
 
 
 def _tolerances(setup: Setup) -> dict[str, Any]:

@@ -7,7 +7,7 @@ import json
 import math
 import os
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -57,6 +57,7 @@ def comment_lines(sentence: str) -> list[str]:
 def _sections(setup: Setup, folder: Path | None) -> Iterator[tuple[str, dict[str, Any]]]:
     """Yield every section of the inputs file with its entries as plain TOML values."""
     detail = {"detail": setup.sheet.detail} if setup.sheet.detail != "normal" else {}
+    detail |= {"units": setup.sheet.units} if setup.sheet.units else {}
     head = {name: str(text) for name, text in setup.sheet.head.items()}
     if folder is not None and head.get("logo"):
         head["logo"] = _seen_from(folder, Path(setup.source.file).parent / head["logo"])
@@ -73,7 +74,10 @@ def _sections(setup: Setup, folder: Path | None) -> Iterator[tuple[str, dict[str
             if name in setup.model.tolerances and spread.text and not isinstance(spread, (ByChoice, Drawn))
         },
     )
-    yield "conditions", {name: exact(value, setup.unit_of(name)) for name, value in setup.conditions.items()}
+    yield (
+        "conditions",
+        {name: _as_stated(value, _units(setup, name, folder)) for name, value in setup.conditions.items()},
+    )
     yield "calibrated", {name: exact(value, setup.unit_of(name)) for name, value in setup.calibrated.items()}
     for active in setup.effects:
         yield f"effects.{active.effect.name}", _effect(active)
@@ -147,8 +151,20 @@ def _input(setup: Setup, field: InputField, value: Any, folder: Path | None) -> 
     if field.kind == "series":
         if getattr(field.spec, "unit", None) is None:
             return [_plain(one) for one in value]
-        return [exact(float(one), field.unit) for one in value] or None
-    return None if value != value else exact(value, field.unit)
+        return [_as_stated(float(one), _units(setup, field.name, folder)) for one in value] or None
+    return None if value != value else _as_stated(value, _units(setup, field.name, folder))
+
+
+def _units(setup: Setup, name: str, folder: Path | None) -> list[str]:
+    """Return the declared unit and the one in which a value is stated; for the hash the declared one alone."""
+    return [setup.unit_of(name), *([setup.stated_unit(name)] if folder is not None else [])]
+
+
+def _as_stated(value: float, units: Sequence[str]) -> Any:
+    """Write a number in the last of these units in which it reads back as the same number, else in the first."""
+    texts = [exact(value, unit) for unit in reversed(units)]
+    exactly = (text for text in texts if not isinstance(text, str) or read_quantity(text, units[0]) == value)
+    return next(exactly, texts[-1])
 
 
 def _file(setup: Setup, name: str, folder: Path | None) -> Any:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from math import exp, inf
 from typing import Any, Literal
@@ -184,6 +184,13 @@ class Allotted:
     priced: Mapping[str, tuple[Check, ...]]
     remarks: tuple[str, ...]
     inputs: Any
+    widths: Mapping[str, str] = field(default_factory=dict)
+    """The units in which widths are printed, where these are not those of their prices."""
+
+    def printed_in(self, unit_of: Callable[[str, str], str]) -> Allotted:
+        """Return the same, printed in other units."""
+        own = {variable.name: variable.price.width for variable in self.problem.variables.values()}
+        return replace(self, widths={name: unit_of(name, unit) for name, unit in own.items()})
 
     @property
     def reached(self) -> bool:
@@ -420,9 +427,10 @@ def _widths(allotted: Allotted, what: str, plan: AllocationPlan) -> Table:
         width = plan.widths.get(variable.name, variable.start)
         ends = {variable.low: "tightest", variable.high: "widest"}
         at_end = next((word for end, word in ends.items() if abs(width / end - 1) < 1e-6), "")
-        pair = [printed_step(size, variable.price.width) for size in (variable.start, width)]
+        printed = allotted.widths.get(variable.name, variable.price.width)
+        pair = [printed_step(size, printed) for size in (variable.start, width)]
         prices = [variable.cost(variable.start), variable.cost(width)]
-        rows.append([variable.name, unit_text(variable.price.width), *pair, width / variable.start, *prices, at_end])
+        rows.append([variable.name, unit_text(printed), *pair, width / variable.start, *prices, at_end])
     unit = allotted.problem.unit
     columns = ("tolerance", "unit", "in force", "bought", "times", "price in force", "price", "at the end")
     note = "Full widths. Those at an end would go further if tightest and widest allowed it."

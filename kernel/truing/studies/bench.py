@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, is_dataclass, replace
 from typing import Any, Protocol
 
 from truing.declare.blocks import Block
@@ -115,13 +115,30 @@ def proposals_of(outcome: Outcome) -> Sequence[Proposal]:
     return proposals() if proposals is not None else ()
 
 
+def printed_in(outcome: Outcome, unit_of: Callable[[str, str], str]) -> Outcome:
+    """Return an outcome that is printed in other units: ``unit_of(name, unit)`` tells which. Its numbers stay in SI.
+
+    It has a method ``printed_in(unit_of)``, or is a dataclass with ``units``, those by name in which it is printed. Any
+    other outcome stays as it is, and its blocks are brought over one by one.
+    """
+    own: Callable[[Callable[[str, str], str]], Outcome] | None = getattr(outcome, "printed_in", None)
+    if own is not None:
+        return own(unit_of)
+    units = getattr(outcome, "units", None)
+    if not is_dataclass(outcome) or isinstance(outcome, type) or not isinstance(units, Mapping):
+        return outcome
+    return replace(outcome, units={name: unit_of(name, unit) for name, unit in units.items()})
+
+
 class Outcome(Protocol):
     """What a study found; the sheet and results.json ask it for their part.
 
     A class that names this one as its base says only what it has to say: it shows, decides and warns of nothing else.
 
     One that has ``files``, a mapping from file names to text or bytes, leaves these in the run folder. One with a
-    method ``proposals()`` proposes designs of which each keeps limits that the stated one may miss.
+    method ``proposals()`` proposes designs of which each keeps limits that the stated one may miss. One that holds its
+    numbers in SI and has ``units``, those in which it prints them by name, follows the units of the sheet; ``as_json``
+    is asked before.
     """
 
     def as_json(self) -> Mapping[str, Any]:

@@ -275,6 +275,16 @@ class Optimum(Outcome):
     remarks: tuple[str, ...] = ()
     inputs: Any = None
 
+    def printed_in(self, unit_of: Callable[[str, str], str]) -> Optimum:
+        """Return the same, printed in other units."""
+        space, setup = self.problem.space, self.problem.setup
+        inputs = {name: unit_of(name, setup.print_unit(name)) for name in self.start.inputs}
+        aims = tuple(replace(aim, unit=unit_of(aim.name, aim.unit)) for aim in self.problem.aims)
+        variables = tuple(replace(each, unit=unit_of(each.name, each.unit)) for each in space.variables)
+        setup = replace(setup, units={**setup.units, **inputs})
+        problem = replace(self.problem, aims=aims, space=replace(space, setup=setup, variables=variables))
+        return replace(self, problem=problem)
+
     @property
     def study(self) -> Optimise:
         """The study that found it."""

@@ -188,6 +188,11 @@ class Odds:
     inputs: Any = None
     nominal: Mapping[str, Any] = field(default_factory=dict)
 
+    def printed_in(self, unit_of: Callable[[str, str], str]) -> Odds:
+        """Return the same, printed in other units."""
+        curve = self.curve and replace(self.curve, unit=unit_of(self.curve.over, self.curve.unit))
+        return replace(self, curve=curve, units={name: unit_of(name, unit) for name, unit in self.units.items()})
+
     @property
     def draws(self) -> int:
         """How many machines were drawn."""

@@ -25,6 +25,8 @@ from truing.studies.reading import printed, read_range, scattering_name, single_
 from truing.units import difference_unit, from_si, unit_text
 
 LARGEST = 1_000_000
+LABEL_DIGITS = 6
+"""A stated value beside a curve has so many: it may stand there in another unit than it is stated in."""
 ROUNDING = 1e-12
 TOGETHER = 2**14
 """How many points one call of the model calculates."""
@@ -527,7 +529,7 @@ def curves(swept: Swept, names: Sequence[str]) -> Callable[[], Figure]:
         if swept.axis.min() <= stated <= swept.axis.max():
             for panel in panels:
                 panel.axvline(from_si(stated, unit), color=GREY, linestyle=":", linewidth=1.0)
-            words = f"stated: {with_unit(*format_value(stated, unit, STATED_DIGITS))}"
+            words = f"stated: {with_unit(*format_value(stated, unit, LABEL_DIGITS))}"
             place = {"xycoords": ("data", "axes fraction"), "ha": "center", "va": "bottom", "fontsize": 7.5}
             panels[0].annotate(words, (float(from_si(stated, unit)), 1.01), color=GREY, **place)
         if swept.by:
@@ -544,7 +546,7 @@ def _draw_result(panel: Any, swept: Swept, name: str) -> None:
     lines = [_thinned(line, swept.results[name]) for line in _lines(swept.columns, swept.over)]
     shades = colormaps["viridis"](np.linspace(0.0, 0.85, len(lines))) if swept.by else [BLUE]
     for line, colour in zip(lines, shades, strict=True):
-        label = format_value(swept.by_axis[line[0]], swept.units[swept.by], STATED_DIGITS)[0] if swept.by else None
+        label = format_value(swept.by_axis[line[0]], swept.units[swept.by], LABEL_DIGITS)[0] if swept.by else None
         x, y = _printed(swept, swept.axis[line], swept.over), _printed(swept, swept.results[name][line], name)
         is_alone = np.isfinite(y).sum() == 1
         panel.plot(x, y, color=colour, label=label, marker="o" if is_alone else "")

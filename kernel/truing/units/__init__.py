@@ -99,8 +99,9 @@ def same_dimension(unit_a: str, unit_b: str) -> bool:
 
 
 def difference_unit(unit: str) -> str:
-    """Return the unit of a difference: kelvin for a level of temperature, else the unit itself."""
-    return "K" if meaning(unit).level else unit
+    """Return the unit of a difference: K for a level in degC, delta_degF for one in degF, else the unit itself."""
+    known = meaning(unit)
+    return unit if not known.level else "K" if known.factor == 1 else "delta_degF"
 
 
 @overload
