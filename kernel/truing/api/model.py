@@ -17,7 +17,7 @@ from truing.api.findings import NamedCause, Ranking, Residuals, causes_of
 from truing.api.notebook import bullets, fold, heading, html_table, joined, paragraphs, picture, table_html
 from truing.api.plan import Plan
 from truing.api.records import MeasuredRecord
-from truing.api.run import Differences, Run, comparison_of, performed
+from truing.api.run import Differences, Run, comparison_of, in_units, performed
 from truing.api.study import StudyResult
 from truing.api.tables import LABEL, beside, frame_text, settings_of, text_of
 from truing.declare.model import Study
@@ -64,9 +64,10 @@ class LoadedModel:
     place of the example, its name, and the folder in which it looks for data files. ``label`` is what sentences about
     a stated value begin with.
 
-    Every call takes values as keywords: an input, a condition, ``seed`` or ``draws`` (of every study that draws). A
-    value is a text with its unit ("12 mm"), a number in the declared unit, or a quantity of pint. ``set`` is a mapping
-    of the same, for names that are no keyword or that the call itself uses: ``set={"tolerances.load": "off"}``.
+    Every call takes values as keywords: an input, a condition, ``seed``, ``draws`` (of every study that draws) or
+    ``units`` ("SI" or "inch", in which sheets are printed; the numbers of results and files stay). A value is a text
+    with its unit ("12 mm"), a number in the declared unit, or a quantity of pint. ``set`` is a mapping of the same,
+    for names that are no keyword or that the call itself uses: ``set={"tolerances.load": "off"}``.
     ``progress`` is True (a bar on a terminal or in a notebook, once the work takes two seconds), False, or a function
     ``progress(task, done, total)``.
     """
@@ -417,9 +418,13 @@ class Diagnosis:
         """Draw what convinces: the residuals before and after, over what the cause depends on."""
         return self.residuals.plot()
 
-    def sheet(self, path: str | Path) -> Path:
-        """Write the sheet as HTML, Markdown or PDF, as the name ends. Raises OutputError."""
-        return write_sheet(path, partial(diagnosis_sheet_of, self.result, self.started))
+    def sheet(self, path: str | Path, *, units: str = "") -> Path:
+        """Write the sheet as HTML, Markdown or PDF, as the name ends; ``units`` are "SI" or "inch".
+
+        Raises OutputError, and UsageError for other units.
+        """
+        result = replace(self.result, setup=in_units(self.result.setup, units))
+        return write_sheet(path, partial(diagnosis_sheet_of, result, self.started))
 
     def save(self, folder: str | Path, *, pdf: bool = False, xlsx: bool = False) -> Path:
         """Write the folder that ``calc diagnose`` writes; an earlier diagnosis there goes. Raises OutputError."""

@@ -30,6 +30,7 @@ from truing.report.document import Document, plain_text
 from truing.report.limits import check_table
 from truing.report.run import run_info, sheet_of, sheets_of, write_sheet
 from truing.report.sheet import banner_of, cases_table
+from truing.report.sheet_units import as_printed, cases_as_printed, printing
 from truing.runs.comparison import Change, compared, in_order, words_of
 from truing.runs.documents import results_document
 from truing.runs.folder import demand_place, run_files, write_outcome
@@ -39,6 +40,7 @@ from truing.setup import Setup
 from truing.studies.bench import Progress, silent
 from truing.studies.checks import Check, State
 from truing.units import from_si
+from truing.units.systems import UNIT_SYSTEMS
 from truing.workbooks.writing import demand_library
 
 FIRST = 12
@@ -132,9 +134,15 @@ class Run:
             raise UsageError("this run has no cases; state them with cases=")
         return frame_of(_case_columns(self.cases, self._setup))
 
-    def sheet(self, path: str | Path) -> Path:
-        """Write the calculation sheet as HTML, Markdown or PDF, as the name ends. Raises OutputError."""
-        return write_sheet(path, partial(self._sheet, silent))
+    def sheet(self, path: str | Path, *, units: str = "") -> Path:
+        """Write the calculation sheet as HTML, Markdown or PDF, as the name ends; ``units`` are "SI" or "inch".
+
+        Raises OutputError, and UsageError for other units.
+        """
+        setup = in_units(self._setup, units)
+        return write_sheet(
+            path, partial(replace(self, calculation=replace(self.calculation, setup=setup))._sheet, silent)
+        )
 
     def save(self, folder: str | Path, *, pdf: bool = False, excel: bool = False, xlsx: bool = False) -> Path:
         """Write the folder that ``calc run`` writes: inputs, results, sheets, arrays; an earlier run there goes.
@@ -171,13 +179,14 @@ class Run:
 
     def _repr_html_(self) -> str:
         """Show the verdict, the limits, the results, and what is to be known beside them."""
-        banner = banner_of(self.calculation, self.cases)
-        limits = table_html(check_table(self.calculation)) if self.checks else ""
+        calculation, cases = as_printed(self.calculation), cases_as_printed(self.cases, self._setup)
+        banner = banner_of(calculation, cases)
+        limits = table_html(check_table(calculation)) if self.checks else ""
         rows = [(row["name"], row["symbol"], row["text"], row["note"]) for row in self._rows()]
         results = html_table(rows[:FIRST], ("result", "symbol", "value", ""))
         more = fold(f"{len(rows) - FIRST} further results", html_table(rows[FIRST:])) if len(rows) > FIRST else ""
         warned = paragraphs(f"Warning: {text}" for text in self.warnings)
-        every = table_html(cases_table(self.calculation, self.cases, MOST_ROWS)) if self.cases is not None else ""
+        every = table_html(cases_table(calculation, cases, MOST_ROWS)) if cases is not None else ""
         said = " ".join(map(plain_text, banner.sentences))
         title = heading(self._setup.model.title) + paragraphs([f"{banner.headline}. {said}"])
         return joined(title, warned, limits, results, more, fold("All cases", every))
@@ -196,12 +205,19 @@ class Run:
             if getattr(value, "ndim", 0) or name not in fields:
                 continue
             unit, result = self._setup.print_unit(name), fields[name]
-            number, printed = format_value(value, unit)
+            number, printed = format_value(value, printing(self._setup).print_unit(name))
             yield {
                 "name": name, "symbol": symbol_text(result.symbol) if result.symbol else "",
                 "value": float(from_si(value, unit)), "unit": unit, "note": result.spec.note,
                 "text": with_unit(number, printed),
             }  # fmt: skip
+
+
+def in_units(setup: Setup, units: str) -> Setup:
+    """Return a setup whose sheet is in these units; "" leaves its own. Raises UsageError for other words."""
+    if units not in {"", *UNIT_SYSTEMS}:
+        raise UsageError(f"units is '{units:.40}'; choose {' or '.join(UNIT_SYSTEMS)}")
+    return replace(setup, sheet=replace(setup.sheet, units=units or setup.sheet.units))  # type: ignore[arg-type]
 
 
 def performed(

@@ -119,10 +119,12 @@ def _cell(value: Any, *, gaps: bool) -> str:
 def settings_of(model: Model[Any, Any], values: Mapping[str, Any]) -> list[str]:
     """Return "name=value" for every value: texts carry units, numbers are in the declared unit, quantities are pint's.
 
-    ``draws`` is that of every study that draws. Other names are those of ``--set``: inputs, conditions, ``seed``, and
-    dotted names such as "tolerances.load".
+    ``draws`` is that of every study that draws, ``units`` the word "SI" or "inch" of the sheet. Other names are those
+    of ``--set``: inputs, conditions, ``seed``, and dotted names such as "tolerances.load".
     """
     said = dict(values)
+    if "units" in values and "units" not in {*model.input_fields, *model.known_conditions}:
+        said["sheet.units"] = said.pop("units")
     if "draws" in values and "draws" not in {*model.input_fields, *model.known_conditions}:
         drawing = [study.name for study in model.studies if hasattr(study, "draws")]
         if not drawing:

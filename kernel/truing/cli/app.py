@@ -59,6 +59,8 @@ def _loaded(module: str) -> Callable[[Callable[P, None]], Callable[P, None]]:
         @functools.wraps(declared)
         def call(*args: P.args, **kwargs: P.kwargs) -> int:
             asked = SimpleNamespace(**kwargs)
+            if (units := kwargs.get("units")) is not None:
+                asked.changed = [*(asked.changed or ()), f"sheet.units={units}"]
             return int(getattr(Later(f"truing.cli.{module}"), declared.__name__)(settings_of(asked.context), asked))
 
         return app.command(declared.__name__)(verb(call))
@@ -131,6 +133,7 @@ def run(
     plugin: Plugin,
     inputs: Inputs = None,
     changed: Changed = None,
+    units: Units = None,
     cases: Cases = None,
     output: RunFolder = None,
     workers: Annotated[int | None, typer.Option("--workers", min=1, help="Processes that share the work.")] = None,
@@ -165,6 +168,7 @@ def sweep(
     steps: Annotated[int, typer.Option("--steps", help="How many points a range has.")] = 181,
     inputs: Inputs = None,
     changed: Changed = None,
+    units: Units = None,
     output: Annotated[Path | None, typer.Option("-o", "--output", help="The folder (default runs/STEM_sweep).")] = None,
     as_json: AsJson = False,
 ) -> None:
@@ -178,6 +182,7 @@ def watch(
     inputs: Annotated[Path, typer.Option("--inputs", "-i", help="The inputs file that is being edited.")],
     data: Data = None,
     changed: Changed = None,
+    units: Units = None,
     cases: Cases = None,
     output: RunFolder = None,
     excel: Excel = False,
@@ -211,6 +216,7 @@ def diagnose(
     inputs: Inputs = None,
     data: Data = None,
     changed: Changed = None,
+    units: Units = None,
     output: Annotated[
         Path | None, typer.Option("--output", "-o", help="The folder (default runs/STEM of the first data file).")
     ] = None,
@@ -297,6 +303,13 @@ def completion(
 # Arguments and options that several verbs share
 
 
+class UnitsWord(StrEnum):
+    """A system of units: millimetre and newton, or inch and pound."""
+
+    SI = "SI"
+    inch = "inch"
+
+
 Plugin: TypeAlias = Annotated[
     str, typer.Argument(help="An installed plugin's name, or a Python file.", autocompletion=candidates.plugins)
 ]
@@ -308,6 +321,9 @@ Changed: TypeAlias = Annotated[
         help="Replace one value of the inputs file.",
         autocompletion=candidates.changes,
     ),
+]
+Units: TypeAlias = Annotated[
+    UnitsWord | None, typer.Option("--units", case_sensitive=False, help="The units of all that people read.")
 ]
 AsJson: TypeAlias = Annotated[bool, typer.Option("--json", help="One JSON document on stdout.")]
 OutputFile: TypeAlias = Annotated[

@@ -13,6 +13,7 @@ from truing.cli.load import find_model, say_example
 from truing.diagnosis.result import DiagnosisResult
 from truing.errors import UsageError
 from truing.report.diagnosis_sheet import data_line, questions
+from truing.report.diagnosis_units import diagnosis_as_printed
 from truing.report.diagnosis_words import headline, verdict_word
 from truing.runs.provenance import provenance_of
 from truing.texts import one_line
@@ -68,7 +69,7 @@ def lines_of(diagnosis: DiagnosisResult, folder: Path) -> Iterator[str]:
     yield from broken(f"DIAGNOSIS  {one_line(data_line(diagnosis))}", 11)
     yield ""
     word = f"{verdict_word(diagnosis)}."
-    for index, sentence in enumerate(headline(diagnosis)):
+    for index, sentence in enumerate(headline(diagnosis_as_printed(diagnosis))):
         yield from broken(one_line(f"{word} {sentence}" if not index else sentence), 0)
     yield ""
     for number, (question, lines) in enumerate(questions(diagnosis).items(), start=1):

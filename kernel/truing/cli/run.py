@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 from types import SimpleNamespace
@@ -19,6 +20,7 @@ from truing.numbers import ABSENT, format_ends, format_value, with_unit
 from truing.report.document import Value
 from truing.report.limits import check_rows, least_margin
 from truing.report.sheet import sentence_of_cases
+from truing.report.sheet_units import as_printed, cases_as_printed
 from truing.runs.partial import is_partial, partial_folder
 from truing.runs.provenance import provenance_of
 from truing.setup import Setup
@@ -90,7 +92,8 @@ MOST_CASES = 40
 
 def lines_of(done: Run, folder: Path, *, with_titles: bool) -> Iterator[str]:
     """Say what a run found, and what fails; ``with_titles`` puts the results under the sections of the sheet."""
-    calculation = done.calculation
+    setup, calculation = done.calculation.setup, as_printed(done.calculation)
+    done = replace(done, calculation=calculation, cases=cases_as_printed(done.cases, setup))
     model = calculation.setup.model
     yield one_line(f"{model.name}: {model.title}")
     if done.cases is not None:

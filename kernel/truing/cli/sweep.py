@@ -13,6 +13,7 @@ from truing.cli.console import Settings, aligned, broken, out, out_json
 from truing.cli.load import find_model, say_example
 from truing.declare.blocks import Table
 from truing.numbers import format_number
+from truing.report.sheet_units import outcome_as_printed
 from truing.studies.sweep import Swept
 from truing.texts import one_line
 from truing.units import unit_text
@@ -37,7 +38,8 @@ def sweep(settings: Settings, asked: SimpleNamespace) -> int:
     if asked.as_json:
         out_json(found.document)
     else:
-        out("\n".join([f"{model.name}: {one_line(model.title)}", "", *_lines(found, found.outcome, folder)]))
+        printed = outcome_as_printed(found.outcome, model.setup(asked.inputs))
+        out("\n".join([f"{model.name}: {one_line(model.title)}", "", *_lines(found, printed, folder)]))
     return 0 if len(found.outcome.failed) < len(found.outcome.axis) else 1
 
 

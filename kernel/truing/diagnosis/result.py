@@ -31,6 +31,8 @@ FAMILIES = (
     ("h", "min", "s", "ms"),
     ("kW", "W", "mW"),
     ("kg", "g", "mg"),
+    ("ft", "in", "uin"),
+    ("Mpsi", "ksi", "psi"),
 )
 KNOWN = {unit for family in FAMILIES for unit in family}
 SMALLEST, LARGEST = 0.1, 1000.0

@@ -15,9 +15,11 @@ from truing.report import diagnosis_figures as figures
 from truing.report.chapters import Figures, numbered
 from truing.report.diagnosis_chapters import diagnosis_chapters
 from truing.report.diagnosis_sizes import amount_text
+from truing.report.diagnosis_units import diagnosis_as_printed, words_as_printed
 from truing.report.diagnosis_words import headline, remedy_of, spoken, verdict_word
 from truing.report.document import Banner, Chapter, Document, Items, Paragraph
 from truing.report.sheet import end_chapters, head_of, logo_of
+from truing.report.sheet_units import sheet_units
 from truing.runs.folder import data_digests
 from truing.runs.provenance import Provenance, provenance_of
 
@@ -34,14 +36,15 @@ def diagnosis_sheet_of(diagnosis: DiagnosisResult, started: float) -> Document:
 
 def make_diagnosis_sheet(diagnosis: DiagnosisResult, *, provenance: Provenance) -> Document:
     """Say everything that stands on the sheet of a diagnosis."""
-    drawn = Figures()
+    units = sheet_units(diagnosis.setup)
+    diagnosis, drawn = diagnosis_as_printed(diagnosis), Figures(units=units)
     front = tuple(_page_one(diagnosis, drawn))
     chapters = list(diagnosis_chapters(diagnosis, drawn))
     warnings = tuple(filter(None, [logo_of(diagnosis.setup)[1], *drawn.failures]))
     head = head_of(diagnosis.setup, provenance)
     named = "found" if diagnosis.remainder is None else "open"
     mood = {"none": "calm", "named": named}.get(diagnosis.verdict, "open")
-    return Document(
+    document = Document(
         kind=DIAGNOSIS,
         title=f"{DIAGNOSIS}: {head.title}",
         head=replace(head, footer=" · ".join(part for part in (DIAGNOSIS, head.footer) if part)),
@@ -55,6 +58,8 @@ def make_diagnosis_sheet(diagnosis: DiagnosisResult, *, provenance: Provenance) 
         warnings=warnings,
         provenance=provenance,
     )
+    printed: Document = words_as_printed(document, units)
+    return printed
 
 
 def _page_one(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[Chapter]:
@@ -76,8 +81,9 @@ def _page_one(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[Chapter]:
 
 
 def questions(diagnosis: DiagnosisResult) -> dict[str, tuple[str, ...]]:
-    """Return what a diagnosis says to each of its questions, line by line."""
-    chapters = diagnosis_chapters(diagnosis, Figures(skipped=True))
+    """Return what a diagnosis says to each of its questions, line by line, in the units of its sheet."""
+    chapters = diagnosis_chapters(diagnosis_as_printed(diagnosis), Figures(skipped=True))
+    chapters = words_as_printed(tuple(chapters), sheet_units(diagnosis.setup))
     return {chapter.title.removesuffix(" measurement"): chapter.lines for chapter in chapters if chapter.lines}
 
 

@@ -24,32 +24,42 @@ from matplotlib.ticker import (
 
 from truing.units import from_si, to_si, unit_text
 
-_LABEL = re.compile(r"(?P<words>.*?)(?P<open>,\s*|\s*\[|\s*\()(?P<unit>[^\s,\[\]()][^,\[\]]*?)(?P<close>[\])]?)")
+_LABELS = (
+    re.compile(r"(?P<before>.*?(?:,\s*|\s*\[|\s*\())(?P<unit>[^\s,\[\]()][^,\[\]]*?)(?P<behind>[\])]?)"),
+    re.compile(r"(?P<before>)(?P<unit>[^\s,]+)(?P<behind>(?:,?\s.*)?)"),
+)
 _LOCATORS = (MaxNLocator, LogLocator, SymmetricalLogLocator)
 _FORMATTERS = (ScalarFormatter, LogFormatter)
 Convert = Callable[[Any], Any]
 
 
 def brought_over(figure: Any, unit_of: Callable[[str], str], text_of: Callable[[str], str]) -> Any:
-    """Bring every axis whose label ends with a unit to ``unit_of`` it, and the quantities in its words to ``text_of``.
+    """Bring every axis whose label names a unit to ``unit_of`` it, and the quantities in its words to ``text_of``.
 
-    "depth, µm", "depth [µm]" and "depth (µm)" end with a unit. An axis whose ticks a plugin has named itself stays.
+    "depth, µm", "depth [µm]" and "depth (µm)" end with a unit, "µm along the normal" begins with one. An axis whose
+    ticks a plugin has named itself stays.
     """
     axes = [axis for panel in figure.axes for axis in panel._axis_map.values()]
     ticks = (each for axis in axes for each in axis.get_ticklabels(which="both"))
     labels = {id(axis.label) for axis in axes} | {*map(id, ticks)}
     for axis in axes:
-        match = _LABEL.fullmatch(axis.get_label_text().strip())
-        unit = match["unit"] if match else ""
-        shown = unit_of(unit)
-        if match and shown != unit and _can_change(axis):
-            _change(axis, unit, shown)
-            axis.set_label_text(match["words"] + match["open"] + unit_text(shown) + match["close"])
+        _relabel(axis, unit_of)
     for text in figure.findobj(Text):
         said = text.get_text()
         if said and "$" not in said and id(text) not in labels:
             text.set_text(text_of(said))
     return figure
+
+
+def _relabel(axis: Any, unit_of: Callable[[str], str]) -> None:
+    for pattern in _LABELS:
+        match = pattern.fullmatch(axis.get_label_text().strip())
+        unit = match["unit"] if match else ""
+        shown = unit_of(unit)
+        if match and shown != unit and _can_change(axis):
+            _change(axis, unit, shown)
+            axis.set_label_text(match["before"] + unit_text(shown) + match["behind"])
+            return
 
 
 def _can_change(axis: Any) -> bool:

@@ -159,9 +159,9 @@ def tolerance_table(setup: Setup) -> TableView:
         for mean in dict.fromkeys(shifts):
             scatter += [Marked("break", ", "), "mean ", mean]
         targets = ", ".join(on.replace("_", " ") for on in distributions)
-        why = with_source(tolerance.why, tolerance.source)
-        spread = SheetUnits(setup.sheet.units).text(setup.spread_of(name).text)
-        rows.append((name.replace("_", " "), targets, spread, tuple(scatter), why))
+        units = SheetUnits(setup.sheet.units)
+        why, spread = units.text(tolerance.why), units.text(setup.spread_of(name).text)
+        rows.append((name.replace("_", " "), targets, spread, tuple(scatter), with_source(why, tolerance.source)))
     return TableView("How the inputs scatter about their nominal values", columns, tuple(rows), kind="tolerances")
 
 

@@ -19,7 +19,7 @@ from truing.errors import UnitError
 from truing.numbers import digits_in, format_number, pretty, with_unit
 from truing.report.figure_units import brought_over
 from truing.setup import Setup
-from truing.studies.bench import printed_in
+from truing.studies.bench import OutcomeT, printed_in
 from truing.studies.checks import Check, Proposal, check_name, margin_of, requirements
 from truing.studies.verdicts import Decided
 from truing.units import difference_unit, from_si, same_dimension, to_si, unit_factor, unit_text
@@ -125,7 +125,7 @@ def as_printed(calculation: Calculation) -> Calculation:
     return replace(
         calculation,
         setup=setup,
-        outcomes={name: printed_in(each, _by_name(setup)) for name, each in calculation.outcomes.items()},
+        outcomes={name: outcome_as_printed(each, setup) for name, each in calculation.outcomes.items()},
         decided=_decided(calculation.decided, setup, units),
         warnings=tuple(map(units.text, calculation.warnings)),
         failed=tuple((row, units.text(reason)) for row, reason in calculation.failed),
@@ -158,14 +158,15 @@ def printing(setup: Setup) -> Setup:
     return replace(setup, units={**shown, **setup.units})
 
 
-def _by_name(shown: Setup) -> Callable[[str, str], str]:
-    """Return what tells the unit of a name: that of an input or result, else the counterpart of its own."""
+def outcome_as_printed(outcome: OutcomeT, setup: Setup) -> OutcomeT:
+    """Return what a study found as the sheet of a setup prints it."""
+    shown = printing(setup)
 
     def unit_of(name: str, unit: str) -> str:
         own = shown.units.get(name)
         return own if own is not None and same_dimension(own, unit) else shown.sheet.shown(unit)
 
-    return unit_of
+    return printed_in(outcome, unit_of) if setup.sheet.units else outcome
 
 
 # Limits

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field, is_dataclass, replace
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 from truing.declare.blocks import Block
 from truing.evaluate import acting_inputs, answered, evaluate_rows
@@ -115,13 +115,16 @@ def proposals_of(outcome: Outcome) -> Sequence[Proposal]:
     return proposals() if proposals is not None else ()
 
 
-def printed_in(outcome: Outcome, unit_of: Callable[[str, str], str]) -> Outcome:
+OutcomeT = TypeVar("OutcomeT", bound="Outcome")
+
+
+def printed_in(outcome: OutcomeT, unit_of: Callable[[str, str], str]) -> OutcomeT:
     """Return an outcome that is printed in other units: ``unit_of(name, unit)`` tells which. Its numbers stay in SI.
 
     It has a method ``printed_in(unit_of)``, or is a dataclass with ``units``, those by name in which it is printed. Any
     other outcome stays as it is, and its blocks are brought over one by one.
     """
-    own: Callable[[Callable[[str, str], str]], Outcome] | None = getattr(outcome, "printed_in", None)
+    own: Callable[[Callable[[str, str], str]], OutcomeT] | None = getattr(outcome, "printed_in", None)
     if own is not None:
         return own(unit_of)
     units = getattr(outcome, "units", None)
