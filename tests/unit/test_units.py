@@ -429,13 +429,13 @@ def test_what_is_written_is_the_number_to_its_digits_and_sign(value: float, digi
     assert math.copysign(1, read) == math.copysign(1, value) or value == 0
 
 
-def test_a_value_is_written_in_its_unit_and_a_difference_of_temperatures_in_kelvin() -> None:
+def test_a_value_is_written_in_its_unit_and_a_difference_of_temperatures_as_one() -> None:
     for si, unit, written in [
         (0.0000125, "um", ("12.5", "µm")), (308.15, "degC", ("35", "°C")), (math.pi, "deg", ("180", "°")),
         (3136.0, "N*m", ("3136", "N·m")), (3, "", ("3", "")), (math.nan, "mm", ("–", "mm")), (None, "mm", ("–", "mm")),
     ]:  # fmt: skip
         assert format_value(si, unit) == written
-    for si, unit, written in [(2.0, "degC", ("2", "K")), (0.001, "mm", ("1", "mm")), (5.0, "degF", ("5", "K"))]:
+    for si, unit, written in [(2.0, "degC", ("2", "K")), (0.001, "mm", ("1", "mm")), (5.0, "degF", ("9", "Δ°F"))]:
         assert format_difference(si, unit) == written
 
 

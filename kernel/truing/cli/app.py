@@ -322,9 +322,7 @@ Changed: TypeAlias = Annotated[
         autocompletion=candidates.changes,
     ),
 ]
-Units: TypeAlias = Annotated[
-    UnitsWord | None, typer.Option("--units", case_sensitive=False, help="The units of all that people read.")
-]
+Units: TypeAlias = Annotated[UnitsWord | None, typer.Option("--units", help="The units of all that people read.")]
 AsJson: TypeAlias = Annotated[bool, typer.Option("--json", help="One JSON document on stdout.")]
 OutputFile: TypeAlias = Annotated[
     Path | None, typer.Option("-o", "--output", help="The file to write (stdout without it).")

@@ -8,7 +8,7 @@ brought over column by column, sentences quantity by quantity.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any
 
@@ -30,11 +30,17 @@ from truing.units.systems import UnitSystem, in_system
 
 FEWEST_DIGITS = 4
 """A number in a sentence keeps its digits, and has so many at the least: 2 mm is 0.07874 in."""
-_NUMBER = r"(?:[-−+]?\d+(?:\.\d+)?(?:e[-+]?\d+|\s×\s10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?)"
-_BETWEEN = r"\s*(?:…|\.\.|–|±|×|,|\bto\b|\band\b|\bor\b)\s*"
+_NUMBER = r"(?:(?:(?<!\d)[-−+])?\d+(?:\.\d+)?(?:e[-+]?\d+|\s×\s10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?)"
+_RANGE = r"(?:\s*(?:…|\.\.|–|±|×)\s*|\sto\s|(?<=\d)-(?=\d))"
+_NUMBERS = (
+    rf"\({_NUMBER}(?:(?:{_RANGE}|,\s){_NUMBER})*\)"  # (12 ± 3), (12, 3)
+    rf"|{_NUMBER}(?:,\s{_NUMBER})*\s(?:and|or)\s{_NUMBER}"  # 10, 12 and 15
+    rf"|{_NUMBER}(?:{_RANGE}{_NUMBER})*"  # 10 to 12
+)
+_UNIT = r"[A-Za-zµΔ°Ω][\wµΔ°Ω·⁻²³⁴^./()*]*"
 _QUANTITY = re.compile(
-    rf"(?<![\w.,^])(?P<sign>±\s?)?(?P<open>\()?(?P<numbers>{_NUMBER}(?:{_BETWEEN}{_NUMBER})*)(?P<close>\))?"
-    r"(?P<gap>[ \u00a0\u202f]?)(?P<unit>(?:10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+[·/])?[A-Za-zµΔ°Ω][\wµΔ°Ω·⁻²³⁴^./()*]*)"
+    rf"(?<![\w.,^/-])(?P<sign>±\s?)?(?P<numbers>{_NUMBERS})[ \u00a0\u202f]?"
+    rf"(?P<unit>(?:10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+[·/])?{_UNIT})(?:\sper\s(?P<below>{_UNIT}))?"
 )
 _SINGLE = re.compile(_NUMBER)
 _TEN = re.compile(r"\s×\s10(?P<exponent>[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)")
@@ -65,20 +71,23 @@ class SheetUnits:
         return _QUANTITY.sub(self._quantity, text) if self.system else text
 
     def _quantity(self, match: re.Match[str]) -> str:
-        whole, trailing = _without_trailing(match["unit"])
-        new = self.unit(whole) if _is_known(whole) else whole
+        """Return what stands for a number, or several, with a unit: the same where the unit has no counterpart."""
+        read = _read_unit(match)
+        parts = [self.unit(part) for part in read.parts]
         follows = match.string[match.end() : match.end() + 2]
-        if new == whole or (whole in _WORDS and not trailing and follows[:1].isspace() and follows[1:].isalpha()):
+        is_word = read.parts[0] in _WORDS and not read.trailing and follows[:1].isspace() and follows[1:].isalpha()
+        if tuple(parts) == read.parts or is_word:
             return match[0]
-        numbers, begin, parts = match["numbers"], 0, []
+        units = _quotient(read.parts), _quotient(parts)
+        numbers, begin, said = match["numbers"], 0, ""
         for single in _SINGLE.finditer(numbers):
             between = numbers[begin : single.start()]
-            parts += [between, _converted(single[0], (whole, new), step="±" in (match["sign"] or between))]
+            said += between + _converted(single[0], units, step="±" in (match["sign"] or between))
             begin = single.end()
-        shown = unit_text(difference_unit(new) if match["sign"] else new)
-        brackets = (match["open"] or "", match["close"] or "")
-        said = with_unit(brackets[0] + "".join(parts) + brackets[1], shown)
-        return (match["sign"] or "") + said + trailing
+        if match["sign"]:
+            parts = [difference_unit(parts[0]), *parts[1:]]
+        shown = " per ".join(map(unit_text, parts))
+        return (match["sign"] or "") + with_unit(said + numbers[begin:], shown) + read.trailing
 
     def block(self, block: Block) -> Block:
         """Bring over what a plugin or a study says: its sentences, and its tables column by column."""
@@ -228,6 +237,30 @@ def _converted(number: str, units: tuple[str, str], *, step: bool) -> str:
     value = _number(float(plain), unit, new)
     text = pretty(format_number(value, max(digits_in(plain), FEWEST_DIGITS)))
     return f"+{text}" if number.startswith("+") else text
+
+
+@dataclass(frozen=True)
+class _ReadUnit:
+    """A unit in a sentence: above and below a "per", and what stands behind it."""
+
+    parts: tuple[str, ...]
+    trailing: str
+
+
+def _read_unit(match: re.Match[str]) -> _ReadUnit:
+    """Take the unit of a quantity; a word that is none is a part as it stands, and has no counterpart."""
+    unit, trailing = _without_trailing(match["unit"])
+    if match["below"] is None or trailing:
+        behind = match.string[match.end("unit") : match.end()]
+        return _ReadUnit((unit if _is_known(unit) else "",), trailing + behind)
+    below, trailing = _without_trailing(match["below"])
+    if _is_known(unit) and _is_known(below):
+        return _ReadUnit((unit, below), trailing)
+    return _ReadUnit((unit if _is_known(unit) else "",), match.string[match.end("unit") : match.end()])
+
+
+def _quotient(parts: Sequence[str]) -> str:
+    return parts[0] if len(parts) == 1 else f"({parts[0]})/({parts[1]})"
 
 
 def _without_trailing(text: str) -> tuple[str, str]:
