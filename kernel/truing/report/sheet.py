@@ -76,6 +76,8 @@ def make_sheet(
     cases = cases_as_printed(cases, calculation.setup)
     calculation = as_printed(calculation)
     setup = calculation.setup
+    if example is not None and setup.sheet.units:
+        example = replace(example, sheet=setup.sheet, units=setup.units)
     detail = setup.sheet.detail if setup.sheet.detail in LONGEST_TABLE else "normal"
     writing = Writing(calculation, detail, figures)
     figure = front_figure(writing)

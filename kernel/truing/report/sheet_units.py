@@ -37,7 +37,8 @@ _NUMBERS = (
     rf"|{_NUMBER}(?:,\s{_NUMBER})*\s(?:and|or)\s{_NUMBER}"  # 10, 12 and 15
     rf"|{_NUMBER}(?:{_RANGE}{_NUMBER})*"  # 10 to 12
 )
-_UNIT = r"[A-Za-zµΔ°Ω][\wµΔ°Ω·⁻²³⁴^./()*]*"
+_UNIT = r"[A-Za-zµΔ°Ω][\wµΔ°Ω·⁻²³⁴^./()*]*(?:\s(?:mm|m|s)(?![\w·/]))?"
+"""Names of units; "N m" is one of them, too."""
 _QUANTITY = re.compile(
     rf"(?<![\w.,^/-])(?P<sign>±\s?)?(?P<numbers>{_NUMBERS})[ \u00a0\u202f]?"
     rf"(?P<unit>(?:10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+[·/])?{_UNIT})(?:\sper\s(?P<below>{_UNIT}))?"
