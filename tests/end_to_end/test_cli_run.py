@@ -130,6 +130,22 @@ def test_detail_changes_the_sheet(calc: Calc, tmp_path: Path) -> None:
     assert "short" in answer.err
 
 
+def test_units_change_what_people_read_and_no_number(calc: Calc, tmp_path: Path) -> None:
+    plain = calc("run", str(PIN), *QUICK, "-q", "-o", "plain")
+    inches = calc("run", str(PIN), *QUICK, "-q", "-o", "inches", "--units", "inch")
+    assert "MPa" in plain.out
+    assert "MPa" not in inches.out
+    assert "ksi" in inches.out
+    assert "ksi" in (tmp_path / "inches" / "sheet.md").read_text(encoding="utf-8")
+    documents = [json.loads((tmp_path / name / "results.json").read_text()) for name in ("plain", "inches")]
+    assert documents[0] == documents[1]
+    again = calc("run", str(PIN), "-i", "inches/inputs.toml", "-q", "-o", "again")
+    assert "ksi" in again.out
+    refused = calc("run", str(PIN), "--units", "metric")
+    assert refused.code == 2
+    assert "'metric' is not one of 'SI', 'inch'" in refused.err
+
+
 def test_a_printed_sheet_or_a_word_why_not(calc: Calc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pdf, "find_browser", lambda: None)
     answer: Answer = calc("run", PIN, "--pdf", *QUICK)

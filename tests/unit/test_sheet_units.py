@@ -291,6 +291,37 @@ def test_no_si_length_is_left_on_an_inch_sheet_of_a_shipped_model(name: str) -> 
     assert len([text for text in said if re.search(r"(?<!\w)(µin|in)[²³⁴]?(?!\w)", text)]) > 10
 
 
+@declared_inputs
+class Lever:
+    """A lever that is declared in inches."""
+
+    force: Float = given(20.0, "lbf", symbol="F", note="force")
+    arm: Float = given(10.0, "in", symbol="a", note="arm")
+    oil: Float = given(212.0, "degF", symbol="theta", note="oil")
+
+
+@declared_results
+class Turned:
+    """What it does."""
+
+    torque: Float = found("lbf*ft", symbol="T", formula="force * arm", note="torque")
+
+
+def lever(lever: Lever) -> Turned:
+    """Pull it; every field is a number or an array (n,)."""
+    return Turned(torque=lever.force * lever.arm)
+
+
+def test_a_plugin_that_is_declared_in_inches_has_a_sheet_in_si() -> None:
+    model = Model(name="lever", title="A lever", function=lever, objectives=[Require("torque", at_most="20 lbf*ft")])
+    offer = Offer("lever", model, Origin("lever", "1.0", "", "", "entry:lever"))
+    setup = setup_from_text('[sheet]\nunits = "SI"\n', offer, file="lever.toml", folder=Path())
+    sheet = document_of(setup)
+    assert [text for text in texts(sheet) if INCH_UNITS.search(text)] == []
+    assert row(table(sheet, "checks"), "torque")["Value"] == "22.597 N·m"  # 20 * 4.4482216152605 N * 0.254 m
+    assert row(table(sheet, "inputs"), "oil")["Value"] == "100"
+
+
 def document_of(setup: Setup) -> Document:
     return make_sheet(calculate(setup), provenance=provenance_of(setup, date="2026-11-26"))
 

@@ -195,7 +195,8 @@ def _checks(calculation: Calculation) -> list[str]:
     lines = []
     for row in check_rows(calculation):
         check, last = row.check, one_line(row.remark) if row.proposed is None else _written(row.proposed)
-        numbers = _written(row.value), check.relation, _written(row.limit), _written(row.margin)
+        limit = _written(row.limit) + ("" if row.in_model is None else f" = {_written(row.in_model)}")
+        numbers = _written(row.value), check.relation, limit, _written(row.margin)
         lines.append((one_line(check.compared or check.name), *numbers, SHORT[check.state], last))
     return aligned([head, *lines], right=(1, 3, 4))
 
