@@ -42,6 +42,7 @@ from truing.report.document import Chapter, Document, Head, ResultEntry, TableVi
 from truing.report.figure_units import brought_over
 from truing.report.sheet import make_sheet
 from truing.report.sheet_units import SheetUnits, as_printed
+from truing.runs.comparison import compared
 from truing.runs.documents import results_document
 from truing.runs.inputs_written import complete_inputs, input_hash
 from truing.runs.provenance import Provenance, provenance_of
@@ -218,6 +219,13 @@ def test_what_is_stated_survives_in_results_json_and_in_the_inputs_of_the_run(tm
     again = read(complete_inputs(setup, tmp_path))
     assert again.source.units == setup.source.units == {"torque": "lbf*ft", "permitted": "lbf*ft", "room": "degF"}
     assert input_hash(again) == input_hash(setup) == input_hash(read(complete_inputs(again, tmp_path)))
+
+
+def test_the_same_value_in_another_unit_is_no_difference() -> None:
+    inches, metres = (read(f'[inputs]\ndiameter = "{text}"\n') for text in ("2 in", "50.8 mm"))
+    documents = [results_document(calculate(setup), provenance_of(setup)) for setup in (inches, metres)]
+    assert "stated" in documents[0]["inputs"]["diameter"]
+    assert [change for change in compared(*documents) if change.kind == "inputs"] == []
 
 
 def test_a_workbook_and_python_state_units_too(tmp_path: Path) -> None:

@@ -90,7 +90,13 @@ def _of_run(document: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     for check in checks.values():
         del check["name"]
     kinds = ("inputs", "tolerances", "conditions", "effects", "results", "checks", "studies")
-    return {kind: checks if kind == "checks" else document.get(kind) or {} for kind in kinds}
+    parts = {kind: checks if kind == "checks" else document.get(kind) or {} for kind in kinds}
+    return parts | {kind: _without_stated(parts[kind]) for kind in ("inputs", "conditions")}
+
+
+def _without_stated(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Leave out in which unit a value is stated: the same length in mm and in inches is one length."""
+    return {name: {key: each for key, each in value.items() if key != "stated"} for name, value in values.items()}
 
 
 def _of_diagnosis(document: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
