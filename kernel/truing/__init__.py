@@ -6,7 +6,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from truing.api.model import Diagnosis, LoadedModel, load
+    from truing.api.differences import Differences
+    from truing.api.model import Diagnosis, LoadedModel, compare, load
     from truing.api.plan import Plan
     from truing.api.records import read, record
     from truing.api.run import Run
@@ -36,7 +37,8 @@ if TYPE_CHECKING:
     from truing.units import quantity
 
 _HOMES = {
-    "truing.api.model": ("Diagnosis", "LoadedModel", "load"),
+    "truing.api.differences": ("Differences",),
+    "truing.api.model": ("Diagnosis", "LoadedModel", "compare", "load"),
     "truing.api.plan": ("Plan",),
     "truing.api.records": ("read", "record"),
     "truing.api.run": ("Run",),
@@ -72,6 +74,7 @@ _HOME = {name: module for module, names in _HOMES.items() for name in names}
 
 __all__ = [  # noqa: RUF022  # what a user calls; then what a plugin needs, in the order of its story
     "load", "LoadedModel", "Run", "StudyResult", "read", "record", "Diagnosis", "Plan",
+    "compare", "Differences",
     "inputs", "results", "given", "found", "axis", "rows", "part", "loaded", "quantity", "Float", "Array",
     "feasible", "either", "column",
     "states", "state", "Dynamics", "Motion", "Event",

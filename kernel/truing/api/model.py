@@ -13,11 +13,12 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+from truing.api.differences import Differences, differences_of, differences_of_paths
 from truing.api.findings import NamedCause, Ranking, Residuals, causes_of
 from truing.api.notebook import bullets, fold, heading, html_table, joined, paragraphs, picture, table_html
 from truing.api.plan import Plan
 from truing.api.records import MeasuredRecord
-from truing.api.run import Differences, Run, comparison_of, performed
+from truing.api.run import Run, performed
 from truing.api.study import StudyResult
 from truing.api.tables import LABEL, beside, frame_text, settings_of, text_of
 from truing.declare.model import Study
@@ -40,6 +41,7 @@ from truing.kernel import Offer, offer_of
 from truing.measurements import RowsFile, read_rows
 from truing.progress import progress_bar
 from truing.published import ComparedRow, compare_published
+from truing.report.comparison_page import Side, figures_in
 from truing.report.diagnosis_sheet import data_words, diagnosis_sheet_of, fitted_table, questions
 from truing.report.diagnosis_words import headline, verdict_word
 from truing.report.run import run_info, sheets_of, write_sheet
@@ -442,7 +444,13 @@ class Diagnosis:
 
     def compare(self, before: Diagnosis) -> Differences:
         """Return what differs from ``before`` to this diagnosis: data, verdict, causes, errors, gain."""
-        return comparison_of(before.document, self.document)
+        return differences_of(before.document, self.document, lambda: (before.side("before"), self.side("after")))
+
+    def side(self, name: str) -> Side:
+        """Return what a page of two diagnoses is written from: the document, and the figures of the sheet."""
+        return Side(
+            name, self.document, figures_in(diagnosis_sheet_of(self.result, self.started)), self.result.setup.model
+        )
 
     def _repr_html_(self) -> str:
         """Show the verdict, the causes, the residuals before and after, and the rest folded away."""
@@ -466,3 +474,16 @@ def load(plugin: str | Path) -> LoadedModel:
     PluginError where the plugin that is named is broken.
     """
     return LoadedModel(offer_of(str(plugin), lambda text: warnings.warn(text, stacklevel=4)))
+
+
+def compare(
+    before: str | Path, after: str | Path, *, plugin: str = "", progress: Progress | bool = True
+) -> Differences:  # fmt: skip
+    """Return what differs between two runs, or two diagnoses: what ``calc compare`` does.
+
+    Each is a folder that was written, or an inputs file (.toml, .xlsx), which runs now; ``plugin`` runs it where it
+    names none. Raises TruingError with one sentence.
+    """
+    return differences_of_paths(
+        before, after, lambda name, file: load(name).run(file, progress=progress), plugin=plugin
+    )  # fmt: skip

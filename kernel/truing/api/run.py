@@ -12,6 +12,7 @@ from math import nan
 from pathlib import Path
 from typing import Any
 
+from truing.api.differences import Differences, differences_of
 from truing.api.notebook import MOST_ROWS, fold, heading, html_table, joined, paragraphs, table_html
 from truing.api.study import StudyResult
 from truing.api.tables import frame_of, frame_text, quantity_of
@@ -26,11 +27,11 @@ from truing.kernel import Offer
 from truing.measurements import read_cases
 from truing.numbers import format_value, with_unit
 from truing.progress import progress_bar
+from truing.report.comparison_page import Side, figures_in
 from truing.report.document import Document, plain_text
 from truing.report.limits import check_table
 from truing.report.run import run_info, sheet_of, sheets_of, write_sheet
 from truing.report.sheet import banner_of, cases_table
-from truing.runs.comparison import Change, compared, in_order, words_of
 from truing.runs.documents import results_document
 from truing.runs.folder import demand_place, run_files, write_outcome
 from truing.runs.partial import code_of, identity_of, kept_batches
@@ -167,7 +168,11 @@ class Run:
 
     def compare(self, before: Run) -> Differences:
         """Return what differs from ``before`` to this run: settings, inputs, results, checks, studies."""
-        return comparison_of(before.document, self.document)
+        return differences_of(before.document, self.document, lambda: (before.side("before"), self.side("after")))
+
+    def side(self, name: str) -> Side:
+        """Return what a page of two runs is written from: the document, and the figures of the sheet."""
+        return Side(name, self.document, figures_in(self._sheet(silent)), self._setup.model)
 
     def _repr_html_(self) -> str:
         """Show the verdict, the limits, the results, and what is to be known beside them."""
@@ -281,37 +286,3 @@ def _case_columns(cases: CasesTable, setup: Setup) -> dict[str, list[Any]]:
         ]
     columns["verdict"] = [case.verdict for case in cases.cases]
     return {**columns, "fault": [case.reason or "" for case in cases.cases]}
-
-
-# What differs between two runs, or two diagnoses
-
-
-CHANGE_COLUMNS = ("what", "name", "before", "after", "change")
-
-
-@dataclass(frozen=True)
-class Differences:
-    """What differs between two runs, or two diagnoses: checks of another state first. False where nothing does."""
-
-    changes: tuple[Change, ...]
-
-    def __repr__(self) -> str:
-        return "\n".join("  ".join(words_of(change)) for change in self.changes) or "equal"
-
-    def __bool__(self) -> bool:
-        """Whether anything differs."""
-        return bool(self.changes)
-
-    def frame(self) -> Any:
-        """Return the differences as a dataframe of texts: what, name, before, after, change."""
-        rows = [words_of(change) for change in self.changes]
-        return frame_of({name: [row[index] for row in rows] for index, name in enumerate(CHANGE_COLUMNS)})
-
-    def _repr_html_(self) -> str:
-        rows = [words_of(change) for change in self.changes]
-        return html_table(rows, CHANGE_COLUMNS) if rows else paragraphs(["equal"])
-
-
-def comparison_of(before: Mapping[str, Any], after: Mapping[str, Any]) -> Differences:
-    """Compare two documents. Raises UsageError for a run beside a diagnosis."""
-    return Differences(tuple(in_order(compared(before, after))))

@@ -251,8 +251,18 @@ def verify(context: typer.Context, plugin: Plugin, as_json: AsJson = False) -> N
 @_loaded("folders")
 def compare(
     context: typer.Context,
-    first: Annotated[Path, typer.Argument(help="A run folder, or that of a diagnosis.", autocompletion=runs)],
+    first: Annotated[
+        Path, typer.Argument(help="A run folder, that of a diagnosis, or an inputs file.", autocompletion=runs)
+    ],
     second: Annotated[Path, typer.Argument(help="Another one of the same kind.", autocompletion=runs)],
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", help="Write both side by side, with figures: .html, .md or .pdf."),
+    ] = None,
+    plugin: Annotated[
+        str,
+        typer.Option("--plugin", help="What runs inputs files that name none.", autocompletion=candidates.plugins),
+    ] = "",
     as_json: AsJson = False,
 ) -> None:
     """Show inputs, results and checks that changed: exit 0 when equal, 1 when different."""

@@ -175,6 +175,16 @@ class FigureView:
 
 
 @dataclass(frozen=True)
+class FigurePair:
+    """A figure of two sheets side by side: as it was and as it is, None where one of the two has none."""
+
+    title: str
+    number: int
+    before: FigureView | None
+    after: FigureView | None
+
+
+@dataclass(frozen=True)
 class Equation:
     """A formula ready to be set: in symbols, in numbers (None where a name runs along an axis), and its result."""
 
@@ -201,7 +211,7 @@ class ResultEntry:
     method: Text = ""
 
 
-BlockView: TypeAlias = Paragraph | Items | TableView | FigureView | ResultEntry
+BlockView: TypeAlias = Paragraph | Items | TableView | FigureView | FigurePair | ResultEntry
 
 
 def table_of(
@@ -225,6 +235,8 @@ class Chapter:
     number: str = ""
     lines: tuple[str, ...] = ()
     """What a terminal and a notebook print of it; a line that begins with spaces belongs to the one above."""
+    folded: bool = False
+    """Whether a page on a screen shows its title alone until it is asked for."""
 
 
 @dataclass(frozen=True)

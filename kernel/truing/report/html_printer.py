@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import re
 from collections.abc import Sequence
 from functools import lru_cache
@@ -64,7 +65,13 @@ def _environment() -> Environment:
         autoescape=True, finalize=_printable,
     )  # fmt: skip
     environment.filters.update(
-        said=_said, formula=_equation, groups=_groups, breakable=_breakable, unbroken=_unbroken, own=_markup
+        said=_said,
+        formula=_equation,
+        picture=_picture,
+        groups=_groups,
+        breakable=_breakable,
+        unbroken=_unbroken,
+        own=_markup,
     )
     environment.tests["wide"] = _is_wide
     environment.globals["marks"] = MARKS
@@ -113,6 +120,11 @@ def _piece(piece: Piece) -> str:
             return f'<span aria-hidden="true">{sign}</span> {word}'
         case Marked():
             return "<br>"
+
+
+def _picture(svg: str) -> str:
+    """Return a drawing as the address of a picture, so that nothing in it can touch the page or another drawing."""
+    return f"data:image/svg+xml;base64,{base64.b64encode(svg.encode()).decode()}"
 
 
 def _breakable(name: str) -> Any:

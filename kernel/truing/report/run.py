@@ -99,10 +99,16 @@ def write_sheet(path: str | Path, make: Callable[[], Document]) -> Path:
     Raises OutputError for any other ending, for a PDF where no browser can print it, and where it cannot be written.
     """
     file = Path(path)
-    ending = file.suffix.lower()
-    if ending not in {".html", ".htm", ".md", ".pdf"}:
-        raise OutputError(f"{file}: a sheet ends in .html, .md or .pdf")
+    ending = demand_ending(file)
     sheet = make()
     text = markdown_of(sheet) if ending == ".md" else html_of(sheet)
     write_files({file: pdf_bytes(text) if ending == ".pdf" else text})
     return file
+
+
+def demand_ending(file: Path) -> str:
+    """Return the ending of a sheet's name, in small letters. Raises OutputError for one that no sheet has."""
+    ending = file.suffix.lower()
+    if ending not in {".html", ".htm", ".md", ".pdf"}:
+        raise OutputError(f"{file}: a sheet ends in .html, .md or .pdf")
+    return ending
