@@ -6,7 +6,7 @@ import tomllib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 from truing.api.notebook import html_table, paragraphs
 from truing.api.tables import frame_of
@@ -19,10 +19,18 @@ from truing.runs.comparison import Change, compared, in_order, words_of
 from truing.runs.folder import load_either
 from truing.workbooks.reading import file_of, is_workbook
 
-if TYPE_CHECKING:
-    from truing.api.run import Run
-
 CHANGE_COLUMNS = ("what", "name", "before", "after", "change")
+
+
+class Finished(Protocol):
+    """A run that can be compared."""
+
+    @property
+    def document(self) -> dict[str, Any]:
+        """What results.json holds."""
+
+    def side(self, name: str) -> Side:
+        """Return what a page of two runs is written from."""
 
 
 @dataclass(frozen=True)
@@ -30,6 +38,7 @@ class Differences:
     """What differs between two runs, or two diagnoses: checks of another state first. False where nothing does."""
 
     changes: tuple[Change, ...]
+    documents: tuple[Mapping[str, Any], Mapping[str, Any]]
     sides: Callable[[], tuple[Side, Side]]
     """Makes what the page is written from: both documents, their figures, and their models."""
 
@@ -61,11 +70,11 @@ def differences_of(
     before: Mapping[str, Any], after: Mapping[str, Any], sides: Callable[[], tuple[Side, Side]]
 ) -> Differences:
     """Compare two documents. Raises UsageError for a run beside a diagnosis."""
-    return Differences(tuple(in_order(compared(before, after))), sides)
+    return Differences(tuple(in_order(compared(before, after))), (before, after), sides)
 
 
 def differences_of_paths(
-    before: str | Path, after: str | Path, run: Callable[[str, Path], Run], *, plugin: str = ""
+    before: str | Path, after: str | Path, run: Callable[[str, Path], Finished], *, plugin: str = ""
 ) -> Differences:  # fmt: skip
     """Compare what lies at two paths: folders of runs or diagnoses, or inputs files, which ``run(plugin, file)`` runs.
 

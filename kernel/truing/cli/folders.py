@@ -19,7 +19,7 @@ from truing.cli.console import GAP, Settings, aligned, harmless, out, out_json, 
 from truing.cli.load import find_model
 from truing.report.index_page import listing_document, summary_of, write_index
 from truing.report.run import demand_ending
-from truing.runs.comparison import Change, words_of
+from truing.runs.comparison import Change, compared, words_of
 from truing.runs.index import list_folder
 from truing.studies.checks import EXIT_CODES
 from truing.texts import one_line
@@ -54,14 +54,15 @@ def compare(settings: Settings, asked: SimpleNamespace) -> int:
     changes = differences.changes
     if asked.output is not None:
         differences.sheet(asked.output)
-        settings.say(f"page: {asked.output}")
     if asked.as_json:
-        out_json({"equal": not changes, "changes": [asdict(change) for change in changes]})
+        out_json({"equal": not changes, "changes": [asdict(change) for change in compared(*differences.documents)]})
     elif not changes:
         out("equal")
     else:
         head = ("what", "name", one_line(asked.first), one_line(asked.second), "change")
         out_table([head, *map(words_of, changes)], [("",) * 5, *map(styles_of, changes)])
+    if asked.output is not None and not asked.as_json:
+        out(f"\npage: {one_line(asked.output)}")
     return 1 if changes else 0
 
 

@@ -165,7 +165,7 @@ def _banner(before: Side, after: Side, by_kind: Mapping[str, Sequence[Change]], 
         for kind, one, many in (
             ("inputs", "input", "inputs"), ("tolerances", "tolerance", "tolerances"),
             ("effects", "effect", "effects"), ("results", "result", "results"), ("checks", "limit or its margin",
-            "limits or their margins"), ("causes", "number of the causes", "numbers of the causes"),
+            "limits or their margins"), ("causes", "entry of the causes", "entries of the causes"),
         ) if kind in by_kind
     ]  # fmt: skip
     said: list[Text] = [("Because ", *joined(why, "; "), ".")] if why and words != other else []
@@ -266,11 +266,17 @@ def _results(
     by_kind: Mapping[str, Sequence[Change]], declared: _Declared
 ) -> tuple[Sequence[Change], Sequence[Change]]:  # fmt: skip
     """Part the results that have no limit: those declared as keys first, then those of one number, as declared."""
-    limited = {change.name for change in by_kind.get("checks", ())}
+    limited = {change.name for change in by_kind.get("checks", ()) if _is_of_value(change)}
     results = [change for change in by_kind.get("results", ()) if change.name not in limited]
     keys = {name for name, field in declared.results.items() if getattr(field.spec, "key", False)}
     ordered = sorted(results, key=lambda change: (change.name not in keys, number_in(change.after) is None))
     return ordered[:MOST_RESULTS], ordered[MOST_RESULTS:]
+
+
+def _is_of_value(change: Change) -> bool:
+    """Tell whether a limit is on the value of the result itself, and not on how probable it is."""
+    piece = change.after or change.before
+    return (piece.get("compared") or change.name) == change.name
 
 
 def _change_table(
