@@ -37,6 +37,7 @@ openpyxl: Any = Later(
     column_index_from_string="openpyxl.utils",
     get_column_letter="openpyxl.utils",
 )
+pypdf: Any = Later("pypdf")
 pymoo: Any = Later(
     "pymoo",
     Config="pymoo.config",
