@@ -29,7 +29,7 @@ from truing.diagnosis.engine import diagnose
 from truing.diagnosis.reading import read_records
 from truing.diagnosis.result import Verdict
 from truing.errors import Fault, InputError, UsageError
-from truing.example_file import example_of, example_text
+from truing.example_file import example_of, text_to_fill_in
 from truing.experiments.design import BUDGET
 from truing.experiments.planning import planned
 from truing.experiments.proposal import proposed
@@ -308,7 +308,7 @@ class LoadedModel:
 
     def example(self) -> str:
         """Return a commented inputs file that runs as it is: what ``calc init`` writes."""
-        return example_text(self.offer)
+        return text_to_fill_in(self.offer)
 
     def _repr_html_(self) -> str:
         """Show what the model takes and answers, and what could make it wrong."""

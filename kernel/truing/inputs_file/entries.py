@@ -34,9 +34,16 @@ from truing.units import demand_dimension, difference_unit, from_si, to_si, unit
 from truing.units.grammar import shown
 from truing.units.names import PURE
 
-HEAD = (
-    "project", "drawing", "revision", "prepared_by", "checked_by", "approved_by", "date", "company", "logo",
-)  # fmt: skip
+HEAD = {
+    "title": "in place of the calculation's own title", "project": "what it is for",
+    "document": "number of the document", "drawing": "number of the drawing", "revision": "of the drawing or the sheet",
+    "customer": "for whom", "prepared_by": "who signs first", "checked_by": "who signs second",
+    "approved_by": "who signs last", "date": "without it the day of the calculation",
+    "company": "head of the letter", "address": "below the company",
+    "logo": "a picture beside this file: .svg, .png or .jpg",
+    "style": "a style sheet beside this file (.css), after Truing's own",
+}  # fmt: skip
+"""What may stand in the head of the sheet, and what it is."""
 DETAILS = ("short", "normal", "full")
 PAPERS = ("A4", "letter")
 
@@ -68,7 +75,10 @@ def _text(name: str, raw: Any, _: InputsRead) -> str:
 
 
 def _sheet(_: Model[Any, Any]) -> dict[str, FileEntry]:
-    entries = {name: FileEntry(partial(_head_text, name), {"type": ["string", "number"]}) for name in HEAD}
+    entries = {
+        name: FileEntry(partial(_head_text, name), {"type": ["string", "number"], "description": _sentence(words)})
+        for name, words in HEAD.items()
+    }
     detail = {"enum": list(DETAILS), "default": "normal", "description": "How much the sheet shows."}
     paper = {"enum": list(PAPERS), "default": "A4", "description": "What the sheet is printed on."}
     return {
@@ -76,6 +86,10 @@ def _sheet(_: Model[Any, Any]) -> dict[str, FileEntry]:
         "detail": FileEntry(partial(_one_of, "detail", DETAILS), detail),
         "paper": FileEntry(partial(_one_of, "paper", PAPERS), paper),
     }
+
+
+def _sentence(words: str) -> str:
+    return f"{words[:1].upper()}{words[1:]}."
 
 
 def _head_text(name: str, raw: Any, reading: InputsRead) -> str:

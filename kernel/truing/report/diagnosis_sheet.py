@@ -51,7 +51,7 @@ from truing.report.diagnosis_words import (
     verdict_word,
 )
 from truing.report.document import Banner, BlockView, Chapter, Document, Items, Paragraph, TableView, table_of
-from truing.report.sheet import end_chapters, head_of, logo_of
+from truing.report.sheet import end_chapters, head_faults, head_of
 from truing.runs.diagnosis_document import file_labels
 from truing.runs.folder import data_digests
 from truing.runs.provenance import Provenance, provenance_of
@@ -72,7 +72,7 @@ def make_diagnosis_sheet(diagnosis: DiagnosisResult, *, provenance: Provenance) 
     drawn = Figures()
     front = tuple(_page_one(diagnosis, drawn))
     chapters = list(diagnosis_chapters(diagnosis, drawn))
-    warnings = tuple(filter(None, [logo_of(diagnosis.setup)[1], *drawn.failures]))
+    warnings = (*head_faults(diagnosis.setup), *drawn.failures)
     head = head_of(diagnosis.setup, provenance)
     named = "found" if diagnosis.remainder is None else "open"
     mood = {"none": "calm", "named": named}.get(diagnosis.verdict, "open")

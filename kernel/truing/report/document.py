@@ -250,6 +250,10 @@ class Head:
     footer: str
     logo: str = ""
     """A picture as a data address, or nothing."""
+    letter: tuple[str, ...] = ()
+    """Who writes: the company, and its address below."""
+    style: str = ""
+    """The text of a style sheet of the engineer's own, which comes after that of the sheet."""
 
 
 @dataclass(frozen=True)

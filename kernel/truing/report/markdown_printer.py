@@ -45,6 +45,8 @@ def markdown_of(document: Document) -> str:
 
 def _head(document: Document) -> Iterator[str]:
     head, banner = document.head, document.banner
+    if head.letter:
+        yield ", ".join((f"**{escaped(head.letter[0])}**", *map(escaped, head.letter[1:])))
     yield f"# {escaped(document.title)}"
     yield from (escaped(text) for text in (head.model, document.summary) if text)
     yield _pipes(head.fields)

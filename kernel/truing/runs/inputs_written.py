@@ -57,10 +57,12 @@ def comment_lines(sentence: str) -> list[str]:
 def _sections(setup: Setup, folder: Path | None) -> Iterator[tuple[str, dict[str, Any]]]:
     """Yield every section of the inputs file with its entries as plain TOML values."""
     detail = {"detail": setup.sheet.detail} if setup.sheet.detail != "normal" else {}
+    paper = {"paper": setup.sheet.paper} if setup.sheet.paper != "A4" else {}
     head = {name: str(text) for name, text in setup.sheet.head.items()}
-    if folder is not None and head.get("logo"):
-        head["logo"] = _seen_from(folder, Path(setup.source.file).parent / head["logo"])
-    yield "sheet", {**head, **detail}
+    for name in ("logo", "style"):
+        if folder is not None and head.get(name):
+            head[name] = _seen_from(folder, Path(setup.source.file).parent / head[name])
+    yield "sheet", {**head, **detail, **paper}
     inputs = setup.model.read_inputs(setup.inputs)
     fields = setup.model.input_fields
     stated = {name: _input(setup, fields[name], value, folder) for name, value in inputs.items()}
