@@ -282,6 +282,8 @@ class Document:
     """What stands on page one, before the signatures."""
     figure_height: float = 95.0
     """How high the figure of page one is on paper, mm."""
+    figure_below: bool = False
+    """Whether it stands there below the key results, instead of beside them."""
     chapters: tuple[Chapter, ...]
     warnings: tuple[str, ...]
     provenance: Provenance

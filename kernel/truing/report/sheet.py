@@ -90,6 +90,7 @@ def make_sheet(
         banner=banner_of(calculation, cases),
         front=first.chapters,
         figure_height=first.figure_height,
+        figure_below=first.figure_below,
         chapters=numbered(
             [*_given(calculation, cases, detail), *results, *_back(calculation, verified, warnings, provenance)]
         ),
