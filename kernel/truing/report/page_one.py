@@ -44,7 +44,7 @@ SAME = 1e-12
 
 @dataclass(frozen=True)
 class PageOne:
-    """What stands between the verdict and the signatures; on paper the figure is so high, mm, beside the results or below."""
+    """What stands between the verdict and the signatures; how high its figure is on paper (mm), and where."""
 
     chapters: tuple[Chapter, ...]
     figure_height: float
