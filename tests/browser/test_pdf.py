@@ -140,6 +140,18 @@ def test_a_browser_that_prints_nothing_or_is_not_there_is_said_in_one_sentence(
     assert list(tmp_path.iterdir()) == []
 
 
+def test_without_a_figure_the_chapters_follow_on_page_one(chromium: Path, tmp_path: Path) -> None:
+    """Where there is none, page one would be empty between its results and the signatures."""
+    model = load(Path(__file__).parents[2] / "docs" / "examples" / "adsorption" / "adsorption.py")
+    printed = tmp_path / "sheet.pdf"
+    html = model.run(progress=False).sheet(tmp_path / "sheet.html").read_text(encoding="utf-8")
+    assert "key-figure" not in re.sub(r"<style>.*?</style>", "", html, flags=re.DOTALL)
+    printed.write_bytes(pdf_bytes(html, chromium))
+    first = words_of(printed, page=1)
+    assert "1 Inputs What the calculation starts from" in first
+    assert first.index("Approved") < first.index("1 Inputs")
+
+
 def test_the_figure_of_page_one_is_seen_on_paper(chromium: Path, tmp_path: Path) -> None:
     """Of a study that is asked alone, whose page one has nothing else."""
     study = load("press_linkage.motion").sweep("counterbalance", "0..400 kN", points=5, output=tmp_path / "swept")
