@@ -317,6 +317,7 @@ SECTIONS = {
     "sheet": "What the head of the sheet says, and how much the sheet shows.",
     "inputs": "The inputs of the calculation; what is left out is as declared.",
     "tolerances": "How inputs scatter about their nominals.",
+    "correlations": "Which inputs scatter together, and how much.",
     "conditions": "What is measured but no input of the model.",
     "effects": "Effects that are on, by name, each with its unknowns.",
     "calibrated": "Inputs as fitted to one machine.",
@@ -368,7 +369,7 @@ def path_of(name: str, model: Model[Any, Any]) -> tuple[str, ...]:
 def value_of(path: tuple[str, ...], text: str, model: Model[Any, Any]) -> Any:
     """Return the TOML value that a text on the command line means in this place."""
     input_field = model.input_fields.get(path[1]) if path[0] in {"inputs", "calibrated"} else None
-    as_toml = path[0] == "studies" or (
+    as_toml = path[0] in {"studies", "correlations"} or (
         input_field is not None and input_field.kind in {"switch", "integer", "series", "file"}
     )
     if not as_toml and not text.startswith(("{", "[", '"', "'")):
