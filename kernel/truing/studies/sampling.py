@@ -263,8 +263,8 @@ class Copula:
         """The Cholesky factor of the matrix (k, k)."""
         return np.linalg.cholesky(self.matrix)
 
-    def mixed(self, drawn: Mapping[str, Matrix]) -> dict[str, Matrix]:
-        """Return independent standard normal values (columns, ...) by cause, now correlated."""
+    def mixed(self, drawn: Mapping[str, Any]) -> dict[str, Any]:
+        """Return independent standard normal values (columns, ...) by cause, now correlated; others as they are."""
         values = np.array([drawn[name][index] for name, index in self.places])
         mixed = {name: np.array(drawn[name]) for name in dict.fromkeys(name for name, _ in self.places)}
         for (name, index), row in zip(self.places, np.tensordot(self.root, values, axes=1), strict=True):
