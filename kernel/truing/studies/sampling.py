@@ -354,6 +354,22 @@ class Scatter:
                 of_values = float(pearson(own, their, coefficient))
                 yield CorrelatedPair(first, second, float(coefficient), of_values, of_values * float(own.sd * their.sd))
 
+    def alike(self, columns: Sequence[str]) -> Matrix:
+        """Return the correlations of the values of these columns (k, k), 0 of those that do not scatter together."""
+        alike = np.eye(len(columns))
+        place = {column: index for index, column in enumerate(columns)}
+        for cause in self.causes:
+            covariance = cause.covariance() if cause.mixing is not None else np.zeros((0, 0))
+            for (one, other), value in np.ndenumerate(covariance):
+                first, second = cause.columns[one], cause.columns[other]
+                if one != other and {first, second} <= place.keys():
+                    alike[place[first], place[second]] = value / (self.sd_of(first) * self.sd_of(second))
+        for pair in self.pairs:
+            if {pair.first, pair.second} <= place.keys():
+                one, other = place[pair.first], place[pair.second]
+                alike[one, other] = alike[other, one] = pair.of_values
+        return alike
+
     def sd_of(self, column: str) -> float:
         """Return the standard deviation of one column, 0 where it does not scatter."""
         variance = 0.0
