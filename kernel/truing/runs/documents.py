@@ -163,13 +163,12 @@ def _tolerances(setup: Setup) -> dict[str, Any]:
     return said
 
 
-def _correlations(setup: Setup) -> list[dict[str, Any]]:
-    """Return the pairs of inputs that scatter together, with the correlation of their values beside the stated one."""
-    of_values = {frozenset({pair.first, pair.second}): pair.of_values for pair in scatter_of(setup).pairs}
-    return [
-        {"inputs": [pair.first, pair.second], "correlation": pair.coefficient, "of_values": of_values[pair.pair]}
-        for pair in setup.scattering_together()
-    ]
+def _correlations(setup: Setup) -> dict[str, Any]:
+    """Return by pair how inputs scatter together: the correlation of their normal scores, and that of their values."""
+    return {
+        f"{pair.first}, {pair.second}": {"value": pair.coefficient, "unit": "", "of_values": pair.of_values}
+        for pair in scatter_of(setup).pairs
+    }
 
 
 def _effect_values(active: SwitchedOn) -> dict[str, Any]:

@@ -85,6 +85,7 @@ def _single(document: Mapping[str, Any], model: Model[Any, Any]) -> Iterator[Spr
             for part in ("mean", "sd"):
                 said = {"name": target, "place": part, "value": distribution[part], "unit": distribution["unit"]}
                 yield {"part": "tolerance", **said, "note": f"{name}: {tolerance['spread']}"}
+    yield from _named("correlation", document["correlations"], {})
     yield from _named("condition", document["conditions"], {})
     for name, unknowns in document["effects"].items():
         for unknown, estimate in unknowns.items():

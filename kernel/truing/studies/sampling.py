@@ -261,7 +261,7 @@ class Copula:
     @cached_property
     def root(self) -> Matrix:
         """The Cholesky factor of the matrix (k, k)."""
-        return np.linalg.cholesky(self.matrix)
+        return np.asarray(np.linalg.cholesky(self.matrix), dtype=np.float64)
 
     def mixed(self, drawn: Mapping[str, Any]) -> dict[str, Any]:
         """Return independent standard normal values (columns, ...) by cause, now correlated; others as they are."""

@@ -289,9 +289,9 @@ def sobol_indices(
     if joint:
         return {}, {}, [f"no Sobol indices: they need independent sources, and those of {' and '.join(joint)} are not"]
     if scatter.pairs:
-        first, second = scatter.pairs[0].first, scatter.pairs[0].second
+        pair = scatter.pairs[0]
         more = f", as are {len(scatter.pairs) - 1} pairs more" if len(scatter.pairs) > 1 else ""
-        words = f"'{first}' and '{second}' are correlated{more}; the shares of the variance count that in"
+        words = f"'{pair.first}' and '{pair.second}' are correlated{more}; the shares of the variance count that in"
         return {}, {}, [f"no Sobol indices: they need independent sources, and {words}"]
     sources = [column for cause in scatter.causes for column in cause.columns]
     dimensions = max(len(sources), 2)  # scipy wants two; one that nothing depends on does no harm

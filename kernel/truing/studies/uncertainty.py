@@ -246,7 +246,7 @@ def _shared_json(term: SharedTerm, budget: Budget) -> dict[str, Any]:
 
 def _shared_table(result: str, budget: Budget) -> Table:
     """Say what each two correlated inputs add together."""
-    rows = [[term.first, term.second, term.correlation, 100 * term.variance / budget.combined**2]
+    rows: list[list[Any]] = [[term.first, term.second, term.correlation, 100 * term.variance / budget.combined**2]
             for term in budget.shared]  # fmt: skip
     note = (
         "Each adds 2 c(x) c(y) u(x) u(y) r to the combined variance; below 0 the two take from it. With the shares of "
