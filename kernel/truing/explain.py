@@ -143,7 +143,9 @@ def of_input(setup: Setup, name: str) -> dict[str, Any]:
         "moves": moves,
         "limits": [require_words(require, "") for require in _requires(setup) if require.result in moved],
         "tolerances": [_tolerance(setup, tolerance) for tolerance in scattering],
-        "correlated": [_correlated(each, name) for each in setup.scattering_together() if name in each.pair],
+        "correlated": [
+            _correlated(each, name) for each in setup.scattering_together() if name in each.pair and each.coefficient
+        ],
         "namesake": [] if namesake is None or name in namesake.on else list(namesake.on),
         "limit_of": [
             require_words(require, "") for require in _requires(setup) if name in {require.limit, require.reliability}

@@ -124,7 +124,7 @@ def _same_scatter(setup: Setup, wanted: Setup) -> bool:
 
 
 def _coupled(setup: Setup) -> dict[frozenset[str], float]:
-    return {each.pair: each.coefficient for each in setup.scattering_together()}
+    return {each.pair: each.coefficient for each in setup.scattering_together() if each.coefficient}
 
 
 def parted(setup: Setup, rows: Sequence[ComparedRow]) -> tuple[list[ComparedRow], list[ComparedRow]]:

@@ -241,9 +241,9 @@ class Setup(Case):
         return distributions
 
     def scattering_together(self) -> tuple[Correlated, ...]:
-        """Return the correlations of inputs that scatter, without those that are 0."""
+        """Return the correlations of inputs that scatter, also those that are stated to be 0."""
         scattering = {name for by_input in self.distributions().values() for name in by_input}
-        return tuple(each for each in self.correlations if each.coefficient and each.pair <= scattering)
+        return tuple(each for each in self.correlations if each.pair <= scattering)
 
 
 def default_setup(model: Model[Any, Any], origin: Origin | None = None, **values: Any) -> Setup:

@@ -207,7 +207,7 @@ def in_force(declared: Iterable[Correlated], stated: Iterable[Correlated]) -> tu
 def scatter_fault(name: str, tolerances: Sequence[str], is_drawn: Callable[[str], bool]) -> str:
     """Return why an input cannot scatter together with another, or nothing; ``tolerances`` in force are on it."""
     if not tolerances:
-        return f"'{name}' does not scatter: its tolerance is off"
+        return f"'{name}' does not scatter, its tolerance is off; state a tolerance, or leave the correlation out"
     if len(tolerances) > 1:
         return f"'{name}' scatters by two tolerances, {' and '.join(tolerances)}; turn one of them off"
     if is_drawn(tolerances[0]):

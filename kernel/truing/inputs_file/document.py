@@ -337,10 +337,19 @@ def apply_overrides(document: InputsDocument, model: Model[Any, Any], overrides:
         if not equals or not name:
             document.faults.append(Fault("write name=value, such as load='3 kN'", override))
             continue
-        path = path_of(name, model)
+        path = _as_stated(path_of(name, model), document)
         if len(path) == 3 and path[0] == "inputs":
             open_table(document, path[1], override)
         put(document, path, value_of(path, value, model), override)
+
+
+def _as_stated(path: tuple[str, ...], document: InputsDocument) -> tuple[str, ...]:
+    """Return a path; of a pair of correlated inputs as the file names it, which may be the other way round."""
+    stated = document.data.get("correlations")
+    if path[0] != "correlations" or not isinstance(stated, dict):
+        return path
+    names = {name.strip() for name in path[1].split(",")}
+    return (path[0], next((key for key in stated if {name.strip() for name in key.split(",")} == names), path[1]))
 
 
 def _one_line(text: str) -> str:

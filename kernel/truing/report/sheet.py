@@ -49,6 +49,7 @@ from truing.report.page_one import MOST_WARNINGS, page_one
 from truing.runs.provenance import Provenance
 from truing.setup import Setup
 from truing.studies.checks import HEADLINES, SHORT
+from truing.studies.sampling import scatter_of
 from truing.studies.verdicts import sentence_of
 from truing.units import unit_text
 
@@ -248,7 +249,7 @@ def _inputs_behind(setup: Setup, detail: str) -> Iterator[Chapter]:
         return
     yield Chapter("Inputs", tuple(input_blocks(setup, detail)), "inputs")
     if setup.distributions():
-        tables = [tolerance_table(setup)] + [correlation_table(setup)] * bool(setup.scattering_together())
+        tables = [tolerance_table(setup)] + [correlation_table(setup)] * bool(scatter_of(setup).pairs)
         yield Chapter("Tolerances in force", tuple(tables), "tolerances")
     if setup.conditions or setup.effects:
         yield Chapter("Conditions and effects", tuple(effect_blocks(setup)), "effects")

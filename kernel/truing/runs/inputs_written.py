@@ -73,7 +73,7 @@ def _sections(setup: Setup, folder: Path | None) -> Iterator[tuple[str, dict[str
             if name in setup.model.tolerances and spread.text and not isinstance(spread, (ByChoice, Drawn))
         },
     )
-    yield "correlations", {pair.name: pair.coefficient for pair in setup.correlations}
+    yield "correlations", {pair.name: pair.coefficient for pair in setup.scattering_together()}
     yield "conditions", {name: exact(value, setup.unit_of(name)) for name, value in setup.conditions.items()}
     yield "calibrated", {name: exact(value, setup.unit_of(name)) for name, value in setup.calibrated.items()}
     for active in setup.effects:

@@ -421,7 +421,7 @@ def scatter_of(setup: Setup) -> Scatter:
 
 def _copula(setup: Setup, causes: Sequence[ScatterSource]) -> Copula | None:
     """Return how the inputs scatter together, or None. Raises UsageError where they cannot."""
-    stated = setup.scattering_together()
+    stated = [each for each in setup.scattering_together() if each.coefficient]
     if not stated:
         return None
     for name in dict.fromkeys(name for each in stated for name in (each.first, each.second)):

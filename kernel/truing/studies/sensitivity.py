@@ -290,7 +290,7 @@ def sobol_indices(
         return {}, {}, [f"no Sobol indices: they need independent sources, and those of {' and '.join(joint)} are not"]
     if scatter.pairs:
         pair = scatter.pairs[0]
-        more = f", as are {len(scatter.pairs) - 1} pairs more" if len(scatter.pairs) > 1 else ""
+        more = f" (with {len(scatter.pairs) - 1} more of such pairs)" if len(scatter.pairs) > 1 else ""
         words = f"'{pair.first}' and '{pair.second}' are correlated{more}; the shares of the variance count that in"
         return {}, {}, [f"no Sobol indices: they need independent sources, and {words}"]
     sources = [column for cause in scatter.causes for column in cause.columns]
