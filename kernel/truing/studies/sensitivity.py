@@ -285,14 +285,9 @@ def sobol_indices(
 
     There are none, and a sentence says so, where sources scatter together or machines fail.
     """
-    joint = [cause.name for cause in scatter.causes if cause.mixing is not None]
+    joint = _joint(scatter)
     if joint:
-        return {}, {}, [f"no Sobol indices: they need independent sources, and those of {' and '.join(joint)} are not"]
-    if scatter.pairs:
-        pair = scatter.pairs[0]
-        more = f" (with {len(scatter.pairs) - 1} more of such pairs)" if len(scatter.pairs) > 1 else ""
-        words = f"'{pair.first}' and '{pair.second}' are correlated{more}; the shares of the variance count that in"
-        return {}, {}, [f"no Sobol indices: they need independent sources, and {words}"]
+        return {}, {}, [f"no Sobol indices: they need independent sources, and {joint}"]
     sources = [column for cause in scatter.causes for column in cause.columns]
     dimensions = max(len(sources), 2)  # scipy wants two; one that nothing depends on does no harm
     reasons: dict[int, str] = {}
@@ -319,6 +314,18 @@ def sobol_indices(
         return {}, {}, [f"no Sobol indices: {len(reasons)} machines failed, the first because {first_reason}"]
     first, total = (np.reshape(of, (len(results), dimensions)) for of in (indices.first_order, indices.total_order))
     return _by_name(results, sources, first), _by_name(results, sources, total), []
+
+
+def _joint(scatter: Scatter) -> str:
+    """Say which sources scatter together, or nothing."""
+    joint = [cause.name for cause in scatter.causes if cause.mixing is not None]
+    if joint:
+        return f"those of {' and '.join(joint)} are not"
+    if not scatter.pairs:
+        return ""
+    pair = scatter.pairs[0]
+    more = f" (with {len(scatter.pairs) - 1} more of such pairs)" if len(scatter.pairs) > 1 else ""
+    return f"'{pair.first}' and '{pair.second}' are correlated{more}; the shares of the variance count that in"
 
 
 def _by_name(results: Sequence[str], sources: Sequence[str], values: Matrix) -> dict[str, dict[str, float]]:
