@@ -242,6 +242,8 @@ class Setup(Case):
 
     def scattering_together(self) -> tuple[Correlated, ...]:
         """Return the correlations of inputs that scatter, also those that are stated to be 0."""
+        if not self.correlations:
+            return ()
         scattering = {name for by_input in self.distributions().values() for name in by_input}
         return tuple(each for each in self.correlations if each.pair <= scattering)
 

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import itertools
+import re
 from dataclasses import replace
 from math import sqrt
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import openpyxl
 import pytest
 from diagnosis_models import Asked
 from scipy.special import ndtr
 from scipy.stats import norm, spearmanr
 from study_models import CHAIN, PRICED, STACK, add, setup_of
 
+import truing
 from truing import (
     Allocation,
     Float,
@@ -38,16 +41,19 @@ from truing import (
 from truing.calculation import calculate
 from truing.declare.correlations import Correlated, contradictions, pearson
 from truing.declare.spreads import Distribution, DistributionShape
+from truing.diagnosis.unit_errors import _as_drawn
 from truing.errors import DeclarationError, InputError, UsageError
 from truing.fits import GRADES, tolerance
-from truing.inputs_file import setup_from_text
+from truing.inputs_file import read_setup, setup_from_text
 from truing.kernel import Offer, Origin
 from truing.packed import pack, unpack
+from truing.runs.extension import extended_text
 from truing.runs.inputs_written import complete_inputs
 from truing.setup import Setup, default_setup
 from truing.studies.sampling import scatter_of
 
 DRAWS = 100_000
+SPRING = Path(__file__).parents[2] / "docs" / "examples" / "coil_spring.py"
 
 
 def with_pairs(setup: Setup, *pairs: Correlated) -> Setup:
@@ -297,6 +303,15 @@ def test_calibration_is_the_conditional_normal_of_the_prior(tmp_path: Path, rho:
     moved = {calibrated.name: 1e6 * calibrated.value for calibrated in said.calibrated}
     mean = float(columns["seen"].mean()) - 150
     assert [moved["one"] - 100, moved["other"] - 50] == pytest.approx(list(gain * mean), abs=0.01)
+    assert numbers(read(extended_text(said), model=model)) == {"one, other": rho}
+
+
+def test_what_tolerances_reach_before_a_unit_is_suspected_counts_the_correlation() -> None:
+    """The directions of two inputs that move a result by 3 and 4: 9 + 16 + 2 r 3 4 together, and no failed row."""
+    moves = [np.array([3.0, 3.0, np.nan]), np.array([4.0, -4.0, 4.0])]
+    drawn_ = np.array(_as_drawn(moves, np.array([[1.0, 0.5], [0.5, 1.0]])))
+    assert np.sum(drawn_**2, axis=0) == pytest.approx([37.0, 13.0, 16.0])
+    assert _as_drawn(moves, np.eye(2)) is moves
 
 
 # Files: what is read, written and refused
@@ -329,6 +344,29 @@ def test_a_pair_a_group_and_a_matrix_are_read_and_written_so_that_they_are_read_
     }  # fmt: skip
     matrix = "[[1, 0.5, -0.1], [0.5, 1, 0.2], [-0.1, 0.2, 1]]"
     assert list(numbers(read(f'[correlations]\n"first, second, third" = {matrix}')).values()) == [0.5, -0.1, 0.2]
+
+
+def test_a_run_shows_its_pairs_wherever_it_shows_tolerances(tmp_path: Path) -> None:
+    spring = truing.load(SPRING).given(correlated("coil_diameter", "active_coils", -0.6), draws=500)
+    run = spring.run(output=tmp_path / "run", progress=False)
+    (said,) = run.document["correlations"].items()
+    assert said == ("coil_diameter, active_coils", {"value": -0.6, "unit": "", "of_values": -0.6})
+    sheet = (tmp_path / "run" / "sheet.md").read_text(encoding="utf-8")
+    assert re.search(r"\| coil diameter and active coils +\| +[-−]0\.6 ", sheet)
+    again = spring.setup(tmp_path / "run" / "inputs.toml")
+    assert numbers(again) == {"coil_diameter, active_coils": -0.6}
+    assert not truing.load(SPRING).describe()["correlations"]
+
+
+def test_a_workbook_states_pairs_and_matrices(tmp_path: Path) -> None:
+    book = openpyxl.Workbook()
+    matrix = "[[1, -0.1], [-0.1, 1]]"
+    stated = {"correlations.first, second": 0.5, "correlations.third, first": matrix}
+    for row in [("name", "value"), *stated.items()]:
+        book.active.append(row)
+    book.save(tmp_path / "inputs.xlsx")
+    setup = read_setup(tmp_path / "inputs.xlsx", Offer(CHAIN.name, CHAIN, ORIGIN))
+    assert numbers(setup) == {"first, second": 0.5, "third, first": -0.1}
 
 
 def test_what_a_file_states_and_set_replaces_stands_in_place_of_what_is_declared() -> None:
