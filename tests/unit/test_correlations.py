@@ -410,6 +410,8 @@ third = "off"
         "together are one input",
         "c.toml:12: the matrix of first, second, third is a list of 3 rows of 3 numbers",
     ]
+    unquoted = "c.toml:2: 'first, second = 0.5' is no line of TOML; write \"first, second\" = 0.7"
+    assert faults("[correlations]\nfirst, second = 0.5") == [unquoted]
     entries = {
         "[[1, 0.5], [0.4, 1]]": "the matrix is not symmetric: 'first' and 'second' have 0.5 and 0.4",
         "[[2, 0.5], [0.5, 1]]": "the matrix of first, second has 2 for 'first' with itself; its diagonal is 1",

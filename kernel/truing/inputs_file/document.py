@@ -204,7 +204,8 @@ class _Reader:
             return
         assignment = _ASSIGNMENT.match(statement.text)
         if assignment is None:
-            self.say(statement, f'{shown(statement.text)} is no line of TOML; write name = "value"')
+            like = '"first, second" = 0.7' if self.section == ("correlations",) else 'name = "value"'
+            self.say(statement, f"{shown(statement.text)} is no line of TOML; write {like}")
             return
         path = _parts(assignment[1])
         if self.section is None:
