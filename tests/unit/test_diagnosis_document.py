@@ -461,7 +461,7 @@ def test_html_and_markdown_say_the_same_with_all_figures_drawn(name: str) -> Non
     assert len(said) > 80
     assert [text for text in said if text not in html and text.replace("-", "−") not in html] == []
     assert [text for text in said if text not in markdown and text.replace("-", "−") not in markdown] == []
-    assert " ".join(headline(SAMPLES[name]())) in html
+    assert [text for text in headline(SAMPLES[name]()) if text not in html] == []
 
 
 def test_a_unit_slip_stands_before_everything_else() -> None:

@@ -176,7 +176,7 @@ def _verdict_text(diagnosis: DiagnosisResult) -> str:
         parts.append(f"something unregistered ({prose(diagnosis.remainder.shape)})")
     causes, explain = listed(parts), "explains" if len(parts) == 1 else "together explain"
     if diagnosis.verdict == "one_of":
-        return say("one of", count=len(explanations), causes=causes)
+        return say("one of", count=len(explanations))
     kinds = {"named": "explains it alone", "undecided": "explains it perhaps"}
     return say(kinds.get(diagnosis.verdict, "explains it"), causes=causes, explain=explain)
 

@@ -15,6 +15,8 @@ from truing.report.diagnosis_words import together
 from truing.units import from_si, unit_factor
 
 PAIR_COLOURS = (AFTER, BEFORE, "#5b7f3b", "#8a6d1d")
+DIAMONDS = (4.0, 7.0, 10.0, 13.0)
+"""Their sizes differ, so that one behind another is seen."""
 MOST_PAIRS = len(PAIR_COLOURS)
 
 
@@ -113,14 +115,14 @@ def rivals_apart(diagnosis: DiagnosisResult, parting: Parting) -> Figure:
     axes = figure.subplots()
     axes.axhspan(-floor, floor, color="#e4e7ea", linewidth=0)
     axes.axhline(0.0, color=NEUTRAL, linewidth=0.7)
-    rows = zip(parting.pairs, parting.on_record, parting.ahead, PAIR_COLOURS, strict=False)
-    for (one, other), record, ahead, colour in rows:
+    rows = zip(parting.pairs, parting.on_record, parting.ahead, PAIR_COLOURS, DIAMONDS, strict=False)
+    for (one, other), record, ahead, colour, size in rows:
         label = f"{shortened(together([one]), 30)} above {shortened(together([other]), 30)}"
         if record is not None:
             axes.plot(place, record[kept] / factor, ".", color=colour, markersize=3.5, label=label)
         if ahead is not None and parting.proposed is not None:
             at = from_si(parting.proposed, covariate.unit)
-            axes.plot(at, ahead / factor, "D", color=colour, markersize=5, fillstyle="none",
+            axes.plot(at, ahead / factor, "D", color=colour, markersize=size, fillstyle="none",
                       label=label if record is None else None)  # fmt: skip
     axes.set_xlabel(axis_label(covariate.name, covariate.unit))
     axes.set_ylabel(f"difference of {axis_label(parting.result, unit)}")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -11,12 +11,13 @@ import numpy as np
 
 from truing.diagnosis.records import file_labels
 from truing.diagnosis.result import Amount, DiagnosisResult
+from truing.diagnosis.sentences import sentence
 from truing.report import diagnosis_figures as figures
 from truing.report.chapters import Figures, numbered
 from truing.report.diagnosis_chapters import diagnosis_chapters
 from truing.report.diagnosis_sizes import amount_text
-from truing.report.diagnosis_words import headline, remedy_of, spoken, verdict_word
-from truing.report.document import Banner, Chapter, Document, Items, Paragraph
+from truing.report.diagnosis_words import headline, remedy_of, spoken, verdict_word, what_decides
+from truing.report.document import Banner, BlockView, Chapter, Document, Items, Paragraph
 from truing.report.sheet import end_chapters, head_of, logo_of
 from truing.runs.folder import data_digests
 from truing.runs.provenance import Provenance, provenance_of
@@ -47,7 +48,7 @@ def make_diagnosis_sheet(diagnosis: DiagnosisResult, *, provenance: Provenance) 
         head=replace(head, footer=" · ".join(part for part in (DIAGNOSIS, head.footer) if part)),
         detail=diagnosis.setup.sheet.detail,
         summary=data_words(diagnosis),
-        banner=Banner(mood, verdict_word(diagnosis), tuple(headline(diagnosis))),
+        banner=Banner(mood, verdict_word(diagnosis), tuple(_answer(diagnosis))),
         alarms=tuple(unit_error.text for unit_error in diagnosis.records.unit_errors),
         front=front,
         paper=diagnosis.setup.sheet.paper,
@@ -55,6 +56,12 @@ def make_diagnosis_sheet(diagnosis: DiagnosisResult, *, provenance: Provenance) 
         warnings=warnings,
         provenance=provenance,
     )
+
+
+def _answer(diagnosis: DiagnosisResult) -> Iterator[str]:
+    """Give the headline but for what decides, which stands under what to do."""
+    decides = {sentence(text) for text in what_decides(diagnosis)}
+    yield from (text for text in headline(diagnosis) if text not in decides)
 
 
 def _page_one(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[Chapter]:
@@ -68,11 +75,22 @@ def _page_one(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[Chapter]:
         caption = f"{title}. Below: what the model misses.{figures.thinning_words(diagnosis, curves)}"
         view = drawn.view(title, partial(figures.convincing, diagnosis, curves, covariate), caption)
         yield Chapter(title, (view,), "key-figure")
+    decides = [sentence(text) for text in what_decides(diagnosis)]
+    if diagnosis.causes or decides:
+        yield Chapter("What to do", tuple(_what_to_do(diagnosis, decides)), "what-to-do")
+
+
+def _what_to_do(diagnosis: DiagnosisResult, decides: Sequence[str]) -> Iterator[BlockView]:
+    """Say what settles the cause where it is open, and what each one asks for."""
+    if diagnosis.verdict != "named" and diagnosis.causes:
+        yield Paragraph(DOUBT)
+    if decides:
+        labels = ("To settle it", *("" for _ in decides[1:]))
+        yield Items("findings", tuple(decides), labels)
     if diagnosis.causes:
         labels, texts = zip(*((spoken(each.effect), remedy_of(diagnosis, each.effect)) for each in diagnosis.causes),
                             strict=True)  # fmt: skip
-        doubt = () if diagnosis.verdict == "named" else (Paragraph(DOUBT),)
-        yield Chapter("What to do", (*doubt, Items("findings", texts, labels)), "what-to-do")
+        yield Items("findings", texts, labels)
 
 
 def questions(diagnosis: DiagnosisResult) -> dict[str, tuple[str, ...]]:

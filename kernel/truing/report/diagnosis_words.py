@@ -277,13 +277,17 @@ def held_out_words(diagnosis: DiagnosisResult, gain: Gain, *, alone: bool = True
         yield say("grows held out", result=spoken(gain.result), before=before, after=after)
 
 
-def _next_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
-    """Say what tells the explanations apart, with which chance."""
+def what_decides(diagnosis: DiagnosisResult) -> Iterator[str]:
+    """Say what tells the explanations apart, with which chance: readings, further results, facts from elsewhere."""
     said = [result_text(each) for each in diagnosis.next if each.measure]
     ways = [said, [] if diagnosis.experiment is None else [experiment_text(diagnosis.experiment)]]
     for sentences in ways if is_result_first(diagnosis) else reversed(ways):
         yield from sentences
     yield from map(tie_text, diagnosis.ties)
+
+
+def _next_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
+    yield from what_decides(diagnosis)
     if diagnosis.next or diagnosis.ties:
         return
     if diagnosis.verdict == "named":
