@@ -197,7 +197,7 @@ def _named(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
             others = listed([spoken(name) for name in cause.same_as])
             yield from _said([say("same curve", others=others, cause=spoken(cause.effect))])
         if remedy := stated_remedy(diagnosis, cause.effect):
-            yield from _said([say("what to do", cause=spoken(cause.effect), remedy=remedy)])
+            yield from _said([say("what to do", cause=spoken(cause.effect), remedy=prose(remedy))])
     shown = slice(None) if len(rows) > 1 else slice(-1)
     yield table_of("Named", ("Cause", "What it is", "Share")[shown], [row[shown] for row in rows], (2,))
 

@@ -109,7 +109,7 @@ def remedy_of(diagnosis: DiagnosisResult, cause: str) -> str:
     if cause.startswith("input:"):
         name = cause.removeprefix("input:").replace("_", " ")
         return f"Measure the {name}: it must lie outside of its tolerance."
-    return stated_remedy(diagnosis, cause) or NO_REMEDY
+    return prose(stated_remedy(diagnosis, cause)) or NO_REMEDY
 
 
 def verdict_word(diagnosis: DiagnosisResult) -> str:
