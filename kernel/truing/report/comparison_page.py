@@ -21,6 +21,7 @@ from truing.report.document import (
     Document,
     FigurePair,
     FigureView,
+    Fold,
     Head,
     Marked,
     Paragraph,
@@ -259,7 +260,7 @@ def _further_results(by_kind: Mapping[str, Sequence[Change]], declared: _Declare
     if further:
         title = f"{counted(len(further), 'further result', 'further results')} changed"
         table = _change_table(further, declared.results, "Result", RESULT_DIGITS)
-        yield Chapter(title, (table,), "further-results", folded=True)
+        yield Chapter("Further results that changed", (Fold(title, (table,)),), "further-results")
 
 
 def _results(
@@ -486,6 +487,7 @@ def _unchanged(
     stayed = {kind: {name: piece for name, piece in pieces.items() if piece is not None and (kind, name) not in moved}
               for kind, pieces in kinds.items()}  # fmt: skip
     blocks: list[BlockView] = []
+    alike = 0
     fields = {"inputs": declared.inputs, "results": declared.results}
     for kind, title in (("inputs", "Inputs"), ("results", "Results")):
         pieces = {name: piece for name, piece in stayed.pop(kind, {}).items() if "array" not in piece}
@@ -493,6 +495,7 @@ def _unchanged(
             columns = (Column("Symbol", kind="symbol"), Column(title[:-1], kind="name"), Column("Value", kind="number"))
             rows = ((*_named(name, fields[kind]), _shown(piece, STATED_DIGITS if kind == "inputs" else
                      RESULT_DIGITS)) for name, piece in pieces.items())  # fmt: skip
+            alike += len(pieces)
             blocks.append(TableView(f"{title}: {len(pieces)}", columns, tuple(rows), kind="key"))
     named = {kind: [name.replace("_", " ") for name in pieces] for kind, pieces in stayed.items() if pieces}
     named["figures"] = [pair.title for pair in pairs if is_same_figure(pair)]
@@ -502,7 +505,9 @@ def _unchanged(
         words = f"Not compared, because their numbers stand in arrays.npz alone: {', '.join(large)}."
         blocks.append(Paragraph(words, "warning"))
     if blocks:
-        yield Chapter("What did not change", tuple(blocks), "unchanged", folded=True)
+        count = sum(len(names) for names in named.values()) + alike
+        title = f"{counted(count, 'entry is', 'entries are')} as before"
+        yield Chapter("What did not change", (Fold(title, tuple(blocks)),), "unchanged")
 
 
 def _sources(before: Side, after: Side) -> Chapter:

@@ -211,7 +211,16 @@ class ResultEntry:
     method: Text = ""
 
 
-BlockView: TypeAlias = Paragraph | Items | TableView | FigureView | FigurePair | ResultEntry
+@dataclass(frozen=True)
+class Fold:
+    """What stands behind the words: a screen shows the title until more is asked for, paper all if ``printed``."""
+
+    title: str
+    blocks: tuple[BlockView, ...]
+    printed: bool = True
+
+
+BlockView: TypeAlias = "Paragraph | Items | TableView | FigureView | FigurePair | ResultEntry | Fold"
 
 
 def table_of(
@@ -235,8 +244,6 @@ class Chapter:
     number: str = ""
     lines: tuple[str, ...] = ()
     """What a terminal and a notebook print of it; a line that begins with spaces belongs to the one above."""
-    folded: bool = False
-    """Whether a page on a screen shows its title alone until it is asked for."""
 
 
 @dataclass(frozen=True)

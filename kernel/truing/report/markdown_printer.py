@@ -18,6 +18,7 @@ from truing.report.document import (
     Equation,
     FigurePair,
     FigureView,
+    Fold,
     Items,
     Marked,
     Paragraph,
@@ -86,6 +87,10 @@ def _blocks(blocks: Iterable[BlockView]) -> Iterator[str]:
                 yield _pair(block)
             case ResultEntry():
                 yield from _entry(block)
+            case Fold(title, inner):
+                yield f"<details><summary>{escaped(title)}</summary>"
+                yield from _blocks(inner)
+                yield "</details>"
 
 
 def _picture(title: str, svg: str) -> str:
