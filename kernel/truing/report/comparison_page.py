@@ -439,9 +439,17 @@ def figures_of(page: str) -> tuple[FigureView, ...]:
 
 
 def figures_in(document: Document) -> tuple[FigureView, ...]:
-    """Return the figures of a sheet, in the order of their numbers."""
-    blocks = (block for chapter in (*document.front, *document.chapters) for block in chapter.blocks)
+    """Return the figures of a sheet, also those that are folded, in the order of their numbers."""
+    blocks = (block for chapter in (*document.front, *document.chapters) for block in _unfolded(chapter.blocks))
     return tuple(sorted((block for block in blocks if isinstance(block, FigureView)), key=lambda view: view.number))
+
+
+def _unfolded(blocks: Iterable[BlockView]) -> Iterator[BlockView]:
+    for block in blocks:
+        if isinstance(block, Fold):
+            yield from _unfolded(block.blocks)
+        else:
+            yield block
 
 
 def figure_pairs(before: Iterable[FigureView], after: Iterable[FigureView]) -> Iterator[FigurePair]:
