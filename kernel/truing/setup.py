@@ -178,6 +178,14 @@ class InputsSource:
     places: Mapping[str, tuple[str, int | None]] = field(default_factory=dict, compare=False)
 
 
+@dataclass(frozen=True)
+class NamedColumn:
+    """What a column of a measured file is to the model: its name there, and its unit where that is stated, too."""
+
+    name: str
+    unit: str | None = None
+
+
 @dataclass(frozen=True, kw_only=True)
 class SheetOptions:
     """What stands at the head of the sheet, by name, and how much of everything: "short", "normal" or "full".
@@ -195,7 +203,8 @@ class Setup(Case):
     """What one inputs file says, checked, in SI: the case, what scatters about it, and what is asked.
 
     ``spreads`` holds the tolerances in force and ``calibrated`` the inputs (SI) as a diagnosis fitted them to one
-    machine, by name; ``units`` the units in which results are printed, where these are not the declared ones.
+    machine, by name; ``units`` the units in which results are printed, where these are not the declared ones;
+    ``columns`` what columns of files are, by what the files call them.
     """
 
     origin: Origin
@@ -205,6 +214,7 @@ class Setup(Case):
     seed: int = DEFAULT_SEED
     diagnose: DiagnoseOptions = DiagnoseOptions()
     units: Mapping[str, str] = field(default_factory=dict)
+    columns: Mapping[str, NamedColumn] = field(default_factory=dict)
     sheet: SheetOptions = SheetOptions()
     source: InputsSource = InputsSource()
 

@@ -77,7 +77,8 @@ def _schema(name: str, entry: FileEntry | FileSection, known: dict[str, Any]) ->
     title = entry.title.replace(" ", "_")
     properties = {inner: _schema(inner, each, known) for inner, each in entry.entries.items()}
     required = [inner for inner, each in entry.entries.items() if isinstance(each, FileEntry) and each.is_required]
-    table = {"type": "object", "title": entry.title, "properties": properties, "additionalProperties": False}
+    more = False if entry.others is None else entry.others.schema
+    table = {"type": "object", "title": entry.title, "properties": properties, "additionalProperties": more}
     known[title] = {**table, "required": required} if required else table
     return {"$ref": f"#/$defs/{title}", "description": entry.words, "title": name}
 

@@ -82,8 +82,11 @@ class _Words:
                 yield here, f"[studies.{name}] is a section; write its options below it"
             else:
                 yield here, f"{shown(name)} is a section; write [{'.'.join(here)}] and its entries below it"
-        strange = [name for name in table if name not in section.entries and table[name] not in passed_over]
-        yield from (((*path, name), "") for name in strange)
+        for name in [name for name in table if name not in section.entries and table[name] not in passed_over]:
+            if section.others is None:
+                yield (*path, name), ""
+            else:
+                yield from _read_entry((*path, name), section.others, table[name], reading)
 
     def unknown(self, path: tuple[str, ...]) -> str:
         """Say that a name is unknown, and what was probably meant."""

@@ -19,6 +19,9 @@ from truing.units import from_si, human_dimension, read_quantity, to_si
 from truing.units.grammar import shown
 from truing.units.names import PURE
 
+SIGMA = "sigma_"
+"""A column of this and the name of a result holds the standard deviation of its readings."""
+
 
 class SentenceError(ValueError):
     """A whole sentence about a value, its name included."""
@@ -53,11 +56,15 @@ class FileEntry:
 
 @dataclass(frozen=True)
 class FileSection:
-    """A table of an inputs file: what it holds, in words and by name; ``title`` names it in the JSON Schema."""
+    """A table of an inputs file: what it holds, in words and by name; ``title`` names it in the JSON Schema.
+
+    ``others`` reads entries of any other name, where there may be such.
+    """
 
     title: str
     words: str
     entries: Mapping[str, FileEntry | FileSection]
+    others: FileEntry | None = None
 
     @property
     def schema(self) -> dict[str, Any]:
