@@ -152,7 +152,7 @@ def _named(channels: Sequence[Channel], names: ColumnNames, parts: Parts) -> lis
         said = "s" if stamped else unit if channel.unit is None else channel.unit
         own = (name or channel.name) if is_alone else channel.path
         called = [channel.path, *([channel.name] if is_alone else [])]
-        header = names.header(own, said, channel.path if unit is None else own, *called)
+        header = names.header(own, said, own if said is None else f"{own} [{said}]", *called)
         made.append(NamedChannel(_with_known_unit(header, names, parts), channel, channel.values, channel.times))
     return made
 

@@ -32,6 +32,7 @@ from truing.measurements.csv_text import (
     RowCount,
     TableSource,
     guarded,
+    name_and_unit,
     opened_csv,
     plain_numbers,
     read_cell,
@@ -111,27 +112,33 @@ def read_table(
     are, by what the file calls them; readings of ``results`` keep their own times where a recording has several clocks.
     A column whose header is a fault is left out of ``columns``. Raises InputError where the file cannot be read at all.
     """
-    lines: list[int] = []
     names = ColumnNames(named)
     with _opened(path, names, known, results) as file:
         columns = [_column(header, known, is_measured, words, unknown) for header in file.headers]
-        for index, column in enumerate(columns):
-            if column.fault:
-                file.faults.add(column.fault, file.header_line, index)
-        texts: dict[str, list[str]] = {header.text: [] for header in file.headers}
-        for cells_of, lines_of in file.chunks():
-            lines.extend(lines_of)
-            for column, cells in zip(columns, cells_of, strict=True):
-                column.take(cells, lines_of, file)
-                texts[column.header.text].extend(() if is_measured else cells)
+        lines, texts = _taken(columns, file, keep_texts=not is_measured)
     usable = [column for column in columns if column.header.name and not column.fault]
     made = {column.header.name: column.made(lines, file) for column in usable}
     file.marks.judge(file.faults)
     units = {header.name: header.unit or "" for header in file.headers}
     written = {text: _with_points(cells, file) for text, cells in texts.items()}
-    notes = (*names.notes, *names.unused(header.text for header in file.headers))
+    notes = (*names.notes, *names.unused(header.key or name_and_unit(header.text)[0] or "" for header in file.headers))
     table = DataTable(str(path), made, units, tuple(lines), file.header_line, file.count(), written, notes)
     return table, file.faults
+
+
+def _taken(columns: Sequence[_Column], file: OpenTable, *, keep_texts: bool) -> tuple[list[int], dict[str, list[str]]]:
+    """Let every column take its cells; return the lines of the rows, and the columns as written where they are kept."""
+    for index, column in enumerate(columns):
+        if column.fault:
+            file.faults.add(column.fault, file.header_line, index)
+    lines: list[int] = []
+    texts: dict[str, list[str]] = {header.text: [] for header in file.headers}
+    for cells_of, lines_of in file.chunks():
+        lines.extend(lines_of)
+        for column, cells in zip(columns, cells_of, strict=True):
+            column.take(cells, lines_of, file)
+            texts[column.header.text].extend(cells if keep_texts else ())
+    return lines, texts
 
 
 def _opened(

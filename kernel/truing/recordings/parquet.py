@@ -10,8 +10,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from truing.errors import OutputError
 from truing.heavy import pyarrow
-from truing.recordings.channels import Channel, Recording, UnreadableError, as_column, demand_modest, unit_or_none
+from truing.recordings.channels import (
+    INSTALL,
+    Channel,
+    Recording,
+    UnreadableError,
+    as_column,
+    demand_modest,
+    unit_or_none,
+)
 from truing.units.grammar import shown
 
 UNIT = b"unit"
@@ -63,10 +72,20 @@ def _text(value: int | bool | None) -> str | None:
 
 
 def parquet_bytes(columns: Mapping[str, Sequence[Any]]) -> bytes:
-    """Write columns as a parquet file: numbers, truth values and texts; "load [N]" puts N in the metadata, too."""
+    """Write columns as a parquet file: numbers, truth values and texts; "load [N]" puts N in the metadata, too.
+
+    Raises OutputError where pyarrow is not installed.
+    """
+    try:
+        as_array = pyarrow.array
+    except ImportError:
+        raise OutputError(f"a parquet file needs pyarrow, which is not installed: {INSTALL}") from None
     fields, arrays = [], []
     for header, values in columns.items():
-        array = pyarrow.array(values.tolist() if isinstance(values, np.ndarray) else list(values))
+        plain = values.tolist() if isinstance(values, np.ndarray) else list(values)
+        if any(isinstance(value, str) for value in plain):
+            plain = [None if value is None else str(value) for value in plain]
+        array = as_array(plain)
         unit = header.partition("[")[2].removesuffix("]")
         fields.append(pyarrow.field(header, array.type, metadata={UNIT: unit.encode()} if unit else None))
         arrays.append(array)
