@@ -114,8 +114,8 @@ def opened_recording(path: Path, names: ColumnNames, parts: Parts) -> Iterator[R
     faults = Faults(str(path))
     channels = _with_clocks(_named(recording.channels, names, parts), faults)
     rows = _on_one_base(channels, parts, names, faults)
-    if not faults.found:
-        _demand_apart(rows.headers, faults)
+    faults.raise_any()
+    _demand_apart(rows.headers, faults)
     headers = rows.headers
     faults.addressed = lambda line, column: f"row {line} of {shown(_called(headers, column))}"
     values, lines, left_out = _usable(rows)
@@ -127,14 +127,14 @@ def _called(headers: Sequence[Header], column: str | int) -> str:
     header = (
         headers[column] if isinstance(column, int) else next((each for each in headers if each.name == column), None)
     )
-    return header.text if header is not None else str(column)
+    return header.key or header.text if header is not None else str(column)
 
 
 def _demand_apart(headers: Sequence[Header], faults: Faults) -> None:
     """Say which channels are called alike."""
     for name, count in Counter(header.name for header in headers).items():
         if count > 1:
-            alike = " and ".join(shown(header.key or header.text) for header in headers if header.name == name)
+            alike = " and ".join(shown(header.key) for header in headers if header.name == name)
             faults.add(f"the channels {alike} are all called {shown(name)}; name them apart under [columns]")
 
 
@@ -165,7 +165,7 @@ def _with_known_unit(header: Header, names: ColumnNames, parts: Parts) -> Header
         check_unit(header.unit)
     except UnitError as error:
         numbers = "its values are taken as numbers without a unit; state its unit under [columns] where it matters"
-        names.notes.append(f"channel {shown(header.key or header.text)}: {error}; {numbers}")
+        names.notes.append(f"channel {shown(header.key)}: {error}; {numbers}")
         return replace(header, unit=None)
     return header
 
@@ -204,7 +204,7 @@ def _clock(
         known = own.values[~np.isnat(own.values)]
         return _since_first(own.values), known[0] if len(known) else None
     if own.values.dtype == object:
-        faults.add(f"channel {shown(own.header.text)} is called time and holds texts")
+        faults.add(f"channel {shown(own.header.key)} is called time and holds texts")
         return None, None
     times = own.values.astype(float)
     try:
@@ -259,7 +259,7 @@ def _on_one_base(channels: list[NamedChannel], parts: Parts, names: ColumnNames,
         headers.append(each.header)
         columns.append(column)
         if each.header.name in parts.known and beyond.any():
-            outside[f"outside the time in which {shown(each.header.text)} was recorded"] = beyond
+            outside[f"outside the time in which {shown(each.header.key)} was recorded"] = beyond
     return Rows(tuple(headers), tuple(columns), outside)
 
 
@@ -281,7 +281,7 @@ def _timed(channels: list[NamedChannel], parts: Parts, names: ColumnNames, fault
     """Return the channels that have a usable clock, clocks themselves left out; say what is wrong with the others."""
     timed = []
     for each in channels:
-        called = shown(each.header.key or each.header.text)
+        called = shown(each.header.key)
         if each.header.name == TIME:
             continue
         if each.clock is None:
@@ -310,10 +310,10 @@ def _base(timed: list[NamedChannel], parts: Parts) -> tuple[NDArray[np.float64],
     measured = [each for each in timed if each.header.name in parts.results]
     if not measured:
         longest = max(timed, key=lambda each: len(each.values))
-        return np.asarray(longest.clock), shown(longest.header.text)
+        return np.asarray(longest.clock), shown(longest.header.key)
     clocks: list[Any] = [each.clock for each in measured]
     apart = [clock for place, clock in enumerate(clocks) if not any(_is_same(clock, other) for other in clocks[:place])]
-    of_whom = " and ".join(dict.fromkeys(shown(each.header.text) for each in measured))
+    of_whom = " and ".join(dict.fromkeys(shown(each.header.key) for each in measured))
     return apart[0] if len(apart) == 1 else np.unique(np.concatenate(apart)), of_whom
 
 
@@ -322,7 +322,7 @@ def _onto(
 ) -> tuple[NDArray[Any], NDArray[np.bool_]]:
     """Return a channel at the times of the base (n,), missing where it was not recorded; and which rows these are."""
     clock, values, nowhere = np.asarray(named.clock), named.values, np.zeros(len(base), dtype=bool)
-    called, many = shown(named.header.key or named.header.text), counted(len(values), "value")
+    called, many = shown(named.header.key), counted(len(values), "value")
     if _is_same(clock, base):
         return values, nowhere
     if named.header.name in parts.results:

@@ -362,7 +362,8 @@ def header_fault(header: Header, declared: str) -> str:
     try:
         demand_dimension(header.unit, declared)
     except UnitError as error:
-        return f"column {shown(header.text)}: {error}"
+        stated = "; state its unit under [columns]" if header.key else ""
+        return f"column {shown(header.text)}: {error}{stated}"
     return ""
 
 
