@@ -64,8 +64,6 @@ class ColumnNames:
 
     stated: Mapping[str, NamedColumn]
     notes: list[str] = field(default_factory=list)
-    used: dict[str, str] = field(default_factory=dict)
-    """The columns that got a name, by it."""
 
     def header(self, name: str, unit: str | None, text: str, *called: str) -> Header:
         """Return the header of a column with the name that is stated for it; ``called`` is what it may be called.
@@ -76,18 +74,18 @@ class ColumnNames:
         if not key:
             return Header(name, unit, text, *called[:1])
         column = self.stated[key]
-        self.used[key] = column.name
         if column.unit is not None and unit is not None and column.unit != unit:
             self.notes.append(
                 f"column {shown(key)} is read in [{column.unit}] as [columns] says; the file says [{unit}]"
             )
         return Header(column.name, unit if column.unit is None else column.unit, text, key)
 
-    def unused(self, texts: Iterable[str]) -> Iterator[str]:
-        """Say which of the stated columns the file does not have."""
-        known = list(texts)
-        for key in self.stated:
-            if key not in self.used:
+    def unused(self, headers: Sequence[Header]) -> Iterator[str]:
+        """Say which of the stated columns the file does not have, under this name or another."""
+        names = {header.name for header in headers}
+        known = [header.key or header.text.partition(" [")[0] for header in headers]
+        for key, column in self.stated.items():
+            if column.name not in names:
                 yield f"[columns] names {shown(key)}, which is no column here.{near_miss(key[:80], known)}".rstrip(".")
 
 

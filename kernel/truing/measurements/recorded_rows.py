@@ -36,6 +36,8 @@ from truing.units import check_unit, to_si
 from truing.units.grammar import shown
 from truing.units.names import PURE
 
+FIRST_LINE = 2
+"""What the first row is called: its line in the same table as CSV, behind the header."""
 SAME_TIME = 1e-6
 """Clocks that differ by a smaller share of their mean step are one: what is left is the rounding of the file."""
 
@@ -61,7 +63,7 @@ class NamedChannel:
 
 @dataclass
 class RecordedTable:
-    """An open recording: columns of one length, whose rows come in chunks of text. A line is a row, from 1."""
+    """An open recording: columns of one length, whose rows come in chunks of text."""
 
     file: str
     faults: Faults
@@ -117,7 +119,7 @@ def opened_recording(path: Path, names: ColumnNames, parts: Parts) -> Iterator[R
     faults.raise_any()
     _demand_apart(rows.headers, faults)
     headers = rows.headers
-    faults.addressed = lambda line, column: f"row {line} of {shown(_called(headers, column))}"
+    faults.addressed = lambda line, column: f"line {line} of {shown(_called(headers, column))}"
     values, lines, left_out = _usable(rows)
     yield RecordedTable(str(path), faults, headers, values, lines, left_out)
 
@@ -292,9 +294,9 @@ def _timed(channels: list[NamedChannel], parts: Parts, names: ColumnNames, fault
             else:
                 names.notes.append(f"{sentence}; it is left out")
         elif not (np.diff(each.clock) > 0).all():
-            row = int(np.flatnonzero(~(np.diff(each.clock) > 0))[0]) + 2
+            place = int(np.flatnonzero(~(np.diff(each.clock) > 0))[0]) + 2
             faults.add(
-                f"the times of channel {called} do not increase in row {row}; nothing can be interpolated in them"
+                f"the times of channel {called} do not increase at value {place}; nothing can be interpolated in them"
             )
         else:
             timed.append(each)
@@ -366,6 +368,6 @@ def _usable(rows: Rows) -> tuple[list[NDArray[Any]], NDArray[np.intp], dict[str,
         empty &= np.array([value in (None, "") for value in values]) if values.dtype == object else values != values
     for reason, beyond in {**rows.outside, NOTHING: empty}.items():
         if (beyond & kept).any():
-            left_out[reason] = (np.flatnonzero(beyond & kept) + 1).tolist()
+            left_out[reason] = (np.flatnonzero(beyond & kept) + FIRST_LINE).tolist()
             kept &= ~beyond
-    return [values[kept] for values in rows.values], np.flatnonzero(kept) + 1, left_out
+    return [values[kept] for values in rows.values], np.flatnonzero(kept) + FIRST_LINE, left_out

@@ -32,7 +32,6 @@ from truing.measurements.csv_text import (
     RowCount,
     TableSource,
     guarded,
-    name_and_unit,
     opened_csv,
     plain_numbers,
     read_cell,
@@ -75,8 +74,8 @@ class DataTable:
     empty; other words are tuples. ``units`` holds what the header says ("" for pure numbers), ``lines`` the line of
     the file each row begins in, ``header_line`` that of the header. ``cells`` are the columns as written, by the header
     as written (in a column of numbers a decimal comma becomes a point). ``count`` says how many rows the file holds,
-    with those left out, and ``notes`` what was done to them, one sentence each. In a recording lines are rows, counted
-    from 1, and there is no line of a header.
+    with those left out, and ``notes`` what was done to them, one sentence each. A recording has no line of
+    a header, and its rows the lines that they have in the same table as CSV.
     """
 
     file: str
@@ -121,7 +120,7 @@ def read_table(
     file.marks.judge(file.faults)
     units = {header.name: header.unit or "" for header in file.headers}
     written = {text: _with_points(cells, file) for text, cells in texts.items()}
-    notes = (*names.notes, *names.unused(header.key or name_and_unit(header.text)[0] or "" for header in file.headers))
+    notes = (*names.notes, *names.unused(file.headers))
     table = DataTable(str(path), made, units, tuple(lines), file.header_line, file.count(), written, notes)
     return table, file.faults
 
