@@ -66,7 +66,7 @@ Weg_1 = { name = "deflection", unit = "mm" }
 time = { name = "time", unit = "s" }
 
 [studies.diagnose]
-budget = 100
+budget = 30
 """
 
 

@@ -12,13 +12,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import jsonschema
 import numpy as np
 import pytest
 from sample_models import PIN_OFFER, PIN_WEAR
 
 from recording_files import KINDS, WRITERS, Recorded, write_csv, write_mat, write_mdf, write_parquet, write_tdms
 from truing.errors import InputError
-from truing.inputs_file import setup_from_text
+from truing.inputs_file import json_schema, setup_from_text
 from truing.measurements import DataTable, read_cases, read_rows, read_table
 from truing.recordings import KINDS as KINDS_READ
 from truing.recordings import mdf, mdf_process
@@ -141,12 +142,14 @@ def test_structs_and_matrices_of_matlab(tmp_path: Path) -> None:
     assert all(note.endswith("is left out") for note in table.notes)
 
 
-def test_matlab_7_3_is_read_by_h5py(tmp_path: Path) -> None:
+def test_matlab_7_3_is_read_by_h5py(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     h5py = pytest.importorskip("h5py")
     path = tmp_path / "r.mat"
     with h5py.File(path, "w", userblock_size=512) as file:
         file.create_dataset("depth", data=np.array([[1.0, 2.0, 3.0]])).attrs["MATLAB_class"] = np.bytes_("double")
         file.create_dataset("text", data=np.array([[65], [66]], dtype="u2")).attrs["MATLAB_class"] = np.bytes_("char")
+        file.create_dataset("outside", shape=(1, 3), dtype="f8", external=[(str(tmp_path / "secret"), 0, 24)])
+        file["link"] = h5py.ExternalLink("other.mat", "/depth")
         rig = file.create_group("rig")
         rig.create_dataset("load", data=np.array([[5.0], [6.0], [7.0]]).T).attrs["MATLAB_class"] = np.bytes_("double")
     with path.open("r+b") as stream:
@@ -154,7 +157,11 @@ def test_matlab_7_3_is_read_by_h5py(tmp_path: Path) -> None:
     table = read(path, {"depth": ("depth", "um"), "rig/load": ("load", "N")})
     np.testing.assert_allclose(table.columns["depth"], [1e-6, 2e-6, 3e-6])
     np.testing.assert_allclose(table.columns["load"], [5, 6, 7])
-    assert table.notes == ("'text' is no real vector or matrix and is left out",)
+    left = [f"'{name}' is no real vector or matrix and is left out" for name in ("outside", "text")]
+    assert list(table.notes) == left
+    monkeypatch.setitem(sys.modules, "h5py", None)
+    needs = "which needs h5py: pip install 'truing[records]'; or save it with save(..., '-v7')"
+    assert said(path) == f"r.mat: is a MATLAB file of version 7.3, {needs}"
 
 
 def test_stamps_become_seconds_from_the_first(tmp_path: Path) -> None:
@@ -162,7 +169,7 @@ def test_stamps_become_seconds_from_the_first(tmp_path: Path) -> None:
     depth = Recorded([1.0, 2.0, 3.0], "um")
     seconds = [0.0, 1.5, 2.5]
     for table in (
-        read(write_tdms(tmp_path / "r.tdms", {"Clock": Recorded(stamps), "depth": depth}), {"Clock": "time"}),
+        read(write_tdms(tmp_path / "r.tdms", {"Clock": Recorded(stamps), "depth": depth}), {"Clock": ("time", "min")}),
         read(write_parquet(tmp_path / "r.parquet", {"time": Recorded(stamps), "depth": depth})),
     ):
         np.testing.assert_array_equal(table.columns["time"], seconds)
@@ -277,6 +284,9 @@ def test_a_channel_called_time_is_the_clock_of_its_group(tmp_path: Path) -> None
     path = write_tdms(tmp_path / "r.tdms", channels)
     table = read(path, {"A/t": "time", "B/t": "time"})
     np.testing.assert_allclose(table.columns["load"], [10, 15, 20, 25, 30], rtol=1e-12)
+    same = {name: Recorded(np.arange(3.0), "s") for name in ("A/time", "B/time")}
+    path = write_tdms(tmp_path / "c.tdms", {**same, "B/depth": Recorded(np.arange(3.0), "um")})
+    assert set(read(path).columns) == {"time", "depth"}
     stamped = {
         "depth": Recorded(np.arange(9.0), "um", FAST, "2024-01-01T00:00:02"),
         "load": Recorded([10.0, 30.0], "N", np.array([0.0, 4.0]), "2024-01-01T00:00:00"),
@@ -302,7 +312,12 @@ def test_lengths_that_differ_need_a_clock(tmp_path: Path) -> None:
 # Files that are broken, or mean harm
 
 
-HOSTILE = {"tdms": "a TDMS file", "mf4": "an MDF file", "mat": "a MATLAB file", "parquet": "a parquet file"}
+HOSTILE = {
+    "tdms": "a TDMS file",
+    "mf4": "an MDF file",
+    "mat": "a MATLAB file of version 5 or later",
+    "parquet": "a parquet file",
+}
 
 
 @pytest.mark.parametrize("kind", [kind for kind in KINDS if kind != "mf4"])
@@ -330,6 +345,15 @@ def test_what_a_recorder_had_written_when_it_stopped_is_read(tmp_path: Path) -> 
     assert table.notes == ("the file is cut off in its last segment; what was written before is read",)
 
 
+def test_a_channel_outside_of_its_record_is_refused(tmp_path: Path) -> None:
+    """The library would read what lies in memory behind the record."""
+    path = write_mdf(tmp_path / "r.mf4", columns(60))
+    whole = path.read_bytes()
+    offset = whole.index(b"##CN") + 24 + 8 * 8 + 4  # the place of a channel in its record, behind eight links
+    path.write_bytes(whole[:offset] + struct.pack("<I", 10**8) + whole[offset + 4 :])
+    assert "ends at byte 100000008 of a record of" in said(path)
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_another_file_under_the_name_of_a_recording(tmp_path: Path, kind: str) -> None:
     path = tmp_path / f"r.{kind}"
@@ -346,9 +370,6 @@ def test_a_process_of_its_own_reads_an_mdf_and_may_die_of_it(tmp_path: Path, mon
     path = tmp_path / "r.mf4"
     path.write_bytes(whole[: len(whole) // 2])
     assert said(path).startswith("r.mf4: cannot be read as an MDF file (")
-    offset = whole.index(b"##CN") + 24 + 8 * 8 + 4  # the place of a channel in its record, behind eight links
-    path.write_bytes(whole[:offset] + struct.pack("<I", 10**8) + whole[offset + 4 :])
-    assert "ends at byte 100000008 of a record of" in said(path)
     (tmp_path / "dies.py").write_text("import os\nos.abort()\n", encoding="utf-8")
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.setattr(mdf, "READER", "dies")
@@ -421,6 +442,14 @@ def test_cases_and_rows_come_from_recordings(tmp_path: Path) -> None:
     np.testing.assert_allclose(table.columns["load"], [100, 200])
     assert table.cells == {"F [kN]": ("0.1", "0.2")}
     assert table.notes == ("[columns] names 'T', which is no column here",)
+
+
+def test_the_schema_of_inputs_files_knows_columns() -> None:
+    valid = {"columns": {"Rig 7/F": "load", "T": {"name": "probe_temperature", "unit": "degC"}}}
+    schema = json_schema(PIN_OFFER)
+    jsonschema.validate(valid, schema)
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate({"columns": {"F": {"unit": "N"}}}, schema)
 
 
 @pytest.mark.parametrize(

@@ -151,11 +151,12 @@ def _named(channels: Sequence[Channel], names: ColumnNames, parts: Parts) -> lis
         name, unit = name_and_unit(channel.name)
         is_alone = often[channel.name] == 1
         stamped = channel.values.dtype.kind == "M"
-        said = "s" if stamped else unit if channel.unit is None else channel.unit
-        own = (name or channel.name) if is_alone else channel.path
+        said = None if stamped else unit if channel.unit is None else channel.unit
+        own = (name or channel.name) if is_alone or name == TIME else channel.path
         called = [channel.path, *([channel.name] if is_alone else [])]
         header = names.header(own, said, own if said is None else f"{own} [{said}]", *called)
-        made.append(NamedChannel(_with_known_unit(header, names, parts), channel, channel.values, channel.times))
+        header = replace(header, unit="s") if stamped else _with_known_unit(header, names, parts)
+        made.append(NamedChannel(header, channel, channel.values, channel.times))
     return made
 
 
@@ -247,7 +248,9 @@ def _on_one_base(channels: list[NamedChannel], parts: Parts, names: ColumnNames,
     """Return all channels on one time base; as they stand where they have one."""
     clocks = [each.clock for each in channels if each.clock is not None]
     if len(set(_lengths(channels))) == 1 and all(_is_same(clock, clocks[0]) for clock in clocks[1:]):
-        headers, values = [each.header for each in channels], [each.values for each in channels]
+        first = next((each for each in channels if each.header.name == TIME), None)  # others say the same
+        columns = [each for each in channels if each is first or each.header.name != TIME]
+        headers, values = [each.header for each in columns], [each.values for each in columns]
         if clocks and TIME not in [header.name for header in headers]:
             headers, values = [_time_header(), *headers], [clocks[0], *values]
         return Rows(tuple(headers), tuple(values), {})
@@ -255,14 +258,14 @@ def _on_one_base(channels: list[NamedChannel], parts: Parts, names: ColumnNames,
     if faults.found or not timed:
         return Rows((), (), {})
     base, of_whom = _base(timed, parts)
-    headers, columns, outside = [_time_header()], [base], {}
+    headers, values, outside = [_time_header()], [base], {}
     for each in timed:
         column, beyond = _onto(base, of_whom, each, parts, names)
         headers.append(each.header)
-        columns.append(column)
+        values.append(column)
         if each.header.name in parts.known and beyond.any():
             outside[f"outside the time in which {shown(each.header.key)} was recorded"] = beyond
-    return Rows(tuple(headers), tuple(columns), outside)
+    return Rows(tuple(headers), tuple(values), outside)
 
 
 def _time_header() -> Header:

@@ -29,7 +29,7 @@ KINDS = {
     ".tdms": Kind("a TDMS file", (b"TDSm",), tdms.read_channels),
     ".mf4": _MDF,
     ".mdf": _MDF,
-    ".mat": Kind("a MATLAB file", (b"MATLAB ",), matlab.read_channels),
+    ".mat": Kind("a MATLAB file of version 5 or later", (b"MATLAB ",), matlab.read_channels),
     ".parquet": Kind("a parquet file", (b"PAR1",), parquet.read_channels),
 }
 """The kinds of recordings by the end of their names."""
@@ -47,8 +47,6 @@ def not_of_its_kind(path: Path, start: bytes) -> str:
         return "is empty; record or copy it again"
     if start.startswith(b"UnFinMF"):
         return "is an MDF file that the recorder did not finish; let its tool finish it"
-    if kind.title == "a MATLAB file" and not start.startswith(kind.begins) and start[:1] in b"\x00\xe8":
-        return "is a MATLAB file of version 4, or none; save it with save(..., '-v7')"
     return (
         "" if start.startswith(kind.begins) else f"is not {kind.title}, though it is called so; record or copy it again"
     )

@@ -128,32 +128,37 @@ def _read_hdf5(path: Path) -> Recording:
     try:
         opened = h5py.File(path, "r")
     except ImportError:
-        otherwise = f"save it with save(..., '-v7'), or install h5py: {INSTALL} h5py"
-        raise UnreadableError(f"is a MATLAB file of version 7.3; {otherwise}") from None
+        otherwise = f"which needs h5py: {INSTALL}; or save it with save(..., '-v7')"
+        raise UnreadableError(f"is a MATLAB file of version 7.3, {otherwise}") from None
     with opened as file:
-        variables: dict[str, Any] = {}
-        for name, node in file.items():
-            if not name.startswith("#"):
-                variables[name] = _fields(node) if hasattr(node, "items") else _numbers(node)
-        flat = {name: value for name, value in variables.items() if not isinstance(value, dict)}
-        recording = _recording(flat)
-        channels, notes = list(recording.channels), list(recording.notes)
-        for group, fields in variables.items():
-            if isinstance(fields, dict):
-                inner = _recording(fields)
-                channels += [Channel(each.name, group, None, each.values) for each in inner.channels]
-                notes += [f"in {shown(group)}, {note}" for note in inner.notes]
+        nodes = _inside(file)
+        variables = {name: _fields(node) if hasattr(node, "items") else _numbers(node) for name, node in nodes.items()}
+    groups = {name: value for name, value in variables.items() if isinstance(value, dict)}
+    alone = _recording({name: value for name, value in variables.items() if name not in groups})
+    channels, notes = list(alone.channels), list(alone.notes)
+    for group, fields in groups.items():
+        inner = _recording(fields)
+        channels += [Channel(each.name, group, None, each.values) for each in inner.channels]
+        notes += [f"in {shown(group)}, {note}" for note in inner.notes]
     return Recording(tuple(channels), tuple(notes))
 
 
-def _fields(node: Any) -> dict[str, Any]:
-    return {
-        name: np.empty(0, dtype=complex) if hasattr(each, "items") else _numbers(each) for name, each in node.items()
-    }
+def _inside(group: Any) -> dict[str, Any]:
+    """Return what a group holds itself: no links, which may lead out of the file, and nothing of MATLAB's own."""
+    hard = [name for name in group if isinstance(group.get(name, getlink=True), h5py.HardLink)]
+    return {name: group[name] for name in hard if not name.startswith("#")}
+
+
+def _fields(group: Any) -> dict[str, Any]:
+    """Return the data sets of a group as arrays; groups in it are no columns."""
+    nothing = np.empty(0, dtype=complex)
+    return {name: nothing if hasattr(node, "items") else _numbers(node) for name, node in _inside(group).items()}
 
 
 def _numbers(node: Any) -> NDArray[Any]:
-    """Return a data set as MATLAB shows it; what holds no numbers as an array that is no column."""
+    """Return a data set as MATLAB shows it; an array that is no column where it holds none."""
+    if node.is_virtual or node.external:  # what lies in another file
+        return np.empty(0, dtype=complex)
     if node.dtype.kind not in "fiub" or b"char" in bytes(node.attrs.get("MATLAB_class", b"")) or node.ndim != 2:
         return np.empty(0, dtype=complex)
     demand_modest(node.size)
