@@ -14,6 +14,7 @@ from typing import Any
 
 import jsonschema
 import numpy as np
+import pandas
 import pytest
 from sample_models import PIN_OFFER, PIN_WEAR
 
@@ -184,6 +185,30 @@ def test_rows_that_hold_nothing_are_left_out_and_named(tmp_path: Path) -> None:
     assert table.count.sentence() == "3 rows, 2 used; 1 left out: line 3 (holds nothing)"
 
 
+def test_columns_of_a_dataframe_keep_their_kind(tmp_path: Path) -> None:
+    """Stamps with a zone, durations, categories, whole numbers and truth values that may be missing, single numbers."""
+    frame = pandas.DataFrame(
+        {
+            "stamp": pandas.date_range("2024-03-31 00:30", periods=3, freq="h", tz="Europe/Berlin"),
+            "time": pandas.to_timedelta([0, 90, 180], unit="s"),
+            "depth [um]": np.array([1.0, NAN, 3.0], dtype=np.float32),
+            "load [N]": pandas.array([1, None, 3], dtype="Int64"),
+            "on": pandas.array([True, None, False], dtype="boolean"),
+            "run": pandas.Categorical(["a", "b", "a"]),
+            "lists": [[1], [2], [3]],
+        }
+    )
+    frame.to_parquet(tmp_path / "r.parquet")
+    table = read(tmp_path / "r.parquet")
+    np.testing.assert_array_equal(table.columns["stamp"], [0, 3600, 7200])  # the clock jumps over an hour there
+    np.testing.assert_array_equal(table.columns["time"], [0, 90, 180])
+    np.testing.assert_allclose(table.columns["depth"], [1e-6, NAN, 3e-6])
+    np.testing.assert_array_equal(table.columns["load"], [1, NAN, 3])
+    assert (table.columns["on"], table.columns["run"]) == (("true", "", "false"), ("a", "b", "a"))
+    (note,) = table.notes
+    assert note.startswith("column 'lists' holds list")
+
+
 # Names and units
 
 
@@ -303,6 +328,11 @@ def test_lengths_that_differ_need_a_clock(tmp_path: Path) -> None:
     assert (
         said(path)
         == f"r.tdms: channel 'Untitled/load' has 1 value and no clock, beside channels of other lengths; {clock}"
+    )
+    apart = {"depth": Recorded([1.0, 2.0], "um", SLOW), "load": Recorded([1.0, 2.0, 3.0], "N", 9 + FAST[:3])}
+    assert said(write_tdms(tmp_path / "a.tdms", apart)) == (
+        "a.tdms: holds no row that can be used: 2 rows, 0 used; 2 left out: lines 2, 3 "
+        "(outside the time in which 'Untitled/load' was recorded)"
     )
     back = {"A/time": Recorded([0.0, 2.0, 1.0], "s"), "A/depth": Recorded([1.0, 2.0, 3.0], "um")}
     path = write_tdms(tmp_path / "b.tdms", {**back, "B/load": Recorded([1.0, 2.0], "N", SLOW)})

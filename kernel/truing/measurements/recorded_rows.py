@@ -89,7 +89,7 @@ class RecordedTable:
             part = slice(start, start + ROWS_AT_ONCE)
             yield [tuple(_texts(values[part])) for values in self.values], tuple(self.lines[part].tolist())
         if not len(self.lines):
-            self.faults.add("holds no row that can be used")
+            self.faults.add(f"holds no row that can be used: {self.count().sentence()}")
 
 
 def _texts(values: NDArray[Any]) -> list[str]:

@@ -43,9 +43,10 @@ def read_channels(path: Path) -> Recording:
                 f"column {shown(field.name)} holds {shown(str(field.type))[1:-1]} and no numbers, and is left out"
             )
         else:
-            unit = (field.metadata or {}).get(UNIT)
-            text = None if unit is None else unit_or_none(unit.decode("utf-8", "replace"))
-            channels.append(Channel(field.name, "", text, values))
+            stated = (field.metadata or {}).get(UNIT)
+            unit = None if stated is None else unit_or_none(stated.decode("utf-8", "replace"))
+            unit = "s" if pyarrow.types.is_duration(field.type) else unit
+            channels.append(Channel(field.name, "", unit, values))
     return Recording(tuple(channels), tuple(notes))
 
 
