@@ -20,6 +20,7 @@ from truing.api.records import MeasuredRecord
 from truing.api.run import Differences, Run, comparison_of, performed
 from truing.api.study import StudyResult
 from truing.api.tables import LABEL, beside, frame_text, settings_of, text_of
+from truing.declare.correlations import Correlated
 from truing.declare.model import Study
 from truing.declare.near_miss import near_miss
 from truing.describe import description, sections
@@ -40,7 +41,8 @@ from truing.kernel import Offer, offer_of
 from truing.measurements import RowsFile, read_rows
 from truing.progress import progress_bar
 from truing.published import ComparedRow, compare_published
-from truing.report.diagnosis_sheet import data_words, diagnosis_sheet_of, fitted_table, questions
+from truing.report.diagnosis_chapters import fitted_table
+from truing.report.diagnosis_sheet import data_words, diagnosis_sheet_of, questions
 from truing.report.diagnosis_words import headline, verdict_word
 from truing.report.run import run_info, sheets_of, write_sheet
 from truing.runs.diagnosis_document import diagnosis_document
@@ -88,9 +90,13 @@ class LoadedModel:
         """What it calculates, in a line."""
         return self.offer.model.title
 
-    def given(self, *, set: Mapping[str, Any] | None = None, **values: Any) -> LoadedModel:
-        """Return the model with these values in every run."""
-        return replace(self, stated=(*self.stated, *self._settings(set, values)))
+    def given(self, *together: Correlated, set: Mapping[str, Any] | None = None, **values: Any) -> LoadedModel:
+        """Return the model with these values in every run, and with inputs that scatter together.
+
+        ``together`` holds pairs, each made by ``correlated("load", "hardness", 0.7)``.
+        """
+        pairs = {f"correlations.{pair.name}": pair.coefficient for pair in together}
+        return replace(self, stated=(*self.stated, *self._settings({**pairs, **(set or {})}, values)))
 
     def setup(self, inputs: str | Path | None = None, *, set: Mapping[str, Any] | None = None, **values: Any) -> Setup:
         """Return what a run would calculate: the inputs file, or the shipped example, and values in place of its own.

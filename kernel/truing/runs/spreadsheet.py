@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 
 from truing.declare.model import Model
+from truing.diagnosis.records import file_labels
 from truing.diagnosis.result import DiagnosisResult
 from truing.formulas.symbols import printable
 from truing.measurements import EXCEL, table_text
 from truing.numbers import RESULT_DIGITS, STATED_DIGITS, format_number
 from truing.recordings.parquet import parquet_bytes
-from truing.runs.diagnosis_document import diagnosis_document, file_labels
+from truing.runs.diagnosis_document import diagnosis_document
 from truing.studies.checks import SHORT
 from truing.units import from_si
 from truing.workbooks.writing import Printed, SheetTable, workbook_bytes
@@ -91,6 +92,7 @@ def _single(document: Mapping[str, Any], model: Model[Any, Any]) -> Iterator[Spr
             for part in ("mean", "sd"):
                 said = {"name": target, "place": part, "value": distribution[part], "unit": distribution["unit"]}
                 yield {"part": "tolerance", **said, "note": f"{name}: {tolerance['spread']}"}
+    yield from _named("correlation", document["correlations"], {})
     yield from _named("condition", document["conditions"], {})
     for name, unknowns in document["effects"].items():
         for unknown, estimate in unknowns.items():
