@@ -204,8 +204,8 @@ class Setup(Case):
     """What one inputs file says, checked, in SI: the case, what scatters about it, and what is asked.
 
     ``spreads`` holds the tolerances in force and ``calibrated`` the inputs (SI) as a diagnosis fitted them to one
-    machine, by name; ``units`` the units in which results are printed, where these are not the declared ones;
-    ``columns`` what columns of files are, by what the files call them.
+    machine, by name; ``units`` the units in which results are printed, where these are not the declared ones.
+    ``columns`` says what columns of files are, by what the files call them.
     ``correlations`` are those in force, stated or declared; one of an input that does not scatter says nothing.
     """
 
