@@ -37,6 +37,11 @@ openpyxl: Any = Later(
     column_index_from_string="openpyxl.utils",
     get_column_letter="openpyxl.utils",
 )
+nptdms: Any = Later("nptdms")
+asammdf: Any = Later("asammdf")
+h5py: Any = Later("h5py")
+matlab_files: Any = Later("scipy.io")
+pyarrow: Any = Later("pyarrow", ParquetFile="pyarrow.parquet", write_table="pyarrow.parquet", types="pyarrow")
 pymoo: Any = Later(
     "pymoo",
     Config="pymoo.config",

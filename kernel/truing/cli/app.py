@@ -194,7 +194,7 @@ def table(
     plugin: Plugin,
     inputs: Annotated[Path, typer.Option("--inputs", "-i", help="The inputs file.")],
     rows: Annotated[
-        Path, typer.Option("--rows", help="CSV or .xlsx; columns replace inputs or conditions row by row.")
+        Path, typer.Option("--rows", help="CSV, .xlsx or a recording; columns replace inputs or conditions row by row.")
     ],
     output: OutputFile = None,
     changed: Changed = None,
@@ -320,9 +320,10 @@ Xlsx: TypeAlias = Annotated[bool, typer.Option("--xlsx", help="Add a workbook wi
 Inputs: TypeAlias = Annotated[
     Path | None, typer.Option("--inputs", "-i", help="The inputs file; without it the shipped example.")
 ]
-Cases: TypeAlias = Annotated[Path | None, typer.Option("--cases", help="CSV or .xlsx: every row is a case.")]
+Cases: TypeAlias = Annotated[Path | None, typer.Option("--cases", help="CSV, .xlsx or .parquet: every row is a case.")]
 Data: TypeAlias = Annotated[
-    list[Path] | None, typer.Option("--data", "-d", help="Measured rows, CSV or .xlsx; may be repeated.")
+    list[Path] | None,
+    typer.Option("--data", "-d", help="Measured rows: CSV, .xlsx or a recording; may be repeated."),
 ]
 RunFolder: TypeAlias = Annotated[
     Path | None, typer.Option("--output", "-o", help="The run folder (default runs/STEM).")

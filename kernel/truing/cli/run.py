@@ -66,6 +66,8 @@ def _say_beside(done: Run, tables: Sequence[Path], settings: Settings) -> None:
     """Say what is no result: warnings, cases that failed, what else was written, and where the numbers come from."""
     for warning in done.warnings:
         settings.say(f"warning: {one_line(warning)}")
+    for note in done.cases.notes if done.cases is not None else ():
+        settings.say(f"note: {one_line(note)}")
     for case in done.cases.cases if done.cases is not None else ():
         if case.reason is not None:
             say(str(case.fault))

@@ -23,7 +23,7 @@ from truing.runs.extension import extended_text
 from truing.runs.inputs_written import complete_inputs
 from truing.runs.new_effect import new_effect_source
 from truing.runs.provenance import Provenance
-from truing.runs.spreadsheet import diagnosis_workbook, run_workbook, spreadsheets
+from truing.runs.spreadsheet import cases_parquet, diagnosis_workbook, run_workbook, spreadsheets
 from truing.setup import Setup
 from truing.studies.bench import Outcome, files_of
 from truing.units import from_si
@@ -172,6 +172,8 @@ def run_files(
     files = {**sheets, **(spreadsheets(document, model) if excel else {})}
     if xlsx:
         files["results.xlsx"] = run_workbook(document, model)
+    if str(document.get("rows", {}).get("file", "")).lower().endswith(".parquet"):
+        files["cases.parquet"] = cases_parquet(document)
     if large := large_arrays(calculation):
         files["arrays.npz"] = npz_bytes(large)
     return files | study_files(calculation.outcomes, files)
@@ -213,7 +215,7 @@ def study_files(outcomes: Mapping[str, Outcome], taken: Mapping[str, str | bytes
 
 KEPT = (
     "inputs.toml", "results.json", "run.json", "sheet.html", "sheet.md", "sheet.pdf", "arrays.npz", "results.csv",
-    "cases.csv", "results.xlsx",
+    "cases.csv", "cases.parquet", "results.xlsx",
 )  # fmt: skip
 """Names that a run folder uses itself, or may use."""
 

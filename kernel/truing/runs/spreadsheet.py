@@ -14,6 +14,7 @@ from truing.diagnosis.result import DiagnosisResult
 from truing.formulas.symbols import printable
 from truing.measurements import EXCEL, table_text
 from truing.numbers import RESULT_DIGITS, STATED_DIGITS, format_number
+from truing.recordings.parquet import parquet_bytes
 from truing.runs.diagnosis_document import diagnosis_document
 from truing.studies.checks import SHORT
 from truing.units import from_si
@@ -34,6 +35,11 @@ def spreadsheets(document: Mapping[str, Any], model: Model[Any, Any]) -> dict[st
         columns = _cases(document["cases"])
         files["cases.csv"] = table_text(list(columns), list(columns.values()), form=EXCEL)
     return files
+
+
+def cases_parquet(document: Mapping[str, Any]) -> bytes:
+    """Return the cases as a parquet file, which goes out where a parquet file of cases came in."""
+    return parquet_bytes(_cases(document["cases"]))
 
 
 def run_workbook(document: Mapping[str, Any], model: Model[Any, Any]) -> bytes:
