@@ -37,6 +37,18 @@ openpyxl: Any = Later(
     column_index_from_string="openpyxl.utils",
     get_column_letter="openpyxl.utils",
 )
+docx: Any = Later(
+    "docx",
+    Mm="docx.shared",
+    Pt="docx.shared",
+    RGBColor="docx.shared",
+    UnrecognizedImageError="docx.image.exceptions",
+    WD_STYLE_TYPE="docx.enum.style",
+    WD_TAB_ALIGNMENT="docx.enum.text",
+    WD_TAB_LEADER="docx.enum.text",
+    parse_xml="docx.oxml",
+    qn="docx.oxml.ns",
+)
 pymoo: Any = Later(
     "pymoo",
     Config="pymoo.config",

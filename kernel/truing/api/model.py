@@ -43,6 +43,7 @@ from truing.published import ComparedRow, compare_published
 from truing.report.diagnosis_sheet import data_words, diagnosis_sheet_of, fitted_table, questions
 from truing.report.diagnosis_words import headline, verdict_word
 from truing.report.run import run_info, sheets_of, write_sheet
+from truing.report.word_printer import demand_word_library
 from truing.runs.diagnosis_document import diagnosis_document
 from truing.runs.extension import extended_text
 from truing.runs.folder import demand_place, diagnosis_files, write_outcome
@@ -115,6 +116,7 @@ class LoadedModel:
         output: str | Path | None = None,
         resume: bool = False,
         pdf: bool = False,
+        docx: bool = False,
         excel: bool = False,
         xlsx: bool = False,
         set: Mapping[str, Any] | None = None,
@@ -127,11 +129,11 @@ class LoadedModel:
         every row is a case. It is computed in ``workers`` processes, or on the dask ``cluster`` at an address; the
         answer does not depend on it. ``output`` is a folder that is complete or absent, whatever happens; with
         ``resume`` finished batches are kept beside it, and those of an interrupted run are taken up; ``pdf``,
-        ``excel`` and ``xlsx`` are as in ``Run.save``. Raises TruingError with one sentence.
+        ``docx``, ``excel`` and ``xlsx`` are as in ``Run.save``. Raises TruingError with one sentence.
         """
         setup = self.setup(inputs, set=set, **values)
         how: dict[str, Any] = {"workers": workers, "cluster": cluster, "resume": resume}
-        how |= {"pdf": pdf, "excel": excel, "xlsx": xlsx}
+        how |= {"pdf": pdf, "docx": docx, "excel": excel, "xlsx": xlsx}
         return performed(setup, self.offer, progress, output=output, cases=cases, **how)
 
     def study(
@@ -234,6 +236,7 @@ class LoadedModel:
         budget: int = 0,
         output: str | Path | None = None,
         pdf: bool = False,
+        docx: bool = False,
         xlsx: bool = False,
         set: Mapping[str, Any] | None = None,
         progress: Progress | bool = True,
@@ -243,13 +246,14 @@ class LoadedModel:
 
         ``hold_out`` marks rows that only judge ("judged = yes"), ``per_file`` names what every file has for itself,
         ``budget`` is how many calls of the model the search may make (0: as many as its time allows). Nothing is
-        written without ``output``, a folder that is complete or absent; ``pdf`` prints the sheet there, and
-        ``xlsx`` adds a workbook. Raises TruingError with one sentence, or every fault of a file.
+        written without ``output``, a folder that is complete or absent; ``pdf`` prints the sheet there, ``docx`` adds
+        it as a Word document, and ``xlsx`` adds a workbook. Raises TruingError with one sentence, or every fault of a
+        file.
         """
         if not isinstance(record, MeasuredRecord):
             made = "truing.read(files, model) or truing.record(dataframe, model)"
             raise UsageError(f"a {type(record).__name__} is no record; make one with {made}")
-        _demand_output(output, {"pdf": pdf, "xlsx": xlsx})
+        _demand_output(output, {"pdf": pdf, "docx": docx, "xlsx": xlsx})
         options = {"hold_out": hold_out, "per_file": list(per_file), "budget": budget}
         stated = {f"studies.diagnose.{name}": toml_value(value) for name, value in options.items() if value}
         setup = self.setup(inputs, set={**stated, **(set or {})}, **values)
@@ -263,7 +267,7 @@ class LoadedModel:
             report("sheet and PDF" if pdf else "sheet", 0, 0)
             if output is None:
                 return diagnosis
-            return replace(diagnosis, note=diagnosis.written(Path(output), pdf=pdf, xlsx=xlsx))
+            return replace(diagnosis, note=diagnosis.written(Path(output), pdf=pdf, docx=docx, xlsx=xlsx))
 
     def plan(
         self,
@@ -329,6 +333,8 @@ def _demand_output(output: str | Path | None, files: Mapping[str, bool]) -> None
         raise UsageError(f"{name} needs output, the folder that is written")
     if files["xlsx"]:
         demand_library()
+    if files["docx"]:
+        demand_word_library()
     if output is not None:
         demand_place(Path(output), "diagnosis")
 
@@ -417,22 +423,22 @@ class Diagnosis:
         return self.residuals.plot()
 
     def sheet(self, path: str | Path) -> Path:
-        """Write the sheet as HTML, Markdown or PDF, as the name ends. Raises OutputError."""
+        """Write the sheet as HTML, Markdown, PDF or a Word document, as the name ends. Raises OutputError."""
         return write_sheet(path, partial(diagnosis_sheet_of, self.result, self.started))
 
-    def save(self, folder: str | Path, *, pdf: bool = False, xlsx: bool = False) -> Path:
+    def save(self, folder: str | Path, *, pdf: bool = False, docx: bool = False, xlsx: bool = False) -> Path:
         """Write the folder that ``calc diagnose`` writes; an earlier diagnosis there goes. Raises OutputError."""
         target = Path(folder)
         demand_place(target, "diagnosis")
-        note = self.written(target, pdf=pdf, xlsx=xlsx)
+        note = self.written(target, pdf=pdf, docx=docx, xlsx=xlsx)
         if note.startswith("no PDF"):
             warnings.warn(note, stacklevel=2)
         return target
 
-    def written(self, folder: Path, *, pdf: bool = False, xlsx: bool = False) -> str:
+    def written(self, folder: Path, *, pdf: bool = False, docx: bool = False, xlsx: bool = False) -> str:
         """Write the folder and return what became of the PDF."""
         sheet = diagnosis_sheet_of(self.result, self.started)
-        sheets, note = sheets_of(sheet, folder, pdf=pdf)
+        sheets, note = sheets_of(sheet, folder, pdf=pdf, word=docx)
         info = {**run_info(self.started), "data": dict(self.result.records.digests)}
         write_outcome(
             folder, "diagnosis", self.result.setup, self.document, provenance=sheet.provenance, run_info=info,

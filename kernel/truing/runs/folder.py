@@ -212,8 +212,8 @@ def study_files(outcomes: Mapping[str, Outcome], taken: Mapping[str, str | bytes
 
 
 KEPT = (
-    "inputs.toml", "results.json", "run.json", "sheet.html", "sheet.md", "sheet.pdf", "arrays.npz", "results.csv",
-    "cases.csv", "results.xlsx",
+    "inputs.toml", "results.json", "run.json", "sheet.html", "sheet.md", "sheet.pdf", "sheet.docx", "arrays.npz",
+    "results.csv", "cases.csv", "results.xlsx",
 )  # fmt: skip
 """Names that a run folder uses itself, or may use."""
 
