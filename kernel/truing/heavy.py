@@ -42,7 +42,6 @@ docx: Any = Later(
     Mm="docx.shared",
     Pt="docx.shared",
     RGBColor="docx.shared",
-    UnrecognizedImageError="docx.image.exceptions",
     WD_STYLE_TYPE="docx.enum.style",
     WD_TAB_ALIGNMENT="docx.enum.text",
     WD_TAB_LEADER="docx.enum.text",

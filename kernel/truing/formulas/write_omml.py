@@ -109,6 +109,7 @@ def _prose(text: str) -> str:
 
 
 OMML: Final = Writer(
+    opening=run("\N{ZERO WIDTH SPACE}", "words"),
     symbol=symbol_omml,
     word=_word,
     quantity=_quantity,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import binascii
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -40,8 +39,8 @@ from truing.workbooks.writing import undated
 
 PAPERS: Final = {"A4": (210.0, 297.0), "letter": (215.9, 279.4)}
 """Width and height, mm, of what the sheet may be printed on."""
-MARGIN: Final = 20.0
-"""White edge of a page, mm: as much as every printer leaves, with room to punch."""
+MARGIN, ABOVE = 20.0, 16.0
+"""White edges of a page, mm, beside its text with room to punch, and above and below."""
 LINE: Final = 42.0
 """How wide a line of a formula may be, in em as estimated: an eighth less than 170 mm at 10 points."""
 INCH: Final = 25.4
@@ -52,7 +51,7 @@ PER_CHARACTER: Final = 0.19
 """Width of a character in mm, for each point of its size: the mean of digits and lower-case letters of Calibri."""
 PADDING: Final = 4.0
 """White space beside the text of a cell, mm."""
-LONGEST_WORD, WIDEST_CELL = 24, 60
+LONGEST_WORD, WIDEST_CELL = 24, 160
 """So many characters of a word ask for one line; so many of a cell count where columns share the width."""
 GREY, DARK = "666666", "1F3A5F"
 MOODS: Final = {
@@ -122,8 +121,9 @@ def _set_up(page: _Page, document: Document, paper: tuple[float, float]) -> None
     word = page.word
     section = word.sections[0]
     section.page_width, section.page_height = map(docx.Mm, paper)
-    section.left_margin = section.right_margin = section.top_margin = section.bottom_margin = docx.Mm(MARGIN)
-    section.footer_distance = docx.Mm(MARGIN / 2)
+    section.left_margin = section.right_margin = docx.Mm(MARGIN)
+    section.top_margin = section.bottom_margin = docx.Mm(ABOVE)
+    section.footer_distance = docx.Mm(ABOVE / 2)
     _set_styles(word.styles, page.width)
     for setting in word.settings.element.iter(docx.qn("w:compatSetting")):
         if setting.get(docx.qn("w:name")) == "compatibilityMode":
@@ -188,7 +188,7 @@ def _logo(page: _Page, address: str) -> None:
     data = address.partition(";base64,")[2]
     try:
         page.word.add_picture(BytesIO(base64.b64decode(data, validate=True)), height=docx.Mm(14))
-    except (docx.UnrecognizedImageError, binascii.Error, ValueError, KeyError, IndexError, OverflowError):
+    except Exception:  # of a picture that is none, the library may fail anywhere
         page.add(_paragraph(_run("The logo cannot stand in a Word document: state a .png or .jpg file.", color=GREY)))
 
 
@@ -341,7 +341,8 @@ def _widths(table: TableView, width: float) -> tuple[list[float], float]:
         texts = [column.heading, *(plain_text(row[index]) for row in table.rows)]
         whole = [text for text in texts[1:] if column.kind == "number"]
         parts = [part for text in texts for part in re.split(r"\s+|(?<=[-_])", text)]
-        words.append(max([min(len(part), LONGEST_WORD) for part in [*parts, *whole]]))
+        heads = [len(part) + 1 for part in column.heading.split()]  # bold letters are wider
+        words.append(max([*heads, *(min(len(part), LONGEST_WORD) for part in [*parts, *whole])]))
         cells.append(max(min(len(text), WIDEST_CELL) for text in texts))
     size = IN_TABLE
     while size > SMALLEST and sum(words) * PER_CHARACTER * size + PADDING * len(words) > width:
