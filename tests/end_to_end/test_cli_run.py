@@ -13,7 +13,7 @@ from shared import Answer, Calc
 from truing.report import pdf
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
-FILES = ["inputs.toml", "results.json", "run.json", "sheet.html", "sheet.md"]
+FILES = ["inputs.toml", "results.csv", "results.json", "run.json", "sheet.html", "sheet.md"]
 QUICK = ("--set", "studies.reliability.draws=2000")
 
 
