@@ -246,14 +246,12 @@ class LoadedModel:
 
         ``hold_out`` marks rows that only judge ("judged = yes"), ``per_file`` names what every file has for itself,
         ``budget`` is how many calls of the model the search may make (0: as many as its time allows). Nothing is
-        written without ``output``, a folder that is complete or absent; ``pdf`` prints the sheet there, ``docx`` adds
-        it as a Word document, and ``xlsx`` adds a workbook. Raises TruingError with one sentence, or every fault of a
-        file.
+        written without ``output``, a folder that is complete or absent; ``pdf``, ``docx`` and ``xlsx`` are as in
+        ``Diagnosis.save``. Raises TruingError with one sentence, or every fault of a file.
         """
-        if not isinstance(record, MeasuredRecord):
-            made = "truing.read(files, model) or truing.record(dataframe, model)"
-            raise UsageError(f"a {type(record).__name__} is no record; make one with {made}")
-        _demand_output(output, {"pdf": pdf, "docx": docx, "xlsx": xlsx})
+        _demand_record(record)
+        files = {"pdf": pdf, "docx": docx, "xlsx": xlsx}
+        _demand_output(output, files)
         options = {"hold_out": hold_out, "per_file": list(per_file), "budget": budget}
         stated = {f"studies.diagnose.{name}": toml_value(value) for name, value in options.items() if value}
         setup = self.setup(inputs, set={**stated, **(set or {})}, **values)
@@ -267,7 +265,7 @@ class LoadedModel:
             report("sheet and PDF" if pdf else "sheet", 0, 0)
             if output is None:
                 return diagnosis
-            return replace(diagnosis, note=diagnosis.written(Path(output), pdf=pdf, docx=docx, xlsx=xlsx))
+            return replace(diagnosis, note=diagnosis.written(Path(output), **files))
 
     def plan(
         self,
@@ -325,6 +323,13 @@ class LoadedModel:
 
     def _settings(self, set: Mapping[str, Any] | None, values: Mapping[str, Any]) -> list[str]:
         return settings_of(self.offer.model, {**(set or {}), **values})
+
+
+def _demand_record(record: Any) -> None:
+    """Raise UsageError, saying how a record is made, for anything else."""
+    if not isinstance(record, MeasuredRecord):
+        made = "truing.read(files, model) or truing.record(dataframe, model)"
+        raise UsageError(f"a {type(record).__name__} is no record; make one with {made}")
 
 
 def _demand_output(output: str | Path | None, files: Mapping[str, bool]) -> None:
@@ -427,7 +432,11 @@ class Diagnosis:
         return write_sheet(path, partial(diagnosis_sheet_of, self.result, self.started))
 
     def save(self, folder: str | Path, *, pdf: bool = False, docx: bool = False, xlsx: bool = False) -> Path:
-        """Write the folder that ``calc diagnose`` writes; an earlier diagnosis there goes. Raises OutputError."""
+        """Write the folder that ``calc diagnose`` writes; an earlier diagnosis there goes.
+
+        ``pdf`` prints the sheet where a browser is installed, ``docx`` adds it as a Word document, ``xlsx`` adds a
+        workbook. Raises OutputError.
+        """
         target = Path(folder)
         demand_place(target, "diagnosis")
         note = self.written(target, pdf=pdf, docx=docx, xlsx=xlsx)
