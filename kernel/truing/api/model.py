@@ -17,7 +17,7 @@ from truing.api.findings import NamedCause, Ranking, Residuals, causes_of
 from truing.api.notebook import bullets, fold, heading, html_table, joined, paragraphs, picture, table_html
 from truing.api.plan import Plan
 from truing.api.records import MeasuredRecord
-from truing.api.run import Differences, Run, comparison_of, performed
+from truing.api.run import Differences, Run, comparison_of, demand_files, performed
 from truing.api.study import StudyResult
 from truing.api.tables import LABEL, beside, frame_text, settings_of, text_of
 from truing.declare.model import Study
@@ -43,7 +43,6 @@ from truing.published import ComparedRow, compare_published
 from truing.report.diagnosis_sheet import data_words, diagnosis_sheet_of, fitted_table, questions
 from truing.report.diagnosis_words import headline, verdict_word
 from truing.report.run import run_info, sheets_of, write_sheet
-from truing.report.word_printer import demand_word_library
 from truing.runs.diagnosis_document import diagnosis_document
 from truing.runs.extension import extended_text
 from truing.runs.folder import demand_place, diagnosis_files, write_outcome
@@ -53,7 +52,6 @@ from truing.studies.frequency import Frequency
 from truing.studies.sweep import Sweep
 from truing.units import difference_unit
 from truing.units.grammar import shown
-from truing.workbooks.writing import demand_library
 
 
 @dataclass(frozen=True)
@@ -251,7 +249,7 @@ class LoadedModel:
         """
         _demand_record(record)
         files = {"pdf": pdf, "docx": docx, "xlsx": xlsx}
-        _demand_output(output, files)
+        demand_files(output, files, "diagnosis")
         options = {"hold_out": hold_out, "per_file": list(per_file), "budget": budget}
         stated = {f"studies.diagnose.{name}": toml_value(value) for name, value in options.items() if value}
         setup = self.setup(inputs, set={**stated, **(set or {})}, **values)
@@ -330,18 +328,6 @@ def _demand_record(record: Any) -> None:
     if not isinstance(record, MeasuredRecord):
         made = "truing.read(files, model) or truing.record(dataframe, model)"
         raise UsageError(f"a {type(record).__name__} is no record; make one with {made}")
-
-
-def _demand_output(output: str | Path | None, files: Mapping[str, bool]) -> None:
-    """Raise UsageError or OutputError where what is asked for cannot be written, before anything is calculated."""
-    for name in (name for name, is_asked in files.items() if is_asked and output is None):
-        raise UsageError(f"{name} needs output, the folder that is written")
-    if files["xlsx"]:
-        demand_library()
-    if files["docx"]:
-        demand_word_library()
-    if output is not None:
-        demand_place(Path(output), "diagnosis")
 
 
 def _demand_known(rows: RowsFile, setup: Setup) -> None:

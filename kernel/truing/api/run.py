@@ -33,7 +33,7 @@ from truing.report.sheet import banner_of, cases_table
 from truing.report.word_printer import demand_word_library
 from truing.runs.comparison import Change, compared, in_order, words_of
 from truing.runs.documents import results_document
-from truing.runs.folder import demand_place, run_files, write_outcome
+from truing.runs.folder import FolderKind, demand_place, run_files, write_outcome
 from truing.runs.partial import code_of, identity_of, kept_batches
 from truing.runs.provenance import provenance_of
 from truing.setup import Setup
@@ -235,25 +235,30 @@ def performed(
     """
     if cluster and workers is not None:
         raise UsageError("cluster and workers exclude each other: a cluster has its own workers")
-    for name, is_asked in {"resume": resume, "pdf": pdf, "docx": docx, "excel": excel, "xlsx": xlsx}.items():
-        if is_asked and output is None:
-            raise UsageError(f"{name} needs output, the folder that is written")
-    if xlsx:
-        demand_library()
-    if docx:
-        demand_word_library()
+    files = {"pdf": pdf, "docx": docx, "excel": excel, "xlsx": xlsx}
+    demand_files(output, {"resume": resume, **files})
     folder = None if output is None else Path(output)
     keeping: AbstractContextManager[BatchLog | None] = nullcontext()
-    if folder is not None:
-        demand_place(folder)
-        keeping = kept_batches(folder, identity_of(setup, code_of(setup))) if resume else keeping
+    if folder is not None and resume:
+        keeping = kept_batches(folder, identity_of(setup, code_of(setup)))
     place = f"dask:{cluster}" if cluster else "serial" if workers in (None, 1) else f"processes:{workers}"
     with progress_bar(progress) as report, told_by_line(setup), keeping as log:
         run = replace(_calculated(setup, offer, cases, place=place, progress=report, log=log), alone=alone)
         if folder is not None:
-            how = {"pdf": pdf, "docx": docx, "excel": excel, "xlsx": xlsx}
-            return replace(run, note=run.written(folder, **how, progress=report))
+            return replace(run, note=run.written(folder, **files, progress=report))
         return run
+
+
+def demand_files(output: str | Path | None, files: Mapping[str, bool], kind: FolderKind = "run") -> None:
+    """Raise UsageError or OutputError where what is asked for cannot be written: before anything is calculated."""
+    for name in (name for name, is_asked in files.items() if is_asked and output is None):
+        raise UsageError(f"{name} needs output, the folder that is written")
+    if files["xlsx"]:
+        demand_library()
+    if files["docx"]:
+        demand_word_library()
+    if output is not None:
+        demand_place(Path(output), kind)
 
 
 def _calculated(setup: Setup, offer: Offer, cases: Any, *, place: str, progress: Progress, log: BatchLog | None) -> Run:
