@@ -124,6 +124,16 @@ def test_figures_are_pictures_with_words(sheet: Document, word: Any) -> None:
         assert len(picture.convert("L").getcolors()) > 10  # something is drawn
 
 
+def test_a_figure_that_cannot_be_drawn_again_is_missed_aloud(sheet: Document) -> None:
+    def broken() -> Any:
+        raise ValueError("only once")
+
+    figure = FigureView("Scar", "<svg/>", "The scar", 1, broken)
+    made = replace(sheet, front=(), chapters=(Chapter("Figures", (figure,), number="1"),))
+    texts = [each.text for each in docx.Document(BytesIO(word_of(made))).paragraphs]
+    assert "The figure 'Scar' could not be drawn again." in texts
+
+
 def pictures(word: Any) -> list[Image.Image]:
     blips = [next(shape._inline.iter(qn("a:blip"))).get(qn("r:embed")) for shape in word.inline_shapes]
     return [Image.open(BytesIO(word.part.related_parts[blip].blob)) for blip in blips]

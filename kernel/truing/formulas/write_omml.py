@@ -41,8 +41,10 @@ def number_omml(text: str) -> str:
 
 
 def _piece(letters: str) -> str:
-    """Write a letter in italics; digits, a comma, or several letters upright."""
-    return run(letters, "italic" if len(letters) == 1 and letters.isalpha() else "upright")
+    """Write a letter in italics, digits and a comma upright; what else there is as words, so that no * multiplies."""
+    if len(letters) == 1 and letters.isalpha():
+        return run(letters, "italic")
+    return run(letters, "upright" if letters == "," or letters.isdigit() else "words")
 
 
 def symbol_omml(text: str, exponent: str | None = None) -> str:

@@ -10,7 +10,7 @@ from html import escape
 from io import BytesIO
 from typing import Any, Final
 
-from truing.errors import UsageError
+from truing.errors import PluginError, UsageError
 from truing.formulas.symbols import printable
 from truing.formulas.write_omml import OMML, symbol_omml
 from truing.heavy import docx
@@ -51,8 +51,12 @@ PER_CHARACTER: Final = 0.19
 """Width of a character in mm, for each point of its size: the mean of digits and lower-case letters of Calibri."""
 PADDING: Final = 4.0
 """White space beside the text of a cell, mm."""
-LONGEST_WORD, WIDEST_CELL = 24, 160
+LONGEST_WORD, WIDEST_CELL = 24, 90
 """So many characters of a word ask for one line; so many of a cell count where columns share the width."""
+LOWER: Final = 0.8
+"""How high the figure of page one is, as a share of its height beside the key results: here it stands below them."""
+GAP: Final = '<w:p><w:pPr><w:spacing w:before="0" w:after="0" w:line="120" w:lineRule="exact"/></w:pPr></w:p>'
+"""What parts a table from what follows: 6 points."""
 GREY, DARK = "666666", "1F3A5F"
 MOODS: Final = {
     "passes": "E3F2E6", "calm": "E3F2E6", "proposed": "FFF4D6", "undecided": "FFF4D6", "open": "FFF4D6",
@@ -79,7 +83,7 @@ def demand_word_library() -> None:
 def word_of(document: Document) -> bytes:
     """Write a document as .docx, the same bytes whenever it is done.
 
-    Raises UsageError where the library is missing, PluginError where a figure cannot be drawn again.
+    Raises UsageError where the library is missing.
     """
     demand_word_library()
     paper = PAPERS[document.paper]
@@ -87,7 +91,7 @@ def word_of(document: Document) -> bytes:
     _set_up(page, document, paper)
     _head(page, document)
     for index, chapter in enumerate(document.front):
-        _chapter(page, chapter, index, highest=document.figure_height)
+        _chapter(page, chapter, index, highest=LOWER * document.figure_height)
     page.add(_signatures(document.head.signatures, page.width))
     listed = [*document.front, *document.chapters]
     if document.detail != "short":
@@ -172,7 +176,7 @@ def _head(page: _Page, document: Document) -> None:
         _logo(page, head.logo)
     page.add(_paragraph(_run(_safe(document.kind), color=GREY)), _paragraph(_run(_safe(head.title)), "Title"))
     page.add(*(_paragraph(_run(_safe(text))) for text in (head.model, document.summary) if text))
-    page.add(_pairs(head.fields, page.width), _paragraph())
+    page.add(_pairs(head.fields, page.width), GAP)
     sentences = [_said(sentence) for sentence in banner.sentences]
     sentences[0] = _run(f"{MARKS[banner.mood]} {_safe(banner.headline)}. ", bold=True) + sentences[0]
     if document.warnings:
@@ -193,21 +197,21 @@ def _logo(page: _Page, address: str) -> None:
 
 
 def _pairs(fields: Sequence[tuple[str, str]], width: float, *further: str) -> str:
-    """Write labels with what stands below each, and further lines below that."""
+    """Write labels with what stands below each, and further lines below that, all on one page."""
     labels = [_run(_safe(label), color=GREY, size=8) for label, _ in fields]
     texts = [_run(_safe(text)) for _, text in fields]
     rows = [labels, texts, *([_run(line, color=GREY, size=8)] * len(fields) for line in further)]
-    widths = [width / len(fields)] * len(fields)
-    return _grid([_row([_cell(cell, each) for cell, each in zip(row, widths, strict=True)]) for row in rows], widths)
+    wide = width / len(fields)
+    return _grid([_row([_cell(cell, wide, keeps=True) for cell in row]) for row in rows], [wide] * len(fields))
 
 
 def _signatures(signatures: Sequence[tuple[str, str]], width: float) -> str:
-    return _paragraph() + _pairs(signatures, width, "Date, signature", "\u00a0") + _paragraph()
+    return GAP + _pairs(signatures, width, "Date, signature") + GAP
 
 
 def _contents(chapters: Sequence[Chapter]) -> Iterator[str]:
     """Write a table of contents whose lines lead to their chapters; Word fills in the pages when it is updated."""
-    yield _paragraph(_run("Contents", bold=True, size=13, color=DARK), shape=f"{KEEP_NEXT}<w:pageBreakBefore/>")
+    yield _paragraph(_run("Contents", bold=True, size=13, color=DARK), shape=KEEP_NEXT)
     instruction = r' TOC \o "1-1" \h \z \u '
     begin = f'{_mark("begin")}<w:r><w:instrText xml:space="preserve">{escape(instruction)}</w:instrText></w:r>'
     for index, chapter in enumerate(chapters):
@@ -292,8 +296,12 @@ def _equation(equation: Equation) -> Iterator[str]:
 
 
 def _figure(page: _Page, view: FigureView, highest: float) -> None:
-    """Draw a figure again as pixels, as large as it is drawn where the page has room."""
-    stream = BytesIO(draw_png(view.drawing, title=view.title))
+    """Draw a figure again as pixels, as large as it is drawn where the page has room; say where that fails."""
+    try:
+        stream = BytesIO(draw_png(view.drawing, title=view.title))
+    except PluginError:  # it was drawn once, and a run is not lost for a picture
+        page.add(_paragraph(_run(_safe(f"The figure '{view.title}' could not be drawn again."), bold=True)))
+        return
     picture = page.word.add_picture(stream)
     wide, high = (size / PIXELS_PER_INCH * INCH for size in _pixels(stream.getvalue()))
     share = min(1.0, page.width / wide, highest / high)
@@ -327,7 +335,9 @@ def _table(table: TableView, width: float) -> Iterator[str]:
     if table.title:
         yield _paragraph(_run(_safe(table.title), size=IN_TABLE), "Caption", shape=KEEP_NEXT)
     yield _grid(rows, widths, lines=True)
-    yield _paragraph(_said(table.note, size=IN_TABLE) if table.note else "")
+    yield GAP
+    if table.note:
+        yield _paragraph(_said(table.note, size=IN_TABLE))
 
 
 def _widths(table: TableView, width: float) -> tuple[list[float], float]:
@@ -343,7 +353,7 @@ def _widths(table: TableView, width: float) -> tuple[list[float], float]:
         parts = [part for text in texts for part in re.split(r"\s+|(?<=[-_])", text)]
         heads = [len(part) + 1 for part in column.heading.split()]  # bold letters are wider
         words.append(max([*heads, *(min(len(part), LONGEST_WORD) for part in [*parts, *whole])]))
-        cells.append(max(min(len(text), WIDEST_CELL) for text in texts))
+        cells.append(max(words[-1], len(texts[0]) / 2, *(min(len(text), WIDEST_CELL) for text in texts[1:])))
     size = IN_TABLE
     while size > SMALLEST and sum(words) * PER_CHARACTER * size + PADDING * len(words) > width:
         size -= 0.5
@@ -370,10 +380,10 @@ def _row(cells: Iterable[str], *, is_header: bool = False) -> str:
     return f"<w:tr><w:trPr><w:cantSplit/>{repeated}</w:trPr>{''.join(cells)}</w:tr>"
 
 
-def _cell(content: str, width: float, kind: str = "", fill: str = "") -> str:
+def _cell(content: str, width: float, kind: str = "", fill: str = "", *, keeps: bool = False) -> str:
     right = '<w:jc w:val="right"/>' if kind == "number" else ""
     behind = f'<w:shd w:val="clear" w:color="auto" w:fill="{fill}"/>' if fill else ""
-    shape = f'<w:spacing w:before="20" w:after="20"/>{right}'
+    shape = f'{KEEP_NEXT if keeps else ""}<w:spacing w:before="20" w:after="20"/>{right}'
     own = f'<w:tcPr><w:tcW w:w="{_twips(width)}" w:type="dxa"/>{behind}</w:tcPr>'
     return f"<w:tc>{own}{_paragraph(content, shape=shape)}</w:tc>"
 
