@@ -130,6 +130,12 @@ def test_detail_changes_the_sheet(calc: Calc, tmp_path: Path) -> None:
     assert "short" in answer.err
 
 
+def test_a_word_document_beside_the_other_sheets(calc: Calc, tmp_path: Path) -> None:
+    answer = calc("run", PIN, "--docx", *QUICK[:2])
+    assert (answer.code, f"for Word: {Path('runs', 'pin_wear', 'sheet.docx')}" in answer.err) == (0, True)
+    assert sorted(path.name for path in (tmp_path / "runs" / "pin_wear").iterdir()) == sorted([*FILES, "sheet.docx"])
+
+
 def test_a_printed_sheet_or_a_word_why_not(calc: Calc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pdf, "find_browser", lambda: None)
     answer: Answer = calc("run", PIN, "--pdf", *QUICK)

@@ -14,6 +14,7 @@ from typing import Any
 
 import docx
 import pytest
+from diagnosis_samples import named
 from docx.oxml.ns import qn
 from PIL import Image
 
@@ -25,6 +26,7 @@ from truing.formulas.write_omml import OMML
 from truing.inputs_file import read_setup
 from truing.kernel import Kernel
 from truing.report import equations
+from truing.report.diagnosis_sheet import make_diagnosis_sheet
 from truing.report.document import (
     Chapter,
     Document,
@@ -177,6 +179,18 @@ def test_a_logo_is_shown_or_missed_aloud(sheet: Document, kind: str, shown: bool
     word = docx.Document(BytesIO(word_of(made)))
     assert len(word.inline_shapes) == shown
     assert any("logo cannot stand in a Word document" in each.text for each in word.paragraphs) is not shown
+
+
+def test_a_diagnosis_reads_back(tmp_path: Path) -> None:
+    made = make_diagnosis_sheet(named(), provenance=provenance_of(named().setup, date="2026-11-21"))
+    word = docx.Document(BytesIO(word_of(made)))
+    texts = [each.text for each in word.paragraphs]
+    assert any(text.startswith("● Cause named. ") for text in texts)
+    assert [text for text in texts if text in {chapter.title for chapter in made.front}] != []
+    assert len(word.inline_shapes) == len(all_of(made, FigureView)) > 0
+    cells = {cell.text for table in word.tables for row in table.rows for cell in row.cells}
+    for table in all_of(made, TableView):
+        assert {printable(plain_text(row[0])) for row in table.rows} <= cells
 
 
 def test_without_the_library_one_sentence_says_what_to_install(
