@@ -182,7 +182,7 @@ def test_a_condition_that_no_column_gives_is_not_measured(desk: Path, press: Col
         "link_heating": lacking, "side_heating": lacking, "thermal_drift": lacking,
     }  # fmt: skip
     assert not set(names(found.document)) & set(found.document["not_measured"])
-    assert "not measured: " in found.answer.out
+    assert "Not measured, so not seen: link heating (link temperature)" in found.answer.out
 
 
 def test_what_a_budget_of_calls_leaves_out_is_said(desk: Path, press: Columns, heated: Diagnosed) -> None:

@@ -7,7 +7,7 @@ import json
 import math
 import re
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from html import unescape
@@ -40,7 +40,7 @@ from truing.cli.diagnose import lines_of as report
 from truing.declare.fields import Float, axis, found, part, results
 from truing.declare.model import Model
 from truing.diagnosis.noise import SETTINGS
-from truing.diagnosis.records import Covariate
+from truing.diagnosis.records import Covariate, file_labels
 from truing.diagnosis.result import (
     Alternative,
     Amount,
@@ -63,31 +63,26 @@ from truing.inputs_file import setup_from_text
 from truing.kernel import Origin
 from truing.kernel.loading import load_file
 from truing.report.chapters import Figures
+from truing.report.diagnosis_chapters import diagnosis_chapters
 from truing.report.diagnosis_figures import main_covariates, said_by, telling_covariate, thinned
-from truing.report.diagnosis_sheet import diagnosis_chapters, make_diagnosis_sheet
+from truing.report.diagnosis_sheet import make_diagnosis_sheet
+from truing.report.diagnosis_sizes import amount_text, fitted_text, number_texts, p_text, percent, readable, score_text
 from truing.report.diagnosis_words import (
     NO_REMEDY,
-    amount_text,
     certainty,
     explanation,
-    fitted_text,
     headline,
     listed,
-    number_texts,
-    p_text,
-    percent,
     prose,
-    readable,
-    score_text,
     spoken,
     together,
     verdict_word,
 )
-from truing.report.document import Document, FigureView, Items, Paragraph, TableView
+from truing.report.document import BlockView, Document, FigureView, Fold, Items, Paragraph, TableView, plain_text
 from truing.report.html_printer import html_of
 from truing.report.markdown_printer import markdown_of
 from truing.runs import spreadsheet
-from truing.runs.diagnosis_document import diagnosis_document, file_labels
+from truing.runs.diagnosis_document import diagnosis_document
 from truing.runs.extension import extended_setup, extended_text
 from truing.runs.folder import demand_place, diagnosis_files, is_ours, json_text, write_folder, write_outcome
 from truing.runs.index import _of_diagnosis
@@ -450,16 +445,28 @@ def texts_of(sheet: Document) -> Iterator[str]:
     yield from map(str, sheet.banner.sentences)
     for chapter in sheet.chapters:
         yield chapter.title
-        for block in chapter.blocks:
-            if isinstance(block, TableView):
-                yield from (block.title, *(column.title for column in block.columns), str(block.note))
-                yield from (str(cell) for row in block.rows for cell in row)
-            elif isinstance(block, FigureView):
-                yield block.caption
-            elif isinstance(block, Paragraph):
-                yield str(block.text)
-            elif isinstance(block, Items):
-                yield from block.labels
+        for block in unfolded(chapter.blocks):
+            yield from words_of(block)
+
+
+def unfolded(blocks: Iterable[BlockView]) -> Iterator[BlockView]:
+    """Every block, also those that are folded away."""
+    for block in blocks:
+        yield from unfolded(block.blocks) if isinstance(block, Fold) else (block,)
+
+
+def words_of(block: BlockView) -> Iterator[str]:
+    """The texts of a block."""
+    match block:
+        case TableView(title, columns, rows, note):
+            yield from (title, *(column.title for column in columns), str(note))
+            yield from (str(cell) for row in rows for cell in row)
+        case FigureView():
+            yield block.caption
+        case Paragraph(text):
+            yield plain_text(text)
+        case Items():
+            yield from block.labels
 
 
 def plain(text: str) -> str:
@@ -471,12 +478,12 @@ def plain(text: str) -> str:
 def test_html_and_markdown_say_the_same_with_all_figures_drawn(name: str) -> None:
     sheet, page = page_of(name)
     chapters = [*sheet.front, *sheet.chapters]
-    views = [block for chapter in chapters for block in chapter.blocks if isinstance(block, FigureView)]
+    views = [block for chapter in chapters for block in unfolded(chapter.blocks) if isinstance(block, FigureView)]
     assert len(views) >= 4
     assert [view.number for view in views] == list(range(1, len(views) + 1))
     assert not [text for text in sheet.warnings if "figure" in text]
     titles = [chapter.title for chapter in sheet.chapters]
-    assert titles[:6] == ["What is wrong", "Cause", "Extended model", "Gain", "Next measurement", "Data"]
+    assert titles[:6] == ["The record", "What is wrong", "Cause", "What is left", "Extended model", "Gain"]
     assert titles[-1] == "Provenance"
     html = plain(Page(page).text)
     markdown = plain(re.sub(r"\\(.)", r"\1", unescape(markdown_of(sheet))))
@@ -484,7 +491,7 @@ def test_html_and_markdown_say_the_same_with_all_figures_drawn(name: str) -> Non
     assert len(said) > 80
     assert [text for text in said if text not in html and text.replace("-", "−") not in html] == []
     assert [text for text in said if text not in markdown and text.replace("-", "−") not in markdown] == []
-    assert " ".join(headline(SAMPLES[name]())) in html
+    assert [text for text in headline(SAMPLES[name]()) if text not in html] == []
 
 
 def test_a_unit_slip_stands_before_everything_else() -> None:
@@ -522,8 +529,8 @@ def test_small_pieces_of_words() -> None:
     assert fitted_text(fitted(41e-6, None, None)) == "size 41 µm (its interval is open)"
     assert fitted_text(fitted(41e-6, 38e-6, 44e-6)) == "size 41.0 µm (95 %: 38.0 … 44.0)"
     sure = [certainty(p_value) for p_value in (0.0004, 0.0033, 0.02, 0.4, None)]
-    assert [text.partition(" (")[0] for text in sure] == [*["practically certain"] * 2, "likely", "may be chance", "–"]
-    assert sure[:2] == ["practically certain (p < 0.001)", "practically certain (p 0.0033)"]
+    assert sure == [*["practically certain"] * 2, "likely", "may be chance", "noticed"]
+    assert (p_text(0.0004), p_text(0.0033)) == ("p < 0.001", "p 0.0033")
     assert [listed(words) for words in ("", "a", "ab", "abac")] == ["", "a", "a and b", "a, b and c"]
     sizes = [Amount(1.15e-6 / 3600, "mm/h"), Amount(72.3e-6, "mrad"), Amount(2.8e-12, "1/GN"), Amount(2e-4, "deg")]
     assert [amount_text(readable(size)) for size in sizes] == ["1.15 µm/h", "72.3 µrad", "0.0028 1/GN", "0.688′"]
@@ -537,15 +544,17 @@ def test_small_pieces_of_words() -> None:
     assert amount_text(Amount(2.3e-6, "um")) == "2.3 µm"
     assert amount_text(None) == "–"
     assert spoken("input:rod") == "rod outside of its tolerance"
-    assert explanation(Alternative((), 1.0, 1.0)) == "nothing but noise"
+    assert explanation(Alternative((), 1.0, 1.0)) == "nothing but scatter"
     assert explanation(Alternative(("a_b", "unknown"), 1.0, 1.0, ("x",))) == "a b + something unregistered over x"
 
 
 SAID = {
-    "none": ["meets the measurement: slide position to 6.1 µm (noise floor 6 µm)", "nothing of joint play"],
+    "none": ["meets the measurement: slide position to 6.1 µm (its readings scatter by 6 µm)", "nothing of joint play"],
     "named": ["slide position: rod heating, expansion 11.80 µm/(m·K) (95 %: 11.42 … 12.18).",
-              "falls from 41.2 µm to 6.12 µm (noise floor 6 µm): 99.9 %", "No other explanation comes near"],
-    "undecided": ["No cause is named, but that nothing is wrong cannot be said either", "probability of 0.06",
+              "falls from 41.2 µm to 6.12 µm (its readings scatter by 6 µm): 99.9 %",
+              "Chance alone would give this in fewer than 1 of 300 records", "No other explanation comes near"],
+    "undecided": ["No cause is named, but that nothing is wrong cannot be said either",
+                  "chance alone would give the best explanation, sensor drift, in about 1 of 16 records",
                   "12 waves over the range of crank angle"],
     "ambiguous": ["in slide position is drawn alike by rod heating, warm up or sensor drift.",
                   "Taken as the first of them: rod heating, expansion 11.80 µm/(m·K)",
@@ -553,8 +562,8 @@ SAID = {
                   "tell rod heating or warm up and sensor drift apart with a chance of 96 % (95 %: 90 … 98).",
                   "No measurement proposed here tells rod heating and warm up apart; a fact from elsewhere does: "
                   "whether rod heating, expansion (of the rod) is 11.8 µm/(m·K) or whether warm up, size is 3.1 µm"],
-    "unknown": ["Something that no registered effect explains is in slide position, over crank angle: order 7"],
-    "remainder": ["rod heating, expansion 11.80", "Beside it something that no registered effect explains"],
+    "unknown": ["Something that no registered cause explains is in slide position, over crank angle: order 7"],
+    "remainder": ["rod heating, expansion 11.80", "Beside it something that no registered cause explains"],
 }  # fmt: skip
 WORDS = {
     "none": "Nothing found", "undecided": "Undecided", "named": "Cause named",
@@ -578,7 +587,7 @@ def test_the_sentence_for_a_colleague_holds_cause_size_gain_and_what_is_next(nam
     [
         ({"p_value": 0.3}, "On rows that were not fitted there is no gain that could not be chance."),
         ({"p_value": 0.125}, "On rows that were not fitted the error of slide position falls from 41.2 µm to 6.12 µm; "
-         "in so few independent blocks that may be chance (p 0.12)."),
+         "in so few independent blocks that may be chance."),
         ({"held_out": (40e-6, 7e-6)}, "On the rows held out the error of slide position falls from 40 µm to 7 µm."),
         ({"held_out": (40e-6, 55e-6)}, "On the rows held out the error of slide position grows from 40 µm to 55 µm: "
          "the extension does not carry over to them; look at what is different there."),
@@ -686,12 +695,9 @@ def test_of_several_causes_the_sheet_and_the_terminal_say_the_shares() -> None:
     (table,) = (block for chapter in diagnosis_chapters(made, NoFigures()) for block in chapter.blocks
                 if isinstance(block, TableView) and block.title == "Named")  # fmt: skip
     assert [row[-1] for row in table.rows] == ["75 %", "25 %"]
-    assert table.note == (
-        "Share: of the mean squares of what the named causes add to the model, over all rows in units of the noise."
-    )
     said = "\n".join(report(made, Path("folder")))
-    assert f"shares of the correction: {spoken(one.effect)} 75 %, sensor offset 25 %" in said
-    assert "shares of the correction" not in "\n".join(report(named(), Path("folder")))
+    assert f"Of what the causes add to the model: {spoken(one.effect)} 75 %, sensor offset 25 %." in said
+    assert "the causes add" not in "\n".join(report(named(), Path("folder")))
 
 
 # Units in which numbers of a diagnosis read well: another size of the same kind of unit, never another kind.
@@ -729,8 +735,8 @@ FINDINGS = {
     ),
     "trend": ResidualFinding("trend", "load", 0.03, "rises with load, by 3 um over the record"),
     "spread": ResidualFinding("spread", "load", 0.001, "the scatter grows with load"),
-    "alike": ResidualFinding("autocorrelation", "", None, "neighbouring rows are alike (autocorrelation 0.6)"),
-    "far": ResidualFinding("outlier", "", None, "1 suspected outlier, beyond four standard deviations of the noise"),
+    "alike": ResidualFinding("autocorrelation", "", None, "neighbouring readings are alike"),
+    "far": ResidualFinding("outlier", "", None, "1 reading lies far outside of the scatter: measured.csv:36"),
 }
 PLAY = Cause("joint_play", (replace(HEATING.unknowns[0], name="clearance", unit="um"),))
 STEP = Alternative(("joint_play", "step"), 2.0, 1.0)
@@ -748,11 +754,7 @@ def sheet_text(made: DiagnosisResult) -> str:
     """What the sheet says above its chapters and in them, without their figures."""
     said = [*headline(made)]
     for chapter in diagnosis_chapters(made, NoFigures()):
-        for block in chapter.blocks:
-            if isinstance(block, TableView):
-                said += [block.note, *(" | ".join(row) for row in block.rows)]
-            else:
-                said.append(block.text)
+        said += [words for block in unfolded(chapter.blocks) for words in words_of(block)]
     return "\n".join(said)
 
 
@@ -768,8 +770,8 @@ def assert_one_thing_is_said(made: DiagnosisResult) -> None:
     assert bool(document["undecided"]) is (verdict == "undecided")
     assert all(prose(warning).lower() in said.lower() for warning in document["warnings"])
     assert ("nothing found" in everything) is (verdict == "none")
-    assert ("what is left is noise" in everything) is (verdict == "none")
-    sure = ("no other explanation", "nothing left to separate", "; unique", "is unique", "cause named")
+    assert ("what is left is scatter" in everything) is (verdict == "none")
+    sure = ("no other explanation", "nothing left to separate", "no other registered cause", "cause named")
     assert verdict == "named" or not [words for words in sure if words in everything]
     if verdict == "one_of":  # every explanation is named, and their number
         count = len(document["explanations"])
@@ -892,7 +894,7 @@ AT_END = replace(HEATING, unknowns=(replace(UNKNOWN, value=19.95e-6, low=18e-6, 
 FIRST, OTHER = named().wrong
 ALARMS = {
     "expansion of rod_heating was fitted at the bound declared for it (19.9 um/(m*K)): a wrong": {"causes": (AT_END,)},
-    "radius had to move by -4.0 standard deviations of its tolerance to meet the measurement": {
+    "radius had to move 4.0 times as far as its tolerance makes usual to meet the measurement": {
         "calibrated": (replace(CALIBRATED[0], of_its_sd=-4.0),),
     },
     "on rows that were not fitted the error of slide_position grows from 6 um to 6.2 um": {

@@ -14,7 +14,7 @@ from truing import Effect, Float, Model, Unknown
 from truing.diagnosis.competition import Competition, search
 from truing.diagnosis.noise import spread_of
 from truing.diagnosis.ranking import SAME, lowest_first
-from truing.report.diagnosis_sheet import _sizes
+from truing.report.diagnosis_chapters import _sizes
 
 BENCH = wide(60, seed=3)
 LAST_DIGITS = [-1e-10, 0.0, 1e-10]
@@ -117,5 +117,5 @@ def test_of_inputs_that_moved_as_far_the_first_is_told_first(tmp_path: Path) -> 
             replace(each, of_its_sd=sign * (0.5 + move))
             for each, sign, move in zip(made.calibrated, (-1, 1), (0.0, off), strict=True)
         )
-        said = [words for words in _sizes(replace(made, calibrated=moved)) if isinstance(words, str)]
-        assert said[-1].endswith("contact by −0.5, shaft by 0.5")
+        said = list(_sizes(replace(made, calibrated=moved)))
+        assert said[-1].endswith("contact (well inside) and shaft (well inside)")

@@ -31,6 +31,7 @@ from truing.report.document import (
     Chapter,
     Document,
     FigureView,
+    Fold,
     Marked,
     Paragraph,
     ResultEntry,
@@ -67,8 +68,11 @@ def word(content: bytes) -> Any:
 
 
 def all_of(document: Document, kind: type) -> list[Any]:
-    return [block for chapter in (*document.front, *document.chapters) for block in chapter.blocks
-            if isinstance(block, kind)]  # fmt: skip
+    """Every block of a kind that paper has, also of what is folded on a screen, in order."""
+    blocks = [block for chapter in (*document.front, *document.chapters) for block in chapter.blocks]
+    opened = [each for block in blocks for each in (block, *(block.blocks if isinstance(block, Fold) else ()))
+              if not isinstance(block, Fold) or block.printed]  # fmt: skip
+    return [block for block in opened if isinstance(block, kind)]
 
 
 def text_of(element: Any) -> str:
@@ -186,6 +190,8 @@ def test_a_diagnosis_reads_back(tmp_path: Path) -> None:
     word = docx.Document(BytesIO(word_of(made)))
     texts = [each.text for each in word.paragraphs]
     assert any(text.startswith("● Cause named. ") for text in texts)
+    folds = [each.text for each in word.paragraphs if each.style.name == "Heading 2"]
+    assert folds == [fold.title for fold in all_of(made, Fold)] != []
     assert [text for text in texts if text in {chapter.title for chapter in made.front}] != []
     assert len(word.inline_shapes) == len(all_of(made, FigureView)) > 0
     cells = {cell.text for table in word.tables for row in table.rows for cell in row.cells}

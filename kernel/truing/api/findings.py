@@ -20,7 +20,7 @@ from truing.report.diagnosis_figures import (
     ranking_bars,
     shown_curves,
 )
-from truing.report.diagnosis_sheet import ranking_table
+from truing.report.diagnosis_statistics import ranking_table
 from truing.report.diagnosis_words import explanation
 from truing.units import from_si
 

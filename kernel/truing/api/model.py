@@ -40,7 +40,8 @@ from truing.kernel import Offer, offer_of
 from truing.measurements import RowsFile, read_rows
 from truing.progress import progress_bar
 from truing.published import ComparedRow, compare_published
-from truing.report.diagnosis_sheet import data_words, diagnosis_sheet_of, fitted_table, questions
+from truing.report.diagnosis_chapters import fitted_table
+from truing.report.diagnosis_sheet import data_words, diagnosis_sheet_of, questions
 from truing.report.diagnosis_words import headline, verdict_word
 from truing.report.run import run_info, sheets_of, write_sheet
 from truing.runs.diagnosis_document import diagnosis_document

@@ -18,8 +18,9 @@ from truing.errors import UsageError
 from truing.experiments.planning import Planned
 from truing.kernel import Offer
 from truing.measurements import table_text
-from truing.report.diagnosis_sheet import readings_table
-from truing.report.diagnosis_words import amount_text, experiment_text, listed, readable, spoken
+from truing.report.diagnosis_sizes import amount_text, readable
+from truing.report.diagnosis_statistics import readings_table
+from truing.report.diagnosis_words import experiment_text, listed, spoken
 from truing.runs.diagnosis_document import plan_document
 from truing.runs.spreadsheet import column_sheet
 from truing.units import difference_unit, from_si

@@ -37,8 +37,9 @@ from truing.diagnosis.machine import Calibration, calibration_of
 from truing.diagnosis.records import FEWEST_READINGS, Records
 from truing.diagnosis.result import Alternative, DiagnosisResult, ResultCurves, readable_unit
 from truing.diagnosis.sample import sample_of
+from truing.diagnosis.sentences import say
 from truing.diagnosis.unregistered import shapes_of
-from truing.diagnosis.visibility import inseparable, smallest_visible, trades_of
+from truing.diagnosis.visibility import alike_of, inseparable, smallest_visible, trades_of
 from truing.errors import UsageError
 from truing.setup import Setup
 from truing.studies.bench import FINE, Progress, part_of, silent
@@ -166,6 +167,7 @@ def _answer(chosen: Chosen, setup: Setup, progress: Progress) -> DiagnosisResult
     alternatives = [
         partial(alternative_of, chosen, rival, with_sizes=rank < SIZED) for rank, rival in enumerate(chosen.rivals)
     ]
+    alike = alike_of(chosen)
     progress("gain", FINE, FINE)
     return DiagnosisResult(
         setup=setup,
@@ -184,16 +186,22 @@ def _answer(chosen: Chosen, setup: Setup, progress: Progress) -> DiagnosisResult
         contradictions=contradictions_of(chosen),
         thinned=thinned_of(chosen),
         trades=trades_of(chosen),
-        curves=tuple(
-            ResultCurves(name, values, chosen.null.predicted[name], best.predicted[name])
-            for name, values in machine.records.measured.items()
-        ),
+        curves=tuple(_curves(chosen)),
         p_any=chosen.p_any,
         p_second=chosen.p_second,
         ranking=_ranking(chosen),
-        inseparable=tuple(inseparable(chosen)),
+        inseparable=tuple(inseparable(machine, alike)),
+        alike=alike,
         extended=extended_setup(chosen, causes) if best.causes else None,
     )
+
+
+def _curves(chosen: Chosen) -> Iterator[ResultCurves]:
+    """Give what the figures show of every result."""
+    machine, before, after = chosen.best.sample.machine, chosen.null.predicted, chosen.best.predicted
+    for name, values in machine.records.measured.items():
+        rivals = tuple(rival.fit.predicted[name] for rival in chosen.rivals)
+        yield ResultCurves(name, values, before[name], after[name], machine.base[name] + machine.shifts[name], rivals)
 
 
 def _ranking(chosen: Chosen) -> tuple[Alternative, ...]:
@@ -218,13 +226,11 @@ def _hard(chosen: Chosen, units: Mapping[str, str]) -> list[str]:
     """Say where the model is rough, and at what share of the points that were tried it fails with an effect."""
     competition = chosen.competition
     rough = [
-        f"the model's {name} jumps or scatters by itself by up to {in_unit(grain, units[name])}: derivatives are taken "
-        "over wide steps, and no effect much smaller is seen"
+        say("rough", result=name, size=in_unit(grain, units[name]))
         for name, grain in competition.extended.grain.items()
     ]
     lost = [
-        f"the model fails with {name} at {100 * lost / tried:.0f} % of the points tried ({lost} of {tried}); sizes and "
-        "shapes there are left out"
+        say("fails with", cause=name, share=f"{100 * lost / tried:.0f} %", lost=lost, tried=tried)
         for name, (lost, tried) in competition.curves.lost.items()
     ]
     return rough + lost
@@ -234,8 +240,7 @@ def _too_rough(answer: DiagnosisResult, chosen: Chosen) -> list[str]:
     """Say where the model itself is rougher than what is left of the readings, so that its steps may be the error."""
     grain = chosen.competition.extended.grain
     return [
-        f"the model's {each.result} jumps or scatters by up to {in_unit(grain[each.result], each.noise_floor.unit)} by "
-        "itself, which is most of what is left of the readings: this may be what is wrong; make it finer"
+        say("too rough", result=each.result, size=in_unit(grain[each.result], each.noise_floor.unit))
         for each in answer.wrong
         if grain.get(each.result, 0.0) > TOO_ROUGH * each.noise_floor.value
     ]

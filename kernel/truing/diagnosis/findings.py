@@ -23,7 +23,7 @@ from truing.diagnosis.intervals import Certainty, certainty_of, ends_of, numbers
 from truing.diagnosis.machine import Calibration
 from truing.diagnosis.noise import robust_sd
 from truing.diagnosis.ranking import lowest_first
-from truing.diagnosis.records import Covariate
+from truing.diagnosis.records import Covariate, file_labels
 from truing.diagnosis.result import (
     Alternative,
     Amount,
@@ -39,6 +39,7 @@ from truing.diagnosis.result import (
     readable_unit,
 )
 from truing.diagnosis.sample import Channel, errors_of, residuals_of
+from truing.diagnosis.sentences import say
 from truing.diagnosis.visibility import separation
 from truing.numbers import counted, format_number
 from truing.setup import Setup, SwitchedOn
@@ -65,6 +66,8 @@ WAVE_LEVEL = 0.001
 """Significance from which on a wave in what is left is visible, all frequencies and covariates paid for."""
 FEWEST_PERIODS = 2
 """What turns more slowly in the whole record is a wander, which the memory of the noise has taken."""
+FEW_OUTLIERS = 5
+"""So many readings that lie far out a finding names."""
 FEWEST_OF_WAVE = 20
 """Readings below which any scatter looks like some wave."""
 
@@ -90,21 +93,22 @@ def shape_in_words(machine: Calibration, cause: Candidate, values: Matrix, added
     change = in_unit(float(added[np.nanargmax(covariate.values)] - added[np.nanargmin(covariate.values)]), unit)
     number = float(values[cause.shapes[0]]) if cause.shapes else 0.0
     if kind == "order":
-        return f"order {number:g} of {covariate.name}, amplitude {amplitude}"
+        return say("order", order=f"{number:g}", covariate=covariate.name, size=amplitude)
     if kind == "step":
-        return f"step of {in_unit(float(added[np.argmax(np.abs(added))]), unit)} at {_place(covariate, number)}"
+        height = in_unit(float(added[np.argmax(np.abs(added))]), unit)
+        return say("step", size=height, place=_place(covariate, number))
     if kind == "wave":
-        return f"one wave per {_length(covariate, 1 / number)}, amplitude {amplitude}"
+        return say("wave", length=_length(covariate, 1 / number), size=amplitude)
     if kind == "settling":
-        return f"settles with a time constant of {_length(covariate, number)}, by {change}"
+        return say("settling", length=_length(covariate, number), size=change)
     if kind == "jump":
-        return f"jumps by {change} where {covariate.name} changes its sign"
+        return say("jump", size=change, covariate=covariate.name)
     if kind == "kink":
-        return f"has a kink where {covariate.name} changes its sign, range {size}"
+        return say("kink", covariate=covariate.name, size=size)
     if kind == "dead zone":
-        return f"a dead zone of +-{_length(covariate, number)}, range {size}"
+        return say("dead zone", length=_length(covariate, number), size=size)
     if kind == "product":
-        return f"depends on {' and '.join(names)} together, range {size}"
+        return say("product", covariates=" and ".join(names), size=size)
     return _trend(covariate, added, unit)
 
 
@@ -127,10 +131,10 @@ def _trend(covariate: Covariate, added: Matrix, unit: str) -> str:
     ends = abs(curve[-1] - curve[0]) / max(float(np.ptp(curve)), 1e-300)
     if ends > ONE_WAY:
         way = "rises" if curve[-1] > curve[0] else "falls"
-        return f"{way} with {covariate.name}, by {size} over the record"
+        return say("rises", rises=way, covariate=covariate.name, size=size)
     turning = low if 0 < low < len(curve) - 1 and abs(curve[low] - curve[0]) >= abs(curve[high] - curve[0]) else high
     kind = "lowest" if turning == low else "highest"
-    return f"curved over {covariate.name}, {kind} at {_place(covariate, float(at[turning]))}, range {size}"
+    return say("curved", covariate=covariate.name, lowest=kind, place=_place(covariate, float(at[turning])), size=size)
 
 
 def causes_of(chosen: Chosen, fit: Fit) -> tuple[Cause, ...]:
@@ -341,12 +345,21 @@ def _wrong(chosen: Chosen, channel: Channel, acting: Mapping[str, Sequence[Candi
         Amount(floor, unit), memory.neighbours, own.tails.words, own.spread.words, outliers, memory.rho
     )
     if outliers:
-        words = f"{counted(len(outliers), 'suspected outlier')}, beyond four standard deviations of the noise"
-        findings.append(ResidualFinding("outlier", "", None, words))
+        findings.append(ResidualFinding("outlier", "", None, _far_words(outliers)))
     given = records.sigma.get(name, np.zeros(len(records)))[rows]
     given = given[given > 0]
     stated = Amount(float(np.sqrt(np.mean(given**2))), unit) if len(given) else None
     return Wrong(name, len(rows), Amount(rmse, unit), Amount(floor, unit), share, noise, tuple(findings), stated)
+
+
+def _far_words(outliers: Sequence[tuple[str, int]]) -> str:
+    """Name the readings that are far out, the first few by file and line."""
+    names = list(dict.fromkeys(file for file, _ in outliers))
+    labels = dict(zip(names, file_labels(names), strict=True))
+    places = ", ".join(f"{labels[file]}:{line}" for file, line in outliers[:FEW_OUTLIERS])
+    more = f" and {len(outliers) - FEW_OUTLIERS} more" if len(outliers) > FEW_OUTLIERS else ""
+    verb = "lies" if len(outliers) == 1 else "lie"
+    return say("outliers", rows=f"{counted(len(outliers), 'reading')} {verb}", places=places + more)
 
 
 def _bias(chosen: Chosen, channel: Channel, residual: Matrix, unit: str) -> Iterator[ResidualFinding]:
@@ -357,12 +370,11 @@ def _bias(chosen: Chosen, channel: Channel, residual: Matrix, unit: str) -> Iter
     spread = float(np.sqrt(np.mean(np.sum(drawn**2, axis=1))))
     if abs(mean) <= BIASED * channel.scale / np.sqrt(len(channel)):
         return
-    words = "more than the tolerances allow" if spread > 0 else "and no tolerance allows for it"
+    allowed = say("bias too large") if spread > 0 else say("bias alone")
     if is_allowed := abs(mean) <= BIASED * spread:
-        words = f"within what the tolerances allow ({in_unit(spread, unit)} standard deviation)"
-    yield ResidualFinding(
-        "bias", "", None, f"on average {in_unit(mean, unit)} off the nominal model, {words}", is_allowed
-    )
+        allowed = say("bias allowed", spread=in_unit(spread, unit))
+    words = say("bias", size=in_unit(mean, unit), allowed=allowed)
+    yield ResidualFinding("bias", "", None, words, is_allowed)
 
 
 def _structure(chosen: Chosen, name: str, unit: str) -> Iterator[ResidualFinding]:
@@ -439,9 +451,8 @@ def _with_named(chosen: Chosen, acting: Sequence[Candidate], findings: list[Resi
         for name in follows:
             is_seen = any(name in finding.covariate.split(" and ") for finding in findings)
             if not is_seen and name in covariates and not covariates[name].is_constant:
-                findings.append(
-                    ResidualFinding("trend", name, chosen.law.p_of(gain), f"follows {name}, as {cause.name} would")
-                )
+                words = say("follows", covariate=name, cause=cause.name)
+                findings.append(ResidualFinding("trend", name, chosen.law.p_of(gain), words))
     return findings
 
 
@@ -449,10 +460,10 @@ def _of_noise(best: Fit, channel: Channel) -> Iterator[ResidualFinding]:
     """Say what the noise itself is like."""
     spread, neighbours = best.sample.noise[channel.name].spread, channel.memory.neighbours
     if spread.driver:
-        yield ResidualFinding("spread", spread.driver, spread.p_value, f"the scatter {spread.words}")
+        words = say("spread", grows=spread.words.partition(" ")[0], covariate=spread.driver)
+        yield ResidualFinding("spread", spread.driver, spread.p_value, words)
     if neighbours >= NOTICEABLE:
-        words = f"neighbouring rows are alike (autocorrelation {neighbours:.2f})"
-        yield ResidualFinding("autocorrelation", "", None, words)
+        yield ResidualFinding("autocorrelation", "", None, say("alike"))
 
 
 def _wave(best: Fit, channel: Channel) -> Iterator[ResidualFinding]:
@@ -478,5 +489,5 @@ def _wave(best: Fit, channel: Channel) -> Iterator[ResidualFinding]:
         waves.append((p_value, covariate.name, int(periods[np.argmax(power)]), share))
     p_value, name, count, share = min(waves)
     if p_value <= WAVE_LEVEL:
-        words = f"{count} waves over the range of {name}, with {100 * share:.0f} % of what is left after all"
+        words = say("wave left", count=count, covariate=name, share=f"{100 * share:.0f} %")
         yield ResidualFinding("wave", name, p_value, words)

@@ -196,6 +196,7 @@ def read_records(paths: Sequence[TableSource], offer: Offer, setup: Setup, *, wi
         absent=joined.absent,
         sides=sides,
         counts=joined.counts,
+        units=joined.units,
         digests={str(path): path.digest if isinstance(path, TableText) else digest_of(path) for path in paths},
     )
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import pi
+from pathlib import PurePath
 from typing import Literal
 
 import numpy as np
@@ -96,6 +97,8 @@ class Records:
     """What became of every row of each file, in the order of ``files``."""
     digests: Mapping[str, str] = field(default_factory=dict)
     """The SHA-256 of each file when it was read."""
+    units: Mapping[str, str] = field(default_factory=dict)
+    """The unit of every column as the first file that has it gives it; "" for none."""
 
     @cached_property
     def readings(self) -> int:
@@ -136,3 +139,9 @@ class Records:
             held_out=self.held_out[places],
             sides={name: values[places] for name, values in self.sides.items()},
         )
+
+
+def file_labels(files: Sequence[str]) -> list[str]:
+    """Return how data files are named: without their folders where that tells them apart."""
+    names = [PurePath(file.replace("\\", "/")).name for file in files]
+    return names if len(set(names)) == len(names) else list(files)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import chain, product
@@ -12,6 +13,7 @@ import numpy as np
 
 from truing.arrays import Matrix
 from truing.diagnosis.records import FEWEST_READINGS, Records
+from truing.diagnosis.sentences import records_words, say
 from truing.numbers import format_number, with_unit
 from truing.setup import Setup
 from truing.units import difference_unit, from_si, same_dimension, to_si
@@ -241,7 +243,9 @@ class Experiment:
     ``tells`` names the explanations, ``apart`` the pairs of them. ``settings`` has by name the value at every reading,
     (n,) SI; ``courses`` how it goes, of what is made from others as well. ``takes`` is the time from the first reading
     to the last, where it is known. ``separation`` is that of the two least apart, ``needed`` how many readings like
-    these would suffice. ``sizes`` are the believed unknowns ("EFFECT.UNKNOWN") where no record tells them.
+    these would suffice. ``sizes`` are the believed unknowns ("EFFECT.UNKNOWN") where no record tells them. ``parted``
+    are pairs of explanations, and ``gaps`` by how much each first one then shows more than the second at every
+    reading, (n, results), SI.
     """
 
     tells: tuple[str, ...]
@@ -255,6 +259,8 @@ class Experiment:
     chance: Chance
     results: tuple[str, ...]
     sizes: Mapping[str, Amount] = field(default_factory=dict)
+    parted: tuple[tuple[str, str], ...] = ()
+    gaps: tuple[Matrix, ...] = ()
 
     @property
     def readings(self) -> int:
@@ -333,16 +339,28 @@ class Trade:
 
 
 @dataclass(frozen=True)
+class Alike:
+    """Two effects that draw nearly one curve on this data: the angle between what the inputs leave of them, rad."""
+
+    one: str
+    other: str
+    angle: float
+
+
+@dataclass(frozen=True)
 class ResultCurves:
     """What the figures show of one result, SI, shape (n,), NaN where missing: measured, and the model before and after.
 
-    ``before`` is the model calibrated within its tolerances, ``after`` the extended one.
+    ``before`` is the model calibrated within its tolerances, ``after`` the extended one, ``nominal`` the machine as
+    drawn. ``rivals`` are those of the ``alternatives``, in their order.
     """
 
     result: str
     measured: Matrix
     before: Matrix
     after: Matrix
+    nominal: Matrix | None = None
+    rivals: tuple[Matrix, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -372,6 +390,7 @@ class DiagnosisResult:
     p_second: float | None = None
     ranking: tuple[Alternative, ...] = ()
     inseparable: tuple[str, ...] = ()
+    alike: tuple[Alike, ...] = ()
     next: tuple[NextPoint, ...] = ()
     ties: tuple[Tie, ...] = ()
     experiment: Experiment | None = None
@@ -458,11 +477,8 @@ def _at_bounds(diagnosis: DiagnosisResult) -> Iterator[str]:
     for cause in diagnosis.causes:
         for unknown in cause.unknowns:
             if _is_at_bound(diagnosis, cause, unknown):
-                yield (
-                    f"{unknown.name} of {cause.effect} was fitted at the bound declared for it "
-                    f"({_text(unknown.value, unknown.unit)}): a wrong cause often ends there; look at what else could "
-                    "draw this curve, and widen the range if the machine allows more"
-                )
+                size = _text(unknown.value, unknown.unit)
+                yield say("at bound", unknown=unknown_words(cause.effect, unknown.name), size=size)
 
 
 def _is_at_bound(diagnosis: DiagnosisResult, cause: Cause, unknown: FittedUnknown) -> bool:
@@ -480,65 +496,42 @@ def moved_inputs(diagnosis: DiagnosisResult) -> Iterator[str]:
     named = {cause.effect.removeprefix("input:") for cause in diagnosis.causes}
     for moved in diagnosis.calibrated:
         if abs(moved.of_its_sd) > OUTSIDE and moved.name not in named:
-            yield (
-                f"{moved.name} had to move by {moved.of_its_sd:.1f} standard deviations of its tolerance to meet the "
-                "measurement: its tolerance is stated too narrow, or something else is wrong; measure it"
-            )
+            yield say("input moved", input=moved.name, times=f"{abs(moved.of_its_sd):.1f}")
 
 
 def _growing(diagnosis: DiagnosisResult) -> Iterator[str]:
     for gain in diagnosis.gain:
         if gain.held_out is not None and gain.held_out[1] > gain.held_out[0]:
             before, after = (_text(error, gain.rmse_before.unit) for error in gain.held_out)
-            yield (
-                f"on the rows held out the error of {gain.result} grows from {before} to {after}: the extension "
-                "does not carry over to them; look at what is different there"
-            )
+            yield say("held out grows", result=gain.result, before=before, after=after)
     if diagnosis.gain and all(gain.rmse_after.value > gain.rmse_before.value for gain in diagnosis.gain):
         first = diagnosis.gain[0]
-        yield (
-            f"on rows that were not fitted the error of {first.result} grows from {_amount(first.rmse_before)} to "
-            f"{_amount(first.rmse_after)}: the cause draws this record and predicts nothing; measure more rows"
-        )
+        before, after = _amount(first.rmse_before), _amount(first.rmse_after)
+        yield say("all grow", result=first.result, before=before, after=after)
 
 
 def _unstable(diagnosis: DiagnosisResult) -> Iterator[str]:
     if diagnosis.stability < STABLE:
-        yield (
-            f"the same causes are named in {100 * diagnosis.stability:.0f} % of the folds only: parts of the record "
-            "say something else; look at the ranking, and measure more rows"
-        )
+        yield say("unsteady", often=often(diagnosis.stability))
 
 
 def _torn(diagnosis: DiagnosisResult) -> Iterator[str]:
     """Give the amplitudes that parts of the record, or tolerances, do not let be what all rows say."""
     for contradiction in diagnosis.contradictions:
         first, second = _amount(contradiction.first), _amount(contradiction.second)
-        yield (
-            f"{contradiction.unknown} of {contradiction.effect} is {first} in one half of the rows and {second} in the "
-            "other: the two contradict one another; look at what changed between them"
-        )
+        unknown = unknown_words(contradiction.effect, contradiction.unknown)
+        yield say("halves", unknown=unknown, first=first, second=second)
     for half in diagnosis.thinned:
-        yield (
-            f"on {half.rows}, {' + '.join(half.causes)} explains more, by {half.ahead:.1f} in score: rows that should "
-            "say the same do not; look at what alternates between them, and measure more rows"
-        )
+        yield say("other on half", rows=half.rows, explanation=" + ".join(half.causes))
     for two in diagnosis.trades:
-        yield (
-            f"{two.unknown} of {two.effect} and {two.input} trade against one another (correlation "
-            f"{two.correlation:.3f}): {two.input}, off by what its tolerance allows, draws nearly the same; measure "
-            f"{two.input}, or state its tolerance narrower if it is known better"
-        )
+        yield say("stand in", unknown=unknown_words(two.effect, two.unknown), input=two.input)
 
 
 def _overfitted(diagnosis: DiagnosisResult) -> Iterator[str]:
     for wrong in diagnosis.wrong:
         if wrong.stated is not None and wrong.noise_floor.value < OVERFITTED * wrong.stated.value:
-            yield (
-                f"what is left of {wrong.result}, {_amount(wrong.noise_floor)}, is far below the standard deviation "
-                f"stated for it, {_amount(wrong.stated)}: the causes follow the noise, or it is smaller than stated; "
-                "read some settings again to see how far readings scatter"
-            )
+            left, stated = _amount(wrong.noise_floor), _amount(wrong.stated)
+            yield say("too good", result=wrong.result, left=left, stated=stated)
 
 
 def wandering(diagnosis: DiagnosisResult) -> Iterator[str]:
@@ -547,18 +540,27 @@ def wandering(diagnosis: DiagnosisResult) -> Iterator[str]:
         rho = wrong.noise.ar_coefficient
         most = rho + 2 * sqrt((1 - rho**2) / wrong.rows) if rho > 0 and diagnosis.causes else rho
         if most >= RANDOM_WALK:
-            yield (
-                f"the noise of {wrong.result} was taken as nearly a random walk (AR coefficient {rho:.2g}), which "
-                "draws any slow effect: something that wanders over time is unexplained; measure again, in a changed "
-                "order"
-            )
+            yield say("wanders", result=wrong.result)
 
 
 def _waves_left(diagnosis: DiagnosisResult) -> Iterator[str]:
     for wrong in diagnosis.wrong:
         for finding in wrong.findings:
             if finding.kind == "wave":
-                yield f"in what is left of {wrong.result} there are {finding.text}: something more is at work"
+                yield say("waves", result=wrong.result, waves=finding.text)
+
+
+WAVE_PART = re.compile(r"_?(?:co)?sine(?:_|$)")
+
+
+def unknown_words(effect: str, unknown: str) -> str:
+    """Name an unknown of an effect; the two parts of a wave, of which neither means anything alone, by one name."""
+    return f"a part of the wave of {effect}" if WAVE_PART.search(unknown) else f"{unknown} of {effect}"
+
+
+def often(share: float) -> str:
+    """Say how often the parts of a record agree."""
+    return "every time" if share >= 1 else "never" if share <= 0 else f"in {100 * share:.0f} % of the cases"
 
 
 def _amount(amount: Amount) -> str:
@@ -580,7 +582,7 @@ CHANCE = 0.2
 APART = 25.0
 """The lambda from which on two explanations are told apart. Their scores then differ by 25 with a standard deviation of
 2 sqrt(25) = 10, so that with a chance of 97 % the difference is above the 6 below which a rival is not excluded."""
-_STRUCTURE = ("bias", "trend", "order", "step", "wave")
+STRUCTURE = ("bias", "trend", "order", "step", "wave")
 
 Explanation = tuple[str, ...]
 
@@ -648,13 +650,13 @@ def doubts(diagnosis: DiagnosisResult) -> Iterator[str]:
 def _doubts_of_nothing(diagnosis: DiagnosisResult) -> Iterator[str]:
     readings = diagnosis.records.readings
     if readings < FEWEST_READINGS:
-        yield f"{readings} readings that differ are too few to tell a cause from chance"
+        yield say("too few", count=readings)
     elif diagnosis.p_any is None or not diagnosis.p_any >= CHANCE:
         yield _nearly(diagnosis)
     for wrong in diagnosis.wrong:
         for finding in wrong.findings:
-            if finding.kind in _STRUCTURE and not finding.is_allowed:
-                yield f"the residuals of {wrong.result} are no mere noise: {finding.text}"
+            if finding.kind in STRUCTURE and not finding.is_allowed:
+                yield say("no mere scatter", result=wrong.result, pattern=finding.text)
     yield from wandering(diagnosis)
     yield from moved_inputs(diagnosis)
     yield from diagnosis.hindrances
@@ -662,11 +664,10 @@ def _doubts_of_nothing(diagnosis: DiagnosisResult) -> Iterator[str]:
 
 def _nearly(diagnosis: DiagnosisResult) -> str:
     if diagnosis.p_any is None or isnan(diagnosis.p_any):
-        return "whether anything is wrong was not tested"
+        return say("not tested")
     best = next((rival.causes for rival in diagnosis.ranking if rival.causes), ())
     named = f", {' + '.join(best)}," if best else ""
-    chance = "less than 0.001" if diagnosis.p_any < 0.001 else f"{diagnosis.p_any:.2g}"
-    return f"the best explanation{named} would come about by chance with a probability of {chance}"
+    return say("nearly", named=named, records=records_words(diagnosis.p_any))
 
 
 def stated_remedy(diagnosis: DiagnosisResult, cause: str) -> str:

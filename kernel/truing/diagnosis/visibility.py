@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
-from math import asin, comb, degrees, inf, log, sqrt
+from math import asin, comb, inf, log, sin, sqrt
 from operator import itemgetter
 
 import numpy as np
@@ -23,7 +23,8 @@ from truing.diagnosis.fitted import Fit, inward
 from truing.diagnosis.intervals import Certainty, certainty_of, numbers_of, places_of, value_of
 from truing.diagnosis.machine import Calibration
 from truing.diagnosis.ranking import lowest_first
-from truing.diagnosis.result import APART, Amount, Trade, Visibility, VisibleSize
+from truing.diagnosis.result import APART, Alike, Amount, Trade, Visibility, VisibleSize
+from truing.diagnosis.sentences import say
 
 POWER, LEVEL = 0.9, 0.05
 """A size is visible that is found with this power at this level, the choice among all explanations paid for."""
@@ -170,30 +171,26 @@ def _one_by_one(chosen: Chosen, cause: Candidate, index: int, shapes: Matrix) ->
             yield size, np.nan_to_num(np.concatenate([shown[name] - base[name] for name in base]))
 
 
-def inseparable(chosen: Chosen) -> list[str]:
+def inseparable(machine: Calibration, alike: Sequence[Alike]) -> Iterator[str]:
     """Say which causes this design cannot separate whatever their size, and which covariates are tied."""
-    return [*_alike(chosen), *_moved_alike(chosen.competition.extended.machine)]
+    for each in alike:
+        kind = "not distinguished" if sin(each.angle) ** 2 < SAME else "hardly distinguished"
+        yield say(kind, one=each.one, other=each.other)
+    yield from _moved_alike(machine)
 
 
-def _alike(chosen: Chosen) -> Iterator[str]:
-    """Say which causes without a shape of their own draw nearly the same."""
-    eye, angles = _eye(chosen), dict[tuple[str, str], float]()
+def alike_of(chosen: Chosen) -> tuple[Alike, ...]:
+    """Return the pairs of causes without a shape of their own that draw nearly the same."""
+    eye, apart = _eye(chosen), dict[tuple[str, str], float]()
     effects = [cause for cause in chosen.competition.causes if cause.effect is not None]
     plain = [cause for cause in effects if len(cause.amplitudes) == 1 and not cause.shapes]
     looks = [(cause.name, _look(chosen, eye, cause, 0, needed(1))) for cause in plain]
     drawn = [(name, look.curve) for name, look in looks if look is not None and look.seen > 1e-6 * look.raw]
     for (one, first), (other, second) in combinations(drawn, 2):
-        apart = 1 - float(first @ second) ** 2 / float((first @ first) * (second @ second))
-        if one != other and apart < INSEPARABLE:
-            angles[one, other] = min(max(apart, 0.0), angles.get((one, other), inf))
-    for (one, other), apart in angles.items():
-        if apart < SAME:
-            yield f"{one} and {other} draw the same curve on this data: nothing in it tells them apart"
-        else:
-            yield (
-                f"{one} and {other} draw nearly the same curve on this data (angle {degrees(asin(sqrt(apart))):.1f} "
-                "degrees): only much larger effects than usual could be told apart"
-            )
+        square = 1 - float(first @ second) ** 2 / float((first @ first) * (second @ second))
+        if one != other and square < INSEPARABLE:
+            apart[one, other] = min(max(square, 0.0), apart.get((one, other), inf))
+    return tuple(Alike(*names, asin(sqrt(square))) for names, square in apart.items())
 
 
 def _moved_alike(machine: Calibration) -> Iterator[str]:
@@ -201,16 +198,13 @@ def _moved_alike(machine: Calibration) -> Iterator[str]:
     moved = [covariate for covariate in machine.records.covariates.values() if not covariate.is_constant]
     for first, second in combinations(moved, 2):
         if first.moves_with(second, TIED):
-            yield (
-                f"{first.name} and {second.name} move together in this record: what follows one cannot be told from "
-                "what follows the other"
-            )
+            yield say("moved together", one=first.name, other=second.name)
     for name, condition in machine.start.model.known_conditions.items():
         covariate, low, high = machine.records.covariates.get(name), condition.low, condition.high
         if covariate is None or low is None or high is None or not low < 0 < high:
             continue
         if np.nanmin(covariate.values) >= 0 or np.nanmax(covariate.values) <= 0:
-            yield f"{name} never changed its sign: what jumps with the sign looks like a constant here"
+            yield say("never changed sign", covariate=name)
 
 
 def trades_of(chosen: Chosen) -> tuple[Trade, ...]:

@@ -25,6 +25,7 @@ from truing.diagnosis.fitted import Fit, input_value
 from truing.diagnosis.machine import Calibration, Predicted, calibration_of, predict
 from truing.diagnosis.ranking import lowest_first
 from truing.diagnosis.result import APART, Amount, Fact, NextPoint, Tie, readable_unit
+from truing.diagnosis.sentences import say
 from truing.experiments.duels import name_of
 from truing.units import read_quantity
 from truing.units.names import PURE
@@ -153,7 +154,9 @@ def _gap(there: Calibration, name: str, names: tuple[str, str], apart: Matrix) -
 
 def _point(start: Any, gap: _Gap) -> NextPoint:
     unit = readable_unit(start.print_unit(gap.result), gap.size)
-    words = f"measure {gap.result}, too: {gap.names[0]} and {gap.names[1]} differ by {in_unit(gap.size, unit)} in it"
+    (one, other), size = gap.names, in_unit(gap.size, unit)
+    words = say("differ in", result=gap.result, one=one, other=other, size=size)
     if gap.scatter > 0:
-        words += f", machines within their tolerances by {in_unit(gap.scatter, unit)}"
+        scatter = in_unit(gap.scatter, unit)
+        words = say("differ more than machines", result=gap.result, one=one, other=other, size=size, scatter=scatter)
     return NextPoint({}, gap.names, words, gap.clearness**2, (gap.result,))

@@ -20,6 +20,7 @@ from truing.diagnosis.fitted import Fit
 from truing.diagnosis.ranking import lowest_first
 from truing.diagnosis.result import Amount, Chance, DiagnosisResult, Experiment, NextPoint, readable_unit
 from truing.diagnosis.sample import Sample
+from truing.diagnosis.sentences import say
 from truing.experiments.chances import Simulation
 from truing.experiments.design import CHANCE, GROWTH, MORE, MOST_READINGS, Designed, Stand, designed
 from truing.experiments.duels import Duel, explained, name_of
@@ -136,6 +137,8 @@ def experiment_of(
         chance=chance,
         results=tuple(stand.machine.records.measured),
         sizes=sizes or {},
+        parted=tuple(duel.names for duel in live),
+        gaps=tuple(duel.left[0].reshape(best.readings, -1) * stand.spreads for duel in live),
     )
     return experiment, live
 
@@ -214,16 +217,17 @@ def _why(stand: Stand, experiment: Experiment, index: int, duel: Duel) -> str:
     best = int(np.argmax(gaps / stand.spreads))
     name = experiment.results[best]
     unit = readable_unit(start.print_unit(name), float(stand.spreads[best]))
-    words = f"{duel.names[0]} and {duel.names[1]} there differ by {in_unit(float(gaps[best]), unit)} in {name}"
+    (one, other), size = duel.names, in_unit(float(gaps[best]), unit)
+    words, reach = say("differ by", one=one, other=other, size=size, result=name), 0.05
     known = start.model.known_effects
     effects = [known[effect_name] for name in duel.names for effect_name in name.split(" + ") if effect_name in known]
     asked = {key for effect in effects for key in (*(need.name for need in effect.needs), *effect.reads)}
-    beyond, reach = "", 0.05
     for key in [setting for setting in experiment.settings if not asked or setting in asked]:
         covariate, value = covariates[key], float(experiment.settings[key][index])
         low, high = float(np.nanmin(covariate.values)), float(np.nanmax(covariate.values))
         out = max(low - value, value - high) / max(high - low, 1e-300)
         if out > reach:
-            begin = format_number(float(from_si(low, covariate.unit)), 3)
-            beyond, reach = f"; {key} was only {begin} to {in_unit(high, covariate.unit, 3)} so far", out
-    return words + beyond
+            begin, end = format_number(float(from_si(low, covariate.unit)), 3), in_unit(high, covariate.unit, 3)
+            said = {"one": one, "other": other, "size": size, "result": name}
+            words, reach = say("differ beyond", **said, covariate=key, low=begin, high=end), out
+    return words

@@ -8,11 +8,13 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from scipy.special import ndtri
 
 from truing.arrays import Matrix
 from truing.diagnosis.records import Covariate
 from truing.diagnosis.result import Alternative, DiagnosisResult, ResultCurves
-from truing.report.diagnosis_words import amount_text, explanation, spoken, wrong_results
+from truing.report.diagnosis_sizes import amount_text
+from truing.report.diagnosis_words import explanation, spoken, wrong_results
 from truing.units import from_si, unit_factor, unit_text
 
 BEFORE, AFTER, QUIET, NEUTRAL = "#9d1c1c", "#0b4f8a", "#8b949e", "#3b434c"
@@ -104,13 +106,14 @@ def _mark_censored(
         axes.plot(places[rows], values[rows], marker, color=colour, markersize=7, fillstyle="none", markeredgewidth=0.7)
 
 
-def _label(name: str, unit: str) -> str:
+def axis_label(name: str, unit: str) -> str:
+    """Write what an axis shows, with its unit."""
     words = spoken(name).replace("$", r"\$")
     return f"{words} [{unit_text(unit)}]" if unit else words
 
 
 def over_covariate(diagnosis: DiagnosisResult, curves: ResultCurves, covariate: Covariate) -> Figure:
-    """Draw the residuals of one result over a covariate, before and after, with the noise floor as a band."""
+    """Draw the residuals of one result over a covariate, before and after, with the scatter as a band."""
     unit, before, after, floor = _residuals(diagnosis, curves)
     kept = thinned(len(before))
     place = from_si(covariate.values, covariate.unit)[kept]
@@ -130,8 +133,8 @@ def over_covariate(diagnosis: DiagnosisResult, curves: ResultCurves, covariate: 
         _mark_censored(diagnosis, curves.result, axes, places=place, values=values[kept], colour=colour)
         axes.locator_params(nbins=MOST_STEPS)
         axes.set_title(when, loc="left")
-        axes.set_xlabel(_label(covariate.name, covariate.unit))
-    places[0].set_ylabel(_label(curves.result, unit) + "\nmeasured − simulated")
+        axes.set_xlabel(axis_label(covariate.name, covariate.unit))
+    places[0].set_ylabel(axis_label(curves.result, unit) + "\nmeasured − simulated")
     return figure
 
 
@@ -169,6 +172,81 @@ def said_by(places: Matrix, values: Matrix) -> float:
     return max(0.0, 1.0 - left / float(np.var(values, ddof=1)))
 
 
+MOST_COVARIATES = 5
+CARRIES = 0.1
+"""A covariate that says this share of the variance of what the model misses, or more, carries something."""
+
+
+def carrying_covariates(diagnosis: DiagnosisResult, curves: ResultCurves) -> list[Covariate]:
+    """Return what residuals of a result are drawn over: what the causes follow, and what carries something."""
+    covariates = diagnosis.records.covariates
+    missed = curves.measured - curves.before
+    noticed = [
+        name
+        for wrong in diagnosis.wrong
+        if wrong.result == curves.result
+        for finding in wrong.findings
+        for name in finding.covariate.split(" and ")
+    ]
+    able = [each for each in covariates.values() if _places(each) >= MOST_PLACES and each.role != "order"]
+    saying = [each for each in able if each.name in noticed or said_by(each.values, missed) > CARRIES]
+    return list({each.name: each for each in [*main_covariates(diagnosis), *saying]}.values())[:MOST_COVARIATES]
+
+
+def what_is_left(diagnosis: DiagnosisResult, curves: ResultCurves) -> Figure:
+    """Draw what is left of a result in the order in which it was read, and sorted beside normal scores."""
+    unit, _, left, floor = _residuals(diagnosis, curves)
+    kept = thinned(len(left))
+    time = next((each for each in diagnosis.records.covariates.values() if each.role == "time"), None)
+    in_order = np.arange(1.0, len(left) + 1) if time is None else from_si(time.values, time.unit)
+    figure = Figure(figsize=(6.4, 3.0), layout="constrained")
+    course, normal = figure.subplots(1, 2, sharey=True)
+    for axes in (course, normal):
+        axes.axhspan(-floor, floor, color="#e4e7ea", linewidth=0)
+        axes.axhline(0.0, color=NEUTRAL, linewidth=0.7)
+        axes.locator_params(nbins=MOST_STEPS)
+    course.plot(in_order[kept], left[kept], ".", color=AFTER, markersize=3.5)
+    course.set_xlabel("row" if time is None else axis_label(time.name, time.unit))
+    course.set_ylabel(f"measured − model [{unit_text(unit) or '1'}]")
+    ordered = np.sort(left[np.isfinite(left)])
+    scores = normal_scores(len(ordered))
+    spread = float(np.std(ordered)) if len(ordered) else 0.0
+    normal.plot(scores, np.mean(ordered) + spread * scores, color=NEUTRAL, linewidth=0.7)
+    normal.plot(scores, ordered, ".", color=AFTER, markersize=3.5)
+    normal.set_xlabel("normal score")
+    return figure
+
+
+def normal_scores(count: int) -> Matrix:
+    """Return what sorted values (count,) of normal scatter of size one are to be expected at (Blom's scores)."""
+    return np.asarray(ndtri((np.arange(1, count + 1) - 0.375) / (count + 0.25)))
+
+
+MOST_PANELS, MOST_LINES = 8, 40
+
+
+def course_of_record(diagnosis: DiagnosisResult) -> Figure:
+    """Draw row by row what changed, and below it what was measured; a line parts two runs."""
+    records = diagnosis.records
+    moved = [(each.name, each.values, each.unit, QUIET) for each in records.moved]
+    measured = [
+        (name, records.measured[name], diagnosis.setup.print_unit(name), AFTER)
+        for name in wrong_results(diagnosis)[: MOST_PANELS - 1]
+    ]
+    panels = [*moved[: MOST_PANELS - len(measured)], *measured]
+    figure = Figure(figsize=(6.4, 0.5 + 0.75 * len(panels)), layout="constrained")
+    rows, kept = np.arange(1, len(records) + 1), thinned(len(records))
+    places = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
+    for axes, (name, values, unit, colour) in zip(places, panels, strict=True):
+        axes.plot(rows[kept], from_si(values, unit)[kept], ".", color=colour, markersize=2.5)
+        for change in np.flatnonzero(np.diff(records.run_of))[:MOST_LINES]:
+            axes.axvline(change + 1.5, color="#d5d8dc", linewidth=0.7, zorder=0)
+        axes.set_ylabel(axis_label(name, unit).replace(" [", "\n["), rotation=0, ha="right", va="center", fontsize=7.5)
+        axes.locator_params(axis="y", nbins=3)
+    places[-1].set_xlabel("row")
+    return figure
+
+
 def convincing(diagnosis: DiagnosisResult, curves: ResultCurves, covariate: Covariate) -> Figure:
     """Draw measured, model before and model after over a covariate; below it what each of them misses."""
     unit, *missed, floor = _residuals(diagnosis, curves)
@@ -182,18 +260,22 @@ def convincing(diagnosis: DiagnosisResult, curves: ResultCurves, covariate: Cova
     upper, lower = figure.subplots(2, sharex=True, height_ratios=(2, 3))
     upper.plot(place, from_si(curves.measured, shown_unit)[kept], "o", color=QUIET, markersize=4.5,
                fillstyle="none", label="measured")  # fmt: skip
-    lower.axhspan(-floor, floor, color="#e4e7ea", linewidth=0, label="noise")
+    lower.axhspan(-floor, floor, color="#e4e7ea", linewidth=0, label="scatter")
     lower.axhline(0.0, color=NEUTRAL, linewidth=0.7)
     order = np.argsort(place, kind="stable")
     style = "-" if len(np.unique(place[np.isfinite(place)])) == len(place) else "."
+    if has_changed(curves):
+        added = (missed[0] - missed[1])[kept][order]
+        lower.plot(place[order], added, style, color=NEUTRAL, markersize=2, linewidth=1.0, label="what the cause adds")
+        lower.legend(loc="best", fontsize=7.5)
     for model, left, colour, words in series:
         values = from_si(model, shown_unit)[kept]
         upper.plot(place[order], values[order], style, color=colour, markersize=3.5, linewidth=1.2, label=words)
         lower.plot(place, left[kept], ".", color=colour, markersize=3.5)
     _mark_censored(diagnosis, curves.result, lower, places=place, values=series[-1][1][kept], colour=series[-1][2])
-    upper.set_ylabel(_label(curves.result, shown_unit))
+    upper.set_ylabel(axis_label(curves.result, shown_unit))
     lower.set_ylabel(f"measured − model\n[{unit_text(unit)}]" if unit else "measured − model")
-    lower.set_xlabel(_label(covariate.name, covariate.unit))
+    lower.set_xlabel(axis_label(covariate.name, covariate.unit))
     upper.legend(loc="best", fontsize=7.5)
     return figure
 
@@ -216,13 +298,13 @@ def against_simulated(diagnosis: DiagnosisResult, curves: ResultCurves) -> Figur
         _mark_censored(diagnosis, curves.result, axes, places=after, values=other, colour=AFTER)
     low, high = _extent([measured, before, after])
     left.plot([low, high], [low, high], color=NEUTRAL, linewidth=0.7)
-    left.set_ylabel(f"measured {_label(curves.result, unit)}")
+    left.set_ylabel(f"measured {axis_label(curves.result, unit)}")
     right.set_ylabel(f"measured − simulated [{unit_text(difference_unit) or '1'}]")
     if has_changed(curves):
         right.legend(loc="best", frameon=True, framealpha=0.8, edgecolor="none", handletextpad=0.2)
     for axes in (left, right):
         axes.locator_params(nbins=MOST_STEPS)
-        axes.set_xlabel(f"simulated {_label(curves.result, unit)}")
+        axes.set_xlabel(f"simulated {axis_label(curves.result, unit)}")
     return figure
 
 
@@ -256,7 +338,7 @@ def ranking_bars(diagnosis: DiagnosisResult) -> Figure:
         axes.barh(index, max(length, 0.003 * widest), height=0.62, color=colour)
         text = f"{item.behind:.1f} {beyond}"
         axes.text(length + 0.01 * widest, index, text, va="center", fontsize=8, color=NEUTRAL)
-    axes.set_yticks(range(len(items)), [_short(explanation(item)) for item in items])
+    axes.set_yticks(range(len(items)), [shortened(explanation(item)) for item in items])
     axes.invert_yaxis()
     axes.set_xlim(0, 1.13 * widest)
     axes.set_xlabel("score units behind the best explanation")
@@ -264,7 +346,8 @@ def ranking_bars(diagnosis: DiagnosisResult) -> Figure:
     return figure
 
 
-def _short(text: str, most: int = 46) -> str:
+def shortened(text: str, most: int = 46) -> str:
+    """Cut words for a label inside of a figure."""
     words = text.replace("something unregistered", "unregistered").replace("$", r"\$")
     return words if len(words) <= most else words[: most - 1] + "…"
 
@@ -275,13 +358,13 @@ def gain_bars(diagnosis: DiagnosisResult) -> Figure:
     figure = Figure(figsize=(6.4, 0.7 + 0.75 * len(gains)), layout="constrained")
     axes = figure.subplots()
     for index, item in enumerate(gains):
-        bars = {"before": item.rmse_before, "after": item.rmse_after, "noise floor": item.noise_floor}
+        bars = {"before": item.rmse_before, "after": item.rmse_after, "scatter of the readings": item.noise_floor}
         for offset, ((name, value), colour) in enumerate(zip(bars.items(), (BEFORE, AFTER, QUIET), strict=True)):
             share = 100 * value.value / item.rmse_before.value if item.rmse_before.value else 0.0
             height = index + 0.26 * (offset - 1)
             axes.barh(height, share, height=0.24, color=colour, label=name if not index else None)
             axes.text(share + 1, height, amount_text(value), va="center", fontsize=8, color=NEUTRAL)
-    axes.set_yticks(range(len(gains)), [_short(spoken(item.result), 30) for item in gains])
+    axes.set_yticks(range(len(gains)), [shortened(spoken(item.result), 30) for item in gains])
     axes.invert_yaxis()
     axes.set_xlim(0, 1.16 * max(axes.get_xlim()[1], 100.0))
     axes.set_xlabel("root mean square error on rows that were not fitted, % of that before")

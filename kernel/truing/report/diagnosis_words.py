@@ -6,9 +6,10 @@ import math
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import chain
 
 from truing.diagnosis.result import (
-    FAMILIES,
+    STRUCTURE,
     UNKNOWN,
     Alternative,
     Amount,
@@ -16,23 +17,33 @@ from truing.diagnosis.result import (
     Chance,
     DiagnosisResult,
     Experiment,
+    Fact,
     FittedUnknown,
     Gain,
     NextPoint,
     Tie,
+    Wrong,
     doubts,
     explanations_of,
     further_of,
-    reads_well,
     shared_of,
     stated_remedy,
 )
-from truing.numbers import ABSENT, format_number, format_value, pretty, with_unit
-from truing.units import from_si, unit_text
+from truing.diagnosis.sentences import records_words, say, sentence
+from truing.numbers import format_number, pretty
+from truing.report.diagnosis_sizes import (
+    TO,
+    amount_text,
+    as_waves,
+    fitted_text,
+    partner_of,
+    percent,
+    readable,
+    wave_name,
+)
 
 CERTAIN, LIKELY = 0.005, 0.05
 MUCH, FEW_BLOCKS = 0.5, 0.25
-TO = " … "
 MICRO = re.compile(r"(?<=\d )u(?=(?:m|rad|s|N|g|l)\b)")
 
 
@@ -68,91 +79,26 @@ def explanation(alternative: Alternative) -> str:
     """Say one explanation: its causes, or that nothing is wrong."""
     over = f":{','.join(alternative.depends_on)}" if alternative.depends_on else ""
     return (
-        together([f"{name}{over}" if name == UNKNOWN else name for name in alternative.causes]) or "nothing but noise"
+        together([f"{name}{over}" if name == UNKNOWN else name for name in alternative.causes]) or "nothing but scatter"
     )
-
-
-def amount_text(amount: Amount | None, digits: int = 3) -> str:
-    """Write a number with its unit, as many digits as carry meaning."""
-    if amount is None:
-        return ABSENT
-    number, unit = format_value(amount.value, amount.unit, digits)
-    return with_unit(pretty(number), unit)
-
-
-def readable(amount: Amount | None) -> Amount | None:
-    """Return a size in a unit in which it reads well: 1.15 µm/h rather than 0.00115 mm/h."""
-    if amount is None or not amount.value or reads_well(amount.value, amount.unit):
-        return amount
-    head, bar, tail = amount.unit.partition("/")
-    units = [f"{each}{bar}{tail}" for family in FAMILIES if head in family for each in family]
-    return next((Amount(amount.value, unit) for unit in units if reads_well(amount.value, unit)), amount)
-
-
-def score_text(number: float | None) -> str:
-    """Write a score, a λ or a gain in log score: to a hundredth below ten, what is smaller is 0."""
-    if number is None or not math.isfinite(number):
-        return ABSENT
-    return pretty(format_number(round(number, 2), 3))
-
-
-def percent(share: float | None) -> str:
-    """Write a share in percent."""
-    return ABSENT if share is None or not math.isfinite(share) else f"{pretty(format_number(100 * share, 3))} %"
-
-
-def p_text(p_value: float | None) -> str:
-    """Write a significance."""
-    if p_value is None:
-        return "not tested"
-    return "p < 0.001" if p_value < 0.001 else f"p {pretty(format_number(p_value, 2))}"
-
-
-def certainty(p_value: float | None) -> str:
-    """Say how sure something is that was found with this significance, the search paid for."""
-    if p_value is None:
-        return ABSENT
-    words = "practically certain" if p_value <= CERTAIN else "likely" if p_value <= LIKELY else "may be chance"
-    return f"{words} ({p_text(p_value)})"
-
-
-def number_texts(unknown: FittedUnknown, fitted: tuple[float, float | None, float | None]) -> tuple[str, str, str, str]:
-    """Write value, lower end, upper end and unit; the width of the interval decides the digits, an open end is open."""
-    size = readable(Amount(unknown.value, unknown.unit))
-    unit = unknown.unit if size is None else size.unit
-    numbers = [None if one is None else float(from_si(one, unit)) for one in fitted]
-    value, *ends = numbers
-    widths = [abs(end - value) for end in ends if end is not None and value is not None]
-    spread = max(filter(math.isfinite, widths), default=0.0)
-    printed, low, high = (_as_wide(one, spread) for one in numbers)
-    return printed, low, high, unit_text(unit)
-
-
-def _as_wide(number: float | None, spread: float) -> str:
-    """Write a number to two digits of its uncertainty; without one to four of its own."""
-    if number is None:
-        return "open"
-    if not 1e-5 < spread < 1e6 or not math.isfinite(number):
-        return pretty(format_number(number, 4))
-    decimals = max(0, 1 - math.floor(math.log10(spread)))
-    return pretty(f"{number:.{decimals}f}".replace("-0.00000", "0.00000") if number else "0")
-
-
-def fitted_text(unknown: FittedUnknown, *, with_name: bool = True) -> str:
-    """Write an unknown with its interval: expansion 11.8 µm/(m·K) (95 %: 11.4 … 12.2)."""
-    value, low, high, unit = number_texts(unknown, (unknown.value, unknown.low, unknown.high))
-    name = f"{unknown.name.replace('_', ' ')} " if with_name else ""
-    if unknown.per_file:
-        return f"{name}of each file alone"
-    if unknown.low is None and unknown.high is None:
-        return f"{name}{with_unit(value, unit)} (its interval is open)"
-    return f"{name}{with_unit(value, unit)} (95 %: {low}{TO}{high})"
 
 
 def cause_text(cause: Cause) -> str:
     """Say a cause with its size."""
-    sizes = "; ".join(fitted_text(unknown) for unknown in cause.unknowns)
+    sizes = sizes_text(cause.unknowns, cause.covariance)
     return f"{spoken(cause.effect)}, {sizes}" if sizes else spoken(cause.effect)
+
+
+def sizes_text(unknowns: Sequence[FittedUnknown], covariance: Sequence[Sequence[float]] = ()) -> str:
+    """Say fitted numbers with their intervals, a wave by its amplitude and phase."""
+    return "; ".join(fitted_text(unknown) for unknown in as_waves(unknowns, covariance))
+
+
+def certainty(p_value: float | None) -> str:
+    """Say how sure something is that was noticed with this significance, the search paid for."""
+    if p_value is None:
+        return "noticed"
+    return "practically certain" if p_value <= CERTAIN else "likely" if p_value <= LIKELY else "may be chance"
 
 
 NO_REMEDY = "Nobody registered what to do about it; with it on, the calculation is right: see the extended model."
@@ -186,42 +132,52 @@ def shared_words(diagnosis: DiagnosisResult) -> Iterator[str]:
     shared, count = shared_of(diagnosis), len(explanations_of(diagnosis))
     further = further_of(diagnosis)
     if further:
-        names = listed([spoken(name) for name in further], "or")
-        yield f"whether {names} is there as well, this record cannot say"
+        yield say("as well", causes=listed([spoken(name) for name in further], "or"))
     elif shared:
         names = listed([spoken(name) for name in shared])
-        yield f"{names} {'is' if len(shared) == 1 else 'are'} in {'both' if count == 2 else 'all'} of them"
+        yield say(
+            "in all of them", causes=names, are="is" if len(shared) == 1 else "are", all="both" if count == 2 else "all"
+        )
 
 
 def headline(diagnosis: DiagnosisResult) -> list[str]:
     """Say what an engineer would tell a colleague: what is wrong, why, how much, what it is worth, what to do next."""
     if diagnosis.verdict == "none" or (diagnosis.verdict == "undecided" and not diagnosis.causes):
-        return list(_unnamed(diagnosis))
-    said = [
-        *_cause_sentences(diagnosis), *(f"{prose(warning)}." for warning in diagnosis.warnings),
-        *_gain_sentences(diagnosis), *_next_sentences(diagnosis),
-    ]  # fmt: skip
-    return [sentence[:1].upper() + sentence[1:] for sentence in said]
+        said = _unnamed(diagnosis)
+    else:
+        said = chain(
+            _cause_sentences(diagnosis), map(prose, diagnosis.warnings), _gain_sentences(diagnosis),
+            _next_sentences(diagnosis),
+        )  # fmt: skip
+    return [sentence(text) for text in said]
 
 
 def _unnamed(diagnosis: DiagnosisResult) -> Iterator[str]:
     met = listed(
         [
-            f"{spoken(wrong.result)} to {amount_text(wrong.rmse)} (noise floor {amount_text(wrong.noise_floor)})"
+            say("met to", result=spoken(wrong.result), error=amount_text(wrong.rmse),
+                scatter=amount_text(wrong.noise_floor))
             for wrong in diagnosis.wrong
         ]
-    )
+    )  # fmt: skip
     if diagnosis.verdict == "none":
-        yield f"Within its tolerances the model meets the measurement: {met}."
-        yield "What is left is noise; no effect, registered or not, is needed."
+        yield say("meets", met=met)
+        yield say("only scatter")
     else:
-        yield f"No cause is named, but that nothing is wrong cannot be said either: {reasons(diagnosis)}."
-        yield f"The model as it is: {met}."
-    blind = [spoken(visible.name) for visible in diagnosis.seen if visible.sight == "not excited"]
+        yield say("not sure of nothing", reasons=reasons(diagnosis))
+        yield say("as it is", met=met)
+    blind = list(dict.fromkeys(sight_name(seen.name) for seen in diagnosis.seen if seen.sight == "not excited"))
     if blind:
-        yield f"That says nothing of {listed(blind)}: this data does not excite {'it' if len(blind) == 1 else 'them'}."
+        yield say("blind", causes=listed(blind), them="it" if len(blind) == 1 else "them")
     if diagnosis.verdict == "undecided":
-        yield "More readings, of a wider range and in a changed order, would decide."
+        yield say("more readings")
+
+
+def sight_name(name: str) -> str:
+    """Say the effect, and which amplitude of it, that could be seen; the parts of a wave are one."""
+    effect, _, unknown = name.partition(".")
+    shown = wave_name(unknown) if partner_of(unknown) else unknown
+    return spoken(f"{effect}.{shown}" if shown else effect)
 
 
 def reasons(diagnosis: DiagnosisResult) -> str:
@@ -229,13 +185,18 @@ def reasons(diagnosis: DiagnosisResult) -> str:
     return listed([prose(doubt) for doubt in doubts(diagnosis)])
 
 
+def is_off(diagnosis: DiagnosisResult, wrong: Wrong) -> bool:
+    """Tell whether something in a result is to be explained: a pattern that no tolerance allows, or a gain."""
+    gained = {gain.result for gain in diagnosis.gain if is_gain(gain)}
+    shaped = any(finding.kind in STRUCTURE and not finding.is_allowed for finding in wrong.findings)
+    remainder = diagnosis.remainder is not None and wrong.result in diagnosis.remainder.results
+    return shaped or wrong.result in gained or remainder
+
+
 def wrong_results(diagnosis: DiagnosisResult) -> list[str]:
-    """Return the results that are wrong: with findings or a gain, else those of the remainder, else all."""
-    wrong_names = [wrong.result for wrong in diagnosis.wrong if wrong.findings]
-    gained = [gain.result for gain in diagnosis.gain if is_gain(gain)]
-    names = [name for name in diagnosis.measured if name in {*wrong_names, *gained}]
-    of_remainder = list(diagnosis.remainder.results) if diagnosis.remainder is not None else []
-    return names or of_remainder or list(diagnosis.measured)
+    """Return the results that are wrong; all of them where none is."""
+    wrong_names = [wrong.result for wrong in diagnosis.wrong if is_off(diagnosis, wrong)]
+    return [name for name in diagnosis.measured if name in wrong_names] or list(diagnosis.measured)
 
 
 def is_gain(gain: Gain) -> bool:
@@ -249,69 +210,96 @@ def _cause_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
     is_open = diagnosis.verdict == "one_of" and not has_further
     if is_open:
         names = [together(names) for names in explanations_of(diagnosis)]
-        yield f"what the model misses in {results} is drawn alike by {listed(names, 'or')}."
-        yield from (f"{words}." for words in shared_words(diagnosis))
+        yield say("drawn alike", results=results, explanations=listed(names, "or"))
+        yield from shared_words(diagnosis)
     if diagnosis.causes:
         causes = listed([cause_text(cause) for cause in diagnosis.causes])
         if is_open:
-            yield f"taken as the first of them: {causes}."
+            yield say("taken as first", causes=causes)
         elif diagnosis.verdict == "undecided":
-            what = "this is the cause" if len(diagnosis.causes) == 1 else "these are the causes"
-            yield f"what the model misses in {results} is drawn best by {causes}; that {what} is in doubt."
+            this = "this is the cause" if len(diagnosis.causes) == 1 else "these are the causes"
+            yield say("best in doubt", results=results, causes=causes, this=this)
         else:
-            yield f"what the model misses in {results}: {causes}."
+            yield say("cause", results=results, causes=causes)
     remainder = diagnosis.remainder
     if remainder is not None:
         over = listed([spoken(name) for name in remainder.depends_on])
+        something = "beside it something" if diagnosis.causes else "something"
         of_results = listed([spoken(name) for name in remainder.results])
-        what = "beside it something" if diagnosis.causes else "something"
-        yield f"{what} that no registered effect explains is in {of_results}, over {over}: {prose(remainder.shape)}."
+        shape = prose(remainder.shape)
+        yield say("unregistered", something=something, results=of_results, covariates=over, shape=shape)
     if has_further:
-        yield from (f"{words}." for words in shared_words(diagnosis))
+        yield from shared_words(diagnosis)
+    yield from chance_words(diagnosis)
+
+
+def chance_words(diagnosis: DiagnosisResult) -> Iterator[str]:
+    """Say how often chance alone would give what was found."""
+    if diagnosis.p_any is None or math.isnan(diagnosis.p_any):
+        yield say("chance not known")
+        return
+    yield say("chance", records=records_words(diagnosis.p_any))
+    if diagnosis.p_second is not None and not math.isnan(diagnosis.p_second) and len(diagnosis.causes) > 1:
+        causes = listed([spoken(cause.effect) for cause in diagnosis.causes])
+        yield say("chance of another", causes=causes, records=records_words(diagnosis.p_second))
+
+
+def gain_text(diagnosis: DiagnosisResult, gain: Gain) -> str:
+    """Say what the extension is worth for a result, on rows that were not fitted; nothing where that may be chance."""
+    name, before, after = spoken(gain.result), amount_text(gain.rmse_before), amount_text(gain.rmse_after)
+    if is_gain(gain):
+        scatter, share = amount_text(gain.noise_floor), percent(gain.reducible_removed)
+        return say("falls", result=name, before=before, after=after, scatter=scatter, share=share)
+    if gain.reducible_removed >= MUCH and gain.p_value < FEW_BLOCKS:
+        return say("falls perhaps", result=name, before=before, after=after)
+    return ""
 
 
 def _gain_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
-    gains = [gain for gain in diagnosis.gain if is_gain(gain)]
-    perhaps = [  # their error falls by much, but in too few independent blocks to be more than chance
-        gain
-        for gain in diagnosis.gain
-        if gain not in gains and gain.reducible_removed >= MUCH and gain.p_value < FEW_BLOCKS
-    ]
-    for gain in (*gains, *perhaps):
-        before, after = amount_text(gain.rmse_before), amount_text(gain.rmse_after)
-        falls = f"on rows that were not fitted the error of {spoken(gain.result)} falls from {before} to {after}"
-        if gain in gains:
-            removed = percent(gain.reducible_removed)
-            yield f"{falls} (noise floor {amount_text(gain.noise_floor)}): {removed} of what can be removed is gone."
-        else:
-            yield f"{falls}; in so few independent blocks that may be chance ({p_text(gain.p_value)})."
-    if diagnosis.gain and not gains and not perhaps:
-        yield "on rows that were not fitted there is no gain that could not be chance."
+    said = [(gain, gain_text(diagnosis, gain)) for gain in diagnosis.gain]
+    yield from (text for gain, text in said if text and is_gain(gain))
+    yield from (text for gain, text in said if text and not is_gain(gain))
+    if diagnosis.gain and not any(text for _, text in said):
+        yield say("no gain")
     for gain in diagnosis.gain:
         if gain.held_out is not None:
-            before, after = (amount_text(replace(gain.rmse_before, value=row)) for row in gain.held_out)
-            if gain.held_out[1] < gain.held_out[0]:
-                yield f"on the rows held out the error of {spoken(gain.result)} falls from {before} to {after}."
-            elif not diagnosis.causes:  # with causes an alarm says so
-                grows = f"on the rows held out the error of {spoken(gain.result)} GROWS from {before} to {after}"
-                yield f"{grows}: the extension does not carry over to them."
+            yield from held_out_words(diagnosis, gain)
 
 
-def _next_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
-    """Say what tells the explanations apart, with which chance."""
-    said = [
-        f"measure {settings_text(each)}: it separates {pair_text(each)}." for each in diagnosis.next if each.measure
-    ]
-    ways = [said, [] if diagnosis.experiment is None else [f"{experiment_text(diagnosis.experiment)}."]]
+def held_out_words(diagnosis: DiagnosisResult, gain: Gain, *, alone: bool = True) -> Iterator[str]:
+    """Say what became of the error on rows that only judge; not ``alone`` also what a warning says of it."""
+    if gain.held_out is None:
+        return
+    before, after = (amount_text(replace(gain.rmse_before, value=row)) for row in gain.held_out)
+    if gain.held_out[1] < gain.held_out[0]:
+        yield say("falls held out", result=spoken(gain.result), before=before, after=after)
+    elif not (alone and diagnosis.causes):
+        yield say("grows held out", result=spoken(gain.result), before=before, after=after)
+
+
+def what_decides(diagnosis: DiagnosisResult) -> Iterator[str]:
+    """Say what tells the explanations apart, with which chance: readings, further results, facts from elsewhere."""
+    said = [result_text(each) for each in diagnosis.next if each.measure]
+    ways = [said, [] if diagnosis.experiment is None else [experiment_text(diagnosis.experiment)]]
     for sentences in ways if is_result_first(diagnosis) else reversed(ways):
         yield from sentences
     yield from map(tie_text, diagnosis.ties)
+
+
+def _next_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
+    yield from what_decides(diagnosis)
     if diagnosis.next or diagnosis.ties:
         return
     if diagnosis.verdict == "named":
-        yield "no other explanation comes near; there is nothing left to separate."
+        yield say("nothing to separate")
     if diagnosis.verdict == "one_of":
-        yield "no setting can be proposed that tells them apart; another record, of other conditions, may."
+        yield say("no proposal")
+
+
+def result_text(point: NextPoint) -> str:
+    """Say which further result to measure, and for which two explanations."""
+    one, other = (together([name]) for name in point.separates)
+    return say("measure as well", results=listed([spoken(name) for name in point.measure]), one=one, other=other)
 
 
 def is_result_first(diagnosis: DiagnosisResult) -> bool:
@@ -322,11 +310,17 @@ def is_result_first(diagnosis: DiagnosisResult) -> bool:
 def experiment_text(experiment: Experiment) -> str:
     """Say an experiment: what is held, what is varied from where to where, how long, what it tells, how surely."""
     count, takes = experiment.readings, experiment.takes
-    said = f"{count} readings" + (f" in {amount_text(readable(takes), 2)}" if takes is not None and takes.value else "")
-    tells = f"tell {told_apart(experiment)} apart with a chance of {chance_text(experiment.chance)}"
+    said = {
+        "course": "; ".join(course_texts(experiment)),
+        "readings": f"{count} readings"
+        + (f" in {amount_text(readable(takes), 2)}" if takes is not None and takes.value else ""),
+        "explanations": told_apart(experiment),
+        "chance": chance_text(experiment.chance),
+    }
+    if experiment.needed == count:
+        return say("experiment", **said)
     enough = f"{experiment.needed} readings" if experiment.needed else "more than a hundred readings"
-    more = f"; {enough} like these would be needed for 95 %" if experiment.needed != count else ""
-    return f"{'; '.join(course_texts(experiment))}: {said} {tells}{more}"
+    return say("experiment needs more", **said, enough=enough)
 
 
 def course_texts(experiment: Experiment) -> list[str]:
@@ -363,24 +357,28 @@ def told_apart(experiment: Experiment) -> str:
     return listed([listed([together([name]) for name in group], "or") for group in groups])
 
 
-def pair_text(point: NextPoint) -> str:
-    """Say which two explanations a point is for."""
-    first, second = point.separates
-    return f"{together([first])} from {together([second])}"
-
-
 def tie_text(tie: Tie) -> str:
     """Say which fact decides where no measurement does."""
     names = listed([together([name]) for name in tie.explanations])
     if not tie.facts:
-        return f"no measurement proposed here tells {names} apart; only a fact from elsewhere does."
-    facts = []
-    for fact in tie.facts:
-        note = f" ({fact.note})" if fact.note else ""
-        facts.append(
-            f"whether {spoken(fact.quantity.removeprefix('input:'))}{note} is {amount_text(readable(fact.value))}"
-        )
-    return f"no measurement proposed here tells {names} apart; a fact from elsewhere does: {listed(facts, 'or')}."
+        return say("nothing decides", explanations=names)
+    return say("fact decides", explanations=names, facts=listed(list(_facts(tie.facts)), "or"))
+
+
+def _facts(facts: Sequence[Fact]) -> Iterator[str]:
+    """Say what would have to be so; the two parts of a wave are one amplitude."""
+    values = {fact.quantity: fact.value.value for fact in facts}
+    for fact in facts:
+        effect, _, unknown = fact.quantity.partition(".")
+        partner = f"{effect}.{partner_of(unknown)}"
+        note, value, shown = (f" ({fact.note})" if fact.note else ""), fact.value, spoken(fact.quantity)
+        if partner in values:
+            if "cosine" in unknown:
+                continue
+            value = replace(value, value=math.hypot(value.value, values[partner]))
+            shown, note = f"{sight_name(fact.quantity)}, amplitude", ""
+        quantity = f"{shown.removesuffix(' outside of its tolerance')}{note}"
+        yield say("fact", quantity=quantity, size=amount_text(readable(value)))
 
 
 def settings_text(point: NextPoint) -> str:

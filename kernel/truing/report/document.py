@@ -205,7 +205,16 @@ class ResultEntry:
     method: Text = ""
 
 
-BlockView: TypeAlias = Paragraph | Items | TableView | FigureView | ResultEntry
+@dataclass(frozen=True)
+class Fold:
+    """What stands behind the words: a screen shows the title until more is asked for, paper all if ``printed``."""
+
+    title: str
+    blocks: tuple[BlockView, ...]
+    printed: bool = True
+
+
+BlockView: TypeAlias = "Paragraph | Items | TableView | FigureView | ResultEntry | Fold"
 
 
 def table_of(

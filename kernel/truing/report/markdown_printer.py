@@ -17,6 +17,7 @@ from truing.report.document import (
     Document,
     Equation,
     FigureView,
+    Fold,
     Items,
     Marked,
     Paragraph,
@@ -81,6 +82,10 @@ def _blocks(blocks: Iterable[BlockView]) -> Iterator[str]:
                 yield f"**Figure {block.number}.** {escaped(block.caption)}"
             case ResultEntry():
                 yield from _entry(block)
+            case Fold(title, inner):
+                yield f"<details><summary>{escaped(title)}</summary>"
+                yield from _blocks(inner)
+                yield "</details>"
 
 
 def _items(items: Items) -> Iterator[str]:

@@ -24,6 +24,7 @@ from truing.report.document import (
     Document,
     Equation,
     FigureView,
+    Fold,
     Items,
     Marked,
     Paragraph,
@@ -145,8 +146,16 @@ def _set_up(page: _Page, document: Document, paper: tuple[float, float]) -> None
 
 def _set_styles(styles: Any, width: float) -> None:
     """Set the sizes and spaces of the styles that are used; all of them stay those of Word, by name."""
-    sizes = {"Normal": BODY, "Title": 20, "Heading 1": 13, "Caption": IN_TABLE, "Footer": 8, "List Bullet": BODY}
-    spaces = {"Normal": (0, 4), "Title": (2, 2), "Heading 1": (12, 4), "Caption": (2, 8)}
+    sizes = {
+        "Normal": BODY,
+        "Title": 20,
+        "Heading 1": 13,
+        "Heading 2": 11,
+        "Caption": IN_TABLE,
+        "Footer": 8,
+        "List Bullet": BODY,
+    }
+    spaces = {"Normal": (0, 4), "Title": (2, 2), "Heading 1": (12, 4), "Heading 2": (8, 3), "Caption": (2, 8)}
     for name, size in sizes.items():
         style = styles[name]
         style.font.size = docx.Pt(size)
@@ -157,7 +166,7 @@ def _set_styles(styles: Any, width: float) -> None:
     for name, (before, behind) in spaces.items():
         shape = styles[name].paragraph_format
         shape.space_before, shape.space_after, shape.line_spacing = docx.Pt(before), docx.Pt(behind), 1.0
-    for name, color in {"Title": DARK, "Heading 1": DARK, "Caption": "000000"}.items():
+    for name, color in {"Title": DARK, "Heading 1": DARK, "Heading 2": DARK, "Caption": "000000"}.items():
         styles[name].font.color.rgb = docx.RGBColor.from_string(color)
     styles["Caption"].font.bold = False
     contents = styles.add_style("toc 1", docx.WD_STYLE_TYPE.PARAGRAPH, builtin=True)
@@ -243,11 +252,21 @@ def _chapter(page: _Page, chapter: Chapter, index: int, *, highest: float | None
     """Write a chapter; figures are at most so many mm high, and never higher than half of a page."""
     bookmark = f'<w:bookmarkStart w:id="{index + 1}" w:name="{_anchor(index)}"/>'
     page.add(_paragraph(f'{bookmark}{_run(_title(chapter))}<w:bookmarkEnd w:id="{index + 1}"/>', "Heading1"))
-    for block in chapter.blocks:
-        if isinstance(block, FigureView):
-            _figure(page, block, highest or PAPERS["letter"][1] / 2)
-        else:
-            page.add(*_block(block, page.width))
+    _add_blocks(page, chapter.blocks, highest or PAPERS["letter"][1] / 2)
+
+
+def _add_blocks(page: _Page, blocks: Iterable[BlockView], highest: float) -> None:
+    """Write blocks; what is folded has a heading, and what paper leaves out is left out here."""
+    for block in blocks:
+        match block:
+            case FigureView():
+                _figure(page, block, highest)
+            case Fold(title, inner, printed):
+                if printed:
+                    page.add(_paragraph(_run(_safe(title)), "Heading2"))
+                    _add_blocks(page, inner, highest)
+            case _:
+                page.add(*_block(block, page.width))
 
 
 def _block(block: BlockView, width: float) -> Iterator[str]:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass
-from pathlib import PurePath
 from typing import Any
 
+from truing.diagnosis.records import file_labels
 from truing.diagnosis.result import (
     Amount,
     Cause,
@@ -56,6 +56,7 @@ def diagnosis_document(diagnosis: DiagnosisResult) -> dict[str, Any]:
         "causes": [_cause(diagnosis, cause, labels) for cause in diagnosis.causes],
         **_compared(diagnosis),
         **_named(diagnosis, "inseparable", "remainder"),
+        "alike": [{**_named(each, "one", "other"), "angle": _value(each.angle, "deg")} for each in diagnosis.alike],
         **_seen(diagnosis),
         **_use(diagnosis),
         **_named(diagnosis, "contradictions", "thinned", "trades"),
@@ -63,12 +64,6 @@ def diagnosis_document(diagnosis: DiagnosisResult) -> dict[str, Any]:
         "unit_slips": _plain(records.unit_errors),
         "warnings": list(diagnosis.warnings),
     }
-
-
-def file_labels(files: Sequence[str]) -> list[str]:
-    """Return how data files are named: without their folders where that tells them apart."""
-    names = [PurePath(file.replace("\\", "/")).name for file in files]
-    return names if len(set(names)) == len(names) else list(files)
 
 
 def _record(diagnosis: DiagnosisResult) -> dict[str, Any]:

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
+from truing.diagnosis.records import file_labels
 from truing.diagnosis.result import Cause, DiagnosisResult, FittedUnknown, explanations_of
 from truing.numbers import format_number
-from truing.runs.diagnosis_document import file_labels
 from truing.runs.inputs_written import comment_lines, complete_inputs
 from truing.setup import Setup
 from truing.units import from_si

@@ -15,10 +15,10 @@ import numpy as np
 
 from truing.atomic import place_folder, recover
 from truing.calculation import Calculation
+from truing.diagnosis.records import file_labels
 from truing.diagnosis.result import DiagnosisResult
 from truing.errors import OutputError, PluginError, UnknownPluginError
 from truing.measurements import EXCEL, INERT
-from truing.runs.diagnosis_document import file_labels
 from truing.runs.documents import SCHEMA, large_arrays
 from truing.runs.extension import extended_text
 from truing.runs.inputs_written import complete_inputs

@@ -17,9 +17,9 @@ from math import isfinite
 from typing import Any
 
 from truing.declare.sources import Condition
+from truing.diagnosis.records import file_labels
 from truing.diagnosis.result import DiagnosisResult, Remainder, ShapeTerm
 from truing.formulas.symbols import printable
-from truing.runs.diagnosis_document import file_labels
 from truing.runs.inputs_written import comment_lines
 from truing.templating import rendered
 

@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 
 from truing.declare.model import Model
+from truing.diagnosis.records import file_labels
 from truing.diagnosis.result import DiagnosisResult
 from truing.formulas.symbols import printable, symbol_text
 from truing.measurements import INERT, TableStyle, table_text
 from truing.numbers import RESULT_DIGITS, STATED_DIGITS, format_number
-from truing.runs.diagnosis_document import diagnosis_document, file_labels
+from truing.runs.diagnosis_document import diagnosis_document
 from truing.studies.checks import SHORT
 from truing.units import from_si
 from truing.workbooks.writing import Printed, SheetTable, workbook_bytes

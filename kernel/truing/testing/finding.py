@@ -9,7 +9,8 @@ from truing.declare.model import Model
 from truing.declare.sources import Effect
 from truing.diagnosis.result import Amount, Cause, DiagnosisResult, VisibleSize, explanations_of
 from truing.errors import UsageError
-from truing.report.diagnosis_words import cause_text, fitted_text, listed, settings_text
+from truing.report.diagnosis_sizes import fitted_text
+from truing.report.diagnosis_words import cause_text, listed, settings_text
 from truing.testing.hiding import Hidden, hide
 from truing.testing.subject import fail
 from truing.units import difference_unit, from_si, unit_factor
