@@ -70,8 +70,8 @@ def word(content: bytes) -> Any:
 def all_of(document: Document, kind: type) -> list[Any]:
     """Every block of a kind that paper has, also of what is folded on a screen, in order."""
     blocks = [block for chapter in (*document.front, *document.chapters) for block in chapter.blocks]
-    opened = [each for block in blocks for each in (block, *(block.blocks if isinstance(block, Fold) else ()))
-              if not isinstance(block, Fold) or block.printed]  # fmt: skip
+    paper = [block for block in blocks if not isinstance(block, Fold) or block.printed]
+    opened = [each for block in paper for each in (block, *(block.blocks if isinstance(block, Fold) else ()))]
     return [block for block in opened if isinstance(block, kind)]
 
 
