@@ -61,7 +61,7 @@ GAP: Final = '<w:p><w:pPr><w:spacing w:before="0" w:after="0" w:line="120" w:lin
 GREY, DARK = "666666", "1F3A5F"
 MOODS: Final = {
     "passes": "E3F2E6", "calm": "E3F2E6", "proposed": "FFF4D6", "undecided": "FFF4D6", "open": "FFF4D6",
-    "fails": "FBE3E1", "found": "FBE3E1", "none": "EEF0F2",
+    "fails": "FBE3E1", "found": "E4EDF7", "none": "EEF0F2",
 }  # fmt: skip
 """The colour behind the verdict, by the mood of the banner."""
 NAMESPACES: Final = (
