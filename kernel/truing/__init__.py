@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from truing.api.study import StudyResult
     from truing.declare.batch import column, either, feasible
     from truing.declare.blocks import Block, Drawing, Table, Words
+    from truing.declare.correlations import correlated
     from truing.declare.dynamics import Dynamics, Event, Motion, state, states
     from truing.declare.fields import Array, Float, axis, found, given, inputs, loaded, part, results, rows
     from truing.declare.goals import Maximise, Minimise, Objective, Price, Require, Vary
@@ -43,6 +44,7 @@ _HOMES = {
     "truing.api.study": ("StudyResult",),
     "truing.declare.batch": ("column", "either", "feasible"),
     "truing.declare.blocks": ("Block", "Drawing", "Table", "Words"),
+    "truing.declare.correlations": ("correlated",),
     "truing.declare.dynamics": ("Dynamics", "Event", "Motion", "state", "states"),
     "truing.declare.fields": ("Array", "Float", "axis", "found", "given", "inputs", "loaded", "part", "results",
                               "rows"),
@@ -77,6 +79,7 @@ __all__ = [  # noqa: RUF022  # what a user calls; then what a plugin needs, in t
     "states", "state", "Dynamics", "Motion", "Event",
     "Tolerance", "Effect", "Unknown", "Condition", "ErrorSource",
     "normal", "plus_minus", "uniform", "lognormal", "grade", "zone", "drawn", "by_choice", "off",
+    "correlated",
     "Vary", "Minimise", "Maximise", "Require", "Price", "Objective",
     "Model", "Section", "Record", "Study", "Published", "Finding",
     "Words", "Table", "Drawing", "Block",

@@ -80,6 +80,7 @@ def _lines(offer: Offer) -> Iterator[str]:
     for field in model.input_fields.values():
         yield from _input(field)
     yield from _tolerances(model)
+    yield from _correlations(model)
     yield from _conditions(model)
     yield from _effects(model)
     yield from _studies(model)
@@ -126,6 +127,15 @@ def _tolerances(model: Model[Any, Any]) -> Iterator[str]:
             yield f"# {toml_key(tolerance.name)} = {toml_value(stated)}"
         else:
             yield f"#   {tolerance.name} is {tolerance.spread.text}"
+
+
+def _correlations(model: Model[Any, Any]) -> Iterator[str]:
+    if not model.correlations:
+        return
+    yield from _heading("correlations", "Which inputs scatter together, and how much; 0 is not at all. As declared:")
+    for pair in model.correlations:
+        yield from _comment("; ".join(filter(None, (pair.why, pair.source))), "#   ")
+        yield f"# {toml_key(pair.name)} = {toml_value(pair.coefficient)}"
 
 
 def _why(tolerance: Tolerance) -> str:

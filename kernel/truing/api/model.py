@@ -20,6 +20,7 @@ from truing.api.records import MeasuredRecord
 from truing.api.run import Differences, Run, comparison_of, demand_files, performed
 from truing.api.study import StudyResult
 from truing.api.tables import LABEL, beside, frame_text, settings_of, text_of
+from truing.declare.correlations import Correlated
 from truing.declare.model import Study
 from truing.declare.near_miss import near_miss
 from truing.describe import description, sections
@@ -88,9 +89,13 @@ class LoadedModel:
         """What it calculates, in a line."""
         return self.offer.model.title
 
-    def given(self, *, set: Mapping[str, Any] | None = None, **values: Any) -> LoadedModel:
-        """Return the model with these values in every run."""
-        return replace(self, stated=(*self.stated, *self._settings(set, values)))
+    def given(self, *together: Correlated, set: Mapping[str, Any] | None = None, **values: Any) -> LoadedModel:
+        """Return the model with these values in every run, and with inputs that scatter together.
+
+        ``together`` holds pairs, each made by ``correlated("load", "hardness", 0.7)``.
+        """
+        pairs = {f"correlations.{pair.name}": pair.coefficient for pair in together}
+        return replace(self, stated=(*self.stated, *self._settings({**pairs, **(set or {})}, values)))
 
     def setup(self, inputs: str | Path | None = None, *, set: Mapping[str, Any] | None = None, **values: Any) -> Setup:
         """Return what a run would calculate: the inputs file, or the shipped example, and values in place of its own.

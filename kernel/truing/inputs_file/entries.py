@@ -16,6 +16,7 @@ from truing.declare.sources import Condition, Effect, Tolerance, Unknown
 from truing.declare.spreads import read_spread
 from truing.errors import UnitError
 from truing.inputs_file.assemble import default_of, renamed, spread_text
+from truing.inputs_file.correlations import entry_of_pair
 from truing.inputs_file.document import SECTIONS
 from truing.inputs_file.study_options import DIAGNOSE, diagnose_section, study_section
 from truing.inputs_file.values import (
@@ -48,7 +49,9 @@ def sections(model: Model[Any, Any]) -> dict[str, FileSection]:
         "sheet": _sheet, "inputs": _inputs, "tolerances": _tolerances, "conditions": _conditions,
         "effects": _effects, "calibrated": _calibrated, "studies": _studies, "units": _units,
     }  # fmt: skip
-    return {name: FileSection(name.capitalize(), words, makers[name](model)) for name, words in SECTIONS.items()}
+    known = {name: FileSection(name.capitalize(), SECTIONS[name], make(model)) for name, make in makers.items()}
+    known["correlations"] = FileSection("Correlations", SECTIONS["correlations"], {}, partial(entry_of_pair, model))
+    return {name: known[name] for name in SECTIONS}
 
 
 def whole_file(model: Model[Any, Any]) -> FileSection:

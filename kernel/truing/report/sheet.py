@@ -43,12 +43,13 @@ from truing.report.document import (
     Value,
     joined,
 )
-from truing.report.given import effect_blocks, input_blocks, tolerance_table
+from truing.report.given import correlation_table, effect_blocks, input_blocks, tolerance_table
 from truing.report.limits import MOST_CHECKS, check_table, check_value, least_margin
 from truing.report.page_one import MOST_WARNINGS, page_one
 from truing.runs.provenance import Provenance
 from truing.setup import Setup
 from truing.studies.checks import HEADLINES, SHORT
+from truing.studies.sampling import scatter_of
 from truing.studies.verdicts import sentence_of
 from truing.units import unit_text
 
@@ -248,7 +249,8 @@ def _inputs_behind(setup: Setup, detail: str) -> Iterator[Chapter]:
         return
     yield Chapter("Inputs", tuple(input_blocks(setup, detail)), "inputs")
     if setup.distributions():
-        yield Chapter("Tolerances in force", (tolerance_table(setup),), "tolerances")
+        tables = [tolerance_table(setup)] + [correlation_table(setup)] * bool(scatter_of(setup).pairs)
+        yield Chapter("Tolerances in force", tuple(tables), "tolerances")
     if setup.conditions or setup.effects:
         yield Chapter("Conditions and effects", tuple(effect_blocks(setup)), "effects")
 

@@ -89,7 +89,7 @@ def _of_run(document: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     checks = {check["name"]: {**check} for check in document.get("checks") or []}
     for check in checks.values():
         del check["name"]
-    kinds = ("inputs", "tolerances", "conditions", "effects", "results", "checks", "studies")
+    kinds = ("inputs", "tolerances", "correlations", "conditions", "effects", "results", "checks", "studies")
     return {kind: checks if kind == "checks" else document.get(kind) or {} for kind in kinds}
 
 

@@ -73,6 +73,7 @@ def _sections(setup: Setup, folder: Path | None) -> Iterator[tuple[str, dict[str
             if name in setup.model.tolerances and spread.text and not isinstance(spread, (ByChoice, Drawn))
         },
     )
+    yield "correlations", {pair.name: pair.coefficient for pair in setup.scattering_together()}
     yield "conditions", {name: exact(value, setup.unit_of(name)) for name, value in setup.conditions.items()}
     yield "calibrated", {name: exact(value, setup.unit_of(name)) for name, value in setup.calibrated.items()}
     for active in setup.effects:
@@ -202,6 +203,8 @@ def _remarks(setup: Setup) -> Iterator[tuple[tuple[str, str], str]]:
         yield ("inputs", name), ", ".join(word for word in words if word)
     for name, tolerance in setup.model.tolerances.items():
         yield ("tolerances", name), printable(tolerance.why)
+    for pair in setup.correlations:
+        yield ("correlations", pair.name), printable(pair.why)
 
 
 def _left_open(setup: Setup, section: str) -> Iterator[str]:

@@ -92,6 +92,7 @@ def _single(document: Mapping[str, Any], model: Model[Any, Any]) -> Iterator[Spr
                 said = {"name": target, "place": part, "value": distribution[part], "unit": distribution["unit"]}
                 said["symbol"] = _symbol(target, model)
                 yield {"part": "tolerance", **said, "note": f"{name}: {tolerance['spread']}"}
+    yield from _named("correlation", document["correlations"], model)
     yield from _named("condition", document["conditions"], model)
     for name, unknowns in document["effects"].items():
         for unknown, estimate in unknowns.items():
