@@ -141,6 +141,7 @@ def run(
         bool, typer.Option("--resume", help="Keep finished batches, and take up those of an interrupted run.")
     ] = False,
     pdf: Pdf = False,
+    docx: Docx = False,
     excel: Excel = False,
     xlsx: Xlsx = False,
     as_json: AsJson = False,
@@ -215,6 +216,7 @@ def diagnose(
         Path | None, typer.Option("--output", "-o", help="The folder (default runs/STEM of the first data file).")
     ] = None,
     pdf: Pdf = False,
+    docx: Docx = False,
     xlsx: Xlsx = False,
     as_json: AsJson = False,
 ) -> None:
@@ -329,6 +331,7 @@ RunFolder: TypeAlias = Annotated[
     Path | None, typer.Option("--output", "-o", help="The run folder (default runs/STEM).")
 ]
 Pdf: TypeAlias = Annotated[bool, typer.Option("--pdf", help="Print the sheet to PDF with an installed browser.")]
+Docx: TypeAlias = Annotated[bool, typer.Option("--docx", help="Add the sheet as a Word document.")]
 
 
 class Shell(StrEnum):

@@ -398,6 +398,8 @@ class TableStyle:
 
 
 PLAIN = TableStyle()
+INERT = TableStyle(is_guarded=True)
+"""What programs read, and no spreadsheet takes a word of for a formula."""
 EXCEL = TableStyle(MARK, ";", ",", "\r\n", is_guarded=True)
 """What a spreadsheet with a decimal comma opens by a double click."""
 
