@@ -179,6 +179,14 @@ class InputsSource:
     places: Mapping[str, tuple[str, int | None]] = field(default_factory=dict, compare=False)
 
 
+@dataclass(frozen=True)
+class NamedColumn:
+    """What a column of a measured file is to the model: its name there, and its unit where that is stated, too."""
+
+    name: str
+    unit: str | None = None
+
+
 @dataclass(frozen=True, kw_only=True)
 class SheetOptions:
     """What stands at the head of the sheet, by name, and how much of everything: "short", "normal" or "full".
@@ -197,6 +205,7 @@ class Setup(Case):
 
     ``spreads`` holds the tolerances in force and ``calibrated`` the inputs (SI) as a diagnosis fitted them to one
     machine, by name; ``units`` the units in which results are printed, where these are not the declared ones.
+    ``columns`` says what columns of files are, by what the files call them.
     ``correlations`` are those in force, stated or declared; one of an input that does not scatter says nothing.
     """
 
@@ -208,6 +217,7 @@ class Setup(Case):
     seed: int = DEFAULT_SEED
     diagnose: DiagnoseOptions = DiagnoseOptions()
     units: Mapping[str, str] = field(default_factory=dict)
+    columns: Mapping[str, NamedColumn] = field(default_factory=dict)
     sheet: SheetOptions = SheetOptions()
     source: InputsSource = InputsSource()
 

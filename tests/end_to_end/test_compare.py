@@ -276,4 +276,8 @@ def test_two_diagnoses_and_two_plugins_as_a_page(runs: Calc, tmp_path: Path) -> 
 
 def test_a_page_of_another_ending_is_refused_before_anything_runs(runs: Calc) -> None:
     answer = runs("compare", "first", "no such folder", "-o", "page.txt")
-    assert (answer.code, answer.out, answer.err) == (2, "", "calc: page.txt: a sheet ends in .html, .md or .pdf\n")
+    assert (answer.code, answer.out, answer.err) == (
+        2,
+        "",
+        "calc: page.txt: a page of two sheets ends in .html, .md or .pdf\n",
+    )

@@ -14,7 +14,7 @@ from truing.declare.model import Model
 from truing.errors import Fault, InputError, TruingError, UsageError
 from truing.kernel import offer_of
 from truing.report.comparison_page import Side, comparison_page, figures_of
-from truing.report.run import write_sheet
+from truing.report.run import demand_page, write_sheet
 from truing.runs.comparison import Change, compared, in_order, words_of
 from truing.runs.folder import load_either
 from truing.workbooks.reading import file_of, is_workbook
@@ -59,6 +59,7 @@ class Differences:
 
         Raises OutputError.
         """
+        demand_page(Path(path))
         return write_sheet(path, lambda: comparison_page(*self.sides()))
 
     def _repr_html_(self) -> str:

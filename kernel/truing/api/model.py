@@ -18,7 +18,7 @@ from truing.api.findings import NamedCause, Ranking, Residuals, causes_of
 from truing.api.notebook import bullets, fold, heading, html_table, joined, paragraphs, picture, table_html
 from truing.api.plan import Plan
 from truing.api.records import MeasuredRecord
-from truing.api.run import Run, performed
+from truing.api.run import Run, demand_files, performed
 from truing.api.study import StudyResult
 from truing.api.tables import LABEL, beside, frame_text, settings_of, text_of
 from truing.declare.correlations import Correlated
@@ -56,7 +56,6 @@ from truing.studies.frequency import Frequency
 from truing.studies.sweep import Sweep
 from truing.units import difference_unit
 from truing.units.grammar import shown
-from truing.workbooks.writing import demand_library
 
 
 @dataclass(frozen=True)
@@ -123,6 +122,7 @@ class LoadedModel:
         output: str | Path | None = None,
         resume: bool = False,
         pdf: bool = False,
+        docx: bool = False,
         excel: bool = False,
         xlsx: bool = False,
         set: Mapping[str, Any] | None = None,
@@ -135,11 +135,11 @@ class LoadedModel:
         every row is a case. It is computed in ``workers`` processes, or on the dask ``cluster`` at an address; the
         answer does not depend on it. ``output`` is a folder that is complete or absent, whatever happens; with
         ``resume`` finished batches are kept beside it, and those of an interrupted run are taken up; ``pdf``,
-        ``excel`` and ``xlsx`` are as in ``Run.save``. Raises TruingError with one sentence.
+        ``docx``, ``excel`` and ``xlsx`` are as in ``Run.save``. Raises TruingError with one sentence.
         """
         setup = self.setup(inputs, set=set, **values)
         how: dict[str, Any] = {"workers": workers, "cluster": cluster, "resume": resume}
-        how |= {"pdf": pdf, "excel": excel, "xlsx": xlsx}
+        how |= {"pdf": pdf, "docx": docx, "excel": excel, "xlsx": xlsx}
         return performed(setup, self.offer, progress, output=output, cases=cases, **how)
 
     def study(
@@ -242,6 +242,7 @@ class LoadedModel:
         budget: int = 0,
         output: str | Path | None = None,
         pdf: bool = False,
+        docx: bool = False,
         xlsx: bool = False,
         set: Mapping[str, Any] | None = None,
         progress: Progress | bool = True,
@@ -251,13 +252,12 @@ class LoadedModel:
 
         ``hold_out`` marks rows that only judge ("judged = yes"), ``per_file`` names what every file has for itself,
         ``budget`` is how many calls of the model the search may make (0: as many as its time allows). Nothing is
-        written without ``output``, a folder that is complete or absent; ``pdf`` prints the sheet there, and
-        ``xlsx`` adds a workbook. Raises TruingError with one sentence, or every fault of a file.
+        written without ``output``, a folder that is complete or absent; ``pdf``, ``docx`` and ``xlsx`` are as in
+        ``Diagnosis.save``. Raises TruingError with one sentence, or every fault of a file.
         """
-        if not isinstance(record, MeasuredRecord):
-            made = "truing.read(files, model) or truing.record(dataframe, model)"
-            raise UsageError(f"a {type(record).__name__} is no record; make one with {made}")
-        _demand_output(output, {"pdf": pdf, "xlsx": xlsx})
+        _demand_record(record)
+        files = {"pdf": pdf, "docx": docx, "xlsx": xlsx}
+        demand_files(output, files, "diagnosis")
         options = {"hold_out": hold_out, "per_file": list(per_file), "budget": budget}
         stated = {f"studies.diagnose.{name}": toml_value(value) for name, value in options.items() if value}
         setup = self.setup(inputs, set={**stated, **(set or {})}, **values)
@@ -271,7 +271,7 @@ class LoadedModel:
             report("sheet and PDF" if pdf else "sheet", 0, 0)
             if output is None:
                 return diagnosis
-            return replace(diagnosis, note=diagnosis.written(Path(output), pdf=pdf, xlsx=xlsx))
+            return replace(diagnosis, note=diagnosis.written(Path(output), **files))
 
     def plan(
         self,
@@ -331,14 +331,11 @@ class LoadedModel:
         return settings_of(self.offer.model, {**(set or {}), **values})
 
 
-def _demand_output(output: str | Path | None, files: Mapping[str, bool]) -> None:
-    """Raise UsageError or OutputError where what is asked for cannot be written, before anything is calculated."""
-    for name in (name for name, is_asked in files.items() if is_asked and output is None):
-        raise UsageError(f"{name} needs output, the folder that is written")
-    if files["xlsx"]:
-        demand_library()
-    if output is not None:
-        demand_place(Path(output), "diagnosis")
+def _demand_record(record: Any) -> None:
+    """Raise UsageError, saying how a record is made, for anything else."""
+    if not isinstance(record, MeasuredRecord):
+        made = "truing.read(files, model) or truing.record(dataframe, model)"
+        raise UsageError(f"a {type(record).__name__} is no record; make one with {made}")
 
 
 def _demand_known(rows: RowsFile, setup: Setup) -> None:
@@ -425,22 +422,26 @@ class Diagnosis:
         return self.residuals.plot()
 
     def sheet(self, path: str | Path) -> Path:
-        """Write the sheet as HTML, Markdown or PDF, as the name ends. Raises OutputError."""
+        """Write the sheet as HTML, Markdown, PDF or a Word document, as the name ends. Raises OutputError."""
         return write_sheet(path, partial(diagnosis_sheet_of, self.result, self.started))
 
-    def save(self, folder: str | Path, *, pdf: bool = False, xlsx: bool = False) -> Path:
-        """Write the folder that ``calc diagnose`` writes; an earlier diagnosis there goes. Raises OutputError."""
+    def save(self, folder: str | Path, *, pdf: bool = False, docx: bool = False, xlsx: bool = False) -> Path:
+        """Write the folder that ``calc diagnose`` writes; an earlier diagnosis there goes.
+
+        ``pdf`` prints the sheet where a browser is installed, ``docx`` adds it as a Word document, ``xlsx`` adds a
+        workbook. Raises OutputError.
+        """
         target = Path(folder)
         demand_place(target, "diagnosis")
-        note = self.written(target, pdf=pdf, xlsx=xlsx)
+        note = self.written(target, pdf=pdf, docx=docx, xlsx=xlsx)
         if note.startswith("no PDF"):
             warnings.warn(note, stacklevel=2)
         return target
 
-    def written(self, folder: Path, *, pdf: bool = False, xlsx: bool = False) -> str:
+    def written(self, folder: Path, *, pdf: bool = False, docx: bool = False, xlsx: bool = False) -> str:
         """Write the folder and return what became of the PDF."""
         sheet = diagnosis_sheet_of(self.result, self.started)
-        sheets, note = sheets_of(sheet, folder, pdf=pdf)
+        sheets, note = sheets_of(sheet, folder, pdf=pdf, word=docx)
         info = {**run_info(self.started), "data": dict(self.result.records.digests)}
         write_outcome(
             folder, "diagnosis", self.result.setup, self.document, provenance=sheet.provenance, run_info=info,

@@ -18,7 +18,7 @@ from truing.api.run import Run
 from truing.cli.console import GAP, Settings, aligned, harmless, out, out_json, put
 from truing.cli.load import find_model
 from truing.report.index_page import listing_document, summary_of, write_index
-from truing.report.run import demand_ending
+from truing.report.run import demand_page
 from truing.runs.comparison import Change, compared, words_of
 from truing.runs.index import list_folder
 from truing.studies.checks import EXIT_CODES
@@ -45,7 +45,7 @@ def compare(settings: Settings, asked: SimpleNamespace) -> int:
     """Show inputs, results and checks that changed: exit 0 when equal, 1 when different."""
 
     if asked.output is not None:
-        demand_ending(asked.output)
+        demand_page(asked.output)
 
     def run(plugin: str, file: Path) -> Run:
         return find_model(plugin, settings).run(file, progress=not settings.quiet)

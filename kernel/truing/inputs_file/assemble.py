@@ -173,6 +173,7 @@ def make_setup(offer: Offer, reading: InputsRead, studies: tuple[Study, ...], do
         seed=values.get(("studies", "seed"), DEFAULT_SEED),
         diagnose=diagnose_options(model, values),
         units=of("units"),
+        columns=of("columns"),
         sheet=SheetOptions(detail=head.pop("detail", "normal"), paper=head.pop("paper", "A4"), head=head),
         source=InputsSource(
             stated=frozenset(names),

@@ -324,6 +324,7 @@ SECTIONS = {
     "calibrated": "Inputs as fitted to one machine.",
     "studies": "Which studies run, in which order, and their options.",
     "units": "The unit in which a result or input is printed.",
+    "columns": "What columns of measured files and of cases are, by what the files call them.",
 }
 """The sections of an inputs file, and what each holds."""
 

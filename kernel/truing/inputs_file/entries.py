@@ -20,6 +20,7 @@ from truing.inputs_file.correlations import entry_of_pair
 from truing.inputs_file.document import SECTIONS
 from truing.inputs_file.study_options import DIAGNOSE, diagnose_section, study_section
 from truing.inputs_file.values import (
+    SIGMA,
     FileEntry,
     FileSection,
     InputsRead,
@@ -30,8 +31,8 @@ from truing.inputs_file.values import (
     read_input,
     read_number,
 )  # fmt: skip
-from truing.setup import DEFAULT_SEED
-from truing.units import demand_dimension, difference_unit, from_si, to_si, unit_factor
+from truing.setup import DEFAULT_SEED, NamedColumn
+from truing.units import check_unit, demand_dimension, difference_unit, from_si, to_si, unit_factor
 from truing.units.grammar import shown
 from truing.units.names import PURE
 
@@ -58,6 +59,8 @@ def sections(model: Model[Any, Any]) -> dict[str, FileSection]:
     }  # fmt: skip
     known = {name: FileSection(name.capitalize(), SECTIONS[name], make(model)) for name, make in makers.items()}
     known["correlations"] = FileSection("Correlations", SECTIONS["correlations"], {}, partial(entry_of_pair, model))
+    column = _column(model)
+    known["columns"] = FileSection("Columns", SECTIONS["columns"], {}, lambda name: column)
     return {name: known[name] for name in SECTIONS}
 
 
@@ -374,3 +377,43 @@ def _unit(name: str, declared: str) -> FileEntry:
         return unit
 
     return FileEntry(read, {"type": "string", "default": declared, "description": f"a unit like {declared or '1'}"})
+
+
+# What columns of files are, whatever the files call them
+
+
+def _column(model: Model[Any, Any]) -> FileEntry:
+    """Return what reads "torque" or { name = "torque", unit = "N m" } behind the name that a file has for a column."""
+    declared = {name: field.unit for name, field in model.input_fields.items()}
+    declared |= {name: condition.unit for name, condition in model.known_conditions.items()}
+    declared |= {name: result.unit for name, result in model.own_result_fields.items()}
+    declared |= {f"{SIGMA}{name}": difference_unit(declared[name]) for name in model.measurable}
+
+    def read(raw: Any, _: InputsRead) -> NamedColumn:
+        table = {"name": raw} if isinstance(raw, str) else raw
+        if not isinstance(table, dict) or set(table) - {"name", "unit"} or not _is_name(table.get("name")):
+            wrong = (
+                'a column is called by one of the model\'s names: write "torque" or { name = "torque", unit = "N m" }'
+            )
+            dotted = (
+                "; put what the file calls it in quotation marks where it holds a dot" if isinstance(raw, dict) else ""
+            )
+            raise SentenceError(wrong + dotted)
+        name, unit = table["name"].strip(), table.get("unit")
+        try:
+            if unit is not None and name in declared:
+                demand_dimension(_text(f"unit of {name}", unit, _), declared[name])
+            elif unit is not None and unit not in PURE:
+                check_unit(_text(f"unit of {name}", unit, _))
+        except UnitError as error:
+            raise SentenceError(f"{name}: {error}") from None
+        return NamedColumn(name, unit)
+
+    properties = {"name": {"type": "string", "examples": list(declared)}, "unit": {"type": "string"}}
+    table = {"type": "object", "properties": properties, "required": ["name"], "additionalProperties": False}
+    words = "The model's name of the column, with its unit where the file states none, or a wrong one."
+    return FileEntry(read, {"anyOf": [{"type": "string"}, table], "description": words})
+
+
+def _is_name(name: Any) -> bool:
+    return isinstance(name, str) and bool(name.strip()) and not set("[]") & set(name)

@@ -19,6 +19,9 @@ from truing.units import from_si, human_dimension, read_quantity, to_si
 from truing.units.grammar import shown
 from truing.units.names import PURE
 
+SIGMA = "sigma_"
+"""A column of this and the name of a result holds the standard deviation of its readings."""
+
 
 class SentenceError(ValueError):
     """A whole sentence about a value, its name included."""

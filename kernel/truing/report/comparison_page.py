@@ -11,7 +11,7 @@ from typing import Any
 
 from truing.declare.fields import InputField, ResultField
 from truing.declare.model import Model
-from truing.errors import UnitError
+from truing.errors import PluginError, UnitError
 from truing.numbers import ABSENT, RESULT_DIGITS, STATED_DIGITS, counted, format_number
 from truing.report.document import (
     Banner,
@@ -428,13 +428,19 @@ _PREFIX = re.compile(r"\bf\d+-")
 """What the identifiers of a figure begin with: its number on the sheet, which is no part of the drawing."""
 
 
+def _not_drawn_again() -> Any:
+    raise PluginError("a figure that was read from a sheet is there as it was drawn, and in no other form")
+
+
 def figures_of(page: str) -> tuple[FigureView, ...]:
     """Return the figures of a sheet that was written as HTML, in their order."""
     views = []
     for number, match in enumerate(_FIGURE.finditer(page), 1):
         title = _TITLE.search(match["svg"])
         caption = unescape(match["caption"]).strip()
-        views.append(FigureView(unescape(title[1]) if title else caption, match["svg"], caption, number))
+        views.append(
+            FigureView(unescape(title[1]) if title else caption, match["svg"], caption, number, _not_drawn_again)
+        )
     return tuple(views)
 
 

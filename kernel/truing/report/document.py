@@ -7,9 +7,9 @@ them. Texts in here are raw: they come from users and plugins, and only the prin
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal, TypeAlias
 
 from truing.errors import UnitError
 from truing.formulas import Formula, symbol_text
@@ -166,12 +166,16 @@ class TableView:
 
 @dataclass(frozen=True)
 class FigureView:
-    """A figure as SVG, with the words that stand for it where it cannot be seen."""
+    """A figure as SVG, with the words that stand for it where it cannot be seen.
+
+    ``drawing`` makes the matplotlib Figure anew, for a printer that needs another form of it.
+    """
 
     title: str
     svg: str
     caption: str
     number: int
+    drawing: Callable[[], Any] = field(repr=False, compare=False)
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from truing.declare.spreads import ByChoice, Drawn
 from truing.formulas.symbols import printable
 from truing.inputs_file.assemble import toml_key, toml_value
 from truing.inputs_file.study_options import options_of
-from truing.setup import Setup, SwitchedOn
+from truing.setup import NamedColumn, Setup, SwitchedOn
 from truing.units import difference_unit, from_si, read_quantity, to_si, unit_factor
 from truing.units.names import PURE
 
@@ -88,6 +88,12 @@ def _sections(setup: Setup, folder: Path | None) -> Iterator[tuple[str, dict[str
     if diagnose := _of_diagnosis(setup):
         yield "studies.diagnose", diagnose
     yield "units", dict(setup.units)
+    if setup.columns:
+        yield "columns", {key: _column(column) for key, column in setup.columns.items()}
+
+
+def _column(column: NamedColumn) -> str | dict[str, str]:
+    return column.name if column.unit is None else {"name": column.name, "unit": column.unit}
 
 
 def _is_declared(study: Study, setup: Setup) -> bool:
