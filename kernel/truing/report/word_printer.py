@@ -183,6 +183,7 @@ def _head(page: _Page, document: Document) -> None:
     head, banner = document.head, document.banner
     if head.logo:
         _logo(page, head.logo)
+    page.add(*(_paragraph(_run(_safe(line), bold=place == 0)) for place, line in enumerate(head.letter)))
     page.add(_paragraph(_run(_safe(document.kind), color=GREY)), _paragraph(_run(_safe(head.title)), "Title"))
     page.add(*(_paragraph(_run(_safe(text))) for text in (head.model, document.summary) if text))
     page.add(_pairs(head.fields, page.width), GAP)
