@@ -73,11 +73,11 @@ class Figures:
         """Draw a figure; one that fails is said in its place and does not take the sheet away."""
         self.count += 1
         if self.skipped:
-            return FigureView(title, "", caption or title, self.count)
+            return FigureView(title, "", caption or title, self.count, what)
         ident = f"f{self.count}"
         try:
-            svg = draw(partial(self.units.drawn, what), title=title, ident=ident)
-            return FigureView(title, svg, caption or title, self.count)
+            drawn = partial(self.units.drawn, what)
+            return FigureView(title, draw(drawn, title=title, ident=ident), caption or title, self.count, drawn)
         except PluginError as error:
             self.failures.append(str(error))
             return Paragraph(f"The figure '{title}' could not be drawn.", "warning")

@@ -16,6 +16,7 @@ from truing.numbers import STATED_DIGITS
 from truing.runs.provenance import Provenance
 from truing.setup import Setup, SwitchedOn
 from truing.studies.checks import Check, Proposal
+from truing.studies.sampling import scatter_of
 from truing.units import difference_unit, from_si, unit_factor, unit_text
 from truing.units.names import PURE
 
@@ -46,6 +47,7 @@ def results_document(
             for name, value in inputs.items()
         },
         "tolerances": _tolerances(setup),
+        "correlations": _correlations(setup),
         "conditions": {
             name: {**said, **_as_stated(setup, name, setup.conditions[name])}
             for name, said in _values(setup, setup.conditions).items()
@@ -180,6 +182,14 @@ def _tolerances(setup: Setup) -> dict[str, Any]:
             on[target] = {"mean": clean(from_si(distribution.mean, unit)), "sd": clean(sd), "unit": unit}
         said[name] = {"spread": setup.spread_of(name).text if on else "off", "on": on}
     return said
+
+
+def _correlations(setup: Setup) -> dict[str, Any]:
+    """Return by pair how inputs scatter together: the correlation of their normal scores, and that of their values."""
+    return {
+        f"{pair.first}, {pair.second}": {"value": pair.coefficient, "unit": "", "of_values": pair.of_values}
+        for pair in scatter_of(setup).pairs
+    }
 
 
 def _effect_values(active: SwitchedOn) -> dict[str, Any]:
