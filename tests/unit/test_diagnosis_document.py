@@ -38,6 +38,7 @@ from test_report_sheet import Page
 
 from truing.cli.diagnose import lines_of as report
 from truing.declare.fields import Float, axis, found, part, results
+from truing.declare.goals import Require
 from truing.declare.model import Model
 from truing.diagnosis.noise import SETTINGS
 from truing.diagnosis.records import Covariate, file_labels
@@ -65,6 +66,7 @@ from truing.kernel.loading import load_file
 from truing.report.chapters import Figures
 from truing.report.diagnosis_chapters import diagnosis_chapters
 from truing.report.diagnosis_figures import main_covariates, said_by, telling_covariate, thinned
+from truing.report.diagnosis_remedy import then_table
 from truing.report.diagnosis_sheet import make_diagnosis_sheet
 from truing.report.diagnosis_sizes import amount_text, fitted_text, number_texts, p_text, percent, readable, score_text
 from truing.report.diagnosis_words import (
@@ -644,13 +646,30 @@ def test_what_to_do_about_a_cause_is_said_on_page_one_on_the_terminal_and_in_the
     errors = [told if each.name == effect.name else each for each in made.setup.model.errors]
     told_about = replace(made, setup=replace(made.setup, model=replace(made.setup.model, errors=errors)))
     sheet = sheet_of(told_about)
-    (items,) = next(chapter.blocks for chapter in sheet.front if chapter.ident == "what-to-do")
+    items = next(chapter.blocks[0] for chapter in sheet.front if chapter.ident == "what-to-do")
+    assert isinstance(items, Items)
     assert items.texts == (told.remedy,)
     assert any(told.remedy in line for line in report(told_about, Path("runs/x")))
     assert written(told_about)["causes"][0]["remedy"] == told.remedy
-    (silent,) = next(chapter.blocks for chapter in page_of("named")[0].front if chapter.ident == "what-to-do")
+    silent = next(chapter.blocks[0] for chapter in page_of("named")[0].front if chapter.ident == "what-to-do")
+    assert isinstance(silent, Items)
     assert silent.texts == (NO_REMEDY,)
     assert written(made)["causes"][0]["remedy"] == ""
+
+
+def test_page_one_says_what_the_machine_would_do_without_the_cause() -> None:
+    """A rod of 320 mm that is 12.05 K warmer at 11.8 um/(m*K) is 45.5 um longer; the tilt knows nothing of it."""
+    limit = Require("slide_position", at_most="410 mm")
+    setup = replace(named().setup, model=replace(SLIDE, objectives=[limit]))
+    mended = named().extended
+    assert mended is not None
+    made = replace(named(), setup=setup, extended=replace(mended, model=setup.model))
+    table = then_table(made)
+    assert table is not None
+    (check, change) = table.rows
+    assert [plain_text(cell) for cell in check[3:]] == ["≤ 410 mm", "✓ pass"]
+    assert [plain_text(cell) for cell in change[-2:]] == ["–", "changes by −45.5 µm"]
+    assert then_table(none_found()) is None
 
 
 def test_a_condition_with_few_values_shows_no_course() -> None:

@@ -15,10 +15,21 @@ from truing.diagnosis.sentences import sentence
 from truing.report import diagnosis_figures as figures
 from truing.report.chapters import Figures, numbered
 from truing.report.diagnosis_chapters import diagnosis_chapters
+from truing.report.diagnosis_remedy import then_table
 from truing.report.diagnosis_sizes import amount_text
 from truing.report.diagnosis_units import diagnosis_as_printed, words_as_printed
 from truing.report.diagnosis_words import headline, remedy_of, spoken, verdict_word, what_decides
-from truing.report.document import Banner, BlockView, Chapter, Document, Items, Paragraph, lines_of, plain_text
+from truing.report.document import (
+    Banner,
+    BlockView,
+    Chapter,
+    Document,
+    Items,
+    Paragraph,
+    TableView,
+    lines_of,
+    plain_text,
+)
 from truing.report.sheet import end_chapters, head_faults, head_of
 from truing.report.sheet_units import sheet_units
 from truing.runs.folder import data_digests
@@ -78,6 +89,8 @@ def _texts(front: Iterable[Chapter]) -> Iterator[str]:
             case Items(_, texts, labels):
                 yield from map(plain_text, texts)
                 yield from filter(None, labels)
+            case TableView(title, _, rows, note):
+                yield from (title, *(plain_text(row[0]) for row in rows), plain_text(note))
 
 
 def _figure_height(texts: Iterable[str]) -> float:
@@ -119,6 +132,9 @@ def _what_to_do(diagnosis: DiagnosisResult, decides: Sequence[str]) -> Iterator[
         labels, texts = zip(*((spoken(each.effect), remedy_of(diagnosis, each.effect)) for each in diagnosis.causes),
                             strict=True)  # fmt: skip
         yield Items("findings", texts, labels)
+    then = then_table(diagnosis) if diagnosis.verdict == "named" else None
+    if then is not None:
+        yield then
 
 
 def questions(diagnosis: DiagnosisResult) -> dict[str, tuple[str, ...]]:
