@@ -382,6 +382,24 @@ def test_the_axes_of_a_figure_have_round_numbers_of_the_other_unit() -> None:
     assert panel.lines[0].get_xdata().tolist() == [0, 254]
 
 
+def test_panels_that_share_an_axis_and_drawings_to_scale_are_in_one_unit() -> None:
+    figure = Figure()
+    above, below = figure.subplots(2, 1, sharex=True)
+    above.plot([0, 254], [0, 1])
+    above.set_xlabel("x, mm")
+    below.set(xlabel="x, mm")
+    scale = Figure().subplots()
+    scale.plot([0, 254], [0, 254])
+    scale.set(aspect="equal", xlabel="mm")
+    for panel in (above, scale):
+        FigureCanvasAgg(brought_over(panel.figure, SheetUnits("inch").unit, SheetUnits("inch").text)).draw()
+    assert [panel.get_xlabel() for panel in (above, below, scale)] == ["x, in", "x, in", "in"]
+    for axis in (below.xaxis, scale.xaxis, scale.yaxis):
+        assert "10" in {
+            tick.label1.get_text() for tick in axis.get_major_ticks() if tick.get_loc() == pytest.approx(254)
+        }
+
+
 def test_a_diagnosis_is_printed_in_inches() -> None:
     made = named()
     made = replace(made, setup=replace(made.setup, sheet=replace(made.setup.sheet, units="inch")))

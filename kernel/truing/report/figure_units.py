@@ -37,13 +37,13 @@ def brought_over(figure: Any, unit_of: Callable[[str], str], text_of: Callable[[
     """Bring every axis whose label names a unit to ``unit_of`` it, and the quantities in its words to ``text_of``.
 
     "depth, µm", "depth [µm]" and "depth (µm)" end with a unit, "µm along the normal" begins with one. An axis whose
-    ticks a plugin has named itself stays.
+    ticks a plugin has named itself stays. Of a drawing to scale one label speaks for both axes.
     """
     axes = [axis for panel in figure.axes for axis in panel._axis_map.values()]
     ticks = (each for axis in axes for each in axis.get_ticklabels(which="both"))
     labels = {id(axis.label) for axis in axes} | {*map(id, ticks)}
-    for axis in axes:
-        _relabel(axis, unit_of)
+    for panel in figure.axes:
+        _relabel(panel, unit_of)
     for text in figure.findobj(Text):
         said = text.get_text()
         if said and "$" not in said and id(text) not in labels:
@@ -51,20 +51,39 @@ def brought_over(figure: Any, unit_of: Callable[[str], str], text_of: Callable[[
     return figure
 
 
-def _relabel(axis: Any, unit_of: Callable[[str], str]) -> None:
-    for pattern in _LABELS:
-        match = pattern.fullmatch(axis.get_label_text().strip())
-        unit = match["unit"] if match else ""
+def _relabel(panel: Any, unit_of: Callable[[str], str]) -> None:
+    """Bring the axes of a panel over; in one that is drawn to scale the axis without a label goes with the other."""
+    changed = ("", "")
+    silent = []
+    for axis in panel._axis_map.values():
+        match, unit = _unit_in(axis.get_label_text().strip(), unit_of)
         shown = unit_of(unit)
-        if match and shown != unit and _can_change(axis):
+        if match is None:
+            silent += [] if axis.get_label_text().strip() else [axis]
+        elif _can_change(axis, unit, shown):
+            changed = unit, shown
             _change(axis, unit, shown)
             axis.set_label_text(match["before"] + unit_text(shown) + match["behind"])
-            return
+    if panel.get_aspect() == 1 and all(changed):
+        for axis in (axis for axis in silent if _can_change(axis, *changed)):
+            _change(axis, *changed)
 
 
-def _can_change(axis: Any) -> bool:
-    """Tell whether the ticks of an axis are numbers that matplotlib chooses or writes."""
+def _unit_in(label: str, unit_of: Callable[[str], str]) -> tuple[re.Match[str] | None, str]:
+    """Find the unit in a label that has a counterpart."""
+    matches = (match for pattern in _LABELS if (match := pattern.fullmatch(label)))
+    match = next((match for match in matches if unit_of(match["unit"]) != match["unit"]), None)
+    return match, match["unit"] if match else ""
+
+
+def _can_change(axis: Any, unit: str, shown: str) -> bool:
+    """Tell whether the ticks of an axis are numbers that matplotlib chooses or writes.
+
+    An axis that shares its ticks with one that was brought over is there already.
+    """
     locator, formatter = axis.get_major_locator(), axis.get_major_formatter()
+    if isinstance(formatter, _OtherFormatter):
+        return formatter.units == (unit, shown)
     known = isinstance(locator, (*_LOCATORS, FixedLocator, NullLocator))
     return known and isinstance(formatter, (*_FORMATTERS, NullFormatter))
 
@@ -81,7 +100,7 @@ def _change(axis: Any, unit: str, shown: str) -> None:
         if isinstance(locator, _LOCATORS):
             getattr(axis, f"set_{which}_locator")(_OtherLocator(locator, to, back))
         if isinstance(formatter, _FORMATTERS):
-            getattr(axis, f"set_{which}_formatter")(_OtherFormatter(formatter, to))
+            getattr(axis, f"set_{which}_formatter")(_OtherFormatter(formatter, to, (unit, shown)))
 
 
 class _OtherLocator(Locator):
@@ -108,8 +127,8 @@ class _OtherLocator(Locator):
 class _OtherFormatter(Formatter):
     """Writes ticks in another unit."""
 
-    def __init__(self, base: Any, to: Convert) -> None:
-        self.base, self.to = copy.copy(base), to
+    def __init__(self, base: Any, to: Convert, units: tuple[str, str]) -> None:
+        self.base, self.to, self.units = copy.copy(base), to, units
         self.base.axis = None
         self.base.create_dummy_axis(minpos=1e-300)
 
