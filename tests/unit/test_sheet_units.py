@@ -372,6 +372,8 @@ def test_the_axes_of_a_figure_have_round_numbers_of_the_other_unit() -> None:
     panel.set_yscale("log")
     panel.set(xlabel="width, mm", ylabel="µm along the normal")
     panel.text(10, 10, "25.4 mm")
+    panel.plot([0], [1], label="−50.8, 254")
+    panel.legend(title="offsets, mm")
     brought_over(figure, SheetUnits("inch").unit, SheetUnits("inch").text)
     assert (panel.get_xlabel(), panel.get_ylabel()) == ("width, in", "µin along the normal")
     FigureCanvasAgg(figure).draw()
@@ -379,6 +381,9 @@ def test_the_axes_of_a_figure_have_round_numbers_of_the_other_unit() -> None:
     assert (written[0.0], written[50.8], written[254.0]) == ("0", "2", "10")
     assert [round(place, 6) for place in panel.get_yticks() if 1 < place < 1000] == [2.54, 25.4, 254.0]
     assert panel.texts[0].get_text() == "1 in"
+    legend = panel.get_legend()
+    assert legend is not None
+    assert (legend.get_title().get_text(), legend.get_texts()[0].get_text()) == ("offsets, in", "−2, 10")
     assert panel.lines[0].get_xdata().tolist() == [0, 254]
 
 

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from matplotlib.legend import Legend
 from matplotlib.text import Text
 from matplotlib.ticker import (
     FixedLocator,
@@ -28,6 +29,8 @@ _LABELS = (
     re.compile(r"(?P<before>.*?(?:,\s*|\s*\[|\s*\())(?P<unit>[^\s,\[\]()][^,\[\]]*?)(?P<behind>[\])]?)"),
     re.compile(r"(?P<before>)(?P<unit>[^\s,]+)(?P<behind>(?:,?\s.*)?)"),
 )
+_NUMBER = re.compile(r"[-−+]?\d+(?:\.\d+)?")
+_NUMBERS = re.compile(rf"{_NUMBER.pattern}(?:[,;]?\s+{_NUMBER.pattern})*")
 _LOCATORS = (MaxNLocator, LogLocator, SymmetricalLogLocator)
 _FORMATTERS = (ScalarFormatter, LogFormatter)
 Convert = Callable[[Any], Any]
@@ -44,6 +47,8 @@ def brought_over(figure: Any, unit_of: Callable[[str], str], text_of: Callable[[
     labels = {id(axis.label) for axis in axes} | {*map(id, ticks)}
     for panel in figure.axes:
         _relabel(panel, unit_of)
+    for legend in figure.findobj(Legend):
+        _say_legend(legend, unit_of, text_of)
     for text in figure.findobj(Text):
         said = text.get_text()
         if said and "$" not in said and id(text) not in labels:
@@ -67,6 +72,19 @@ def _relabel(panel: Any, unit_of: Callable[[str], str]) -> None:
     if panel.get_aspect() == 1 and all(changed):
         for axis in (axis for axis in silent if _can_change(axis, *changed)):
             _change(axis, *changed)
+
+
+def _say_legend(legend: Any, unit_of: Callable[[str], str], text_of: Callable[[str], str]) -> None:
+    """Bring a legend over whose title names the unit of its entries, which are numbers alone."""
+    title, texts = legend.get_title(), legend.get_texts()
+    match, unit = _unit_in(title.get_text().strip(), unit_of)
+    if match is None or not all(_NUMBERS.fullmatch(text.get_text()) for text in texts):
+        return
+    shown = unit_text(unit_of(unit))
+    for text in texts:
+        said = _NUMBER.sub(lambda number: text_of(f"{number[0]} {unit}").removesuffix(f" {shown}"), text.get_text())
+        text.set_text(said)
+    title.set_text(match["before"] + shown + match["behind"])
 
 
 def _unit_in(label: str, unit_of: Callable[[str], str]) -> tuple[re.Match[str] | None, str]:
