@@ -36,6 +36,8 @@ from truing.workbooks.reading import in_per_cent
 
 MOST_QUANTITIES = 300
 """A column with more numbers and formulas is a table; a sheet of that size is no calculation that one person reads."""
+MOST_FACTORS = 12
+"""So many factors of a formula are looked at; that makes 298 ways to leave out one, two or three of them."""
 SAME = 1e-9
 """A result equals the stored value within this, relatively: spreadsheets store 15 digits."""
 NEVER_STORED = "no value was stored"
@@ -229,9 +231,10 @@ def _label(text: str) -> tuple[str, str]:
 def _name(note: str, cell: str, taken: set[str]) -> str:
     """Return a name that is not taken yet, and take it: the first words of a note, or that of the cell."""
     words = re.findall(r"\w+", note)
-    while words and not spelled("_".join(words)):
+    while words and not spelled("_".join(words)) and not spelled("_".join([*words, "value"])):
         words.pop()
-    plain = name = spelled("_".join(words)) if words else f"cell_{cell.lower()}"
+    plain = spelled("_".join(words)) or spelled("_".join([*words, "value"])) if words else f"cell_{cell.lower()}"
+    plain = name = f"{plain}_value" if plain in _TAKEN else plain
     number = 1
     while name in taken:
         number += 1
@@ -321,17 +324,25 @@ def _ratio(quantity: Quantity, formula: str, values: Mapping[str, float]) -> flo
 
 
 def _without_factors(formula: str) -> Iterator[tuple[str, list[str]]]:
-    """Give the formula without one or two of the numbers that it multiplies or divides by, and these numbers."""
+    """Give the formula without up to three of its factors that may convert units, and these factors."""
     tree = ast.parse(formula, mode="eval").body
-    factors = [
-        node for parent in ast.walk(tree) if isinstance(parent, ast.BinOp) and isinstance(parent.op, ast.Mult | ast.Div)
-        for node in (parent.left, parent.right)
-        if isinstance(node, ast.Constant) or (isinstance(node, ast.Name) and node.id == "pi")
-    ]  # fmt: skip
-    for count in (1, 2):
+    products = [
+        node for node in ast.walk(tree) if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult | ast.Div)
+    ]
+    factors = [side for node in products for side in (node.left, node.right) if _may_convert(side)][:MOST_FACTORS]
+    for count in (1, 2, 3):
         for chosen in combinations(factors, count):
             text = ast.unparse(_Without(chosen).visit(copy.deepcopy(tree, {id(one): one for one in chosen})))
             yield text.replace(" ** ", "**"), [ast.unparse(one) for one in chosen]
+
+
+def _may_convert(node: ast.expr) -> bool:
+    """Whether a factor may be there to convert a unit: a power of ten, minutes and hours, inches, half a turn."""
+    if isinstance(node, ast.Name):
+        return node.id == "pi"
+    if not isinstance(node, ast.Constant) or node.value <= 0:
+        return False
+    return node.value in {60, 3600, 25.4, 180} or (node.value != 1 and math.log10(node.value).is_integer())
 
 
 class _Without(ast.NodeTransformer):

@@ -80,7 +80,7 @@ def rig() -> list[Row]:
     return rows
 
 
-BLUE, HEAD = Font(color="0000FF"), PatternFill("solid", fgColor="DDE6F0")
+BLUE, HEAD = Font(name="Calibri", size=11, color="0000FF"), PatternFill("solid", fgColor="DDE6F0")
 LINE = Border(bottom=Side("thin"))
 
 
@@ -92,11 +92,12 @@ def write(sheet: Worksheet, rows: list[Row], header: int, columns: str) -> None:
             if isinstance(value, (int, float)):
                 sheet[f"{column}{number}"].font = BLUE
     sheet.merge_cells(f"A1:{columns[-1]}1")
-    sheet["A1"].font = Font(bold=True, size=14)
+    sheet["A1"].font = Font(name="Calibri", bold=True, size=14)
     for column in columns:
         cell = sheet[f"{column}{header}"]
-        cell.font, cell.fill, cell.border = Font(bold=True), HEAD, LINE
-        sheet.column_dimensions[column].width = 14
+        cell.font, cell.fill, cell.border = Font(name="Calibri", size=11, bold=True), HEAD, LINE
+        sheet.column_dimensions[column].width = 11
+        cell.alignment = Alignment(horizontal="left" if column == "A" else "center")
     sheet.column_dimensions["A"].width = 28
 
 
@@ -108,18 +109,23 @@ def workbook() -> Workbook:
     bracket.title = "Bracket"
     write(bracket, BRACKET, 4, "ABCDE")
     bracket.merge_cells("A2:E2")
-    bracket["A2"].font = Font(italic=True)
-    bracket.column_dimensions["E"].width = 30
+    bracket["A2"].font = Font(name="Calibri", size=11, italic=True)
+    bracket.column_dimensions["E"].width = 28
     for row in range(13, 18):
         bracket[f"C{row}"].number_format = "0.00" if row == 17 else "0.0"
-    for row in range(4, 21):
+    for row in range(5, 21):
         bracket[f"C{row}"].alignment = Alignment(horizontal="right")
-    write(book.create_sheet("Variants"), VARIANTS, 2, "ABCD")
+        bracket[f"D{row}"].alignment = Alignment(horizontal="center")
+    variants = book.create_sheet("Variants")
+    write(variants, VARIANTS, 2, "ABCD")
     measured = book.create_sheet("Rig")
     write(measured, rig(), 2, "ABCD")
     measured.column_dimensions["A"].width = 14
     measured.column_dimensions["D"].width = 40
     measured.freeze_panes = "A4"
+    for column in "ABCD":
+        for sheet in (variants, measured):
+            sheet[f"{column}3"].alignment = Alignment(horizontal="center")
     for number in range(4, measured.max_row + 1):
         measured[f"C{number}"].number_format = "0.00"
     return book

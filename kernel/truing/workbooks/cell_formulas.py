@@ -31,7 +31,7 @@ def translated(text: str, name_of: Callable[[str], str]) -> str:
         parts = openpyxl.Tokenizer(text).items
         tokens = _Tokens([part for part in parts if part.type != "WHITE-SPACE"], name_of)
         tree = _joined(tokens, 0)
-    except (openpyxl.TokenizerError, RecursionError):
+    except (openpyxl.TokenizerError, IndexError, RecursionError):  # it takes an IndexError for a bracket too many
         raise ValueError("it cannot be read") from None
     if tokens.rest:
         raise ValueError(f"{tokens.rest[0].value} cannot be translated")
