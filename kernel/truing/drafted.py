@@ -340,9 +340,10 @@ def _may_convert(node: ast.expr) -> bool:
     """Whether a factor may be there to convert a unit: a power of ten, minutes and hours, inches, half a turn."""
     if isinstance(node, ast.Name):
         return node.id == "pi"
-    if not isinstance(node, ast.Constant) or node.value <= 0:
+    number = node.value if isinstance(node, ast.Constant) else None
+    if not isinstance(number, (int, float)) or number <= 0:
         return False
-    return node.value in {60, 3600, 25.4, 180} or (node.value != 1 and math.log10(node.value).is_integer())
+    return number in {60, 3600, 25.4, 180} or (number != 1 and math.log10(number).is_integer())
 
 
 class _Without(ast.NodeTransformer):
