@@ -86,7 +86,7 @@ def _place(plan: NewPlugin, output: Path | None) -> tuple[Path, str]:
     """Return where a single file goes, and how that is typed."""
     path = output if output is not None else Path(f"{plan.name}.py")
     if path.suffix != ".py":
-        raise UsageError(f"--output: {path} is no name of a Python file; with --single-file it ends in .py")
+        raise UsageError(f"--output: {path} is no name of a Python file; a single file ends in .py")
     return path, _typed(str(path) if path.is_absolute() else f"./{path.as_posix()}")
 
 
