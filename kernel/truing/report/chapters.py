@@ -70,10 +70,10 @@ class Figures:
         """Draw a figure; one that fails is said in its place and does not take the sheet away."""
         self.count += 1
         if self.skipped:
-            return FigureView(title, "", caption or title, self.count)
+            return FigureView(title, "", caption or title, self.count, what)
         ident = f"f{self.count}"
         try:
-            return FigureView(title, draw(what, title=title, ident=ident), caption or title, self.count)
+            return FigureView(title, draw(what, title=title, ident=ident), caption or title, self.count, what)
         except PluginError as error:
             self.failures.append(str(error))
             return Paragraph(f"The figure '{title}' could not be drawn.", "warning")
