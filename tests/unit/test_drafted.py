@@ -52,7 +52,7 @@ def book(path: Path, rows: Rows) -> Path:
     for number, row in enumerate(rows, start=1):
         if len(row) > 4:
             kind = ' t="str"' if isinstance(row[4], str) else ""
-            cell = rf'<c r="B{number}"[^>]*>(<f>.*?</f>)<v ?/>'
+            cell = rf'<c r="B{number}"[^>]*>(<f>.*?</f>)<v(?: ?/>|></v>)'
             sheet, count = re.subn(cell, rf'<c r="B{number}"{kind}>\1<v>{row[4]}</v>', sheet)
             assert count == 1
     with zipfile.ZipFile(path, "w") as archive:
