@@ -17,6 +17,7 @@ from truing.declare.sources import Effect, Unknown
 from truing.declare.spreads import Distribution, Off, Spread, Target, settled
 from truing.errors import UsageError
 from truing.kernel import Added, Origin
+from truing.templating import ENGLISH, languages
 
 DEFAULT_SEED = 0
 
@@ -182,12 +183,13 @@ class InputsSource:
 class SheetOptions:
     """What stands at the head of the sheet, by name, and how much of everything: "short", "normal" or "full".
 
-    ``paper`` is what it is printed on, "A4" or "letter".
+    ``paper`` is what it is printed on, "A4" or "letter"; ``language`` what its words are in, "en" or "de".
     """
 
     head: Mapping[str, str] = field(default_factory=dict)
     detail: str = "normal"
     paper: str = "A4"
+    language: str = ENGLISH
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -236,6 +238,13 @@ class Setup(Case):
             if kept:
                 distributions[tolerance.name] = kept
         return distributions
+
+
+def in_language(setup: Setup, language: str) -> Setup:
+    """Return a setup with its sheet in a language; "" leaves it as it is. Raises UsageError for an unknown one."""
+    if language and language not in languages():
+        raise UsageError(f"language: choose {' or '.join(languages())}, not '{language}'.")
+    return replace(setup, sheet=replace(setup.sheet, language=language)) if language else setup
 
 
 def default_setup(model: Model[Any, Any], origin: Origin | None = None, **values: Any) -> Setup:

@@ -47,7 +47,7 @@ from truing.report.run import run_info, sheets_of, write_sheet
 from truing.runs.diagnosis_document import diagnosis_document
 from truing.runs.extension import extended_text
 from truing.runs.folder import demand_place, diagnosis_files, write_outcome
-from truing.setup import Setup
+from truing.setup import Setup, in_language
 from truing.studies.bench import Progress
 from truing.studies.frequency import Frequency
 from truing.studies.sweep import Sweep
@@ -417,9 +417,13 @@ class Diagnosis:
         """Draw what convinces: the residuals before and after, over what the cause depends on."""
         return self.residuals.plot()
 
-    def sheet(self, path: str | Path) -> Path:
-        """Write the sheet as HTML, Markdown or PDF, as the name ends. Raises OutputError."""
-        return write_sheet(path, partial(diagnosis_sheet_of, self.result, self.started))
+    def sheet(self, path: str | Path, *, language: str = "") -> Path:
+        """Write the sheet as HTML, Markdown or PDF, as the name ends, in its language or another one.
+
+        Raises OutputError.
+        """
+        result = replace(self.result, setup=in_language(self.result.setup, language))
+        return write_sheet(path, partial(diagnosis_sheet_of, result, self.started))
 
     def save(self, folder: str | Path, *, pdf: bool = False, xlsx: bool = False) -> Path:
         """Write the folder that ``calc diagnose`` writes; an earlier diagnosis there goes. Raises OutputError."""

@@ -35,7 +35,7 @@ from truing.runs.documents import results_document
 from truing.runs.folder import demand_place, run_files, write_outcome
 from truing.runs.partial import code_of, identity_of, kept_batches
 from truing.runs.provenance import provenance_of
-from truing.setup import Setup
+from truing.setup import Setup, in_language
 from truing.studies.bench import Progress, silent
 from truing.studies.checks import Check, State
 from truing.units import from_si
@@ -132,9 +132,13 @@ class Run:
             raise UsageError("this run has no cases; state them with cases=")
         return frame_of(_case_columns(self.cases, self._setup))
 
-    def sheet(self, path: str | Path) -> Path:
-        """Write the calculation sheet as HTML, Markdown or PDF, as the name ends. Raises OutputError."""
-        return write_sheet(path, partial(self._sheet, silent))
+    def sheet(self, path: str | Path, *, language: str = "") -> Path:
+        """Write the calculation sheet as HTML, Markdown or PDF, as the name ends, in its language or another one.
+
+        Raises OutputError.
+        """
+        run = replace(self, calculation=replace(self.calculation, setup=in_language(self._setup, language)))
+        return write_sheet(path, partial(run._sheet, silent))
 
     def save(self, folder: str | Path, *, pdf: bool = False, excel: bool = False, xlsx: bool = False) -> Path:
         """Write the folder that ``calc run`` writes: inputs, results, sheets, arrays; an earlier run there goes.

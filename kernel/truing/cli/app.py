@@ -131,6 +131,7 @@ def run(
     plugin: Plugin,
     inputs: Inputs = None,
     changed: Changed = None,
+    language: Language = "",
     cases: Cases = None,
     output: RunFolder = None,
     workers: Annotated[int | None, typer.Option("--workers", min=1, help="Processes that share the work.")] = None,
@@ -165,6 +166,7 @@ def sweep(
     steps: Annotated[int, typer.Option("--steps", help="How many points a range has.")] = 181,
     inputs: Inputs = None,
     changed: Changed = None,
+    language: Language = "",
     output: Annotated[Path | None, typer.Option("-o", "--output", help="The folder (default runs/STEM_sweep).")] = None,
     as_json: AsJson = False,
 ) -> None:
@@ -178,6 +180,7 @@ def watch(
     inputs: Annotated[Path, typer.Option("--inputs", "-i", help="The inputs file that is being edited.")],
     data: Data = None,
     changed: Changed = None,
+    language: Language = "",
     cases: Cases = None,
     output: RunFolder = None,
     excel: Excel = False,
@@ -211,6 +214,7 @@ def diagnose(
     inputs: Inputs = None,
     data: Data = None,
     changed: Changed = None,
+    language: Language = "",
     output: Annotated[
         Path | None, typer.Option("--output", "-o", help="The folder (default runs/STEM of the first data file).")
     ] = None,
@@ -326,6 +330,12 @@ Data: TypeAlias = Annotated[
 ]
 RunFolder: TypeAlias = Annotated[
     Path | None, typer.Option("--output", "-o", help="The run folder (default runs/STEM).")
+]
+Language: TypeAlias = Annotated[
+    str,
+    typer.Option(
+        "--language", metavar="LANGUAGE", help="The language of the sheet: en, de.", autocompletion=candidates.languages
+    ),
 ]
 Pdf: TypeAlias = Annotated[bool, typer.Option("--pdf", help="Print the sheet to PDF with an installed browser.")]
 

@@ -27,7 +27,7 @@ def diagnose(settings: Settings, asked: SimpleNamespace) -> int:
     measured = (*(asked.data or ()), *(asked.files or ()))
     if not measured:
         raise UsageError("nothing to diagnose: name the measured rows with --data FILE.csv")
-    model = find_model(asked.plugin, settings, asked.changed)
+    model = find_model(asked.plugin, settings, asked.changed, asked.language)
     say_example(asked.inputs, asked.plugin, settings)
     folder = asked.output or Path("runs") / file_of(measured[0]).stem
     record, progress = MeasuredRecord(measured), not settings.quiet

@@ -18,9 +18,16 @@ def find_offer(word: str, settings: Settings, *, strict: bool = False) -> Offer:
     return offer_of(word, lambda text: settings.say(f"warning: {text}"), strict=strict)
 
 
-def find_model(word: str, settings: Settings, changed: Sequence[str] | None = None) -> LoadedModel:
-    """Return the model that ``word`` names, with what ``--set`` changes in every run."""
-    return LoadedModel(find_offer(word, settings), tuple(changed or ()), label=LABEL)
+def find_model(
+    word: str, settings: Settings, changed: Sequence[str] | None = None, language: str = ""
+) -> LoadedModel:  # fmt: skip
+    """Return the model that ``word`` names, with what ``--set`` changes in every run, and the language of its sheet."""
+    return LoadedModel(find_offer(word, settings), stated_words(changed, language), label=LABEL)
+
+
+def stated_words(changed: Sequence[str] | None, language: str) -> tuple[str, ...]:
+    """Return what the command line states in place of the inputs file, in the words of ``--set``."""
+    return (*(changed or ()), *([f"sheet.language={language}"] if language else []))
 
 
 def say_example(inputs: Path | None, word: str, settings: Settings) -> None:

@@ -33,7 +33,7 @@ def run(settings: Settings, asked: SimpleNamespace) -> int:
     """Run the calculation and its studies and write the calculation sheet."""
     if asked.cluster and asked.workers is not None:
         raise UsageError("--cluster and --workers exclude each other: a cluster has its own workers")
-    model = find_model(asked.plugin, settings, asked.changed)
+    model = find_model(asked.plugin, settings, asked.changed, asked.language)
     say_example(asked.inputs, asked.plugin, settings)
     folder = asked.output or Path("runs") / (file_of(asked.inputs).stem if asked.inputs else model.name)
     how = {name: getattr(asked, name) for name in ("cases", "workers", "cluster", "resume", "pdf", "excel", "xlsx")}

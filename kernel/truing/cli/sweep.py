@@ -23,7 +23,7 @@ MOST_ROWS, MOST_COLUMNS = 11, 8
 
 def sweep(settings: Settings, asked: SimpleNamespace) -> int:
     """Evaluate results along an input, print a few points and where limits are met, write sheet and points."""
-    model = find_model(asked.plugin, settings, asked.changed)
+    model = find_model(asked.plugin, settings, asked.changed, asked.language)
     say_example(asked.inputs, asked.plugin, settings)
     folder = asked.output or Path("runs") / f"{asked.inputs.stem if asked.inputs else model.name}_sweep"
     results = tuple(name.strip() for name in asked.results.split(",") if name.strip())

@@ -16,7 +16,7 @@ from truing.api.records import MeasuredRecord
 from truing.api.run import Run
 from truing.atomic import writings, written
 from truing.cli.console import Settings, out, say, sentence_of
-from truing.cli.load import LABEL, find_offer
+from truing.cli.load import LABEL, find_offer, stated_words
 from truing.errors import UsageError
 from truing.inputs_file.files import refuse_file
 from truing.kernel import Offer
@@ -47,7 +47,9 @@ def watch(settings: Settings, asked: SimpleNamespace) -> int:
     folder = asked.output or Path("runs") / file_of((measured or (inputs,))[0]).stem
     how = {"xlsx": asked.xlsx}
     how |= {} if measured else {"cases": asked.cases, "workers": asked.workers, "excel": asked.excel}
-    watcher = _Watcher(asked.plugin, inputs, measured, tuple(asked.changed or ()), folder, how, settings)
+    watcher = _Watcher(
+        asked.plugin, inputs, measured, stated_words(asked.changed, asked.language), folder, how, settings
+    )
     demand_place(folder, watcher.kind)
     watched = WatchedFiles(asked.every)
     settings.say(f"watching {inputs} and the code of {offer.name}; Ctrl-C ends it")

@@ -18,6 +18,7 @@ from truing.inputs_file.study_options import diagnose_options
 from truing.inputs_file.values import InputsRead, StatedValues, plain
 from truing.kernel import Offer
 from truing.setup import DEFAULT_SEED, InputsSource, Setup, SheetOptions, SwitchedOn
+from truing.templating import ENGLISH
 from truing.units.names import PURE
 
 
@@ -166,7 +167,12 @@ def make_setup(offer: Offer, reading: InputsRead, studies: tuple[Study, ...], do
         seed=values.get(("studies", "seed"), DEFAULT_SEED),
         diagnose=diagnose_options(model, values),
         units=of("units"),
-        sheet=SheetOptions(detail=head.pop("detail", "normal"), paper=head.pop("paper", "A4"), head=head),
+        sheet=SheetOptions(
+            detail=head.pop("detail", "normal"),
+            paper=head.pop("paper", "A4"),
+            language=head.pop("language", ENGLISH),
+            head=head,
+        ),
         source=InputsSource(
             stated=frozenset(names),
             file=document.file,

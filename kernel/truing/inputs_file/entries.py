@@ -30,6 +30,7 @@ from truing.inputs_file.values import (
     read_number,
 )  # fmt: skip
 from truing.setup import DEFAULT_SEED
+from truing.templating import ENGLISH, languages
 from truing.units import demand_dimension, difference_unit, from_si, to_si, unit_factor
 from truing.units.grammar import shown
 from truing.units.names import PURE
@@ -71,10 +72,12 @@ def _sheet(_: Model[Any, Any]) -> dict[str, FileEntry]:
     entries = {name: FileEntry(partial(_head_text, name), {"type": ["string", "number"]}) for name in HEAD}
     detail = {"enum": list(DETAILS), "default": "normal", "description": "How much the sheet shows."}
     paper = {"enum": list(PAPERS), "default": "A4", "description": "What the sheet is printed on."}
+    language = {"enum": languages(), "default": ENGLISH, "description": "The language of the sheet."}
     return {
         **entries,
         "detail": FileEntry(partial(_one_of, "detail", DETAILS), detail),
         "paper": FileEntry(partial(_one_of, "paper", PAPERS), paper),
+        "language": FileEntry(partial(_one_of, "language", languages()), language),
     }
 
 

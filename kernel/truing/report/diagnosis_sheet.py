@@ -12,12 +12,14 @@ import numpy as np
 from truing.diagnosis.records import file_labels
 from truing.diagnosis.result import Amount, DiagnosisResult
 from truing.report import diagnosis_figures as figures
+from truing.report import translation
 from truing.report.chapters import Figures, numbered
 from truing.report.diagnosis_chapters import diagnosis_chapters
 from truing.report.diagnosis_sizes import amount_text
 from truing.report.diagnosis_words import headline, remedy_of, spoken, verdict_word
 from truing.report.document import Banner, Chapter, Document, Items, Paragraph
 from truing.report.sheet import end_chapters, head_of, logo_of
+from truing.report.translation import catalogue_of, translated
 from truing.runs.folder import data_digests
 from truing.runs.provenance import Provenance, provenance_of
 
@@ -34,14 +36,15 @@ def diagnosis_sheet_of(diagnosis: DiagnosisResult, started: float) -> Document:
 
 def make_diagnosis_sheet(diagnosis: DiagnosisResult, *, provenance: Provenance) -> Document:
     """Say everything that stands on the sheet of a diagnosis."""
-    drawn = Figures()
+    words = catalogue_of(diagnosis.setup, translation.DIAGNOSIS)
+    drawn = Figures(words)
     front = tuple(_page_one(diagnosis, drawn))
     chapters = list(diagnosis_chapters(diagnosis, drawn))
-    warnings = tuple(filter(None, [logo_of(diagnosis.setup)[1], *drawn.failures]))
+    warnings = tuple(filter(None, [logo_of(diagnosis.setup)[1], *drawn.failures, *words.faults]))
     head = head_of(diagnosis.setup, provenance)
     named = "found" if diagnosis.remainder is None else "open"
     mood = {"none": "calm", "named": named}.get(diagnosis.verdict, "open")
-    return Document(
+    sheet = Document(
         kind=DIAGNOSIS,
         title=f"{DIAGNOSIS}: {head.title}",
         head=replace(head, footer=" · ".join(part for part in (DIAGNOSIS, head.footer) if part)),
@@ -55,6 +58,7 @@ def make_diagnosis_sheet(diagnosis: DiagnosisResult, *, provenance: Provenance) 
         warnings=warnings,
         provenance=provenance,
     )
+    return translated(sheet, words)
 
 
 def _page_one(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[Chapter]:

@@ -15,18 +15,21 @@ from io import StringIO
 from typing import Any
 
 import matplotlib as mpl
+from matplotlib.axis import Axis
 from matplotlib.backends.backend_mixed import MixedModeRenderer
 from matplotlib.backends.backend_svg import FigureCanvasSVG, RendererSVG
 from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties, findfont, get_font
 from matplotlib.mathtext import MathTextParser
 from matplotlib.text import Text
+from matplotlib.ticker import FixedLocator
 
 from truing.arrays import Matrix
 from truing.errors import PluginError
 from truing.formulas.symbols import printable
 from truing.kernel.blame import spoken_place
 from truing.report.figure_layout import arranged
+from truing.report.translation import ENGLISH_WORDS, Catalogue
 
 MOST_STATES = 6
 """So many states are drawn over time."""
@@ -105,18 +108,32 @@ def phase(states: Mapping[str, Matrix]) -> Figure:
     return figure
 
 
-def draw(what: Callable[[], Any], *, title: str, ident: str) -> str:
-    """Draw a figure and return it as an ``<svg>`` element with ``role="img"`` and a title.
+def draw(what: Callable[[], Any], *, title: str, ident: str, words: Catalogue = ENGLISH_WORDS) -> str:
+    """Draw a figure and return it as an ``<svg>`` element with ``role="img"`` and a title, its texts as ``words`` say.
 
     ``what()`` returns a matplotlib Figure. Raises PluginError, naming the figure and the place, where drawing fails.
     """
     with styled():
         try:
-            svg = _saved(what())
+            figure = what()
+            if not words.is_english:
+                _translate(figure, words)
+            svg = _saved(figure)
         except Exception as error:
-            place, words = spoken_place(error), " ".join(f"{type(error).__name__}: {error}".split())
-            raise PluginError(f"{place}the figure '{title}' failed: {words}") from error
-    return inlined(svg, title=title, ident=ident)
+            place, what_failed = spoken_place(error), " ".join(f"{type(error).__name__}: {error}".split())
+            raise PluginError(f"{place}the figure '{title}' failed: {what_failed}") from error
+    return inlined(svg, title=words.said(title), ident=ident)
+
+
+def _translate(figure: Any, words: Catalogue) -> None:
+    """Put the texts of a figure into another language: labels, legends, titles, and ticks that are words."""
+    for axis in figure.findobj(Axis):
+        if isinstance(axis.get_major_locator(), FixedLocator):
+            ticks = [label.get_text() for label in axis.get_ticklabels()]
+            if (said := [words.said(tick) for tick in ticks]) != ticks:
+                axis.set_ticks(axis.get_ticklocs(), said)
+    for text in figure.findobj(Text):
+        text.set_text(words.said(text.get_text()))
 
 
 def _saved(figure: Any) -> str:

@@ -46,6 +46,7 @@ from truing.report.document import (
 from truing.report.given import effect_blocks, input_blocks, tolerance_table
 from truing.report.limits import MOST_CHECKS, check_table, check_value, least_margin
 from truing.report.page_one import MOST_WARNINGS, page_one
+from truing.report.translation import catalogue_of, translated
 from truing.runs.provenance import Provenance
 from truing.setup import Setup
 from truing.studies.checks import HEADLINES, SHORT
@@ -73,13 +74,14 @@ def make_sheet(
     """
     setup = calculation.setup
     detail = setup.sheet.detail if setup.sheet.detail in LONGEST_TABLE else "normal"
-    figures = Figures()
+    words = catalogue_of(setup)
+    figures = Figures(words)
     writing = Writing(calculation, detail, figures)
     figure = front_figure(writing)
     results = list(result_chapters(writing))
-    warnings = tuple(_warnings(calculation, cases, figures.failures))
+    warnings = (*_warnings(calculation, cases, figures.failures), *words.faults)
     head, first = head_of(setup, provenance), page_one(calculation, example, figure, warnings)
-    return Document(
+    sheet = Document(
         kind=SHEET,
         title=head.title,
         head=head,
@@ -95,20 +97,22 @@ def make_sheet(
         provenance=provenance,
         paper=setup.sheet.paper,
     )
+    return translated(sheet, words)
 
 
 def study_sheet(calculation: Calculation, *, provenance: Provenance) -> Document:
     """Say what a study that was asked alone has found: its first figure on page one, and the inputs behind it."""
-    setup, figures = calculation.setup, Figures()
+    setup, words = calculation.setup, catalogue_of(calculation.setup)
+    figures = Figures(words)
     detail = setup.sheet.detail if setup.sheet.detail in LONGEST_TABLE else "normal"
     (chapter,) = list(study_chapters(Writing(calculation, detail, figures))) or [Chapter("Study", ())]
     first = next((block for block in chapter.blocks if isinstance(block, FigureView)), None)
     rest = tuple(block for block in chapter.blocks if block is not first)
-    warnings = tuple(_warnings(calculation, None, figures.failures))
+    warnings = (*_warnings(calculation, None, figures.failures), *words.faults)
     head = head_of(setup, provenance)
     found = [block.text for block in rest if isinstance(block, Paragraph) and block.kind == "finding"]
     alone = "Asked alone: the limits are judged by a run of the calculation."
-    return Document(
+    sheet = Document(
         kind=chapter.title,
         title=head.title,
         head=head,
@@ -124,6 +128,7 @@ def study_sheet(calculation: Calculation, *, provenance: Provenance) -> Document
         provenance=provenance,
         paper=setup.sheet.paper,
     )  # fmt: skip
+    return translated(sheet, words)
 
 
 def _back(

@@ -18,6 +18,7 @@ from truing.formulas.symbols import printable
 from truing.inputs_file.assemble import toml_key, toml_value
 from truing.inputs_file.study_options import options_of
 from truing.setup import Setup, SwitchedOn
+from truing.templating import ENGLISH
 from truing.units import difference_unit, from_si, read_quantity, to_si, unit_factor
 from truing.units.names import PURE
 
@@ -57,6 +58,7 @@ def comment_lines(sentence: str) -> list[str]:
 def _sections(setup: Setup, folder: Path | None) -> Iterator[tuple[str, dict[str, Any]]]:
     """Yield every section of the inputs file with its entries as plain TOML values."""
     detail = {"detail": setup.sheet.detail} if setup.sheet.detail != "normal" else {}
+    detail |= {"language": setup.sheet.language} if setup.sheet.language != ENGLISH else {}
     head = {name: str(text) for name, text in setup.sheet.head.items()}
     if folder is not None and head.get("logo"):
         head["logo"] = _seen_from(folder, Path(setup.source.file).parent / head["logo"])
