@@ -51,8 +51,8 @@ LISTS: Final = frozenset({
     "others", "reasons", "results", "shares", "waves",
 })  # fmt: skip
 """Gaps that hold several things in a row: "a, b and c". In every other gap the word "and" is left alone."""
-BETWEEN: Final = re.compile(r"(; and |, | and | or |; | \+ )")
-"""What stands between the things of a row, outside of brackets."""
+BETWEEN: Final = re.compile(r"(; and |, (?!(?:with|amplitude|range|by) )| and | or |; | \+ )")
+"""What stands between the things of a row, outside of brackets; before some words a comma does not end a thing."""
 IN_GAP: Final[Mapping[str, str]] = {
     **dict.fromkeys(("count", "draws", "number", "part", "parts", "row", "some", "step", "total"), r"[-+−\d.,e]+"),
     **dict.fromkeys(("axis", "grade", "next_grade"), r"\S+"),
@@ -66,8 +66,8 @@ ONE_SENTENCE: Final = r"(?:(?!\. |\n).)+?"
 GAP: Final = re.compile(r"{(\w+)}")
 WORD: Final = re.compile(r"[^\W\d_]{2}")
 """What has no two letters in a row is a number or a symbol, and is not looked up."""
-PARTS: Final = (("\n", re.compile("\n")), (" ", re.compile(r"(?<=[.?!]) ")), ("; ", re.compile("; ")))
-"""Where a text may be parted whose whole is not known, and what then stands between: lines, sentences, clauses."""
+PARTS: Final = (("\n", re.compile("\n")), (" ", re.compile(r"(?<=[.?!]) ")))
+"""Where a text may be parted whose whole is not known, and what then stands between: lines and sentences."""
 FORMULA_WORDS: Final = re.compile(r"(?<=[>{\u00a0~])(if given|if|otherwise|and|or)(?=[<}\u00a0~])")
 """Words that the kernel sets into formulas, in MathML and LaTeX."""
 
@@ -148,7 +148,7 @@ class Catalogue:
 
     def _whole(self, text: str, place: str) -> str:
         """Return the translation of a whole text, with a capital and a full stop where it has them; else nothing."""
-        plains = dict.fromkeys((text, text.removesuffix(".")))
+        plains = dict.fromkeys((text.removesuffix("."), text))
         starts = {start: plain for plain in plains for start in (plain, plain[:1].lower() + plain[1:])}
         words, patterns = self._scope(place)
         start, said = next(((start, words[start]) for start in starts if start in words), ("", ""))
@@ -178,11 +178,15 @@ class Catalogue:
         return self._scopes[place]
 
     def _by_parts(self, text: str, place: str) -> str:
-        """Return a text line by line, sentence by sentence or clause by clause; of a label the words before a unit."""
+        """Return a text line by line or sentence by sentence, by clauses that are all known, or without its unit."""
         for between, split in PARTS:
             parts = split.split(text)
             if len(parts) > 1:
                 return between.join(self.said(part, place) for part in parts)
+        clauses = text.split("; ")
+        known = [self._whole(clause, place) for clause in clauses]
+        if len(clauses) > 1 and all(known):
+            return "; ".join(known)
         head, bracket, unit = text.rpartition(" [")
         return f"{self.said(head, place)}{bracket}{unit}" if head and unit.endswith("]") else text
 
