@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import fields, is_dataclass, replace
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import pytest
@@ -16,12 +17,17 @@ from matplotlib.text import Text
 from test_diagnosis_sentences import torn
 
 import truing
+from truing import Allocation, Reliability, Sensitivity, Sweep, Uncertainty
 from truing.calculation import Calculation, calculate
+from truing.cases import run_cases
 from truing.declare.blocks import Drawing
+from truing.declare.model import Study
 from truing.diagnosis.sentences import SENTENCES
 from truing.errors import InputError, UsageError
+from truing.executors import open_executor
 from truing.inputs_file import read_setup, setup_from_text
 from truing.kernel import Kernel, Offer
+from truing.measurements import read_cases
 from truing.published import compare_published
 from truing.report import chapters
 from truing.report.diagnosis_sheet import make_diagnosis_sheet
@@ -39,7 +45,7 @@ from truing.report.document import (
 from truing.report.figures import draw
 from truing.report.html_printer import html_of
 from truing.report.markdown_printer import markdown_of
-from truing.report.sheet import make_sheet
+from truing.report.sheet import make_sheet, study_sheet
 from truing.report.translation import (
     DIAGNOSIS,
     ENGLISH_WORDS,
@@ -54,7 +60,7 @@ from truing.report.translation import (
     words_in,
 )
 from truing.runs.provenance import provenance_of
-from truing.setup import in_language
+from truing.setup import SheetOptions, default_setup, in_language
 from truing.templating import ENGLISH, languages, template_folder
 
 FOREIGN = [language for language in languages() if language != ENGLISH]
@@ -186,6 +192,9 @@ def is_authors(text: str, known: frozenset[str]) -> bool:
         return True
     if re.fullmatch(r"[\w ]+ = .*|[\w ]+ IT\d+ →|[\w ]+ [−\d.e+-]+ ?\S+", said):
         return True
+    head, _, tail = text.rpartition(", ")
+    if head and is_authors(head, known) and is_authors(tail, known):
+        return True
     parts = re.split(r", | \+ |: |; |\. ", text)
     return len(parts) > 1 and all(is_authors(part, known) for part in parts)
 
@@ -211,6 +220,50 @@ def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("name", MODELS)
 def test_every_word_of_the_kernel_on_a_sheet_is_translated(name: str, language: str) -> None:
     assert unknown_in(sample(name)[0], pseudo(language), sample(name)[1]) == []
+
+
+def alone(name: str, study: Study) -> tuple[Document, frozenset[str]]:
+    """The sheet of a study that is asked alone."""
+    setup = default_setup(offers()[name].model, offers()[name].origin)
+    calculation = calculate(replace(setup, studies=(study,)))
+    sheet = study_sheet(calculation, provenance=provenance_of(setup, date="2026-11-26"))
+    return sheet, frozenset((*authored(calculation), *STATED))
+
+
+def cases(detail: str) -> tuple[Document, frozenset[str]]:
+    """A sheet of three cases, one of which cannot be calculated and one misses a limit."""
+    offer = offers()["rv_gearing"]
+    setup = replace(default_setup(offer.model, offer.origin), studies=(), sheet=SheetOptions(detail=detail))
+    with TemporaryDirectory() as folder:
+        file = Path(folder, "cases.csv")
+        file.write_text("case,load_torque [N*m]\nusual,8\nheavy,800\nnone,1e9\n", encoding="utf-8")
+        calculation, made = run_cases(setup, read_cases(file, offer, setup), executor=open_executor("serial"))
+    sheet = make_sheet(calculation, provenance=provenance_of(setup, date="2026-11-26"), cases=made)
+    return sheet, frozenset((*authored(calculation), *STATED))
+
+
+STATED = ("usual", "heavy", "load torque", "sun torque")
+"""What stands in the file of the cases."""
+SHEETS: Mapping[str, Callable[[], tuple[Document, frozenset[str]]]] = {
+    "cases": partial(cases, "normal"),
+    "cases short": partial(cases, "short"),
+    "uncertainty": partial(alone, "press_linkage", Uncertainty(of=("slider_position",), draws=300)),
+    "sweep of two": partial(alone, "press_linkage", Sweep(
+        over="crank_angle", at="-20..20 deg", points=5, by="crank_radius", by_at="0.1, 0.15 m",
+        results=("slider_position",),
+    )),
+    "indices": partial(alone, "press_linkage", Sensitivity(of=("slider_position",), sobol=64)),
+    "over": partial(alone, "rv_wear", Reliability(draws=100, over="working_time", at="0..6000 h", points=3)),
+    "widths": partial(alone, "rv_wear", Allocation(of="backlash", draws=200)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("language", FOREIGN)
+@pytest.mark.parametrize("name", SHEETS)
+def test_every_word_of_cases_and_of_a_study_alone_is_translated(name: str, language: str) -> None:
+    sheet, written = SHEETS[name]()
+    place = STUDY if sheet.kind.startswith("Study: ") else ""
+    assert unknown_in(sheet, pseudo(language).at(place), written) == []
 
 
 MADE = {**SAMPLES, "torn": torn}

@@ -64,9 +64,10 @@ class LoadedModel:
     place of the example, its name, and the folder in which it looks for data files. ``label`` is what sentences about
     a stated value begin with.
 
-    Every call takes values as keywords: an input, a condition, ``seed`` or ``draws`` (of every study that draws). A
-    value is a text with its unit ("12 mm"), a number in the declared unit, or a quantity of pint. ``set`` is a mapping
-    of the same, for names that are no keyword or that the call itself uses: ``set={"tolerances.load": "off"}``.
+    Every call takes values as keywords: an input, a condition, ``seed``, ``draws`` (of every study that draws) or
+    ``language`` (of the sheet). A value is a text with its unit ("12 mm"), a number in the declared unit, or a quantity
+    of pint. ``set`` is a mapping of the same, for names that are no keyword or that the call itself uses:
+    ``set={"tolerances.load": "off"}``.
     ``progress`` is True (a bar on a terminal or in a notebook, once the work takes two seconds), False, or a function
     ``progress(task, done, total)``.
     """

@@ -119,8 +119,8 @@ def _cell(value: Any, *, gaps: bool) -> str:
 def settings_of(model: Model[Any, Any], values: Mapping[str, Any]) -> list[str]:
     """Return "name=value" for every value: texts carry units, numbers are in the declared unit, quantities are pint's.
 
-    ``draws`` is that of every study that draws. Other names are those of ``--set``: inputs, conditions, ``seed``, and
-    dotted names such as "tolerances.load".
+    ``draws`` is that of every study that draws. Other names are those of ``--set``: inputs, conditions, ``seed``,
+    ``language``, and dotted names such as "tolerances.load".
     """
     said = dict(values)
     if "draws" in values and "draws" not in {*model.input_fields, *model.known_conditions}:

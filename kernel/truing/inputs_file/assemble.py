@@ -18,7 +18,6 @@ from truing.inputs_file.study_options import diagnose_options
 from truing.inputs_file.values import InputsRead, StatedValues, plain
 from truing.kernel import Offer
 from truing.setup import DEFAULT_SEED, InputsSource, Setup, SheetOptions, SwitchedOn
-from truing.templating import ENGLISH
 from truing.units.names import PURE
 
 
@@ -142,6 +141,10 @@ def _with_options(study: Study, options: Mapping[str, Any]) -> tuple[Study, dict
     return (study if wrong else changed), wrong
 
 
+OF_THE_SHEET = ("detail", "paper", "language")
+"""What [sheet] says besides the texts of its head."""
+
+
 def make_setup(offer: Offer, reading: InputsRead, studies: tuple[Study, ...], document: InputsDocument) -> Setup:
     """Put the checked values together."""
     model, values = offer.model, reading.values
@@ -167,12 +170,7 @@ def make_setup(offer: Offer, reading: InputsRead, studies: tuple[Study, ...], do
         seed=values.get(("studies", "seed"), DEFAULT_SEED),
         diagnose=diagnose_options(model, values),
         units=of("units"),
-        sheet=SheetOptions(
-            detail=head.pop("detail", "normal"),
-            paper=head.pop("paper", "A4"),
-            language=head.pop("language", ENGLISH),
-            head=head,
-        ),
+        sheet=SheetOptions(**{name: head.pop(name) for name in OF_THE_SHEET if name in head}, head=head),
         source=InputsSource(
             stated=frozenset(names),
             file=document.file,

@@ -46,7 +46,7 @@ from truing.report.document import (
 from truing.report.given import effect_blocks, input_blocks, tolerance_table
 from truing.report.limits import MOST_CHECKS, check_table, check_value, least_margin
 from truing.report.page_one import MOST_WARNINGS, page_one
-from truing.report.translation import catalogue_of, translated
+from truing.report.translation import STUDY, catalogue_of, translated
 from truing.runs.provenance import Provenance
 from truing.setup import Setup
 from truing.studies.checks import HEADLINES, SHORT
@@ -102,7 +102,7 @@ def make_sheet(
 
 def study_sheet(calculation: Calculation, *, provenance: Provenance) -> Document:
     """Say what a study that was asked alone has found: its first figure on page one, and the inputs behind it."""
-    setup, words = calculation.setup, catalogue_of(calculation.setup)
+    setup, words = calculation.setup, catalogue_of(calculation.setup, STUDY)
     figures = Figures(words)
     detail = setup.sheet.detail if setup.sheet.detail in LONGEST_TABLE else "normal"
     (chapter,) = list(study_chapters(Writing(calculation, detail, figures))) or [Chapter("Study", ())]

@@ -57,10 +57,10 @@ IN_GAP: Final[Mapping[str, str]] = {
     **dict.fromkeys(("count", "draws", "number", "part", "parts", "row", "some", "step", "total"), r"[-+−\d.,e]+"),
     **dict.fromkeys(("axis", "grade", "next_grade"), r"\S+"),
     **dict.fromkeys(("note", "reason", "remedy", "text", "title", "why"), r".+"),
-    "amount": r"[-+−±]?\d.*?", "are": "is|are", "explain": "explains|together explain", "rises": "rises|falls",
-    "rows": r"[^,]+, (?:from the \w+|taken at random)|.+?",
+    "quantity": r"(?!the |an? ).+?", "amount": r"[-+−±]?\d.*?", "rows": r"[^,]+, (?:from the \w+|taken at random)|.+?",
+    "are": "is|are", "explain": "explains|together explain", "rises": "rises|falls",
 }  # fmt: skip
-"""What may stand in a gap of some name: a number, one word, whatever an author wrote, one of a few words."""
+"""What may stand in a gap of some name: a number, one word, a name, whatever an author wrote, one of a few words."""
 ONE_SENTENCE: Final = r"(?:(?!\. |\n).)+?"
 """What may stand in every other gap."""
 GAP: Final = re.compile(r"{(\w+)}")
