@@ -320,7 +320,7 @@ def test_a_german_sheet_says_so_and_prints_the_words_of_its_templates() -> None:
     sheet = german(sample("press_linkage")[0])
     page, text = html_of(sheet), markdown_of(sheet)
     assert page.startswith('<!DOCTYPE html>\n<html lang="de">')
-    for words in ("Datum, Unterschrift", "Nachweise", "Bild 1", "nicht wie angegeben"):
+    for words in ("Datum, Unterschrift", "Nachweise", "Bild 1", "nicht wie angegeben", "mit Änderung"):
         assert words in page
         assert words in text
     assert not re.search(r"Date, signature|>Contents|Figure \d|not as stated", page)
