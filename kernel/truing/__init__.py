@@ -6,13 +6,15 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from truing.api.model import Diagnosis, LoadedModel, load
+    from truing.api.differences import Differences
+    from truing.api.model import Diagnosis, LoadedModel, compare, load
     from truing.api.plan import Plan
     from truing.api.records import read, record
     from truing.api.run import Run
     from truing.api.study import StudyResult
     from truing.declare.batch import column, either, feasible
     from truing.declare.blocks import Block, Drawing, Table, Words
+    from truing.declare.correlations import correlated
     from truing.declare.dynamics import Dynamics, Event, Motion, state, states
     from truing.declare.fields import Array, Float, axis, found, given, inputs, loaded, part, results, rows
     from truing.declare.goals import Maximise, Minimise, Objective, Price, Require, Vary
@@ -36,13 +38,15 @@ if TYPE_CHECKING:
     from truing.units import quantity
 
 _HOMES = {
-    "truing.api.model": ("Diagnosis", "LoadedModel", "load"),
+    "truing.api.differences": ("Differences",),
+    "truing.api.model": ("Diagnosis", "LoadedModel", "compare", "load"),
     "truing.api.plan": ("Plan",),
     "truing.api.records": ("read", "record"),
     "truing.api.run": ("Run",),
     "truing.api.study": ("StudyResult",),
     "truing.declare.batch": ("column", "either", "feasible"),
     "truing.declare.blocks": ("Block", "Drawing", "Table", "Words"),
+    "truing.declare.correlations": ("correlated",),
     "truing.declare.dynamics": ("Dynamics", "Event", "Motion", "state", "states"),
     "truing.declare.fields": ("Array", "Float", "axis", "found", "given", "inputs", "loaded", "part", "results",
                               "rows"),
@@ -72,11 +76,13 @@ _HOME = {name: module for module, names in _HOMES.items() for name in names}
 
 __all__ = [  # noqa: RUF022  # what a user calls; then what a plugin needs, in the order of its story
     "load", "LoadedModel", "Run", "StudyResult", "read", "record", "Diagnosis", "Plan",
+    "compare", "Differences",
     "inputs", "results", "given", "found", "axis", "rows", "part", "loaded", "quantity", "Float", "Array",
     "feasible", "either", "column",
     "states", "state", "Dynamics", "Motion", "Event",
     "Tolerance", "Effect", "Unknown", "Condition", "ErrorSource",
     "normal", "plus_minus", "uniform", "lognormal", "grade", "zone", "drawn", "by_choice", "off",
+    "correlated",
     "Vary", "Minimise", "Maximise", "Require", "Price", "Objective",
     "Model", "Section", "Record", "Study", "Published", "Finding",
     "Words", "Table", "Drawing", "Block",

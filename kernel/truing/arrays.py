@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from threadpoolctl import threadpool_limits
+from threadpoolctl import ThreadpoolController
 
 Matrix = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -32,5 +34,11 @@ def first_alike(columns: Sequence[NDArray[Any]]) -> Indices:
 @contextmanager
 def one_thread() -> Iterator[None]:
     """Keep the linear algebra of numpy and scipy on one thread, both loaded first: a later one would not be held."""
-    with threadpool_limits(limits=1):
+    with _thread_pools(len(sys.modules)).limit(limits=1):
         yield
+
+
+@lru_cache(maxsize=1)
+def _thread_pools(modules: int) -> ThreadpoolController:
+    """Find the libraries that have threads, which takes 10 ms, anew where so many modules are loaded by now."""
+    return ThreadpoolController()

@@ -90,12 +90,13 @@ keepable(StatedCase)
 class CasesTable:
     """All cases in the order of the file; ``governing`` is the place of the one with the smallest margin.
 
-    ``read`` says how many rows the file holds, with those that are no cases.
+    ``read`` says how many rows the file holds, with those that are no cases, ``notes`` what was done to its columns.
     """
 
     cases: tuple[CaseResult, ...]
     governing: int
     read: RowCount
+    notes: tuple[str, ...] = ()
 
     @property
     def count(self) -> RowCount:
@@ -150,7 +151,7 @@ def run_cases(
         except UsageError as error:  # a study asks more than the calculation alone, a full turn for example
             done[governing] = CaseResult(cases[governing], {}, reason=str(error))
             continue
-        table = CasesTable(tuple(done), governing, read.count)
+        table = CasesTable(tuple(done), governing, read.count, read.notes)
         return replace(full, failed=table.failed), table
     raise InputError([case.fault for case in done])
 

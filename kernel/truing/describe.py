@@ -39,6 +39,7 @@ def description(offer: Offer) -> dict[str, Any]:
         "results": [_result(field) for field in model.result_fields.values()],
         **_motion(model),
         "tolerances": [_tolerance(tolerance) for tolerance in model.tolerances.values()],
+        "correlations": [_named(pair, CORRELATION) for pair in model.correlations],
         "effects": [_effect(effect) for effect in model.effects.values()],
         "conditions": [_condition(condition) for condition in model.conditions.values()],
         "built_in": {
@@ -102,9 +103,10 @@ def _result(field: ResultField) -> dict[str, Any]:
 
 UNKNOWN = ("name", "low", "high", "unit", "note")
 CONDITION = ("name", "unit", "reference", "note", "derived", "low", "high")
+CORRELATION = ("first", "second", "coefficient", "why", "source")
 PUBLISHED = ("name", "result", "value", "unit", "where", "settings", "printed")
 JUDGED = ("within", "verdict", "obtained", "why")
-"""What is said of an unknown before its kind, of a condition, and of a printed number before and behind its kind."""
+"""What is said of an unknown before its kind, of a condition, of a correlation, of a printed number about its kind."""
 
 
 def _named(declared: Any, names: Sequence[str]) -> dict[str, Any]:
@@ -172,6 +174,10 @@ def sections(said: Mapping[str, Any]) -> dict[str, list[Sequence[str]]]:
         "Tolerances": [
             (tolerance["name"], tolerance["spread"], "on " + ", ".join(tolerance["on"]), tolerance["why"])
             for tolerance in said["tolerances"]
+        ],
+        "Correlations": [
+            (pair["first"], f"with {pair['second']}", f"{pair['coefficient']:g}", pair["why"])
+            for pair in said["correlations"]
         ],
         "Effects": [_effect_row(effect) for effect in said["effects"]],
         "Conditions": [_condition_row(condition) for condition in said["conditions"]],

@@ -17,6 +17,7 @@ from truing.formulas import symbol_text
 from truing.formulas.symbols import printable
 from truing.inputs_file.assemble import default_of, spread_text, toml_key, toml_value
 from truing.inputs_file.document import SECTIONS
+from truing.inputs_file.entries import HEAD as HEAD_WORDS
 from truing.inputs_file.entries import described
 from truing.inputs_file.study_options import options_of
 from truing.inputs_file.values import bounds_in_words, plain
@@ -31,6 +32,12 @@ WIDTH = 100
 SCHEMA_MARK = "#:schema "
 """What begins the comment by which editors that use Taplo find the schema of a file."""
 HEAD = {"project": "", "drawing": "", "revision": "", "prepared_by": "", "checked_by": "", "approved_by": ""}
+SHEET_WORDS = {
+    **{name: ({"logo": "logo.svg", "style": "house.css"}.get(name, ""), words) for name, words in HEAD_WORDS.items()},
+    "detail": ("normal", "how much the sheet shows: short, normal or full"),
+    "paper": ("A4", "A4 or letter"),
+}
+"""What may stand in ``[sheet]``: a value to begin with, and what it is."""
 
 
 def example_text(offer: Offer) -> str:
@@ -47,6 +54,26 @@ def example_text(offer: Offer) -> str:
                 f"{offer.model.example}: the example of '{offer.name}' cannot be read: {error}"
             ) from error
     return "\n".join(_lines(offer)) + "\n"
+
+
+def text_to_fill_in(offer: Offer) -> str:
+    """Return the inputs file that ``calc init`` writes: the example, and what else may stand at the head of its sheet.
+
+    That stands in comments, behind what the example states there.
+    """
+    lines = example_text(offer).split("\n")
+    start = next((index for index, line in enumerate(lines) if line.strip() == "[sheet]"), None)
+    if start is None:
+        return "\n".join(lines)
+    end = next((index for index in range(start + 1, len(lines)) if lines[index].lstrip().startswith("[")), len(lines))
+    while not lines[end - 1].strip() or lines[end - 1].lstrip().startswith("#"):
+        end -= 1  # comments before the next heading belong to that
+    named = {line.lstrip("# ").partition("=")[0].strip() for line in lines[start + 1 : end + 1]}
+    further = [f"# {name} = {toml_value(value)}" for name, (value, _) in SHEET_WORDS.items() if name not in named]
+    widest = max(map(len, further), default=0)
+    notes = [words for name, (_, words) in SHEET_WORDS.items() if name not in named]
+    said = [f"{line.ljust(widest)}  # {words}" for line, words in zip(further, notes, strict=True)]
+    return "\n".join([*lines[:end], *said, *lines[end:]])
 
 
 def example_of(offer: Offer) -> tuple[str, str, Path]:
@@ -74,12 +101,11 @@ def _lines(offer: Offer) -> Iterator[str]:
     yield f"plugin = {toml_value(offer.name)}"
     yield from ("", "[sheet]")
     yield from (f"{name} = {toml_value(value)}" for name, value in HEAD.items())
-    yield '# detail = "normal"'
-    yield from _comment('"short", "normal" or "full"', "#   ")
     yield from ("", "[inputs]")
     for field in model.input_fields.values():
         yield from _input(field)
     yield from _tolerances(model)
+    yield from _correlations(model)
     yield from _conditions(model)
     yield from _effects(model)
     yield from _studies(model)
@@ -126,6 +152,15 @@ def _tolerances(model: Model[Any, Any]) -> Iterator[str]:
             yield f"# {toml_key(tolerance.name)} = {toml_value(stated)}"
         else:
             yield f"#   {tolerance.name} is {tolerance.spread.text}"
+
+
+def _correlations(model: Model[Any, Any]) -> Iterator[str]:
+    if not model.correlations:
+        return
+    yield from _heading("correlations", "Which inputs scatter together, and how much; 0 is not at all. As declared:")
+    for pair in model.correlations:
+        yield from _comment("; ".join(filter(None, (pair.why, pair.source))), "#   ")
+        yield f"# {toml_key(pair.name)} = {toml_value(pair.coefficient)}"
 
 
 def _why(tolerance: Tolerance) -> str:

@@ -17,6 +17,7 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 
 from truing.calculation import Calculation, calculate
+from truing.declare.correlations import Correlated
 from truing.declare.fields import Axis, Found, ResultField
 from truing.declare.goals import Maximise, Minimise, Require, Vary, prices_in
 from truing.declare.model import Model, Study, formula_scope
@@ -142,6 +143,9 @@ def of_input(setup: Setup, name: str) -> dict[str, Any]:
         "moves": moves,
         "limits": [require_words(require, "") for require in _requires(setup) if require.result in moved],
         "tolerances": [_tolerance(setup, tolerance) for tolerance in scattering],
+        "correlated": [
+            _correlated(each, name) for each in setup.scattering_together() if name in each.pair and each.coefficient
+        ],
         "namesake": [] if namesake is None or name in namesake.on else list(namesake.on),
         "limit_of": [
             require_words(require, "") for require in _requires(setup) if name in {require.limit, require.reliability}
@@ -196,6 +200,12 @@ def of_tolerance(setup: Setup, name: str) -> dict[str, Any]:
         "on": [{"name": target, "text": text_of(setup, target, setup.nominal(target))} for target in tolerance.on],
         "moves": [row for row in rows if row["share"]],
     }
+
+
+def _correlated(pair: Correlated, name: str) -> dict[str, Any]:
+    """Return what an input scatters together with, and how much."""
+    (other,) = pair.pair - {name}
+    return {"with": other, "correlation": pair.coefficient, "why": pair.why, "source": pair.source}
 
 
 def _tolerance(setup: Setup, tolerance: Tolerance) -> dict[str, Any]:

@@ -37,6 +37,23 @@ openpyxl: Any = Later(
     column_index_from_string="openpyxl.utils",
     get_column_letter="openpyxl.utils",
 )
+pypdf: Any = Later("pypdf")
+nptdms: Any = Later("nptdms")
+asammdf: Any = Later("asammdf")
+h5py: Any = Later("h5py")
+matlab_files: Any = Later("scipy.io")
+pyarrow: Any = Later("pyarrow", ParquetFile="pyarrow.parquet", write_table="pyarrow.parquet", types="pyarrow")
+docx: Any = Later(
+    "docx",
+    Mm="docx.shared",
+    Pt="docx.shared",
+    RGBColor="docx.shared",
+    WD_STYLE_TYPE="docx.enum.style",
+    WD_TAB_ALIGNMENT="docx.enum.text",
+    WD_TAB_LEADER="docx.enum.text",
+    parse_xml="docx.oxml",
+    qn="docx.oxml.ns",
+)
 pymoo: Any = Later(
     "pymoo",
     Config="pymoo.config",

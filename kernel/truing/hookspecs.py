@@ -27,7 +27,7 @@ def truing_models() -> Sequence[Model[Any, Any]]:
 
 @hookspec
 def truing_error_sources(model: Model[Any, Any]) -> Sequence[ErrorSource[Any, Any]]:
-    """Say what could make *model* disagree with a measurement: a tolerance or a missing effect.
+    """Say what could make *model* disagree with a measurement: a tolerance, a correlation or a missing effect.
 
     An effect gets the model's own inputs and results and returns them changed (``replace``).
     One that names an unknown input is left out with a warning.

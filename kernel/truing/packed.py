@@ -44,6 +44,7 @@ def pack(setup: Setup, *, studies: bool = False) -> Packed:
     content = {
         "inputs": setup.model.read_inputs(setup.inputs),
         "spreads": {name: spread for name, spread in setup.spreads.items() if spread != declared.get(name)},
+        "correlations": setup.correlations,
         "conditions": dict(setup.conditions),
         "effects": [_plain_effect(active) for active in setup.effects],
         "calibrated": dict(setup.calibrated),
@@ -80,6 +81,7 @@ def unpack(packed: Packed) -> Setup:
         origin=origin,
         inputs=make(model.input_type, values),
         spreads={**spreads, **content["spreads"]},
+        correlations=content["correlations"],
         conditions=content["conditions"],
         effects=tuple(
             SwitchedOn(model.known_effects[name], values, sds, covariance)

@@ -114,13 +114,17 @@ def _same(one: Any, other: Any) -> bool:
 
 def _same_scatter(setup: Setup, wanted: Setup) -> bool:
     ours, theirs = setup.distributions(), wanted.distributions()
-    if ours.keys() != theirs.keys():
+    if ours.keys() != theirs.keys() or _coupled(setup) != _coupled(wanted):
         return False
     return all(
         ours[name].keys() == theirs[name].keys()
         and all(math.isclose(ours[name][key].sd, theirs[name][key].sd, rel_tol=1e-9) for key in theirs[name])
         for name in theirs
     )
+
+
+def _coupled(setup: Setup) -> dict[frozenset[str], float]:
+    return {each.pair: each.coefficient for each in setup.scattering_together() if each.coefficient}
 
 
 def parted(setup: Setup, rows: Sequence[ComparedRow]) -> tuple[list[ComparedRow], list[ComparedRow]]:

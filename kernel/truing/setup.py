@@ -10,6 +10,7 @@ from typing import Any, Self
 
 import numpy as np
 
+from truing.declare.correlations import Correlated
 from truing.declare.fields import read, with_values
 from truing.declare.model import Model, Study
 from truing.declare.near_miss import near_miss
@@ -179,6 +180,14 @@ class InputsSource:
     places: Mapping[str, tuple[str, int | None]] = field(default_factory=dict, compare=False)
 
 
+@dataclass(frozen=True)
+class NamedColumn:
+    """What a column of a measured file is to the model: its name there, and its unit where that is stated, too."""
+
+    name: str
+    unit: str | None = None
+
+
 @dataclass(frozen=True, kw_only=True)
 class SheetOptions:
     """What stands at the head of the sheet, by name, and how much of everything: "short", "normal" or "full".
@@ -198,15 +207,19 @@ class Setup(Case):
 
     ``spreads`` holds the tolerances in force and ``calibrated`` the inputs (SI) as a diagnosis fitted them to one
     machine, by name; ``units`` the units in which results are printed, where these are not the declared ones.
+    ``columns`` says what columns of files are, by what the files call them.
+    ``correlations`` are those in force, stated or declared; one of an input that does not scatter says nothing.
     """
 
     origin: Origin
     spreads: Mapping[str, Spread] = field(default_factory=dict)
+    correlations: tuple[Correlated, ...] = ()
     calibrated: Mapping[str, float] = field(default_factory=dict)
     studies: tuple[Study, ...] = ()
     seed: int = DEFAULT_SEED
     diagnose: DiagnoseOptions = DiagnoseOptions()
     units: Mapping[str, str] = field(default_factory=dict)
+    columns: Mapping[str, NamedColumn] = field(default_factory=dict)
     sheet: SheetOptions = SheetOptions()
     source: InputsSource = InputsSource()
 
@@ -239,6 +252,13 @@ class Setup(Case):
                 distributions[tolerance.name] = kept
         return distributions
 
+    def scattering_together(self) -> tuple[Correlated, ...]:
+        """Return the correlations of inputs that scatter, also those that are stated to be 0."""
+        if not self.correlations:
+            return ()
+        scattering = {name for by_input in self.distributions().values() for name in by_input}
+        return tuple(each for each in self.correlations if each.pair <= scattering)
+
 
 def in_language(setup: Setup, language: str) -> Setup:
     """Return a setup with its sheet in a language; "" leaves it as it is. Raises UsageError for an unknown one."""
@@ -257,6 +277,7 @@ def default_setup(model: Model[Any, Any], origin: Origin | None = None, **values
         inputs=model.inputs(**values),
         source=InputsSource(stated=frozenset(values)),
         spreads={name: tolerance.spread for name, tolerance in model.tolerances.items()},
+        correlations=model.correlations,
         conditions=conditions,
         studies=tuple(model.studies),
     )

@@ -243,8 +243,8 @@ EFFECTS: list[Effect[Reducer, Wear]] = [
     Effect("pin_rolling", on_inputs=pin_rolling,
            unknowns=[Unknown("rolling", 0, 1, "", "share of the sliding that the pins take over")],
            looks_like="all wear is slower by one share, that of the flank and what is felt of it",
-           remedy="Rule duty_share out by the log of the load, mark the pins and see whether they turn. If so, keep "
-                  "the effect on; all wear then fits.",
+           remedy="Rule duty_share out by the log of the load, mark the pins and see whether they turn. If so, "
+                  "nothing is broken: the disc wears as the extended model says.",
            why="pins that lie in half-round grooves turn when their friction there is smaller than on the flank",
            source=KINEMATICS),
     Effect("pin_wear", on_inputs=pin_wear,

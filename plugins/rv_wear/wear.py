@@ -393,11 +393,13 @@ def _reach(rows: Array, place: NDArray[np.intp] | None, count: int) -> Array:
 def _read(history: Histories, column: int, exposure: Array) -> tuple[Array, Array]:
     """Depth and angle at exposures (n,) of one mesh; the depth is NaN beyond the last node."""
     nodes, depths, angles = (values[:, column] for values in (history.exposure, history.depth, history.angle))
-    depth = np.interp(exposure, nodes, depths, right=np.nan)
-    turns = np.flatnonzero(angles[1:] != angles[:-1])
-    if not len(turns):
-        return depth, np.full(exposure.shape, angles[-1])
-    return depth, np.append(angles[turns], angles[-1])[np.searchsorted(nodes[turns], exposure)]
+    end = len(nodes) - 1
+    after = np.minimum(np.searchsorted(nodes, exposure), end)
+    before = np.maximum(after - 1, 0)
+    lengths = np.diff(nodes, append=nodes[end:])
+    slopes = np.diff(depths, append=depths[end:]) / np.where(lengths > 0, lengths, 1.0)
+    depth = slopes[before] * (exposure - nodes[before]) + depths[before]
+    return np.where(exposure <= nodes[end], depth, np.nan), angles[after]
 
 
 # Largest wear of the disc after its working time, and the forces of the unworn mesh

@@ -72,6 +72,25 @@ def test_a_short_sheet_has_two_pages(name: str, chromium: Path) -> None:
     assert len(re.findall(rb"/Type /Page\b(?!s)", printed)) == 2
 
 
+@ONE
+def test_the_contents_name_the_page_on_which_a_chapter_stands(sheet: Path, chromium: Path, tmp_path: Path) -> None:
+    """Read back from the text of each page: the number beside a title, and where its heading stands."""
+    printed = tmp_path / "sheet.pdf"
+    printed.write_bytes(pdf_bytes(sheet.read_text(encoding="utf-8"), chromium))
+    html = sheet.read_text(encoding="utf-8")
+    titles = re.findall(r'<h2 id="[^"]+"><span class="place">(\d+)</span> ([^<]+)</h2>', html)
+    contents = words_of(printed, page=2)
+    assert len(titles) > 7
+    last = int(re.findall(r"\b2 ?/ ?(\d+)", contents)[-1])
+    pages = {page: words_of(printed, page) for page in range(2, last + 1)}
+    for number, title in titles:
+        heading = f"{number} {unescaped(title)}"
+        named = re.search(rf"(?<!\d){re.escape(heading)} (\d+)", contents)
+        assert named, f"{heading} has no page in the contents"
+        page = int(named[1])
+        assert pages[page].count(heading) == (2 if page == 2 else 1), f"{heading} does not stand on page {page}"
+
+
 def unescaped(text: str) -> str:
     return re.sub(r"\s+", " ", unescape(text))
 
@@ -119,6 +138,18 @@ def test_a_browser_that_prints_nothing_or_is_not_there_is_said_in_one_sentence(
         with pytest.raises(OutputError, match=r"^true printed no PDF \(exit 0\); open sheet.html in any browser"):
             pdf_bytes(text, Path(dumb))
     assert list(tmp_path.iterdir()) == []
+
+
+def test_without_a_figure_the_chapters_follow_on_page_one(chromium: Path, tmp_path: Path) -> None:
+    """Where there is none, page one would be empty between its results and the signatures."""
+    model = load(Path(__file__).parents[2] / "docs" / "examples" / "adsorption" / "adsorption.py")
+    printed = tmp_path / "sheet.pdf"
+    html = model.run(progress=False).sheet(tmp_path / "sheet.html").read_text(encoding="utf-8")
+    assert "key-figure" not in re.sub(r"<style>.*?</style>", "", html, flags=re.DOTALL)
+    printed.write_bytes(pdf_bytes(html, chromium))
+    first = words_of(printed, page=1)
+    assert "1 Inputs What the calculation starts from" in first
+    assert first.index("Approved") < first.index("1 Inputs")
 
 
 def test_the_figure_of_page_one_is_seen_on_paper(chromium: Path, tmp_path: Path) -> None:

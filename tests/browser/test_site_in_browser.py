@@ -17,6 +17,7 @@ KINDS = {
     "format": "reference/files/diagnosis.html",
     "verb": "reference/verbs/run.html",
     "hook": "reference/hooks/truing_models.html",
+    "models": "reference/models/index.html",
     "model": "reference/models/press_linkage.html",
     "effects": "reference/effects.html",
     "theory": "explanation/gear_geometry.html",
@@ -61,6 +62,17 @@ def test_a_page_asks_for_nothing_outside_and_fits_a_phone(window: Any, site: Pat
         BEYOND.replace("!node.closest('svg')", "!node.closest('svg, .scroll, .formula, pre')"), 1100
     )
     assert outside == []
+
+
+@pytest.mark.parametrize("width", [1200, 390])
+@pytest.mark.parametrize("kind", ["models", "model", "effects"])
+def test_what_a_row_says_is_not_squeezed(window: Any, site: Path, kind: str, width: int) -> None:
+    """The last cell of a row has the words: a column of its own, and on a phone the whole width."""
+    visit(window, site / KINDS[kind], width)
+    last = "[...document.querySelectorAll('table.fields tbody td:last-child')]"
+    widths = window.evaluate(f"{last}.filter(cell => cell.innerText).map(cell => cell.getBoundingClientRect().width)")
+    assert len(widths) > 5
+    assert min(widths) > 300
 
 
 @pytest.mark.parametrize("kind", ["theory", "model"])

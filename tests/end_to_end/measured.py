@@ -24,7 +24,8 @@ ANGLE, FORCE, WARMTH, TIME = "crank_angle [deg]", "forming_force [kN]", "link_te
 STROKES, SPEED, HEIGHT = "strokes [1]", "speed [rpm]", "slider_position [mm]"
 HEATED = Wish("single", "wide", "gaussian", (POSITION,), 90, ("link_heating",), 2.5)
 HEATED_SEED = 4
-CONTRACT = {"diagnosis.json", "run.json", "inputs.toml", "sheet.html", "sheet.md", "arrays.npz"}
+CONTRACT = {"diagnosis.json", "run.json", "inputs.toml", "sheet.html", "sheet.md", "results.csv", "rows.csv"}
+CONTRACT |= {"arrays.npz"}
 
 
 @dataclass(frozen=True)

@@ -255,7 +255,7 @@ REFUSED = [
     (lambda pin: pin.run(workers=2, cluster="tcp://here:1"), "cluster and workers exclude each other"),
     (lambda pin: pin.run(workers=0), "'processes:0' is no place to compute"),
     (lambda pin: pin.run(output=TESTS), "is an existing folder but no run of ours"),
-    (lambda pin: pin.run().sheet("sheet.docx"), "sheet.docx: a sheet ends in .html, .md or .pdf"),
+    (lambda pin: pin.run().sheet("sheet.odt"), "sheet.odt: a sheet ends in .html, .md, .pdf or .docx"),
     (lambda pin: pin.diagnose(truing.read("absent.csv", pin)), "absent.csv: no such file"),
     (lambda pin: truing.read([], pin), "no file is named"),
     (lambda pin: pin.diagnose("measured.csv"), "a str is no record; make one with truing.read(files, model)"),

@@ -13,7 +13,7 @@ from shared import Answer, Calc
 from truing.report import pdf
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
-FILES = ["inputs.toml", "results.json", "run.json", "sheet.html", "sheet.md"]
+FILES = ["inputs.toml", "results.csv", "results.json", "run.json", "sheet.html", "sheet.md"]
 QUICK = ("--set", "studies.reliability.draws=2000")
 
 
@@ -128,6 +128,12 @@ def test_detail_changes_the_sheet(calc: Calc, tmp_path: Path) -> None:
     assert answer.code == 2
     assert "--set detail=ful: " in answer.err
     assert "short" in answer.err
+
+
+def test_a_word_document_beside_the_other_sheets(calc: Calc, tmp_path: Path) -> None:
+    answer = calc("run", PIN, "--docx", *QUICK[:2])
+    assert (answer.code, f"for Word: {Path('runs', 'pin_wear', 'sheet.docx')}" in answer.err) == (0, True)
+    assert sorted(path.name for path in (tmp_path / "runs" / "pin_wear").iterdir()) == sorted([*FILES, "sheet.docx"])
 
 
 def test_a_printed_sheet_or_a_word_why_not(calc: Calc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,10 +11,13 @@ from typing import Any
 
 import pytest
 
+import truing
 from shared import Calc
 from truing.cli import main
 from truing.cli.folders import styles_of
-from truing.runs.comparison import Change, amount_of, differing, words_of
+from truing.report.comparison_page import Side, comparison_page, in_one_unit
+from truing.report.document import plain_text
+from truing.runs.comparison import Change, amount_of, differing, same, words_of
 from truing.runs.comparison import compared as changes
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
@@ -202,3 +205,79 @@ def test_a_run_beside_a_diagnosis_is_refused(runs: Calc, tmp_path: Path) -> None
     answer = runs("compare", "first", tmp_path / "calm")
     assert (answer.code, answer.out) == (2, "")
     assert answer.err == "calc: the first is a run and the second a diagnosis; compare two of one kind\n"
+
+
+# Both side by side, as a page
+
+
+SPRING = Path(__file__).parents[2] / "docs" / "examples" / "coil_spring.py"
+
+
+def test_the_page_says_what_changed_and_why_the_verdict_did(runs: Calc) -> None:
+    answer = runs("compare", "first", "heavy", "--plugin", PIN, "-o", "page.md")
+    assert (answer.code, answer.err) == (1, "")
+    assert answer.out.endswith("\n\npage: page.md\n")
+    page = (runs.keywords["cwd"] / "page.md").read_text(encoding="utf-8")
+    assert "**The verdict went from Passes to Fails.** Because " in page
+    assert "| $F$ | normal load on the pin (load) | 120 N | 2300 N | +2180 N | x 19.2 |" in page  # 2300 / 120
+    # load / area: 2300 N on 28 mm² is 82.143 MPa, where 80 MPa is permitted, and 120 N is 4.2857 MPa
+    assert "| $p$ | contact pressure (pressure) | 4.2857 MPa | 82.143 MPa | +77.857 MPa | x 19.2 |" in page
+    assert "✓ pass → ✗ **FAILS**" in page
+    assert re.search(r"## \d+ What did not change\n.*hardness", page, re.DOTALL)
+
+
+def test_folders_and_runs_in_hand_write_one_page(tmp_path: Path) -> None:
+    spring = truing.load(SPRING).given(set={"studies.run": "[]"})
+    before, after = spring.run(progress=False), spring.run(coil_diameter="7.5 mm", progress=False)
+    folders = before.save(tmp_path / "before"), after.save(tmp_path / "after")
+    in_hand = after.compare(before).sheet(tmp_path / "in_hand.html").read_text(encoding="utf-8")
+    differences = truing.compare(*folders, plugin=str(SPRING))
+    assert differences.sheet(tmp_path / "page.html").read_text(encoding="utf-8") == in_hand
+    pictures = re.findall(r'<img alt="(Before|After): [^"]*" src="data:image/svg\+xml;base64,([^"]+)"', in_hand)
+    assert [word for word, _ in pictures] == ["Before", "After"] * (len(pictures) // 2)
+    assert pictures
+    assert pictures[0][1] != pictures[1][1]
+
+
+def test_two_inputs_files_run_now(calc: Calc, tmp_path: Path) -> None:
+    (tmp_path / "light.toml").write_text('plugin = "pin_wear"\n[inputs]\nload = "100 N"\n', encoding="utf-8")
+    (tmp_path / "heavy.toml").write_text('[inputs]\nload = "150 N"\n', encoding="utf-8")
+    answer = calc("compare", "light.toml", "heavy.toml", "--plugin", PIN, "-q")
+    assert answer.code == 1
+    assert ["inputs", "load", "100", "N", "150", "N", "+50", "%"] in [line.split() for line in answer.out.split("\n")]
+    nameless = calc("compare", "heavy.toml", "heavy.toml")
+    assert (nameless.code, nameless.out) == (2, "")
+    assert nameless.err.startswith('heavy.toml:1: names no plugin; write plugin = "NAME"')
+
+
+def test_a_number_in_another_unit_of_print_did_not_change() -> None:
+    long = in_one_unit(Change("results", "a", {"value": 2500.0, "unit": "um"}, {"value": 2.5, "unit": "mm"}))
+    assert same(long.before, long.after)
+    warm = in_one_unit(Change("results", "a", {"value": 68.0, "unit": "degF"}, {"value": 21.0, "unit": "degC"}))
+    assert warm.before == {"value": pytest.approx(20.0), "unit": "degC"}
+    other = Change("results", "a", {"value": 1.0, "unit": "mm"}, {"value": 1.0, "unit": "N"})
+    assert in_one_unit(other) == other
+
+
+def test_two_diagnoses_and_two_plugins_as_a_page(runs: Calc, tmp_path: Path) -> None:
+    diagnosed(tmp_path / "calm", {})
+    diagnosed(tmp_path / "found", {"verdict": "named", "unique": True, "causes": [cause(6.0)]})
+    page = tmp_path / "page.md"
+    assert runs("compare", tmp_path / "calm", tmp_path / "found", "-q", "-o", page).code == 1
+    text = page.read_text(encoding="utf-8")
+    assert "**The verdict went from Nothing found to Cause named.**" in text
+    assert r"| play.clearance | \- | 6 um | new |" in text
+    first = json.loads((runs.keywords["cwd"] / "first" / "results.json").read_text(encoding="utf-8"))
+    sides = (Side("a", first), Side("b", {**first, "plugin": {**first["plugin"], "version": "9.0"}, "seed": 7}))
+    said = " ".join(map(plain_text, comparison_page(*sides).banner.sentences))
+    assert "and 9.0 after: numbers may differ for that alone." in said
+    assert "and 7 after: numbers may differ for that alone." in said
+
+
+def test_a_page_of_another_ending_is_refused_before_anything_runs(runs: Calc) -> None:
+    answer = runs("compare", "first", "no such folder", "-o", "page.txt")
+    assert (answer.code, answer.out, answer.err) == (
+        2,
+        "",
+        "calc: page.txt: a page of two sheets ends in .html, .md or .pdf\n",
+    )

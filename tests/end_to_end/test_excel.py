@@ -1,4 +1,4 @@
-"""--excel: what a spreadsheet with a decimal comma opens by a double click, and what we read back as it was."""
+"""Tables beside every run; with --excel a spreadsheet with a decimal comma opens them, and we read them back."""
 
 from __future__ import annotations
 
@@ -106,7 +106,9 @@ def test_every_number_of_a_run_stands_in_its_table(calc: Calc, tmp_path: Path) -
     found = sorted(number(row[head.index("value")]) for row in rows if _is_number(row[head.index("value")]))
     limits = [number(row[place]) for row in rows for place in (head.index("limit"), head.index("margin")) if row[place]]
     assert sorted([*found, *limits]) == sorted(leaves(document))
-    said = {(row[0], row[1], row[2]): (row[head.index("value")], row[head.index("unit")]) for row in rows}
+    said = {
+        (row[0], row[1], row[head.index("place")]): (row[head.index("value")], row[head.index("unit")]) for row in rows
+    }
     load = document["inputs"]["load"]
     assert (number(said["input", "load", ""][0]), said["input", "load", ""][1]) == (load["value"], "N")
     assert read_table(folder / "results.csv", {})[0].columns["part"] == tuple(row[0] for row in rows)
@@ -138,3 +140,38 @@ def test_cases_come_with_a_table_of_their_own(calc: Calc, tmp_path: Path) -> Non
     assert f"for a spreadsheet: {folder.relative_to(tmp_path) / 'results.csv'} and " in said.err
     for sheet in ("sheet.html", "sheet.md"):
         assert all(row[0].strip("'") in (folder / sheet).read_text(encoding="utf-8") for row in rows)
+
+
+def plain(path: Path) -> list[dict[str, str]]:
+    """The rows of a table as any program reads CSV."""
+    return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
+
+
+def test_every_run_leaves_tables_that_any_program_reads(calc: Calc, tmp_path: Path) -> None:
+    (tmp_path / "cases.csv").write_text("case,load [kN]\n=light,0.14\n@heavy,0.28\n-3,0.2\n")
+    assert calc("run", PIN, "--cases", "cases.csv", *QUICK).code == 0
+    folder = tmp_path / "runs" / "pin_wear"
+    document = json.loads((folder / "results.json").read_text(encoding="utf-8"))
+    rows = {(row["part"], row["name"], row["place"]): row for row in plain(folder / "results.csv")}
+    for part in ("result", "input"):
+        for name, quantity in document[f"{part}s"].items():
+            row = rows[part, name, ""]
+            assert (float(row["value"]), row["unit"]) == (quantity["value"], quantity["unit"]), name
+    assert (rows["result", "depth", ""]["symbol"], rows["result", "depth", ""]["note"]) == ("h", "worn depth")
+    (check, *_) = document["checks"]
+    row = rows["check", check["name"], ""]
+    assert [float(row[name]) for name in ("value", "limit", "margin")] == [
+        check[name] for name in ("value", "limit", "margin")
+    ]
+    assert (row["unit"], row["verdict"]) == (check["unit"], "pass")
+    cases = plain(folder / "cases.csv")
+    assert [case["case"] for case in cases] == ["'=light", "'@heavy", "-3"]
+    assert [float(case["pressure [MPa]"]) for case in cases] == [
+        case["results"]["pressure"]["value"] for case in document["cases"]
+    ]
+
+
+def test_a_sweep_leaves_tables_too(calc: Calc, tmp_path: Path) -> None:
+    assert calc("sweep", PIN, "load", "80..120 N", "--steps", "3", "-q", "-o", "swept").code == 0
+    assert [float(row["load [N]"]) for row in plain(tmp_path / "swept" / "points.csv")] == [80, 100, 120]
+    assert "study" in {row["part"] for row in plain(tmp_path / "swept" / "results.csv")}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import shutil
 import subprocess
@@ -145,6 +146,16 @@ def test_a_diagnosis_of_a_workbook_is_that_of_the_rows(calc: Calc, tmp_path: Pat
     assert depths == pytest.approx([rows[row[head.index("line")] - 1][2] for row in found], rel=1e-12)
     assert {"depth_before [um]", "depth_after [um]", "line"} <= {*head}
     assert len(cells(book, "ranking")) == len(plain["ranking"]) + 1
+    table = list(csv.DictReader((book.parent / "rows.csv").read_text(encoding="utf-8").splitlines()))
+    for name in ("depth [um]", "depth_before [um]", "depth_after [um]"):
+        of_book = [row[head.index(name)] for row in found]
+        assert [float(row[name]) for row in table] == pytest.approx(of_book, rel=1e-14)
+    for row in csv.DictReader((tmp_path / "csv" / "results.csv").read_text(encoding="utf-8").splitlines()):
+        if row["part"] == "error":
+            gain = plain["gain"][row["name"]][row["place"]]
+            assert (float(row["value"]), row["unit"], row["symbol"]) == (gain["value"], gain["unit"], "h")
+        if row["part"] == "calibrated" and not row["place"]:
+            assert float(row["value"]) == plain["calibrated"][row["name"]]["value"]
     assert openpyxl.load_workbook(book).sheetnames == ["causes", "ranking", "errors", "rows"]
     assert truing.read(tmp_path / "measured.xlsx", model).rows == 16
 

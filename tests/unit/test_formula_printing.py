@@ -1,8 +1,8 @@
 """The printed formula is the computed one: random formulas are printed, read back by eye's rules, and compared.
 
 The comparison is exact: numbers live in a finite field (modulo a prime of 61 bits), functions are arbitrary maps
-of it, so a misplaced parenthesis changes the answer almost surely and rounding cannot hide it. MathML is read here; the
-marks of LaTeX, which stand in the same places, are in ``test_formula_marks``.
+of it, so a misplaced parenthesis changes the answer almost surely and rounding cannot hide it. MathML is read here, and
+OMML must show the same; the marks of LaTeX, which stand in the same places, are in ``test_formula_marks``.
 """
 
 from __future__ import annotations
@@ -15,12 +15,14 @@ from typing import Any
 
 import pytest
 from formula_reader import Reader
+from formulas_shown import shown_by_mathml, shown_by_omml
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from truing.formulas import parse
 from truing.formulas.layout import substituted, symbolic
 from truing.formulas.write_mathml import MATHML
+from truing.formulas.write_omml import OMML
 from truing.formulas.write_text import HOLD, TEXT, folded
 
 SYMBOLS = {"load": "F", "early": "h_0", "angle": "theta_11", "way": "Delta z", "teeth": "z_2'", "limit": "F_N,max"}
@@ -202,6 +204,16 @@ def test_numbers_read_back_exactly(text: str, shown: list[tuple[str, str]]) -> N
     wanted = exact(text, **values)
     reader = Reader({"π": "pi"}, UNITS)
     assert exact(reader.mathml(substituted(MATHML, formula, numbers)), **values) == wanted
+
+
+@traps([("-12.5", "mm")] * 10, [("1.2e-05", "10⁻⁶/K")] * 10)
+@given(expressions(), st.lists(st.tuples(st.sampled_from(SHOWN), st.sampled_from(["", *UNITS])), min_size=len(NAMES)))
+@settings(max_examples=40, deadline=None)
+def test_word_shows_what_mathml_shows(text: str, shown: list[tuple[str, str]]) -> None:
+    formula, numbers = parse(text), dict(zip(NAMES, shown, strict=False))
+    assert shown_by_omml(symbolic(OMML, formula, SYMBOLS)) == shown_by_mathml(symbolic(MATHML, formula, SYMBOLS))
+    mathml, omml = (substituted(writer, formula, numbers) for writer in (MATHML, OMML))
+    assert shown_by_omml(omml) == shown_by_mathml(mathml)
 
 
 # A formula on one line of a terminal: the parentheses that a bar, a root and a raised number save must be written.

@@ -7,6 +7,7 @@ import json
 import math
 import re
 import time
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,9 +18,11 @@ from sample_models import PIN_OFFER, PIN_WEAR, RENAMED, STAGE_OFFER, Census, fau
 
 from truing.declare.spreads import Band, Grade, Off, Zone
 from truing.errors import InfeasibleError, InputError, PluginError
-from truing.example_file import example_text
+from truing.example_file import example_text, text_to_fill_in
 from truing.inputs_file import json_schema, read_setup, setup_from_settings, setup_from_text
+from truing.inputs_file.entries import HEAD
 from truing.inputs_file.sentences import located, told_by_line
+from truing.kernel import Kernel
 from truing.runs.inputs_written import complete_inputs
 from truing.setup import DiagnoseOptions, InputsSource, Setup, default_setup
 
@@ -543,6 +546,20 @@ def test_an_example_with_a_data_file_runs_once_the_file_is_named(tmp_path: Path)
         assert words in text
     everything = setup_from_text(COMMENTED_OUT.sub("", named), STAGE_OFFER, file="", folder=tmp_path)
     assert everything.spreads["oil"] == Band("5 K", "±")
+
+
+@pytest.mark.parametrize("name", ["press_linkage", "roller_screw_shift"])
+def test_what_the_head_of_a_sheet_may_hold_is_listed_to_be_filled_in(name: str, tmp_path: Path) -> None:
+    """Without their marks all of its lines are read, and the example says what it said before."""
+    offer = Kernel.installed().offer(name)
+    text = text_to_fill_in(offer)
+    known = {*HEAD, "detail", "paper"}
+    assert {line.lstrip("# ").partition(" =")[0] for line in text.split("\n")} >= known
+    assert tomllib.loads(text) == tomllib.loads(example_text(offer))
+    opened = re.sub(rf"^# (?=({'|'.join(known)}) = )", "", text, flags=re.MULTILINE)
+    assert tomllib.loads(opened)["sheet"].keys() == known
+    setup = setup_from_text(opened, offer, file=str(tmp_path / "in.toml"), folder=tmp_path)
+    assert (setup.sheet.paper, setup.sheet.head["logo"], setup.sheet.head["style"]) == ("A4", "logo.svg", "house.css")
 
 
 def test_a_shipped_example_is_handed_out_as_it_is(tmp_path: Path) -> None:

@@ -31,7 +31,7 @@ from truing.report.chapters import with_notes
 from truing.report.document import Column, Document, FigureView, Marked, Paragraph, ResultEntry, TableView, plain_text
 from truing.report.html_printer import css_text, html_of, with_room
 from truing.report.markdown_printer import escaped, markdown_of
-from truing.report.sheet import logo_of, make_sheet
+from truing.report.sheet import logo_of, make_sheet, style_of
 from truing.runs.provenance import provenance_of
 from truing.setup import InputsSource, Setup, SheetOptions, default_setup
 
@@ -362,6 +362,30 @@ def test_a_logo_that_cannot_be_shown_is_a_warning(setup: Setup, tmp_path: Path) 
         os.mkfifo(tmp_path / "sign.png")
         piped = with_logo(setup, "sign.png", tmp_path)
         assert logo_of(piped) == ("", "the logo 'sign.png' is left out: it is no ordinary file")
+
+
+HOUSE = "h1 { color: #005f73; } </style><script>alert(1)</script>"
+
+
+def test_the_letterhead_and_an_own_style_sheet(setup: Setup, tmp_path: Path) -> None:
+    """The company's lines stand once, above the title; the style comes last, and ends nothing that holds it."""
+    (tmp_path / "house.css").write_text(HOUSE, encoding="utf-8")
+    stated = with_logo(setup, "", tmp_path)
+    letter = {"company": "Weber GmbH <b>", "address": "Hafenstr. 3, Kiel", "document": "C-0815", "style": "house.css"}
+    sheet = sheet_of(replace(stated, sheet=SheetOptions(head=letter)))
+    assert [text for text in sheet.warnings if "style" in text] == []
+    html, markdown = html_of(sheet), markdown_of(sheet)
+    assert '<p class="letter"><span>Weber GmbH &lt;b&gt;</span><span>Hafenstr. 3, Kiel</span></p>' in html
+    assert ("Document", "C-0815") in sheet.head.fields
+    assert {label for label, _ in sheet.head.fields} & {"Company", "Address", "Style"} == set()
+    own = html.index("h1 { color: #005f73; }")
+    assert html.rindex("@page") < own < html.index("</style>")
+    assert "<script" not in html
+    assert markdown.startswith("**Weber GmbH &lt;b&gt;**, Hafenstr. 3, Kiel\n\n# ")
+    (tmp_path / "house.css").write_bytes(b"\xff\xfe")
+    assert style_of(replace(stated, sheet=SheetOptions(head={"style": "house.css"}))) == (
+        "", "the style 'house.css' is left out: it is no UTF-8 text",
+    )  # fmt: skip
 
 
 def test_cases_are_listed_and_the_governing_one_is_marked(offer: Offer, tmp_path: Path) -> None:

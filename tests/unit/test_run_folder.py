@@ -66,7 +66,8 @@ def leftovers(folder: Path) -> list[str]:
 def test_a_run_folder_holds_everything(tmp_path: Path, calculation: Calculation) -> None:
     folder = tmp_path / "runs" / "Größe 1"
     document = write(folder, calculation)
-    assert leftovers(folder) == ["arrays.npz", "inputs.toml", "results.json", "run.json", "sheet.html", "sheet.md"]
+    own = ["arrays.npz", "inputs.toml", "results.csv", "results.json", "run.json", "sheet.html", "sheet.md"]
+    assert leftovers(folder) == own
     assert load_either(folder) == document == json.loads((folder / "results.json").read_text(encoding="utf-8"))
     assert json.loads((folder / "run.json").read_text(encoding="utf-8"))["duration_s"] == 1.5
     assert leftovers(tmp_path / "runs") == ["Größe 1"]

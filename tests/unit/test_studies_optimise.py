@@ -24,6 +24,7 @@ from truing import (
     Table,
     Vary,
     Words,
+    correlated,
     off,
 )
 from truing.calculation import calculate
@@ -168,7 +169,15 @@ def problem_of(setup: Setup, **options: Any) -> tuple[Problem, np.ndarray]:
     return problem, problem.space.designs(places)
 
 
-SETUPS = [pytest.param(grown(), id="parts"), pytest.param(press(crank_angle="35 deg"), id="press")]
+TOGETHER = (
+    correlated("force", "strength", 0.6), correlated("size", "other", -0.4), correlated("other", "twin", 0.5),
+    correlated("clearance", "angle", 0.3),
+)  # fmt: skip
+SETUPS = [
+    pytest.param(grown(), id="parts"),
+    pytest.param(replace(grown(), correlations=TOGETHER), id="correlated"),
+    pytest.param(press(crank_angle="35 deg"), id="press"),
+]
 
 
 @pytest.mark.parametrize("setup", SETUPS)

@@ -13,13 +13,15 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+from truing.api.differences import Differences, differences_of, differences_of_paths
 from truing.api.findings import NamedCause, Ranking, Residuals, causes_of
 from truing.api.notebook import bullets, fold, heading, html_table, joined, paragraphs, picture, table_html
 from truing.api.plan import Plan
 from truing.api.records import MeasuredRecord
-from truing.api.run import Differences, Run, comparison_of, performed
+from truing.api.run import Run, demand_files, performed
 from truing.api.study import StudyResult
 from truing.api.tables import LABEL, beside, frame_text, settings_of, text_of
+from truing.declare.correlations import Correlated
 from truing.declare.model import Study
 from truing.declare.near_miss import near_miss
 from truing.describe import description, sections
@@ -28,7 +30,7 @@ from truing.diagnosis.engine import diagnose
 from truing.diagnosis.reading import read_records
 from truing.diagnosis.result import Verdict
 from truing.errors import Fault, InputError, UsageError
-from truing.example_file import example_of, example_text
+from truing.example_file import example_of, text_to_fill_in
 from truing.experiments.design import BUDGET
 from truing.experiments.planning import planned
 from truing.experiments.proposal import proposed
@@ -40,6 +42,7 @@ from truing.kernel import Offer, offer_of
 from truing.measurements import RowsFile, read_rows
 from truing.progress import progress_bar
 from truing.published import ComparedRow, compare_published
+from truing.report.comparison_page import Side, figures_in
 from truing.report.diagnosis_chapters import fitted_table
 from truing.report.diagnosis_sheet import data_words, diagnosis_sheet_of, questions
 from truing.report.diagnosis_words import headline, verdict_word
@@ -53,7 +56,6 @@ from truing.studies.frequency import Frequency
 from truing.studies.sweep import Sweep
 from truing.units import difference_unit
 from truing.units.grammar import shown
-from truing.workbooks.writing import demand_library
 
 
 @dataclass(frozen=True)
@@ -90,9 +92,13 @@ class LoadedModel:
         """What it calculates, in a line."""
         return self.offer.model.title
 
-    def given(self, *, set: Mapping[str, Any] | None = None, **values: Any) -> LoadedModel:
-        """Return the model with these values in every run."""
-        return replace(self, stated=(*self.stated, *self._settings(set, values)))
+    def given(self, *together: Correlated, set: Mapping[str, Any] | None = None, **values: Any) -> LoadedModel:
+        """Return the model with these values in every run, and with inputs that scatter together.
+
+        ``together`` holds pairs, each made by ``correlated("load", "hardness", 0.7)``.
+        """
+        pairs = {f"correlations.{pair.name}": pair.coefficient for pair in together}
+        return replace(self, stated=(*self.stated, *self._settings({**pairs, **(set or {})}, values)))
 
     def setup(self, inputs: str | Path | None = None, *, set: Mapping[str, Any] | None = None, **values: Any) -> Setup:
         """Return what a run would calculate: the inputs file, or the shipped example, and values in place of its own.
@@ -117,6 +123,7 @@ class LoadedModel:
         output: str | Path | None = None,
         resume: bool = False,
         pdf: bool = False,
+        docx: bool = False,
         excel: bool = False,
         xlsx: bool = False,
         set: Mapping[str, Any] | None = None,
@@ -129,11 +136,11 @@ class LoadedModel:
         every row is a case. It is computed in ``workers`` processes, or on the dask ``cluster`` at an address; the
         answer does not depend on it. ``output`` is a folder that is complete or absent, whatever happens; with
         ``resume`` finished batches are kept beside it, and those of an interrupted run are taken up; ``pdf``,
-        ``excel`` and ``xlsx`` are as in ``Run.save``. Raises TruingError with one sentence.
+        ``docx``, ``excel`` and ``xlsx`` are as in ``Run.save``. Raises TruingError with one sentence.
         """
         setup = self.setup(inputs, set=set, **values)
         how: dict[str, Any] = {"workers": workers, "cluster": cluster, "resume": resume}
-        how |= {"pdf": pdf, "excel": excel, "xlsx": xlsx}
+        how |= {"pdf": pdf, "docx": docx, "excel": excel, "xlsx": xlsx}
         return performed(setup, self.offer, progress, output=output, cases=cases, **how)
 
     def study(
@@ -236,6 +243,7 @@ class LoadedModel:
         budget: int = 0,
         output: str | Path | None = None,
         pdf: bool = False,
+        docx: bool = False,
         xlsx: bool = False,
         set: Mapping[str, Any] | None = None,
         progress: Progress | bool = True,
@@ -245,13 +253,12 @@ class LoadedModel:
 
         ``hold_out`` marks rows that only judge ("judged = yes"), ``per_file`` names what every file has for itself,
         ``budget`` is how many calls of the model the search may make (0: as many as its time allows). Nothing is
-        written without ``output``, a folder that is complete or absent; ``pdf`` prints the sheet there, and
-        ``xlsx`` adds a workbook. Raises TruingError with one sentence, or every fault of a file.
+        written without ``output``, a folder that is complete or absent; ``pdf``, ``docx`` and ``xlsx`` are as in
+        ``Diagnosis.save``. Raises TruingError with one sentence, or every fault of a file.
         """
-        if not isinstance(record, MeasuredRecord):
-            made = "truing.read(files, model) or truing.record(dataframe, model)"
-            raise UsageError(f"a {type(record).__name__} is no record; make one with {made}")
-        _demand_output(output, {"pdf": pdf, "xlsx": xlsx})
+        _demand_record(record)
+        files = {"pdf": pdf, "docx": docx, "xlsx": xlsx}
+        demand_files(output, files, "diagnosis")
         options = {"hold_out": hold_out, "per_file": list(per_file), "budget": budget}
         stated = {f"studies.diagnose.{name}": toml_value(value) for name, value in options.items() if value}
         setup = self.setup(inputs, set={**stated, **(set or {})}, **values)
@@ -265,7 +272,7 @@ class LoadedModel:
             report("sheet and PDF" if pdf else "sheet", 0, 0)
             if output is None:
                 return diagnosis
-            return replace(diagnosis, note=diagnosis.written(Path(output), pdf=pdf, xlsx=xlsx))
+            return replace(diagnosis, note=diagnosis.written(Path(output), **files))
 
     def plan(
         self,
@@ -308,7 +315,7 @@ class LoadedModel:
 
     def example(self) -> str:
         """Return a commented inputs file that runs as it is: what ``calc init`` writes."""
-        return example_text(self.offer)
+        return text_to_fill_in(self.offer)
 
     def _repr_html_(self) -> str:
         """Show what the model takes and answers, and what could make it wrong."""
@@ -325,14 +332,11 @@ class LoadedModel:
         return settings_of(self.offer.model, {**(set or {}), **values})
 
 
-def _demand_output(output: str | Path | None, files: Mapping[str, bool]) -> None:
-    """Raise UsageError or OutputError where what is asked for cannot be written, before anything is calculated."""
-    for name in (name for name, is_asked in files.items() if is_asked and output is None):
-        raise UsageError(f"{name} needs output, the folder that is written")
-    if files["xlsx"]:
-        demand_library()
-    if output is not None:
-        demand_place(Path(output), "diagnosis")
+def _demand_record(record: Any) -> None:
+    """Raise UsageError, saying how a record is made, for anything else."""
+    if not isinstance(record, MeasuredRecord):
+        made = "truing.read(files, model) or truing.record(dataframe, model)"
+        raise UsageError(f"a {type(record).__name__} is no record; make one with {made}")
 
 
 def _demand_known(rows: RowsFile, setup: Setup) -> None:
@@ -419,26 +423,30 @@ class Diagnosis:
         return self.residuals.plot()
 
     def sheet(self, path: str | Path, *, language: str = "") -> Path:
-        """Write the sheet as HTML, Markdown or PDF, as the name ends, in its language or another one.
+        """Write the sheet as HTML, Markdown, PDF or a Word document, as the name ends, in its language or another.
 
         Raises OutputError.
         """
         result = replace(self.result, setup=in_language(self.result.setup, language))
         return write_sheet(path, partial(diagnosis_sheet_of, result, self.started))
 
-    def save(self, folder: str | Path, *, pdf: bool = False, xlsx: bool = False) -> Path:
-        """Write the folder that ``calc diagnose`` writes; an earlier diagnosis there goes. Raises OutputError."""
+    def save(self, folder: str | Path, *, pdf: bool = False, docx: bool = False, xlsx: bool = False) -> Path:
+        """Write the folder that ``calc diagnose`` writes; an earlier diagnosis there goes.
+
+        ``pdf`` prints the sheet where a browser is installed, ``docx`` adds it as a Word document, ``xlsx`` adds a
+        workbook. Raises OutputError.
+        """
         target = Path(folder)
         demand_place(target, "diagnosis")
-        note = self.written(target, pdf=pdf, xlsx=xlsx)
+        note = self.written(target, pdf=pdf, docx=docx, xlsx=xlsx)
         if note.startswith("no PDF"):
             warnings.warn(note, stacklevel=2)
         return target
 
-    def written(self, folder: Path, *, pdf: bool = False, xlsx: bool = False) -> str:
+    def written(self, folder: Path, *, pdf: bool = False, docx: bool = False, xlsx: bool = False) -> str:
         """Write the folder and return what became of the PDF."""
         sheet = diagnosis_sheet_of(self.result, self.started)
-        sheets, note = sheets_of(sheet, folder, pdf=pdf)
+        sheets, note = sheets_of(sheet, folder, pdf=pdf, word=docx)
         info = {**run_info(self.started), "data": dict(self.result.records.digests)}
         write_outcome(
             folder, "diagnosis", self.result.setup, self.document, provenance=sheet.provenance, run_info=info,
@@ -448,7 +456,13 @@ class Diagnosis:
 
     def compare(self, before: Diagnosis) -> Differences:
         """Return what differs from ``before`` to this diagnosis: data, verdict, causes, errors, gain."""
-        return comparison_of(before.document, self.document)
+        return differences_of(before.document, self.document, lambda: (before.side("before"), self.side("after")))
+
+    def side(self, name: str) -> Side:
+        """Return what a page of two diagnoses is written from: the document, and the figures of the sheet."""
+        return Side(
+            name, self.document, figures_in(diagnosis_sheet_of(self.result, self.started)), self.result.setup.model
+        )
 
     def _repr_html_(self) -> str:
         """Show the verdict, the causes, the residuals before and after, and the rest folded away."""
@@ -472,3 +486,16 @@ def load(plugin: str | Path) -> LoadedModel:
     PluginError where the plugin that is named is broken.
     """
     return LoadedModel(offer_of(str(plugin), lambda text: warnings.warn(text, stacklevel=4)))
+
+
+def compare(
+    before: str | Path, after: str | Path, *, plugin: str = "", progress: Progress | bool = True
+) -> Differences:  # fmt: skip
+    """Return what differs between two runs, or two diagnoses: what ``calc compare`` does.
+
+    Each is a folder that was written, or an inputs file (.toml, .xlsx), which runs now; ``plugin`` runs it where it
+    names none. Raises TruingError with one sentence.
+    """
+    return differences_of_paths(
+        before, after, lambda name, file: load(name).run(file, progress=progress), plugin=plugin
+    )  # fmt: skip

@@ -15,9 +15,12 @@ from truing.api.tables import frame_of, frame_text
 from truing.declare.near_miss import near_miss
 from truing.diagnosis.data_rows import DataRows, read_data_files
 from truing.errors import UsageError
+from truing.inputs_file import read_setup
 from truing.kernel import Offer
 from truing.measurements import TableSource, read_table
+from truing.measurements.table import NOT_NAMED
 from truing.numbers import counted, format_number
+from truing.setup import NamedColumn
 from truing.units import from_si, unit_text
 from truing.units.grammar import shown
 
@@ -88,12 +91,16 @@ class MeasuredRecord:
         return joined(*shown, paragraphs([f"{counted(self.rows)} measured"]))
 
 
-def read(files: str | Path | Sequence[str | Path], model: HasOffer) -> MeasuredRecord:
-    """Take measured files (CSV) as a record of this model. Raises InputError with every fault of every file."""
+def read(files: str | Path | Sequence[str | Path], model: HasOffer, inputs: str | Path | None = None) -> MeasuredRecord:
+    """Take measured files as a record of this model: CSV, workbooks, TDMS, MDF, MATLAB or parquet files.
+
+    ``inputs`` is the inputs file whose [columns] says what the columns are, where the files call them otherwise.
+    Raises InputError with every fault of every file.
+    """
     paths = tuple(Path(file) for file in ([files] if isinstance(files, (str, Path)) else files))
     if not paths:
         raise UsageError("no file is named; a record is one measured file or several")
-    return _known(paths, model)
+    return _known(paths, model, {} if inputs is None else read_setup(Path(inputs), model.offer).columns)
 
 
 def record(
@@ -109,8 +116,10 @@ def record(
     return _known((frame_text(frame, units or {}, gaps=True, name=name),), model)
 
 
-def _known(sources: tuple[TableSource, ...], model: HasOffer) -> MeasuredRecord:
-    files = read_data_files(sources, model.offer)
+def _known(
+    sources: tuple[TableSource, ...], model: HasOffer, named: Mapping[str, NamedColumn] = NOT_NAMED
+) -> MeasuredRecord:
+    files = read_data_files(sources, model.offer, named)
     columns = tuple(tuple(_columns(file)) for file in files)
     for text in dict.fromkeys(text for each in columns for text in _misspelt(each, model)):
         warnings.warn(text, stacklevel=4)

@@ -12,6 +12,7 @@ from math import nan
 from pathlib import Path
 from typing import Any
 
+from truing.api.differences import Differences, differences_of
 from truing.api.notebook import MOST_ROWS, fold, heading, html_table, joined, paragraphs, table_html
 from truing.api.study import StudyResult
 from truing.api.tables import frame_of, frame_text, quantity_of
@@ -26,13 +27,14 @@ from truing.kernel import Offer
 from truing.measurements import read_cases
 from truing.numbers import format_value, with_unit
 from truing.progress import progress_bar
+from truing.report.comparison_page import Side, figures_in
 from truing.report.document import Document, plain_text
 from truing.report.limits import check_table
 from truing.report.run import run_info, sheet_of, sheets_of, write_sheet
 from truing.report.sheet import banner_of, cases_table
-from truing.runs.comparison import Change, compared, in_order, words_of
+from truing.report.word_printer import demand_word_library
 from truing.runs.documents import results_document
-from truing.runs.folder import demand_place, run_files, write_outcome
+from truing.runs.folder import FolderKind, demand_place, run_files, write_outcome
 from truing.runs.partial import code_of, identity_of, kept_batches
 from truing.runs.provenance import provenance_of
 from truing.setup import Setup, in_language
@@ -133,32 +135,37 @@ class Run:
         return frame_of(_case_columns(self.cases, self._setup))
 
     def sheet(self, path: str | Path, *, language: str = "") -> Path:
-        """Write the calculation sheet as HTML, Markdown or PDF, as the name ends, in its language or another one.
+        """Write the sheet as HTML, Markdown, PDF or a Word document, as the name ends, in its language or another.
 
         Raises OutputError.
         """
         run = replace(self, calculation=replace(self.calculation, setup=in_language(self._setup, language)))
         return write_sheet(path, partial(run._sheet, silent))
 
-    def save(self, folder: str | Path, *, pdf: bool = False, excel: bool = False, xlsx: bool = False) -> Path:
+    def save(
+        self, folder: str | Path, *, pdf: bool = False, docx: bool = False, excel: bool = False, xlsx: bool = False
+    ) -> Path:
         """Write the folder that ``calc run`` writes: inputs, results, sheets, arrays; an earlier run there goes.
 
-        ``pdf`` prints the sheet where a browser is installed, ``excel`` adds CSV for a spreadsheet with a decimal
-        comma, ``xlsx`` a workbook. Raises OutputError where the folder is something else, or cannot be written.
+        ``pdf`` prints the sheet where a browser is installed, ``docx`` adds it as a Word document; ``excel`` writes the
+        CSV tables for a spreadsheet with a decimal comma, ``xlsx`` adds them as a workbook. Raises OutputError where
+        the folder is something else, or cannot be written.
         """
         target = Path(folder)
         demand_place(target)
-        note = self.written(target, pdf=pdf, excel=excel, xlsx=xlsx)
+        note = self.written(target, pdf=pdf, docx=docx, excel=excel, xlsx=xlsx)
         if note.startswith("no PDF"):
             warnings.warn(note, stacklevel=2)
         return target
 
-    def written(self, folder: Path, *, pdf: bool, excel: bool, xlsx: bool = False, progress: Progress = silent) -> str:
+    def written(
+        self, folder: Path, *, pdf: bool, docx: bool, excel: bool, xlsx: bool, progress: Progress = silent
+    ) -> str:
         """Write the folder and return what became of the PDF."""
         sheet = self._sheet(progress)
         if pdf:
             progress("printing", 0, 0)
-        sheets, note = sheets_of(sheet, folder, pdf=pdf)
+        sheets, note = sheets_of(sheet, folder, pdf=pdf, word=docx)
         files = run_files(self.calculation, self.document, sheets, excel=excel, xlsx=xlsx)
         if self.alone:
             (study,) = self.studies.values()
@@ -171,7 +178,11 @@ class Run:
 
     def compare(self, before: Run) -> Differences:
         """Return what differs from ``before`` to this run: settings, inputs, results, checks, studies."""
-        return comparison_of(before.document, self.document)
+        return differences_of(before.document, self.document, lambda: (before.side("before"), self.side("after")))
+
+    def side(self, name: str) -> Side:
+        """Return what a page of two runs is written from: the document, and the figures of the sheet."""
+        return Side(name, self.document, figures_in(self._sheet(silent)), self._setup.model)
 
     def _repr_html_(self) -> str:
         """Show the verdict, the limits, the results, and what is to be known beside them."""
@@ -219,6 +230,7 @@ def performed(
     cluster: str = "",
     resume: bool = False,
     pdf: bool = False,
+    docx: bool = False,
     excel: bool = False,
     xlsx: bool = False,
     alone: bool = False,
@@ -232,22 +244,30 @@ def performed(
     """
     if cluster and workers is not None:
         raise UsageError("cluster and workers exclude each other: a cluster has its own workers")
-    for name, is_asked in {"resume": resume, "pdf": pdf, "excel": excel, "xlsx": xlsx}.items():
-        if is_asked and output is None:
-            raise UsageError(f"{name} needs output, the folder that is written")
-    if xlsx:
-        demand_library()
+    files = {"pdf": pdf, "docx": docx, "excel": excel, "xlsx": xlsx}
+    demand_files(output, {"resume": resume, **files})
     folder = None if output is None else Path(output)
     keeping: AbstractContextManager[BatchLog | None] = nullcontext()
-    if folder is not None:
-        demand_place(folder)
-        keeping = kept_batches(folder, identity_of(setup, code_of(setup))) if resume else keeping
+    if folder is not None and resume:
+        keeping = kept_batches(folder, identity_of(setup, code_of(setup)))
     place = f"dask:{cluster}" if cluster else "serial" if workers in (None, 1) else f"processes:{workers}"
     with progress_bar(progress) as report, told_by_line(setup), keeping as log:
         run = replace(_calculated(setup, offer, cases, place=place, progress=report, log=log), alone=alone)
         if folder is not None:
-            return replace(run, note=run.written(folder, pdf=pdf, excel=excel, xlsx=xlsx, progress=report))
+            return replace(run, note=run.written(folder, **files, progress=report))
         return run
+
+
+def demand_files(output: str | Path | None, files: Mapping[str, bool], kind: FolderKind = "run") -> None:
+    """Raise UsageError or OutputError where what is asked for cannot be written: before anything is calculated."""
+    for name in (name for name, is_asked in files.items() if is_asked and output is None):
+        raise UsageError(f"{name} needs output, the folder that is written")
+    if files["xlsx"]:
+        demand_library()
+    if files["docx"]:
+        demand_word_library()
+    if output is not None:
+        demand_place(Path(output), kind)
 
 
 def _calculated(setup: Setup, offer: Offer, cases: Any, *, place: str, progress: Progress, log: BatchLog | None) -> Run:
@@ -285,37 +305,3 @@ def _case_columns(cases: CasesTable, setup: Setup) -> dict[str, list[Any]]:
         ]
     columns["verdict"] = [case.verdict for case in cases.cases]
     return {**columns, "fault": [case.reason or "" for case in cases.cases]}
-
-
-# What differs between two runs, or two diagnoses
-
-
-CHANGE_COLUMNS = ("what", "name", "before", "after", "change")
-
-
-@dataclass(frozen=True)
-class Differences:
-    """What differs between two runs, or two diagnoses: checks of another state first. False where nothing does."""
-
-    changes: tuple[Change, ...]
-
-    def __repr__(self) -> str:
-        return "\n".join("  ".join(words_of(change)) for change in self.changes) or "equal"
-
-    def __bool__(self) -> bool:
-        """Whether anything differs."""
-        return bool(self.changes)
-
-    def frame(self) -> Any:
-        """Return the differences as a dataframe of texts: what, name, before, after, change."""
-        rows = [words_of(change) for change in self.changes]
-        return frame_of({name: [row[index] for row in rows] for index, name in enumerate(CHANGE_COLUMNS)})
-
-    def _repr_html_(self) -> str:
-        rows = [words_of(change) for change in self.changes]
-        return html_table(rows, CHANGE_COLUMNS) if rows else paragraphs(["equal"])
-
-
-def comparison_of(before: Mapping[str, Any], after: Mapping[str, Any]) -> Differences:
-    """Compare two documents. Raises UsageError for a run beside a diagnosis."""
-    return Differences(tuple(in_order(compared(before, after))))

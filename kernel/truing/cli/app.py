@@ -142,6 +142,7 @@ def run(
         bool, typer.Option("--resume", help="Keep finished batches, and take up those of an interrupted run.")
     ] = False,
     pdf: Pdf = False,
+    docx: Docx = False,
     excel: Excel = False,
     xlsx: Xlsx = False,
     as_json: AsJson = False,
@@ -197,7 +198,7 @@ def table(
     plugin: Plugin,
     inputs: Annotated[Path, typer.Option("--inputs", "-i", help="The inputs file.")],
     rows: Annotated[
-        Path, typer.Option("--rows", help="CSV or .xlsx; columns replace inputs or conditions row by row.")
+        Path, typer.Option("--rows", help="CSV, .xlsx or a recording; columns replace inputs or conditions row by row.")
     ],
     output: OutputFile = None,
     changed: Changed = None,
@@ -219,6 +220,7 @@ def diagnose(
         Path | None, typer.Option("--output", "-o", help="The folder (default runs/STEM of the first data file).")
     ] = None,
     pdf: Pdf = False,
+    docx: Docx = False,
     xlsx: Xlsx = False,
     as_json: AsJson = False,
 ) -> None:
@@ -255,8 +257,18 @@ def verify(context: typer.Context, plugin: Plugin, as_json: AsJson = False) -> N
 @_loaded("folders")
 def compare(
     context: typer.Context,
-    first: Annotated[Path, typer.Argument(help="A run folder, or that of a diagnosis.", autocompletion=runs)],
+    first: Annotated[
+        Path, typer.Argument(help="A run folder, that of a diagnosis, or an inputs file.", autocompletion=runs)
+    ],
     second: Annotated[Path, typer.Argument(help="Another one of the same kind.", autocompletion=runs)],
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", help="Write both side by side, with figures: .html, .md or .pdf."),
+    ] = None,
+    plugin: Annotated[
+        str,
+        typer.Option("--plugin", help="What runs inputs files that name none.", autocompletion=candidates.plugins),
+    ] = "",
     as_json: AsJson = False,
 ) -> None:
     """Show inputs, results and checks that changed: exit 0 when equal, 1 when different."""
@@ -324,9 +336,10 @@ Xlsx: TypeAlias = Annotated[bool, typer.Option("--xlsx", help="Add a workbook wi
 Inputs: TypeAlias = Annotated[
     Path | None, typer.Option("--inputs", "-i", help="The inputs file; without it the shipped example.")
 ]
-Cases: TypeAlias = Annotated[Path | None, typer.Option("--cases", help="CSV or .xlsx: every row is a case.")]
+Cases: TypeAlias = Annotated[Path | None, typer.Option("--cases", help="CSV, .xlsx or .parquet: every row is a case.")]
 Data: TypeAlias = Annotated[
-    list[Path] | None, typer.Option("--data", "-d", help="Measured rows, CSV or .xlsx; may be repeated.")
+    list[Path] | None,
+    typer.Option("--data", "-d", help="Measured rows: CSV, .xlsx or a recording; may be repeated."),
 ]
 RunFolder: TypeAlias = Annotated[
     Path | None, typer.Option("--output", "-o", help="The run folder (default runs/STEM).")
@@ -338,6 +351,7 @@ Language: TypeAlias = Annotated[
     ),
 ]
 Pdf: TypeAlias = Annotated[bool, typer.Option("--pdf", help="Print the sheet to PDF with an installed browser.")]
+Docx: TypeAlias = Annotated[bool, typer.Option("--docx", help="Add the sheet as a Word document.")]
 
 
 class Shell(StrEnum):

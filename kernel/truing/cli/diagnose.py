@@ -31,8 +31,11 @@ def diagnose(settings: Settings, asked: SimpleNamespace) -> int:
     say_example(asked.inputs, asked.plugin, settings)
     folder = asked.output or Path("runs") / file_of(measured[0]).stem
     record, progress = MeasuredRecord(measured), not settings.quiet
-    done = model.diagnose(record, asked.inputs, output=folder, pdf=asked.pdf, xlsx=asked.xlsx, progress=progress)
+    how = {name: getattr(asked, name) for name in ("pdf", "docx", "xlsx")}
+    done = model.diagnose(record, asked.inputs, output=folder, progress=progress, **how)
     _say_beside(done, settings)
+    if asked.docx:
+        settings.say(f"for Word: {folder / 'sheet.docx'}")
     if asked.xlsx:
         settings.say(f"for a spreadsheet: {folder / 'diagnosis.xlsx'}")
     if asked.as_json:

@@ -210,6 +210,9 @@ def _input(told: Told) -> ToldParts:
     yield f"{stated}; {allowed}" if allowed else stated
     yield from _said("Source", told["source"])
     yield from map(_spread_words, told["tolerances"])
+    for pair in told["correlated"]:
+        why = f", {pair['why']}" if pair["why"] else ""
+        yield f"scatters together with {pair['with']}: correlation {pair['correlation']:g}{why}"
     if told["namesake"]:
         address = f"{told['model']}.tolerances.{told['name']}"
         yield f"the tolerance of this name scatters {', '.join(told['namesake'])}: see {address}"

@@ -13,10 +13,13 @@ from types import SimpleNamespace
 from rich.console import Console
 from rich.text import Text
 
+from truing.api.differences import differences_of_paths
+from truing.api.run import Run
 from truing.cli.console import GAP, Settings, aligned, harmless, out, out_json, put
+from truing.cli.load import find_model
 from truing.report.index_page import listing_document, summary_of, write_index
-from truing.runs.comparison import Change, compared, in_order, words_of
-from truing.runs.folder import load_either
+from truing.report.run import demand_page
+from truing.runs.comparison import Change, compared, words_of
 from truing.runs.index import list_folder
 from truing.studies.checks import EXIT_CODES
 from truing.texts import one_line
@@ -40,15 +43,26 @@ def index(settings: Settings, asked: SimpleNamespace) -> int:
 
 def compare(settings: Settings, asked: SimpleNamespace) -> int:
     """Show inputs, results and checks that changed: exit 0 when equal, 1 when different."""
-    changes = compared(load_either(asked.first), load_either(asked.second))
+
+    if asked.output is not None:
+        demand_page(asked.output)
+
+    def run(plugin: str, file: Path) -> Run:
+        return find_model(plugin, settings).run(file, progress=not settings.quiet)
+
+    differences = differences_of_paths(asked.first, asked.second, run, plugin=asked.plugin)
+    changes = differences.changes
+    if asked.output is not None:
+        differences.sheet(asked.output)
     if asked.as_json:
-        out_json({"equal": not changes, "changes": [asdict(change) for change in changes]})
+        out_json({"equal": not changes, "changes": [asdict(change) for change in compared(*differences.documents)]})
     elif not changes:
         out("equal")
     else:
-        ordered = in_order(changes)
         head = ("what", "name", one_line(asked.first), one_line(asked.second), "change")
-        out_table([head, *map(words_of, ordered)], [("",) * 5, *map(styles_of, ordered)])
+        out_table([head, *map(words_of, changes)], [("",) * 5, *map(styles_of, changes)])
+    if asked.output is not None and not asked.as_json:
+        out(f"\npage: {one_line(asked.output)}")
     return 1 if changes else 0
 
 

@@ -14,7 +14,7 @@ from truing.cli.load import find_model, find_offer
 from truing.declare.published import rules_of
 from truing.describe import sections
 from truing.errors import OutputError, UsageError
-from truing.example_file import example_book, example_text, schema_name, with_schema_line
+from truing.example_file import example_book, schema_name, text_to_fill_in, with_schema_line
 from truing.inputs_file import json_schema
 from truing.kernel import Kernel, Offer
 from truing.numbers import counted, format_number
@@ -92,7 +92,7 @@ def init(settings: Settings, asked: SimpleNamespace) -> int:
     is_book = output is not None and output.suffix.lower() == ".xlsx"
     if asked.excel and not is_book:
         raise UsageError(f"--excel writes a workbook; name it like {asked.output.stem}.xlsx")
-    text = "" if is_book else example_text(offer)
+    text = "" if is_book else text_to_fill_in(offer)
     if output is None:
         out(text.rstrip("\n"))
         return 0

@@ -36,11 +36,15 @@ def run(settings: Settings, asked: SimpleNamespace) -> int:
     model = find_model(asked.plugin, settings, asked.changed, asked.language)
     say_example(asked.inputs, asked.plugin, settings)
     folder = asked.output or Path("runs") / (file_of(asked.inputs).stem if asked.inputs else model.name)
-    how = {name: getattr(asked, name) for name in ("cases", "workers", "cluster", "resume", "pdf", "excel", "xlsx")}
+    how = {
+        name: getattr(asked, name) for name in ("cases", "workers", "cluster", "resume", "pdf", "docx", "excel", "xlsx")
+    }
     with _told_what_is_kept(folder, asked.resume, settings):
         done = model.run(asked.inputs, output=folder, progress=not settings.quiet, **how)
     tables = ["results.csv", *(["cases.csv"] if done.cases is not None else [])] if asked.excel else []
     _say_beside(done, [folder / name for name in (*tables, *(["results.xlsx"] if asked.xlsx else []))], settings)
+    if asked.docx:
+        settings.say(f"for Word: {folder / 'sheet.docx'}")
     if asked.as_json:
         out_json(done.document)
     else:
@@ -66,6 +70,8 @@ def _say_beside(done: Run, tables: Sequence[Path], settings: Settings) -> None:
     """Say what is no result: warnings, cases that failed, what else was written, and where the numbers come from."""
     for warning in done.warnings:
         settings.say(f"warning: {one_line(warning)}")
+    for note in done.cases.notes if done.cases is not None else ():
+        settings.say(f"note: {one_line(note)}")
     for case in done.cases.cases if done.cases is not None else ():
         if case.reason is not None:
             say(str(case.fault))

@@ -19,6 +19,7 @@ from truing.measurements import EXCEL, PLAIN, RowsFile, read_rows, table_text
 from truing.measurements.csv_text import read_cell, with_comma
 from truing.measurements.overriding import NAMES, REMARKS
 from truing.measurements.table import RUN
+from truing.recordings.parquet import parquet_bytes
 from truing.runs.spreadsheet import column_sheet
 from truing.setup import Setup
 from truing.texts import one_line
@@ -44,26 +45,35 @@ def table(settings: Settings, asked: SimpleNamespace) -> int:
     with told_by_line(setup):
         shown = shown_by_gauge(setup, read)
     kept = {text: cells for text, cells in read.cells.items() if name_in(text) not in shown.values}
-    headers = [*kept, *(f"{name} [{shown.units[name] or '1'}]" for name in shown.values)]
-    results = shown.values.values()
-    if output is not None and output.suffix.lower() == ".xlsx":
-        numbers = [_as_numbers(text, column, setup) for text, column in kept.items()]
-        sheet = column_sheet("rows", dict(zip(headers, [*numbers, *results], strict=True)), setup.model)
-        write_files({output: workbook_bytes([sheet])})
+    results = {f"{name} [{shown.units[name] or '1'}]": values for name, values in shown.values.items()}
+    ending = "" if output is None else output.suffix.lower()
+    if output is not None and ending in {".xlsx", ".parquet"}:
+        write_files({output: _numbers_in(ending, kept, results, setup)})
     else:
         cells = [_with_commas(text, column, setup) if excel else column for text, column in kept.items()]
-        text = table_text(headers, [*cells, *results], form=EXCEL if excel else PLAIN)
+        text = table_text([*kept, *results], [*cells, *results.values()], form=EXCEL if excel else PLAIN)
         if output is None:
             out(text.removesuffix("\n"))
         else:
             write_files({output: text})
     for row, reason in _reasons(shown.reasons, read).items():
         say(f"{rows}:{read.lines[row]}: {reason}")
+    for note in read.notes:
+        settings.say(f"note: {one_line(note)}")
     if read.count.unused:
         settings.say(f"{one_line(rows)}: {one_line(read.count.sentence())}")
     if output is not None:
         settings.say(f"wrote {output}: {len(read)} rows, {len(shown.reasons)} of them failed")
     return 0
+
+
+def _numbers_in(ending: str, kept: Mapping[str, Sequence[str]], results: Mapping[str, Any], setup: Setup) -> bytes:
+    """Return the columns as a workbook or a parquet file, numbers as such."""
+    columns = {text: _as_numbers(text, column, setup) for text, column in kept.items()}
+    if ending == ".xlsx":
+        return workbook_bytes([column_sheet("rows", {**columns, **results}, setup.model)])
+    plain = {text: [getattr(cell, "value", cell) for cell in column] for text, column in columns.items()}
+    return parquet_bytes({**plain, **results})
 
 
 def _reasons(reasons: Mapping[int, str], read: RowsFile) -> dict[int, str]:

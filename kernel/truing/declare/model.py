@@ -14,6 +14,7 @@ import numpy as np
 
 from truing.declare.blocks import Block
 from truing.declare.builtin import builtin_effects
+from truing.declare.correlations import Correlated, contradictions
 from truing.declare.dynamics import Dynamics
 from truing.declare.fields import (
     ROLES,
@@ -268,6 +269,11 @@ class Model(Generic[I, R]):
         return {source.name: source for source in self.errors if isinstance(source, Tolerance)}
 
     @property
+    def correlations(self) -> tuple[Correlated, ...]:
+        """The inputs that scatter together, pair by pair."""
+        return tuple(source for source in self.errors if isinstance(source, Correlated))
+
+    @property
     def effects(self) -> dict[str, Effect[I, R]]:
         """The effects by name, as declared."""
         return {source.name: source for source in self.errors if isinstance(source, Effect)}
@@ -358,7 +364,8 @@ def _of_names(model: Model[Any, Any]) -> Iterator[str]:
     given = [name for fields in model.study_result_fields.values() for name in fields]
     if TOTAL_PRICE in {*model.input_fields, *model.own_result_fields, *given}:
         yield f"the name '{TOTAL_PRICE}' is kept for the sum of the prices"
-    for name in _twice(getattr(source, "name", repr(source)) for source in model.errors):
+    sources = [source for source in model.errors if not isinstance(source, Correlated)]
+    for name in _twice(getattr(source, "name", repr(source)) for source in sources):
         yield f"two error sources are called '{name}'"
     for name in _twice(study.name for study in model.studies):
         yield f"two studies are called '{name}'"
@@ -469,11 +476,25 @@ def _of_errors(model: Model[Any, Any]) -> Iterator[str]:
             for condition in source.needs:
                 if conditions.setdefault(condition.name, condition) != condition:
                     yield f"the condition '{condition.name}' is declared in two ways"
-        else:
+        elif not isinstance(source, Correlated):
             yield f"{source!r} is neither a Tolerance nor an Effect"
+    yield from _of_correlations(model)
     units = sorted({price.unit for tolerance in model.tolerances.values() for price in prices_in(tolerance.price)})
     if len(units) > 1:
         yield f"the prices are in {' and '.join(units)}; give all of them in one unit, so that they can be added"
+
+
+def _of_correlations(model: Model[Any, Any]) -> Iterator[str]:
+    """Say which correlated inputs no tolerance is on, which pairs are stated twice, and which contradict each other."""
+    scattering = {name for tolerance in model.tolerances.values() for name in tolerance.on}
+    for stated in model.correlations:
+        for name in (stated.first, stated.second):
+            if name not in scattering:
+                yield f"'{name}' is correlated, but no tolerance is on it.{near_miss(name, scattering)}"
+    for pair, times in Counter(stated.pair for stated in model.correlations).items():
+        if times > 1:
+            yield f"the correlation of {' and '.join(repr(name) for name in sorted(pair))} is declared twice"
+    yield from (contradiction.text for contradiction in contradictions(model.correlations))
 
 
 def _of_effect(source: Effect[Any, Any], model: Model[Any, Any]) -> Iterator[str]:

@@ -9,6 +9,7 @@ from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Concatenate, Generic, Literal, TypeAlias, TypeVar
 
+from truing.declare.correlations import Correlated
 from truing.declare.fields import ROLES, Role
 from truing.declare.goals import Price, PriceByChoice
 from truing.declare.near_miss import near_miss
@@ -34,7 +35,10 @@ MOST_UNKNOWNS = 3
 
 @dataclass(frozen=True)
 class Tolerance:
-    """Inputs that scatter about their nominal: one band, one price, one independent draw per input it is ``on``."""
+    """Inputs that scatter about their nominal: one band, one price, one draw of its own per input it is ``on``.
+
+    Draws are independent, but of inputs that are ``correlated``.
+    """
 
     name: str
     spread: Spread
@@ -288,4 +292,4 @@ def _check_keywords(effect: Effect[Any, Any], wanted: set[str]) -> None:
         )
 
 
-ErrorSource: TypeAlias = Tolerance | Effect[I, R]
+ErrorSource: TypeAlias = Tolerance | Correlated | Effect[I, R]

@@ -18,14 +18,14 @@ from truing.declare.fields import Axis
 from truing.declare.model import Model
 from truing.declare.near_miss import near_miss
 from truing.errors import Fault, InputError, UnitError
-from truing.inputs_file.values import broken_bound
+from truing.inputs_file.values import SIGMA, broken_bound
 from truing.kernel import Offer
 from truing.measurements import RowsFile
 from truing.measurements.csv_text import Faults, RowCount, TableSource
 from truing.measurements.derived import TIME, histories
-from truing.measurements.table import RUN, SIGMA, WORDS, DataTable, Known, is_number, read_table
+from truing.measurements.table import NOT_NAMED, RUN, WORDS, DataTable, Known, is_number, read_table
 from truing.numbers import counted
-from truing.setup import Setup
+from truing.setup import NamedColumn, Setup
 from truing.units import check_unit, same_dimension
 from truing.units.grammar import shown
 from truing.units.names import PURE
@@ -98,13 +98,18 @@ class DataRows:
         return replace(self.taken(~rows), counts=counts)
 
 
-def read_data_files(paths: Iterable[TableSource], offer: Offer) -> list[DataRows]:
-    """Read files for this calculation. Raises InputError with every fault of every file: headers, cells, bounds."""
+def read_data_files(
+    paths: Iterable[TableSource], offer: Offer, named: Mapping[str, NamedColumn] = NOT_NAMED
+) -> list[DataRows]:
+    """Read files for this calculation; ``named`` says what their columns are, by what the files call them.
+
+    Raises InputError with every fault of every file: headers, cells, bounds.
+    """
     faults: list[Fault] = []
     files: list[DataRows] = []
     for path in paths:
         try:
-            files.append(_read(path, offer))
+            files.append(_read(path, offer, named))
         except InputError as error:
             faults += error.faults
     if faults:
@@ -112,9 +117,9 @@ def read_data_files(paths: Iterable[TableSource], offer: Offer) -> list[DataRows
     return files
 
 
-def _read(path: TableSource, offer: Offer) -> DataRows:
+def _read(path: TableSource, offer: Offer, named: Mapping[str, NamedColumn]) -> DataRows:
     model = offer.model
-    table, faults = read_table(path, _known(model))
+    table, faults = read_table(path, _known(model), named=named, results=model.measurable)
     columns: dict[str, NDArray[Any]] = {}
     for name, values in table.columns.items():
         if sentence := _unknown_unit(name, table, model):
@@ -138,6 +143,7 @@ def _read(path: TableSource, offer: Offer) -> DataRows:
         runs=objects(runs if isinstance(runs, tuple) and runs else ("",) * len(table)),
         held_out=np.zeros(len(table), dtype=bool),
         counts=(table.count,),
+        notes=table.notes,
     )
 
 

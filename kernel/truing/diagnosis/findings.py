@@ -372,7 +372,7 @@ def _bias(chosen: Chosen, channel: Channel, residual: Matrix, unit: str) -> Iter
         return
     allowed = say("bias too large") if spread > 0 else say("bias alone")
     if is_allowed := abs(mean) <= BIASED * spread:
-        allowed = say("bias allowed", spread=in_unit(spread, unit))
+        allowed = say("bias allowed", spread=in_unit(BIASED * spread, unit))
     words = say("bias", size=in_unit(mean, unit), allowed=allowed)
     yield ResidualFinding("bias", "", None, words, is_allowed)
 

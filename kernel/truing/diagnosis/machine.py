@@ -1,7 +1,7 @@
 """The machine as measured: what the model says at every row, and what each tolerated input would change.
 
 All rows of a file are one machine. Its inputs lie within their tolerances: a prior of mean and standard deviation each,
-and of their correlation where they are drawn together. Collinear inputs are carried as few directions, each with unit
+and of their correlation where they scatter together. Collinear inputs are carried as few directions, each with unit
 prior.
 """
 
@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import permutations
 from typing import Any
 
 import numpy as np
@@ -75,18 +74,14 @@ class Calibration:
 
     @cached_property
     def together(self) -> Matrix | None:
-        """How unit directions move the inputs, in standard deviations (inputs, inputs); None where none are drawn."""
-        alike = np.eye(len(self.inputs))
-        for cause in scatter_of(self.start).causes:
-            if cause.function is None:
-                continue
-            covariance = cause.covariance()
-            places = [(one, index) for index, tolerated in enumerate(self.inputs)
-                      for one, column in enumerate(cause.columns) if column == tolerated.name]  # fmt: skip
-            for (one, here), (other, there) in permutations(places, 2):
-                first, second = self.inputs[here], self.inputs[there]
-                if first.file == second.file:
-                    alike[here, there] = covariance[one, other] / (first.sd * second.sd)
+        """How unit directions move the inputs, in standard deviations (inputs, inputs); None where all are independent.
+
+        Inputs that scatter together do so in one machine: one that every file has for itself, with others of its file.
+        """
+        names = list(dict.fromkeys(tolerated.name for tolerated in self.inputs))
+        places = [names.index(tolerated.name) for tolerated in self.inputs]
+        files = np.array([tolerated.file for tolerated in self.inputs])
+        alike = scatter_of(self.start).alike(names)[np.ix_(places, places)] * (files[:, None] == files)
         return root_of(alike) if np.any(alike != np.eye(len(alike))) else None
 
     def directions(self, gram: Matrix, rows: int) -> Matrix:

@@ -35,10 +35,10 @@ from truing.diagnosis.unit_errors import factor_that_works, suspected_unit_error
 from truing.errors import Fault, InputError
 from truing.gauge import demand_times, one_machine, read_by_gauge
 from truing.inputs_file.files import digest_of
+from truing.inputs_file.values import SIGMA
 from truing.kernel import Offer
 from truing.measurements import TableSource, TableText
 from truing.measurements.derived import TIME
-from truing.measurements.table import SIGMA
 from truing.numbers import counted
 from truing.setup import Setup, column_and_word
 from truing.units import same_dimension, to_si
@@ -168,7 +168,7 @@ def read_records(paths: Sequence[TableSource], offer: Offer, setup: Setup, *, wi
     an error may depend on. Raises InputError with every fault of every file: nothing measured, a unit that is unknown
     or of another dimension, cells that are no numbers, columns without any value, fewer than three rows.
     """
-    files = _read(paths, offer)
+    files = _read(paths, offer, setup)
     joined = join(files, setup)
     _demand_rows(joined)
     joined = complete_rows(settle_conditions(joined, files, setup), setup)
@@ -201,12 +201,12 @@ def read_records(paths: Sequence[TableSource], offer: Offer, setup: Setup, *, wi
     )
 
 
-def _read(paths: Sequence[TableSource], offer: Offer) -> list[DataRows]:
+def _read(paths: Sequence[TableSource], offer: Offer, setup: Setup) -> list[DataRows]:
     """Read every file and put its rows in order, runs of several told apart; raises InputError with all faults."""
     once = {path.resolve() if isinstance(path, Path) else path: path for path in reversed(paths)}
     named = list(reversed(once.values()))
     files: list[DataRows] = []
-    for path, file in zip(named, read_data_files(named, offer), strict=True):
+    for path, file in zip(named, read_data_files(named, offer, setup.columns), strict=True):
         file = tidy(file, offer.model)
         if len(once) > 1:
             runs = objects(f"{path}: {run}" if run else str(path) for run in file.runs.tolist())

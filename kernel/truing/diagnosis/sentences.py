@@ -76,8 +76,9 @@ VERDICT: Final[Mapping[str, Kind]] = {
         "There is a pattern, but nobody registered a cause that draws it. Its shape says where to look.",
     ),
     "chance": Kind(
-        "chance alone would give this in {records}, all causes tried counted",
-        "How sure it is that anything is wrong at all. The number of causes that were tried is paid for.",
+        "chance alone would give differences like these in {records}, all causes tried counted",
+        "How sure it is that anything is wrong at all; not how sure a cause is. All causes that were tried are paid "
+        "for.",
     ),
     "chance of another": Kind(
         "chance alone would make {causes} together look needed in {records}",
@@ -90,7 +91,7 @@ VERDICT: Final[Mapping[str, Kind]] = {
 
 WRONG: Final[Mapping[str, Kind]] = {
     "is off": Kind(
-        "{result} is off by {error}; its readings scatter by {scatter}",
+        "{result} is off by {error} after calibration within the tolerances; its readings scatter by {scatter}",
         "The error of the calibrated model, root mean square. It is larger than the scatter of the readings, so "
         "something can be explained.",
     ),
@@ -104,8 +105,8 @@ WRONG: Final[Mapping[str, Kind]] = {
     ),
     "bias": Kind("on average {size} off the nominal model, {allowed}", "A constant difference to the model as drawn."),
     "bias allowed": Kind(
-        "within what the tolerances allow: machines differ by {spread}",
-        "Parts within their tolerances give as much; calibration takes it away. The size is a standard deviation.",
+        "within what the tolerances allow, {spread} either way",
+        "Parts within their tolerances give as much; calibration takes it away.",
     ),
     "bias too large": Kind("more than the tolerances allow", "Parts within their tolerances do not explain it."),
     "bias alone": Kind("and no tolerance allows for it", "No tolerance in force moves this result."),
@@ -121,7 +122,11 @@ WRONG: Final[Mapping[str, Kind]] = {
     "product": Kind("depends on {covariates} together, range {size}", "How much one matters depends on the other."),
     "rises": Kind("{rises} with {covariate}, by {size} over the record", "A trend one way."),
     "curved": Kind("curved over {covariate}, {lowest} at {place}, range {size}", "A bend with a turning point."),
-    "follows": Kind("follows {covariate}, as {cause} would", "The named cause depends on this."),
+    "patterns": Kind(
+        "each pattern was looked at alone; one cause can draw several of them",
+        "A pattern that a named cause draws needs no explanation of its own.",
+    ),
+    "follows": Kind("depends on {covariate}, if {cause} is the cause", "What the named cause follows."),
     "spread": Kind("the scatter {grows} with {covariate}", "Readings are less sure at one end of the range."),
     "alike": Kind(
         "neighbouring readings are alike",
@@ -157,8 +162,8 @@ CAUSE: Final[Mapping[str, Kind]] = {
     "next best": Kind("next best, and ruled out: {explanation}", "The nearest rival that the record excludes."),
     "best": Kind("explains it best", "Of all that were compared."),
     "is open": Kind("almost as good; cannot be ruled out", "The difference could be chance."),
-    "adds nothing": Kind("holds the best one and adds nothing", "One cause more that explains nothing more."),
-    "needs more": Kind("explains as much, but needs more for it", "More free numbers or free inputs for the same fit."),
+    "adds nothing": Kind("the best one with a cause more that explains nothing more", "What is added is not needed."),
+    "needs more": Kind("explains as much with more free numbers", "The simpler one is taken."),
     "ruled out": Kind("ruled out: explains clearly less", "The difference cannot be chance."),
     "not distinguished": Kind(
         "{one} and {other} draw the same curve on this data: nothing in it tells them apart",
@@ -223,7 +228,7 @@ MODEL: Final[Mapping[str, Kind]] = {
 GAIN: Final[Mapping[str, Kind]] = {
     "falls": Kind(
         "on rows that were not fitted the error of {result} falls from {before} to {after} (its readings scatter by "
-        "{scatter}): {share} of what can be removed is gone",
+        "{scatter}): {share} of the mean square that can be removed is gone",
         "What the cause is worth where it had to predict.",
     ),
     "falls perhaps": Kind(
@@ -278,6 +283,13 @@ NEXT: Final[Mapping[str, Kind]] = {
         "measure {result}, too: {one} and {other} differ by {size} in it, machines within their "
         "tolerances by {scatter}",
         "The same, beside what the tolerances do.",
+    ),
+    "beyond": Kind(
+        "that goes beyond what was measured so far: {settings}; check first that the machine permits it",
+        "Settings outside of the range of the record, beside that range.",
+    ),
+    "left open": Kind(
+        "nothing that is proposed here settles {explanations}", "For these another record, or a check of the gauge."
     ),
     "fact decides": Kind(
         "no measurement proposed here tells {explanations} apart; a fact from elsewhere does: {facts}",

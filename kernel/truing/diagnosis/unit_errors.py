@@ -9,7 +9,7 @@ largest tenth of them (a few wild readings decide nothing).
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,6 +19,7 @@ from truing.diagnosis.data_rows import DataRows, declared_units, is_angle, keeps
 from truing.diagnosis.records import SuspectedUnit
 from truing.gauge import one_machine, read_by_gauge, read_trials
 from truing.setup import Setup
+from truing.studies.sampling import root_of, scatter_of
 from truing.units import difference_unit, from_si, same_dimension, to_si
 from truing.units.grammar import shown
 from truing.units.names import LEVELS, PURE
@@ -109,14 +110,23 @@ def _gauges(few: DataRows, setup: Setup) -> list[_Gauge]:
         for name, distribution in by_input.items()
     ]
     moved = [{name: few.columns.get(name, machine.nominal(name)) + sd} for name, sd in scatter]
+    alike = scatter_of(setup).alike([name for name, _ in scatter])
     answers, *others = read_trials(machine, rows_of(few), [{}, *moved], few.named("measured"))
     gauges = []
     for name, values in answers.items():
         measured = few.columns[name]
-        sizes = np.array([_size(other[name] - values, mode) for other in others for mode in (0, 1)]).reshape(-1, 2)
+        moves = _as_drawn([other[name] - values for other in others], alike)
+        sizes = np.array([_size(move, mode) for move in moves for mode in (0, 1)]).reshape(-1, 2)
         raw, about = np.sqrt(np.sum(np.where(np.isfinite(sizes), sizes, 0.0) ** 2, axis=0)).tolist()
         gauges.append(_Gauge(name, measured, np.where(np.isfinite(measured), values, np.nan), (raw, about)))
     return gauges
+
+
+def _as_drawn(moves: Sequence[Matrix], alike: Matrix) -> Sequence[Matrix]:
+    """Return what independent directions do to a result, from what each input does; those that fail do nothing."""
+    if not np.any(alike != np.eye(len(alike))):
+        return moves
+    return list(root_of(alike).T @ np.nan_to_num(np.array(moves), posinf=0.0, neginf=0.0))
 
 
 def _factors(unit: str) -> Mapping[float, str]:

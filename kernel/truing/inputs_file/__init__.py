@@ -9,6 +9,7 @@ from typing import Any
 from truing.errors import InputError
 from truing.inputs_file import assemble
 from truing.inputs_file.assemble import names_stated, part_faults
+from truing.inputs_file.correlations import correlation_faults
 from truing.inputs_file.document import InputsDocument, apply_overrides, read_document
 from truing.inputs_file.entries import whole_file
 from truing.inputs_file.files import read_text
@@ -77,7 +78,7 @@ def _schema(name: str, entry: FileEntry | FileSection, known: dict[str, Any]) ->
     title = entry.title.replace(" ", "_")
     properties = {inner: _schema(inner, each, known) for inner, each in entry.entries.items()}
     required = [inner for inner, each in entry.entries.items() if isinstance(each, FileEntry) and each.is_required]
-    table = {"type": "object", "title": entry.title, "properties": properties, "additionalProperties": False}
+    table = {"type": "object", "title": entry.title, "properties": properties, "additionalProperties": entry.further}
     known[title] = {**table, "required": required} if required else table
     return {"$ref": f"#/$defs/{title}", "description": entry.words, "title": name}
 
@@ -94,7 +95,12 @@ def _setup(document: InputsDocument, offer: Offer, folder: Path) -> Setup:
     ]
     studies = assemble.studies_of(offer.model, reading.values, document, late)
     listed += [document.fault(path, sentence) for path, sentence in late]
-    faults = [*document.faults, *listed, *assemble.spread_faults(offer.model, document, reading.values)]
+    faults = [
+        *document.faults,
+        *listed,
+        *assemble.spread_faults(offer.model, document, reading.values),
+        *correlation_faults(offer.model, document, reading.values),
+    ]
     if faults:
         raise InputError(in_order(faults, document, more))
     return assemble.make_setup(offer, reading, studies, document)

@@ -8,6 +8,7 @@ import sys
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any
 
+from truing.declare.correlations import Correlated, in_force
 from truing.declare.fields import Given, InputField, make
 from truing.declare.model import Model, Study
 from truing.declare.sources import Effect, Unknown
@@ -111,6 +112,11 @@ def spreads_of(model: Model[Any, Any], values: StatedValues) -> dict[str, Spread
     return spreads
 
 
+def stated_correlations(values: StatedValues) -> list[Correlated]:
+    """Return the correlations that a file states, pair by pair."""
+    return [pair for path, pairs in values.items() if path[0] == "correlations" for pair in pairs]
+
+
 def studies_of(
     model: Model[Any, Any], values: StatedValues, document: InputsDocument, faults: list[tuple[tuple[str, ...], str]]
 ) -> tuple[Study, ...]:
@@ -163,6 +169,7 @@ def make_setup(offer: Offer, reading: InputsRead, studies: tuple[Study, ...], do
         origin=offer.origin,
         inputs=make(model.input_type, inputs),
         spreads=spreads_of(model, values),
+        correlations=in_force(model.correlations, stated_correlations(values)),
         conditions=_conditions_in_force(model, values, effects),
         effects=effects,
         calibrated=of("calibrated"),
@@ -170,6 +177,7 @@ def make_setup(offer: Offer, reading: InputsRead, studies: tuple[Study, ...], do
         seed=values.get(("studies", "seed"), DEFAULT_SEED),
         diagnose=diagnose_options(model, values),
         units=of("units"),
+        columns=of("columns"),
         sheet=SheetOptions(**{name: head.pop(name) for name in OF_THE_SHEET if name in head}, head=head),
         source=InputsSource(
             stated=frozenset(names),

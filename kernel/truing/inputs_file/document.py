@@ -204,7 +204,8 @@ class _Reader:
             return
         assignment = _ASSIGNMENT.match(statement.text)
         if assignment is None:
-            self.say(statement, f'{shown(statement.text)} is no line of TOML; write name = "value"')
+            like = '"first, second" = 0.7' if self.section == ("correlations",) else 'name = "value"'
+            self.say(statement, f"{shown(statement.text)} is no line of TOML; write {like}")
             return
         path = _parts(assignment[1])
         if self.section is None:
@@ -317,11 +318,13 @@ SECTIONS = {
     "sheet": "What the head of the sheet says, and how much the sheet shows.",
     "inputs": "The inputs of the calculation; what is left out is as declared.",
     "tolerances": "How inputs scatter about their nominals.",
+    "correlations": "Which inputs scatter together, and how much.",
     "conditions": "What is measured but no input of the model.",
     "effects": "Effects that are on, by name, each with its unknowns.",
     "calibrated": "Inputs as fitted to one machine.",
     "studies": "Which studies run, in which order, and their options.",
     "units": "The unit in which a result or input is printed.",
+    "columns": "What columns of measured files and of cases are, by what the files call them.",
 }
 """The sections of an inputs file, and what each holds."""
 
@@ -336,10 +339,19 @@ def apply_overrides(document: InputsDocument, model: Model[Any, Any], overrides:
         if not equals or not name:
             document.faults.append(Fault("write name=value, such as load='3 kN'", override))
             continue
-        path = path_of(name, model)
+        path = _as_stated(path_of(name, model), document)
         if len(path) == 3 and path[0] == "inputs":
             open_table(document, path[1], override)
         put(document, path, value_of(path, value, model), override)
+
+
+def _as_stated(path: tuple[str, ...], document: InputsDocument) -> tuple[str, ...]:
+    """Return a path; of a pair of correlated inputs as the file names it, which may be the other way round."""
+    stated = document.data.get("correlations")
+    if path[0] != "correlations" or not isinstance(stated, dict):
+        return path
+    names = {name.strip() for name in path[1].split(",")}
+    return (path[0], next((key for key in stated if {name.strip() for name in key.split(",")} == names), path[1]))
 
 
 def _one_line(text: str) -> str:
@@ -368,7 +380,7 @@ def path_of(name: str, model: Model[Any, Any]) -> tuple[str, ...]:
 def value_of(path: tuple[str, ...], text: str, model: Model[Any, Any]) -> Any:
     """Return the TOML value that a text on the command line means in this place."""
     input_field = model.input_fields.get(path[1]) if path[0] in {"inputs", "calibrated"} else None
-    as_toml = path[0] == "studies" or (
+    as_toml = path[0] in {"studies", "correlations"} or (
         input_field is not None and input_field.kind in {"switch", "integer", "series", "file"}
     )
     if not as_toml and not text.startswith(("{", "[", '"', "'")):

@@ -16,9 +16,11 @@ from truing.declare.sources import Condition, Effect, Tolerance, Unknown
 from truing.declare.spreads import read_spread
 from truing.errors import UnitError
 from truing.inputs_file.assemble import default_of, renamed, spread_text
+from truing.inputs_file.correlations import entry_of_pair
 from truing.inputs_file.document import SECTIONS
 from truing.inputs_file.study_options import DIAGNOSE, diagnose_section, study_section
 from truing.inputs_file.values import (
+    SIGMA,
     FileEntry,
     FileSection,
     InputsRead,
@@ -29,15 +31,22 @@ from truing.inputs_file.values import (
     read_input,
     read_number,
 )  # fmt: skip
-from truing.setup import DEFAULT_SEED
+from truing.setup import DEFAULT_SEED, NamedColumn
 from truing.templating import ENGLISH, languages
-from truing.units import demand_dimension, difference_unit, from_si, to_si, unit_factor
+from truing.units import check_unit, demand_dimension, difference_unit, from_si, to_si, unit_factor
 from truing.units.grammar import shown
 from truing.units.names import PURE
 
-HEAD = (
-    "project", "drawing", "revision", "prepared_by", "checked_by", "approved_by", "date", "company", "logo",
-)  # fmt: skip
+HEAD = {
+    "title": "in place of the calculation's own title", "project": "what it is for",
+    "document": "number of the document", "drawing": "number of the drawing", "revision": "of the drawing or the sheet",
+    "customer": "for whom", "prepared_by": "who signs first", "checked_by": "who signs second",
+    "approved_by": "who signs last", "date": "without it the day of the calculation",
+    "company": "head of the letter", "address": "below the company",
+    "logo": "a picture beside this file: .svg, .png or .jpg",
+    "style": "a style sheet beside this file (.css), after Truing's own",
+}  # fmt: skip
+"""What may stand in the head of the sheet, and what it is."""
 DETAILS = ("short", "normal", "full")
 PAPERS = ("A4", "letter")
 
@@ -49,7 +58,11 @@ def sections(model: Model[Any, Any]) -> dict[str, FileSection]:
         "sheet": _sheet, "inputs": _inputs, "tolerances": _tolerances, "conditions": _conditions,
         "effects": _effects, "calibrated": _calibrated, "studies": _studies, "units": _units,
     }  # fmt: skip
-    return {name: FileSection(name.capitalize(), words, makers[name](model)) for name, words in SECTIONS.items()}
+    known = {name: FileSection(name.capitalize(), SECTIONS[name], make(model)) for name, make in makers.items()}
+    known["correlations"] = FileSection("Correlations", SECTIONS["correlations"], {}, partial(entry_of_pair, model))
+    column = _column(model)
+    known["columns"] = FileSection("Columns", SECTIONS["columns"], {}, lambda name: column)
+    return {name: known[name] for name in SECTIONS}
 
 
 def whole_file(model: Model[Any, Any]) -> FileSection:
@@ -69,7 +82,10 @@ def _text(name: str, raw: Any, _: InputsRead) -> str:
 
 
 def _sheet(_: Model[Any, Any]) -> dict[str, FileEntry]:
-    entries = {name: FileEntry(partial(_head_text, name), {"type": ["string", "number"]}) for name in HEAD}
+    entries = {
+        name: FileEntry(partial(_head_text, name), {"type": ["string", "number"], "description": _sentence(words)})
+        for name, words in HEAD.items()
+    }
     detail = {"enum": list(DETAILS), "default": "normal", "description": "How much the sheet shows."}
     paper = {"enum": list(PAPERS), "default": "A4", "description": "What the sheet is printed on."}
     language = {"enum": languages(), "default": ENGLISH, "description": "The language of the sheet."}
@@ -79,6 +95,10 @@ def _sheet(_: Model[Any, Any]) -> dict[str, FileEntry]:
         "paper": FileEntry(partial(_one_of, "paper", PAPERS), paper),
         "language": FileEntry(partial(_one_of, "language", languages()), language),
     }
+
+
+def _sentence(words: str) -> str:
+    return f"{words[:1].upper()}{words[1:]}."
 
 
 def _head_text(name: str, raw: Any, reading: InputsRead) -> str:
@@ -360,3 +380,43 @@ def _unit(name: str, declared: str) -> FileEntry:
         return unit
 
     return FileEntry(read, {"type": "string", "default": declared, "description": f"a unit like {declared or '1'}"})
+
+
+# What columns of files are, whatever the files call them
+
+
+def _column(model: Model[Any, Any]) -> FileEntry:
+    """Return what reads "torque" or { name = "torque", unit = "N m" } behind the name that a file has for a column."""
+    declared = {name: field.unit for name, field in model.input_fields.items()}
+    declared |= {name: condition.unit for name, condition in model.known_conditions.items()}
+    declared |= {name: result.unit for name, result in model.own_result_fields.items()}
+    declared |= {f"{SIGMA}{name}": difference_unit(declared[name]) for name in model.measurable}
+
+    def read(raw: Any, _: InputsRead) -> NamedColumn:
+        table = {"name": raw} if isinstance(raw, str) else raw
+        if not isinstance(table, dict) or set(table) - {"name", "unit"} or not _is_name(table.get("name")):
+            wrong = (
+                'a column is called by one of the model\'s names: write "torque" or { name = "torque", unit = "N m" }'
+            )
+            dotted = (
+                "; put what the file calls it in quotation marks where it holds a dot" if isinstance(raw, dict) else ""
+            )
+            raise SentenceError(wrong + dotted)
+        name, unit = table["name"].strip(), table.get("unit")
+        try:
+            if unit is not None and name in declared:
+                demand_dimension(_text(f"unit of {name}", unit, _), declared[name])
+            elif unit is not None and unit not in PURE:
+                check_unit(_text(f"unit of {name}", unit, _))
+        except UnitError as error:
+            raise SentenceError(f"{name}: {error}") from None
+        return NamedColumn(name, unit)
+
+    properties = {"name": {"type": "string", "examples": list(declared)}, "unit": {"type": "string"}}
+    table = {"type": "object", "properties": properties, "required": ["name"], "additionalProperties": False}
+    words = "The model's name of the column, with its unit where the file states none, or a wrong one."
+    return FileEntry(read, {"anyOf": [{"type": "string"}, table], "description": words})
+
+
+def _is_name(name: Any) -> bool:
+    return isinstance(name, str) and bool(name.strip()) and not set("[]") & set(name)

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from truing.declare.near_miss import near_miss
 from truing.errors import Fault, InputError
+from truing.recordings import not_of_its_kind
 from truing.units.grammar import shown
 from truing.workbooks.reading import BookSheet, file_of, opened_sheet
 
@@ -36,6 +37,13 @@ def _refusal_of_book(path: Path, start: bytes, instead: str) -> str:
     if not start.startswith(_ZIP):
         return f"is {'no workbook' if start else 'empty'}; {instead} as .xlsx"
     return ""
+
+
+def refuse_recording(path: Path, *, largest: int) -> None:
+    """Raise InputError with one sentence unless ``path`` is a file of acceptable size that begins as its name says."""
+    sentence = _refusal(path, largest, "", lambda file, start, _: not_of_its_kind(file, start))
+    if sentence:
+        raise InputError([Fault(sentence, str(path))])
 
 
 def refuse_file(path: Path, *, largest: int, instead: str, is_table: bool) -> None:

@@ -67,7 +67,10 @@ class _Words:
         Nothing more is said of what was a fault of its spelling, and an effect may be "off".
         """
         passed_over = [UNREADABLE, "off"] if path == ("effects",) else [UNREADABLE]
-        for name, entry in section.entries.items():
+        entries = section.entries
+        if section.any_name is not None:
+            entries = {name: section.any_name(name) for name in table}
+        for name, entry in entries.items():
             here = (*path, name)
             if name not in table:
                 if isinstance(entry, FileEntry) and entry.is_required:
@@ -82,7 +85,7 @@ class _Words:
                 yield here, f"[studies.{name}] is a section; write its options below it"
             else:
                 yield here, f"{shown(name)} is a section; write [{'.'.join(here)}] and its entries below it"
-        strange = [name for name in table if name not in section.entries and table[name] not in passed_over]
+        strange = [name for name in table if name not in entries and table[name] not in passed_over]
         yield from (((*path, name), "") for name in strange)
 
     def unknown(self, path: tuple[str, ...]) -> str:

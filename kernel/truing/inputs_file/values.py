@@ -19,6 +19,9 @@ from truing.units import from_si, human_dimension, read_quantity, to_si
 from truing.units.grammar import shown
 from truing.units.names import PURE
 
+SIGMA = "sigma_"
+"""A column of this and the name of a result holds the standard deviation of its readings."""
+
 
 class SentenceError(ValueError):
     """A whole sentence about a value, its name included."""
@@ -53,17 +56,27 @@ class FileEntry:
 
 @dataclass(frozen=True)
 class FileSection:
-    """A table of an inputs file: what it holds, in words and by name; ``title`` names it in the JSON Schema."""
+    """A table of an inputs file: what it holds, in words and by name; ``title`` names it in the JSON Schema.
+
+    One whose names are not known beforehand has ``any_name``, which gives the entry of a name.
+    """
 
     title: str
     words: str
     entries: Mapping[str, FileEntry | FileSection]
+    any_name: Callable[[str], FileEntry] | None = None
 
     @property
     def schema(self) -> dict[str, Any]:
         """The JSON Schema of the table."""
         properties = {name: entry.schema for name, entry in self.entries.items()}
-        return {"type": "object", "properties": properties, "additionalProperties": False, "description": self.words}
+        table = {"type": "object", "properties": properties, "additionalProperties": self.further}
+        return {**table, "description": self.words}
+
+    @property
+    def further(self) -> Mapping[str, Any] | bool:
+        """The JSON Schema of what stands under other names; False where nothing may."""
+        return False if self.any_name is None else self.any_name("").schema
 
 
 def read_input(input_field: InputField, raw: Any, reading: InputsRead) -> Any:

@@ -132,7 +132,9 @@ class _BookReader:
         """Return what TOML would state: "120 N", 0.3, true, a text."""
         value, section = cell.value, path[0]
         field = self.model.input_fields.get(path[1]) if section in {"inputs", "calibrated"} and len(path) > 1 else None
-        is_text = section in {"plugin", "sheet", "units"} or (field is not None and field.kind in {"choice", "text"})
+        is_text = section in {"plugin", "sheet", "units", "columns"} or (
+            field is not None and field.kind in {"choice", "text"}
+        )
         if isinstance(value, (bool, int, float)) and cell.data_type != "e" and not is_text:
             if isinstance(value, bool):
                 return value

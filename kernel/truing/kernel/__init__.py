@@ -14,6 +14,7 @@ import pluggy
 from pluggy import HookImpl
 
 from truing import hookspecs
+from truing.declare.correlations import Correlated
 from truing.declare.model import Model, Section
 from truing.declare.near_miss import near_miss
 from truing.declare.quantities import unread_quantities
@@ -264,7 +265,7 @@ def _giving(plugin: ModuleType) -> Callable[[], ModuleType]:
 def _with(model: Model[Any, Any], hook: str, addition: Any) -> Model[Any, Any]:
     """Return the model with what one hook adds; raises DeclarationError where it does not fit."""
     if hook == "truing_error_sources":
-        if not isinstance(addition, (Tolerance, Effect)):
+        if not isinstance(addition, (Tolerance, Correlated, Effect)):
             raise DeclarationError(f"{addition!r:.60} is neither a Tolerance nor an Effect")
         return replace(model, errors=[*model.errors, addition])
     if hook == "truing_objectives":

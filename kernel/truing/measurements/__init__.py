@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from truing.measurements.csv_text import RowCount, TableSource, TableText
 from truing.measurements.overriding import CasesFile, RowsFile, StatedCase, read_cases, read_rows
-from truing.measurements.table import EXCEL, PLAIN, DataTable, TableStyle, read_table, table_text
+from truing.measurements.table import EXCEL, INERT, PLAIN, DataTable, TableStyle, read_table, table_text
 
 __all__ = [
     "EXCEL",
+    "INERT",
     "PLAIN",
     "CasesFile",
     "DataTable",

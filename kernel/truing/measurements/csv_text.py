@@ -21,9 +21,11 @@ from typing import Any, Protocol, TextIO
 import numpy as np
 from numpy.typing import NDArray
 
+from truing.declare.near_miss import near_miss
 from truing.errors import Fault, InputError
 from truing.inputs_file.files import refuse_file
 from truing.numbers import counted
+from truing.setup import NamedColumn
 from truing.units.grammar import number, shown
 
 LARGEST_TABLE = 512_000_000
@@ -42,11 +44,49 @@ _GOES_ON = "goes on behind its closing quotation mark; write a quotation mark in
 
 @dataclass(frozen=True)
 class Header:
-    """One cell of the header: a name, its unit (None where none is written), and the text of both."""
+    """One cell of the header: a name, its unit (None where none is stated), and the text of both as written.
+
+    ``key`` is what [columns] calls the column: where its name stands there, or its header cannot be edited.
+    """
 
     name: str
     unit: str | None
     text: str
+    key: str = ""
+
+
+@dataclass
+class ColumnNames:
+    """What [columns] of the inputs file says of the columns of one file: ``stated`` by what the file calls them.
+
+    ``notes`` collects what was done to the columns, one sentence each.
+    """
+
+    stated: Mapping[str, NamedColumn]
+    notes: list[str] = field(default_factory=list)
+
+    def header(self, name: str, unit: str | None, text: str, *called: str) -> Header:
+        """Return the header of a column with the name that is stated for it; ``called`` is what it may be called.
+
+        A unit that is stated counts, and one of the file that says otherwise is named.
+        """
+        key = next((each for each in (text, name, *called) if each in self.stated), "")
+        if not key:
+            return Header(name, unit, text, *called[:1])
+        column = self.stated[key]
+        if column.unit is not None and unit is not None and column.unit != unit:
+            self.notes.append(
+                f"column {shown(key)} is read in [{column.unit}] as [columns] says; the file says [{unit}]"
+            )
+        return Header(column.name, unit if column.unit is None else column.unit, text, key)
+
+    def unused(self, headers: Sequence[Header]) -> Iterator[str]:
+        """Say which of the stated columns the file does not have, under this name or another."""
+        names = {header.name for header in headers}
+        known = [header.key or header.text.partition(" [")[0] for header in headers]
+        for key, column in self.stated.items():
+            if column.name not in names:
+                yield f"[columns] names {shown(key)}, which is no column here.{near_miss(key[:80], known)}".rstrip(".")
 
 
 @dataclass
@@ -113,8 +153,11 @@ class OpenTable(Protocol):
 
     faults: Faults
     headers: tuple[Header, ...]
-    header_line: int
     marks: DecimalMarks
+
+    @property
+    def header_line(self) -> int | None:
+        """The line of the header, where there is one."""
 
     @property
     def decimal_comma(self) -> bool:
@@ -224,15 +267,15 @@ TableSource = Path | TableText
 
 
 @contextmanager
-def opened_csv(path: TableSource) -> Iterator[CsvFile]:
+def opened_csv(path: TableSource, names: ColumnNames) -> Iterator[CsvFile]:
     """Open a CSV file. Raises InputError where it cannot be one, or has no header."""
     if isinstance(path, TableText):
-        yield _table(path, StringIO(path.text, newline=""))
+        yield _table(path, StringIO(path.text, newline=""), names)
         return
     refuse_file(path, largest=LARGEST_TABLE, instead=INSTEAD, is_table=True)
     try:
         with path.open(encoding="utf-8", newline="") as stream:
-            yield _table(path, stream)
+            yield _table(path, stream, names)
     except UnicodeDecodeError:
         raise InputError([Fault("is not UTF-8 text; save it as CSV UTF-8", str(path), _foreign_line(path))]) from None
     except OSError as error:
@@ -249,7 +292,7 @@ def _foreign_line(path: Path) -> int:
     return 1
 
 
-def _table(path: TableSource, stream: TextIO) -> CsvFile:
+def _table(path: TableSource, stream: TextIO, names: ColumnNames) -> CsvFile:
     faults = Faults(str(path))
     beginning = stream.readline()
     lines = _lines(chain([beginning.removeprefix(MARK)], stream), faults)
@@ -264,7 +307,7 @@ def _table(path: TableSource, stream: TextIO) -> CsvFile:
         cells = _cells(header, delimiter)
     except ValueError as error:
         raise InputError([Fault(str(error), str(path), line)]) from None
-    headers = headers_of(unguarded(cells) if is_guarded else cells, line, faults)
+    headers = headers_of(unguarded(cells) if is_guarded else cells, line, faults, names)
     return CsvFile(faults, headers, line, delimiter, DecimalMarks(delimiter != ","), lines, is_guarded)
 
 
@@ -301,14 +344,16 @@ def _cell_pattern(delimiter: str) -> re.Pattern[str]:
     return re.compile(rf' *(?:{quoted}|(?P<plain>(?! *")[^{delimiter}]*))(?P<more>{delimiter}|$)')
 
 
-def headers_of(cells: list[str], line: int, faults: Faults) -> tuple[Header, ...]:
-    """Take the cells of a header apart, without empty ones at its end."""
+def headers_of(cells: list[str], line: int, faults: Faults, names: ColumnNames) -> tuple[Header, ...]:
+    """Take the cells of a header apart, without empty ones at its end, and name those that [columns] names."""
     while cells and not cells[-1].strip():
         cells = cells[:-1]
     headers: list[Header] = []
     seen: set[str] = set()
     for index, text in enumerate(cell.strip() for cell in cells):
         name, unit = name_and_unit(text)
+        header = names.header(name or "", unit, text)
+        name = header.name if header.key else name
         if name is None:
             faults.add(f"the header {shown(text)} cannot be read; write it like 'load [N]'", line, index)
         elif not name:
@@ -316,7 +361,7 @@ def headers_of(cells: list[str], line: int, faults: Faults) -> tuple[Header, ...
         elif name in seen:
             faults.add(f"the column {shown(name)} occurs twice", line, index)
         seen.add(name or "")
-        headers.append(Header(name or "", unit, text))
+        headers.append(header)
     return tuple(headers)
 
 

@@ -36,10 +36,11 @@ class StatedCase:
 
 @dataclass(frozen=True)
 class CasesFile:
-    """The cases of a file, and how many rows it holds."""
+    """The cases of a file, how many rows it holds, and what was done to them, one sentence each."""
 
     cases: tuple[StatedCase, ...]
     count: RowCount
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -50,7 +51,8 @@ class RowsFile:
     the value of the inputs file stands. ``series`` holds columns of inputs that run along an axis, ``axes`` where each
     row lies on an axis of the results. ``cells`` are all columns as written (a decimal comma becomes a point), by the
     header as written; ``others`` names the columns that override nothing. ``runs`` names the run of each row; nothing
-    where there is no such column. ``count`` says how many rows the file holds, with those left out.
+    where there is no such column. ``count`` says how many rows the file holds, with those left out, and ``notes`` what
+    was done to them, one sentence each.
     """
 
     file: str
@@ -62,6 +64,7 @@ class RowsFile:
     axes: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
     runs: tuple[str, ...] = ()
     count: RowCount = UNCOUNTED
+    notes: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         return len(self.lines)
@@ -95,7 +98,9 @@ def read_cases(path: TableSource, offer: Offer, setup: Setup) -> CasesFile:
     def unknown(header: Header) -> str:
         return "" if header.name in (*NAMES, *REMARKS) else _no_input(header, setup, offer)
 
-    table, faults = read_table(path, known, is_measured=False, words=(*NAMES, *REMARKS), unknown=unknown)
+    table, faults = read_table(
+        path, known, is_measured=False, words=(*NAMES, *REMARKS), unknown=unknown, named=setup.columns
+    )
     faults.raise_any()
     values: list[dict[str, Any]] = [{} for _ in table.lines]
     names = [""] * len(table)
@@ -110,7 +115,7 @@ def read_cases(path: TableSource, offer: Offer, setup: Setup) -> CasesFile:
         StatedCase(row, line, name or f"{row}", changes, str(path))
         for row, (line, name, changes) in enumerate(zip(table.lines, names, values, strict=True), start=1)
     ]
-    return CasesFile(tuple(cases), table.count)
+    return CasesFile(tuple(cases), table.count, table.notes)
 
 
 def _no_input(header: Header, setup: Setup, offer: Offer) -> str:
@@ -139,7 +144,7 @@ def read_rows(path: TableSource, offer: Offer, setup: Setup) -> RowsFile:
     with_unit = [condition for condition in past if condition.history != "direction"]
     sources = {condition.made_from: Source(None, condition.name) for condition in past}  # any number has a direction
     sources |= {condition.made_from: Source(condition.unit, condition.name) for condition in with_unit}
-    table, faults = read_table(path, {**sources, **axes, **known}, is_measured=False)
+    table, faults = read_table(path, {**sources, **axes, **known}, is_measured=False, named=setup.columns)
     faults.raise_any()
     numbers = {name: column for name, column in table.columns.items() if is_number(column)}
     places, series, columns = {}, {}, {}
@@ -161,7 +166,9 @@ def read_rows(path: TableSource, offer: Offer, setup: Setup) -> RowsFile:
     for condition in [condition for condition in past if condition.name in made]:
         used |= {condition.made_from, TIME, *([RUN] if condition.history != SINCE_START else [])}
     others = tuple(name for name in table.units if name not in used)
-    return RowsFile(str(path), columns, series, table.cells, table.lines, others, places, runs, table.count)
+    return RowsFile(
+        str(path), columns, series, table.cells, table.lines, others, places, runs, table.count, table.notes
+    )
 
 
 def _axes(setup: Setup) -> dict[str, Known]:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from io import StringIO
 from itertools import chain
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, TypeGuard
 
 import numpy as np
@@ -18,11 +19,13 @@ from numpy.typing import NDArray
 
 from truing.declare.fields import InputField
 from truing.errors import UnitError
-from truing.inputs_file.values import InputsRead, broken_bound, read_input
+from truing.inputs_file.assemble import toml_key, toml_value
+from truing.inputs_file.values import SIGMA, InputsRead, broken_bound, read_input
 from truing.measurements.csv_text import (
     EITHER,
     MARK,
     UNCOUNTED,
+    ColumnNames,
     Faults,
     Header,
     OpenTable,
@@ -33,16 +36,19 @@ from truing.measurements.csv_text import (
     plain_numbers,
     read_cell,
 )
+from truing.measurements.recorded_rows import Parts, opened_recording
 from truing.measurements.workbook_rows import opened_workbook
+from truing.recordings import is_recording
+from truing.setup import NamedColumn
 from truing.units import demand_dimension, difference_unit, human_dimension, si_fault, to_si
 from truing.units.grammar import shown
 from truing.units.names import PURE
 from truing.workbooks.reading import is_workbook
 
-SIGMA = "sigma_"
 RUN = "run"
 NUMBERS = frozenset({"float", "whole", "series"})
 """The kinds of inputs that are quantities."""
+NOT_NAMED: Mapping[str, NamedColumn] = MappingProxyType({})
 WORDS = frozenset({"switch", "integer", "choice", "text"})
 """The kinds of inputs that are no quantities: their cells are read one by one."""
 SWITCHES = {"true": True, "yes": True, "1": True, "false": False, "no": False, "0": False}
@@ -68,16 +74,18 @@ class DataTable:
     empty; other words are tuples. ``units`` holds what the header says ("" for pure numbers), ``lines`` the line of
     the file each row begins in, ``header_line`` that of the header. ``cells`` are the columns as written, by the header
     as written (in a column of numbers a decimal comma becomes a point). ``count`` says how many rows the file holds,
-    with those left out.
+    with those left out, and ``notes`` what was done to them, one sentence each. A recording has no line of
+    a header, and its rows the lines that they have in the same table as CSV.
     """
 
     file: str
     columns: Mapping[str, NDArray[Any] | tuple[str, ...]]
     units: Mapping[str, str]
     lines: tuple[int, ...]
-    header_line: int = 1
+    header_line: int | None = 1
     count: RowCount = UNCOUNTED
     cells: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         return len(self.lines)
@@ -90,6 +98,8 @@ def read_table(
     is_measured: bool = True,
     words: Collection[str] = (),
     unknown: Callable[[Header], str] = lambda header: "",
+    named: Mapping[str, NamedColumn] = NOT_NAMED,
+    results: Collection[str] = (),
 ) -> tuple[DataTable, Faults]:
     """Read a table, and return it with its faults for a caller who looks for more of them.
 
@@ -97,34 +107,48 @@ def read_table(
     SI. Other columns are kept, in SI where their unit is known; those named by ``words``, the column ``run`` and
     columns that hold words stay words. Of what is measured, "NaN" is a missing value as an empty cell is, and
     ``sigma_NAME`` is a standard deviation of NAME; elsewhere cells are kept as written, and a word for a missing value
-    is a fault. ``unknown`` says what is wrong with a column that is not known, or nothing. A column whose header is a
-    fault is left out of ``columns``. Raises InputError where the file cannot be read at all.
+    is a fault. ``unknown`` says what is wrong with a column that is not known, or nothing. ``named`` says what columns
+    are, by what the file calls them; readings of ``results`` keep their own times where a recording has several clocks.
+    A column whose header is a fault is left out of ``columns``. Raises InputError where the file cannot be read at all.
     """
-    lines: list[int] = []
-    with _opened(path) as file:
+    names = ColumnNames(named)
+    with _opened(path, names, known, results) as file:
         columns = [_column(header, known, is_measured, words, unknown) for header in file.headers]
-        for index, column in enumerate(columns):
-            if column.fault:
-                file.faults.add(column.fault, file.header_line, index)
-        texts: dict[str, list[str]] = {header.text: [] for header in file.headers}
-        for cells_of, lines_of in file.chunks():
-            lines.extend(lines_of)
-            for column, cells in zip(columns, cells_of, strict=True):
-                column.take(cells, lines_of, file)
-                texts[column.header.text].extend(() if is_measured else cells)
+        lines, texts = _taken(columns, file, keep_texts=not is_measured)
     usable = [column for column in columns if column.header.name and not column.fault]
     made = {column.header.name: column.made(lines, file) for column in usable}
     file.marks.judge(file.faults)
     units = {header.name: header.unit or "" for header in file.headers}
     written = {text: _with_points(cells, file) for text, cells in texts.items()}
-    table = DataTable(str(path), made, units, tuple(lines), file.header_line, file.count(), written)
+    notes = (*names.notes, *names.unused(file.headers))
+    table = DataTable(str(path), made, units, tuple(lines), file.header_line, file.count(), written, notes)
     return table, file.faults
 
 
-def _opened(path: TableSource) -> AbstractContextManager[OpenTable]:
+def _taken(columns: Sequence[_Column], file: OpenTable, *, keep_texts: bool) -> tuple[list[int], dict[str, list[str]]]:
+    """Let every column take its cells; return the lines of the rows, and the columns as written where they are kept."""
+    for index, column in enumerate(columns):
+        if column.fault:
+            file.faults.add(column.fault, file.header_line, index)
+    lines: list[int] = []
+    texts: dict[str, list[str]] = {header.text: [] for header in file.headers}
+    for cells_of, lines_of in file.chunks():
+        lines.extend(lines_of)
+        for column, cells in zip(columns, cells_of, strict=True):
+            column.take(cells, lines_of, file)
+            texts[column.header.text].extend(cells if keep_texts else ())
+    return lines, texts
+
+
+def _opened(
+    path: TableSource, names: ColumnNames, known: Mapping[str, Known], results: Collection[str]
+) -> AbstractContextManager[OpenTable]:
     if isinstance(path, Path) and is_workbook(path):
-        return opened_workbook(path)
-    return opened_csv(path)
+        return opened_workbook(path, names)
+    if isinstance(path, Path) and is_recording(path):
+        words = {name for name, what in known.items() if isinstance(what, InputField) and what.kind in WORDS}
+        return opened_recording(path, names, Parts(frozenset(known), frozenset(results), frozenset(words)))
+    return opened_csv(path, names)
 
 
 def _with_points(cells: Sequence[str], file: OpenTable) -> tuple[str, ...]:
@@ -329,12 +353,16 @@ def header_fault(header: Header, declared: str) -> str:
     if header.unit is None:
         if declared in PURE:
             return ""
-        like = f"{header.name} [{declared}]"
-        return f"column '{header.name}' has no unit; it is {human_dimension(declared)}: write '{like}'"
+        like = f"'{header.name} [{declared}]'"
+        if header.key:
+            like = f"{toml_key(header.key)} = {toml_value({'name': header.name, 'unit': declared})} under [columns]"
+        what = shown(header.key) if header.key else f"'{header.name}'"
+        return f"column {what} has no unit; it is {human_dimension(declared)}: write {like}"
     try:
         demand_dimension(header.unit, declared)
     except UnitError as error:
-        return f"column {shown(header.text)}: {error}"
+        stated = "; state its unit under [columns]" if header.key else ""
+        return f"column {shown(header.text)}: {error}{stated}"
     return ""
 
 
@@ -370,6 +398,8 @@ class TableStyle:
 
 
 PLAIN = TableStyle()
+INERT = TableStyle(is_guarded=True)
+"""What programs read, and no spreadsheet takes a word of for a formula."""
 EXCEL = TableStyle(MARK, ";", ",", "\r\n", is_guarded=True)
 """What a spreadsheet with a decimal comma opens by a double click."""
 

@@ -18,6 +18,7 @@ from truing.measurements.csv_text import (
     LARGEST_TABLE,
     MOST_FAULTS,
     ROWS_AT_ONCE,
+    ColumnNames,
     DecimalMarks,
     Faults,
     Header,
@@ -142,7 +143,7 @@ def _is_error(cell: Any) -> bool:
 
 
 @contextmanager
-def opened_workbook(path: Path) -> Iterator[WorkbookTable]:
+def opened_workbook(path: Path, names: ColumnNames) -> Iterator[WorkbookTable]:
     """Open a table in a workbook. Raises InputError where it cannot be one, or has no header."""
     with opened_book(path, largest=LARGEST_TABLE) as sheet:
         rows = sheet.rows()
@@ -151,14 +152,15 @@ def opened_workbook(path: Path) -> Iterator[WorkbookTable]:
             raise InputError([Fault(f"is empty; {INSTEAD}", str(path), 1, sheet.address(sheet.area.first_row, 1))])
         line, texts, ahead = head
         columns = [place for place, text in enumerate(texts) if text.strip()]
-        names = {(name_and_unit(texts[place])[0] or ""): place for place in reversed(columns)}
+        places = {(name_and_unit(texts[place])[0] or ""): place for place in reversed(columns)}
 
         def addressed(row: int, column: str | int) -> str:
-            place = columns[column] if isinstance(column, int) else names.get(column, columns[0])
+            place = columns[column] if isinstance(column, int) else places.get(column, columns[0])
             return sheet.address(row, sheet.area.first_column + place)
 
         faults = Faults(str(sheet.file), addressed)
-        headers = headers_of([texts[place] for place in columns], line, faults)
+        headers = headers_of([texts[place] for place in columns], line, faults, names)
+        places |= {header.name: place for header, place in zip(headers, columns, strict=True) if header.key}
         yield WorkbookTable(str(path), faults, headers, line, columns, sheet, chain(ahead, rows))
 
 

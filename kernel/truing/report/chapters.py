@@ -38,7 +38,7 @@ from truing.report.document import (
     with_source,
 )
 from truing.report.equations import equation_of, state_equation
-from truing.report.figures import draw, phase, states_over_time
+from truing.report.figures import draw, in_words, phase, states_over_time
 from truing.report.limits import MOST_CHECKS
 from truing.report.translation import ENGLISH_WORDS, STUDY, Catalogue
 from truing.studies.drawings import labelled
@@ -76,12 +76,12 @@ class Figures:
         """
         self.count += 1
         if self.skipped:
-            return FigureView(title, "", caption or title, self.count)
+            return FigureView(title, "", caption or title, self.count, what)
         ident = f"f{self.count}"
         try:
-            return FigureView(
-                title, draw(what, title=title, ident=ident, words=self.words.at(place)), caption or title, self.count
-            )
+            words = self.words.at(place)
+            svg = draw(what, title=title, ident=ident, words=words)
+            return FigureView(title, svg, caption or title, self.count, in_words(what, words))
         except PluginError as error:
             self.failures.append(str(error))
             return Paragraph(f"The figure '{title}' could not be drawn.", "warning")

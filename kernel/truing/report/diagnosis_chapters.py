@@ -20,12 +20,13 @@ from truing.diagnosis.result import (
     often,
     stated_remedy,
 )
-from truing.diagnosis.sentences import say, sentence
+from truing.diagnosis.sentences import kind_of, say, sentence
 from truing.numbers import ABSENT, STATED_DIGITS
 from truing.report import diagnosis_figures as figures
 from truing.report import diagnosis_statistics as statistics
 from truing.report.chapters import Figures
 from truing.report.diagnosis_record import record_blocks
+from truing.report.diagnosis_remedy import then_table
 from truing.report.diagnosis_rivals import parting_of, rivals_apart
 from truing.report.diagnosis_sizes import amount_text, as_waves, number_texts, partner_of, percent, readable, score_text
 from truing.report.diagnosis_words import (
@@ -65,6 +66,8 @@ FITTED_DIGITS = 7
 EVERYTHING = "extended.toml"
 MOST_SEEN, MOST_MOVED = 6, 4
 """So many effects and inputs a sentence names at most."""
+MOVED = 0.1
+"""An input that moved by less, in standard deviations of its tolerance, has not moved."""
 WEAK = 10.0
 """A rival that loses less fit than this is not worth a line of its own."""
 HEADS = ("Cause", "Unknown", "Value", "95 % interval", "Unit")
@@ -112,6 +115,8 @@ def _wrong(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[BlockView]:
         yield from _said([_off_text(diagnosis, wrong)])
         if wrong.findings:
             yield Items("patterns", tuple(map(_pattern, wrong.findings)))
+    if sum(finding.p_value is not None for wrong in diagnosis.wrong for finding in wrong.findings) > 1:
+        yield from _said([say("patterns")])
     if not any(wrong.findings for wrong in diagnosis.wrong):
         yield from _said([say("no pattern")])
     for curves in figures.shown_curves(diagnosis):
@@ -126,7 +131,7 @@ def _wrong(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[BlockView]:
 def _pattern(finding: ResidualFinding) -> Text:
     """Say what was noticed, and where that was tested how sure it is."""
     text = prose(finding.text)
-    if finding.p_value is None:
+    if finding.p_value is None or kind_of(finding.text) == "follows":
         return sentence(text)
     return Marked("strong", f"{certainty(finding.p_value).capitalize()}:"), f" {text}."
 
@@ -176,7 +181,7 @@ def _verdict_text(diagnosis: DiagnosisResult) -> str:
         parts.append(f"something unregistered ({prose(diagnosis.remainder.shape)})")
     causes, explain = listed(parts), "explains" if len(parts) == 1 else "together explain"
     if diagnosis.verdict == "one_of":
-        return say("one of", count=len(explanations), causes=causes)
+        return say("one of", count=len(explanations))
     kinds = {"named": "explains it alone", "undecided": "explains it perhaps"}
     return say(kinds.get(diagnosis.verdict, "explains it"), causes=causes, explain=explain)
 
@@ -197,7 +202,7 @@ def _named(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
             others = listed([spoken(name) for name in cause.same_as])
             yield from _said([say("same curve", others=others, cause=spoken(cause.effect))])
         if remedy := stated_remedy(diagnosis, cause.effect):
-            yield from _said([say("what to do", cause=spoken(cause.effect), remedy=remedy)])
+            yield from _said([say("what to do", cause=spoken(cause.effect), remedy=prose(remedy))])
     shown = slice(None) if len(rows) > 1 else slice(-1)
     yield table_of("Named", ("Cause", "What it is", "Share")[shown], [row[shown] for row in rows], (2,))
 
@@ -205,14 +210,13 @@ def _named(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
 def _near(diagnosis: DiagnosisResult) -> Iterator[str]:
     """Say which explanations are not excluded, and which is the next behind them: none that adds to the named one."""
     named = {cause.effect for cause in diagnosis.causes}
-    said = [alternative.causes for alternative in diagnosis.alternatives]
     yield from (say("cannot be ruled out", explanation=explanation(each)) for each in diagnosis.alternatives)
     if not explanations_of(diagnosis):
         return
     behind = [
         alternative
         for alternative in diagnosis.ranking
-        if alternative.causes and alternative.behind > 0 and alternative.causes not in said
+        if alternative.causes and alternative.behind > 0 and not figures.is_open(alternative, diagnosis)
         if alternative.separation >= WEAK and not (named and named <= set(alternative.causes))
     ]
     yield from (say("next best", explanation=explanation(each)) for each in behind[:1])
@@ -229,8 +233,12 @@ def explanations_table(diagnosis: DiagnosisResult) -> TableView:
 
 def _names_of_interest(diagnosis: DiagnosisResult) -> set[str]:
     """Return the causes that are named or open, and the covariates: what is said of others stays folded."""
-    open_ones = [name for alternative in diagnosis.alternatives for name in alternative.causes]
-    return {*(cause.effect for cause in diagnosis.causes), *open_ones, *diagnosis.records.covariates}
+    return {*_open_names(diagnosis), *diagnosis.records.covariates}
+
+
+def _open_names(diagnosis: DiagnosisResult) -> set[str]:
+    """Return every cause that is named or still open."""
+    return {name for names in explanations_of(diagnosis) for name in names}
 
 
 # What the record can show
@@ -260,7 +268,7 @@ SIGHTS = {
 
 def _sight(diagnosis: DiagnosisResult) -> Iterator[str]:
     """Say in a sentence each which causes the record cannot show, and how small others would have been noticed."""
-    named = {cause.effect for cause in diagnosis.causes}
+    named = _open_names(diagnosis)
     unseen: dict[str, list[str]] = {}
     visible: list[str] = []
     for size in _merged(diagnosis.seen):
@@ -283,7 +291,7 @@ def _sight(diagnosis: DiagnosisResult) -> Iterator[str]:
 
 def _sight_table(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
     """Say of every effect what this record could show of it, then which pairs it could not have told apart."""
-    named = {cause.effect for cause in diagnosis.causes}
+    named = _open_names(diagnosis)
     rows = []
     for size in _merged(diagnosis.seen):
         words = "named here" if size.name.partition(".")[0] in named else _sight_kind(size)
@@ -292,7 +300,7 @@ def _sight_table(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
     for effect, needs in diagnosis.not_measured.items():
         said = say("no column", conditions=listed([spoken(need) for need in needs]))
         rows.append((spoken(effect), sentence(said)))
-    yield table_of("What this record could show", ("Effect", "In this record"), rows)
+    yield table_of("", ("Effect", "In this record"), rows)
     yield from _said(map(prose, diagnosis.inseparable))
 
 
@@ -340,6 +348,9 @@ def _model(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
         yield from _said([say("use it", file=EVERYTHING, model=name)])
     if remainder is not None:
         yield from _said([say("not in a file", shape=prose(remainder.shape))])
+    then = then_table(diagnosis) if diagnosis.verdict != "named" else None
+    if then is not None:
+        yield then
     if diagnosis.calibrated:
         heads = ("Input", "Nominal", "Fitted", "Within its tolerance", "Moved, standard deviations")
         table = table_of("Inputs as fitted", heads, list(_calibrated(diagnosis)), (1, 2, 4))
@@ -356,7 +367,8 @@ def _sizes(diagnosis: DiagnosisResult) -> Iterator[str]:
         sizes = "; ".join(sizes_text(unknowns) for unknowns in alternative.unknowns.values() if unknowns)
         if sizes:
             yield say("or size", explanation=explanation(alternative), sizes=sizes)
-    moved = lowest_first(diagnosis.calibrated, lambda calibrated: -abs(calibrated.of_its_sd))[:MOST_MOVED]
+    far = [calibrated for calibrated in diagnosis.calibrated if abs(calibrated.of_its_sd) >= MOVED]
+    moved = lowest_first(far, lambda calibrated: -abs(calibrated.of_its_sd))[:MOST_MOVED]
     if moved:
         shifts = [f"{spoken(each.name)} ({_how_far(each.of_its_sd)})" for each in moved]
         yield say("moved most", inputs=listed(shifts))

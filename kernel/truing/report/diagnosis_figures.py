@@ -12,7 +12,7 @@ from scipy.special import ndtri
 
 from truing.arrays import Matrix
 from truing.diagnosis.records import Covariate
-from truing.diagnosis.result import Alternative, DiagnosisResult, ResultCurves
+from truing.diagnosis.result import UNKNOWN, Alternative, DiagnosisResult, ResultCurves, explanations_of
 from truing.report.diagnosis_sizes import amount_text
 from truing.report.diagnosis_words import explanation, spoken, wrong_results
 from truing.units import from_si, unit_factor, unit_text
@@ -266,12 +266,14 @@ def convincing(diagnosis: DiagnosisResult, curves: ResultCurves, covariate: Cova
     style = "-" if len(np.unique(place[np.isfinite(place)])) == len(place) else "."
     if has_changed(curves):
         added = (missed[0] - missed[1])[kept][order]
-        lower.plot(place[order], added, style, color=NEUTRAL, markersize=2, linewidth=1.0, label="what the cause adds")
-        lower.legend(loc="best", fontsize=7.5)
+        mark = "-" if style == "-" else "x"
+        lower.plot(place[order], added, mark, color=NEUTRAL, markersize=4, markeredgewidth=0.6, linewidth=1.0,
+                   label="what the cause adds")  # fmt: skip
     for model, left, colour, words in series:
         values = from_si(model, shown_unit)[kept]
         upper.plot(place[order], values[order], style, color=colour, markersize=3.5, linewidth=1.2, label=words)
-        lower.plot(place, left[kept], ".", color=colour, markersize=3.5)
+        lower.plot(place, left[kept], ".", color=colour, markersize=3.5, label=f"left by {words}")
+    lower.legend(loc="best", fontsize=7.5)
     _mark_censored(diagnosis, curves.result, lower, places=place, values=series[-1][1][kept], colour=series[-1][2])
     upper.set_ylabel(axis_label(curves.result, shown_unit))
     lower.set_ylabel(f"measured − model\n[{unit_text(unit)}]" if unit else "measured − model")
@@ -321,9 +323,12 @@ def shown_ranking(diagnosis: DiagnosisResult) -> list[Alternative]:
     return list(unique.values())[:MOST_BARS]
 
 
-def is_open(item: Alternative, diagnosis: DiagnosisResult) -> bool:
-    """Tell whether this data does not exclude an explanation: it is the best one or an alternative to it."""
-    return item == diagnosis.ranking[0] or item.causes in [other.causes for other in diagnosis.alternatives]
+def is_open(alternative: Alternative, diagnosis: DiagnosisResult) -> bool:
+    """Tell whether this data does not exclude an explanation: the best one, a rival, or one that draws its curve."""
+    over = f"{UNKNOWN}:{','.join(alternative.depends_on)}"
+    names = frozenset(over if name == UNKNOWN else name for name in alternative.causes)
+    explanations = {frozenset(each) for each in explanations_of(diagnosis)}
+    return alternative == diagnosis.ranking[0] or names in explanations
 
 
 def ranking_bars(diagnosis: DiagnosisResult) -> Figure:

@@ -34,7 +34,9 @@ def record_blocks(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[BlockV
     yield _columns(diagnosis)
     yield _readings(diagnosis)
     title = "The record as it was read"
-    caption = f"{title}: what changed, and below it what was measured, row by row. A line parts two runs."
+    caption = f"{title}: what changed, and below it what was measured, row by row."
+    if len(np.unique(diagnosis.records.run_of)) > 1:
+        caption += " A line parts two runs."
     yield drawn.view(title, partial(figures.course_of_record, diagnosis), caption)
     for sentence in diagnosis.records.notes:
         yield Paragraph(sentence.rstrip(".") + ".")

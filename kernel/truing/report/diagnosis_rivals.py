@@ -10,11 +10,22 @@ from matplotlib.figure import Figure
 from truing.arrays import Matrix
 from truing.diagnosis.records import Covariate
 from truing.diagnosis.result import DiagnosisResult, ResultCurves
-from truing.report.diagnosis_figures import AFTER, BEFORE, NEUTRAL, axis_label, main_covariates, shortened, thinned
+from truing.report.diagnosis_figures import (
+    AFTER,
+    BEFORE,
+    NEUTRAL,
+    axis_label,
+    shortened,
+    shown_curves,
+    telling_covariate,
+    thinned,
+)
 from truing.report.diagnosis_words import together
 from truing.units import from_si, unit_factor
 
 PAIR_COLOURS = (AFTER, BEFORE, "#5b7f3b", "#8a6d1d")
+DIAMONDS = (4.0, 7.0, 10.0, 13.0)
+"""Their sizes differ, so that one behind another is seen."""
 MOST_PAIRS = len(PAIR_COLOURS)
 
 
@@ -78,7 +89,8 @@ def _parting_covariate(diagnosis: DiagnosisResult) -> tuple[Covariate | None, Ma
     """Return what the distances are drawn over, and its values at the proposed readings: what those vary most."""
     covariates, experiment = diagnosis.records.covariates, diagnosis.experiment
     if experiment is None:
-        return next(iter(main_covariates(diagnosis)), None), None
+        shown = next(iter(shown_curves(diagnosis)), None)
+        return (None if shown is None else telling_covariate(diagnosis, shown)), None
     varied = [course.name for course in experiment.courses if course.way != "held" and course.name in covariates]
     held = [course.name for course in experiment.courses if course.way == "held" and course.name in covariates]
     outside = sorted(held, key=lambda name: -_beyond(covariates[name], experiment.settings[name]))
@@ -98,6 +110,10 @@ def _apart(diagnosis: DiagnosisResult, curves: ResultCurves, pair: tuple[str, st
     known = {" + ".join(cause.effect for cause in diagnosis.causes): curves.after}
     for alternative, rival in zip(diagnosis.alternatives, curves.rivals, strict=False):
         known.setdefault(" + ".join(alternative.causes), rival)
+    for cause in diagnosis.causes:  # another name of the same curve
+        for other in cause.same_as:
+            renamed = [other if each.effect == cause.effect else each.effect for each in diagnosis.causes]
+            known.setdefault(" + ".join(renamed), curves.after)
     first, second = (known.get(name) for name in pair)
     return None if first is None or second is None else first - second
 
@@ -113,15 +129,17 @@ def rivals_apart(diagnosis: DiagnosisResult, parting: Parting) -> Figure:
     axes = figure.subplots()
     axes.axhspan(-floor, floor, color="#e4e7ea", linewidth=0)
     axes.axhline(0.0, color=NEUTRAL, linewidth=0.7)
-    rows = zip(parting.pairs, parting.on_record, parting.ahead, PAIR_COLOURS, strict=False)
-    for (one, other), record, ahead, colour in rows:
+    rows = zip(parting.pairs, parting.on_record, parting.ahead, PAIR_COLOURS, DIAMONDS, strict=False)
+    for (one, other), record, ahead, colour, size in rows:
         label = f"{shortened(together([one]), 30)} above {shortened(together([other]), 30)}"
         if record is not None:
             axes.plot(place, record[kept] / factor, ".", color=colour, markersize=3.5, label=label)
         if ahead is not None and parting.proposed is not None:
             at = from_si(parting.proposed, covariate.unit)
-            axes.plot(at, ahead / factor, "D", color=colour, markersize=5, fillstyle="none",
+            axes.plot(at, ahead / factor, "D", color=colour, markersize=size, fillstyle="none",
                       label=label if record is None else None)  # fmt: skip
+    axes.update_datalim(np.column_stack([place, np.zeros(len(place))])[np.isfinite(place)])
+    axes.autoscale_view()
     axes.set_xlabel(axis_label(covariate.name, covariate.unit))
     axes.set_ylabel(f"difference of {axis_label(parting.result, unit)}")
     axes.legend(loc="best", fontsize=7.5)

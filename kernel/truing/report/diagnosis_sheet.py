@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -11,19 +11,35 @@ import numpy as np
 
 from truing.diagnosis.records import file_labels
 from truing.diagnosis.result import Amount, DiagnosisResult
+from truing.diagnosis.sentences import sentence
 from truing.report import diagnosis_figures as figures
 from truing.report import translation
 from truing.report.chapters import Figures, numbered
 from truing.report.diagnosis_chapters import diagnosis_chapters
+from truing.report.diagnosis_remedy import then_table
 from truing.report.diagnosis_sizes import amount_text
-from truing.report.diagnosis_words import headline, remedy_of, spoken, verdict_word
-from truing.report.document import Banner, Chapter, Document, Items, Paragraph
-from truing.report.sheet import end_chapters, head_of, logo_of
+from truing.report.diagnosis_words import headline, remedy_of, spoken, verdict_word, what_decides
+from truing.report.document import (
+    Banner,
+    BlockView,
+    Chapter,
+    Document,
+    Items,
+    Paragraph,
+    TableView,
+    lines_of,
+    plain_text,
+)
+from truing.report.sheet import end_chapters, head_faults, head_of
 from truing.report.translation import catalogue_of, translated
 from truing.runs.folder import data_digests
 from truing.runs.provenance import Provenance, provenance_of
 
 DIAGNOSIS = "Diagnosis"
+ROOM, LOWEST, HIGHEST = 152.0, 48.0, 105.0
+"""Height of a page that figure and texts share, and of the figure at the least and at the most, mm."""
+LINE, GAP, WIDE = 4.4, 1.6, 95
+"""Height of a line and of the gap behind a paragraph, mm, and the characters of a line."""
 DOUBT = "Whether this is the cause is open: settle that before anything is changed on the machine."
 
 
@@ -40,8 +56,9 @@ def make_diagnosis_sheet(diagnosis: DiagnosisResult, *, provenance: Provenance) 
     drawn = Figures(words)
     front = tuple(_page_one(diagnosis, drawn))
     chapters = list(diagnosis_chapters(diagnosis, drawn))
-    warnings = tuple(filter(None, [logo_of(diagnosis.setup)[1], *drawn.failures, *words.faults]))
+    warnings = (*head_faults(diagnosis.setup), *drawn.failures, *words.faults)
     head = head_of(diagnosis.setup, provenance)
+    sentences = tuple(_answer(diagnosis))
     named = "found" if diagnosis.remainder is None else "open"
     mood = {"none": "calm", "named": named}.get(diagnosis.verdict, "open")
     sheet = Document(
@@ -50,15 +67,41 @@ def make_diagnosis_sheet(diagnosis: DiagnosisResult, *, provenance: Provenance) 
         head=replace(head, footer=" · ".join(part for part in (DIAGNOSIS, head.footer) if part)),
         detail=diagnosis.setup.sheet.detail,
         summary=data_words(diagnosis),
-        banner=Banner(mood, verdict_word(diagnosis), tuple(headline(diagnosis))),
+        banner=Banner(mood, verdict_word(diagnosis), sentences),
         alarms=tuple(unit_error.text for unit_error in diagnosis.records.unit_errors),
         front=front,
+        figure_height=_figure_height([*sentences, *_texts(front)]),
         paper=diagnosis.setup.sheet.paper,
         chapters=numbered([*chapters, *end_chapters(warnings, provenance)]),
         warnings=warnings,
         provenance=provenance,
     )
     return translated(sheet, words)
+
+
+def _texts(front: Iterable[Chapter]) -> Iterator[str]:
+    """Give the texts of what to do."""
+    for block in (block for chapter in front for block in chapter.blocks):
+        match block:
+            case Paragraph(text):
+                yield plain_text(text)
+            case Items(_, texts, labels):
+                yield from map(plain_text, texts)
+                yield from filter(None, labels)
+            case TableView(title, _, rows, note):
+                yield from (title, *(plain_text(row[0]) for row in rows), plain_text(note))
+
+
+def _figure_height(texts: Iterable[str]) -> float:
+    """Return how high the figure may be (mm) so that page one has room for these texts and the signatures."""
+    taken = sum(LINE * lines_of(text, WIDE) + GAP for text in texts)
+    return min(HIGHEST, max(LOWEST, ROOM - taken))
+
+
+def _answer(diagnosis: DiagnosisResult) -> Iterator[str]:
+    """Give the headline but for what decides, which stands under what to do."""
+    decides = {sentence(text) for text in what_decides(diagnosis)}
+    yield from (text for text in headline(diagnosis) if text not in decides)
 
 
 def _page_one(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[Chapter]:
@@ -72,11 +115,25 @@ def _page_one(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[Chapter]:
         caption = f"{title}. Below: what the model misses.{figures.thinning_words(diagnosis, curves)}"
         view = drawn.view(title, partial(figures.convincing, diagnosis, curves, covariate), caption)
         yield Chapter(title, (view,), "key-figure")
+    decides = [sentence(text) for text in what_decides(diagnosis)]
+    if diagnosis.causes or decides:
+        yield Chapter("What to do", tuple(_what_to_do(diagnosis, decides)), "what-to-do")
+
+
+def _what_to_do(diagnosis: DiagnosisResult, decides: Sequence[str]) -> Iterator[BlockView]:
+    """Say what settles the cause where it is open, and what each one asks for."""
+    if diagnosis.verdict != "named" and diagnosis.causes:
+        yield Paragraph(DOUBT)
+    if decides:
+        labels = ("To settle it", *("" for _ in decides[1:]))
+        yield Items("findings", tuple(decides), labels)
     if diagnosis.causes:
         labels, texts = zip(*((spoken(each.effect), remedy_of(diagnosis, each.effect)) for each in diagnosis.causes),
                             strict=True)  # fmt: skip
-        doubt = () if diagnosis.verdict == "named" else (Paragraph(DOUBT),)
-        yield Chapter("What to do", (*doubt, Items("findings", texts, labels)), "what-to-do")
+        yield Items("findings", texts, labels)
+    then = then_table(diagnosis) if diagnosis.verdict == "named" else None
+    if then is not None:
+        yield then
 
 
 def questions(diagnosis: DiagnosisResult) -> dict[str, tuple[str, ...]]:

@@ -93,7 +93,8 @@ def ranking_table(diagnosis: DiagnosisResult) -> TableView:
     ]
     note = (
         "Behind is the distance in score units (6 is a Bayes factor of about 20). λ is the loss of fit to expect if "
-        f"the best explanation is true and this one is fitted: from {APART:.0f} on the two can be told apart."
+        f"the best explanation is true and this one is fitted: from {APART:.0f} on the two can be told apart. Where "
+        "parts of the record contradict one another, an explanation stays open nevertheless."
     )
     return table_of("Explanations, best first", ("Explanation", "Behind", "λ", "On this data"), rows, (1, 2), note)
 

@@ -8,6 +8,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import chain
 
+import numpy as np
+
 from truing.diagnosis.result import (
     STRUCTURE,
     UNKNOWN,
@@ -41,10 +43,15 @@ from truing.report.diagnosis_sizes import (
     readable,
     wave_name,
 )
+from truing.report.document import unit_as_said
 
 CERTAIN, LIKELY = 0.005, 0.05
 MUCH, FEW_BLOCKS = 0.5, 0.25
-MICRO = re.compile(r"(?<=\d )u(?=(?:m|rad|s|N|g|l)\b)")
+BEYOND = 0.05
+"""A setting lies outside of the record where it is beyond its ends by more than this share of range or size."""
+UNIT = re.compile(r"(?<=\d )[A-Za-z][A-Za-z0-9*/^()]*")
+AMBIGUOUS = frozenset({"in", "at", "a"})
+"""Words that would be units behind a number."""
 
 
 def spoken(name: str) -> str:
@@ -63,8 +70,13 @@ def together(names: Sequence[str]) -> str:
 
 
 def prose(text: str) -> str:
-    """Write a sentence of the diagnosis for print: without underscores, micro as a letter of its own."""
-    return MICRO.sub("µ", text.replace("_", " "))
+    """Write a sentence of the diagnosis for print: without underscores, units behind numbers as they are printed."""
+    return UNIT.sub(_printed_unit, text.replace("_", " "))
+
+
+def _printed_unit(match: re.Match[str]) -> str:
+    unit = match[0]
+    return unit if unit in AMBIGUOUS else unit_as_said(unit)
 
 
 def listed(words: Sequence[str], joined: str = "and") -> str:
@@ -101,7 +113,7 @@ def certainty(p_value: float | None) -> str:
     return "practically certain" if p_value <= CERTAIN else "likely" if p_value <= LIKELY else "may be chance"
 
 
-NO_REMEDY = "Nobody registered what to do about it; with it on, the calculation is right: see the extended model."
+NO_REMEDY = "No remedy is registered for it. Find out what stands behind it before the machine is changed."
 
 
 def remedy_of(diagnosis: DiagnosisResult, cause: str) -> str:
@@ -109,7 +121,7 @@ def remedy_of(diagnosis: DiagnosisResult, cause: str) -> str:
     if cause.startswith("input:"):
         name = cause.removeprefix("input:").replace("_", " ")
         return f"Measure the {name}: it must lie outside of its tolerance."
-    return stated_remedy(diagnosis, cause) or NO_REMEDY
+    return prose(stated_remedy(diagnosis, cause)) or NO_REMEDY
 
 
 def verdict_word(diagnosis: DiagnosisResult) -> str:
@@ -277,13 +289,47 @@ def held_out_words(diagnosis: DiagnosisResult, gain: Gain, *, alone: bool = True
         yield say("grows held out", result=spoken(gain.result), before=before, after=after)
 
 
-def _next_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
-    """Say what tells the explanations apart, with which chance."""
+def what_decides(diagnosis: DiagnosisResult) -> Iterator[str]:
+    """Say what tells the explanations apart, with which chance: readings, further results, facts from elsewhere."""
     said = [result_text(each) for each in diagnosis.next if each.measure]
     ways = [said, [] if diagnosis.experiment is None else [experiment_text(diagnosis.experiment)]]
     for sentences in ways if is_result_first(diagnosis) else reversed(ways):
         yield from sentences
+    if diagnosis.experiment is not None:
+        yield from _beyond_words(diagnosis, diagnosis.experiment)
     yield from map(tie_text, diagnosis.ties)
+    yield from _left_open(diagnosis)
+
+
+def _beyond_words(diagnosis: DiagnosisResult, experiment: Experiment) -> Iterator[str]:
+    """Say which settings lie outside of what was measured."""
+    beyond = []
+    for name, values in experiment.settings.items():
+        covariate = diagnosis.records.covariates.get(name)
+        if covariate is None or covariate.role == "time":
+            continue
+        low, high = float(np.nanmin(covariate.values)), float(np.nanmax(covariate.values))
+        if max(low - float(values.min()), float(values.max()) - high) > BEYOND * max(high - low, abs(high), abs(low)):
+            ends = dict.fromkeys(amount_text(Amount(end, covariate.unit)) for end in (low, high))
+            beyond.append(f"{spoken(name)} (so far {' to '.join(ends)})")
+    if beyond:
+        yield say("beyond", settings=listed(beyond))
+
+
+def _left_open(diagnosis: DiagnosisResult) -> Iterator[str]:
+    """Say which of several explanations nothing that is proposed is about."""
+    if diagnosis.verdict != "one_of" or not (diagnosis.next or diagnosis.ties):
+        return
+    told = {*(diagnosis.experiment.tells if diagnosis.experiment is not None else ())}
+    told |= {name for point in diagnosis.next if point.measure for name in point.separates}
+    told |= {name for tie in diagnosis.ties for name in tie.explanations}
+    left = [names for names in explanations_of(diagnosis) if " + ".join(names) not in told]
+    if left:
+        yield say("left open", explanations=listed([together(names) for names in left]))
+
+
+def _next_sentences(diagnosis: DiagnosisResult) -> Iterator[str]:
+    yield from what_decides(diagnosis)
     if diagnosis.next or diagnosis.ties:
         return
     if diagnosis.verdict == "named":

@@ -7,9 +7,9 @@ them. Texts in here are raw: they come from users and plugins, and only the prin
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal, TypeAlias
 
 from truing.errors import UnitError
 from truing.formulas import Formula, symbol_text
@@ -175,12 +175,26 @@ class TableView:
 
 @dataclass(frozen=True)
 class FigureView:
-    """A figure as SVG, with the words that stand for it where it cannot be seen."""
+    """A figure as SVG, with the words that stand for it where it cannot be seen.
+
+    ``drawing`` makes the matplotlib Figure anew, for a printer that needs another form of it.
+    """
 
     title: str
     svg: str
     caption: str
     number: int
+    drawing: Callable[[], Any] = field(repr=False, compare=False)
+
+
+@dataclass(frozen=True)
+class FigurePair:
+    """A figure of two sheets side by side: as it was and as it is, None where one of the two has none."""
+
+    title: str
+    number: int
+    before: FigureView | None
+    after: FigureView | None
 
 
 @dataclass(frozen=True)
@@ -219,7 +233,7 @@ class Fold:
     printed: bool = True
 
 
-BlockView: TypeAlias = "Paragraph | Items | TableView | FigureView | ResultEntry | Fold"
+BlockView: TypeAlias = "Paragraph | Items | TableView | FigureView | FigurePair | ResultEntry | Fold"
 
 
 def table_of(
@@ -256,6 +270,10 @@ class Head:
     footer: str
     logo: str = ""
     """A picture as a data address, or nothing."""
+    letter: tuple[str, ...] = ()
+    """Who writes: the company, and its address below."""
+    style: str = ""
+    """The text of a style sheet of the engineer's own, which comes after that of the sheet."""
 
 
 @dataclass(frozen=True)
@@ -284,6 +302,8 @@ class Document:
     """What stands on page one, before the signatures."""
     figure_height: float = 95.0
     """How high the figure of page one is on paper, mm."""
+    figure_below: bool = False
+    """Whether it stands there below the key results, instead of beside them."""
     chapters: tuple[Chapter, ...]
     warnings: tuple[str, ...]
     provenance: Provenance

@@ -1,4 +1,4 @@
-"""Figures: what a plugin draws with matplotlib, as SVG that is the same byte by byte on every machine.
+"""Figures: what a plugin draws with matplotlib, as SVG that is the same byte by byte on every machine, or as PNG.
 
 Text becomes outlines, so that a figure looks the same wherever the sheet is opened. Identifiers get the figure's own
 prefix, because all figures of a sheet share one page.
@@ -10,12 +10,14 @@ import re
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from functools import partial
 from html import escape
-from io import StringIO
-from typing import Any
+from io import BytesIO, StringIO
+from typing import Any, TypeVar
 
 import matplotlib as mpl
 from matplotlib.axis import Axis
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_mixed import MixedModeRenderer
 from matplotlib.backends.backend_svg import FigureCanvasSVG, RendererSVG
 from matplotlib.figure import Figure
@@ -23,6 +25,7 @@ from matplotlib.font_manager import FontProperties, findfont, get_font
 from matplotlib.mathtext import MathTextParser
 from matplotlib.text import Text
 from matplotlib.ticker import FixedLocator
+from matplotlib.transforms import Bbox
 
 from truing.arrays import Matrix
 from truing.errors import PluginError
@@ -56,7 +59,10 @@ STYLE = {
 }
 """The look of every figure where it is not matplotlib's own; a plugin may say otherwise for its own."""
 
+Drawn = TypeVar("Drawn", str, bytes)
 POINTS_PER_INCH = 72
+PIXELS_PER_INCH = 200
+"""Of a picture of pixels: a line of 0.5 points is more than a pixel wide, and page-wide figures stay near 100 kB."""
 EDGE = 4.3
 """Points that are kept around all that is drawn."""
 
@@ -113,20 +119,17 @@ def draw(what: Callable[[], Any], *, title: str, ident: str, words: Catalogue = 
 
     ``what()`` returns a matplotlib Figure. Raises PluginError, naming the figure and the place, where drawing fails.
     """
-    with styled():
-        try:
-            figure = what()
-            if not words.is_english:
-                _translate(figure, words)
-            svg = _saved(figure)
-        except Exception as error:
-            place, what_failed = spoken_place(error), " ".join(f"{type(error).__name__}: {error}".split())
-            raise PluginError(f"{place}the figure '{title}' failed: {what_failed}") from error
-    return inlined(svg, title=words.said(title), ident=ident)
+    return inlined(_drawn(in_words(what, words), _svg, title), title=words.said(title), ident=ident)
 
 
-def _translate(figure: Any, words: Catalogue) -> None:
+def in_words(what: Callable[[], Any], words: Catalogue) -> Callable[[], Any]:
+    """Return what makes the same figure with its texts in another language."""
+    return what if words.is_english else partial(_translated, what, words)
+
+
+def _translated(what: Callable[[], Any], words: Catalogue) -> Any:
     """Put the texts of a figure into another language: labels, legends, titles, and ticks that are words."""
+    figure = what()
     for axis in figure.findobj(Axis):
         if isinstance(axis.get_major_locator(), FixedLocator):
             ticks = [label.get_text() for label in axis.get_ticklabels()]
@@ -134,12 +137,27 @@ def _translate(figure: Any, words: Catalogue) -> None:
                 axis.set_ticks(axis.get_ticklocs(), said)
     for text in figure.findobj(Text):
         text.set_text(words.said(text.get_text()))
+    return figure
 
 
-def _saved(figure: Any) -> str:
-    """Return a figure as an SVG document; a text between dollars that is no formula is printed as it stands."""
+def draw_png(what: Callable[[], Any], *, title: str) -> bytes:
+    """Draw a figure as ``draw`` does, and return it as PNG with ``PIXELS_PER_INCH``. Raises PluginError."""
+    return _drawn(what, _png, title)
+
+
+def _drawn(what: Callable[[], Any], write: Callable[[Any], Drawn], title: str) -> Drawn:
+    with styled():
+        try:
+            return _saved(what(), write)
+        except Exception as error:
+            place, words = spoken_place(error), " ".join(f"{type(error).__name__}: {error}".split())
+            raise PluginError(f"{place}the figure '{title}' failed: {words}") from error
+
+
+def _saved(figure: Any, write: Callable[[Any], Drawn]) -> Drawn:
+    """Write a figure; a text between dollars that is no formula is printed as it stands."""
     try:
-        return _svg(figure)
+        return write(figure)
     except ValueError:
         parser: Any = MathTextParser("path")
         texts = [text for text in figure.findobj(Text) if text.get_parse_math() and "$" in text.get_text()]
@@ -150,7 +168,7 @@ def _saved(figure: Any) -> str:
                 text.set_parse_math(False)
         if all(text.get_parse_math() for text in texts):
             raise
-    return _svg(figure)
+    return write(figure)
 
 
 class _Writer(RendererSVG):
@@ -189,6 +207,19 @@ def _svg(figure: Any) -> str:
     renderer.finalize()
     view = " ".join(f"{number:.6g}" for number in (box.x0, height - box.y1, box.width, box.height))
     return _VIEW_BOX.sub(f'viewBox="{view}"', stream.getvalue(), count=1)
+
+
+def _png(figure: Any) -> bytes:
+    """Write a figure as PNG that shows all that is drawn, and no more."""
+    stream = BytesIO()
+    canvas = FigureCanvasAgg(figure)
+    figure.dpi = PIXELS_PER_INCH
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="Glyph .* missing")
+        box = arranged(figure, canvas.get_renderer()).padded(EDGE * PIXELS_PER_INCH / POINTS_PER_INCH)  # type: ignore[no-untyped-call]
+        inches = Bbox(box.get_points() / PIXELS_PER_INCH)
+        figure.savefig(stream, format="png", dpi=PIXELS_PER_INCH, bbox_inches=inches, metadata={"Software": None})
+    return stream.getvalue()
 
 
 def inlined(svg: str, *, title: str, ident: str) -> str:

@@ -9,7 +9,7 @@ from typing import Any
 from truing.declare.fields import Given, InputField
 from truing.evaluate import acting_inputs
 from truing.inputs_file.values import halving_in_words
-from truing.numbers import ABSENT, RESULT_DIGITS, STATED_DIGITS, format_difference, format_value
+from truing.numbers import ABSENT, RESULT_DIGITS, STATED_DIGITS, format_difference, format_number, format_value, pretty
 from truing.report.document import (
     BlockView,
     Column,
@@ -25,6 +25,7 @@ from truing.report.document import (
     with_source,
 )
 from truing.setup import Setup, SwitchedOn
+from truing.studies.sampling import scatter_of
 
 PLACES = {"inputs": "on the inputs", "results": "on the results", "reading": "on the reading"}
 LONGEST_SERIES = 8
@@ -120,6 +121,25 @@ def tolerance_table(setup: Setup) -> TableView:
         why = with_source(tolerance.why, tolerance.source)
         rows.append((name.replace("_", " "), targets, setup.spread_of(name).text, tuple(scatter), why))
     return TableView("How the inputs scatter about their nominal values", columns, tuple(rows), kind="tolerances")
+
+
+def correlation_table(setup: Setup) -> TableView:
+    """Say which inputs scatter together, with the correlation of their values where it is another than the stated one.
+
+    Rows are the pairs whose inputs both scatter.
+    """
+    why = {each.pair: with_source(each.why, each.source) for each in setup.correlations}
+    pairs = scatter_of(setup).pairs
+    with_values = any(abs(pair.of_values - pair.coefficient) > 1e-12 for pair in pairs)
+    heads = [Column("Correlation", kind="number")] + [Column("Of the values", kind="number")] * with_values
+    rows: list[tuple[Text, ...]] = []
+    for pair in pairs:
+        numbers = [pair.coefficient, pair.of_values] if with_values else [pair.coefficient]
+        names = f"{pair.first} and {pair.second}".replace("_", " ")
+        printed = (Value(pretty(format_number(number, 4))) for number in numbers)
+        rows.append((names, *printed, why[frozenset({pair.first, pair.second})]))
+    title = "Inputs that scatter together: the correlation of their normal scores"
+    return TableView(title, (Column("Inputs", kind="name"), *heads, Column("Why")), tuple(rows), kind="tolerances")
 
 
 def effect_blocks(setup: Setup) -> Iterator[BlockView]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import re
 from collections.abc import Sequence
 from functools import lru_cache
@@ -46,18 +47,22 @@ def html_of(document: Document) -> str:
     """Write a document as a page."""
     has_contents = document.detail != "short" and len(document.chapters) > LONG
     return page(
-        "sheet.html.j2", document.head.footer, paper=document.paper, sheet=document, has_contents=has_contents,
-        language=document.language,
+        "sheet.html.j2", document.head.footer, paper=document.paper, own_style=document.head.style, sheet=document,
+        has_contents=has_contents, language=document.language,
     )  # fmt: skip
 
 
 def page(
-    template: str, footer: str, *, styles: Sequence[str] = ("sheet.css",), paper: str = "A4", **said: Any
+    template: str, footer: str, *, styles: Sequence[str] = ("sheet.css",), paper: str = "A4", own_style: str = "",
+    **said: Any,
 ) -> str:  # fmt: skip
-    """Write a page from its template; the footer stands in the margin of every page but the first."""
+    """Write a page from its template; the footer stands in the margin of every page but the first.
+
+    A style sheet that a user states comes last, and cannot end the element that holds it.
+    """
     style = "".join((template_folder() / name).read_text(encoding="utf-8") for name in styles)
     style += f'\n@page {{ size: {paper}; @top-left {{ content: "{css_text(footer)}"; }} }}'
-    style += "\n@page :first { @top-left { content: none; } }\n"
+    style += "\n@page :first { @top-left { content: none; } }\n" + own_style.replace("<", "\\3c ")
     return with_room(_environment().get_template(template).render(style=_markup(style), **said)) + "\n"
 
 
@@ -80,6 +85,7 @@ def _environment() -> Environment:
     environment.filters.update(
         said=_said,
         formula=_equation,
+        picture=_picture,
         groups=_groups,
         breakable=_breakable,
         unbroken=_unbroken,
@@ -139,6 +145,11 @@ def _piece(piece: Piece) -> str:
             return f'<span aria-hidden="true">{sign}</span> {word}'
         case Marked():
             return "<br>"
+
+
+def _picture(svg: str) -> str:
+    """Return a drawing as the address of a picture, so that nothing in it can touch the page or another drawing."""
+    return f"data:image/svg+xml;base64,{base64.b64encode(svg.encode()).decode()}"
 
 
 def _breakable(name: str) -> Any:

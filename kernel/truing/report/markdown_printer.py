@@ -15,6 +15,7 @@ from truing.report.document import (
     BlockView,
     Document,
     Equation,
+    FigurePair,
     FigureView,
     Fold,
     Items,
@@ -47,10 +48,13 @@ def markdown_of(document: Document) -> str:
 
 def _head(document: Document, words: Catalogue) -> Iterator[str]:
     head, banner = document.head, document.banner
+    if head.letter:
+        yield ", ".join((f"**{escaped(head.letter[0])}**", *map(escaped, head.letter[1:])))
     yield f"# {escaped(document.title)}"
     yield from (escaped(text) for text in (head.model, document.summary) if text)
     yield _pipes(head.fields)
-    yield _pipes(head.signatures, [f"*{words.said('Date, signature')}*"] * len(head.signatures))
+    if head.signatures:
+        yield _pipes(head.signatures, [f"*{words.said('Date, signature')}*"] * len(head.signatures))
     sentences = [_said(sentence) for sentence in banner.sentences]
     sentences[0] = f"**{escaped(banner.headline)}.** {sentences[0]}"
     if document.warnings:
@@ -80,15 +84,27 @@ def _blocks(blocks: Iterable[BlockView], words: Catalogue) -> Iterator[str]:
             case TableView():
                 yield from _table(block)
             case FigureView():
-                data = base64.b64encode(block.svg.encode()).decode()
-                yield f"![{escaped(block.title)}](data:image/svg+xml;base64,{data})"
+                yield _picture(block.title, block.svg)
                 yield f"**{words.said('Figure')} {block.number}.** {escaped(block.caption)}"
+            case FigurePair():
+                yield _pair(block)
             case ResultEntry():
                 yield from _entry(block, words)
             case Fold(title, inner):
                 yield f"<details><summary>{escaped(title)}</summary>"
                 yield from _blocks(inner, words)
                 yield "</details>"
+
+
+def _picture(title: str, svg: str) -> str:
+    return f"![{escaped(title)}](data:image/svg+xml;base64,{base64.b64encode(svg.encode()).decode()})"
+
+
+def _pair(pair: FigurePair) -> str:
+    """Write two drawings side by side, as the cells of a table."""
+    sides = (("Before", pair.before), ("After", pair.after))
+    cells = ["no such figure" if side is None else _picture(f"{word}: {side.title}", side.svg) for word, side in sides]
+    return f"**Figure {pair.number}.** {escaped(pair.title)}\n\n" + _rows([["Before", "After"], ["---", "---"], cells])
 
 
 def _items(items: Items) -> Iterator[str]:

@@ -35,17 +35,20 @@ LINES, FEWEST_LINES = 25, 9
 WIDE, NARROW = 90, 28
 """Characters of a line: over the whole page, and in the table of results beside the figure."""
 LINE, CAPTION, HIGHEST = 4.6, 14.0, 66.0
-"""Height of a line, of the words below a figure, and of a figure at the most, mm."""
+"""Height of a line, of the words below a figure, and of a figure beside the results at the most, mm."""
+LOW_BELOW, HIGH_BELOW = 75.0, 112.0
+"""Where so much room is left below the results, the figure stands there, over the whole width, at the most so high."""
 SAME = 1e-12
 """Share by which two inputs differ only by how they are rounded."""
 
 
 @dataclass(frozen=True)
 class PageOne:
-    """What stands between the verdict and the signatures; on paper the figure is so high, mm."""
+    """What stands between the verdict and the signatures; how high its figure is on paper (mm), and where."""
 
     chapters: tuple[Chapter, ...]
     figure_height: float
+    figure_below: bool
 
 
 def page_one(
@@ -66,7 +69,11 @@ def page_one(
         *checks, *keys, *([figure] if figure else []),
         *([Chapter("Inputs against the example", changes, "changes")] if changes else []), *_warned(warnings),
     ]  # fmt: skip
-    return PageOne(tuple(chapters), min(HIGHEST, LINE * room - CAPTION))
+    notes = [setup.model.result_fields[name].spec.note for name in results]
+    below = LINE * (room - sum(lines_of(note, WIDE) for note in notes)) - CAPTION
+    if below >= LOW_BELOW:
+        return PageOne(tuple(chapters), min(HIGH_BELOW, below), figure_below=True)
+    return PageOne(tuple(chapters), min(HIGHEST, LINE * room - CAPTION), figure_below=False)
 
 
 def _warned(warnings: Sequence[str]) -> Iterator[Chapter]:

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from importlib.util import find_spec
+from io import BytesIO
 from pathlib import Path
 
 from truing.errors import OutputError
+from truing.heavy import pypdf
 
 NAMES = (
     "chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome", "microsoft-edge",
@@ -65,12 +69,26 @@ def sandbox_arguments() -> list[str]:
 def pdf_bytes(html: str, browser: Path | None = None) -> bytes:
     """Print the text of a sheet, on the paper that it names, and return the PDF.
 
-    The browser runs once, unseen, with an empty profile and no word to the network.
+    The browser runs unseen, with an empty profile and no word to the network; once more where the sheet has contents,
+    with the page of each chapter in them, if the library is installed that finds it (the extra ``pdf``).
     Raises OutputError with one sentence: no browser (and how to print without), or what went wrong.
     """
     browser = browser or find_browser()
     if browser is None:
         raise OutputError(f"no Chromium, Chrome or Edge was found for the PDF (CHROME_PATH names one); {HOW_TO_PRINT}")
+    content = _printed(html, browser)
+    if not PAGE_OF.search(html) or find_spec("pypdf") is None:
+        return content
+    pages: dict[str, int] = {}
+    for _ in range(MOST_PRINTS - 1):
+        before, pages = pages, pages_of(content)
+        if pages == before:
+            break
+        content = _printed(with_pages(html, pages), browser)
+    return content
+
+
+def _printed(html: str, browser: Path) -> bytes:
     with tempfile.TemporaryDirectory(prefix="truing-print-", ignore_cleanup_errors=True) as folder:
         page, made = Path(folder, "sheet.html"), Path(folder, "sheet.pdf")
         page.write_text(html, encoding="utf-8")
@@ -89,3 +107,24 @@ def pdf_bytes(html: str, browser: Path | None = None) -> bytes:
             last = " ".join(done.stderr.decode("utf-8", "replace").strip().splitlines()[-1:])
             raise OutputError(f"{browser.name} printed no PDF ({last or f'exit {done.returncode}'}); {HOW_TO_PRINT}")
         return content
+
+
+# Page numbers in the contents, which no style sheet of a browser can give
+
+
+PAGE_OF = re.compile(r'(<span class="page" data-of="([^"]+)">)(</span>)')
+"""Where the contents have room for the page of a chapter."""
+MOST_PRINTS = 3
+"""So often a sheet is printed at the most; numbers have room of their own, so the second print moves nothing."""
+
+
+def pages_of(pdf: bytes) -> dict[str, int]:
+    """Return the page, counted from 1, of everything in a PDF that a link leads to, by its identifier in the sheet."""
+    reader = pypdf.PdfReader(BytesIO(pdf))
+    places = {name: reader.get_destination_page_number(place) for name, place in reader.named_destinations.items()}
+    return {name.removeprefix("/"): page + 1 for name, page in places.items() if page is not None}
+
+
+def with_pages(html: str, pages: Mapping[str, int]) -> str:
+    """Write the pages of its chapters into the contents of a sheet."""
+    return PAGE_OF.sub(lambda match: f"{match[1]}{pages.get(match[2], '')}{match[3]}", html)

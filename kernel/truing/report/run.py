@@ -21,6 +21,7 @@ from truing.report.html_printer import html_of
 from truing.report.markdown_printer import markdown_of
 from truing.report.pdf import pdf_bytes
 from truing.report.sheet import make_sheet, study_sheet
+from truing.report.word_printer import demand_word_library, word_of
 from truing.runs.provenance import provenance_of
 from truing.setup import Setup
 from truing.studies.bench import Progress, silent
@@ -59,13 +60,15 @@ def example_setup(offer: Offer) -> Setup | None:
         return None
 
 
-def sheets_of(document: Document, folder: Path, *, pdf: bool) -> tuple[dict[str, str | bytes], str]:
+def sheets_of(document: Document, folder: Path, *, pdf: bool, word: bool) -> tuple[dict[str, str | bytes], str]:
     """Return the sheets of a document by file name, and what became of the PDF: a browser must print it.
 
-    A run is not lost for want of a browser.
+    A run is not lost for want of a browser. Raises UsageError where the library for Word is missing.
     """
     page = html_of(document)
     sheets: dict[str, str | bytes] = {"sheet.html": page, "sheet.md": markdown_of(document)}
+    if word:
+        sheets["sheet.docx"] = word_of(document)
     if not pdf:
         return sheets, ""
     try:
@@ -94,15 +97,34 @@ def run_info(started: float) -> dict[str, Any]:
 
 
 def write_sheet(path: str | Path, make: Callable[[], Document]) -> Path:
-    """Write a sheet as HTML, Markdown or PDF, as the name ends, and return its path.
+    """Write a sheet as HTML, Markdown, PDF or a Word document, as the name ends, and return its path.
 
-    Raises OutputError for any other ending, for a PDF where no browser can print it, and where it cannot be written.
+    Raises OutputError for any other ending, for a PDF where no browser can print it, and where it cannot be written;
+    UsageError where the library for Word is missing.
     """
     file = Path(path)
-    ending = file.suffix.lower()
-    if ending not in {".html", ".htm", ".md", ".pdf"}:
-        raise OutputError(f"{file}: a sheet ends in .html, .md or .pdf")
-    sheet = make()
-    text = markdown_of(sheet) if ending == ".md" else html_of(sheet)
-    write_files({file: pdf_bytes(text) if ending == ".pdf" else text})
+    write_files({file: WRITERS[demand_ending(file)](make())})
     return file
+
+
+def demand_page(file: Path) -> None:
+    """Raise OutputError for the name of a page with figures of two sheets that Word, or nothing, would write."""
+    if file.suffix.lower() not in {*WRITERS} - {".docx"}:
+        raise OutputError(f"{file}: a page of two sheets ends in .html, .md or .pdf")
+
+
+def demand_ending(file: Path) -> str:
+    """Return the ending of a sheet's name, in small letters. Raises OutputError for one that no sheet has."""
+    ending = file.suffix.lower()
+    if ending not in WRITERS:
+        raise OutputError(f"{file}: a sheet ends in .html, .md, .pdf or .docx")
+    if ending == ".docx":
+        demand_word_library()
+    return ending
+
+
+WRITERS: dict[str, Callable[[Document], str | bytes]] = {
+    ".html": html_of, ".htm": html_of, ".md": markdown_of, ".docx": word_of,
+    ".pdf": lambda document: pdf_bytes(html_of(document)),
+}  # fmt: skip
+"""What writes a sheet, by the ending of its name."""

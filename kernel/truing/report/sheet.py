@@ -43,23 +43,26 @@ from truing.report.document import (
     Value,
     joined,
 )
-from truing.report.given import effect_blocks, input_blocks, tolerance_table
+from truing.report.given import correlation_table, effect_blocks, input_blocks, tolerance_table
 from truing.report.limits import MOST_CHECKS, check_table, check_value, least_margin
 from truing.report.page_one import MOST_WARNINGS, page_one
 from truing.report.translation import STUDY, catalogue_of, translated
 from truing.runs.provenance import Provenance
 from truing.setup import Setup
 from truing.studies.checks import HEADLINES, SHORT
+from truing.studies.sampling import scatter_of
 from truing.studies.verdicts import sentence_of
 from truing.units import unit_text
 
-HEAD_FIELDS = ("project", "drawing", "revision", "company", "customer", "date")
+HEAD_FIELDS = ("project", "document", "drawing", "revision", "customer", "date")
 ALWAYS = {"project", "drawing", "revision", "date"}
 """Fields of the title block that are there to be filled in by hand, too."""
 SIGNATURES = ("prepared", "checked", "approved")
 PICTURES = {".svg": "image/svg+xml", ".png": "image/png", ".jpg": "image/jpeg", ".jpeg": "image/jpeg"}
 LARGEST_LOGO = 500_000
-NOT_SHOWN = {"title", "logo"}
+LARGEST_STYLE = 200_000
+NOT_SHOWN = {"title", "company", "address", "logo", "style"}
+"""What stands elsewhere than in the fields of the title block."""
 NO_LIMITS = "No limits"
 SHEET = "Calculation sheet"
 
@@ -90,6 +93,7 @@ def make_sheet(
         banner=banner_of(calculation, cases),
         front=first.chapters,
         figure_height=first.figure_height,
+        figure_below=first.figure_below,
         chapters=numbered(
             [*_given(calculation, cases, detail), *results, *_back(calculation, verified, warnings, provenance)]
         ),
@@ -166,28 +170,51 @@ def head_of(setup: Setup, provenance: Provenance) -> Head:
         signatures=tuple((name.capitalize(), given.get(f"{name}_by", given.get(name, ""))) for name in SIGNATURES),
         footer=" · ".join(filter(None, [title, *(given.get(name) for name in ("project", "drawing", "revision"))])),
         logo=logo_of(setup)[0],
+        letter=tuple(given[name] for name in ("company", "address") if name in given),
+        style=style_of(setup)[0],
     )
+
+
+def head_faults(setup: Setup) -> list[str]:
+    """Say which files of the title block are left out, and why."""
+    return list(filter(None, [logo_of(setup)[1], style_of(setup)[1]]))
 
 
 def logo_of(setup: Setup) -> tuple[str, str]:
     """Return the company's sign as a data address, and what is wrong with it; the file lies beside the inputs file."""
-    name = str(setup.sheet.head.get("logo", "")).strip()
+    content, kind, fault = _beside(setup, "logo", PICTURES, LARGEST_LOGO)
+    return (f"data:{kind};base64,{b64encode(content).decode()}" if content else ""), fault
+
+
+def style_of(setup: Setup) -> tuple[str, str]:
+    """Return the engineer's own style sheet, and what is wrong with it; the file lies beside the inputs file."""
+    content, _, fault = _beside(setup, "style", {".css": "text/css"}, LARGEST_STYLE)
+    try:
+        return content.decode("utf-8-sig"), fault
+    except UnicodeDecodeError:
+        return "", f"the style '{setup.sheet.head['style']}' is left out: it is no UTF-8 text"
+
+
+def _beside(setup: Setup, what: str, endings: Mapping[str, str], largest: int) -> tuple[bytes, str, str]:
+    """Read a file that the head of the sheet names: its content, its kind by its ending, and what is wrong with it."""
+    name = str(setup.sheet.head.get(what, "")).strip()
     if not name:
-        return "", ""
-    kind = PICTURES.get(Path(name).suffix.lower())
+        return b"", "", ""
+    left_out = f"the {what} '{name}' is left out"
+    kind = endings.get(Path(name).suffix.lower())
     if kind is None:
-        return "", f"the logo '{name}' is left out: it must be a {', '.join(PICTURES)} file"
+        return b"", "", f"{left_out}: it must be a {', '.join(endings)} file"
     path = Path(setup.source.file).parent / name
     try:
         if path.exists() and not path.is_file():  # a pipe would keep the sheet waiting
-            return "", f"the logo '{name}' is left out: it is no ordinary file"
+            return b"", "", f"{left_out}: it is no ordinary file"
         with path.open("rb") as stream:
-            content = stream.read(LARGEST_LOGO + 1)
+            content = stream.read(largest + 1)
     except (OSError, ValueError) as error:
-        return "", f"the logo '{name}' is left out: {getattr(error, 'strerror', None) or error}"
-    if len(content) > LARGEST_LOGO:
-        return "", f"the logo '{name}' is left out: it is larger than {LARGEST_LOGO // 1000} kB"
-    return f"data:{kind};base64,{b64encode(content).decode()}", ""
+        return b"", "", f"{left_out}: {getattr(error, 'strerror', None) or error}"
+    if len(content) > largest:
+        return b"", "", f"{left_out}: it is larger than {largest // 1000} kB"
+    return content, kind, ""
 
 
 def banner_of(calculation: Calculation, cases: CasesTable | None) -> Banner:
@@ -230,7 +257,7 @@ def case_name(case: CaseResult) -> str:
 
 def _warnings(calculation: Calculation, cases: CasesTable | None, failures: Sequence[str]) -> Iterator[str]:
     yield from calculation.warnings
-    yield from filter(None, [logo_of(calculation.setup)[1]])
+    yield from head_faults(calculation.setup)
     shown = calculation.failed[:20] if cases is None else ()
     for row, reason in shown:
         yield f"row {row} failed: {reason}"
@@ -253,7 +280,8 @@ def _inputs_behind(setup: Setup, detail: str) -> Iterator[Chapter]:
         return
     yield Chapter("Inputs", tuple(input_blocks(setup, detail)), "inputs")
     if setup.distributions():
-        yield Chapter("Tolerances in force", (tolerance_table(setup),), "tolerances")
+        tables = [tolerance_table(setup)] + [correlation_table(setup)] * bool(scatter_of(setup).pairs)
+        yield Chapter("Tolerances in force", tuple(tables), "tolerances")
     if setup.conditions or setup.effects:
         yield Chapter("Conditions and effects", tuple(effect_blocks(setup)), "effects")
 

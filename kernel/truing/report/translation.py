@@ -23,6 +23,7 @@ from truing.report.document import (
     Chapter,
     Column,
     Document,
+    FigurePair,
     FigureView,
     Fold,
     Head,
@@ -342,6 +343,8 @@ def _block(block: BlockView, words: Catalogue) -> BlockView:
             return _table(block, words)
         case FigureView():  # its drawing was translated when it was drawn
             return replace(block, title=words.said(block.title), caption=words.said(block.caption))
+        case FigurePair(title):  # each of the two has the words of its own sheet
+            return replace(block, title=words.said(title))
         case ResultEntry():
             label, value, method = (_text(text, words) for text in (block.label, block.value, block.method))
             return replace(block, label=label, value=value, method=method)

@@ -66,17 +66,15 @@ def compared(before: Mapping[str, Any], after: Mapping[str, Any]) -> list[Change
 
     Numbers that agree to ``ROUNDING`` are equal: another order of summation is no change.
     """
-    schemas = [str(document.get("schema")) for document in (before, after)]
-    kinds = ["diagnosis" if schema.startswith("truing.diagnosis") else "run" for schema in schemas]
+    kinds = ["diagnosis" if _is_diagnosis(document) else "run" for document in (before, after)]
     if kinds[0] != kinds[1]:
         raise UsageError(f"the first is a {kinds[0]} and the second a {kinds[1]}; compare two of one kind")
-    named = _of_diagnosis if kinds[0] == "diagnosis" else _of_run
     changes = [
         Change("settings", name, before.get(name), after.get(name))
         for name in ("plugin", "kernel", "seed")
         if before.get(name) != after.get(name)
     ]
-    one, other = named(before), named(after)
+    one, other = pieces_of(before), pieces_of(after)
     for kind, here in one.items():
         there = other[kind]
         names = [name for name in dict.fromkeys([*here, *there]) if not same(here.get(name), there.get(name))]
@@ -84,12 +82,21 @@ def compared(before: Mapping[str, Any], after: Mapping[str, Any]) -> list[Change
     return changes
 
 
+def _is_diagnosis(document: Mapping[str, Any]) -> bool:
+    return str(document.get("schema")).startswith("truing.diagnosis")
+
+
+def pieces_of(document: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
+    """Return what a run or a diagnosis says that is compared, by kind and name."""
+    return _of_diagnosis(document) if _is_diagnosis(document) else _of_run(document)
+
+
 def _of_run(document: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     """Return what a run found, by kind and name."""
     checks = {check["name"]: {**check} for check in document.get("checks") or []}
     for check in checks.values():
         del check["name"]
-    kinds = ("inputs", "tolerances", "conditions", "effects", "results", "checks", "studies")
+    kinds = ("inputs", "tolerances", "correlations", "conditions", "effects", "results", "checks", "studies")
     return {kind: checks if kind == "checks" else document.get(kind) or {} for kind in kinds}
 
 

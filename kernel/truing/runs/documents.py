@@ -15,6 +15,7 @@ from truing.declare.fields import InputField
 from truing.runs.provenance import Provenance
 from truing.setup import Setup, SwitchedOn
 from truing.studies.checks import Check, Proposal
+from truing.studies.sampling import scatter_of
 from truing.units import difference_unit, from_si, unit_factor
 from truing.units.names import PURE
 
@@ -42,6 +43,7 @@ def results_document(
         "seed": provenance.seed,
         "inputs": {name: _input_value(setup, model.input_fields[name], value) for name, value in inputs.items()},
         "tolerances": _tolerances(setup),
+        "correlations": _correlations(setup),
         "conditions": _values(setup, setup.conditions),
         "effects": {active.effect.name: _effect_values(active) for active in setup.effects},
         "results": {name: _result(calculation, name) for name in model.result_fields if name in calculation.answers},
@@ -159,6 +161,14 @@ def _tolerances(setup: Setup) -> dict[str, Any]:
             on[target] = {"mean": clean(from_si(distribution.mean, unit)), "sd": clean(sd), "unit": unit}
         said[name] = {"spread": setup.spread_of(name).text if on else "off", "on": on}
     return said
+
+
+def _correlations(setup: Setup) -> dict[str, Any]:
+    """Return by pair how inputs scatter together: the correlation of their normal scores, and that of their values."""
+    return {
+        f"{pair.first}, {pair.second}": {"value": pair.coefficient, "unit": "", "of_values": pair.of_values}
+        for pair in scatter_of(setup).pairs
+    }
 
 
 def _effect_values(active: SwitchedOn) -> dict[str, Any]:

@@ -18,12 +18,13 @@ from truing.calculation import Calculation
 from truing.diagnosis.records import file_labels
 from truing.diagnosis.result import DiagnosisResult
 from truing.errors import OutputError, PluginError, UnknownPluginError
+from truing.measurements import EXCEL, INERT
 from truing.runs.documents import SCHEMA, large_arrays
 from truing.runs.extension import extended_text
 from truing.runs.inputs_written import complete_inputs
 from truing.runs.new_effect import new_effect_source
 from truing.runs.provenance import Provenance
-from truing.runs.spreadsheet import diagnosis_workbook, run_workbook, spreadsheets
+from truing.runs.spreadsheet import cases_parquet, diagnosis_tables, diagnosis_workbook, run_tables, run_workbook
 from truing.setup import Setup
 from truing.studies.bench import Outcome, files_of
 from truing.units import from_si
@@ -167,11 +168,16 @@ def run_files(
     excel: bool = False,
     xlsx: bool = False,
 ) -> dict[str, str | bytes]:
-    """Return the files of a run by name: sheets, large arrays, tables as they are asked for, those of its studies."""
+    """Return the files of a run by name: sheets, tables, large arrays, those of its studies.
+
+    Tables are CSV, with ``excel`` for a spreadsheet with a decimal comma; ``xlsx`` adds them as a workbook.
+    """
     model = calculation.setup.model
-    files = {**sheets, **(spreadsheets(document, model) if excel else {})}
+    files = {**sheets, **run_tables(document, model, EXCEL if excel else INERT)}
     if xlsx:
         files["results.xlsx"] = run_workbook(document, model)
+    if str(document.get("rows", {}).get("file", "")).lower().endswith(".parquet"):
+        files["cases.parquet"] = cases_parquet(document)
     if large := large_arrays(calculation):
         files["arrays.npz"] = npz_bytes(large)
     return files | study_files(calculation.outcomes, files)
@@ -180,11 +186,15 @@ def run_files(
 def diagnosis_files(
     diagnosis: DiagnosisResult, sheets: Mapping[str, str | bytes], folder: Path, *, xlsx: bool = False
 ) -> dict[str, str | bytes]:
-    """Return the files of a diagnosis by name: its sheets and curves, the extension where there is one, a workbook."""
+    """Return the files of a diagnosis by name: its sheets, tables and curves, the extension where there is one.
+
+    Tables are CSV; ``xlsx`` adds a workbook.
+    """
     extension = {"extended.toml": extended_text(diagnosis, folder), "new_effect.py": new_effect_source(diagnosis)}
     curves = npz_bytes(curve_arrays(diagnosis))
     book = {"diagnosis.xlsx": diagnosis_workbook(diagnosis)} if xlsx else {}
-    return {"arrays.npz": curves, **sheets, **{name: text for name, text in extension.items() if text}, **book}
+    extension = {name: text for name, text in extension.items() if text}
+    return {"arrays.npz": curves, **sheets, **diagnosis_tables(diagnosis), **extension, **book}
 
 
 NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,99}", re.ASCII)
@@ -212,8 +222,8 @@ def study_files(outcomes: Mapping[str, Outcome], taken: Mapping[str, str | bytes
 
 
 KEPT = (
-    "inputs.toml", "results.json", "run.json", "sheet.html", "sheet.md", "sheet.pdf", "arrays.npz", "results.csv",
-    "cases.csv", "results.xlsx",
+    "inputs.toml", "results.json", "run.json", "sheet.html", "sheet.md", "sheet.pdf", "sheet.docx", "arrays.npz",
+    "results.csv", "cases.csv", "cases.parquet", "results.xlsx",
 )  # fmt: skip
 """Names that a run folder uses itself, or may use."""
 

@@ -17,7 +17,7 @@ from truing.declare.spreads import ByChoice, Drawn
 from truing.formulas.symbols import printable
 from truing.inputs_file.assemble import toml_key, toml_value
 from truing.inputs_file.study_options import options_of
-from truing.setup import Setup, SwitchedOn
+from truing.setup import NamedColumn, Setup, SwitchedOn
 from truing.templating import ENGLISH
 from truing.units import difference_unit, from_si, read_quantity, to_si, unit_factor
 from truing.units.names import PURE
@@ -59,10 +59,12 @@ def _sections(setup: Setup, folder: Path | None) -> Iterator[tuple[str, dict[str
     """Yield every section of the inputs file with its entries as plain TOML values."""
     detail = {"detail": setup.sheet.detail} if setup.sheet.detail != "normal" else {}
     detail |= {"language": setup.sheet.language} if setup.sheet.language != ENGLISH else {}
+    paper = {"paper": setup.sheet.paper} if setup.sheet.paper != "A4" else {}
     head = {name: str(text) for name, text in setup.sheet.head.items()}
-    if folder is not None and head.get("logo"):
-        head["logo"] = _seen_from(folder, Path(setup.source.file).parent / head["logo"])
-    yield "sheet", {**head, **detail}
+    for name in ("logo", "style"):
+        if folder is not None and head.get(name):
+            head[name] = _seen_from(folder, Path(setup.source.file).parent / head[name])
+    yield "sheet", {**head, **detail, **paper}
     inputs = setup.model.read_inputs(setup.inputs)
     fields = setup.model.input_fields
     stated = {name: _input(setup, fields[name], value, folder) for name, value in inputs.items()}
@@ -75,6 +77,7 @@ def _sections(setup: Setup, folder: Path | None) -> Iterator[tuple[str, dict[str
             if name in setup.model.tolerances and spread.text and not isinstance(spread, (ByChoice, Drawn))
         },
     )
+    yield "correlations", {pair.name: pair.coefficient for pair in setup.scattering_together()}
     yield "conditions", {name: exact(value, setup.unit_of(name)) for name, value in setup.conditions.items()}
     yield "calibrated", {name: exact(value, setup.unit_of(name)) for name, value in setup.calibrated.items()}
     for active in setup.effects:
@@ -87,6 +90,12 @@ def _sections(setup: Setup, folder: Path | None) -> Iterator[tuple[str, dict[str
     if diagnose := _of_diagnosis(setup):
         yield "studies.diagnose", diagnose
     yield "units", dict(setup.units)
+    if setup.columns:
+        yield "columns", {key: _column(column) for key, column in setup.columns.items()}
+
+
+def _column(column: NamedColumn) -> str | dict[str, str]:
+    return column.name if column.unit is None else {"name": column.name, "unit": column.unit}
 
 
 def _is_declared(study: Study, setup: Setup) -> bool:
@@ -204,6 +213,8 @@ def _remarks(setup: Setup) -> Iterator[tuple[tuple[str, str], str]]:
         yield ("inputs", name), ", ".join(word for word in words if word)
     for name, tolerance in setup.model.tolerances.items():
         yield ("tolerances", name), printable(tolerance.why)
+    for pair in setup.correlations:
+        yield ("correlations", pair.name), printable(pair.why)
 
 
 def _left_open(setup: Setup, section: str) -> Iterator[str]:

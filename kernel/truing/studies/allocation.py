@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from math import exp, inf
@@ -78,7 +78,7 @@ class Allocation:
         wanted = _goals(setup, bench.answers, self.name)
         scatter = scatter_of(setup)
         straight, derivatives = straightened(scatter, wanted)
-        problem = open_problem(setup, wanted, straight, self)
+        problem = open_problem(scatter, wanted, straight, self)
         order = coefficients(problem, self._slopes(scatter, wanted, problem), self.weights) if problem.parts else {}
         steps, ruled = by_rule(problem, order, self.finest) if problem.parts else ([], as_it_stands(problem))
         rule = bought(problem, ruled)
@@ -449,13 +449,14 @@ GradesAndWidths = Mapping[str, str | float]
 class GradedTolerance:
     """A tolerance that is a grade: the grade it starts at, and what every grade does that it may take, finest first.
 
-    By grade: full widths (m), costs, and first-order variances by demand (SI).
+    By grade: full widths (m), costs, first-order variances by demand (SI), and standard deviations by input (SI).
     """
 
     start: str
     widths: Mapping[str, float]
     costs: Mapping[str, float]
     variances: Mapping[str, Mapping[str, float]]
+    sds: Mapping[str, Mapping[str, float]]
 
     def cost(self, grade: str) -> float:
         """Return what a grade costs."""
@@ -464,6 +465,10 @@ class GradedTolerance:
     def added(self, demand: str, grade: str) -> float:
         """Return what a grade adds to the fixed variance of a demand's response."""
         return self.variances[grade][demand]
+
+    def factor(self, column: str, grade: str) -> float:
+        """Return the standard deviation of an input with a grade over that with the grade of the start."""
+        return self.sds[grade][column] / self.sds[self.start][column]
 
 
 @dataclass(frozen=True)
@@ -493,12 +498,29 @@ class ToleranceVariable:
         """Return what a width adds to the variance with the width in force."""
         return self.variance(demand, width) - self.variances[demand]
 
+    def factor(self, column: str, width: float) -> float:
+        """Return the standard deviation of an input with a width over that with the width in force."""
+        return width / self.start
+
+
+@dataclass(frozen=True)
+class SharedVariance:
+    """What two correlated inputs, each of one tolerance, add together to the variance by demand, as in force (SI).
+
+    It goes with the product of their standard deviations.
+    """
+
+    columns: tuple[str, str]
+    owners: tuple[str, str]
+    variances: Mapping[str, float]
+
 
 @dataclass(frozen=True)
 class AllocationProblem:
     """All parts whose grade may be chosen, tolerances whose width may be, what stays as it is, and the goals to reach.
 
-    ``fixed`` is the variance that no grade makes, with the widths in force. ``span`` is that of the widths over those.
+    ``fixed`` is the variance that no grade makes alone, with what is in force. ``span`` is that of the widths over
+    those in force. ``shared`` is what correlated inputs add together, where a tolerance of theirs may be chosen.
     """
 
     parts: Mapping[str, GradedTolerance]
@@ -509,6 +531,7 @@ class AllocationProblem:
     unit: str
     priced: bool
     span: tuple[float, float]
+    shared: tuple[SharedVariance, ...] = ()
 
     @property
     def tolerances(self) -> dict[str, Any]:
@@ -528,7 +551,22 @@ class AllocationProblem:
     def variance(self, name: str, chosen: GradesAndWidths) -> float:
         """Return the first-order variance of a demand's response with these tolerances."""
         added: float = sum(own.added(name, chosen.get(key, own.start)) for key, own in self.tolerances.items())
-        return max(0.0, self.fixed[name] + added)
+        together = sum(pair.variances[name] * (self.factor(pair, chosen) - 1) for pair in self.shared)
+        return max(0.0, self.fixed[name] + added + together)
+
+    def factor(self, pair: SharedVariance, chosen: GradesAndWidths) -> float:
+        """Return what two inputs share with these tolerances over what they share as in force."""
+        factor = 1.0
+        for column, owner in zip(pair.columns, pair.owners, strict=True):
+            own = self.tolerances.get(owner)
+            factor *= 1.0 if own is None else own.factor(column, chosen.get(owner, own.start))
+        return factor
+
+    def half_slope(self, name: str, variable: str, chosen: GradesAndWidths) -> float:
+        """Return half of the derivative of a demand's variance by the logarithm of a width."""
+        own = self.variables[variable].variance(name, float(chosen[variable]))
+        times = ((pair, pair.owners.count(variable) / 2) for pair in self.shared)
+        return own + sum(count * pair.variances[name] * self.factor(pair, chosen) for pair, count in times)
 
     def mean(self, name: str, chosen: GradesAndWidths) -> float:
         """Return the first-order mean of a demand's response with these tolerances."""
@@ -555,12 +593,13 @@ class AllocationProblem:
 
 
 def open_problem(
-    setup: Setup, wanted: Sequence[Demand], straight: Mapping[str, Straight], study: Allocation
+    scatter: Scatter, wanted: Sequence[Demand], straight: Mapping[str, Straight], study: Allocation
 ) -> AllocationProblem:
     """Collect parts, grades, widths and costs. Raises UsageError where no tolerance in force is a grade or has a price.
 
     Widths can be bought only where every grade has a price too; otherwise they stay.
     """
+    setup = scatter.setup
     tolerances = setup.model.tolerances.values()
     graded = [tolerance for tolerance in tolerances if isinstance(setup.spread_of(tolerance.name), Grade)]
     prices = [price_of(setup, tolerance) for tolerance in graded]
@@ -574,14 +613,29 @@ def open_problem(
             "width could be chosen: nothing to allocate"
         )
     parts = {tolerance.name: _graded(setup, tolerance, straight, study, priced=priced) for tolerance in graded}
+    shared = tuple(_shared(scatter, straight, {**parts, **variables}))
+    least = -inf if shared else 0.0  # correlated inputs may take from the variance
     fixed, means = {}, {}
     for name, line in straight.items():
         of_parts = sum(part.added(name, part.start) for part in parts.values())
-        fixed[name], means[name] = max(0.0, float(line.variance) - of_parts), float(line.mean)
+        fixed[name], means[name] = max(least, float(line.variance) - of_parts), float(line.mean)
     units = [price.unit for price in (*prices, *(own.price for own in variables.values())) if price is not None]
     known = priced or bool(variables)
     unit = units[0] if known else RECIPROCAL
-    return AllocationProblem(parts, variables, tuple(wanted), means, fixed, unit, known, span)
+    return AllocationProblem(parts, variables, tuple(wanted), means, fixed, unit, known, span, shared)
+
+
+def _shared(scatter: Scatter, straight: Mapping[str, Straight], chosen: Collection[str]) -> Iterator[SharedVariance]:
+    """Give what correlated inputs add together, of those of which a tolerance may be chosen."""
+    owners = {column: cause.name for cause in scatter.causes for column in cause.columns}
+    for pair in scatter.pairs:
+        columns, own = (pair.first, pair.second), (owners[pair.first], owners[pair.second])
+        if {*own} & {*chosen}:
+            variances = {
+                name: 2 * float(line.slopes[pair.first]) * float(line.slopes[pair.second]) * pair.covariance
+                for name, line in straight.items()
+            }
+            yield SharedVariance(columns, own, variances)
 
 
 def _graded(
@@ -595,7 +649,7 @@ def _graded(
     spread, price = setup.spread_of(tolerance.name), price_of(setup, tolerance) if priced else None
     assert isinstance(spread, Grade)  # open_problem has chosen these
     start = GRADES.index(spread.grade)
-    widths, costs, variances = {}, {}, {}
+    widths, costs, variances, deviations = {}, {}, {}, {}
     for grade in GRADES[min(GRADES.index(study.finest), start) : len(GRADES) if study.loosen else start + 1]:
         own = replace(spread, grade=grade)
         try:
@@ -605,9 +659,9 @@ def _graded(
             if own == spread:
                 raise
             continue
-        widths[grade], variances[grade] = width, _variances(straight, sds)
+        widths[grade], variances[grade], deviations[grade] = width, _variances(straight, sds), sds
         costs[grade] = 1e-3 / width if price is None else price.at(width)
-    return GradedTolerance(spread.grade, widths, costs, variances)
+    return GradedTolerance(spread.grade, widths, costs, variances, deviations)
 
 
 def _variances(straight: Mapping[str, Straight], sds: Mapping[str, float]) -> dict[str, float]:
@@ -779,27 +833,87 @@ def _finest(problem: AllocationProblem, reason: str) -> AllocationPlan:
 
 
 def _solve(problem: AllocationProblem, bounds: Mapping[str, float], margin: float) -> dict[str, str] | None:
-    """Solve the choice of grades as a mixed-integer linear program; None where no choice meets the bounds."""
+    """Solve the choice of grades as a mixed-integer linear program; None where no choice meets the bounds.
+
+    Two parts whose inputs are correlated add a product of two choices to the variance. It is made linear by a variable
+    for each two grades, 1 where both are chosen: over the grades of one part they sum up to the choice of the other.
+    Source: W. P. Adams, H. D. Sherali, Manage. Sci. 32 (1986) 1274.
+    """
     choices = [(name, part, grade) for name, part in problem.parts.items() for grade in part.widths]
     costs = np.array([part.cost(grade) for _, part, grade in choices])
+    together = _Together.of(problem, [(name, grade) for name, _, grade in choices])
     one_each = np.array([[float(name == part) for name, *_ in choices] for part in problem.parts])
-    constraints: list[Any] = [LinearConstraint(one_each, 1.0, 1.0)]
+    constraints: list[Any] = [LinearConstraint(np.pad(one_each, ((0, 0), (0, together.size))), 1.0, 1.0)]
+    if together.size:
+        constraints.append(LinearConstraint(together.products(), 0.0, 0.0))
     for demand, bound in bounds.items():
-        room = bound * (1 - margin) - problem.fixed[demand]
-        if room <= 0:
+        alone, pairs, rest = together.variances(demand)
+        room = bound * (1 - margin) - problem.fixed[demand] - rest
+        if room <= 0 and not problem.shared:
             return None
-        shares = np.array([part.added(demand, grade) / room for _, part, grade in choices])
-        constraints.append(LinearConstraint(shares[None], -np.inf, 1.0))
+        scale = room if room > 0 else bound
+        added = np.array([part.added(demand, grade) for _, part, grade in choices]) + alone
+        constraints.append(LinearConstraint(np.append(added, pairs)[None] / scale, -np.inf, room / scale))
     answer = milp(
-        costs / np.abs(costs).max(),
-        integrality=np.ones(len(choices), dtype=np.int64),
+        np.append(costs, np.zeros(together.size)) / np.abs(costs).max(),
+        integrality=np.append(np.ones(len(choices)), np.zeros(together.size)).astype(np.int64),
         bounds=Bounds(0, 1),
         constraints=constraints,
         options={"mip_rel_gap": 0.0},
     )
     if answer.x is None:
         return None
-    return {name: grade for (name, _, grade), taken in zip(choices, answer.x, strict=True) if taken > 0.5}
+    return {name: grade for (name, _, grade), taken in zip(choices, answer.x, strict=False) if taken > 0.5}
+
+
+@dataclass(frozen=True, eq=False)
+class _Together:
+    """The products of two choices of grades (name, grade) that a choice of grades needs, two parts at a time."""
+
+    problem: AllocationProblem
+    choices: Sequence[tuple[str, str]]
+    places: Mapping[tuple[int, int], int]  # of two choices, the place of their product
+
+    @classmethod
+    def of(cls, problem: AllocationProblem, choices: Sequence[tuple[str, str]]) -> _Together:
+        """Collect the parts that share a variance."""
+        met = {frozenset(pair.owners) for pair in problem.shared if len({*pair.owners} & problem.parts.keys()) == 2}
+        twos = [(one, other) for one, (name, _) in enumerate(choices) for other, (theirs, _) in enumerate(choices)
+                if one < other and frozenset((name, theirs)) in met]  # fmt: skip
+        return cls(problem, choices, {two: place for place, two in enumerate(twos)})
+
+    @property
+    def size(self) -> int:
+        """How many products there are."""
+        return len(self.places)
+
+    def products(self) -> Matrix:
+        """Return the equations of the products (rows, choices + products): their sum is one of the two choices."""
+        rows: dict[tuple[int, str], Matrix] = {}
+        for (one, other), place in self.places.items():
+            for chosen, others in ((one, self.choices[other][0]), (other, self.choices[one][0])):
+                row = rows.setdefault((chosen, others), np.zeros(len(self.choices) + self.size))
+                row[chosen], row[len(self.choices) + place] = -1.0, 1.0
+        return np.array(list(rows.values()))
+
+    def variances(self, demand: str) -> tuple[Matrix, Matrix, float]:
+        """Return what the inputs share by choice, by product, and what they do not share any more as in force (SI)."""
+        problem, alone, pairs, rest = self.problem, np.zeros(len(self.choices)), np.zeros(self.size), 0.0
+        for pair in problem.shared:
+            variance, parts = pair.variances[demand], {*pair.owners} & problem.parts.keys()
+            if not parts:
+                continue
+            rest -= variance
+            if len(parts) == 2:
+                for (one, other), place in self.places.items():
+                    chosen = dict((self.choices[one], self.choices[other]))
+                    if parts == chosen.keys():
+                        pairs[place] += variance * problem.factor(pair, chosen)
+                continue
+            for place, (name, grade) in enumerate(self.choices):
+                if name in parts:
+                    alone[place] += variance * problem.factor(pair, {name: grade})
+        return alone, pairs, rest
 
 
 # Which widths? The least cost under all goals, where tolerances are no grades but widths with a price
@@ -866,7 +980,7 @@ class AllocationSearch:
         chosen = self.chosen(x)
         sd = max(problem.variance(name, chosen), 1e-300) ** 0.5
         by_mean = np.array([variable.pulls[name] * chosen[key] for key, variable in problem.variables.items()])
-        by_sd = np.array([variable.variance(name, chosen[key]) / sd for key, variable in problem.variables.items()])
+        by_sd = np.array([problem.half_slope(name, key, chosen) / sd for key in problem.variables])
         room, of_mean, of_sd = _room(demand, problem.mean(name, chosen), sd)
         scale = problem.variance(name, {}) ** 0.5 or 1.0
         return room / scale, (of_mean * by_mean + of_sd * by_sd) / scale

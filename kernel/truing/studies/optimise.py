@@ -17,6 +17,7 @@ from scipy.special import ndtri
 
 from truing.arrays import Matrix
 from truing.declare.blocks import Block, Cell, Drawing, Table, Words
+from truing.declare.correlations import pearson
 from truing.declare.fields import InputField
 from truing.declare.goals import Maximise, Minimise, Require, Vary
 from truing.declare.model import TOTAL_PRICE
@@ -1053,6 +1054,12 @@ class Designs:
             causes.append(cause)
         return tuple(causes)
 
+    def distribution(self, column: str) -> Distribution:
+        """Return how a column scatters that a single cause moves, numbers or (m, 1)."""
+        causes = ((cause, cause.columns.index(column)) for cause in self.causes if column in cause.columns)
+        cause, index = next(causes)
+        return cause.distributions[index]
+
     @property
     def by_chance(self) -> list[Demand]:
         """The limits with a probability, as they are demanded of every machine."""
@@ -1550,7 +1557,7 @@ def cloud_of(scatter: Scatter, seed: int, study: Optimise) -> Cloud:
         else:
             strata = [(rng.permutation(draws) + rng.random(draws)) / draws for _ in cause.columns]
             cloud[cause.name] = ndtri(np.array(strata))
-    return cloud
+    return cloud if scatter.copula is None else scatter.copula.mixed(cloud)
 
 
 def by_draws(problem: Problem, designs: Designs) -> Matrix:
@@ -1631,6 +1638,11 @@ def _variance(designs: Designs, slopes: Mapping[str, Any]) -> Any:
             continue
         for slope, distribution in zip(gradient, cause.distributions, strict=True):
             variance = variance + (slope * beside(designs.each(distribution.sd), slope)) ** 2
+    for pair in designs.scatter.pairs:
+        first, second = designs.distribution(pair.first), designs.distribution(pair.second)
+        covariance = designs.each(pearson(first, second, pair.coefficient) * first.sd * second.sd)
+        product = slopes[pair.first] * slopes[pair.second]
+        variance = variance + 2 * product * beside(covariance, product)
     return variance
 
 

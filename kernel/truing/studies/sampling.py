@@ -12,12 +12,13 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
-from functools import lru_cache, partial
+from functools import cached_property, lru_cache, partial
 from typing import Any
 
 import numpy as np
 
 from truing.arrays import Matrix
+from truing.declare.correlations import contradictions, matrix_of, pearson, scatter_fault
 from truing.declare.spreads import FIXED_DRAWS, Distribution, Drawn, Grade, Spread, with_width
 from truing.errors import UsageError
 from truing.evaluate import Rows, evaluate_rows
@@ -247,11 +248,37 @@ class ScatterSource:
 
 
 @dataclass(frozen=True, eq=False)
+class Copula:
+    """What couples the causes of a scatter: the correlation of some of the standard normal values behind them.
+
+    ``places`` (k,) hold of each of these the name of its cause and the number of its column in it; ``matrix`` (k, k)
+    holds their correlations. The lower triangular ``root`` leaves the first one the value that was drawn for it.
+    """
+
+    places: tuple[tuple[str, int], ...]
+    matrix: Matrix
+
+    @cached_property
+    def root(self) -> Matrix:
+        """The Cholesky factor of the matrix (k, k)."""
+        return np.asarray(np.linalg.cholesky(self.matrix), dtype=np.float64)
+
+    def mixed(self, drawn: Mapping[str, Any]) -> dict[str, Any]:
+        """Return independent standard normal values (columns, ...) by cause, now correlated; others as they are."""
+        values = np.array([drawn[name][index] for name, index in self.places])
+        mixed = {name: np.array(drawn[name]) for name in dict.fromkeys(name for name, _ in self.places)}
+        for (name, index), row in zip(self.places, np.tensordot(self.root, values, axes=1), strict=True):
+            mixed[name][index] = row
+        return {**drawn, **mixed}
+
+
+@dataclass(frozen=True, eq=False)
 class Scatter:
-    """A setup with all its causes of scatter: the machines of one design."""
+    """A setup with all its causes of scatter: the machines of one design. ``copula`` couples some causes."""
 
     setup: Setup
     causes: tuple[ScatterSource, ...]
+    copula: Copula | None = None
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -265,19 +292,27 @@ class Scatter:
 
     def draw(self, seed: int, batch: int, rows: int) -> dict[str, Matrix]:
         """Draw the machines of one batch: SI values (rows,) by column."""
+        coupled = {} if self.copula is None else dict(self.copula.places)
+        standard = {cause.name: generator(seed, batch, cause.name).standard_normal((len(cause.columns), rows))
+                    for cause in self.causes if cause.name in coupled}  # fmt: skip
+        mixed = standard if self.copula is None else self.copula.mixed(standard)
         columns: dict[str, Matrix] = {}
         for cause in self.causes:
-            gather(columns, cause.draw(generator(seed, batch, cause.name), rows))
+            if cause.name in mixed:
+                gather(columns, cause.from_standard(mixed[cause.name]))
+            else:
+                gather(columns, cause.draw(generator(seed, batch, cause.name), rows))
         return columns
 
     def from_standard(self, standard: Matrix) -> dict[str, Matrix]:
         """Map independent standard normal values (dimension, n) to columns; joint draws by their normal stand-in."""
+        ends = np.cumsum([len(cause.columns) for cause in self.causes])[:-1]
+        parts = np.split(standard, ends) if self.causes else []
+        apart = {cause.name: part for cause, part in zip(self.causes, parts, strict=True)}
+        mixed = apart if self.copula is None else self.copula.mixed(apart)
         columns: dict[str, Matrix] = {}
-        start = 0
         for cause in self.causes:
-            end = start + len(cause.columns)
-            gather(columns, cause.from_standard(standard[start:end]))
-            start = end
+            gather(columns, cause.from_standard(mixed[cause.name]))
         return columns
 
     def shifts(self) -> dict[str, float]:
@@ -297,7 +332,43 @@ class Scatter:
             parts = gradient * np.tensordot(cause.covariance(), gradient, axes=1)
             for column, part in zip(cause.columns, parts, strict=True):
                 variances[column] = variances[column] + part if column in variances else part
+        for pair in self.pairs:
+            product = np.asarray(slopes[pair.first], dtype=float) * np.asarray(slopes[pair.second], dtype=float)
+            for column in (pair.first, pair.second):  # half of what the two add together
+                variances[column] = variances[column] + product * pair.covariance
         return variances
+
+    @cached_property
+    def pairs(self) -> tuple[CorrelatedPair, ...]:
+        """The columns of which each two scatter together."""
+        return () if self.copula is None else tuple(self._pairs(self.copula))
+
+    def _pairs(self, copula: Copula) -> Iterator[CorrelatedPair]:
+        causes = {cause.name: cause for cause in self.causes}
+        for (one, other), coefficient in np.ndenumerate(copula.matrix):
+            if one < other and coefficient:  # of each pair once
+                (first, own), (second, their) = (
+                    (causes[name].columns[index], causes[name].distributions[index])
+                    for name, index in (copula.places[one], copula.places[other])
+                )
+                of_values = float(pearson(own, their, coefficient))
+                yield CorrelatedPair(first, second, float(coefficient), of_values, of_values * float(own.sd * their.sd))
+
+    def alike(self, columns: Sequence[str]) -> Matrix:
+        """Return the correlations of the values of these columns (k, k), 0 of those that do not scatter together."""
+        alike = np.eye(len(columns))
+        place = {column: index for index, column in enumerate(columns)}
+        for cause in self.causes:
+            covariance = cause.covariance() if cause.mixing is not None else np.zeros((0, 0))
+            for (one, other), value in np.ndenumerate(covariance):
+                first, second = cause.columns[one], cause.columns[other]
+                if one != other and {first, second} <= place.keys():
+                    alike[place[first], place[second]] = value / (self.sd_of(first) * self.sd_of(second))
+        for pair in self.pairs:
+            if {pair.first, pair.second} <= place.keys():
+                one, other = place[pair.first], place[pair.second]
+                alike[one, other] = alike[other, one] = pair.of_values
+        return alike
 
     def sd_of(self, column: str) -> float:
         """Return the standard deviation of one column, 0 where it does not scatter."""
@@ -307,6 +378,17 @@ class Scatter:
                 index = cause.columns.index(column)
                 variance += float(cause.covariance()[index, index])
         return math.sqrt(variance)
+
+
+@dataclass(frozen=True)
+class CorrelatedPair:
+    """Two columns that scatter together: the correlation of their normal scores, that of their values, and in SI."""
+
+    first: str
+    second: str
+    coefficient: float
+    of_values: float
+    covariance: float
 
 
 def gather(columns: dict[str, Matrix], drawn: Iterator[tuple[str, float, Matrix]]) -> None:
@@ -334,7 +416,25 @@ def scatter_of(setup: Setup) -> Scatter:
     """Collect what scatters in this setup. Raises UsageError for a tolerance on an input that is not given."""
     causes = [_of_tolerance(setup, name, inner) for name, inner in setup.distributions().items()]
     causes += [cause for active in setup.effects if (cause := _of_effect(active)) is not None]
-    return Scatter(setup, tuple(causes))
+    return Scatter(setup, tuple(causes), _copula(setup, causes))
+
+
+def _copula(setup: Setup, causes: Sequence[ScatterSource]) -> Copula | None:
+    """Return how the inputs scatter together, or None. Raises UsageError where they cannot."""
+    stated = [each for each in setup.scattering_together() if each.coefficient]
+    if not stated:
+        return None
+    for name in dict.fromkeys(name for each in stated for name in (each.first, each.second)):
+        by = [cause.name for cause in causes if name in cause.columns]
+        fault = scatter_fault(name, by, lambda tolerance: isinstance(setup.spread_of(tolerance), Drawn))
+        if fault:
+            raise UsageError(fault)
+    for contradiction in contradictions(stated):
+        raise UsageError(contradiction.text)
+    coupled = {name for each in stated for name in each.pair}
+    places = {column: (cause.name, index) for cause in causes for index, column in enumerate(cause.columns)
+              if column in coupled}  # fmt: skip
+    return Copula(tuple(places.values()), matrix_of(list(places), stated))
 
 
 def _of_tolerance(setup: Setup, name: str, inner: Mapping[str, Distribution]) -> ScatterSource:

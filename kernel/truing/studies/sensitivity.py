@@ -73,6 +73,7 @@ class Sensitivity:
             remarks=(*missing, *derivatives.warnings, *remarks),
             inputs=acting_inputs(setup),
             still=frozenset(source for source in sources if not scatter.sd_of(source)),
+            coupled=frozenset(name for pair in scatter.pairs for name in (pair.first, pair.second)),
         )
 
     def _indices(self, bench: Bench, scatter: Scatter, results: Sequence[str]) -> tuple[_Indices, _Indices, list[str]]:
@@ -147,7 +148,8 @@ class Sensitivities(Outcome):
     ``derivatives[result][source]``, ``share[result][source]``, ``sd[result]``, ``sobol_first[result][source]``,
     ``sobol_total[result][source]``. ``agreement[result]``, where the model states derivatives: the largest difference
     from the numeric ones, over the largest derivative of that result. ``inputs`` are those of the run, as
-    effects leave them. Sources that scatter together may have a negative share; those in ``still`` do not scatter.
+    effects leave them. Sources that scatter together may have a negative share; those in ``still`` do not scatter,
+    and those in ``coupled`` are correlated: each has half of what two of them add together.
     """
 
     name: str = "sensitivity"
@@ -161,6 +163,7 @@ class Sensitivities(Outcome):
     remarks: tuple[str, ...] = ()
     inputs: Any = None
     still: frozenset[str] = frozenset()
+    coupled: frozenset[str] = frozenset()
 
     def as_json(self) -> dict[str, Any]:
         """Return derivative, unit and share by result and source; what has no derivative is left out."""
@@ -239,6 +242,8 @@ class Sensitivities(Outcome):
             words.append(f"First-order standard deviation of all sources together: {size}.")
             if self.still & set(self.derivatives[result]):
                 words.append("No share: the tolerance is off, the source does not scatter.")
+        if self.coupled & set(self.derivatives[result]):
+            words.append("Of what two correlated sources add to the variance together, each has half in its share.")
         if any(share < 0.0 for share in self.share[result].values()):
             words.append("A share below 0: the source scatters together with another, and takes away from its share.")
         if result in self.agreement:
@@ -280,9 +285,9 @@ def sobol_indices(
 
     There are none, and a sentence says so, where sources scatter together or machines fail.
     """
-    joint = [cause.name for cause in scatter.causes if cause.mixing is not None]
+    joint = _joint(scatter)
     if joint:
-        return {}, {}, [f"no Sobol indices: they need independent sources, and those of {' and '.join(joint)} are not"]
+        return {}, {}, [f"no Sobol indices: they need independent sources, and {joint}"]
     sources = [column for cause in scatter.causes for column in cause.columns]
     dimensions = max(len(sources), 2)  # scipy wants two; one that nothing depends on does no harm
     reasons: dict[int, str] = {}
@@ -309,6 +314,18 @@ def sobol_indices(
         return {}, {}, [f"no Sobol indices: {len(reasons)} machines failed, the first because {first_reason}"]
     first, total = (np.reshape(of, (len(results), dimensions)) for of in (indices.first_order, indices.total_order))
     return _by_name(results, sources, first), _by_name(results, sources, total), []
+
+
+def _joint(scatter: Scatter) -> str:
+    """Say which sources scatter together, or nothing."""
+    joint = [cause.name for cause in scatter.causes if cause.mixing is not None]
+    if joint:
+        return f"those of {' and '.join(joint)} are not"
+    if not scatter.pairs:
+        return ""
+    pair = scatter.pairs[0]
+    more = f" (with {len(scatter.pairs) - 1} more of such pairs)" if len(scatter.pairs) > 1 else ""
+    return f"'{pair.first}' and '{pair.second}' are correlated{more}; the shares of the variance count that in"
 
 
 def _by_name(results: Sequence[str], sources: Sequence[str], values: Matrix) -> dict[str, dict[str, float]]:

@@ -75,15 +75,27 @@ class Uncertainty:
             answers = np.array([]) if result not in drawn else drawn[result][np.isfinite(drawn[result])]
             value = float(derivatives.nominal[result]) + shift
             sd = float(answers.std()) if len(answers) > 1 else math.nan
-            budgets[result] = Budget(value, sources, self.level, drawn=sd, answered=len(answers))
+            shared = tuple(_shared(scatter, slope))
+            budgets[result] = Budget(value, sources, self.level, shared=shared, drawn=sd, answered=len(answers))
         missing = [f"'{name}' has no uncertainty: {bench.absent[name]}" for name in asked if name in bench.absent]
         return Budgets(
             name=self.name,
             budgets=budgets,
             units={name: setup.print_unit(name) for name in results} | dict(_units(setup, scatter)),
             draws=self.draws,
-            remarks=(*missing, *derivatives.warnings),
+            remarks=(*missing, *derivatives.warnings, *self._doubtful_degrees(scatter)),
         )
+
+    def _doubtful_degrees(self, scatter: Scatter) -> Iterator[str]:
+        """Say which correlated sources have degrees of freedom, which are added up as if they were independent."""
+        coupled = {column for pair in scatter.pairs for column in (pair.first, pair.second)}
+        owners = {column: cause.name for cause in scatter.causes for column in cause.columns if column in coupled}
+        names = [name for column, owner in owners.items() for name in (column, owner) if name in self.degrees]
+        if names:
+            yield (
+                f"the effective degrees of freedom hold for independent sources (Welch and Satterthwaite), and "
+                f"{' and '.join(repr(name) for name in dict.fromkeys(names))} is correlated with another"
+            )
 
     def _demand_known(self, scatter: Scatter) -> None:
         known = [name for cause in scatter.causes for name in (cause.name, *_names(cause))]
@@ -114,6 +126,13 @@ class Uncertainty:
                     contribution=float(np.sqrt(np.maximum(own @ covariance[np.ix_(part, part)] @ own, 0.0))),
                     degrees=float(self.degrees.get(name, self.degrees.get(cause.name, math.inf))),
                 )
+
+
+def _shared(scatter: Scatter, slope: Mapping[str, float]) -> Iterator[SharedTerm]:
+    """Give what each two correlated inputs add together to the variance of a result."""
+    for pair in scatter.pairs:
+        amount = 2 * slope[pair.first] * slope[pair.second] * pair.covariance
+        yield SharedTerm(pair.first, pair.second, pair.of_values, float(amount))
 
 
 def _names(cause: ScatterSource) -> tuple[str, ...]:
@@ -159,8 +178,21 @@ class BudgetSource:
 
 
 @dataclass(frozen=True)
+class SharedTerm:
+    """What two correlated inputs add together to the variance of a result, SI: 2 c_i c_j u(x_i) u(x_j) r (GUM 5.2.2).
+
+    ``correlation`` is that of their values.
+    """
+
+    first: str
+    second: str
+    correlation: float
+    variance: float
+
+
+@dataclass(frozen=True)
 class Budget:
-    """The sources of one result's uncertainty in SI.
+    """The sources of one result's uncertainty in SI, and what correlated ones add together (``shared``).
 
     ``drawn`` is the standard deviation of drawn machines, of which ``answered`` have an answer; NaN where none has.
     """
@@ -168,13 +200,17 @@ class Budget:
     value: float
     sources: tuple[BudgetSource, ...]
     level: float
+    shared: tuple[SharedTerm, ...] = ()
     drawn: float = math.nan
     answered: int = 0
 
     @property
     def combined(self) -> float:
-        """The combined standard uncertainty: the root of the sum of squares."""
-        return math.hypot(*(source.contribution for source in self.sources))
+        """The combined standard uncertainty: the root of the sum of squares, and of what correlated sources share."""
+        alone = math.hypot(*(source.contribution for source in self.sources))
+        if not self.shared:
+            return alone
+        return math.sqrt(max(alone**2 + sum(term.variance for term in self.shared), 0.0))
 
     @property
     def degrees(self) -> float:
@@ -201,6 +237,23 @@ class Budget:
     def ranked(self) -> list[BudgetSource]:
         """Return the sources, the largest contribution first."""
         return sorted(self.sources, key=lambda source: -source.contribution)
+
+
+def _shared_json(term: SharedTerm, budget: Budget) -> dict[str, Any]:
+    share = term.variance / budget.combined**2 if budget.combined else 0.0
+    return {"inputs": [term.first, term.second], "correlation": term.correlation, "share": as_number(share)}
+
+
+def _shared_table(result: str, budget: Budget) -> Table:
+    """Say what each two correlated inputs add together."""
+    rows: list[list[Any]] = [[term.first, term.second, term.correlation, 100 * term.variance / budget.combined**2]
+            for term in budget.shared]  # fmt: skip
+    note = (
+        "Each adds 2 c(x) c(y) u(x) u(y) r to the combined variance; below 0 the two take from it. With the shares of "
+        "the sources these make 100 %. r is the correlation of the values."
+    )
+    columns = ("source x", "source y", "r", "share")
+    return Table(f"Correlated sources of the {spoken(result)}", columns, rows, ("", "", "", "%"), note)
 
 
 def _no_budget(result: str, budget: Budget) -> Words:
@@ -238,6 +291,7 @@ class Budgets(Outcome):
             "expanded_uncertainty": printed_step(budget.expanded, unit),
             "drawn_standard_deviation": printed_step(budget.drawn, unit),
             "sources": [self._source_json(source, budget, unit) for source in budget.ranked()],
+            "correlations": [_shared_json(term, budget) for term in budget.shared],
         }
 
     def _source_json(self, source: BudgetSource, budget: Budget, unit: str) -> dict[str, Any]:
@@ -273,7 +327,10 @@ class Budgets(Outcome):
             unit = difference_unit(self.units[result])
             sizes = {source.name: source.contribution / unit_factor(unit) for source in budget.sources}
             label = f"contribution, {unit_text(unit)}".rstrip(", ")
-            blocks += [self._table(result, budget), Words(self.sentence(result), "finding")]
+            blocks.append(self._table(result, budget))
+            if budget.shared:
+                blocks.append(_shared_table(result, budget))
+            blocks.append(Words(self.sentence(result), "finding"))
             blocks.append(Drawing(f"What makes the {spoken(result)} uncertain", bars("", sizes, label)))
         return blocks
 

@@ -54,7 +54,7 @@ def workbook_bytes(sheets: Sequence[SheetTable]) -> bytes:
         _write_lists(book.create_sheet("choices"), lists)
     stream = BytesIO()
     book.save(stream)
-    return _undated(stream.getvalue())
+    return undated(stream.getvalue())
 
 
 def demand_library() -> None:
@@ -133,8 +133,8 @@ def _shown(value: Any) -> str:
     return value.text if isinstance(value, Printed) else "" if value is None else str(value)
 
 
-def _undated(content: bytes) -> bytes:
-    """Return a workbook without the times at which it and its parts were written."""
+def undated(content: bytes) -> bytes:
+    """Return a workbook, or another Office document, without the times at which it and its parts were written."""
     stream = BytesIO()
     with zipfile.ZipFile(BytesIO(content)) as before, zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as after:
         for part in before.infolist():
