@@ -19,7 +19,7 @@ TABLES = ("lew", "hahn1", "alaska", "chwirut2", "pontius", "norris", "nelson", "
 
 
 def test_every_plugin_is_here() -> None:
-    assert len(PLUGINS) == 21
+    assert len(PLUGINS) == 22
 
 
 @pytest.fixture(scope="module")

@@ -58,15 +58,21 @@ def test_the_tutorial_is_among_the_pages_and_runs_every_verb_it_teaches() -> Non
     }  # fmt: skip
 
 
-def test_the_tutorial_ends_with_the_file_that_is_shipped() -> None:
+@pytest.mark.parametrize(
+    ("page", "name", "shipped"),
+    [
+        (TUTORIAL, "coil_spring.py", EXAMPLES / "coil_spring.py"),
+        (TUTORIAL.parent / "from_your_spreadsheet.md", "bracket.py", EXAMPLES / "bracket" / "bracket.py"),
+    ],
+)
+def test_the_tutorial_ends_with_the_file_that_is_shipped(page: Path, name: str, shipped: Path) -> None:
     text = ""
-    for block in blocks(TUTORIAL):
-        if block.marked("file") == "coil_spring.py":
+    for block in blocks(page):
+        if block.marked("file") == name:
             text = block.text
-        elif block.marked("changes") == "coil_spring.py":
+        elif block.marked("changes") == name:
             text = grown(text, block.text)
-    shipped = (EXAMPLES / "coil_spring.py").read_text(encoding="utf-8")
-    assert by_statement(text) == by_statement(shipped)
+    assert by_statement(text) == by_statement(shipped.read_text(encoding="utf-8"))
 
 
 def by_statement(text: str) -> list[str]:

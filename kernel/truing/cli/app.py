@@ -297,6 +297,9 @@ def new(
         Path | None, typer.Option("-o", "--output", help="The folder (or single file) to write (NAME without it).")
     ] = None,
     single: Annotated[bool, typer.Option("--single-file", help="One Python file instead of a project.")] = False,
+    workbook: Annotated[
+        Path | None, typer.Option("--from", help="Draft a single file from a sheet: book.xlsx#Sheet.")
+    ] = None,
 ) -> None:
     """Write a plugin of your own: package, tests, entry point, CI; it works as written."""
 

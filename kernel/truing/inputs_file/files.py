@@ -21,13 +21,13 @@ _UTF16 = (b"\xff\xfe", b"\xfe\xff")
 
 
 @contextmanager
-def opened_book(path: Path, *, largest: int, preferred: str = "") -> Iterator[BookSheet]:
-    """Open a sheet of a workbook, or raise InputError with one sentence."""
+def opened_book(path: Path, *, largest: int, preferred: str = "", stored: bool = True) -> Iterator[BookSheet]:
+    """Open a sheet of a workbook, formulas by their stored values or as typed; or raise InputError."""
     file = file_of(path)
     sentence = _refusal(file, largest, "save the workbook anew", _refusal_of_book)
     if sentence:
         raise InputError([Fault(sentence, str(file))])
-    with opened_sheet(path, preferred=preferred) as sheet:
+    with opened_sheet(path, preferred=preferred, stored=stored) as sheet:
         yield sheet
 
 

@@ -220,7 +220,7 @@ def _units(texts: Sequence[str], row: tuple[Any, ...], below: tuple[Any, ...]) -
         return None
     units: list[str | None] = []
     for text, value in zip(texts, values, strict=True):
-        unit = _unit(value)
+        unit = unit_in_cell(value)
         if (unit is None and value is not None) or (unit is not None and "[" in text):
             return None
         units.append(unit)
@@ -231,7 +231,7 @@ def _units(texts: Sequence[str], row: tuple[Any, ...], below: tuple[Any, ...]) -
     return units if numbers else None
 
 
-def _unit(value: Any) -> str | None:
+def unit_in_cell(value: Any) -> str | None:
     """Return the unit that a cell holds, None where it holds anything else."""
     if not isinstance(value, str):
         return None

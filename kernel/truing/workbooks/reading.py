@@ -127,14 +127,15 @@ class BookSheet:
 
 
 @contextmanager
-def opened_sheet(path: Path, *, preferred: str = "") -> Iterator[BookSheet]:
+def opened_sheet(path: Path, *, preferred: str = "", stored: bool = True) -> Iterator[BookSheet]:
     """Open the sheet or range that a path names: "book.xlsx", "book.xlsx#Sheet", "...#Sheet!A3:F60", "...#a_name".
 
-    Where it names none it is the sheet called ``preferred``, or the only one that is not hidden. Raises InputError with
-    one sentence for what is no workbook, has no such place, or is too large.
+    Where it names none it is the sheet called ``preferred``, or the only one that is not hidden. A formula counts by
+    its ``stored`` value, or stands as it was typed. Raises InputError with one sentence for what is no workbook, has
+    no such place, or is too large.
     """
     file, place = parted(path)
-    with _loaded(file, data_only=True) as book:
+    with _loaded(file, data_only=stored) as book:
         sheet, area = _found(book, file, place, preferred)
         yield BookSheet(file, sheet.title, area, sheet)
 
