@@ -18,6 +18,7 @@ from truing.declare.sources import Effect, Unknown
 from truing.declare.spreads import Distribution, Off, Spread, Target, settled
 from truing.errors import UsageError
 from truing.kernel import Added, Origin
+from truing.templating import ENGLISH, languages
 from truing.units.systems import UnitSystem, in_system
 
 DEFAULT_SEED = 0
@@ -195,13 +196,14 @@ class SheetOptions:
     """What stands at the head of the sheet, by name, and how much of everything: "short", "normal" or "full".
 
     ``paper`` is what it is printed on, "A4" or "letter"; ``units`` the system of units of all that people read, "SI" or
-    "inch", "" for the units that are declared.
+    "inch", "" for the units that are declared; ``language`` what its words are in, "en" or "de".
     """
 
     head: Mapping[str, str] = field(default_factory=dict)
     detail: str = "normal"
     paper: str = "A4"
     units: UnitSystem = ""
+    language: str = ENGLISH
 
     def shown(self, unit: str) -> str:
         """Return the unit in which the sheet shows a quantity that has this one elsewhere."""
@@ -269,6 +271,13 @@ class Setup(Case):
             return ()
         scattering = {name for by_input in self.distributions().values() for name in by_input}
         return tuple(each for each in self.correlations if each.pair <= scattering)
+
+
+def in_language(setup: Setup, language: str) -> Setup:
+    """Return a setup with its sheet in a language; "" leaves it as it is. Raises UsageError for an unknown one."""
+    if language and language not in languages():
+        raise UsageError(f"language: choose {' or '.join(languages())}, not '{language}'.")
+    return replace(setup, sheet=replace(setup.sheet, language=language)) if language else setup
 
 
 def default_setup(model: Model[Any, Any], origin: Origin | None = None, **values: Any) -> Setup:

@@ -9,6 +9,14 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+ENGLISH = "en"
+"""The language in which everything is written; the others are translations of it."""
+
+
+def languages() -> list[str]:
+    """Return the languages that a sheet can be in, English first."""
+    return [ENGLISH, *sorted(file.stem for file in (template_folder() / "words").glob("*.toml"))]
+
 
 def template_folder() -> Path:
     """Return the folder of the templates, in a wheel and in an editable install alike."""

@@ -50,7 +50,7 @@ from truing.report.run import run_info, sheets_of, write_sheet
 from truing.runs.diagnosis_document import diagnosis_document
 from truing.runs.extension import extended_text
 from truing.runs.folder import demand_place, diagnosis_files, write_outcome
-from truing.setup import Setup
+from truing.setup import Setup, in_language
 from truing.studies.bench import Progress
 from truing.studies.frequency import Frequency
 from truing.studies.sweep import Sweep
@@ -67,9 +67,10 @@ class LoadedModel:
     a stated value begin with.
 
     Every call takes values as keywords: an input, a condition, ``seed``, ``draws`` (of every study that draws) or
-    ``units`` ("SI" or "inch", in which sheets are printed; the numbers of results and files stay). A value is a text
-    with its unit ("12 mm"), a number in the declared unit, or a quantity of pint. ``set`` is a mapping of the same,
-    for names that are no keyword or that the call itself uses: ``set={"tolerances.load": "off"}``.
+    ``units`` ("SI" or "inch", in which sheets are printed; the numbers of results and files stay) and ``language`` (of
+    the sheet). A value is a text with its unit ("12 mm"), a number in the declared unit, or a quantity of pint. ``set``
+    is a mapping of the same, for names that are no keyword or that the call itself uses:
+    ``set={"tolerances.load": "off"}``.
     ``progress`` is True (a bar on a terminal or in a notebook, once the work takes two seconds), False, or a function
     ``progress(task, done, total)``.
     """
@@ -422,12 +423,13 @@ class Diagnosis:
         """Draw what convinces: the residuals before and after, over what the cause depends on."""
         return self.residuals.plot()
 
-    def sheet(self, path: str | Path, *, units: str = "") -> Path:
+    def sheet(self, path: str | Path, *, units: str = "", language: str = "") -> Path:
         """Write the sheet as HTML, Markdown, PDF or a Word document, as the name ends.
 
-        ``units`` are "SI" or "inch", "" those of the diagnosis. Raises OutputError, and UsageError for other units.
+        ``units`` are "SI" or "inch", ``language`` "en" or "de"; "" those of the diagnosis. Raises OutputError, and
+        UsageError for others.
         """
-        result = replace(self.result, setup=in_units(self.result.setup, units))
+        result = replace(self.result, setup=in_language(in_units(self.result.setup, units), language))
         return write_sheet(path, partial(diagnosis_sheet_of, result, self.started))
 
     def save(self, folder: str | Path, *, pdf: bool = False, docx: bool = False, xlsx: bool = False) -> Path:

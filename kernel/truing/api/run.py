@@ -38,7 +38,7 @@ from truing.runs.documents import results_document
 from truing.runs.folder import FolderKind, demand_place, run_files, write_outcome
 from truing.runs.partial import code_of, identity_of, kept_batches
 from truing.runs.provenance import provenance_of
-from truing.setup import Setup
+from truing.setup import Setup, in_language
 from truing.studies.bench import Progress, silent
 from truing.studies.checks import Check, State
 from truing.units import from_si
@@ -136,12 +136,13 @@ class Run:
             raise UsageError("this run has no cases; state them with cases=")
         return frame_of(_case_columns(self.cases, self._setup))
 
-    def sheet(self, path: str | Path, *, units: str = "") -> Path:
+    def sheet(self, path: str | Path, *, units: str = "", language: str = "") -> Path:
         """Write the calculation sheet as HTML, Markdown, PDF or a Word document, as the name ends.
 
-        ``units`` are "SI" or "inch", "" those of the run. Raises OutputError, and UsageError for other units.
+        ``units`` are "SI" or "inch", ``language`` "en" or "de"; "" those of the run. Raises OutputError, and UsageError
+        for others.
         """
-        calculation = replace(self.calculation, setup=in_units(self._setup, units))
+        calculation = replace(self.calculation, setup=in_language(in_units(self._setup, units), language))
         return write_sheet(path, partial(replace(self, calculation=calculation)._sheet, silent))
 
     def save(

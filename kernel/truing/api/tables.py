@@ -120,7 +120,7 @@ def settings_of(model: Model[Any, Any], values: Mapping[str, Any]) -> list[str]:
     """Return "name=value" for every value: texts carry units, numbers are in the declared unit, quantities are pint's.
 
     ``draws`` is that of every study that draws, ``units`` the word "SI" or "inch" of the sheet. Other names are those
-    of ``--set``: inputs, conditions, ``seed``, and dotted names such as "tolerances.load".
+    of ``--set``: inputs, conditions, ``seed``, ``language``, and dotted names such as "tolerances.load".
     """
     said = dict(values)
     if "units" in values and "units" not in {*model.input_fields, *model.known_conditions}:

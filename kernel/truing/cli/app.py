@@ -59,8 +59,9 @@ def _loaded(module: str) -> Callable[[Callable[P, None]], Callable[P, None]]:
         @functools.wraps(declared)
         def call(*args: P.args, **kwargs: P.kwargs) -> int:
             asked = SimpleNamespace(**kwargs)
-            if (units := kwargs.get("units")) is not None:
-                asked.changed = [*(asked.changed or ()), f"sheet.units={units}"]
+            said = [f"sheet.{name}={kwargs[name]}" for name in ("units", "language") if kwargs.get(name)]
+            if said:
+                asked.changed = [*(asked.changed or ()), *said]
             return int(getattr(Later(f"truing.cli.{module}"), declared.__name__)(settings_of(asked.context), asked))
 
         return app.command(declared.__name__)(verb(call))
@@ -134,6 +135,7 @@ def run(
     inputs: Inputs = None,
     changed: Changed = None,
     units: Units = None,
+    language: Language = "",
     cases: Cases = None,
     output: RunFolder = None,
     workers: Annotated[int | None, typer.Option("--workers", min=1, help="Processes that share the work.")] = None,
@@ -170,6 +172,7 @@ def sweep(
     inputs: Inputs = None,
     changed: Changed = None,
     units: Units = None,
+    language: Language = "",
     output: Annotated[Path | None, typer.Option("-o", "--output", help="The folder (default runs/STEM_sweep).")] = None,
     as_json: AsJson = False,
 ) -> None:
@@ -184,6 +187,7 @@ def watch(
     data: Data = None,
     changed: Changed = None,
     units: Units = None,
+    language: Language = "",
     cases: Cases = None,
     output: RunFolder = None,
     excel: Excel = False,
@@ -218,6 +222,7 @@ def diagnose(
     data: Data = None,
     changed: Changed = None,
     units: Units = None,
+    language: Language = "",
     output: Annotated[
         Path | None, typer.Option("--output", "-o", help="The folder (default runs/STEM of the first data file).")
     ] = None,
@@ -356,6 +361,12 @@ Data: TypeAlias = Annotated[
 ]
 RunFolder: TypeAlias = Annotated[
     Path | None, typer.Option("--output", "-o", help="The run folder (default runs/STEM).")
+]
+Language: TypeAlias = Annotated[
+    str,
+    typer.Option(
+        "--language", metavar="LANGUAGE", help="The language of the sheet: en, de.", autocompletion=candidates.languages
+    ),
 ]
 Pdf: TypeAlias = Annotated[bool, typer.Option("--pdf", help="Print the sheet to PDF with an installed browser.")]
 Docx: TypeAlias = Annotated[bool, typer.Option("--docx", help="Add the sheet as a Word document.")]

@@ -109,6 +109,12 @@ def runs(incomplete: str) -> Iterator[OfferedWord]:
         yield (name, kind) if kind else (f"{name}/", "a folder")
 
 
+@silent
+def languages(incomplete: str) -> Iterator[OfferedWord]:
+    """Offer the languages that a sheet can be in."""
+    yield from ((name, "") for name in Later("truing.templating").languages() if name.startswith(incomplete))
+
+
 def _is_file(incomplete: str) -> bool:
     """Tell whether a word is on the way to a file, which the shell completes itself."""
     return incomplete.startswith((".", "~")) or "/" in incomplete or "\\" in incomplete or incomplete.endswith(".py")

@@ -148,6 +148,10 @@ def _with_options(study: Study, options: Mapping[str, Any]) -> tuple[Study, dict
     return (study if wrong else changed), wrong
 
 
+OF_THE_SHEET = ("detail", "paper", "units", "language")
+"""What [sheet] says besides the texts of its head."""
+
+
 def make_setup(offer: Offer, reading: InputsRead, studies: tuple[Study, ...], document: InputsDocument) -> Setup:
     """Put the checked values together."""
     model, values = offer.model, reading.values
@@ -175,7 +179,7 @@ def make_setup(offer: Offer, reading: InputsRead, studies: tuple[Study, ...], do
         diagnose=diagnose_options(model, values),
         units=of("units"),
         columns=of("columns"),
-        sheet=_sheet_options(head),
+        sheet=SheetOptions(**{name: head.pop(name) for name in OF_THE_SHEET if name in head}, head=head),
         source=InputsSource(
             stated=frozenset(names),
             file=document.file,
@@ -187,12 +191,6 @@ def make_setup(offer: Offer, reading: InputsRead, studies: tuple[Study, ...], do
             units=stated_units(model, document),
         ),
     )
-
-
-def _sheet_options(head: dict[str, Any]) -> SheetOptions:
-    """Part what the section of the sheet says into options and what stands in the title block."""
-    detail, paper, units = (head.pop(*option) for option in (("detail", "normal"), ("paper", "A4"), ("units", "")))
-    return SheetOptions(detail=detail, paper=paper, units=units, head=head)
 
 
 def stated_units(model: Model[Any, Any], document: InputsDocument) -> dict[str, str]:

@@ -372,7 +372,7 @@ def path_of(name: str, model: Model[Any, Any]) -> tuple[str, ...]:
         return ("inputs", first, rest)
     if name not in model.input_fields and name in model.known_conditions:
         return ("conditions", name)
-    if name not in model.input_fields and name in {"seed", "detail"}:
+    if name not in model.input_fields and name in {"seed", "detail", "language"}:
         return ("studies" if name == "seed" else "sheet", name)
     return ("inputs", name)
 

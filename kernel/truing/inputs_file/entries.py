@@ -32,6 +32,7 @@ from truing.inputs_file.values import (
     read_number,
 )  # fmt: skip
 from truing.setup import DEFAULT_SEED, NamedColumn
+from truing.templating import ENGLISH, languages
 from truing.units import check_unit, demand_dimension, difference_unit, from_si, to_si, unit_factor
 from truing.units.grammar import shown
 from truing.units.names import PURE
@@ -89,11 +90,13 @@ def _sheet(_: Model[Any, Any]) -> dict[str, FileEntry]:
     detail = {"enum": list(DETAILS), "default": "normal", "description": "How much the sheet shows."}
     paper = {"enum": list(PAPERS), "default": "A4", "description": "What the sheet is printed on."}
     units = {"enum": list(UNIT_SYSTEMS), "description": "The units of all that people read; as declared without it."}
+    language = {"enum": languages(), "default": ENGLISH, "description": "The language of the sheet."}
     return {
         **entries,
         "detail": FileEntry(partial(_one_of, "detail", DETAILS), detail),
         "paper": FileEntry(partial(_one_of, "paper", PAPERS), paper),
         "units": FileEntry(partial(_one_of, "units", UNIT_SYSTEMS), units),
+        "language": FileEntry(partial(_one_of, "language", languages()), language),
     }
 
 

@@ -60,6 +60,7 @@ class Added:
     what: str
     plugin: str
     version: str
+    file: str = ""
 
 
 @dataclass(frozen=True)
@@ -234,7 +235,7 @@ class Kernel:
                         self._note(self._left_out, origin, fault, line_of(implementation.function))
                         continue
                     if origin != owner:
-                        added.append(Added(_name_of(addition), origin.name, origin.version))
+                        added.append(Added(_name_of(addition), origin.name, origin.version, origin.file))
         return model, tuple(added)
 
 

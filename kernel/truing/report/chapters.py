@@ -38,9 +38,10 @@ from truing.report.document import (
     with_source,
 )
 from truing.report.equations import equation_of, state_equation
-from truing.report.figures import draw, phase, states_over_time
+from truing.report.figures import draw, in_words, phase, states_over_time
 from truing.report.limits import MOST_CHECKS
 from truing.report.sheet_units import AS_DECLARED, SheetUnits
+from truing.report.translation import ENGLISH_WORDS, STUDY, Catalogue
 from truing.studies.drawings import labelled
 from truing.units import from_si
 
@@ -62,6 +63,8 @@ AXIS_ROWS = {"short": 0, "normal": 12, "full": 25}
 class Figures:
     """Counts the figures of one sheet and keeps what could not be drawn."""
 
+    words: Catalogue = ENGLISH_WORDS
+    """What is drawn is in this language."""
     count: int = 0
     failures: list[str] = field(default_factory=list)
     skipped: bool = False
@@ -69,15 +72,20 @@ class Figures:
     units: SheetUnits = AS_DECLARED
     """The units of the sheet, to which the axes are brought over."""
 
-    def view(self, title: str, what: Callable[[], Any], caption: str) -> BlockView:
-        """Draw a figure; one that fails is said in its place and does not take the sheet away."""
+    def view(self, title: str, what: Callable[[], Any], caption: str, *, place: str = "") -> BlockView:
+        """Draw a figure; one that fails is said in its place and does not take the sheet away.
+
+        ``place`` says which words hold in it, where these are not those of the sheet.
+        """
         self.count += 1
         if self.skipped:
             return FigureView(title, "", caption or title, self.count, what)
         ident = f"f{self.count}"
         try:
+            words = self.words.at(place)
             drawn = partial(self.units.drawn, what)
-            return FigureView(title, draw(drawn, title=title, ident=ident), caption or title, self.count, drawn)
+            svg = draw(drawn, title=title, ident=ident, words=words)
+            return FigureView(title, svg, caption or title, self.count, in_words(drawn, words))
         except PluginError as error:
             self.failures.append(str(error))
             return Paragraph(f"The figure '{title}' could not be drawn.", "warning")
@@ -262,7 +270,7 @@ def _value_of(calculation: Calculation, name: str) -> Value:
 def study_chapters(writing: Writing) -> Iterator[Chapter]:
     """Write what the studies say, a chapter each."""
     for name, outcome in writing.calculation.outcomes.items():
-        blocks = _guarded(writing, f"study {name}", outcome.blocks)
+        blocks = _guarded(writing, f"study {name}", outcome.blocks, STUDY)
         if blocks:
             yield Chapter(f"Study: {name.replace('_', ' ')}", tuple(blocks))
 
@@ -336,22 +344,24 @@ def _axis_tables(writing: Writing, names: Sequence[str]) -> Iterator[TableView]:
             yield TableView(f"Along {axis}" if axis else "Series", tuple(heads), tuple(rows), note)
 
 
-def _guarded(writing: Writing, title: str, make: Callable[[], Iterable[Block]]) -> list[BlockView]:
+def _guarded(
+    writing: Writing, title: str, make: Callable[[], Iterable[Block]], place: str = ""
+) -> list[BlockView]:  # fmt: skip
     """Write the blocks of a guest; where its code fails that is said in their place, and the sheet goes on."""
     try:
-        return [_view(writing, writing.figures.units.block(block)) for block in make()]
+        return [_view(writing, writing.figures.units.block(block), place) for block in make()]
     except Exception as error:
         writing.figures.failures.append(f"{spoken_place(error)}'{title}' failed: {type(error).__name__}: {error}")
         return [Paragraph(f"What '{title}' says could not be written.", "warning")]
 
 
-def _view(writing: Writing, block: Block) -> BlockView:
+def _view(writing: Writing, block: Block, place: str) -> BlockView:
     if isinstance(block, Words):
         return Paragraph(block.text, block.kind)
     if isinstance(block, Drawing):
         if any(block.draw is each.draw for each in writing.front if isinstance(each, Drawing)):
             return ON_PAGE_ONE
-        return writing.figures.view(block.title, block.draw, _caption(block))
+        return writing.figures.view(block.title, block.draw, _caption(block), place=place)
     return with_notes(table_view(block, LONGEST_TABLE[writing.detail]), writing.calculation.setup.model)
 
 

@@ -13,6 +13,7 @@ from truing.diagnosis.records import file_labels
 from truing.diagnosis.result import Amount, DiagnosisResult
 from truing.diagnosis.sentences import sentence
 from truing.report import diagnosis_figures as figures
+from truing.report import translation
 from truing.report.chapters import Figures, numbered
 from truing.report.diagnosis_chapters import diagnosis_chapters
 from truing.report.diagnosis_remedy import then_table
@@ -32,6 +33,7 @@ from truing.report.document import (
 )
 from truing.report.sheet import end_chapters, head_faults, head_of
 from truing.report.sheet_units import sheet_units
+from truing.report.translation import catalogue_of, translated
 from truing.runs.folder import data_digests
 from truing.runs.provenance import Provenance, provenance_of
 
@@ -52,11 +54,11 @@ def diagnosis_sheet_of(diagnosis: DiagnosisResult, started: float) -> Document:
 
 def make_diagnosis_sheet(diagnosis: DiagnosisResult, *, provenance: Provenance) -> Document:
     """Say everything that stands on the sheet of a diagnosis."""
-    units = sheet_units(diagnosis.setup)
-    diagnosis, drawn = diagnosis_as_printed(diagnosis), Figures(units=units)
+    units, words = sheet_units(diagnosis.setup), catalogue_of(diagnosis.setup, translation.DIAGNOSIS)
+    diagnosis, drawn = diagnosis_as_printed(diagnosis), Figures(words, units=units)
     front = tuple(_page_one(diagnosis, drawn))
     chapters = list(diagnosis_chapters(diagnosis, drawn))
-    warnings = (*head_faults(diagnosis.setup), *drawn.failures)
+    warnings = (*head_faults(diagnosis.setup), *drawn.failures, *words.faults)
     head = head_of(diagnosis.setup, provenance)
     sentences = tuple(_answer(diagnosis))
     named = "found" if diagnosis.remainder is None else "open"
@@ -77,7 +79,7 @@ def make_diagnosis_sheet(diagnosis: DiagnosisResult, *, provenance: Provenance) 
         provenance=provenance,
     )
     printed: Document = words_as_printed(document, units)
-    return printed
+    return translated(printed, words)
 
 
 def _texts(front: Iterable[Chapter]) -> Iterator[str]:

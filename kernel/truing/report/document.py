@@ -16,6 +16,7 @@ from truing.formulas import Formula, symbol_text
 from truing.numbers import pretty, with_unit
 from truing.runs.provenance import Provenance
 from truing.studies.checks import SHORT
+from truing.templating import ENGLISH
 from truing.units import unit_text
 
 MARKS = {
@@ -49,6 +50,8 @@ class Marked:
 
     kind: Literal["symbol", "code", "bracketed code", "strong", "aside", "source", "break", "state"]
     text: str | Value
+    word: str = ""
+    """Of a state: what it is called, where that is not the English word."""
 
 
 Piece: TypeAlias = str | Value | Marked
@@ -96,10 +99,16 @@ def _plain(piece: Piece) -> str:
             return f"({name})"
         case Marked("break" | "code", text):
             return str(text)
-        case Marked("state", state):
-            return " ".join(STATES[str(state)])
+        case Marked("state"):
+            return " ".join(state_words(piece))
         case Marked(_, inner):
             return _plain(inner)
+
+
+def state_words(state: Marked) -> tuple[str, str]:
+    """Return the sign and the word for the state of a limit."""
+    sign, word = STATES[str(state.text)]
+    return sign, state.word or word
 
 
 def unit_as_said(unit: str) -> str:
@@ -300,3 +309,4 @@ class Document:
     provenance: Provenance
     paper: str = "A4"
     """On which it is printed: a name that CSS knows."""
+    language: str = ENGLISH

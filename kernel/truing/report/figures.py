@@ -10,11 +10,13 @@ import re
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from functools import partial
 from html import escape
 from io import BytesIO, StringIO
 from typing import Any, TypeVar
 
 import matplotlib as mpl
+from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_mixed import MixedModeRenderer
 from matplotlib.backends.backend_svg import FigureCanvasSVG, RendererSVG
@@ -22,6 +24,7 @@ from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties, findfont, get_font
 from matplotlib.mathtext import MathTextParser
 from matplotlib.text import Text
+from matplotlib.ticker import FixedLocator
 from matplotlib.transforms import Bbox
 
 from truing.arrays import Matrix
@@ -29,6 +32,7 @@ from truing.errors import PluginError
 from truing.formulas.symbols import printable
 from truing.kernel.blame import spoken_place
 from truing.report.figure_layout import arranged
+from truing.report.translation import ENGLISH_WORDS, Catalogue
 
 MOST_STATES = 6
 """So many states are drawn over time."""
@@ -110,12 +114,30 @@ def phase(states: Mapping[str, Matrix]) -> Figure:
     return figure
 
 
-def draw(what: Callable[[], Any], *, title: str, ident: str) -> str:
-    """Draw a figure and return it as an ``<svg>`` element with ``role="img"`` and a title.
+def draw(what: Callable[[], Any], *, title: str, ident: str, words: Catalogue = ENGLISH_WORDS) -> str:
+    """Draw a figure and return it as an ``<svg>`` element with ``role="img"`` and a title, its texts as ``words`` say.
 
     ``what()`` returns a matplotlib Figure. Raises PluginError, naming the figure and the place, where drawing fails.
     """
-    return inlined(_drawn(what, _svg, title), title=title, ident=ident)
+    return inlined(_drawn(in_words(what, words), _svg, title), title=words.said(title), ident=ident)
+
+
+def in_words(what: Callable[[], Any], words: Catalogue) -> Callable[[], Any]:
+    """Return what makes the same figure with its texts in another language."""
+    return what if words.is_english else partial(_translated, what, words)
+
+
+def _translated(what: Callable[[], Any], words: Catalogue) -> Any:
+    """Put the texts of a figure into another language: labels, legends, titles, and ticks that are words."""
+    figure = what()
+    for axis in figure.findobj(Axis):
+        if isinstance(axis.get_major_locator(), FixedLocator):
+            ticks = [label.get_text() for label in axis.get_ticklabels()]
+            if (said := [words.said(tick) for tick in ticks]) != ticks:
+                axis.set_ticks(axis.get_ticklocs(), said)
+    for text in figure.findobj(Text):
+        text.set_text(words.said(text.get_text()))
+    return figure
 
 
 def draw_png(what: Callable[[], Any], *, title: str) -> bytes:

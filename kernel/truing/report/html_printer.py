@@ -10,14 +10,27 @@ from html import unescape
 from itertools import groupby, zip_longest
 from typing import Any, Final
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from jinja2 import Environment, FileSystemLoader, StrictUndefined, pass_context
+from jinja2.runtime import Context
 from markupsafe import Markup, escape
 
 from truing.formulas.symbols import printable
 from truing.formulas.write_mathml import MATHML, symbol_mathml
 from truing.numbers import pretty, with_unit
 from truing.report import equations
-from truing.report.document import MARKS, STATES, BlockView, Document, Equation, Marked, Piece, ResultEntry, Text, Value
+from truing.report.document import (
+    MARKS,
+    BlockView,
+    Document,
+    Equation,
+    Marked,
+    Piece,
+    ResultEntry,
+    Text,
+    Value,
+    state_words,
+)
+from truing.report.translation import kernel_catalogue
 from truing.templating import template_folder
 
 COLUMN = equations.LINE
@@ -35,7 +48,7 @@ def html_of(document: Document) -> str:
     has_contents = document.detail != "short" and len(document.chapters) > LONG
     return page(
         "sheet.html.j2", document.head.footer, paper=document.paper, own_style=document.head.style, sheet=document,
-        has_contents=has_contents,
+        has_contents=has_contents, language=document.language,
     )  # fmt: skip
 
 
@@ -77,10 +90,17 @@ def _environment() -> Environment:
         breakable=_breakable,
         unbroken=_unbroken,
         own=_markup,
+        word=_word,
     )
     environment.tests["wide"] = _is_wide
     environment.globals["marks"] = MARKS
     return environment
+
+
+@pass_context
+def _word(context: Context, text: str) -> str:
+    """Write a word of the templates in the language of the page."""
+    return kernel_catalogue(context["language"]).said(text)
 
 
 def _printable(value: Any) -> Any:
@@ -120,8 +140,8 @@ def _piece(piece: Piece) -> str:
             return f'<span class="aside">{_piece(text)}</span>'
         case Marked("source", text):
             return f'<span class="aside">[{_piece(text)}]</span>'
-        case Marked("state", state):
-            sign, word = STATES[str(state)]
+        case Marked("state"):
+            sign, word = state_words(piece)
             return f'<span aria-hidden="true">{sign}</span> {word}'
         case Marked():
             return "<br>"
@@ -147,7 +167,8 @@ def _is_wide(entry: ResultEntry) -> bool:
     return entry.equation is not None and max(line.width for line in equations.lines(MATHML, entry.equation)) > COLUMN
 
 
-def _equation(equation: Equation) -> Any:
+@pass_context
+def _equation(context: Context, equation: Equation) -> Any:
     """Set a formula as blocks of MathML, one a line; ``--room`` is the width in em for which paper keeps room."""
     alternative = escape(f"{equation.name} = {equation.formula.text}")
     blocks = []
@@ -155,7 +176,8 @@ def _equation(equation: Equation) -> Any:
     room = f' style="--room: {WIDEST * max(line.width for line in lines):.0f}"'
     for index, line in enumerate(lines):
         label = f' alttext="{alternative}"' if index == 0 else ""
-        mathematics = f'<math display="block"{label}><mrow>{line.markup}</mrow></math>'
+        markup = kernel_catalogue(context["language"]).formula(line.markup)
+        mathematics = f'<math display="block"{label}><mrow>{markup}</mrow></math>'
         blocks.append(f'<div class="line{" next" if index else ""}"{room}>{mathematics}</div>')
     return _markup("".join(blocks))
 

@@ -12,7 +12,6 @@ from truing.formulas.write_latex import LATEX, symbol_latex
 from truing.numbers import pretty
 from truing.report import equations
 from truing.report.document import (
-    STATES,
     BlockView,
     Document,
     Equation,
@@ -28,7 +27,9 @@ from truing.report.document import (
     Text,
     Value,
     plain_text,
+    state_words,
 )
+from truing.report.translation import Catalogue, kernel_catalogue
 
 LINE = 60.0
 """How wide a line of a formula may be, in em as estimated."""
@@ -36,15 +37,16 @@ LINE = 60.0
 
 def markdown_of(document: Document) -> str:
     """Write a document as Markdown: parts with an empty line between."""
-    parts = [*_head(document)]
+    words = kernel_catalogue(document.language)
+    parts = [*_head(document, words)]
     for chapter in document.front:
-        parts += [f"## {escaped(chapter.title)}", *_blocks(chapter.blocks)]
+        parts += [f"## {escaped(chapter.title)}", *_blocks(chapter.blocks, words)]
     for chapter in document.chapters:
-        parts += [f"## {chapter.number} {escaped(chapter.title)}", *_blocks(chapter.blocks)]
+        parts += [f"## {chapter.number} {escaped(chapter.title)}", *_blocks(chapter.blocks, words)]
     return "\n\n".join(parts) + "\n"
 
 
-def _head(document: Document) -> Iterator[str]:
+def _head(document: Document, words: Catalogue) -> Iterator[str]:
     head, banner = document.head, document.banner
     if head.letter:
         yield ", ".join((f"**{escaped(head.letter[0])}**", *map(escaped, head.letter[1:])))
@@ -52,13 +54,14 @@ def _head(document: Document) -> Iterator[str]:
     yield from (escaped(text) for text in (head.model, document.summary) if text)
     yield _pipes(head.fields)
     if head.signatures:
-        yield _pipes(head.signatures, ["*Date, signature*"] * len(head.signatures))
+        yield _pipes(head.signatures, [f"*{words.said('Date, signature')}*"] * len(head.signatures))
     sentences = [_said(sentence) for sentence in banner.sentences]
     sentences[0] = f"**{escaped(banner.headline)}.** {sentences[0]}"
     if document.warnings:
-        sentences[-1] += f" See the warnings ({len(document.warnings)})."
+        sentences[-1] += " " + words.said(f"See the warnings ({len(document.warnings)}).")
     yield from sentences
-    yield from (f"**Suspected unit slip.** {escaped(text)} Nothing was changed." for text in document.alarms)
+    slip, unchanged = words.said("Suspected unit slip."), words.said("Nothing was changed.")
+    yield from (f"**{slip}** {escaped(text)} {unchanged}" for text in document.alarms)
 
 
 def _pipes(fields: Sequence[tuple[str, str]], *rows: Sequence[str]) -> str:
@@ -70,11 +73,11 @@ def _rows(rows: Iterable[Sequence[str]]) -> str:
     return "\n".join("| " + " | ".join(cells) + " |" for cells in rows)
 
 
-def _blocks(blocks: Iterable[BlockView]) -> Iterator[str]:
+def _blocks(blocks: Iterable[BlockView], words: Catalogue) -> Iterator[str]:
     for block in blocks:
         match block:
             case Paragraph(text, kind):
-                head = "" if kind in ("note", "aside") else f"**{kind.capitalize()}.** "
+                head = "" if kind in ("note", "aside") else f"**{words.said(kind.capitalize())}.** "
                 yield f"{head}{_said(text)}"
             case Items():
                 yield "\n".join(_items(block))
@@ -82,14 +85,14 @@ def _blocks(blocks: Iterable[BlockView]) -> Iterator[str]:
                 yield from _table(block)
             case FigureView():
                 yield _picture(block.title, block.svg)
-                yield f"**Figure {block.number}.** {escaped(block.caption)}"
+                yield f"**{words.said('Figure')} {block.number}.** {escaped(block.caption)}"
             case FigurePair():
                 yield _pair(block)
             case ResultEntry():
-                yield from _entry(block)
+                yield from _entry(block, words)
             case Fold(title, inner):
                 yield f"<details><summary>{escaped(title)}</summary>"
-                yield from _blocks(inner)
+                yield from _blocks(inner, words)
                 yield "</details>"
 
 
@@ -127,14 +130,14 @@ def _table(table: TableView) -> Iterator[str]:
         yield _said(table.note)
 
 
-def _entry(entry: ResultEntry) -> Iterator[str]:
+def _entry(entry: ResultEntry, words: Catalogue) -> Iterator[str]:
     """Write a result: its value behind its name, or below its formula."""
     note, *rest = entry.label if isinstance(entry.label, tuple) else (entry.label,)
     label = f"**{_said(note)}**{_said(tuple(rest))}"
     if entry.equation is None:
         yield f"{label}: {_said(entry.value)}" if entry.value else label
     else:
-        yield from (label, _equation(entry.equation), *([_said(entry.value)] if entry.value else []))
+        yield from (label, words.formula(_equation(entry.equation)), *([_said(entry.value)] if entry.value else []))
     if entry.method:
         yield _said(entry.method)
 
@@ -158,7 +161,7 @@ def _piece(piece: Piece, *, begins: bool = True) -> str:
         case Marked("aside", text):
             return escaped(text)
         case Marked("state", state):
-            sign, word = STATES[str(state)]
+            sign, word = state_words(piece)
             return f"{sign} {word if state == 'passes' else f'**{word}**'}"
         case Marked(_, instead):
             return str(instead)

@@ -47,6 +47,7 @@ from truing.report.given import correlation_table, effect_blocks, input_blocks, 
 from truing.report.limits import MOST_CHECKS, check_table, check_value, least_margin
 from truing.report.page_one import MOST_WARNINGS, page_one
 from truing.report.sheet_units import SheetUnits, as_printed, cases_as_printed, sheet_units
+from truing.report.translation import STUDY, catalogue_of, translated
 from truing.runs.provenance import Provenance
 from truing.setup import Setup
 from truing.studies.checks import HEADLINES, SHORT
@@ -75,7 +76,8 @@ def make_sheet(
 
     ``example`` is the shipped one, against which the inputs are compared.
     """
-    figures = Figures(units=sheet_units(calculation.setup))
+    words = catalogue_of(calculation.setup)
+    figures = Figures(words, units=sheet_units(calculation.setup))
     cases = cases_as_printed(cases, calculation.setup)
     calculation = as_printed(calculation)
     setup = calculation.setup
@@ -85,9 +87,9 @@ def make_sheet(
     writing = Writing(calculation, detail, figures)
     figure = front_figure(writing)
     results = list(result_chapters(writing))
-    warnings = tuple(_warnings(calculation, cases, figures.failures))
+    warnings = (*_warnings(calculation, cases, figures.failures), *words.faults)
     head, first = head_of(setup, provenance), page_one(calculation, example, figure, warnings)
-    return Document(
+    sheet = Document(
         kind=SHEET,
         title=head.title,
         head=head,
@@ -104,21 +106,23 @@ def make_sheet(
         provenance=provenance,
         paper=setup.sheet.paper,
     )
+    return translated(sheet, words)
 
 
 def study_sheet(calculation: Calculation, *, provenance: Provenance) -> Document:
     """Say what a study that was asked alone has found: its first figure on page one, and the inputs behind it."""
-    figures, calculation = Figures(units=sheet_units(calculation.setup)), as_printed(calculation)
+    setup, words = calculation.setup, catalogue_of(calculation.setup, STUDY)
+    figures, calculation = Figures(words, units=sheet_units(setup)), as_printed(calculation)
     setup = calculation.setup
     detail = setup.sheet.detail if setup.sheet.detail in LONGEST_TABLE else "normal"
     (chapter,) = list(study_chapters(Writing(calculation, detail, figures))) or [Chapter("Study", ())]
     first = next((block for block in chapter.blocks if isinstance(block, FigureView)), None)
     rest = tuple(block for block in chapter.blocks if block is not first)
-    warnings = tuple(_warnings(calculation, None, figures.failures))
+    warnings = (*_warnings(calculation, None, figures.failures), *words.faults)
     head = head_of(setup, provenance)
     found = [block.text for block in rest if isinstance(block, Paragraph) and block.kind == "finding"]
     alone = "Asked alone: the limits are judged by a run of the calculation."
-    return Document(
+    sheet = Document(
         kind=chapter.title,
         title=head.title,
         head=head,
@@ -134,6 +138,7 @@ def study_sheet(calculation: Calculation, *, provenance: Provenance) -> Document
         provenance=provenance,
         paper=setup.sheet.paper,
     )  # fmt: skip
+    return translated(sheet, words)
 
 
 def _back(

@@ -18,7 +18,6 @@ from truing.numbers import pretty, with_unit
 from truing.report import equations
 from truing.report.document import (
     MARKS,
-    STATES,
     BlockView,
     Chapter,
     Document,
@@ -34,8 +33,10 @@ from truing.report.document import (
     Text,
     Value,
     plain_text,
+    state_words,
 )
 from truing.report.figures import PIXELS_PER_INCH, draw_png
+from truing.report.translation import Catalogue, kernel_catalogue
 from truing.workbooks.writing import undated
 
 PAPERS: Final = {"A4": (210.0, 297.0), "letter": (215.9, 279.4)}
@@ -88,15 +89,15 @@ def word_of(document: Document) -> bytes:
     """
     demand_word_library()
     paper = PAPERS[document.paper]
-    page = _Page(docx.Document(), paper[0] - 2 * MARGIN)
+    page = _Page(docx.Document(), paper[0] - 2 * MARGIN, kernel_catalogue(document.language))
     _set_up(page, document, paper)
     _head(page, document)
     for index, chapter in enumerate(document.front):
         _chapter(page, chapter, index, highest=LOWER * document.figure_height)
-    page.add(_signatures(document.head.signatures, page.width))
+    page.add(_signatures(document.head.signatures, page))
     listed = [*document.front, *document.chapters]
     if document.detail != "short":
-        page.add(*_contents(listed))
+        page.add(*_contents(listed, page.words))
     for index, chapter in enumerate(document.chapters, start=len(document.front)):
         _chapter(page, chapter, index)
     stream = BytesIO()
@@ -106,10 +107,11 @@ def word_of(document: Document) -> bytes:
 
 @dataclass(frozen=True)
 class _Page:
-    """What is being written, and how wide its text is, mm."""
+    """What is being written, how wide its text is, mm, and in which words."""
 
     word: Any
     width: float
+    words: Catalogue
 
     def add(self, *blocks: str) -> None:
         """Add the markup of paragraphs and tables at the end."""
@@ -136,7 +138,13 @@ def _set_up(page: _Page, document: Document, paper: tuple[float, float]) -> None
     said = word.core_properties
     said.title, said.subject = _safe(document.title)[:255], _safe(document.kind)[:255]
     said.author, said.comments, said.last_modified_by = "", "", ""
-    pages = (_run("\t"), _run("Page "), _field("PAGE"), _run(" of "), _field("NUMPAGES"))
+    pages = (
+        _run("\t"),
+        _run(f"{page.words.said('Page')} "),
+        _field("PAGE"),
+        _run(f" {page.words.said('of')} "),
+        _field("NUMPAGES"),
+    )
     footer = section.footer.paragraphs[0]
     written = docx.parse_xml(
         f"<w:p {NAMESPACES}>{_run(_safe(document.head.footer)[:110], color=GREY)}{''.join(pages)}</w:p>"
@@ -190,11 +198,12 @@ def _head(page: _Page, document: Document) -> None:
     sentences = [_said(sentence) for sentence in banner.sentences]
     sentences[0] = _run(f"{MARKS[banner.mood]} {_safe(banner.headline)}. ", bold=True) + sentences[0]
     if document.warnings:
-        sentences[-1] += _run(f" See the warnings ({len(document.warnings)}).")
+        sentences[-1] += _run(f" {page.words.said(f'See the warnings ({len(document.warnings)}).')}")
     behind = f'<w:shd w:val="clear" w:color="auto" w:fill="{MOODS[banner.mood]}"/>'
     page.add(*(_paragraph(sentence, shape=behind) for sentence in sentences))
-    slip = _run("Suspected unit slip. ", bold=True)
-    page.add(*(_paragraph(f"{slip}{_run(_safe(text))}{_run(' Nothing was changed.')}") for text in document.alarms))
+    slip = _run(f"{page.words.said('Suspected unit slip.')} ", bold=True)
+    unchanged = _run(f" {page.words.said('Nothing was changed.')}")
+    page.add(*(_paragraph(f"{slip}{_run(_safe(text))}{unchanged}") for text in document.alarms))
 
 
 def _logo(page: _Page, address: str) -> None:
@@ -203,7 +212,8 @@ def _logo(page: _Page, address: str) -> None:
     try:
         page.word.add_picture(BytesIO(base64.b64decode(data, validate=True)), height=docx.Mm(14))
     except Exception:  # of a picture that is none, the library may fail anywhere
-        page.add(_paragraph(_run("The logo cannot stand in a Word document: state a .png or .jpg file.", color=GREY)))
+        said = page.words.said("The logo cannot stand in a Word document: state a .png or .jpg file.")
+        page.add(_paragraph(_run(said, color=GREY)))
 
 
 def _pairs(fields: Sequence[tuple[str, str]], width: float, *further: str) -> str:
@@ -215,13 +225,13 @@ def _pairs(fields: Sequence[tuple[str, str]], width: float, *further: str) -> st
     return _grid([_row([_cell(cell, wide, keeps=True) for cell in row]) for row in rows], [wide] * len(fields))
 
 
-def _signatures(signatures: Sequence[tuple[str, str]], width: float) -> str:
-    return GAP + _pairs(signatures, width, "Date, signature") + GAP
+def _signatures(signatures: Sequence[tuple[str, str]], page: _Page) -> str:
+    return GAP + _pairs(signatures, page.width, page.words.said("Date, signature")) + GAP
 
 
-def _contents(chapters: Sequence[Chapter]) -> Iterator[str]:
+def _contents(chapters: Sequence[Chapter], words: Catalogue) -> Iterator[str]:
     """Write a table of contents whose lines lead to their chapters; Word fills in the pages when it is updated."""
-    yield _paragraph(_run("Contents", bold=True, size=13, color=DARK), shape=KEEP_NEXT)
+    yield _paragraph(_run(words.said("Contents"), bold=True, size=13, color=DARK), shape=KEEP_NEXT)
     instruction = r' TOC \o "1-1" \h \z \u '
     begin = f'{_mark("begin")}<w:r><w:instrText xml:space="preserve">{escape(instruction)}</w:instrText></w:r>'
     for index, chapter in enumerate(chapters):
@@ -267,18 +277,18 @@ def _add_blocks(page: _Page, blocks: Iterable[BlockView], highest: float) -> Non
                     page.add(_paragraph(_run(_safe(title)), "Heading2"))
                     _add_blocks(page, inner, highest)
             case _:
-                page.add(*_block(block, page.width))
+                page.add(*_block(block, page))
 
 
-def _block(block: BlockView, width: float) -> Iterator[str]:
+def _block(block: BlockView, page: _Page) -> Iterator[str]:
     match block:
         case Paragraph(text, kind):
-            head = "" if kind in ("note", "aside") else _run(f"{kind.capitalize()}. ", bold=True)
+            head = "" if kind in ("note", "aside") else _run(f"{page.words.said(kind.capitalize())}. ", bold=True)
             yield _paragraph(head + (_said(text, color=GREY) if kind == "aside" else _said(text)))
         case Items():
             yield from _items(block)
         case TableView():
-            yield from _table(block, width)
+            yield from _table(block, page)
         case ResultEntry():
             yield from _entry(block)
 
@@ -329,7 +339,11 @@ def _figure(page: _Page, view: FigureView, highest: float) -> None:
     picture._inline.docPr.set("descr", _safe(plain_text(view.caption)))
     picture._inline.docPr.set("name", f"Figure {view.number}")
     page.word.paragraphs[-1].paragraph_format.keep_with_next = True
-    page.add(_paragraph(_run(f"Figure {view.number}. ", bold=True) + _run(_safe(view.caption)), "Caption"))
+    page.add(
+        _paragraph(
+            _run(f"{page.words.said('Figure')} {view.number}. ", bold=True) + _run(_safe(view.caption)), "Caption"
+        )
+    )
 
 
 def _pixels(png: bytes) -> tuple[int, int]:
@@ -340,16 +354,16 @@ def _pixels(png: bytes) -> tuple[int, int]:
 # Tables
 
 
-def _table(table: TableView, width: float) -> Iterator[str]:
+def _table(table: TableView, page: _Page) -> Iterator[str]:
     """Write a table whose header is repeated on every page; numbers stand to the right."""
-    widths, size = _widths(table, width)
+    widths, size = _widths(table, page.width)
     heads = [_run(_safe(column.heading), bold=True, size=size) for column in table.columns]
     cells = zip(heads, table.columns, widths, strict=True)
     rows = [_row([_cell(text, wide, column.kind, "E8ECF1") for text, column, wide in cells], is_header=True)]
     for index, texts in enumerate(table.rows):
         is_marked = bool(table.states) and table.states[index] == "marked"
         said = [_said(text, size=size, bold=is_marked) for text in texts]
-        said[0] += _run(" governs", size=size, color=GREY) if is_marked else ""
+        said[0] += _run(f" {page.words.said('governs')}", size=size, color=GREY) if is_marked else ""
         together = zip(said, table.columns, widths, strict=True)
         rows.append(_row([_cell(text, wide, column.kind) for text, column, wide in together]))
     if table.title:
@@ -452,7 +466,7 @@ def _piece(piece: Piece, bold: bool, color: str, size: float) -> str:
         case Marked("source", inner):
             return _run("[", color=GREY, size=size) + _piece(inner, bold, GREY, size) + _run("]", color=GREY, size=size)
         case Marked("state", state):
-            sign, word = STATES[str(state)]
+            sign, word = state_words(piece)
             return _run(f"{sign} {word}", bold=bold or state != "passes", size=size)
         case Marked():
             return "<w:r><w:br/></w:r>"

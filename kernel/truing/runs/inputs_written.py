@@ -18,6 +18,7 @@ from truing.formulas.symbols import printable
 from truing.inputs_file.assemble import toml_key, toml_value
 from truing.inputs_file.study_options import options_of
 from truing.setup import NamedColumn, Setup, SwitchedOn
+from truing.templating import ENGLISH
 from truing.units import difference_unit, from_si, read_quantity, to_si, unit_factor
 from truing.units.names import PURE
 
@@ -54,16 +55,21 @@ def comment_lines(sentence: str) -> list[str]:
     return [f"# {line}" for line in textwrap.wrap(printable(sentence), WIDTH)]
 
 
-def _sections(setup: Setup, folder: Path | None) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Yield every section of the inputs file with its entries as plain TOML values."""
-    detail = {"detail": setup.sheet.detail} if setup.sheet.detail != "normal" else {}
-    detail |= {"units": setup.sheet.units} if setup.sheet.units else {}
-    paper = {"paper": setup.sheet.paper} if setup.sheet.paper != "A4" else {}
-    head = {name: str(text) for name, text in setup.sheet.head.items()}
+def _sheet(setup: Setup, folder: Path | None) -> dict[str, str]:
+    """Return the section of the sheet: its title block, and of its options those that are not the usual ones."""
+    sheet = setup.sheet
+    options = {"detail": "normal", "units": "", "language": ENGLISH, "paper": "A4"}
+    head = {name: str(text) for name, text in sheet.head.items()}
     for name in ("logo", "style"):
         if folder is not None and head.get(name):
             head[name] = _seen_from(folder, Path(setup.source.file).parent / head[name])
-    yield "sheet", {**head, **detail, **paper}
+    chosen = {name: str(getattr(sheet, name)) for name in options}
+    return {**head, **{name: word for name, word in chosen.items() if word != options[name]}}
+
+
+def _sections(setup: Setup, folder: Path | None) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield every section of the inputs file with its entries as plain TOML values."""
+    yield "sheet", _sheet(setup, folder)
     inputs = setup.model.read_inputs(setup.inputs)
     fields = setup.model.input_fields
     stated = {name: _input(setup, fields[name], value, folder) for name, value in inputs.items()}
