@@ -153,7 +153,7 @@ def test_overflow_and_outlet_are_named_with_their_sizes() -> None:
     (named,) = re.findall(
         r"^Cause in doubt\. What the model misses in level is drawn best by (.*)$", STORY, re.MULTILINE
     )
-    assert "The noise of level was taken as nearly a random walk" in STORY
+    assert "The scatter of level wanders slowly" in STORY
     assert sorted(re.findall(r"(outlet losses, lower|lower overflow, spill|(?<!lower )overflow, spill)", named)) == [
         "lower overflow, spill", "outlet losses, lower", "overflow, spill",
     ]  # fmt: skip

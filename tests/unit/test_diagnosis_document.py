@@ -553,7 +553,7 @@ def test_small_pieces_of_words() -> None:
 SAID = {
     "none": ["meets the measurement: slide position to 6.1 µm (its readings scatter by 6 µm)", "nothing of joint play"],
     "named": ["slide position: rod heating, expansion 11.80 µm/(m·K) (95 %: 11.42 … 12.18).",
-              "falls from 41.2 µm to 6.12 µm (its readings scatter by 6 µm): 99.9 %",
+              "falls from 41.2 µm to 6.12 µm (its readings scatter by 6 µm).",
               "Chance alone would give differences like these in fewer than 1 of 300 records",
               "No other explanation comes near"],
     "undecided": ["No cause is named, but that nothing is wrong cannot be said either",

@@ -228,7 +228,7 @@ MODEL: Final[Mapping[str, Kind]] = {
 GAIN: Final[Mapping[str, Kind]] = {
     "falls": Kind(
         "on rows that were not fitted the error of {result} falls from {before} to {after} (its readings scatter by "
-        "{scatter}): {share} of the mean square that can be removed is gone",
+        "{scatter})",
         "What the cause is worth where it had to predict.",
     ),
     "falls perhaps": Kind(
@@ -253,7 +253,7 @@ GAIN: Final[Mapping[str, Kind]] = {
     ),
     "no estimate": Kind("no gain was estimated", "There was nothing to be compared."),
     "same in parts": Kind(
-        "diagnosed without one part at a time, the record names the same causes {often}",
+        "diagnosed without one part at a time, the record says the same {often}",
         "How steady the verdict is.",
     ),
 }

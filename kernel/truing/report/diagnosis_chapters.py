@@ -26,7 +26,6 @@ from truing.report import diagnosis_figures as figures
 from truing.report import diagnosis_statistics as statistics
 from truing.report.chapters import Figures
 from truing.report.diagnosis_record import record_blocks
-from truing.report.diagnosis_remedy import then_table
 from truing.report.diagnosis_rivals import parting_of, rivals_apart
 from truing.report.diagnosis_sizes import amount_text, as_waves, number_texts, partner_of, percent, readable, score_text
 from truing.report.diagnosis_words import (
@@ -348,9 +347,6 @@ def _model(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
         yield from _said([say("use it", file=EVERYTHING, model=name)])
     if remainder is not None:
         yield from _said([say("not in a file", shape=prose(remainder.shape))])
-    then = then_table(diagnosis) if diagnosis.verdict != "named" else None
-    if then is not None:
-        yield then
     if diagnosis.calibrated:
         heads = ("Input", "Nominal", "Fitted", "Within its tolerance", "Moved, standard deviations")
         table = table_of("Inputs as fitted", heads, list(_calibrated(diagnosis)), (1, 2, 4))

@@ -253,11 +253,11 @@ def convincing(diagnosis: DiagnosisResult, curves: ResultCurves, covariate: Cova
     kept = thinned(len(curves.measured))
     place = from_si(covariate.values, covariate.unit)[kept]
     shown_unit = diagnosis.setup.print_unit(curves.result)
-    series = [(curves.before, missed[0], BEFORE, "the model as it is")]
+    series = [(curves.before, missed[0], BEFORE, "the model as it is", "missed by the model as it is")]
     if has_changed(curves):
-        series.append((curves.after, missed[1], AFTER, "with the cause"))
+        series.append((curves.after, missed[1], AFTER, "with the cause", "missed with the cause"))
     figure = Figure(figsize=(6.4, 4.6), layout="constrained")
-    upper, lower = figure.subplots(2, sharex=True, height_ratios=(2, 3))
+    upper, lower = figure.subplots(2, sharex=True, height_ratios=(1, 2))
     upper.plot(place, from_si(curves.measured, shown_unit)[kept], "o", color=QUIET, markersize=4.5,
                fillstyle="none", label="measured")  # fmt: skip
     lower.axhspan(-floor, floor, color="#e4e7ea", linewidth=0, label="scatter")
@@ -269,10 +269,10 @@ def convincing(diagnosis: DiagnosisResult, curves: ResultCurves, covariate: Cova
         mark = "-" if style == "-" else "x"
         lower.plot(place[order], added, mark, color=NEUTRAL, markersize=4, markeredgewidth=0.6, linewidth=1.0,
                    label="what the cause adds")  # fmt: skip
-    for model, left, colour, words in series:
+    for model, left, colour, words, missing in series:
         values = from_si(model, shown_unit)[kept]
         upper.plot(place[order], values[order], style, color=colour, markersize=3.5, linewidth=1.2, label=words)
-        lower.plot(place, left[kept], ".", color=colour, markersize=3.5, label=f"left by {words}")
+        lower.plot(place, left[kept], ".", color=colour, markersize=3.5, label=missing)
     lower.legend(loc="best", fontsize=7.5)
     _mark_censored(diagnosis, curves.result, lower, places=place, values=series[-1][1][kept], colour=series[-1][2])
     upper.set_ylabel(axis_label(curves.result, shown_unit))

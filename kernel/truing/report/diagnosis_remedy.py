@@ -18,13 +18,17 @@ from truing.report.limits import check_rows
 from truing.setup import Setup
 from truing.units import difference_unit
 
+DIGITS = 8
 TITLE = "What the machine does now, and would do without what was named"
-NOTE = "At the conditions in the middle of the record, inputs as fitted to this machine."
+NOTE = (
+    "For the inputs as they are stated, fitted to this machine within their tolerances, and conditions as in the "
+    "middle of the record."
+)
 
 
 def then_table(diagnosis: DiagnosisResult) -> TableView | None:
-    """Set limits and measured results with the named causes beside those without; None where nothing can be said."""
-    if diagnosis.extended is None or not diagnosis.causes:
+    """Set limits and measured results with the named causes beside those without; None where none is named for sure."""
+    if diagnosis.extended is None or diagnosis.verdict != "named":
         return None
     try:
         now, then = (calculate(replace(setup, studies=())) for setup in _setups(diagnosis, diagnosis.extended))
@@ -70,5 +74,5 @@ def _results(diagnosis: DiagnosisResult, now: Calculation, then: Calculation) ->
             continue
         unit = diagnosis.setup.print_unit(name)
         change = readable(Amount(float(after - before), diagnosis.units.get(name) or difference_unit(unit)))
-        sizes = (amount_text(Amount(float(value), unit), 6) for value in (before, after))
+        sizes = (amount_text(Amount(float(value), unit), DIGITS) for value in (before, after))
         yield spoken(name), *sizes, ABSENT, f"changes by {amount_text(change)}"

@@ -38,7 +38,7 @@ from truing.runs.folder import data_digests
 from truing.runs.provenance import Provenance, provenance_of
 
 DIAGNOSIS = "Diagnosis"
-ROOM, LOWEST, HIGHEST = 152.0, 48.0, 105.0
+ROOM, LOWEST, HIGHEST = 152.0, 56.0, 105.0
 """Height of a page that figure and texts share, and of the figure at the least and at the most, mm."""
 LINE, GAP, WIDE = 4.4, 1.6, 95
 """Height of a line and of the gap behind a paragraph, mm, and the characters of a line."""
@@ -134,7 +134,7 @@ def _what_to_do(diagnosis: DiagnosisResult, decides: Sequence[str]) -> Iterator[
         labels, texts = zip(*((spoken(each.effect), remedy_of(diagnosis, each.effect)) for each in diagnosis.causes),
                             strict=True)  # fmt: skip
         yield Items("findings", texts, labels)
-    then = then_table(diagnosis) if diagnosis.verdict == "named" else None
+    then = then_table(diagnosis)
     if then is not None:
         yield then
 

@@ -39,7 +39,6 @@ from truing.report.diagnosis_sizes import (
     as_waves,
     fitted_text,
     partner_of,
-    percent,
     readable,
     wave_name,
 )
@@ -260,8 +259,7 @@ def gain_text(diagnosis: DiagnosisResult, gain: Gain) -> str:
     """Say what the extension is worth for a result, on rows that were not fitted; nothing where that may be chance."""
     name, before, after = spoken(gain.result), amount_text(gain.rmse_before), amount_text(gain.rmse_after)
     if is_gain(gain):
-        scatter, share = amount_text(gain.noise_floor), percent(gain.reducible_removed)
-        return say("falls", result=name, before=before, after=after, scatter=scatter, share=share)
+        return say("falls", result=name, before=before, after=after, scatter=amount_text(gain.noise_floor))
     if gain.reducible_removed >= MUCH and gain.p_value < FEW_BLOCKS:
         return say("falls perhaps", result=name, before=before, after=after)
     return ""
@@ -309,7 +307,7 @@ def _beyond_words(diagnosis: DiagnosisResult, experiment: Experiment) -> Iterato
         if covariate is None or covariate.role == "time":
             continue
         low, high = float(np.nanmin(covariate.values)), float(np.nanmax(covariate.values))
-        if max(low - float(values.min()), float(values.max()) - high) > BEYOND * max(high - low, abs(high), abs(low)):
+        if max(low - float(values.min()), float(values.max()) - high) > BEYOND * (high - low or abs(high)):
             ends = dict.fromkeys(amount_text(Amount(end, covariate.unit)) for end in (low, high))
             beyond.append(f"{spoken(name)} (so far {' to '.join(ends)})")
     if beyond:

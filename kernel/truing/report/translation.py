@@ -49,7 +49,7 @@ DIAGNOSIS, STUDY = "diagnosis", "study"
 kernel's there, and may be anybody's elsewhere."""
 LISTS: Final = frozenset({
     "causes", "conditions", "course", "covariates", "explanation", "explanations", "facts", "inputs", "met", "names",
-    "others", "reasons", "results", "shares", "waves",
+    "others", "reasons", "results", "settings", "shares", "waves",
 })  # fmt: skip
 """Gaps that hold several things in a row: "a, b and c". In every other gap the word "and" is left alone."""
 BETWEEN: Final = re.compile(r"(; and |, (?!(?:with|amplitude|range|by) )| and | or |; | \+ )")
