@@ -58,7 +58,7 @@ def description(offer: Offer) -> dict[str, Any]:
         "findings": [dataclasses.asdict(finding) for finding in model.findings],
         "exceptions": {str(name): reason for name, reason in model.exceptions.items()},
         "cites": list(model.cites),
-        "added": [dataclasses.asdict(addition) for addition in offer.added],
+        "added": [addition.as_json for addition in offer.added],
     }
 
 

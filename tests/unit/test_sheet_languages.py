@@ -391,7 +391,7 @@ def test_texts_of_a_figure_are_translated_ticks_and_units_among_them() -> None:
         figure = Figure()
         axes = figure.subplots()
         axes.barh([0, 1], [1, 2], label="before")
-        axes.set_yticks([0, 1], ["nothing but scatter", "belt slip"])
+        axes.set_yticks([0, 1], ["nothing but scatter", "pulley slip"])
         axes.set_xlabel("simulated shaft angle [°]")
         axes.set_ylabel("measured − model\n[µm]")
         axes.legend()
@@ -399,7 +399,9 @@ def test_texts_of_a_figure_are_translated_ticks_and_units_among_them() -> None:
         return figure
 
     draw(drawn, title="Gain", ident="f1", words=kernel_catalogue("de").at(DIAGNOSIS))
-    assert {"vorher", "nur Streuung", "belt slip", "shaft angle, gerechnet [°]", "gemessen − Modell\n[µm]"} <= {*texts}
+    assert {"vorher", "nur Streuung", "pulley slip", "shaft angle, gerechnet [°]", "gemessen − Modell\n[µm]"} <= {
+        *texts
+    }
 
 
 # How texts are found
@@ -409,7 +411,7 @@ WORDS = Catalogue("xx", {
     "": {"value": "Wert", "{count} of {total} are off by {amount}": "{count} aus {total} um {amount} daneben",
          "and": "und", "wrong: {causes}": "falsch: {causes}", "wrong": "falsch"},
     "causes": {"{name} outside": "{name} außerhalb"},
-}, {"belt tension": "Riemenspannung"})  # fmt: skip
+}, {"pulley tension": "Riemenspannung"})  # fmt: skip
 
 
 @pytest.mark.parametrize(("text", "said"), [
@@ -424,7 +426,7 @@ def test_a_text_is_said_whole_by_pattern_or_by_parts(text: str, said: str) -> No
 
 
 def test_what_a_quantity_is_called_is_left_to_its_author() -> None:
-    assert (WORDS.name("value"), WORDS.name("belt tension")) == ("value", "Riemenspannung")
+    assert (WORDS.name("value"), WORDS.name("pulley tension")) == ("value", "Riemenspannung")
 
 
 # The language is asked for
@@ -435,19 +437,19 @@ from truing import Float, Model, Section, found, given, hookimpl, inputs, result
 
 @inputs
 class Belt:
-    """A belt."""
-    tension: Float = given(400.0, "N", note="belt tension")
+    """A pulley."""
+    tension: Float = given(400.0, "N", note="pulley tension")
 
 @results
 class Force:
     """Its force."""
     force: Float = found("N", formula="2 * tension", note="force on the shaft")
 
-def drive(belt: Belt) -> Force:
+def drive(pulley: Belt) -> Force:
     """Twice the tension."""
-    return Force(force=2 * belt.tension)
+    return Force(force=2 * pulley.tension)
 
-BELT = Model(name="belt", title="Belt drive", function=drive, sheet=[Section("Shaft", "force")])
+BELT = Model(name="pulley", title="Belt drive", function=drive, sheet=[Section("Shaft", "force")])
 
 @hookimpl
 def truing_models():
@@ -457,44 +459,46 @@ def truing_models():
 
 
 @pytest.fixture
-def belt(tmp_path: Path) -> Path:
+def pulley(tmp_path: Path) -> Path:
     (tmp_path / "words").mkdir()
-    (tmp_path / "belt.py").write_text(BELT, encoding="utf-8")
-    return tmp_path / "belt.py"
+    (tmp_path / "pulley.py").write_text(BELT, encoding="utf-8")
+    return tmp_path / "pulley.py"
 
 
-def test_a_plugin_in_one_file_brings_its_own_words(belt: Path) -> None:
-    words = belt.parent / "words" / "de.toml"
-    words.write_text('"Belt drive" = "Riementrieb"\n[notes]\n"belt tension" = "Trumkraft"\n', encoding="utf-8")
-    run = truing.load(belt).run(progress=False)
-    english, german = (run.sheet(belt.parent / f"{name}.md", language=name).read_text("utf-8") for name in ("en", "de"))
+def test_a_plugin_in_one_file_brings_its_own_words(pulley: Path) -> None:
+    words = pulley.parent / "words" / "de.toml"
+    words.write_text('"Belt drive" = "Riementrieb"\n[notes]\n"pulley tension" = "Trumkraft"\n', encoding="utf-8")
+    run = truing.load(pulley).run(progress=False)
+    english, german = (
+        run.sheet(pulley.parent / f"{name}.md", language=name).read_text("utf-8") for name in ("en", "de")
+    )
     assert "# Riementrieb" in german
     assert "Trumkraft" in german
     assert "force on the shaft" in german
     assert "# Belt drive" in english
     assert "Eingaben" not in english
-    assert truing.load(belt).run(language="de", progress=False).document == run.document
+    assert truing.load(pulley).run(language="de", progress=False).document == run.document
 
 
 @pytest.mark.parametrize(("content", "sentence"), [
     ('"Belt drive" = 3', "'Belt drive' needs a text in quotation marks"),
     ('"{a} of b" = "von b"', "'{a} of b' and 'von b' differ in their gaps"), ("=", "left out: "),
 ])  # fmt: skip
-def test_faulty_words_of_a_plugin_are_left_out_and_named(belt: Path, content: str, sentence: str) -> None:
-    (belt.parent / "words" / "de.toml").write_text(content, encoding="utf-8")
-    words = catalogue_of(in_language(truing.load(belt).setup(), "de"))
+def test_faulty_words_of_a_plugin_are_left_out_and_named(pulley: Path, content: str, sentence: str) -> None:
+    (pulley.parent / "words" / "de.toml").write_text(content, encoding="utf-8")
+    words = catalogue_of(in_language(truing.load(pulley).setup(), "de"))
     (fault,) = words.faults
-    assert fault.startswith(f"{belt.parent / 'words' / 'de.toml'}: these words of a sheet are left out: ")
+    assert fault.startswith(f"{pulley.parent / 'words' / 'de.toml'}: these words of a sheet are left out: ")
     assert sentence in fault
     assert (words.said("Belt drive"), words.said("Inputs")) == ("Belt drive", "Eingaben")
 
 
-def test_an_unknown_language_is_refused_with_the_choices(belt: Path) -> None:
-    offer = truing.load(belt).offer
+def test_an_unknown_language_is_refused_with_the_choices(pulley: Path) -> None:
+    offer = truing.load(pulley).offer
     with pytest.raises(InputError, match=r"made.toml:2: language: choose en or de\."):
-        setup_from_text('[sheet]\nlanguage = "xx"\n', offer, file="made.toml", folder=belt.parent)
+        setup_from_text('[sheet]\nlanguage = "xx"\n', offer, file="made.toml", folder=pulley.parent)
     with pytest.raises(UsageError, match="language: choose en or de, not 'xx'"):
-        in_language(truing.load(belt).setup(), "xx")
+        in_language(truing.load(pulley).setup(), "xx")
 
 
 def test_every_place_of_words_is_a_gap_or_a_kind_of_sheet() -> None:

@@ -51,7 +51,7 @@ def _model(offer: Offer) -> dict[str, object]:
         "version": offer.origin.version,
         "distribution": offer.origin.distribution,
         "file": offer.origin.file,
-        "added": [asdict(addition) for addition in offer.added],
+        "added": [addition.as_json for addition in offer.added],
     }
 
 

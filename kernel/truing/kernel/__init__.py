@@ -62,6 +62,11 @@ class Added:
     version: str
     file: str = ""
 
+    @property
+    def as_json(self) -> dict[str, str]:
+        """What it is and whose, without where that lies on this machine."""
+        return {"what": self.what, "plugin": self.plugin, "version": self.version}
+
 
 @dataclass(frozen=True)
 class Offer:
