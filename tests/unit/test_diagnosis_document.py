@@ -648,12 +648,13 @@ def test_what_to_do_about_a_cause_is_said_on_page_one_on_the_terminal_and_in_the
     sheet = sheet_of(told_about)
     items = next(chapter.blocks[0] for chapter in sheet.front if chapter.ident == "what-to-do")
     assert isinstance(items, Items)
-    assert items.texts == (told.remedy,)
+    (text,) = map(plain_text, items.texts)
+    assert text == f"The rod grows where the motor warms it. {told.remedy}"
     assert any(told.remedy in line for line in report(told_about, Path("runs/x")))
     assert written(told_about)["causes"][0]["remedy"] == told.remedy
     silent = next(chapter.blocks[0] for chapter in page_of("named")[0].front if chapter.ident == "what-to-do")
     assert isinstance(silent, Items)
-    assert silent.texts == (NO_REMEDY,)
+    assert plain_text(silent.texts[0]).endswith(f". {NO_REMEDY}")
     assert written(made)["causes"][0]["remedy"] == ""
 
 

@@ -29,6 +29,7 @@ from truing.report.diagnosis_record import record_blocks
 from truing.report.diagnosis_rivals import parting_of, rivals_apart
 from truing.report.diagnosis_sizes import amount_text, as_waves, number_texts, partner_of, percent, readable, score_text
 from truing.report.diagnosis_words import (
+    about_of,
     cause_text,
     certainty,
     chance_words,
@@ -187,12 +188,10 @@ def _verdict_text(diagnosis: DiagnosisResult) -> str:
 
 def _named(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
     """Say what the named causes are, what draws the same curve, what to do, and of several the shares."""
-    rows = []
-    for cause in diagnosis.causes:
-        effect = diagnosis.setup.model.known_effects.get(cause.effect)
-        about = "an input that must lie outside of its tolerance" if cause.effect.startswith("input:") else ""
-        about = about or ("" if effect is None else effect.why or effect.looks_like)
-        rows.append((spoken(cause.effect), about or ABSENT, percent(cause.share)))
+    rows = [
+        (spoken(cause.effect), about_of(diagnosis, cause.effect) or ABSENT, percent(cause.share))
+        for cause in diagnosis.causes
+    ]
     if len(rows) > 1:
         shares = ", ".join(f"{name} {share}" for name, _, share in rows)
         yield from _said([say("of the correction", shares=shares)])

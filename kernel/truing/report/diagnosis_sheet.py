@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
 from truing.diagnosis.records import file_labels
-from truing.diagnosis.result import Amount, DiagnosisResult
+from truing.diagnosis.result import Amount, DiagnosisResult, explanations_of, stated_remedy
 from truing.diagnosis.sentences import sentence
 from truing.report import diagnosis_figures as figures
 from truing.report import translation
@@ -19,7 +19,7 @@ from truing.report.diagnosis_chapters import diagnosis_chapters
 from truing.report.diagnosis_remedy import then_table
 from truing.report.diagnosis_sizes import amount_text
 from truing.report.diagnosis_units import diagnosis_as_printed, words_as_printed
-from truing.report.diagnosis_words import headline, remedy_of, spoken, verdict_word, what_decides
+from truing.report.diagnosis_words import about_of, headline, prose, remedy_of, spoken, verdict_word, what_decides
 from truing.report.document import (
     Banner,
     BlockView,
@@ -28,6 +28,7 @@ from truing.report.document import (
     Items,
     Paragraph,
     TableView,
+    Text,
     lines_of,
     plain_text,
 )
@@ -40,8 +41,11 @@ from truing.runs.provenance import Provenance, provenance_of
 DIAGNOSIS = "Diagnosis"
 ROOM, LOWEST, HIGHEST = 152.0, 56.0, 105.0
 """Height of a page that figure and texts share, and of the figure at the least and at the most, mm."""
-LINE, GAP, WIDE = 4.4, 1.6, 95
+LINE, GAP, WIDE = 4.3, 1.7, 105
 """Height of a line and of the gap behind a paragraph, mm, and the characters of a line."""
+MOST_OTHERS = 3
+"""Of so many other explanations page one says what they would ask for."""
+BELOW, BESIDE = "Below", "On the right"
 DOUBT = "Whether this is the cause is open: settle that before anything is changed on the machine."
 
 
@@ -56,11 +60,12 @@ def make_diagnosis_sheet(diagnosis: DiagnosisResult, *, provenance: Provenance) 
     """Say everything that stands on the sheet of a diagnosis."""
     units, words = sheet_units(diagnosis.setup), catalogue_of(diagnosis.setup, translation.DIAGNOSIS)
     diagnosis, drawn = diagnosis_as_printed(diagnosis), Figures(words, units=units)
-    front = tuple(_page_one(diagnosis, drawn))
+    sentences, to_do = tuple(_answer(diagnosis)), tuple(_what_to_do(diagnosis))
+    high = _figure_height([*sentences, *_texts(to_do)])
+    front = tuple(_page_one(diagnosis, drawn, to_do, high))
     chapters = list(diagnosis_chapters(diagnosis, drawn))
     warnings = (*head_faults(diagnosis.setup), *drawn.failures, *words.faults)
     head = head_of(diagnosis.setup, provenance)
-    sentences = tuple(_answer(diagnosis))
     named = "found" if diagnosis.remainder is None else "open"
     mood = {"none": "calm", "named": named}.get(diagnosis.verdict, "open")
     document = Document(
@@ -72,7 +77,7 @@ def make_diagnosis_sheet(diagnosis: DiagnosisResult, *, provenance: Provenance) 
         banner=Banner(mood, verdict_word(diagnosis), sentences),
         alarms=tuple(unit_error.text for unit_error in diagnosis.records.unit_errors),
         front=front,
-        figure_height=_figure_height([*sentences, *_texts(front)]),
+        figure_height=high,
         paper=diagnosis.setup.sheet.paper,
         chapters=numbered([*chapters, *end_chapters(warnings, provenance)]),
         warnings=warnings,
@@ -82,9 +87,9 @@ def make_diagnosis_sheet(diagnosis: DiagnosisResult, *, provenance: Provenance) 
     return translated(printed, words)
 
 
-def _texts(front: Iterable[Chapter]) -> Iterator[str]:
+def _texts(blocks: Iterable[BlockView]) -> Iterator[str]:
     """Give the texts of what to do."""
-    for block in (block for chapter in front for block in chapter.blocks):
+    for block in blocks:
         match block:
             case Paragraph(text):
                 yield plain_text(text)
@@ -107,7 +112,9 @@ def _answer(diagnosis: DiagnosisResult) -> Iterator[str]:
     yield from (text for text in headline(diagnosis) if text not in decides)
 
 
-def _page_one(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[Chapter]:
+def _page_one(
+    diagnosis: DiagnosisResult, drawn: Figures, to_do: tuple[BlockView, ...], high: float
+) -> Iterator[Chapter]:  # fmt: skip
     """Give the picture of the result that gains most, over what tells most, and what to do about each cause."""
     shown = figures.shown_curves(diagnosis)
     gained = {gain.result: gain.rmse_before.value - gain.rmse_after.value for gain in diagnosis.gain}
@@ -115,28 +122,39 @@ def _page_one(diagnosis: DiagnosisResult, drawn: Figures) -> Iterator[Chapter]:
     covariate = None if curves is None else figures.telling_covariate(diagnosis, curves)
     if curves is not None and covariate is not None:
         title = f"{spoken(curves.result).capitalize()} over {spoken(covariate.name)}"
-        caption = f"{title}. Below: what the model misses.{figures.thinning_words(diagnosis, curves)}"
-        view = drawn.view(title, partial(figures.convincing, diagnosis, curves, covariate), caption)
+        where = BELOW if high >= figures.FLAT else BESIDE
+        caption = f"{title}. {where}: what the model misses.{figures.thinning_words(diagnosis, curves)}"
+        view = drawn.view(title, partial(figures.convincing, diagnosis, curves, covariate, high), caption)
         yield Chapter(title, (view,), "key-figure")
-    decides = [sentence(text) for text in what_decides(diagnosis)]
-    if diagnosis.causes or decides:
-        yield Chapter("What to do", tuple(_what_to_do(diagnosis, decides)), "what-to-do")
+    if to_do:
+        yield Chapter("What to do", to_do, "what-to-do")
 
 
-def _what_to_do(diagnosis: DiagnosisResult, decides: Sequence[str]) -> Iterator[BlockView]:
+def _what_to_do(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
     """Say what settles the cause where it is open, and what each one asks for."""
+    decides = [sentence(text) for text in what_decides(diagnosis)]
     if diagnosis.verdict != "named" and diagnosis.causes:
         yield Paragraph(DOUBT)
     if decides:
         labels = ("To settle it", *("" for _ in decides[1:]))
         yield Items("findings", tuple(decides), labels)
-    if diagnosis.causes:
-        labels, texts = zip(*((spoken(each.effect), remedy_of(diagnosis, each.effect)) for each in diagnosis.causes),
-                            strict=True)  # fmt: skip
-        yield Items("findings", texts, labels)
+    asked = dict(_remedies(diagnosis))
+    if asked:
+        yield Items("findings", tuple(asked.values()), tuple(asked))
     then = then_table(diagnosis)
     if then is not None:
         yield then
+
+
+def _remedies(diagnosis: DiagnosisResult) -> Iterator[tuple[str, Text]]:
+    """Say of every named cause what it is and what to do, and of others that are open what they would ask for."""
+    named = [cause.effect for cause in diagnosis.causes]
+    for name in named:
+        about, remedy = about_of(diagnosis, name), remedy_of(diagnosis, name)
+        yield spoken(name), (sentence(about), " ", remedy) if about else remedy
+    others = dict.fromkeys(name for names in explanations_of(diagnosis) for name in names if name not in named)
+    stated = [(name, prose(stated_remedy(diagnosis, name))) for name in others]
+    yield from [(f"{spoken(name)}, if it is that", remedy) for name, remedy in stated if remedy][:MOST_OTHERS]
 
 
 def questions(diagnosis: DiagnosisResult) -> dict[str, tuple[str, ...]]:

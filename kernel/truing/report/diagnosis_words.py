@@ -123,6 +123,14 @@ def remedy_of(diagnosis: DiagnosisResult, cause: str) -> str:
     return prose(stated_remedy(diagnosis, cause)) or NO_REMEDY
 
 
+def about_of(diagnosis: DiagnosisResult, cause: str) -> str:
+    """Say what a cause is: what its author wrote, or that it is an input; nothing where nobody wrote anything."""
+    if cause.startswith("input:"):
+        return "an input that must lie outside of its tolerance"
+    effect = diagnosis.setup.model.known_effects.get(cause)
+    return "" if effect is None else prose(effect.why or effect.looks_like)
+
+
 def verdict_word(diagnosis: DiagnosisResult) -> str:
     """Say the verdict in a few words."""
     count = len(explanations_of(diagnosis))
