@@ -251,6 +251,16 @@ PAGE_WIDTH, FLAT = 178.0, 85.0
 """Of what is printed on a page, mm, and below which height two panels stand side by side."""
 
 
+def _two_panels(high: float) -> tuple[Figure, Axes, Axes]:
+    """Return a figure as wide as a page and so high on paper, mm, with two panels: side by side where it is flat."""
+    figure = Figure(figsize=(6.4, 6.4 * high / PAGE_WIDTH), layout="constrained")
+    if high < FLAT:
+        first, second = figure.subplots(1, 2, width_ratios=(2, 3))
+    else:
+        first, second = figure.subplots(2, sharex=True, height_ratios=(1, 2))
+    return figure, first, second
+
+
 def convincing(diagnosis: DiagnosisResult, curves: ResultCurves, covariate: Covariate, high: float = 117.0) -> Figure:
     """Draw measured, model before and model after over a covariate; below or beside it what each of them misses.
 
@@ -263,11 +273,7 @@ def convincing(diagnosis: DiagnosisResult, curves: ResultCurves, covariate: Cova
     series = [(curves.before, missed[0], BEFORE, "the model as it is", "missed by the model as it is")]
     if has_changed(curves):
         series.append((curves.after, missed[1], AFTER, "with the cause", "missed with the cause"))
-    figure = Figure(figsize=(6.4, 6.4 * high / PAGE_WIDTH), layout="constrained")
-    is_flat = high < FLAT
-    upper, lower = (
-        figure.subplots(1, 2, width_ratios=(2, 3)) if is_flat else figure.subplots(2, sharex=True, height_ratios=(1, 2))
-    )
+    figure, upper, lower = _two_panels(high)
     upper.plot(place, from_si(curves.measured, shown_unit)[kept], "o", color=QUIET, markersize=4.5,
                fillstyle="none", label="measured")  # fmt: skip
     lower.axhspan(-floor, floor, color="#e4e7ea", linewidth=0, label="scatter")
@@ -282,12 +288,12 @@ def convincing(diagnosis: DiagnosisResult, curves: ResultCurves, covariate: Cova
     for model, left, colour, words, missing in series:
         values = from_si(model, shown_unit)[kept]
         upper.plot(place[order], values[order], style, color=colour, markersize=3.5, linewidth=1.2, label=words)
-        lower.plot(place, left[kept], ".", color=colour, markersize=3.5, label=None if is_flat else missing)
+        lower.plot(place, left[kept], ".", color=colour, markersize=3.5, label=None if high < FLAT else missing)
     lower.legend(loc="best", fontsize=7.5)
     _mark_censored(diagnosis, curves.result, lower, places=place, values=series[-1][1][kept], colour=series[-1][2])
     upper.set_ylabel(axis_label(curves.result, shown_unit))
     lower.set_ylabel(f"measured − model\n[{unit_text(unit)}]" if unit else "measured − model")
-    for axes in (upper, lower) if is_flat else (lower,):
+    for axes in (upper, lower) if high < FLAT else (lower,):
         axes.set_xlabel(axis_label(covariate.name, covariate.unit))
         axes.locator_params(nbins=MOST_STEPS if axes is lower else 4)
     upper.legend(loc="best", fontsize=7.5)
