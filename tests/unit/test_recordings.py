@@ -17,6 +17,7 @@ import numpy as np
 import pandas
 import pytest
 from sample_models import PIN_OFFER, PIN_WEAR
+from scipy.io import savemat
 
 from recording_files import KINDS, WRITERS, Recorded, write_csv, write_mat, write_mdf, write_parquet, write_tdms
 from truing.errors import InputError
@@ -25,6 +26,7 @@ from truing.measurements import DataTable, read_cases, read_rows, read_table
 from truing.recordings import KINDS as KINDS_READ
 from truing.recordings import mdf, mdf_process
 from truing.setup import NamedColumn, Setup
+from truing.workbooks.writing import SheetTable, workbook_bytes
 
 KNOWN = {"time": "h", "depth": "um", "load": "N", "probe_temperature": "degC"}
 NAN = float("nan")
@@ -128,8 +130,6 @@ def test_a_formula_in_a_file_is_not_executed(tmp_path: Path) -> None:
 
 
 def test_structs_and_matrices_of_matlab(tmp_path: Path) -> None:
-    from scipy.io import savemat
-
     rig = {"depth": np.array([1.0, 2.0]), "inner": {"deep": 1.0}}
     odd = {"fs": 1000.0, "words": ["a b"], "cells": np.array([1, "b"], dtype=object), "complex": np.array([1j, 2])}
     savemat(tmp_path / "r.mat", {"rig": rig, "m": np.array([[120.0, 20.0], [130.0, 21.0]]), **odd})
@@ -213,8 +213,6 @@ def test_columns_of_a_dataframe_keep_their_kind(tmp_path: Path) -> None:
 
 
 def test_columns_of_csv_files_and_workbooks_are_named_too(tmp_path: Path) -> None:
-    from truing.workbooks.writing import SheetTable, workbook_bytes
-
     named = {"temp_C": ("probe_temperature", "degC"), "s [mm]": "depth", "Force": ("load", "kN")}
     (tmp_path / "r.csv").write_text("temp_C,s [mm],Force [N]\n20,1,2\n30,2,3\n", encoding="utf-8")
     rows = [(20, 1, 2), (30, 2, 3)]

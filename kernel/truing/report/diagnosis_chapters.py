@@ -176,12 +176,12 @@ def _verdict_text(diagnosis: DiagnosisResult) -> str:
     explanations = explanations_of(diagnosis)
     if not explanations:
         return say("nothing needed") if diagnosis.verdict == "none" else say("open", reasons=reasons(diagnosis))
+    if diagnosis.verdict == "one_of":
+        return say("one of", count=len(explanations))
     parts = [spoken(cause.effect) for cause in diagnosis.causes]
     if diagnosis.remainder is not None:
         parts.append(f"something unregistered ({prose(diagnosis.remainder.shape)})")
     causes, explain = listed(parts), "explains" if len(parts) == 1 else "together explain"
-    if diagnosis.verdict == "one_of":
-        return say("one of", count=len(explanations))
     kinds = {"named": "explains it alone", "undecided": "explains it perhaps"}
     return say(kinds.get(diagnosis.verdict, "explains it"), causes=causes, explain=explain)
 
