@@ -25,7 +25,7 @@ from truing import Float
 # Where is the slider, exactly? Closed-form kinematics of the press linkage with every size off by its own deviation
 
 SERIES_LIMIT = 0.025  # rad; below it the first neglected terms are 4e-18 (cosine) and 1e-20 (sine)
-FEW_TERMS = 2e-3  # rad
+FEW_TERMS = 3e-4  # rad; a sine without its x^5 is off by 7e-17 of itself, a cosine without its x^6 by 1e-24
 
 
 class JointPoint(NamedTuple):
@@ -126,9 +126,8 @@ class Position:
 def cosine_and_sine(angle: Float) -> tuple[Float, Float]:
     """Cosine and sine to rounding; an array of small angles by a series that is eight times faster than numpy's.
 
-    The series are broken off after x^6 and x^7, below FEW_TERMS after x^4 and x^5. What is neglected is below
-    SERIES_LIMIT x^8/40320 and x^9/362880, under 4e-18, and below FEW_TERMS x^6/720, under 9e-20: far below rounding.
-    Anything larger, and NaN, goes to numpy.
+    The series are broken off after x^6 and x^7, below FEW_TERMS after x^4 and x^3. What is neglected is below
+    SERIES_LIMIT x^8/40320 and x^9/362880, under 4e-18. Anything larger, and NaN, goes to numpy.
     """
     if np.ndim(angle) == 0:
         return np.cos(angle), np.sin(angle)
@@ -136,15 +135,18 @@ def cosine_and_sine(angle: Float) -> tuple[Float, Float]:
     largest = float(np.max(square))
     if not largest <= SERIES_LIMIT**2:
         return np.cos(angle), np.sin(angle)
-    cosine, sine = square * (1 / 24), square * (1 / 120)  # terms are added in place: arrays stay in the cache
+    cosine = square * (1 / 24)  # terms are added in place: arrays stay in the cache
     if largest > FEW_TERMS**2:
         cosine -= square * square * (1 / 720)
+        sine = square * (1 / 120)
         sine -= square * square * (1 / 5040)
+        sine -= 1 / 6
+        sine *= square
+    else:
+        sine = square * (-1 / 6)
     cosine -= 0.5
     cosine *= square
     cosine += 1.0
-    sine -= 1 / 6
-    sine *= square
     sine *= angle
     sine += angle
     return cosine, sine
@@ -178,12 +180,15 @@ def built(press: Mechanism, crank: tuple[Float, Float], off: PressSide, *, mirro
         value: Float = getattr(press, kind) + getattr(off, f"{kind}_deviation")
         return value
 
+    def outward(angle: Float) -> Float:
+        return angle if mirror > 0 else -angle
+
     return Parts(
-        pivot=Polar(length("crank_pivot_radius"), *cosine_and_sine(mirror * off.crank_pivot_angle_deviation)),
+        pivot=Polar(length("crank_pivot_radius"), *cosine_and_sine(outward(off.crank_pivot_angle_deviation))),
         crank=Polar(length("crank_radius"), *turned(*crank, off.crank_angle_deviation)),
-        platform=Polar(length("platform_half_width"), *cosine_and_sine(mirror * off.platform_joint_angle_deviation)),
-        ground=Polar(length("ground_pivot_radius"), *turned(*ground, mirror * off.ground_pivot_angle_deviation)),
-        slider=Polar(length("slider_half_width"), *cosine_and_sine(mirror * off.slider_joint_angle_deviation)),
+        platform=Polar(length("platform_half_width"), *cosine_and_sine(outward(off.platform_joint_angle_deviation))),
+        ground=Polar(length("ground_pivot_radius"), *turned(*ground, outward(off.ground_pivot_angle_deviation))),
+        slider=Polar(length("slider_half_width"), *cosine_and_sine(outward(off.slider_joint_angle_deviation))),
         rod=length("rod_length"),
         drive=length("knee_drive_length"),
         upper=length("upper_knee_length"),
@@ -367,16 +372,24 @@ def _sizes(half: Half) -> Holds:
 
 def _loop(number: int, half: Half, side: int) -> Iterator[ClosingDemand]:
     """A loop closes, and not in a singular position."""
-    parts, names = half.parts, LOOPS[number][0]
-    links = parts.drive * parts.upper
-    closed, regular = (
-        (half.rod_drop >= 0.0, half.rod_drop >= SINGULAR * parts.rod),
-        (half.knee_fold >= 0.0, half.knee_fold * half.knee_span**2 >= (SINGULAR * links) ** 2),
-        (half.lower_drop >= 0.0, half.lower_drop >= SINGULAR * parts.lower),
-    )[number]
+    names, open_sentence, singular_sentence = LOOPS[number]
+    closed, regular = (_rod_loop, _knee_loop, _lower_loop)[number](half)
     name = f"loop {names[side - 1]}, side {side}"
-    yield closed, f"{name} does not close: {LOOPS[number][1]}"
-    yield regular, f"{name} is singular: {LOOPS[number][2].format(side)}"
+    yield closed, f"{name} does not close: {open_sentence}"
+    yield regular, f"{name} is singular: {singular_sentence.format(side)}"
+
+
+def _rod_loop(half: Half) -> tuple[Holds, Holds]:
+    return half.rod_drop >= 0.0, half.rod_drop >= SINGULAR * half.parts.rod
+
+
+def _knee_loop(half: Half) -> tuple[Holds, Holds]:
+    links = half.parts.drive * half.parts.upper * SINGULAR
+    return half.knee_fold >= 0.0, half.knee_fold * (half.knee_span * half.knee_span) >= links * links
+
+
+def _lower_loop(half: Half) -> tuple[Holds, Holds]:
+    return half.lower_drop >= 0.0, half.lower_drop >= SINGULAR * half.parts.lower
 
 
 def cycle_demands(press: Press, samples: int = 721) -> Iterator[ClosingDemand]:

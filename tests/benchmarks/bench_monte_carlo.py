@@ -1,8 +1,8 @@
 """What does the whole Monte Carlo cost beside drawing its random numbers, on one core, on two, and in memory?
 
 Run it on a quiet machine: ``python -m pytest tests/benchmarks/bench_monte_carlo.py -s``. The baseline draws as many
-standard normal numbers with one generator of the same kind (SFC64, the fastest that numpy has), array by array as long
-as a batch, always into the same memory, and does nothing else. Both are measured alternately in one process and the
+standard normal numbers with one generator of the same kind (SFC64, the fastest that numpy has), 16,384 of them
+at a time, always into the same memory, and does nothing else. Both are measured alternately in one process and the
 least time of each counts. Numpy's default generator, PCG64, is slower: against it the ratio would look better, so it is
 printed beside the other and decides nothing.
 
@@ -34,7 +34,7 @@ from truing.kernel import Kernel
 from truing.setup import Setup, default_setup
 from truing.studies.sampling import scatter_of
 
-BATCH = 2**14
+ARRAY = 2**14
 DRAWS = 1_000_000
 
 
@@ -55,14 +55,14 @@ def backlash() -> Setup:
 
 def draw_only(draws: int, sources: int, kind: type[np.random.BitGenerator] = np.random.SFC64) -> None:
     """The baseline: the random numbers alone."""
-    rng, store = np.random.Generator(kind(0)), np.empty(BATCH)
-    for _ in range(-(-draws // BATCH) * sources):
+    rng, store = np.random.Generator(kind(0)), np.empty(ARRAY)
+    for _ in range(-(-draws // ARRAY) * sources):
         rng.standard_normal(out=store)
 
 
 def monte_carlo(setup: Setup, draws: int, executor: Executor | None = None) -> object:
     """The whole study as ``calc run`` does it, the first-order answer included."""
-    study = Reliability(draws=draws, batch=BATCH, method=("first_order", "monte_carlo"))
+    study = Reliability(draws=draws, method=("first_order", "monte_carlo"))
     return calculate(replace(setup, studies=(study,)), executor=executor).outcomes["reliability"]
 
 
@@ -78,7 +78,7 @@ def peak_mebibytes(draws: int, place: str = "serial") -> float:
 
 
 @pytest.mark.parametrize(("made", "draws"), [(all_sources, DRAWS), (backlash, 10 * DRAWS)])
-def test_monte_carlo_costs_at_most_twice_its_random_numbers(made: Callable[[], Setup], draws: int) -> None:
+def test_monte_carlo_costs_at_most_1_9_times_its_random_numbers(made: Callable[[], Setup], draws: int) -> None:
     setup = made()
     sources = len(scatter_of(setup).columns)
     monte_carlo(setup, 100_000)
@@ -88,8 +88,8 @@ def test_monte_carlo_costs_at_most_twice_its_random_numbers(made: Callable[[], S
         lambda: draw_only(draws, sources, np.random.PCG64),
         rounds=5,
     )
-    print(f"\nthe whole study over drawing alone: {whole / drawing:.3f} (at most 2.0), by PCG64 {whole / default:.3f}")
-    assert whole / drawing <= 2.0
+    print(f"\nthe whole study over drawing alone: {whole / drawing:.3f} (at most 1.9), by PCG64 {whole / default:.3f}")
+    assert whole / drawing <= 1.9
 
 
 # Processes and a cluster

@@ -1,5 +1,6 @@
 """Reliability: probabilities that are known in closed form, and the same answer wherever it is computed."""
 
+import hashlib
 import json
 from dataclasses import replace
 from functools import reduce
@@ -30,7 +31,7 @@ from truing.declare.spreads import Off
 from truing.errors import UsageError
 from truing.setup import SwitchedOn
 from truing.studies.checks import normal_chance, wilson
-from truing.studies.sampling import Moments, joined, scatter_of
+from truing.studies.sampling import BLOCK, Moments, generator, joined, scatter_of
 
 QUICK = Reliability(draws=40_000)
 GAP_LIMITS = [Require("gap", at_most="10.2 mm", reliability=0.5), Require("gap", at_least="9.9 mm", reliability=0.5)]
@@ -283,6 +284,29 @@ def test_a_further_tolerance_reshuffles_no_other():
     for column, values in alone.items():
         assert (together[column] == values).all()
     assert (scatter_of(setup_of(CHAIN)).draw(1, 4, 100)["first"] != alone["first"]).all()
+
+
+@pytest.mark.parametrize("seed", [0, 7, 2**40 + 5, 2**130 + 3])
+def test_a_generator_is_keyed_by_seed_block_and_the_sha256_of_the_name(seed):
+    words = np.frombuffer(hashlib.sha256(b"wear").digest(), "<u4").tolist()
+    keyed = np.random.SFC64(np.random.SeedSequence(seed, spawn_key=(3, *words)))
+    expected = np.random.Generator(keyed).standard_normal(5)
+    assert (generator(seed, 3, "wear").standard_normal(5) == expected).all()
+
+
+@pytest.mark.parametrize("model", [CHAIN, ROOT, JOINT, WEAR])
+def test_machines_are_the_same_in_every_batch_of_whole_blocks(model):
+    setup = setup_of(model)
+    small, large = (odds_of(setup, Reliability(draws=40_000, batch=n * BLOCK)).tally for n in (1, 2))
+    assert (small.failed, small.reasons) == (large.failed, large.reasons)
+    for name, hits in small.hits.items():
+        assert np.all(hits == large.hits[name])
+    for name, moments in small.moments.items():
+        assert np.all(moments.smallest == large.moments[name].smallest)
+        assert np.all(moments.largest == large.moments[name].largest)
+        assert moments.mean == pytest.approx(large.moments[name].mean, rel=1e-12)
+    other = odds_of(setup, Reliability(draws=40_000, batch=BLOCK + 1)).tally
+    assert any(np.any(moments.mean != other.moments[name].mean) for name, moments in small.moments.items())
 
 
 def test_moments_of_batches_join_to_those_of_the_whole():

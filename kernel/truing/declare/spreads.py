@@ -29,6 +29,37 @@ FIXED_DRAWS = 2**16
 
 
 @dataclass(frozen=True, slots=True)
+class Stream:
+    """The random numbers of one cause for some machines in a row: a generator for each block of them."""
+
+    rows: int
+    blocks: Sequence[tuple[np.random.Generator, slice]]
+
+    def standard_normal(self, columns: int = 0) -> NDArray[np.float64]:
+        """Draw standard normal values (rows,), or (columns, rows)."""
+        if columns:
+            return np.concatenate(
+                [rng.standard_normal((columns, part.stop - part.start)) for rng, part in self.blocks], axis=1
+            )
+        values = np.empty(self.rows)
+        for rng, part in self.blocks:
+            rng.standard_normal(out=values[part])
+        return values
+
+    def uniform(self, low: float, high: float) -> NDArray[np.float64]:
+        """Draw values (rows,) that are uniform between two bounds."""
+        return np.concatenate([rng.uniform(low, high, part.stop - part.start) for rng, part in self.blocks])
+
+    def of_function(self, function: Callable[..., Mapping[str, Any]]) -> dict[str, NDArray[np.float64]]:
+        """Draw by ``function(rng, rows)``: arrays (rows,) by column."""
+        drawn = [
+            {name: np.broadcast_to(values, rows) for name, values in function(rng, rows).items()}
+            for rng, rows in ((rng, part.stop - part.start) for rng, part in self.blocks)
+        ]
+        return {name: np.concatenate([part[name] for part in drawn]) for name in drawn[0]}
+
+
+@dataclass(frozen=True, slots=True)
 class Distribution:
     """One input's scatter in SI: mean, standard deviation and shape; numbers, or arrays of several designs."""
 
@@ -41,12 +72,12 @@ class Distribution:
         """The full band that a drawing would state: six standard deviations, or the whole of a uniform one."""
         return self.sd * (12**0.5 if self.shape == "uniform" else SIGMAS_IN_BAND)
 
-    def draw(self, rng: np.random.Generator, rows: int) -> NDArray[np.float64]:
-        """Draw ``rows`` values."""
+    def draw(self, stream: Stream) -> NDArray[np.float64]:
+        """Draw a value for every machine of the stream."""
         if self.shape == "uniform":
             half = self.width / 2
-            return rng.uniform(self.mean - half, self.mean + half, rows)
-        return self._scaled(rng.standard_normal(rows))
+            return stream.uniform(self.mean - half, self.mean + half)
+        return self._scaled(stream.standard_normal())
 
     def from_standard(self, standard: Any) -> Any:
         """Map standard normal values to this distribution (for FORM, Sobol sequences and fixed draws)."""

@@ -28,7 +28,7 @@ from truing.studies.checks import Check, Demand, Proposal, as_number, demands, n
 from truing.studies.drawings import lines
 from truing.studies.first_order import Straight, slopes, straightened
 from truing.studies.reading import printed, printed_step, spoken
-from truing.studies.sampling import Scatter, Tally, goal_checks, sample, scatter_of, with_tolerances
+from truing.studies.sampling import BATCH, Scatter, Tally, goal_checks, sample, scatter_of, with_tolerances
 from truing.units import unit_text
 
 BALANCED_TO = 1e-4
@@ -54,7 +54,7 @@ class Allocation:
     tightest: float = 0.25
     widest: float = 4.0
     draws: int = 100_000
-    batch: int = 2**14
+    batch: int = BATCH
     name: str = "allocation"
     gives: Callable[[Allotted], Any] | None = None
 

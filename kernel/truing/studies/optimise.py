@@ -64,6 +64,7 @@ from truing.studies.drawings import BLUE, GREY, ORANGE, WIDTH, labelled
 from truing.studies.first_order import nominal_of
 from truing.studies.reading import printed, spoken
 from truing.studies.sampling import (
+    BATCH,
     Scatter,
     ScatterSource,
     Tally,
@@ -100,7 +101,7 @@ class Optimise:
     draws: int = 4096
     surrogate: bool = False
     verify: int = 100_000
-    batch: int = 2**14
+    batch: int = BATCH
     parts: int = 1
     name: str = "optimise"
     gives: Callable[[Optimum], Any] | None = None

@@ -19,7 +19,7 @@ from truing.studies.checks import Z95, Check, Demand, as_number, demands, requir
 from truing.studies.drawings import labelled, lines
 from truing.studies.first_order import FormResult, chance, form, straightened
 from truing.studies.reading import printed, printed_step, read_range, scattering_name, spoken
-from truing.studies.sampling import Moments, Tally, goal_checks, sample, scatter_of
+from truing.studies.sampling import BATCH, Moments, Tally, goal_checks, sample, scatter_of
 from truing.units import difference_unit, from_si, unit_text
 
 METHODS = ("first_order", "monte_carlo", "form")
@@ -36,7 +36,7 @@ class Reliability:
 
     draws: int = 100_000
     method: tuple[str, ...] = METHODS
-    batch: int = 2**14
+    batch: int = BATCH
     over: str = ""
     at: str = ""
     points: int = 21
