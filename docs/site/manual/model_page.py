@@ -1,11 +1,11 @@
-"""The page of a model: what it is for and shows, then inputs, results, effects and sources, what is long folded away."""
+"""The page of a model: what it is for and shows, then inputs, results, effects and sources, the long parts folded."""
 
 from __future__ import annotations
 
 import json
 import re
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -101,15 +101,14 @@ def _limits(said: Mapping[str, Any], shown: Mapping[str, Any]) -> list[dict[str,
     notes = {item["name"]: item["note"] for item in said["results"]}
     if not shown:
         return [
-            {"name": goal["result"], "compared": goal["result"], "value": "", "state": "",
+            {"name": goal["result"], "compared": goal["result"], "value": "", "state": "", "proposed": "",
              "limit": f"{'≤' if goal['limit_kind'] == 'at_most' else '≥'} {goal['limit']}",
              "note": notes.get(goal["result"], "")}
             for goal in said["objectives"] if goal["kind"] == "require"
         ]  # fmt: skip
     return [
         {"name": check["name"], "compared": check["compared"], "state": check["state"],
-         "value": " → ".join(_with_unit(each, check["unit"]) for each in (check["value"], check["proposed"])
-                             if each is not None),
+         "value": _with_unit(check["value"], check["unit"]), "proposed": _with_unit(check["proposed"], check["unit"]),
          "limit": f"{check['relation']} {_with_unit(check['limit'], check['unit'])}",
          "note": notes.get(check["name"], "")}
         for check in shown["checks"]
@@ -117,7 +116,7 @@ def _limits(said: Mapping[str, Any], shown: Mapping[str, Any]) -> list[dict[str,
 
 
 def _keys(model: Model[Any, Any], said: Mapping[str, Any], shown: Mapping[str, Any]) -> list[tuple[Any, str]]:
-    """Return the results that stand on page one of a sheet, each with its value there where one number was calculated."""
+    """Return the results that stand on page one of a sheet, each with its value there where it is one number."""
     found = []
     for item in said["results"]:
         if getattr(model.result_fields[item["name"]].spec, "key", False):
@@ -146,7 +145,8 @@ def _formulas(offer: Offer) -> dict[str, Markup]:
 
 def _rates(model: Model[Any, Any]) -> dict[str, Markup]:
     """Return the equation of every state that declares one."""
-    made = {name: equations.state_equation(model, name) for name in (model.dynamics.state_fields if model.dynamics else ())}
+    names = model.dynamics.state_fields if model.dynamics else ()
+    made = {name: equations.state_equation(model, name) for name in names}
     return {name: _set(equation) for name, equation in made.items() if equation is not None}
 
 

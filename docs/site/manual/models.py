@@ -47,8 +47,10 @@ def environment() -> Environment:
         loader=FileSystemLoader(SITE / "pages"), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
         lstrip_blocks=True,
     )  # fmt: skip
-    made.filters |= {"symbol": _symbol, "unit": _unit, "sentence": _sentence, "number": _number, "bounds": _bounds_in_signs,
-                     "unknown_bounds": _bounds}  # fmt: skip
+    made.filters |= {
+        "symbol": _symbol, "unit": _unit, "sentence": _sentence, "number": _number, "bounds": _bounds_in_signs,
+        "unknown_bounds": _bounds,
+    }  # fmt: skip
     return made
 
 
@@ -83,4 +85,3 @@ def _bounds_in_signs(text: str) -> str:
 def _bounds(unknown: Mapping[str, Any]) -> str:
     low, high = unknown["low"], unknown["high"]
     return "any" if min(-low, high) >= BOUNDLESS else f"{low:g} … {high:g}"
-
