@@ -30,6 +30,8 @@ from truing.units import unit_text
 
 CHAPTERS = ("inputs", "results", "tolerances", "effects", "conditions", "goals", "studies", "sources")
 """Anchors of the chapters, which a section of the sheet may not take."""
+RELATIONS = {"at_most": "≤", "at_least": "≥"}
+"""Kinds of limits, by their sign; any other is called by its name."""
 MOST_RESULTS = 150
 """The sections of a model with more results are folded, so that its page stays within a dozen screens."""
 _DRAWING = re.compile(r'<div class="drawing">(<svg .*?</svg>)', re.DOTALL)
@@ -97,20 +99,23 @@ def _slug(title: str) -> str:
 
 
 def _limits(said: Mapping[str, Any], shown: Mapping[str, Any]) -> list[dict[str, str]]:
-    """Return what the model requires, with what became of it in the sheet of the gallery where there is one."""
+    """Return what the model requires, with what became of it in the sheet of the gallery where there is one.
+
+    The name of a check is that of its result, with the kind of limit behind it where there are several.
+    """
     notes = {item["name"]: item["note"] for item in said["results"]}
     if not shown:
         return [
             {"name": goal["result"], "compared": goal["result"], "value": "", "state": "", "proposed": "",
-             "limit": f"{'≤' if goal['limit_kind'] == 'at_most' else '≥'} {goal['limit']}",
+             "limit": f"{RELATIONS.get(goal['limit_kind'], goal['limit_kind'])} {goal['limit']}",
              "note": notes.get(goal["result"], "")}
             for goal in said["objectives"] if goal["kind"] == "require"
         ]  # fmt: skip
     return [
-        {"name": check["name"], "compared": check["compared"], "state": check["state"],
+        {"name": check["name"].partition(" ")[0], "compared": check["compared"], "state": check["state"],
          "value": _with_unit(check["value"], check["unit"]), "proposed": _with_unit(check["proposed"], check["unit"]),
          "limit": f"{check['relation']} {_with_unit(check['limit'], check['unit'])}",
-         "note": notes.get(check["name"], "")}
+         "note": notes.get(check["name"].partition(" ")[0], "")}
         for check in shown["checks"]
     ]  # fmt: skip
 
