@@ -70,7 +70,7 @@ def test_a_page_asks_for_nothing_outside_and_fits_a_phone(window: Any, site: Pat
     assert outside == []
 
 
-@pytest.mark.parametrize("width", [1200, 390])
+@pytest.mark.parametrize("width", [1280, 1200, 390])
 @pytest.mark.parametrize("kind", ["models", "model", "largest model", "effects"])
 def test_what_a_row_says_is_not_squeezed(window: Any, site: Path, kind: str, width: int) -> None:
     """The last cell of a row has the words: a column of its own, and on a phone the whole width."""

@@ -34,14 +34,15 @@ addEventListener("hashchange", unfoldTarget);
 if (location.hash) unfoldTarget();
 addEventListener("beforeprint", () => { for (const part of folded) { part.dataset.was = part.open; part.open = true; } });
 addEventListener("afterprint", () => { for (const part of folded) part.open = part.dataset.was === "true"; });
-if (folded.length > 3 && document.querySelector("main.wide")) {
+const list = document.querySelector("article .contents")?.closest(".scroll");
+if (folded.length > 3 && list) {
   const button = Object.assign(document.createElement("button"), { type: "button", className: "unfold", textContent: "Unfold all" });
   button.addEventListener("click", () => {
     const open = folded.some((part) => !part.open);
     for (const part of folded) part.open = open;
     button.textContent = open ? "Fold all" : "Unfold all";
   });
-  document.querySelector("article .contents").closest(".scroll").after(button);
+  list.after(button);
 }
 
 for (const block of document.querySelectorAll(".highlight")) {
