@@ -125,5 +125,59 @@ def test_every_model_has_a_page_with_all_that_it_declares(site: Path) -> None:  
             assert f'href="models/{name}.html#{effect["name"]}"' in effects
             assert f'id="{effect["name"]}"' in text
         assert text.count("<math") >= sum(bool(item["formula"]) for item in said["results"])
+        ids = re.findall(r' id="([^"]+)"', text)
+        assert len(ids) == len(set(ids)), name
+        assert {f"input-{item['name']}" for item in said["inputs"]} <= set(ids)
+        assert {f"result-{item['name']}" for item in said["results"]} <= set(ids)
+        assert set(re.findall(r'href="#([^"]+)"', text)) <= {*ids, "__toc", "main"}, name
         schema = json.loads((site / "reference" / "models" / f"{name}.schema.json").read_text(encoding="utf-8"))
         assert set(schema["$defs"]["Inputs"]["properties"]) == {item["name"] for item in said["inputs"]}
+
+
+def folded(text: str) -> list[tuple[str, str]]:
+    """The summary of every part of a page that is folded, and what is in it."""
+    return re.findall(r"<details><summary>(.*?)</summary>(.*?)</details>", text, re.DOTALL)
+
+
+def test_every_formula_and_limit_of_a_model_is_on_its_page_and_folds_say_how_much_is_in_them(site: Path) -> None:  # noqa: F811
+    counted = 0
+    for name, offer in Kernel.installed().offers.items():
+        text = (site / "reference" / "models" / f"{name}.html").read_text(encoding="utf-8")
+        said = description(offer)
+        rows = [row for table in re.findall(r'<table class="fields formulas">.*?</table>', text, re.DOTALL)
+                for row in re.findall(r"<tbody>.*|<tr>.*?</tr>", table) if "<math" in row]  # fmt: skip
+        shown = [result for row in rows for result in re.findall(r'href="#result-(\w+)"', row)]
+        assert sorted(shown) == sorted(item["name"] for item in said["results"] if item["formula"]), name
+        limits = "".join(re.findall(r'<table class="fields limits">.*?</table>', text, re.DOTALL))
+        required = {goal["result"] for goal in said["objectives"] if goal["kind"] == "require"}
+        assert required <= set(re.findall(r'href="#result-(\w+)"', limits)), name
+        for summary, inside in folded(text):
+            for word, mark in (("input", ' id="input-'), ("result", ' id="result-'), ("printed number", "<br><code>")):
+                for count in re.findall(rf"^(\d+) {word}s?\b", summary):
+                    counted += 1
+                    assert inside.count(mark) == int(count), (name, summary)
+            for count in re.findall(r"(\d+) formula", summary):
+                listed = inside[inside.index("fields formulas") :]
+                assert listed.count("<tr><td>") == int(count), (name, summary)
+                counted += 1
+    assert counted > 50
+
+
+def test_parts_share_a_row_where_their_formulas_are_one_and_inputs_follow_the_example(site: Path) -> None:  # noqa: F811
+    text = (site / "reference" / "models" / "rv_gearing.html").read_text(encoding="utf-8")
+    rows = re.findall(r"<tr>.*?</tr>", text, re.DOTALL)
+    assert [row for row in rows if 'id="result-base_diameter_sun"' in row and 'id="result-base_diameter_planet"' in row]
+    # Z_B and Z_D are two formulas of the standard: each has its own row
+    assert not [row for row in rows if row.count('id="result-single_contact_factor_') > 1]
+    begin = text.index('id="inputs-how-well-it-is-made"')
+    group = text[begin : text.index("<h3", begin)]
+    example = Kernel.installed().offers["rv_gearing"].model.example
+    assert example is not None
+    paragraph = example.read_text(encoding="utf-8").partition("# How well it is made.")[2].partition("\n\n")[0]
+    assert re.findall(r'id="input-(\w+)"', group) == re.findall(r"^(\w+) =", paragraph, re.MULTILINE)
+
+
+def test_the_search_knows_what_is_folded(site: Path) -> None:  # noqa: F811
+    words = (site / "search" / "index.js").read_text(encoding="utf-8")
+    for name in ("nominal_root_stress_outer_planet", "stated_bending_life_planet", "transverse_base"):
+        assert name in words

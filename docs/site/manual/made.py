@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from manual import gallery, models
+from manual import gallery, model_page, models
 
 _PARTS = {"models": models.list_of_models, "effects": models.list_of_effects, "gallery": gallery.cards}
 _MARK = re.compile(r"^<!-- made: (\w+) -->$", re.MULTILINE)
@@ -13,7 +13,7 @@ _MARK = re.compile(r"^<!-- made: (\w+) -->$", re.MULTILINE)
 
 def files() -> dict[str, str | Path]:
     """Return every file that is made, by its place in the site: its text, or where it lies."""
-    return {**models.pages(), **dict(gallery.files())}
+    return {**model_page.pages(), **dict(gallery.files())}
 
 
 def filled(text: str) -> str:

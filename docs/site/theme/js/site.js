@@ -17,7 +17,33 @@ menu.addEventListener("click", () => {
 document.querySelector("#sidebar [aria-current]")?.scrollIntoView({ block: "center" });
 scrollTo({ top: location.hash ? scrollY : 0 });
 const contents = document.querySelector(".toc");
-if (contents && matchMedia("(min-width: 80rem)").matches) contents.open = true;
+const beside = document.querySelector("main.wide") ? "(min-width: 92rem)" : "(min-width: 80rem)";
+if (contents && matchMedia(beside).matches) contents.open = true;
+
+// What is folded opens where a link leads into it, when the page is printed, and all at once by a button.
+const folded = [...document.querySelectorAll("article details")];
+function unfoldTarget() {
+  const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));
+  for (let part = target?.closest("details"); part; part = part.parentElement.closest("details")) part.open = true;
+  let next = target?.matches("h3") && target.nextElementSibling;
+  if (next && next.matches("p")) next = next.nextElementSibling;
+  if (next && next.matches("details")) next.open = true;
+  target?.scrollIntoView();
+}
+addEventListener("hashchange", unfoldTarget);
+if (location.hash) unfoldTarget();
+addEventListener("beforeprint", () => { for (const part of folded) { part.dataset.was = part.open; part.open = true; } });
+addEventListener("afterprint", () => { for (const part of folded) part.open = part.dataset.was === "true"; });
+const list = document.querySelector("article .contents")?.closest(".scroll");
+if (folded.length > 3 && list) {
+  const button = Object.assign(document.createElement("button"), { type: "button", className: "unfold", textContent: "Unfold all" });
+  button.addEventListener("click", () => {
+    const open = folded.some((part) => !part.open);
+    for (const part of folded) part.open = open;
+    button.textContent = open ? "Fold all" : "Unfold all";
+  });
+  list.after(button);
+}
 
 for (const block of document.querySelectorAll(".highlight")) {
   const button = Object.assign(document.createElement("button"), { type: "button", className: "copy", textContent: "Copy" });
