@@ -295,6 +295,18 @@ def index(
     """Write one page that lists the runs and diagnoses of a folder, to sort and to filter, offline."""
 
 
+@_loaded("serve")
+def serve(
+    context: typer.Context,
+    folder: Annotated[Path, typer.Argument(help="The folder with inputs files and measured data.")] = Path("."),
+    host: Annotated[str, typer.Option("--host", help="The address that is listened to.")] = "127.0.0.1",
+    port: Annotated[int, typer.Option("--port", min=0, max=65535, help="The port; 0 is any that is free.")] = 0,
+    memory: Annotated[float, typer.Option("--memory", min=0.5, help="GB that one calculation may take.")] = 4.0,
+    no_browser: Annotated[bool, typer.Option("--no-browser", help="Open no browser; print the address only.")] = False,
+) -> None:
+    """Open the workbench: a page on this machine to edit, run, measure, diagnose and keep; Ctrl-C ends it."""
+
+
 @_loaded("new")
 def new(
     context: typer.Context,
