@@ -24,7 +24,7 @@ from typing import Any
 from truing.errors import InputError, TruingError
 from truing.heavy import Later
 from truing.texts import one_line
-from truing.workbench.tasks import MODULES, task
+from truing.workbench.tasks import HOME, MODULES, task
 
 resource: Any = Later("resource")
 FAILURES = (Exception, SystemExit, KeyboardInterrupt)
@@ -42,10 +42,11 @@ class Ended(BaseException):
     """The server wants this process to end: what is being written is taken back on the way."""
 
 
-def work(pipe: Connection, memory: int, root: str) -> None:
+def work(pipe: Connection, memory: int, root: str, home: str = HOME) -> None:
     """Answer requests ``(number, name, arguments)`` until the pipe closes.
 
-    ``memory`` are the bytes that data may take; ``root`` is the folder in which every task begins.
+    ``memory`` are the bytes that data may take; ``root`` is the folder in which every task begins, and
+    ``home`` the package of tasks.
     """
     process = os.getpid()
     _lead_a_group(process)
@@ -53,11 +54,11 @@ def work(pipe: Connection, memory: int, root: str) -> None:
     _close_streams()
     sys.path[:] = [path for path in sys.path if path and Path(path).resolve() != Path(root)]
     with suppress(EOFError, OSError, Ended):
-        _warm_up(pipe)
+        _warm_up(pipe, home)
         while True:
             number, name, arguments = pipe.recv()
             _begin_anew(root)
-            said = _answer(name, arguments, _progress(pipe, number))
+            said = _answer((name, home), arguments, _progress(pipe, number))
             if os.getpid() != process:  # a model has forked, and this is the copy
                 os._exit(0)
             pipe.send_bytes(_as_json(number, *said))
@@ -96,13 +97,13 @@ def _close_streams() -> None:
     sys.stdout = sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115  # as long as the process
 
 
-def _warm_up(pipe: Connection) -> None:
+def _warm_up(pipe: Connection, home: str) -> None:
     """Import what tasks need, as long as nothing is asked."""
     for module in sorted(MODULES, key=lambda module: module not in SOON):
         if pipe.poll():
             return
         with suppress(ImportError):
-            importlib.import_module(f"truing.workbench.tasks.{module}")
+            importlib.import_module(f"{home}.{module}")
 
 
 def _begin_anew(root: str) -> None:
@@ -125,15 +126,17 @@ def _progress(pipe: Connection, number: int) -> Callable[[str, int, int], None]:
             return
         last = stage, now
         with suppress(OSError):
-            pipe.send_bytes(json.dumps([number, "progress", [one_line(stage)[:200], int(done), int(total)]]).encode())
+            pipe.send_bytes(json.dumps([number, "progress", [one_line(stage[:200]), int(done), int(total)]]).encode())
 
     return progress
 
 
-def _answer(name: str, arguments: Mapping[str, Any], progress: Callable[[str, int, int], None]) -> tuple[str, Any]:
+def _answer(
+    called: tuple[str, str], arguments: Mapping[str, Any], progress: Callable[[str, int, int], None]
+) -> tuple[str, Any]:
     """Do a task and return ("answer", what it returns) or ("faults", what is wrong)."""
     try:
-        function = task(name)
+        function = task(*called)
         with_progress = {"progress": progress} if "progress" in function.__code__.co_varnames else {}
         return "answer", function(**arguments, **with_progress)
     except InputError as error:
@@ -143,9 +146,9 @@ def _answer(name: str, arguments: Mapping[str, Any], progress: Callable[[str, in
     except MemoryError:
         return "faults", [_said("the calculation asked for more memory than it may have; see calc serve --memory")]
     except SystemExit as error:
-        return "faults", [_said(f"the calculation ended itself (exit code {one_line(str(error.code))})")]
+        return "faults", [_said(f"the calculation ended itself (exit code {one_line(str(error.code)[:80])})")]
     except FAILURES as error:
-        return "faults", [_said(f"{type(error).__name__}: {one_line(str(error))}")]
+        return "faults", [_said(f"{type(error).__name__}: {one_line(str(error)[: 2 * LONGEST_SENTENCE])}")]
 
 
 def _said(sentence: str) -> dict[str, Any]:

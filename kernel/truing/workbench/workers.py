@@ -25,6 +25,7 @@ from typing import Any, Literal
 
 from truing.errors import UsageError
 from truing.workbench import end_orphans
+from truing.workbench.tasks import HOME
 from truing.workbench.worker_process import LARGEST_ANSWER, work
 
 PATIENCE = 20.0
@@ -98,13 +99,13 @@ class OrphanEnder:
 class Worker:
     """One worker process. Once it was ended, by whomever, it is good for nothing more."""
 
-    def __init__(self, memory: int, root: Path, orphans: OrphanEnder) -> None:
+    def __init__(self, memory: int, root: Path, orphans: OrphanEnder, home: str = HOME) -> None:
         context = multiprocessing.get_context("spawn")
         self._orphans, self._number, self._lock = orphans, 0, threading.Lock()
         self.why = ""
         """Why it was ended, or nothing as long as it works."""
         self._pipe, end = context.Pipe()
-        self._process = context.Process(target=work, args=(end, memory, str(root)), daemon=False)  # may have its own
+        self._process = context.Process(target=work, args=(end, memory, str(root), home))
         self._process.start()
         end.close()
         orphans.hear("+", self._process.pid)
@@ -227,8 +228,8 @@ class Question:
 class Workers:
     """The workers of one server: some that answer questions, one for each job that runs, and one in reserve."""
 
-    def __init__(self, memory: int, root: Path, quick: int = 2) -> None:
-        self._memory, self._root, self._quick = memory, root, quick
+    def __init__(self, memory: int, root: Path, quick: int = 2, home: str = HOME) -> None:
+        self._memory, self._root, self._quick, self._home = memory, root, quick, home
         self._gate = threading.Condition()
         self._orphans = OrphanEnder()
         self._idle: list[Worker] = []
@@ -261,7 +262,7 @@ class Workers:
     def _new(self) -> Worker:
         if self.closed:
             raise TaskError([fault_of("the workbench has ended")])
-        worker = Worker(self._memory, self._root, self._orphans)
+        worker = Worker(self._memory, self._root, self._orphans, self._home)
         self._all = {each for each in self._all if not each.why} | {worker}
         return worker
 
