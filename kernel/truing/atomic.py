@@ -107,7 +107,7 @@ def file_appearing(path: Path, *, replace: bool = False) -> Iterator[BinaryIO]:
             if stream is not None:
                 yield stream
                 stream.flush()
-                os.link(f"/proc/self/fd/{stream.fileno()}", path, follow_symlinks=True)
+                _name(stream, path)
                 return
             move = stack.enter_context(_file_beside(path, b""))
             with move.part.open("wb") as stream:
@@ -129,6 +129,17 @@ def _nameless(path: Path) -> Iterator[BinaryIO | None]:
         return
     with os.fdopen(handle, "wb") as stream:
         yield stream
+
+
+def _name(stream: BinaryIO, path: Path) -> None:
+    """Give an open file without a name its own, which nothing may have. Raises OSError."""
+    folder = os.open("/proc/self/fd", os.O_RDONLY)
+    try:
+        os.link(str(stream.fileno()), path, src_dir_fd=folder, follow_symlinks=True)
+    except FileExistsError:
+        raise FileExistsError(errno.EEXIST, "it is there already; choose another name", str(path)) from None
+    finally:
+        os.close(folder)
 
 
 def place_folder(folder: Path, files: Mapping[str, str | bytes], what: str) -> None:

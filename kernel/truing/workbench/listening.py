@@ -91,11 +91,7 @@ def serve(root: Path, *, host: str, port: int, memory: int, ready: Callable[[str
         key, root = Key(port), root.resolve()
         workers = Workers(memory, root)
         try:
-            config = uvicorn.Config(
-                application(root, key, hosts_of(host, port), workers), http=Connection, ws="none", lifespan="off",
-                log_level="critical", access_log=False, server_header=False, date_header=False, proxy_headers=False,
-                timeout_graceful_shutdown=LAST_MOMENT, h11_max_incomplete_event_size=LARGEST_HEAD,
-            )  # fmt: skip
+            config = configured(application(root, key, hosts_of(host, port), workers))
             listening.listen(128)
             address = f"http://{_shown(host)}:{port}/?token="
             ready(address + key.token, address + key.ticket())
@@ -104,6 +100,15 @@ def serve(root: Path, *, host: str, port: int, memory: int, ready: Callable[[str
                 _run(Server(config, workers), listening)
         finally:
             workers.close()
+
+
+def configured(app: Any) -> uvicorn.Config:
+    """Return how the application is served: plain HTTP that does not wait for long, and nothing written to a log."""
+    return uvicorn.Config(
+        app, http=Connection, ws="none", lifespan="off", log_level="critical", access_log=False, server_header=False,
+        date_header=False, proxy_headers=False, timeout_graceful_shutdown=LAST_MOMENT,
+        h11_max_incomplete_event_size=LARGEST_HEAD,
+    )  # fmt: skip
 
 
 class _InterruptedError(Exception):

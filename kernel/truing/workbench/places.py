@@ -22,7 +22,7 @@ _DEVICE = re.compile(r"(?:con|prn|aux|nul|clock\$|conin\$|conout\$|com[0-9¹²³
 
 
 def inside(root: Path, name: str) -> Path:
-    """Return a file or folder by its name below the root.
+    """Return a file or folder by its name below the root, which has none itself.
 
     A name is refused that means anything else on some system (a drive, a device, a stream), on every system: a folder
     is moved from one to another. Hidden files are not shown and not written. Raises UsageError, also where the file
@@ -43,8 +43,6 @@ def inside(root: Path, name: str) -> Path:
 
 def _refusal(name: str) -> str:
     """Return why a path below the root is none, or nothing."""
-    if name == ".":
-        return ""
     try:
         size = len(os.fsencode(name))
     except UnicodeEncodeError:
