@@ -217,12 +217,11 @@ def _file_beside(path: Path, content: str | bytes) -> Iterator[Move]:
     recover(target)
     handle, name = tempfile.mkstemp(dir=target.parent, prefix=_prefix(target), suffix=PART)
     part = Path(name)
-    with _deleted(part, target):
-        with os.fdopen(handle, "wb") as stream:
-            stream.write(_bytes(content))
+    with os.fdopen(handle, "wb") as stream, _deleted(part, target), _held(part):
+        stream.write(_bytes(content))
+        stream.close()
         part.chmod(mode)
-        with _held(part):
-            yield Move(part, target, path, _inode(part))
+        yield Move(part, target, path, _inode(part))
 
 
 @contextmanager

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import errno
 import os
-import re
 import socket
 import threading
 from collections.abc import Callable
@@ -18,10 +17,9 @@ import h11
 import uvicorn
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
-from truing.atomic import recover
 from truing.errors import OutputError
 from truing.workbench.guard import Key, hosts_of
-from truing.workbench.places import DEEPEST
+from truing.workbench.places import tidy
 from truing.workbench.server import application
 from truing.workbench.workers import Workers
 
@@ -33,7 +31,6 @@ MOST_CONNECTIONS = 250
 """A browser opens six."""
 LAST_MOMENT = 1
 """Seconds that answers may still take after Ctrl-C."""
-_PART = re.compile(r"\.(.+)\.[a-z0-9_]{8}\.(?:part|old)")
 
 
 class Connection(H11Protocol):
@@ -91,13 +88,15 @@ def serve(root: Path, *, host: str, port: int, memory: int, ready: Callable[[str
         key, root = Key(port), root.resolve()
         workers = Workers(memory, root)
         try:
-            config = configured(application(root, key, hosts_of(host, port), workers))
+            server = Server(configured(application(root, key, hosts_of(host, port), workers)), workers)
             listening.listen(128)
             address = f"http://{_shown(host)}:{port}/?token="
             ready(address + key.token, address + key.ticket())
-            threading.Thread(target=_bring_back, args=(root,), daemon=True).start()
-            with suppress(_InterruptedError):
-                _run(Server(config, workers), listening)
+            threading.Thread(target=tidy, args=(root,), daemon=True).start()
+            server.run(sockets=[listening])
+        except KeyboardInterrupt as end:
+            if type(end) is not KeyboardInterrupt:
+                raise
         finally:
             workers.close()
 
@@ -109,19 +108,6 @@ def configured(app: Any) -> uvicorn.Config:
         date_header=False, proxy_headers=False, timeout_graceful_shutdown=LAST_MOMENT,
         h11_max_incomplete_event_size=LARGEST_HEAD,
     )  # fmt: skip
-
-
-class _InterruptedError(Exception):
-    """Ctrl-C, by which a workbench ends as it should."""
-
-
-def _run(server: Server, listening: socket.socket) -> None:
-    try:
-        server.run(sockets=[listening])
-    except KeyboardInterrupt as end:
-        if type(end) is KeyboardInterrupt:
-            raise _InterruptedError from None
-        raise
 
 
 def _listening(host: str, port: int) -> socket.socket:
@@ -143,14 +129,3 @@ def _shown(host: str) -> str:
     """Return a name for an address by which it can be called."""
     name = socket.gethostname() if host in {"0.0.0.0", "::"} else host
     return f"[{name}]" if ":" in name else name
-
-
-def _bring_back(root: Path) -> None:
-    """Take away what a server that was killed has left half-written, or bring back what it had put aside."""
-    for folder, folders, files in os.walk(root):
-        for name in (*folders, *files):
-            if match := _PART.fullmatch(name):
-                with suppress(OSError):
-                    recover(Path(folder) / match[1])
-        is_deep = len(Path(folder).relative_to(root).parts) >= DEEPEST
-        folders[:] = [] if is_deep else [name for name in folders if not name.startswith(".")]

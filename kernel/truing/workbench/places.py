@@ -6,8 +6,10 @@ import os
 import re
 import stat
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
+from truing.atomic import recover
 from truing.errors import UsageError
 from truing.texts import one_line
 
@@ -17,6 +19,8 @@ LONGEST_NAME, LONGEST_PATH = 240, 1000
 """Bytes of a name and of all names of a path: file systems take 255 and more, and writing adds to a name."""
 INPUTS, DATA = (".toml",), (".csv", ".tsv", ".txt", ".xlsx", ".tdms", ".mf4", ".mdf", ".mat", ".parquet")
 LEFT_OUT = {"__pycache__", "node_modules", "site-packages"}
+_PART = re.compile(r"\.(.+)\.[a-z0-9_]{8}\.(?:part|old)")
+"""What is written beside its place; see ``atomic``."""
 _NO_NAME = re.compile(r'[\x00-\x1f\x7f<>:"|?*\\]|[ .]$')
 _DEVICE = re.compile(r"(?:con|prn|aux|nul|clock\$|conin\$|conout\$|com[0-9¹²³]|lpt[0-9¹²³]) *(?:\..*)?", re.IGNORECASE)
 
@@ -88,3 +92,14 @@ def _is_own_file(root: Path, path: Path) -> bool:
         return stat.S_ISREG(path.stat().st_mode) and inside(root, below(root, path)) is not None
     except (OSError, UsageError):
         return False
+
+
+def tidy(root: Path) -> None:
+    """Take away what processes that were killed have left half-written, or bring back what they had put aside."""
+    for count, (folder, folders, files) in enumerate(os.walk(root)):
+        for name in (*folders, *files):
+            if match := _PART.fullmatch(name):
+                with suppress(OSError):
+                    recover(Path(folder) / match[1])
+        is_far = count > MOST_FILES or len(Path(folder).relative_to(root).parts) >= DEEPEST
+        folders[:] = [] if is_far else [name for name in folders if not name.startswith(".")]

@@ -25,6 +25,7 @@ from typing import Any, Literal
 
 from truing.errors import UsageError
 from truing.workbench import end_orphans
+from truing.workbench.places import tidy
 from truing.workbench.tasks import HOME
 from truing.workbench.worker_process import LARGEST_ANSWER, work
 
@@ -386,6 +387,8 @@ class Workers:
         finally:
             if job.worker is not None:
                 job.worker.end("the job is over")
+                if job.status != "done":
+                    tidy(self._root)
             with self._gate:
                 job.worker = None
                 self._begin_next()
@@ -432,3 +435,4 @@ class Workers:
         for thread in ending:
             thread.join()
         self._orphans.close()
+        tidy(self._root)
