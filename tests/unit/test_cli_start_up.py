@@ -24,6 +24,9 @@ HEAVY = {
     "pluggy",
     "tomlkit",
     "openpyxl",
+    "starlette",
+    "uvicorn",
+    "multiprocessing",
 }
 PROBE = """
 import json, sys
@@ -46,6 +49,7 @@ def imported(*arguments: str) -> tuple[int, set[str], str]:
     [
         (["--help"], "Commands:"),
         (["run", "--help"], "--set NAME=VALUE"),
+        (["serve", "--help"], "--no-browser"),
         (["--version"], "truing "),
         (["plugins", "--names"], "press_linkage\n"),
         (["--names", "plugins"], None),
