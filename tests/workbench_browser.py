@@ -65,9 +65,11 @@ def serving(folder: Path, *arguments: str) -> Iterator[Workbench]:
     command = [sys.executable, "-m", "truing", "serve", str(folder), "--no-browser", "--port", "0", *arguments]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     try:
-        assert process.stdout is not None and process.stderr is not None
-        line = process.stdout.readline()
-        assert "http://" in line, line + process.stderr.read()
+        output, errors = process.stdout, process.stderr
+        assert output is not None
+        assert errors is not None
+        line = output.readline()
+        assert "http://" in line, line + errors.read()
         opening = line[line.index("http://") :].strip()
         yield Workbench(folder.resolve(), opening.partition("?")[0], opening, process)
     finally:
@@ -102,8 +104,9 @@ def axe(page: Any, *rules_left_out: str) -> list[str]:
 WIDER = """() => {
     const width = document.documentElement.clientWidth;
     if (document.documentElement.scrollWidth <= width) return [];
-    const wide = [...document.body.querySelectorAll('*')].filter(node => node.getBoundingClientRect().right > width + 1);
-    const name = node => `${node.tagName.toLowerCase()}.${node.className} ${(node.id || node.textContent).slice(0, 40)}`;
+    const right = node => node.getBoundingClientRect().right;
+    const wide = [...document.body.querySelectorAll('*')].filter(node => right(node) > width + 1);
+    const name = node => `${node.tagName} ${node.className} ${(node.id || node.textContent).slice(0, 40)}`;
     return [`the page is ${document.documentElement.scrollWidth} px wide`, ...wide.slice(0, 5).map(name)];
 }"""
 
