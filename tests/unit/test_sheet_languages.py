@@ -51,7 +51,6 @@ from truing.report.translation import (
     ENGLISH_WORDS,
     GAP,
     LISTS,
-    STUDY,
     Catalogue,
     catalogue_of,
     kernel_catalogue,
@@ -59,8 +58,9 @@ from truing.report.translation import (
     translated,
     words_in,
 )
+from truing.report.wording import STUDY
 from truing.runs.provenance import provenance_of
-from truing.setup import SheetOptions, default_setup, in_language
+from truing.setup import SheetOptions, default_setup, sheet_in
 from truing.templating import ENGLISH, languages, template_folder
 
 FOREIGN = [language for language in languages() if language != ENGLISH]
@@ -486,7 +486,7 @@ def test_a_plugin_in_one_file_brings_its_own_words(pulley: Path) -> None:
 ])  # fmt: skip
 def test_faulty_words_of_a_plugin_are_left_out_and_named(pulley: Path, content: str, sentence: str) -> None:
     (pulley.parent / "words" / "de.toml").write_text(content, encoding="utf-8")
-    words = catalogue_of(in_language(truing.load(pulley).setup(), "de"))
+    words = catalogue_of(sheet_in(truing.load(pulley).setup(), language="de"))
     (fault,) = words.faults
     assert fault.startswith(f"{pulley.parent / 'words' / 'de.toml'}: these words of a sheet are left out: ")
     assert sentence in fault
@@ -498,7 +498,7 @@ def test_an_unknown_language_is_refused_with_the_choices(pulley: Path) -> None:
     with pytest.raises(InputError, match=r"made.toml:2: language: choose en or de\."):
         setup_from_text('[sheet]\nlanguage = "xx"\n', offer, file="made.toml", folder=pulley.parent)
     with pytest.raises(UsageError, match="language: choose en or de, not 'xx'"):
-        in_language(truing.load(pulley).setup(), "xx")
+        sheet_in(truing.load(pulley).setup(), language="xx")
 
 
 def test_every_place_of_words_is_a_gap_or_a_kind_of_sheet() -> None:

@@ -38,11 +38,10 @@ from truing.runs.documents import results_document
 from truing.runs.folder import FolderKind, demand_place, run_files, write_outcome
 from truing.runs.partial import code_of, identity_of, kept_batches
 from truing.runs.provenance import provenance_of
-from truing.setup import Setup, in_language
+from truing.setup import Setup, sheet_in
 from truing.studies.bench import Progress, silent
 from truing.studies.checks import Check, State
 from truing.units import from_si
-from truing.units.systems import UNIT_SYSTEMS
 from truing.workbooks.writing import demand_library
 
 FIRST = 12
@@ -142,7 +141,7 @@ class Run:
         ``units`` are "SI" or "inch", ``language`` "en" or "de"; "" those of the run. Raises OutputError, and UsageError
         for others.
         """
-        calculation = replace(self.calculation, setup=in_language(in_units(self._setup, units), language))
+        calculation = replace(self.calculation, setup=sheet_in(self._setup, units=units, language=language))
         return write_sheet(path, partial(replace(self, calculation=calculation)._sheet, silent))
 
     def save(
@@ -221,13 +220,6 @@ class Run:
                 "value": float(from_si(value, unit)), "unit": unit, "note": result.spec.note,
                 "text": with_unit(number, printed),
             }  # fmt: skip
-
-
-def in_units(setup: Setup, units: str) -> Setup:
-    """Return a setup whose sheet is in these units; "" leaves its own. Raises UsageError for other words."""
-    if units not in {"", *UNIT_SYSTEMS}:
-        raise UsageError(f"units is '{units:.40}'; choose {' or '.join(UNIT_SYSTEMS)}")
-    return replace(setup, sheet=replace(setup.sheet, units=units or setup.sheet.units))  # type: ignore[arg-type]
 
 
 def performed(

@@ -18,7 +18,7 @@ from truing.report.chapters import Figures, numbered
 from truing.report.diagnosis_chapters import diagnosis_chapters
 from truing.report.diagnosis_remedy import then_table
 from truing.report.diagnosis_sizes import amount_text
-from truing.report.diagnosis_units import diagnosis_as_printed, words_as_printed
+from truing.report.diagnosis_units import diagnosis_as_printed
 from truing.report.diagnosis_words import about_of, headline, prose, remedy_of, spoken, verdict_word, what_decides
 from truing.report.document import (
     Banner,
@@ -35,6 +35,7 @@ from truing.report.document import (
 from truing.report.sheet import end_chapters, head_faults, head_of
 from truing.report.sheet_units import sheet_units
 from truing.report.translation import catalogue_of, translated
+from truing.report.wording import in_words
 from truing.runs.folder import data_digests
 from truing.runs.provenance import Provenance, provenance_of
 
@@ -83,8 +84,7 @@ def make_diagnosis_sheet(diagnosis: DiagnosisResult, *, provenance: Provenance) 
         warnings=warnings,
         provenance=provenance,
     )
-    printed: Document = words_as_printed(document, units)
-    return translated(printed, words)
+    return translated(in_words(document, units), words)
 
 
 def _texts(blocks: Iterable[BlockView]) -> Iterator[str]:
@@ -160,8 +160,11 @@ def _remedies(diagnosis: DiagnosisResult) -> Iterator[tuple[str, Text]]:
 def questions(diagnosis: DiagnosisResult) -> dict[str, tuple[str, ...]]:
     """Return what a diagnosis says to each of its questions, line by line, in the units of its sheet."""
     chapters = diagnosis_chapters(diagnosis_as_printed(diagnosis), Figures(skipped=True))
-    chapters = words_as_printed(tuple(chapters), sheet_units(diagnosis.setup))
-    return {chapter.title.removesuffix(" measurement"): chapter.lines for chapter in chapters if chapter.lines}
+    said = sheet_units(diagnosis.setup).said
+    return {
+        chapter.title.removesuffix(" measurement"): tuple(map(said, chapter.lines))
+        for chapter in chapters if chapter.lines
+    }  # fmt: skip
 
 
 def data_line(diagnosis: DiagnosisResult) -> str:
