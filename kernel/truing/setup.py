@@ -18,7 +18,7 @@ from truing.declare.sources import Effect, Unknown
 from truing.declare.spreads import Distribution, Off, Spread, Target, settled
 from truing.errors import UsageError
 from truing.kernel import Added, Origin
-from truing.templating import ENGLISH, languages
+from truing.templating import ENGLISH, demand_language
 from truing.units.systems import UNIT_SYSTEMS, UnitSystem, in_system
 
 DEFAULT_SEED = 0
@@ -278,10 +278,10 @@ def sheet_in(setup: Setup, *, units: str = "", language: str = "") -> Setup:
 
     Raises UsageError for units or a language that are not known.
     """
+    demand_language(language)
     systems = {str(system): system for system in UNIT_SYSTEMS}
-    for word, known, what in ((units, [*systems], "units"), (language, languages(), "language")):
-        if word and word not in known:
-            raise UsageError(f"{what}: choose {' or '.join(known)}, not '{word:.40}'.")
+    if units and units not in systems:
+        raise UsageError(f"units: choose {' or '.join(systems)}, not '{units:.40}'.")
     sheet = setup.sheet
     return replace(
         setup, sheet=replace(sheet, units=systems.get(units, sheet.units), language=language or sheet.language)

@@ -458,13 +458,17 @@ class Diagnosis:
 
     def compare(self, before: Diagnosis) -> Differences:
         """Return what differs from ``before`` to this diagnosis: data, verdict, causes, errors, gain."""
-        return differences_of(before.document, self.document, lambda: (before.side("before"), self.side("after")))
-
-    def side(self, name: str) -> Side:
-        """Return what a page of two diagnoses is written from: the document, and the figures of the sheet."""
-        return Side(
-            name, self.document, figures_in(diagnosis_sheet_of(self.result, self.started)), self.result.setup.model
+        return differences_of(
+            before.document,
+            self.document,
+            lambda language: (before.side("before", language), self.side("after", language)),
         )
+
+    def side(self, name: str, language: str = "") -> Side:
+        """Return what a page of two diagnoses is written from: the document, and the figures of the sheet."""
+        result = replace(self.result, setup=sheet_in(self.result.setup, language=language))
+        figures = figures_in(diagnosis_sheet_of(result, self.started))
+        return Side(name, self.document, figures, result.setup.model, self.offer.origin.file)
 
     def _repr_html_(self) -> str:
         """Show the verdict, the causes, the residuals before and after, and the rest folded away."""

@@ -25,10 +25,13 @@ from truing.templating import ENGLISH, template_folder
 FOLDER: Final = "words"
 """Beside the files of a plugin: the folder of its words, a TOML file for each language."""
 PLACES: Final = "in"
-"""The table of words that hold in one place alone: in the gap of that name, or in ``DIAGNOSIS`` or ``STUDY``."""
+"""The table of words that hold in one place alone: in the gap of that name, or in ``DIAGNOSIS``, ``COMPARISON`` or
+``STUDY``."""
 DIAGNOSIS: Final = "diagnosis"
 """The sheet of a diagnosis: short texts such as "{result} over {covariate}" are the kernel's there, as they are in
 the chapter of a study, and may be anybody's elsewhere."""
+COMPARISON: Final = "comparison"
+"""The page of two runs, or of two diagnoses."""
 LISTS: Final = frozenset({
     "causes", "conditions", "course", "covariates", "explanation", "explanations", "facts", "inputs", "met", "names",
     "others", "reasons", "results", "settings", "shares", "waves",
@@ -207,13 +210,18 @@ def catalogue_of(setup: Setup, place: str = "") -> Catalogue:
 
     ``place`` is ``DIAGNOSIS`` for the sheet of a diagnosis.
     """
-    language = setup.sheet.language
+    sources = (*(added.file for added in setup.source.added), setup.origin.file)
+    return catalogue(setup.sheet.language, sources, place)
+
+
+def catalogue(language: str, sources: Iterable[str], place: str = "") -> Catalogue:
+    """Return the kernel's words in a language, and those of plugins whose files these are; the last one's count."""
     if language == ENGLISH:
         return ENGLISH_WORDS
     places = {name: dict(words) for name, words in kernel_words(language).items()}
     own: dict[str, str] = {}
     faults: list[str] = []
-    for source in dict.fromkeys((*(added.file for added in setup.source.added), setup.origin.file)):
+    for source in dict.fromkeys(sources):
         file = Path(source).parent / FOLDER / f"{language}.toml"
         if source.endswith(".py") and file.is_file():
             try:
