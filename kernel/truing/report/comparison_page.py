@@ -526,12 +526,8 @@ def _unchanged(
             blocks.append(TableView(f"{title}: {len(pieces)}", columns, tuple(rows), kind="key"))
     named = {kind: [name.replace("_", " ") for name in pieces] for kind, pieces in stayed.items() if pieces}
     named["figures"] = [pair.title for pair in pairs if is_same_figure(pair)]
-    titles = {**GIVEN_KINDS, **DIAGNOSIS_KINDS}
-    blocks += [
-        Paragraph((titles.get(kind, kind.capitalize()), ": ", *joined(names), "."))
-        for kind, names in named.items()
-        if names
-    ]
+    titles = {kind: {**GIVEN_KINDS, **DIAGNOSIS_KINDS}.get(kind, kind.capitalize()) for kind in named}
+    blocks += [Paragraph((titles[kind], ": ", *joined(names), ".")) for kind, names in named.items() if names]
     large = [name for name, piece in (kinds.get("results") or {}).items() if "array" in (piece or {})]
     if large:
         words = f"Not compared, because their numbers stand in arrays.npz alone: {', '.join(large)}."
@@ -556,5 +552,5 @@ def _sources(before: Side, after: Side, faults: Iterable[str]) -> Chapter:
         row("Seed", lambda side: str(side.document.get("seed", ""))),
     )
     columns = (Column("", kind="name"), Column("Before"), Column("After"))
-    blocks = (TableView("", columns, rows), *(Paragraph(fault, "warning") for fault in faults))
+    blocks: tuple[BlockView, ...] = (TableView("", columns, rows), *(Paragraph(fault, "warning") for fault in faults))
     return Chapter("What was compared", blocks, "provenance")
