@@ -288,6 +288,10 @@ NEXT: Final[Mapping[str, Kind]] = {
         "that goes beyond what was measured so far: {settings}; check first that the machine permits it",
         "Settings outside of the range of the record, beside that range.",
     ),
+    "bring first": Kind(
+        "before that, bring {settings}; what follows from the work of the machine cannot be set",
+        "The experiment begins elsewhere than the record ended. How far that is, and on which side.",
+    ),
     "left open": Kind(
         "nothing that is proposed here settles {explanations}", "For these another record, or a check of the gauge."
     ),

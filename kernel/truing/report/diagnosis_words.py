@@ -32,6 +32,7 @@ from truing.diagnosis.result import (
     stated_remedy,
 )
 from truing.diagnosis.sentences import records_words, say, sentence
+from truing.experiments.reach import ended_at, role_of
 from truing.numbers import format_number, pretty
 from truing.report.diagnosis_sizes import (
     TO,
@@ -43,6 +44,7 @@ from truing.report.diagnosis_sizes import (
     wave_name,
 )
 from truing.report.document import unit_as_said
+from truing.units import difference_unit
 
 CERTAIN, LIKELY = 0.005, 0.05
 MUCH, FEW_BLOCKS = 0.5, 0.25
@@ -302,9 +304,28 @@ def what_decides(diagnosis: DiagnosisResult) -> Iterator[str]:
     for sentences in ways if is_result_first(diagnosis) else reversed(ways):
         yield from sentences
     if diagnosis.experiment is not None:
+        yield from _bring_words(diagnosis, diagnosis.experiment)
         yield from _beyond_words(diagnosis, diagnosis.experiment)
     yield from map(tie_text, diagnosis.ties)
     yield from _left_open(diagnosis)
+
+
+def _bring_words(diagnosis: DiagnosisResult, experiment: Experiment) -> Iterator[str]:
+    """Say how far what follows from the work has to be brought before the experiment can begin."""
+    brought = []
+    for course in experiment.courses:
+        covariate = diagnosis.records.covariates.get(course.name)
+        if covariate is None or covariate.role == "time" or role_of(diagnosis.setup, course.name) != "follows":
+            continue
+        away = course.start - ended_at(diagnosis.records, course.name)
+        if abs(away) > BEYOND * float(np.nanmax(covariate.values) - np.nanmin(covariate.values)):
+            unit = experiment.units[course.name]
+            distance = amount_text(readable(Amount(abs(away), difference_unit(unit))), 2)
+            side = "above" if away > 0 else "below"
+            begin = _end(experiment, course.name, course.start)
+            brought.append(f"{spoken(course.name)} to {begin} ({distance} {side} where the record ended)")
+    if brought:
+        yield say("bring first", settings=listed(brought))
 
 
 def _beyond_words(diagnosis: DiagnosisResult, experiment: Experiment) -> Iterator[str]:
