@@ -14,6 +14,7 @@ from diagnosis_models import Asked, Deflection, Drive, chosen_as, drive, drive_m
 from diagnosis_samples import records_of
 from numpy.testing import assert_allclose
 from scipy.stats import binomtest
+from scipy.stats import t as student_t
 
 from truing import Condition, Effect, Float, Model, Unknown
 from truing.diagnosis.choice import Chosen
@@ -23,8 +24,9 @@ from truing.diagnosis.result import Experiment
 from truing.errors import DeclarationError, UsageError
 from truing.experiments.chances import Simulation
 from truing.experiments.design import BUDGET, ENOUGH, MOST_READINGS
+from truing.experiments.facts import tie_of
 from truing.experiments.planning import planned
-from truing.experiments.proposal import among, designed_for, next_experiment
+from truing.experiments.proposal import among, designed_for, next_experiment, rival_fits
 from truing.experiments.reach import Reach, ended_at, reach_of
 from truing.measurements import RowsFile
 from truing.setup import DiagnoseOptions, Setup, default_setup
@@ -76,6 +78,25 @@ def test_the_separation_that_is_promised_is_that_of_a_refit_with_the_readings_ad
 def test_where_no_setting_separates_two_causes_none_is_proposed(tmp_path: Path, is_named: bool) -> None:
     chosen = one_sign(tmp_path, {"load": (1e3, 20e3)}, 1.0, is_named=is_named)
     assert next_experiment(chosen) == (None, [], [("sensor_offset", "clearance")])
+
+
+@pytest.mark.parametrize("noise", [1.0, 4.0, 12.0])
+def test_what_is_to_be_measured_instead_is_said_with_the_accuracy_that_decides(tmp_path: Path, noise: float) -> None:
+    """3 um are known to t s / n^0.5 from n = 40 rows: what is left of them, to either side, is the accuracy needed.
+
+    Where nothing is left no measurement decides, and none is proposed.
+    """
+    chosen = one_sign(tmp_path, {"load": (1e3, 20e3)}, noise)
+    tie = tie_of(("sensor_offset", "clearance"), rival_fits(chosen), chosen.competition)
+    known = float(student_t.ppf(0.975, 39)) * noise * np.sqrt(40 / 39) / np.sqrt(40)
+    if known > 3:
+        assert tie.facts == ()
+        return
+    assert [(fact.explanation, fact.quantity) for fact in tie.facts] == [
+        ("sensor_offset", "sensor_offset.deflection"), ("clearance", "clearance.gap"),
+    ]  # fmt: skip
+    assert_allclose([fact.value.value for fact in tie.facts], 3e-6, rtol=1e-6)
+    assert_allclose([fact.accuracy.value for fact in tie.facts], (3 - known) / 2 * 1e-6, rtol=0.02)
 
 
 def test_rivals_are_separated_inside_the_box(tmp_path: Path) -> None:

@@ -296,13 +296,16 @@ NEXT: Final[Mapping[str, Kind]] = {
         "nothing that is proposed here settles {explanations}", "For these another record, or a check of the gauge."
     ),
     "fact decides": Kind(
-        "no measurement proposed here tells {explanations} apart; a fact from elsewhere does: {facts}",
-        "Look it up or measure the part.",
+        "no setting tells {explanations} apart; a measurement of another quantity does: {facts}",
+        "Measure the part, or look it up.",
     ),
-    "fact": Kind("whether {quantity} is {size}", "The fact that would decide."),
+    "fact": Kind(
+        "{quantity} to ±{accuracy} ({size} if it is {explanation})",
+        "What to measure, how well at the least, and what it then is.",
+    ),
     "nothing decides": Kind(
         "no measurement proposed here tells {explanations} apart; only a fact from elsewhere does",
-        "The two stay one for this machine.",
+        "The two stay one for this machine: what they say of it is too alike to be measured.",
     ),
     "nothing to separate": Kind(
         "no other explanation comes near; there is nothing left to separate", "No further reading is needed for this."

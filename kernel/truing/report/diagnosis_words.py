@@ -435,19 +435,24 @@ def tie_text(tie: Tie) -> str:
 
 
 def _facts(facts: Sequence[Fact]) -> Iterator[str]:
-    """Say what would have to be so; the two parts of a wave are one amplitude."""
-    values = {fact.quantity: fact.value.value for fact in facts}
+    """Say what to measure, and how well; the two parts of a wave are one amplitude."""
+    known = {fact.quantity: fact for fact in facts}
     for fact in facts:
         effect, _, unknown = fact.quantity.partition(".")
         partner = f"{effect}.{partner_of(unknown)}"
-        note, value, shown = (f" ({fact.note})" if fact.note else ""), fact.value, spoken(fact.quantity)
-        if partner in values:
+        note, shown = (f" ({fact.note})" if fact.note else ""), spoken(fact.quantity)
+        sizes = [fact.value, fact.accuracy]
+        if partner in known:
             if "cosine" in unknown:
                 continue
-            value = replace(value, value=math.hypot(value.value, values[partner]))
+            parts = zip(sizes, (known[partner].value, known[partner].accuracy), strict=True)
+            sizes = [replace(part, value=math.hypot(part.value, other.value)) for part, other in parts]
             shown, note = f"{sight_name(fact.quantity)}, amplitude", ""
-        quantity = f"{shown.removesuffix(' outside of its tolerance')}{note}"
-        yield say("fact", quantity=quantity, size=amount_text(readable(value)))
+        size, accuracy = map(readable, sizes)
+        yield say(
+            "fact", quantity=f"{shown.removesuffix(' outside of its tolerance')}{note}", size=amount_text(size),
+            accuracy=amount_text(accuracy, 2), explanation=together([fact.explanation]),
+        )  # fmt: skip
 
 
 def settings_text(point: NextPoint) -> str:
