@@ -650,13 +650,30 @@ def test_what_to_do_about_a_cause_is_said_on_page_one_on_the_terminal_and_in_the
     items = next(chapter.blocks[0] for chapter in sheet.front if chapter.ident == "what-to-do")
     assert isinstance(items, Items)
     (text,) = map(plain_text, items.texts)
-    assert text == f"The rod grows where the motor warms it. {told.remedy}"
+    assert text == told.remedy
     assert any(told.remedy in line for line in report(told_about, Path("runs/x")))
     assert written(told_about)["causes"][0]["remedy"] == told.remedy
     silent = next(chapter.blocks[0] for chapter in page_of("named")[0].front if chapter.ident == "what-to-do")
     assert isinstance(silent, Items)
-    assert plain_text(silent.texts[0]).endswith(f". {NO_REMEDY}")
+    assert plain_text(silent.texts[0]) == NO_REMEDY
     assert written(made)["causes"][0]["remedy"] == ""
+
+
+def test_page_one_says_what_a_cause_is_where_it_is_named_first() -> None:
+    """In its author's words: of the named one, of a rival, and of an input; nothing where nobody wrote anything."""
+    told = list(map(plain_text, page_of("named")[0].banner.sentences))
+    assert told[0].startswith("What the model misses in slide position: rod heating, expansion 11.80")
+    assert told[1] == "Rod heating means: the rod grows where the motor warms it."
+    (drift,) = (each for each in named().setup.model.known_effects.values() if each.name == "sensor_drift")
+    open_told = list(map(plain_text, page_of("ambiguous")[0].banner.sentences))
+    assert "is drawn alike by rod heating, warm up or sensor drift" in open_told[0]
+    assert sorted(open_told[1:3]) == sorted([told[1], f"Sensor drift means: {drift.why or drift.looks_like}."])
+    joint = replace(HEATING, effect="joint_play")
+    play = sheet_of(replace(named(), causes=(joint,)))
+    assert not any("Joint play means" in plain_text(text) for text in play.banner.sentences)
+    rod = replace(HEATING, effect="input:rod", unknowns=())
+    meant = [plain_text(text) for text in sheet_of(replace(named(), causes=(rod,))).banner.sentences]
+    assert "Rod outside of its tolerance means: length of the rod." in meant
 
 
 def test_page_one_says_what_the_machine_would_do_without_the_cause() -> None:
@@ -828,7 +845,7 @@ def _demand_true_proposals(made: DiagnosisResult, said: str, everything: str) ->
         assert all(together([name]) in said for name in experiment.tells)
         assert f"{experiment.readings} readings" in everything
     if made.ties:
-        assert "a fact from elsewhere does" in said or "a measurement of another quantity does" in said
+        assert "for this machine they stay one" in said or "a measurement of another quantity does" in said
         assert "No setting can be proposed" not in said
 
 

@@ -53,6 +53,7 @@ VERDICT: Final[Mapping[str, Kind]] = {
         "The named cause with its fitted size. In brackets the range in which the true size lies in 95 of 100 such "
         "records, if the cause is the right one.",
     ),
+    "means": Kind("{cause} means: {text}", "What a cause is, in the words of its author, where it is named first."),
     "drawn alike": Kind(
         "what the model misses in {results} is drawn alike by {explanations}",
         "Each of these fits as well as the others, or nearly. The record cannot say which is the right one.",
@@ -304,8 +305,8 @@ NEXT: Final[Mapping[str, Kind]] = {
         "What to measure, how well at the least, and what it then is.",
     ),
     "nothing decides": Kind(
-        "no measurement proposed here tells {explanations} apart; only a fact from elsewhere does",
-        "The two stay one for this machine: what they say of it is too alike to be measured.",
+        "no measurement proposed here tells {explanations} apart: for this machine they stay one",
+        "What they say of the machine is too alike to be measured by other means, too.",
     ),
     "nothing to separate": Kind(
         "no other explanation comes near; there is nothing left to separate", "No further reading is needed for this."

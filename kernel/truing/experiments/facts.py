@@ -41,6 +41,9 @@ NEARLY = 0.95
 """Of several rows that tell as clearly the one is told in which the difference is largest."""
 LEAST_SHARE = 1e-3
 """Of the result itself: no gauge is trusted with less."""
+FINEST = 0.05
+"""Of an unknown itself: what is known of it by other means (a coefficient of expansion, of friction, a stiffness) is
+seldom better, and nothing finer is asked for."""
 NORMAL = 1.96
 """Standard deviations within which 95 % of all machines are."""
 
@@ -71,7 +74,8 @@ def tie_of(names: Sequence[str], explanations: Sequence[Fit], competition: Compe
     """Return explanations that cannot be told apart, with the measurements of other quantities that would.
 
     A quantity is named where it can be told from what another explanation says of it: their distance is more than how
-    well both are known from the record, and what is left of it, either way, is the accuracy that is needed.
+    well both are known from the record, and what is left of it, either way, is the accuracy that is needed. What asks
+    for more than anybody knows (``FINEST``) is left away.
     """
     tied = [each for each in explanations if name_of(each) in names]
     stated = [_stated(each, competition) for each in tied]
@@ -81,7 +85,7 @@ def tie_of(names: Sequence[str], explanations: Sequence[Fit], competition: Compe
             others = [each for each in stated if quantity.name not in each] if len(tied) > 1 else [{}]
             distances = [quantity.clear_of(each) for each in others]
             accuracy = min(distances, default=0.0) / 2
-            if accuracy > 0:
+            if accuracy > quantity.finest:
                 size = Amount(quantity.value, quantity.unit)
                 needed = Amount(accuracy, difference_unit(quantity.unit))
                 facts.append(Fact(name_of(fit), quantity.name, size, quantity.note, needed))
@@ -109,6 +113,11 @@ class _Stated:
         alike = [each for each in other.values() if (each.stem, each.unit) == (self.stem, self.unit)]
         values = [(each.value, each.reach) for each in alike] or [(self.otherwise, self.otherwise_reach)]
         return min(abs(self.value - value) - hypot(self.reach, reach) for value, reach in values)
+
+    @property
+    def finest(self) -> float:
+        """How well it can be known by other means, either way: a part as well as its tolerance asks."""
+        return 0.0 if self.name.startswith(INPUT) else FINEST * abs(self.value)
 
     @property
     def stem(self) -> str:

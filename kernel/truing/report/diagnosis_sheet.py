@@ -11,7 +11,7 @@ import numpy as np
 
 from truing.diagnosis.records import file_labels
 from truing.diagnosis.result import Amount, DiagnosisResult, explanations_of, stated_remedy
-from truing.diagnosis.sentences import sentence
+from truing.diagnosis.sentences import say, sentence
 from truing.report import diagnosis_figures as figures
 from truing.report import translation
 from truing.report.chapters import Figures, numbered
@@ -19,7 +19,7 @@ from truing.report.diagnosis_chapters import diagnosis_chapters
 from truing.report.diagnosis_remedy import then_table
 from truing.report.diagnosis_sizes import amount_text
 from truing.report.diagnosis_units import diagnosis_as_printed
-from truing.report.diagnosis_words import about_of, headline, prose, remedy_of, spoken, verdict_word, what_decides
+from truing.report.diagnosis_words import headline, meaning_of, prose, remedy_of, spoken, verdict_word, what_decides
 from truing.report.document import (
     Banner,
     BlockView,
@@ -46,6 +46,8 @@ LINE, GAP, WIDE = 4.3, 1.7, 105
 """Height of a line and of the gap behind a paragraph, mm, and the characters of a line."""
 MOST_OTHERS = 3
 """Of so many other explanations page one says what they would ask for."""
+MOST_MEANINGS = 5
+"""Of so many causes page one says what they are."""
 BELOW, BESIDE = "Below", "On the right"
 DOUBT = "Whether this is the cause is open: settle that before anything is changed on the machine."
 
@@ -107,9 +109,18 @@ def _figure_height(texts: Iterable[str]) -> float:
 
 
 def _answer(diagnosis: DiagnosisResult) -> Iterator[str]:
-    """Give the headline but for what decides, which stands under what to do."""
+    """Give the headline but for what decides, which stands under what to do; where causes are named, what each is."""
     decides = {sentence(text) for text in what_decides(diagnosis)}
-    yield from (text for text in headline(diagnosis) if text not in decides)
+    names = (cause.effect for cause in diagnosis.causes)
+    others = (name for explanation in explanations_of(diagnosis) for name in explanation)
+    left = [name for name in dict.fromkeys((*names, *others)) if meaning_of(diagnosis, name)][:MOST_MEANINGS]
+    for text in headline(diagnosis):
+        if text in decides:
+            continue
+        yield text
+        for name in [name for name in left if spoken(name).lower() in text.lower()]:
+            left.remove(name)
+            yield sentence(say("means", cause=spoken(name), text=meaning_of(diagnosis, name)))
 
 
 def _page_one(
@@ -147,11 +158,9 @@ def _what_to_do(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
 
 
 def _remedies(diagnosis: DiagnosisResult) -> Iterator[tuple[str, Text]]:
-    """Say of every named cause what it is and what to do, and of others that are open what they would ask for."""
+    """Say of every named cause what to do, and of others that are open what they would ask for."""
     named = [cause.effect for cause in diagnosis.causes]
-    for name in named:
-        about, remedy = about_of(diagnosis, name), remedy_of(diagnosis, name)
-        yield spoken(name), (sentence(about), " ", remedy) if about else remedy
+    yield from ((spoken(name), remedy_of(diagnosis, name)) for name in named)
     others = dict.fromkeys(name for names in explanations_of(diagnosis) for name in names if name not in named)
     stated = [(name, prose(stated_remedy(diagnosis, name))) for name in others]
     yield from [(f"{spoken(name)}, if it is that", remedy) for name, remedy in stated if remedy][:MOST_OTHERS]

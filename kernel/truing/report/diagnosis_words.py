@@ -133,6 +133,16 @@ def about_of(diagnosis: DiagnosisResult, cause: str) -> str:
     return "" if effect is None else prose(effect.why or effect.looks_like)
 
 
+def meaning_of(diagnosis: DiagnosisResult, cause: str) -> str:
+    """Say in its author's words what a cause is, of an input what that one is; nothing where nobody wrote anything."""
+    if not cause.startswith("input:"):
+        return about_of(diagnosis, cause)
+    name, model = cause.removeprefix("input:"), diagnosis.setup.model
+    declared = model.input_fields.get(name)
+    note = declared.spec.note if declared is not None else model.known_conditions[name].note
+    return prose(note)
+
+
 def verdict_word(diagnosis: DiagnosisResult) -> str:
     """Say the verdict in a few words."""
     count = len(explanations_of(diagnosis))
