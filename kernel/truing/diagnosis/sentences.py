@@ -290,8 +290,9 @@ NEXT: Final[Mapping[str, Kind]] = {
         "Settings outside of the range of the record, beside that range.",
     ),
     "bring first": Kind(
-        "before that, bring {settings}; what follows from the work of the machine cannot be set",
-        "The experiment begins elsewhere than the record ended. How far that is, and on which side.",
+        "before that, bring {settings}",
+        "What follows from the work of the machine cannot be set. Let the machine get there, as a warm one cools down: "
+        "the experiment begins elsewhere than the record ended.",
     ),
     "left open": Kind(
         "nothing that is proposed here settles {explanations}", "For these another record, or a check of the gauge."

@@ -118,9 +118,10 @@ def _answer(diagnosis: DiagnosisResult) -> Iterator[str]:
         if text in decides:
             continue
         yield text
-        for name in [name for name in left if spoken(name).lower() in text.lower()]:
-            left.remove(name)
-            yield sentence(say("means", cause=spoken(name), text=meaning_of(diagnosis, name)))
+        here = [name for name in left if spoken(name).lower() in text.lower()]
+        left = [name for name in left if name not in here]
+        said = (sentence(say("means", cause=spoken(name), text=meaning_of(diagnosis, name))) for name in here)
+        yield from [" ".join(said)] * bool(here)
 
 
 def _page_one(
