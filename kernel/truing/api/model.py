@@ -18,7 +18,7 @@ from truing.api.findings import NamedCause, Ranking, Residuals, causes_of
 from truing.api.notebook import bullets, fold, heading, html_table, joined, paragraphs, picture, table_html
 from truing.api.plan import Plan
 from truing.api.records import MeasuredRecord
-from truing.api.run import Run, demand_files, in_units, performed
+from truing.api.run import Run, demand_files, performed
 from truing.api.study import StudyResult
 from truing.api.tables import LABEL, beside, frame_text, settings_of, text_of
 from truing.declare.correlations import Correlated
@@ -50,7 +50,7 @@ from truing.report.run import run_info, sheets_of, write_sheet
 from truing.runs.diagnosis_document import diagnosis_document
 from truing.runs.extension import extended_text
 from truing.runs.folder import demand_place, diagnosis_files, write_outcome
-from truing.setup import Setup, in_language
+from truing.setup import Setup, sheet_in
 from truing.studies.bench import Progress
 from truing.studies.frequency import Frequency
 from truing.studies.sweep import Sweep
@@ -429,7 +429,7 @@ class Diagnosis:
         ``units`` are "SI" or "inch", ``language`` "en" or "de"; "" those of the diagnosis. Raises OutputError, and
         UsageError for others.
         """
-        result = replace(self.result, setup=in_language(in_units(self.result.setup, units), language))
+        result = replace(self.result, setup=sheet_in(self.result.setup, units=units, language=language))
         return write_sheet(path, partial(diagnosis_sheet_of, result, self.started))
 
     def save(self, folder: str | Path, *, pdf: bool = False, docx: bool = False, xlsx: bool = False) -> Path:
@@ -458,13 +458,17 @@ class Diagnosis:
 
     def compare(self, before: Diagnosis) -> Differences:
         """Return what differs from ``before`` to this diagnosis: data, verdict, causes, errors, gain."""
-        return differences_of(before.document, self.document, lambda: (before.side("before"), self.side("after")))
-
-    def side(self, name: str) -> Side:
-        """Return what a page of two diagnoses is written from: the document, and the figures of the sheet."""
-        return Side(
-            name, self.document, figures_in(diagnosis_sheet_of(self.result, self.started)), self.result.setup.model
+        return differences_of(
+            before.document,
+            self.document,
+            lambda language: (before.side("before", language), self.side("after", language)),
         )
+
+    def side(self, name: str, language: str = "") -> Side:
+        """Return what a page of two diagnoses is written from: the document, and the figures of the sheet."""
+        result = replace(self.result, setup=sheet_in(self.result.setup, language=language))
+        figures = figures_in(diagnosis_sheet_of(result, self.started))
+        return Side(name, self.document, figures, result.setup.model, self.offer.origin.file)
 
     def _repr_html_(self) -> str:
         """Show the verdict, the causes, the residuals before and after, and the rest folded away."""
