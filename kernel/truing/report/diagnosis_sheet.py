@@ -35,7 +35,7 @@ from truing.report.document import (
 from truing.report.sheet import end_chapters, head_faults, head_of
 from truing.report.sheet_units import sheet_units
 from truing.report.translation import catalogue_of, translated
-from truing.runs.folder import data_digests
+from truing.runs.diagnosis_files import data_digests
 from truing.runs.provenance import Provenance, provenance_of
 
 DIAGNOSIS = "Diagnosis"
