@@ -1,4 +1,4 @@
-"""What the command line costs before it works: help and names import nothing heavy and no plugin, a run what it needs."""
+"""What the command line costs before it works: help and names import nothing heavy, a run what it needs."""
 
 from __future__ import annotations
 

@@ -281,13 +281,10 @@ class LoadedModel:
                 report("diagnosis" if steps else stage, step, steps)
 
             started, records = time.time(), reading.read_records(record.files, self.offer, setup)
-            diagnosis = Diagnosis(
-                self.offer, engine.diagnose(setup, records, progress=as_one, propose=proposal.proposed), started
-            )
+            result = engine.diagnose(setup, records, progress=as_one, propose=proposal.proposed)
+            diagnosis = Diagnosis(self.offer, result, started)
             report("sheet and PDF" if pdf else "sheet", 0, 0)
-            if output is None:
-                return diagnosis
-            return replace(diagnosis, note=diagnosis.written(Path(output), **files))
+            return diagnosis if output is None else replace(diagnosis, note=diagnosis.written(Path(output), **files))
 
     def plan(
         self,
