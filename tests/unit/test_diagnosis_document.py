@@ -83,14 +83,14 @@ from truing.report.diagnosis_words import (
 from truing.report.document import BlockView, Document, FigureView, Fold, Items, Paragraph, TableView, plain_text
 from truing.report.html_printer import html_of
 from truing.report.markdown_printer import markdown_of
-from truing.runs import spreadsheet
+from truing.runs import diagnosis_files as beside
 from truing.runs.diagnosis_document import diagnosis_document
+from truing.runs.diagnosis_files import diagnosis_files, diagnosis_tables
 from truing.runs.extension import extended_setup, extended_text
-from truing.runs.folder import demand_place, diagnosis_files, is_ours, json_text, write_folder, write_outcome
+from truing.runs.folder import demand_place, is_ours, json_text, write_folder, write_outcome
 from truing.runs.index import _of_diagnosis
 from truing.runs.new_effect import new_effect_source, safe_expression
 from truing.runs.provenance import provenance_of
-from truing.runs.spreadsheet import diagnosis_tables
 from truing.setup import Setup, default_setup
 
 
@@ -390,7 +390,7 @@ def test_the_tables_hold_causes_and_rows(monkeypatch: pytest.MonkeyPatch) -> Non
             assert {row["unit"] for row in said} == {fitted["unit"]}
     measured = list(csv.DictReader(tables["rows.csv"].splitlines()))
     assert [int(row["line"]) for row in measured] == list(made.records.lines)
-    monkeypatch.setattr(spreadsheet, "MOST_ROWS", len(measured) - 1)
+    monkeypatch.setattr(beside, "MOST_ROWS", len(measured) - 1)
     tables = diagnosis_tables(made)
     assert list(tables) == ["results.csv"]
     assert tables["results.csv"].splitlines()[-1] == f"diagnosis,rows,,,{len(measured)},,,,,in arrays.npz"

@@ -22,8 +22,9 @@ from truing.diagnosis.machine import Calibration
 from truing.diagnosis.records import Covariate, Records
 from truing.diagnosis.result import Experiment
 from truing.errors import DeclarationError, UsageError
+from truing.experiments import BUDGET
 from truing.experiments.chances import Simulation
-from truing.experiments.design import BUDGET, ENOUGH, MOST_READINGS
+from truing.experiments.design import ENOUGH, MOST_READINGS
 from truing.experiments.facts import tie_of
 from truing.experiments.planning import planned
 from truing.experiments.proposal import among, designed_for, next_experiment, rival_fits

@@ -10,9 +10,8 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from math import nan
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from truing.api.differences import Differences, differences_of
 from truing.api.notebook import MOST_ROWS, fold, heading, html_table, joined, paragraphs, table_html
 from truing.api.study import StudyResult
 from truing.api.tables import frame_of, frame_text, quantity_of
@@ -22,12 +21,12 @@ from truing.declare.near_miss import near_miss
 from truing.errors import UsageError
 from truing.executors import BatchLog, open_executor
 from truing.formulas import symbol_text
+from truing.heavy import Later
 from truing.inputs_file.sentences import told_by_line
 from truing.kernel import Offer
 from truing.measurements import read_cases
 from truing.numbers import format_value, with_unit
 from truing.progress import progress_bar
-from truing.report.comparison_page import Side, figures_in
 from truing.report.document import Document, plain_text
 from truing.report.limits import check_table
 from truing.report.run import run_info, sheet_of, sheets_of, write_sheet
@@ -43,6 +42,14 @@ from truing.studies.bench import Progress, silent
 from truing.studies.checks import Check, State
 from truing.units import from_si
 from truing.workbooks.writing import demand_library
+
+if TYPE_CHECKING:
+    from truing.api import differences
+    from truing.api.differences import Differences
+    from truing.report import comparison_page
+    from truing.report.comparison_page import Side
+else:  # a run is seldom compared
+    differences, comparison_page = Later("truing.api.differences"), Later("truing.report.comparison_page")
 
 FIRST = 12
 """So many results are shown, in the order declared; a click shows the others."""
@@ -179,7 +186,7 @@ class Run:
 
     def compare(self, before: Run) -> Differences:
         """Return what differs from ``before`` to this run: settings, inputs, results, checks, studies."""
-        return differences_of(
+        return differences.differences_of(
             before.document,
             self.document,
             lambda language: (before.side("before", language), self.side("after", language)),
@@ -187,8 +194,8 @@ class Run:
 
     def side(self, name: str, language: str = "") -> Side:
         """Return what a page of two runs is written from: the document, and the figures of the sheet in a language."""
-        figures = figures_in(self._printed(language=language)._sheet(silent))
-        return Side(name, self.document, figures, self._setup.model, self.offer.origin.file)
+        figures = comparison_page.figures_in(self._printed(language=language)._sheet(silent))
+        return comparison_page.Side(name, self.document, figures, self._setup.model, self.offer.origin.file)
 
     def _repr_html_(self) -> str:
         """Show the verdict, the limits, the results, and what is to be known beside them."""

@@ -18,10 +18,11 @@ from truing.diagnosis.extended import Extended, elsewhere
 from truing.diagnosis.machine import Calibration
 from truing.diagnosis.ranking import lowest_first
 from truing.diagnosis.result import APART, Course
+from truing.experiments import BUDGET
 from truing.experiments.duels import Duel, Explained, duels, machine_there
 from truing.experiments.reach import Reach
 
-BUDGET, FEWEST = 12, 4
+FEWEST = 4
 """So many readings are proposed at most where nothing else is asked for, and so many at least."""
 LOOKED_AT = 6
 """Readings of an experiment while it is looked for: each stands for as many as are asked for."""

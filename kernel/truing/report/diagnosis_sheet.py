@@ -36,7 +36,7 @@ from truing.report.sheet import end_chapters, head_faults, head_of
 from truing.report.sheet_units import sheet_units
 from truing.report.translation import catalogue_of, translated
 from truing.report.wording import in_words
-from truing.runs.folder import data_digests
+from truing.runs.diagnosis_files import data_digests
 from truing.runs.provenance import Provenance, provenance_of
 
 DIAGNOSIS = "Diagnosis"
