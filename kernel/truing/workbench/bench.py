@@ -57,7 +57,9 @@ class Bench:
 
         Raises TaskError; OvertakenError where a newer one came.
         """
-        question = partial(self.workers.ask, name, patience=patience, group=group, **arguments)
+        if group:
+            arguments["group"] = group
+        question = partial(self.workers.ask, name, patience=patience, **arguments)
         return await anyio.to_thread.run_sync(question, limiter=self.asked)
 
     def start(self, name: str, title: str, about: str, **arguments: Any) -> Job:

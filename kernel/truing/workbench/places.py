@@ -40,6 +40,10 @@ def inside(root: Path, name: str) -> Path:
         raise UsageError(f"'{one_line(name[:80])}' cannot be opened: {one_line(error)}") from None
     if not path.is_relative_to(root):
         raise UsageError(f"'{one_line(name[:80])}' lies outside the folder that is served")
+    if path.exists() and not (path.is_file() or path.is_dir()):
+        raise UsageError(
+            f"'{one_line(name[:80])}' is no file but a device, or a pipe that would keep its reader waiting"
+        )
     if reason := _refusal(below(root, path)):
         raise UsageError(f"'{one_line(name[:80])}' leads to a file that {reason}")
     return path
