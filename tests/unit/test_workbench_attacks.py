@@ -113,7 +113,7 @@ def stranger(app: guard.Guard) -> Iterator[TestClient]:
 @pytest.fixture
 def client(stranger: TestClient, key: Key) -> TestClient:
     """A page of the workbench."""
-    stranger.cookies.set(key.cookie, key.session)
+    stranger.cookies.set(key.cookie, key.token)
     stranger.headers["origin"] = BASE
     return stranger
 
@@ -217,9 +217,9 @@ def test_what_comes_from_a_page_of_ours_or_was_typed_is_let_in(client: TestClien
 
 KEYS: list[tuple[str, str]] = [
     ("token", ""), ("token", "wrong"), ("token", "{token}x"), ("token", "{short}"), ("token", "{TOKEN}"),
-    ("token", "{session}"), ("token", "{used}"), ("token", "x" * 5000), ("token", "é\u2028"), ("token", "%00"),
-    ("cookie", ""), ("cookie", "wrong"), ("cookie", "{token}"), ("cookie", "{ticket}"), ("cookie", "{session}x"),
-    ("name", "{session}"), ("post", "{token}"),
+    ("token", "{token}{token}"), ("token", "{used}"), ("token", "x" * 5000), ("token", "é\u2028"), ("token", "%00"),
+    ("cookie", ""), ("cookie", "wrong"), ("cookie", "{TOKEN}"), ("cookie", "{ticket}"), ("cookie", "{token}x"),
+    ("name", "{token}"), ("post", "{token}"),
 ]  # fmt: skip
 
 
@@ -228,7 +228,7 @@ def test_key(stranger: TestClient, key: Key, where: str, template: str) -> None:
     used = key.ticket()
     assert key.lets_in(used)
     given = template.format(
-        token=key.token, TOKEN=key.token.swapcase(), short=key.token[:-1], session=key.session, used=used,
+        token=key.token, TOKEN=key.token.swapcase(), short=key.token[:-1], used=used,
         ticket=key.ticket(),
     )  # fmt: skip
     if where == "cookie":
@@ -254,7 +254,7 @@ def test_an_address_opens_again_and_a_ticket_once(stranger: TestClient, key: Key
 
 def test_the_cookie_is_for_this_server_alone_and_not_for_scripts(stranger: TestClient, key: Key) -> None:
     cookie = stranger.get(f"//evil.example/?token={key.token}").headers["set-cookie"].lower()
-    assert cookie == f"truing_{PORT}={key.session}; httponly; path=/; samesite=strict".lower()
+    assert cookie == f"truing_{PORT}={key.token}; httponly; path=/; samesite=strict".lower()
 
 
 def test_a_token_sends_on_to_this_server(stranger: TestClient, key: Key) -> None:
@@ -267,7 +267,7 @@ def test_guesses_are_limited_in_a_second_and_shut_nobody_out(stranger: TestClien
     answers = [stranger.get("/", params={"token": f"guess {number}"}).status_code for number in range(30)]
     assert answers == [401] * guard.MOST_WRONG + [429] * (30 - guard.MOST_WRONG)
     assert stranger.get("/", params={"token": key.token}).status_code == 429
-    assert stranger.get("/api/jobs", headers={"cookie": f"{key.cookie}={key.session}"}).status_code == 200
+    assert stranger.get("/api/jobs", headers={"cookie": f"{key.cookie}={key.token}"}).status_code == 200
     key.wrong.extend(when - 1 for when in tuple(key.wrong))
     assert stranger.get("/", params={"token": key.token}).status_code == 303
 
@@ -508,7 +508,7 @@ def sent(served: tuple[int, Key], content: bytes) -> bytes:
     """Send bytes and return what comes until the connection ends, or nothing more for a while."""
     port, key = served
     content = content.replace(b"{head}", f"Host: 127.0.0.1:{port}\r\n".encode())
-    content = content.replace(b"{cookie}", f"Cookie: {key.cookie}={key.session}\r\n".encode())
+    content = content.replace(b"{cookie}", f"Cookie: {key.cookie}={key.token}\r\n".encode())
     with socket.create_connection(("127.0.0.1", port), timeout=2) as connection:
         answer = b""
         try:

@@ -76,14 +76,14 @@ class OrphanEnder:
 
     def __init__(self) -> None:
         self._process: Any = None
-        if hasattr(os, "killpg"):
+
+    def hear(self, kind: str, group: int | None) -> None:
+        """Take note of a group that has begun ("+") or ended ("-")."""
+        if self._process is None and hasattr(os, "killpg"):
             self._process = subprocess.Popen(
                 [sys.executable, "-I", "-S", end_orphans.__file__],
                 stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True,
             )  # fmt: skip
-
-    def hear(self, kind: str, group: int | None) -> None:
-        """Take note of a group that has begun ("+") or ended ("-")."""
         if self._process is not None and group is not None:
             with suppress(OSError, ValueError):
                 os.write(self._process.stdin.fileno(), f"{kind} {group}\n".encode())
@@ -229,8 +229,8 @@ class Question:
 class Workers:
     """The workers of one server: some that answer questions, one for each job that runs, and one in reserve."""
 
-    def __init__(self, memory: int, root: Path, quick: int = 2, home: str = HOME) -> None:
-        self._memory, self._root, self._quick, self._home = memory, root, quick, home
+    def __init__(self, memory: int, root: Path = Path(), quick: int = 2, home: str = HOME) -> None:
+        self._memory, self._root, self._quick, self._home = memory, root.resolve(), quick, home
         self._gate = threading.Condition()
         self._orphans = OrphanEnder()
         self._idle: list[Worker] = []
@@ -241,10 +241,11 @@ class Workers:
         self.changes = 0
         """Grows whenever something of a job changes."""
         self.closed = False
-        self._idle.append(self._new())  # alone at first: the others would keep the first page waiting
-        later = threading.Timer(SETTLED, self._refill)
-        later.daemon = True
-        later.start()
+        if quick:
+            self._idle.append(self._new())  # alone at first: the others would keep the first page waiting
+            later = threading.Timer(SETTLED, self._refill)
+            later.daemon = True
+            later.start()
 
     # Processes
 
