@@ -151,6 +151,11 @@ class Worker:
         return f"the calculation ended without an answer (exit code {code})"
 
     @property
+    def works(self) -> bool:
+        """Whether it can be asked: a process may end while it waits, as where the system is short of memory."""
+        return not self.why and self._process.is_alive()
+
+    @property
     def memory(self) -> int:
         """Return the bytes that the process holds in memory, or 0 where the system does not say."""
         try:
@@ -253,7 +258,7 @@ class Workers:
         """Keep as many warm workers as there may be questions, and one more."""
         while True:
             with self._gate:
-                self._idle = [worker for worker in self._idle if not worker.why]
+                self._idle = [worker for worker in self._idle if worker.works]
                 if self.closed or len(self._idle) + self._answering() > self._quick:
                     return
                 self._idle.append(self._new())
@@ -272,8 +277,9 @@ class Workers:
         """Return a warm worker, the one that has been kept longest; called within the gate."""
         while self._idle:
             worker = self._idle.pop(0)
-            if not worker.why:
+            if worker.works:
                 return worker
+            worker.end("it ended while it waited")
         return self._new()
 
     # Quick questions
