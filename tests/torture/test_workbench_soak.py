@@ -65,7 +65,11 @@ class Visitor:
 
 
 def memory(process: int) -> int:
-    pages = int(Path(f"/proc/{process}/statm").read_text(encoding="ascii").split()[1])
+    """Return the bytes that a process holds, 0 for one that is gone."""
+    try:
+        pages = int(Path(f"/proc/{process}/statm").read_text(encoding="ascii").split()[1])
+    except (OSError, IndexError):
+        return 0
     return pages * os.sysconf("SC_PAGE_SIZE")
 
 
@@ -81,6 +85,22 @@ def workers_of(server: int) -> list[int]:
         if parent == server and b"spawn_main" in command:
             found.append(int(path.parent.name))
     return found
+
+
+def _killed(worker: int) -> bool:
+    """Kill a process, and wait until it has ended: freeing what it holds takes a while."""
+    os.kill(worker, signal.SIGKILL)
+    end = time.monotonic() + 5
+    while time.monotonic() < end and _state(worker) not in {"", "Z"}:
+        time.sleep(0.01)
+    return _state(worker) in {"", "Z"}
+
+
+def _state(process: int) -> str:
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
+    except OSError:
+        return ""
 
 
 def digest(text: str) -> str:
@@ -120,14 +140,13 @@ def _live(visitor: Visitor, folder: Path, server: int) -> None:
         assert visitor.ask("/api/save", file="bar.toml", text="lost", base=stale)[0] == 409
         assert file.read_text(encoding="utf-8") == text
         if number in KILLED_AFTER:
-            os.kill(workers_of(server)[0], signal.SIGKILL)
-            killed += 1
+            killed += _killed(workers_of(server)[0])
         if number % (EDITS // RUNS) == 0:
             job = visitor.finished("/api/run", **about)
-            assert job["status"] == "done", job
+            assert job["status"] == "done", (number, job["faults"])
         if number % (EDITS // DIAGNOSES) == 0:
             job = visitor.finished("/api/diagnose", **about, data=["measured.csv"])
-            assert job["status"] == "done", job
+            assert job["status"] == "done", (number, job["faults"])
         if number == SETTLED:
             before = memory(server), max(map(memory, workers_of(server)))
     after = memory(server), max(map(memory, workers_of(server)))

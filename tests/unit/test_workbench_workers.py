@@ -93,8 +93,12 @@ def test_a_worker_that_ends_while_it_waits_is_not_asked(workers: Workers) -> Non
     assert eventually(lambda: len(workers._idle) > workers._quick)
     for worker in tuple(workers._idle):
         os.kill(worker._process.pid or 0, signal.SIGKILL)
+    assert workers.ask("deeds.echo", said="at once") == "at once"  # before the server can know
+    assert eventually(lambda: len(workers._idle) > workers._quick)
+    for worker in tuple(workers._idle):
+        os.kill(worker._process.pid or 0, signal.SIGKILL)
     assert eventually(lambda: not any(worker.works for worker in workers._idle))
-    assert workers.ask("deeds.echo", said="here") == "here"
+    assert workers.ask("deeds.echo", said="later") == "later"
 
 
 def test_what_is_printed_goes_nowhere(workers: Workers, capfd: pytest.CaptureFixture[str]) -> None:

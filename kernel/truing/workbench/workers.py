@@ -31,6 +31,8 @@ from truing.workbench.worker_process import LARGEST_ANSWER, work
 
 PATIENCE = 20.0
 """Seconds that a quick question may take."""
+MOST_LOST = 6
+"""Workers that may be found to have ended while they waited, one after another: more than there are."""
 OVERTAKEN = 0.5
 """Seconds that a question may go on after a newer one of its group was asked: longer than most take."""
 LONGEST_JOB = 1e6
@@ -64,6 +66,10 @@ class OvertakenError(TaskError):
 
     def __init__(self) -> None:
         super().__init__([fault_of("a newer question took the place of this one")])
+
+
+class NotBegunError(TaskError):
+    """The process had ended while it waited, so that the task was not begun: another one can do it."""
 
 
 def fault_of(sentence: str) -> dict[str, Any]:
@@ -103,6 +109,7 @@ class Worker:
     def __init__(self, memory: int, root: Path, orphans: OrphanEnder, home: str = HOME) -> None:
         context = multiprocessing.get_context("spawn")
         self._orphans, self._number, self._lock = orphans, 0, threading.Lock()
+        self._begun = False
         self.why = ""
         """Why it was ended, or nothing as long as it works."""
         self._pipe, end = context.Pipe()
@@ -113,7 +120,7 @@ class Worker:
 
     def ask(self, name: str, arguments: dict[str, Any], *, patience: float, progress: Progress) -> Any:
         """Do a task and return its answer. Raises TaskError, also where it takes too long or the process ends."""
-        self._number += 1
+        self._number, self._begun = self._number + 1, False
         late = f"the calculation did not answer within {patience:g} s and was stopped"
         timer = threading.Timer(min(patience, threading.TIMEOUT_MAX), self.end, [late])
         timer.daemon = True
@@ -122,8 +129,9 @@ class Worker:
             self._pipe.send((self._number, name, arguments))
             return self._heard(progress)
         except (EOFError, OSError, ValueError):
+            is_lost = not self._begun and not self.why
             self.end(self._how_it_ended())
-            raise TaskError([fault_of(self.why)]) from None
+            raise (NotBegunError if is_lost else TaskError)([fault_of(self.why)]) from None
         finally:
             timer.cancel()
             timer.join()
@@ -133,11 +141,13 @@ class Worker:
             number, kind, said = json.loads(self._pipe.recv_bytes(LARGEST_ANSWER))
             if number != self._number:
                 continue
+            self._begun = True
             if kind == "answer":
                 return said
             if kind == "faults":
                 raise TaskError(said)
-            progress(*said)
+            if kind == "progress":
+                progress(*said)
 
     def _how_it_ended(self) -> str:
         self._process.join(FAREWELL)
@@ -282,6 +292,19 @@ class Workers:
             worker.end("it ended while it waited")
         return self._new()
 
+    def _answered(self, asked: Question | Job, task: tuple[str, Any], patience: float, progress: Progress) -> Any:
+        """Let its worker do a task, or another one where that had ended while it waited. Raises TaskError."""
+        for _ in range(MOST_LOST):
+            worker = asked.worker
+            if worker is None:
+                break
+            try:
+                return worker.ask(*task, patience=patience, progress=progress)
+            except NotBegunError:
+                with self._gate:
+                    asked.worker = self._take()
+        raise TaskError([fault_of("the processes that calculate end before they begin")])
+
     # Quick questions
 
     def ask(self, name: str, *, patience: float = PATIENCE, group: str = "", **arguments: Any) -> Any:
@@ -293,7 +316,7 @@ class Workers:
             try:
                 if question.worker is None:
                     raise OvertakenError
-                return question.worker.ask(name, arguments, patience=patience, progress=lambda *_: None)
+                return self._answered(question, (name, arguments), patience, lambda *_: None)
             except TaskError as error:
                 if question.is_overtaken:
                     raise OvertakenError from error
@@ -383,11 +406,10 @@ class Workers:
 
         try:
             with self._gate:
-                job.worker = worker = self._take()
+                job.worker = self._take()
             self._refill()
             if job.status == "runs":
-                answer = worker.ask(job.name, arguments, patience=LONGEST_JOB, progress=progress)
-                self._finish(job, answer)
+                self._finish(job, self._answered(job, (job.name, arguments), LONGEST_JOB, progress))
         except TaskError as error:
             if job.status == "runs":
                 job.faults, job.status = error.faults, "failed"
