@@ -43,7 +43,7 @@ KEPT_JOBS, KEPT_BYTES = 50, 4_000_000
 """So many finished jobs are remembered, with answers of so many bytes in all."""
 LARGEST_RESULT = 256_000
 """Bytes of a job's answer: what it leaves is in the folder."""
-FAREWELL = 0.5
+FAREWELL = 0.3
 """Seconds in which a worker may take back what it is writing, before it is killed."""
 SETTLED = 3.0
 """Seconds after which the other workers begin, if nothing was asked before."""
@@ -307,7 +307,7 @@ class Workers:
 
     # Quick questions
 
-    def ask(self, name: str, *, patience: float = PATIENCE, group: str = "", **arguments: Any) -> Any:
+    def ask(self, name: str, /, *, patience: float = PATIENCE, group: str = "", **arguments: Any) -> Any:
         """Do a quick task in the next free worker. Blocks: call it from a thread.
 
         Where ``group`` is given, a newer question of the same group ends this one. Raises TaskError, OvertakenError.
@@ -367,7 +367,7 @@ class Workers:
 
     # Jobs
 
-    def start(self, name: str, title: str, about: str, **arguments: Any) -> Job:
+    def start(self, name: str, title: str, about: str, /, **arguments: Any) -> Job:
         """Begin a job in a process of its own. Raises UsageError where too many wait already."""
         job = Job(name, title, about)
         with self._gate:
