@@ -30,6 +30,7 @@ import socket
 import threading
 import time
 from collections.abc import Iterator
+from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
 
@@ -576,6 +577,20 @@ TEXTS = [
 ]  # fmt: skip
 
 
+ADDRESSES = {"href", "src", "action", "formaction", "srcdoc"}
+
+
+class Attributes(HTMLParser):
+    """Every attribute of a page, as a browser reads it."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.seen: list[tuple[str, str]] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.seen += [(name, (value or "").strip().lower()) for name, value in attrs]
+
+
 @pytest.mark.parametrize("text", TEXTS)
 def test_text(client: TestClient, root: Path, text: str) -> None:
     named = re.sub(r'[<>"|?*\\/:]', "_", text).strip(" .")
@@ -593,10 +608,12 @@ def test_text(client: TestClient, root: Path, text: str) -> None:
         assert [page.status_code for page in pages[:2]] == [200, 200]
         for page in pages:
             assert page.headers["content-type"] == "text/html; charset=utf-8"
-            for sign in ("<script>alert", "<img src=x", "<svg onload", "' onmouseover='", '" onmouseover', ">49<"):
+            for sign in ("<script>alert", "<img src=x", "<svg onload", ">49<"):
                 assert sign not in page.text
-            for tag in re.findall(r"<[a-zA-Z][^>]*>", page.text):
-                assert not re.search(r"\son\w+\s*=|javascript:", tag), tag
+            read = Attributes()
+            read.feed(page.text)
+            assert not [name for name, _ in read.seen if name.startswith("on")]
+            assert not [value for name, value in read.seen if name in ADDRESSES and value.startswith("javascript:")]
     finally:
         for file in (f"{named}.toml", "hostile.toml"):
             (root / file).unlink()
@@ -692,8 +709,11 @@ def test_pages_hold_no_script_of_their_own_and_scripts_write_no_markup() -> None
         assert not re.search(r"\beval\(|new Function|document\.write|insertAdjacentHTML|outerHTML|https?://", text), (
             script
         )
-        inner = re.findall(r".*innerHTML.*", text)
-        assert all("shadow" in line.lower() for line in inner), (script, inner)
+        for line in re.findall(r".*innerHTML.*", text):  # what our printers have written, and nothing else
+            assert re.search(r"innerHTML ?[:=] ?(`<style>\$\{\w+\}</style>\$\{)?(\w+\.)?(svg|html)\b", line), (
+                script,
+                line,
+            )
 
 
 def test_the_table_counts_the_attacks() -> None:
