@@ -176,10 +176,18 @@ class Worker:
 
     def end(self, why: str, *, gently: bool = False) -> None:
         """End the process and all that it has started; ``gently`` gives it a moment to take back what it writes."""
+        if self.condemn(why):
+            self.finish(gently=gently)
+
+    def condemn(self, why: str) -> bool:
+        """Decide that the process ends, so that nobody asks it any more; tell whether nobody had decided it before."""
         with self._lock:
-            if self.why:
-                return
-            self.why = why
+            is_first = not self.why
+            self.why = self.why or why
+        return is_first
+
+    def finish(self, *, gently: bool = False) -> None:
+        """End a process for which that was decided."""
         with suppress(OSError, ValueError):
             if gently and self._process.is_alive():
                 self._process.terminate()
@@ -268,7 +276,9 @@ class Workers:
         """Keep as many warm workers as there may be questions, and one more."""
         while True:
             with self._gate:
-                self._idle = [worker for worker in self._idle if worker.works]
+                for worker in [worker for worker in self._idle if not worker.works]:
+                    self._idle.remove(worker)
+                    worker.end("it ended while it waited")
                 if self.closed or len(self._idle) + self._answering() > self._quick:
                     return
                 self._idle.append(self._new())
@@ -284,7 +294,7 @@ class Workers:
         return worker
 
     def _take(self) -> Worker:
-        """Return a warm worker, the one that has been kept longest; called within the gate."""
+        """Return a warm worker, the one that was asked last; called within the gate."""
         while self._idle:
             worker = self._idle.pop(0)
             if worker.works:
@@ -360,10 +370,11 @@ class Workers:
         self._gate.notify_all()
 
     def _give_up(self, question: Question) -> None:
-        with self._gate:
+        with self._gate:  # a worker that has answered in the meantime may be asked something else
             worker = question.worker
-        if worker is not None and question.worker is worker:
-            worker.end("a newer question took the place of this one")
+            is_condemned = worker is not None and worker.condemn("a newer question took the place of this one")
+        if worker is not None and is_condemned:
+            worker.finish()
 
     # Jobs
 
