@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
+import os
 import signal
 import socket
 import subprocess
@@ -251,3 +253,20 @@ def test_other_addresses(tmp_path: Path, host: str, shown: str, warns: bool) -> 
         process.send_signal(signal.SIGINT)
         _, said = process.communicate(timeout=allowed(SLOWEST_END))
     assert ("warning: 0.0.0.0 can be reached from other machines" in said) == warns
+
+
+def test_a_folder_that_is_read_only(tmp_path: Path) -> None:
+    (tmp_path / "press.toml").write_text('plugin = "press_linkage"\n')
+    tmp_path.chmod(0o500)
+    if os.access(tmp_path, os.W_OK):
+        pytest.skip("everything is permitted to this user")
+    try:
+        with serving(tmp_path) as served:
+            answer = served.ask("POST", "/api/save", file="new.toml", text="", base=hashlib.sha256(b"").hexdigest())
+            assert answer.status == 422
+            assert "cannot be written" in json.loads(answer.read())["faults"][0]["message"]
+            served.process.send_signal(signal.SIGINT)
+            _, said = served.process.communicate(timeout=allowed(SLOWEST_END))
+            assert f"warning: {tmp_path} is read-only; nothing can be saved there" in said
+    finally:
+        tmp_path.chmod(0o700)
