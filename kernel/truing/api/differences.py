@@ -134,12 +134,17 @@ def _side_of_folder(path: Path, name: str, document: Mapping[str, Any], plugin: 
         page = (folder / "sheet.html").read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError):
         page = ""
-    return Side(name, document, figures_of(page), _model(plugin or str((document.get("plugin") or {}).get("model"))))
+    return Side(name, document, figures_of(page), _model(str((document.get("plugin") or {}).get("model")), plugin))
 
 
-def _model(name: str) -> Model[Any, Any] | None:
-    """Return an installed model, from which the names get their notes; None where it cannot be loaded."""
+def _model(named: str, plugin: str) -> Model[Any, Any] | None:
+    """Return the model from which the names get their notes: ``plugin``, or the one that a document has named.
+
+    None where it cannot be loaded. A file runs only where the user names it: a document may come from anywhere.
+    """
+    if not plugin and named.endswith(".py"):
+        return None
     try:
-        return offer_of(name, lambda _: None).model
+        return offer_of(plugin or named, lambda _: None).model
     except TruingError:
         return None

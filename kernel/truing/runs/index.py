@@ -111,12 +111,9 @@ def list_folder(folder: Path) -> Listing:
 def _walk(root: Path, path: Path, depth: int) -> Iterator[FolderEntry | Other]:
     """Yield what a folder is or holds; one with neither run nor diagnosis in it is said to be foreign."""
     name = path.relative_to(root).as_posix()
-    kind = next((kind for kind, (document, _) in DOCUMENTS.items() if (path / document).exists()), None)
-    if kind is not None:
-        try:
-            yield _entry(path, name if name != "." else root.absolute().name, kind)
-        except (_DamagedError, RecursionError) as fault:
-            yield Other(name, str(fault) or "its documents are nested too deeply")
+    made = entry_at(path, name if name != "." else root.absolute().name)
+    if made is not None:
+        yield made
         return
     try:
         inside = sorted(os.scandir(path), key=lambda child: child.name)
@@ -137,6 +134,17 @@ def _walk(root: Path, path: Path, depth: int) -> Iterator[FolderEntry | Other]:
             yield from _walk(root, path / child.name, depth + 1)
     if depth and not folders:
         yield Other(name, "holds no run and no diagnosis" if inside else "is empty")
+
+
+def entry_at(path: Path, name: str) -> FolderEntry | Other | None:
+    """Read the run or diagnosis that a folder is; None where it is neither, Other where it cannot be read."""
+    kind = next((kind for kind, (document, _) in DOCUMENTS.items() if (path / document).exists()), None)
+    if kind is None:
+        return None
+    try:
+        return _entry(path, name, kind)
+    except (_DamagedError, RecursionError) as fault:
+        return Other(name, str(fault) or "its documents are nested too deeply")
 
 
 def _entry(path: Path, name: str, kind: FolderKind) -> FolderEntry:

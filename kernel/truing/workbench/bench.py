@@ -32,6 +32,8 @@ class Bench:
     workers: Workers
     confirmed: set[str] = field(default_factory=set)
     """The plugins in files that the user let run, by path, as long as the server lives."""
+    kept: dict[Any, Any] = field(default_factory=dict)
+    """Answers that stay true as long as the server lives, or as long as their key says: figures, names of programs."""
 
     def path(self, name: str) -> Path:
         """Return a file of the folder. Raises UsageError for one outside."""
