@@ -96,7 +96,8 @@ async function details() {
       const run = last[row.dataset.file], fault = faults[row.dataset.file];
       if (fault) row.querySelector(".fault").textContent = fault;
       if (!run) { row.querySelector(".last").textContent = "not run yet"; continue; }
-      row.querySelector(".last").append(made("a", { className: `badge ${run.state || "none"}`, textContent: run.verdict, href: `/run?folder=${encodeURIComponent(run.name)}` }));
+      const [head, ...rest] = run.verdict.split(": ");
+      row.querySelector(".last").append(made("a", { className: `badge ${run.state || "none"}`, textContent: head, href: `/run?folder=${encodeURIComponent(run.name)}` }), ` ${rest.join(": ")}`);
       row.querySelector(".date").textContent = run.date;
     }
   } catch (error) { say(error.message); }
