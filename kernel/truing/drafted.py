@@ -371,7 +371,8 @@ class _Without(ast.NodeTransformer):
 
 NUMPY = {
     "asin": "arcsin", "acos": "arccos", "atan": "arctan", "atan2": "arctan2",
-    **dict.fromkeys(("sqrt", "cbrt", "exp", "log", "log10", "abs", "sign", "sin", "cos", "tan", "sinh", "cosh", "tanh")),
+    **dict.fromkeys(("sqrt", "cbrt", "exp", "log", "log10", "abs", "sign")),
+    **dict.fromkeys(("sin", "cos", "tan", "sinh", "cosh", "tanh")),
 }  # fmt: skip
 """Functions that numpy has, by what it calls them where that is something else."""
 PAIRWISE = {"min": "minimum", "max": "maximum", "hypot": "hypot"}

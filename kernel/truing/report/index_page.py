@@ -32,8 +32,8 @@ def index_html(listing: Listing, target: Path) -> str:
     title = f"Runs and diagnoses in {folder.name or folder.absolute().name}"
     return page(
         "index.html.j2", title, styles=("sheet.css", "index.css"), title=title, summary=summary_of(listing),
-        listing=listing, most=SHOWN, link=partial(_link, folder.absolute(), target), margin=margin_words, number=_number,
-        script=script, digest=digest,
+        listing=listing, most=SHOWN, link=partial(_link, folder.absolute(), target), margin=margin_words,
+        number=_number, script=script, digest=digest,
     )  # fmt: skip
 
 

@@ -40,7 +40,7 @@ FILES = {
 """What the files of a run are called on its page, in this order; others follow by their names."""
 HEAD = re.compile(r"\A\s*<!DOCTYPE html>\s*<html[^<>]*>\s*<head>", re.IGNORECASE)
 STILL = (
-    '<meta http-equiv="Content-Security-Policy" content="default-src \'none\'; style-src \'unsafe-inline\'; '
+    "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; "
     "img-src data:; font-src data:; base-uri 'none'; form-action 'none'\">"
 )
 """A page that begins so loads nothing and runs nothing, whatever stands below."""

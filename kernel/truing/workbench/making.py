@@ -72,7 +72,7 @@ async def draft(request: Request) -> Response:
 
 
 def _book(bench: Bench, document: Any) -> str:
-    """Return a workbook of the folder with the place in it. Raises UsageError for another file or a place that is none."""
+    """Return a workbook of the folder with the place in it. Raises UsageError for another file, or no place."""
     path, place = bench.path(word(document, "book")), word(document, "place", "").strip()
     if path.suffix.lower() not in {".xlsx", ".xlsm"} or not path.is_file():
         raise UsageError(f"{path.name} is no workbook of this folder")

@@ -68,7 +68,10 @@ async def models(request: Request) -> Response:
     """Say what every installed calculation is for, and which plugins are broken."""
     bench = bench_of(request)
     await body_of(request)
-    return JSONResponse(await bench.ask("models.installed"))
+    key = ("installed", *plugin_names())
+    if key not in bench.kept:
+        bench.kept[key] = await bench.ask("models.installed")
+    return JSONResponse(bench.kept[key])
 
 
 async def program(request: Request) -> Response:
@@ -99,14 +102,22 @@ async def example(request: Request) -> Response:
     return JSONResponse({"text": await bench.ask("models.example", plugin=bench.plugin(word(document, "plugin")))})
 
 
-async def details(request: Request) -> Response:
-    """Say of every inputs file what is wrong with it, and how its last run ended."""
+async def faults(request: Request) -> Response:
+    """Say of every inputs file what is wrong with it, as far as its calculation may run."""
     bench = bench_of(request)
     await body_of(request)
     seen = await anyio.to_thread.run_sync(contents, bench.root)
     files = [{"name": each.name, "plugin": calculated} for each, calculated in _calculated(bench, seen)]
-    faults = await bench.ask("models.looked_through", root=str(bench.root), files=files[:MOST_LOOKED_THROUGH])
-    return JSONResponse({"faults": faults, "last": _last_runs(seen, (await listing(bench))["entries"])})
+    said = await bench.ask("models.looked_through", root=str(bench.root), files=files[:MOST_LOOKED_THROUGH])
+    return JSONResponse({"faults": said})
+
+
+async def last(request: Request) -> Response:
+    """Say of every inputs file how its last run ended."""
+    bench = bench_of(request)
+    await body_of(request)
+    seen = await anyio.to_thread.run_sync(contents, bench.root)
+    return JSONResponse({"last": _last_runs(seen, (await listing(bench))["entries"])})
 
 
 def _calculated(bench: Bench, seen: Contents) -> list[tuple[Any, str]]:
@@ -182,7 +193,8 @@ ROUTES = [
     Route("/api/program", program, methods=["POST"]),
     Route("/api/picture", picture, methods=["POST"]),
     Route("/api/example", example, methods=["POST"]),
-    Route("/api/details", details, methods=["POST"]),
+    Route("/api/faults", faults, methods=["POST"]),
+    Route("/api/last", last, methods=["POST"]),
     Route("/api/begin", begin, methods=["POST"]),
     Route("/api/confirm", confirm, methods=["POST"]),
 ]

@@ -88,19 +88,29 @@ async function installed() {
   list.removeAttribute("aria-busy");
 }
 
-async function details() {
-  if (!document.getElementById("inputs")) return;
+const rows = [...document.querySelectorAll("#inputs tbody tr")];
+
+async function last() {
+  if (!rows.length) return;
   try {
-    const { faults, last } = await call("/api/details", {});
-    for (const row of document.querySelectorAll("#inputs tbody tr")) {
-      const run = last[row.dataset.file], fault = faults[row.dataset.file];
-      if (fault) row.querySelector(".fault").textContent = fault;
-      if (!run) { row.querySelector(".last").textContent = "not run yet"; continue; }
+    const { last } = await call("/api/last", {});
+    for (const row of rows) {
+      const run = last[row.dataset.file], cell = row.querySelector(".last");
+      if (!run) { cell.textContent = "not run yet"; continue; }
       const [head, ...rest] = run.verdict.split(": ");
-      row.querySelector(".last").append(made("a", { className: `badge ${run.state || "none"}`, textContent: head, href: `/run?folder=${encodeURIComponent(run.name)}` }), ` ${rest.join(": ")}`);
+      cell.replaceChildren(made("a", { className: `badge ${run.state || "none"}`, textContent: head, href: `/run?folder=${encodeURIComponent(run.name)}` }), ` ${rest.join(": ")}`);
       row.querySelector(".date").textContent = run.date;
     }
   } catch (error) { say(error.message); }
 }
+
+async function faults() {
+  if (!rows.length) return;
+  try {
+    const { faults } = await call("/api/faults", {});
+    for (const row of rows) if (faults[row.dataset.file]) row.querySelector(".fault").textContent = faults[row.dataset.file];
+  } catch (error) { say(error.message); }
+}
+last();
 installed();
-details();
+faults();

@@ -13,7 +13,7 @@ function add(kind, focus) {
   const body = document.getElementById(kind).tBodies[0], row = made("tr"), ident = `${kind}-${number++}`;
   const what = kind === "inputs" ? "input" : "result";
   for (const [key, label, hint] of COLUMNS[kind]) {
-    const cell = made("td", { className: key });
+    const cell = made("td", { className: `of-${key}` });
     cell.dataset.label = label;
     if (hint === null) { cell.append(made("output", { className: "value-shown" })); row.append(cell); continue; }
     const input = made("input", { id: `${ident}-${key}`, placeholder: body.rows.length ? "" : hint, spellcheck: key === "note", autocapitalize: "off" });
@@ -28,7 +28,7 @@ function add(kind, focus) {
   const remove = made("button", { type: "button", className: "plain", textContent: "×" });
   remove.setAttribute("aria-label", `Remove ${what} ${body.rows.length + 1}`);
   remove.onclick = () => { const next = row.nextElementSibling || row.previousElementSibling; row.remove(); check(); (next?.querySelector("input") || document.querySelector(`[data-add="${kind}"]`)).focus(); };
-  row.append(made("td", { className: "remove" }, remove));
+  row.append(made("td", { className: "of-remove" }, remove));
   body.append(row);
   if (focus) row.querySelector("input").focus();
 }

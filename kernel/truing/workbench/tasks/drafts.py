@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from truing.api.model import LoadedModel
+from truing.calculation import calculate
 from truing.declare.near_miss import near_miss
 from truing.declare.quantities import has_dimension
 from truing.drafted import CAN_BE_WRITTEN, TAKEN, Draft, Quantity, draft_of, drafted_file
@@ -66,12 +67,17 @@ def checked(form: Mapping[str, Any], root: str) -> dict[str, Any]:
 
 
 def _fault_of_name(name: str, root: Path) -> Faults:
+    taken = next((place for place in (f"{name}.py", name) if SPELLING.fullmatch(name) and (root / place).exists()), "")
+    if taken:
+        return {"name": f"{taken} is in the folder already; choose another name"}
+    file = getattr(sys.modules.get(name), "__file__", None)
+    if file is not None and not Path(file).exists():  # loaded from a file that has been deleted since
+        del sys.modules[name]
     try:
         check_name(name)
     except UsageError as error:
         return {"name": str(error)}
-    taken = next((place for place in (f"{name}.py", name) if (root / place).exists()), "")
-    return {"name": f"{taken} is in the folder already; choose another name"} if taken else {}
+    return {}
 
 
 def _fault_of_title(title: str) -> Faults:
@@ -332,11 +338,11 @@ def _plan(form: Mapping[str, Any]) -> NewPlugin:
 
 
 def _written(root: Path, plan: NewPlugin, text: str) -> str:
-    """Write a file, calculate it once, and return its name; where that fails no file is left."""
+    """Write a file, calculate it once without studies, and return its name; where that fails no file is left."""
     path = root / f"{plan.name}.py"
     write_single_file(path, text)
     try:
-        LoadedModel(offer_of(str(path), lambda _: None)).run(progress=False)
+        calculate(replace(LoadedModel(offer_of(str(path), lambda _: None)).setup(), studies=()))
     except BaseException:
         path.unlink(missing_ok=True)
         sys.modules.pop(plan.name, None)
@@ -387,4 +393,3 @@ def _left_out(draft: Draft) -> Iterator[str]:
             yield f"{one.cell}: {one.typed} is not translated, {one.why}; its value is an input"
     for cell in draft.left_out:
         yield f"{cell.cell}: {cell.typed} is left out, {cell.why}"
-

@@ -1,4 +1,4 @@
-"""What can be calculated: models with what they are for, the example of one, its figure, inputs files looked through."""
+"""What can be calculated: what models are for, the example of one, its figure, inputs files looked through."""
 
 from __future__ import annotations
 
