@@ -67,7 +67,7 @@ async def make(request: Request) -> Response:
 async def draft(request: Request) -> Response:
     """Say what becomes of the cells of a workbook; nothing is written."""
     bench, document = bench_of(request), await body_of(request)
-    about = {"form": _form(document), "root": str(bench.root)}
+    about: dict[str, Any] = {"form": _form(document), "root": str(bench.root)}
     return JSONResponse(await bench.ask("drafts.from_workbook", **about, book=_book(bench, document), write=False))
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -23,6 +22,10 @@ from truing.workbooks.writing import demand_library
 
 READ = ("results.json", "diagnosis.json", "run.json", "inputs.toml", "sheet.html")
 """What an entry of the list is read from: where one of them is another, the entry is read again."""
+SHOWN = (
+    "name", "kind", "model", "version", "date", "stamp", "head", "verdict", "state", "cases", "margin", "warnings",
+    "sheet",
+)  # fmt: skip
 MOST_CHANGES = 3
 """So many changes are named in the list; the page that compares two names all."""
 NOT_NAMED = {"results", "studies", "wrong", "gain", "data"}
@@ -60,8 +63,8 @@ def _row(path: str, name: str, stamps: tuple[tuple[int, int], ...]) -> dict[str,
         return None
     if not isinstance(made, FolderEntry):
         return {"name": name, "sentence": made.sentence}
-    row = {**asdict(made), "margin": made.margin, "margin_words": margin_words(made)}
-    return {key: value for key, value in row.items() if key != "findings"}
+    row = {name: getattr(made, name) for name in SHOWN}
+    return {**row, "margin_words": margin_words(made)}
 
 
 def changed(root: str, pairs: Sequence[Sequence[str]]) -> dict[str, str]:
