@@ -65,6 +65,11 @@ function shownAt(ident, text) {
   document.getElementById(ident).replaceChildren(...(text ? [made("p", { textContent: text }), close] : []));
 }
 
+// What nobody catches is said all the same.
+addEventListener("unhandledrejection", (event) => {
+  if (event.reason instanceof Faults) { event.preventDefault(); say(event.reason.message); }
+});
+
 document.addEventListener("keydown", (event) => {
   if (event.key === "Escape" && !document.querySelector("dialog[open]")) { say(""); shownAt("told", ""); }
 });
