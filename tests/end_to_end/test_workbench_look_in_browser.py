@@ -170,3 +170,23 @@ def test_a_page_says_that_the_server_has_stopped_and_keeps_what_was_typed(browse
     assert axe(page) == []
     assert "# mine" in page.locator("#text").input_value()
     page.context.close()
+
+
+def test_the_whole_way_in_firefox(firefox: Browser, filled: Workbench) -> None:
+    """From the list of the folder to a changed value, its answer, the saved file; each page fits a phone."""
+    page = filled.page(firefox)
+    page.get_by_role("link", name="inputs.toml").click()
+    page.locator("#results", has_text="mm").wait_for()
+    before = page.locator("#results").inner_text()
+    page.get_by_label("crank from the bottom dead centre").fill("20 deg")
+    page.wait_for_function("before => document.getElementById('results').innerText !== before", arg=before)
+    page.get_by_role("button", name="Save").click()
+    page.wait_for_function("() => document.getElementById('save').disabled")
+    assert "20 deg" in (filled.folder / "inputs.toml").read_text(encoding="utf-8")
+    for address in PAGES.values():
+        page.goto(filled.address + address)
+        page.set_viewport_size({"width": 390, "height": 844})
+        assert sideways(page) == []
+    assert axe(page) == []
+    assert page.outside == []
+    page.context.close()
