@@ -218,7 +218,8 @@ document.addEventListener("DOMContentLoaded", () => {
   const bar = document.querySelector(".bar"), tools = document.querySelector(".tools");
   const measure = () => {
     document.documentElement.style.setProperty("--bar", `${bar.offsetHeight}px`);
-    if (tools) document.documentElement.style.setProperty("--tools", `${tools.offsetHeight}px`);
+    tools?.classList.toggle("is-tall", tools.offsetHeight > innerHeight / 6);
+    if (tools) document.documentElement.style.setProperty("--tools", `${tools.classList.contains("is-tall") ? 0 : tools.offsetHeight}px`);
   };
   const watching = new ResizeObserver(measure);
   watching.observe(bar);
