@@ -153,10 +153,11 @@ def test_the_whole_way_by_keyboard(browser: Browser, filled: Workbench) -> None:
     page.locator(".job", has_text="done").wait_for(timeout=60_000)
     page.keyboard.press("Control+Home")
     page.evaluate("document.activeElement.blur()")
-    focus(page, "Open the sheet")
+    focus(page, "Open it")
     page.keyboard.press("Enter")
-    page.wait_for_url("**/sheet.html")
-    assert page.locator("h1").inner_text() == "Parallel-driven multi-link servo press: slider accuracy"
+    page.wait_for_url("**/run?*")
+    title = page.frame_locator("iframe").locator("h1")
+    assert title.inner_text() == "Parallel-driven multi-link servo press: slider accuracy"
     assert page.outside == []
     page.context.close()
 
