@@ -32,16 +32,13 @@ from truing.workbench.server import application
 from truing.workbench.tasks import task
 from truing.workbench.tasks.drafts import checked, from_workbook, made, placeholder
 from truing.workbench.tasks.kept import words_of_changes
-from truing.workbench.workers import TaskError, Workers, fault_of
+from truing.workbench.workers import TaskError, fault_of
 
 HOST = "127.0.0.1:8000"
 
 
-class Here(Workers):
+class Here:
     """Does the tasks in this process: a worker process takes seconds to start."""
-
-    def __init__(self) -> None:
-        super().__init__(2**30, quick=0)
 
     def ask(self, name: str, *, patience: float = 0.0, **arguments: Any) -> Any:
         """Do a task now."""
@@ -54,8 +51,8 @@ class Here(Workers):
 @pytest.fixture
 def client(tmp_path: Path) -> Iterator[TestClient]:
     key = Key(8000)
-    app = application(tmp_path, key, frozenset({HOST}), Here())
-    with TestClient(app, base_url=f"http://{HOST}", cookies={key.cookie: key.token}) as client:
+    app = application(tmp_path, key, frozenset({HOST}), Here())  # type: ignore[arg-type]
+    with TestClient(app, base_url=f"http://{HOST}", cookies={key.cookie: key.session}) as client:
         client.headers["origin"] = f"http://{HOST}"
         yield client
 
@@ -136,10 +133,12 @@ def test_pairs_are_runs_of_one_file_in_the_order_of_their_dates() -> None:
     newest_first = [
         {"kind": kind, "model": "press", "name": name}
         for kind, name in zip(
-            ("run", "diagnosis", "run", "run", "run"), ("runs/a-3", "runs/a", "b/a-2", "runs/c", "a"), strict=True
+            ("run", "diagnosis", "run", "run", "run"),
+            ("runs/a-3", "runs/a", "runs/a-2", "runs/c", "runs/a"),
+            strict=True,
         )
     ]
-    assert pairs_of(newest_first) == [("b/a-2", "runs/a-3"), ("a", "b/a-2")]
+    assert pairs_of(newest_first) == [("runs/a-2", "runs/a-3"), ("runs/a", "runs/a-2")]
 
 
 def test_changes_are_named_causes_first() -> None:
@@ -181,6 +180,19 @@ def test_a_packed_run_holds_its_own_files_and_no_link(client: TestClient, tmp_pa
     assert names == ["press/results.json", "press/run.json", "press/sheet.html"]
     assert answer.headers["content-disposition"] == "attachment; filename*=UTF-8''press.zip"
     assert "link.txt" not in client.get("/run", params={"folder": "press"}).text
+
+
+def test_a_copy_of_a_run_is_kept_under_the_next_number(client: TestClient, tmp_path: Path) -> None:
+    run(tmp_path / "runs" / "press", check("tilt", 9.0, 10.0, 0.1), date="2026-11-02T08:00:00+0100")
+    (tmp_path / "runs" / "press" / "link.txt").symlink_to(tmp_path)
+    (tmp_path / "runs" / "press-1").mkdir()
+    for number in (2, 3):
+        answer = client.post("/api/keep", json={"folder": "runs/press"})
+        assert answer.json() == {"folder": f"runs/press-{number}"}
+    copies = sorted(path.name for path in (tmp_path / "runs" / "press-3").iterdir())
+    assert copies == ["results.json", "run.json", "sheet.html"]
+    assert client.get("/api/keep").status_code == 405
+    assert client.post("/api/keep", json={"folder": "runs"}).status_code == 422
 
 
 def test_a_printed_sheet_can_load_and_run_nothing(

@@ -98,6 +98,7 @@ def program_of(named: str, inputs: str, programs: tuple[str, ...]) -> str:
     return next(iter([*beside, *called]), "")
 
 
-def stem_of_run(folder: str) -> str:
-    """Return what a run is called without the number that tells it from others of the same file."""
-    return _NUMBER.sub("", PurePosixPath(folder).name)
+def place_of_run(folder: str) -> tuple[str, str]:
+    """Return where a run lies, and its name without the number that tells it from others of the same file."""
+    path = PurePosixPath(folder)
+    return path.parent.as_posix(), _NUMBER.sub("", path.name)

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import base64
 import mimetypes
 import re
 import zipfile
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from importlib.util import find_spec
 from io import BytesIO
+from itertools import count
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
@@ -17,10 +20,11 @@ from starlette.requests import Request
 from starlette.responses import FileResponse, HTMLResponse, JSONResponse, Response
 from starlette.routing import Route
 
+from truing.atomic import place_folder
 from truing.errors import OutputError, UsageError
 from truing.report.pdf import find_browser, pdf_bytes
-from truing.workbench.bench import Bench, bench_of, body_of, page
-from truing.workbench.folder import DOCUMENTS, contents, stem_of_run
+from truing.workbench.bench import Bench, bench_of, body_of, page, word
+from truing.workbench.folder import DOCUMENTS, contents, place_of_run
 from truing.workbench.guard import SHEET_POLICY
 from truing.workbench.places import below
 
@@ -63,12 +67,13 @@ async def listing(bench: Bench) -> dict[str, Any]:
 def pairs_of(entries: Sequence[Mapping[str, Any]]) -> list[tuple[str, str]]:
     """Return each entry's name after that of the one before it: of the same file, kind and calculation.
 
-    ``entries`` stand the newest first. Runs are of one file where their folders have one name, numbers aside.
+    ``entries`` stand the newest first. Runs are of one file where their folders lie side by side and have one name,
+    numbers aside.
     """
     newest: dict[tuple[str, ...], str] = {}
     pairs = []
     for entry in entries:
-        key = (entry["kind"], entry["model"], stem_of_run(entry["name"]))
+        key = (entry["kind"], entry["model"], *place_of_run(entry["name"]))
         if key in newest:
             pairs.append((entry["name"], newest[key]))
         newest[key] = entry["name"]
@@ -137,7 +142,7 @@ async def made(request: Request) -> Response:
             content = await anyio.to_thread.run_sync(_printed, path / "sheet.html")
         return _to_keep(content, f"{path.name}.pdf", "application/pdf")
     if kind == "xlsx":
-        content = await bench.ask("kept.workbook", folder=str(path))
+        content = base64.b64decode(await bench.ask("kept.workbook", folder=str(path)))
         return _to_keep(content, f"{path.name}.xlsx", "application/octet-stream")
     if kind == "zip":
         return _to_keep(await anyio.to_thread.run_sync(_packed, path), f"{path.name}.zip", "application/zip")
@@ -162,24 +167,59 @@ def _printed(sheet: Path) -> bytes:
 
 
 def _packed(path: Path) -> bytes:
-    """Pack the folder of a run, its name in front; links and hidden files are left out. Raises OutputError."""
-    files = [
-        each for each in sorted(path.rglob("*"))
-        if each.is_file() and not each.is_symlink() and not any(part[0] == "." for part in each.relative_to(path).parts)
-        and each.resolve().is_relative_to(path.resolve())
-    ]  # fmt: skip
-    if sum(each.stat().st_size for each in files) > LARGEST_ZIP:
-        raise OutputError(f"{path.name} is too large to be packed here; copy the folder")
+    """Pack the folder of a run, its name in front. Raises OutputError where it is too large."""
     stream = BytesIO()
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
-        for each in files:
-            archive.write(each, f"{path.name}/{each.relative_to(path).as_posix()}")
+        for name, file in _files_below(path).items():
+            archive.write(file, f"{path.name}/{name}")
     return stream.getvalue()
+
+
+def _files_below(path: Path) -> dict[str, Path]:
+    """Return the files of a run by their names in it, without links and hidden ones. Raises OutputError: too large."""
+    files = {
+        each.relative_to(path).as_posix(): each
+        for each in sorted(path.rglob("*"))
+        if each.is_file() and not each.is_symlink() and each.resolve().is_relative_to(path.resolve())
+        and not any(part.startswith(".") for part in each.relative_to(path).parts)
+    }  # fmt: skip
+    if sum(each.stat().st_size for each in files.values()) > LARGEST_ZIP:
+        raise OutputError(f"{path.name} is too large to be packed or copied here; copy the folder")
+    return files
 
 
 def _to_keep(content: bytes, name: str, kind: str) -> Response:
     headers = {"content-disposition": f"attachment; filename*=UTF-8''{quote(name, safe='')}"}
     return Response(content, media_type=kind, headers={**headers, "content-security-policy": SHEET_POLICY})
+
+
+async def keep(request: Request) -> Response:
+    """Copy a run beside itself under the next number, so that the next run of its file does not replace it."""
+    bench, document = bench_of(request), await body_of(request)
+    path = run_folder(bench, word(document, "folder"))
+    return JSONResponse({"folder": below(bench.root, await anyio.to_thread.run_sync(_copied, path))})
+
+
+def _copied(path: Path) -> Path:
+    """Copy a run, without links and hidden files, and return where the copy is: complete, or not there."""
+    files = {name: each.read_bytes() for name, each in _files_below(path).items()}
+    _, stem = place_of_run(path.as_posix())
+    for number in count(1):
+        target = path.with_name(f"{stem}-{number}")
+        try:
+            target.mkdir()
+        except FileExistsError:
+            continue
+        except OSError as error:
+            raise OutputError(f"{target.name} cannot be written: {error.strerror or error}") from None
+        try:
+            place_folder(target, files, "copy")
+        except BaseException:
+            with suppress(OSError):
+                target.rmdir()
+            raise
+        return target
+    raise AssertionError("numbers do not end")
 
 
 async def compare_page(request: Request) -> Response:
@@ -225,5 +265,6 @@ ROUTES = [
     Route("/compared", compared),
     Route("/made/{kind}", made),
     Route("/api/changed", changed, methods=["POST"]),
+    Route("/api/keep", keep, methods=["POST"]),
     Route("/file/{name:path}", file),
 ]

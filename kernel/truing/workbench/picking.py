@@ -16,11 +16,11 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
-from truing.atomic import write_files
+from truing.atomic import file_appearing
 from truing.entry_points import plugin_names
 from truing.errors import OutputError, UsageError
 from truing.workbench.bench import Bench, bench_of, body_of, page, word
-from truing.workbench.folder import Contents, contents, program_of, stem_of_run
+from truing.workbench.folder import Contents, contents, place_of_run, program_of
 from truing.workbench.keeping import listing
 from truing.workbench.places import below
 
@@ -112,7 +112,7 @@ async def faults(request: Request) -> Response:
     return JSONResponse({"faults": said})
 
 
-async def last(request: Request) -> Response:
+async def newest(request: Request) -> Response:
     """Say of every inputs file how its last run ended."""
     bench = bench_of(request)
     await body_of(request)
@@ -133,18 +133,24 @@ def _calculated(bench: Bench, seen: Contents) -> list[tuple[Any, str]]:
 
 
 def _last_runs(seen: Contents, entries: list[Mapping[str, Any]]) -> dict[str, Mapping[str, Any]]:
-    """Return the newest run of every inputs file that has one; ``entries`` stand the newest first."""
-    newest: dict[str, Mapping[str, Any]] = {}
+    """Return the newest run of every inputs file that has one; ``entries`` stand the newest first.
+
+    A run is of a file where it is called like it, numbers aside: below ``runs`` as the file is below the folder, else
+    anywhere.
+    """
+    newest: dict[tuple[str, str], Mapping[str, Any]] = {}
     for entry in entries:
         if entry["kind"] == "run":
-            newest.setdefault(stem_of_run(entry["name"]), entry)
-            newest.setdefault(entry["name"].rpartition("/")[2], entry)
-    shown = ("name", "date", "verdict", "state")
-    stems = {each.name: Path(each.name).stem for each in seen.inputs}
-    return {
-        name: {key: newest[stem][key] for key in shown}
-        for name, stem in stems.items() if stem in newest
-    }  # fmt: skip
+            parent, stem = place_of_run(entry["name"])
+            newest.setdefault((parent, stem), entry)
+            newest.setdefault(("", stem), entry)
+    ends = {}
+    for each in seen.inputs:
+        path = Path("runs", each.name).with_suffix("")
+        entry = newest.get((path.parent.as_posix(), path.name)) or newest.get(("", path.name))
+        if entry is not None:
+            ends[each.name] = {name: entry[name] for name in ("name", "date", "verdict", "state")}
+    return ends
 
 
 async def begin(request: Request) -> Response:
@@ -157,24 +163,13 @@ async def begin(request: Request) -> Response:
     if path.exists():
         raise OutputError(f"{below(bench.root, path)} is there already; choose another name")
     text = await bench.ask("models.example", plugin=bench.plugin(plugin))
-    await anyio.to_thread.run_sync(write_new, path, text)
+    await anyio.to_thread.run_sync(_write_new, path, text)
     return JSONResponse({"file": below(bench.root, path), "plugin": plugin})
 
 
-def write_new(path: Path, text: str) -> None:
-    """Write a file that is not there yet, whole or not at all. Raises OutputError, also where another was quicker."""
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.open("x").close()
-    except FileExistsError:
-        raise OutputError(f"{path.name} is there already; choose another name") from None
-    except OSError as error:
-        raise OutputError(f"{path.name} cannot be written: {error.strerror or error}") from None
-    try:
-        write_files({path: text})
-    except BaseException:
-        path.unlink(missing_ok=True)
-        raise
+def _write_new(path: Path, text: str) -> None:
+    with file_appearing(path) as stream:
+        stream.write(text.encode())
 
 
 async def confirm(request: Request) -> Response:
@@ -194,7 +189,7 @@ ROUTES = [
     Route("/api/picture", picture, methods=["POST"]),
     Route("/api/example", example, methods=["POST"]),
     Route("/api/faults", faults, methods=["POST"]),
-    Route("/api/last", last, methods=["POST"]),
+    Route("/api/newest", newest, methods=["POST"]),
     Route("/api/begin", begin, methods=["POST"]),
     Route("/api/confirm", confirm, methods=["POST"]),
 ]

@@ -93,7 +93,7 @@ const rows = [...document.querySelectorAll("#inputs tbody tr")];
 async function last() {
   if (!rows.length) return;
   try {
-    const { last } = await call("/api/last", {});
+    const { last } = await call("/api/newest", {});
     for (const row of rows) {
       const run = last[row.dataset.file], cell = row.querySelector(".last");
       if (!run) { cell.textContent = "not run yet"; continue; }

@@ -4,6 +4,14 @@ import { call, made, say } from "./workbench.js";
 const table = document.getElementById("runs");
 if (table) list(table);
 
+const copy = document.getElementById("copy");
+if (copy) copy.onclick = async () => {
+  try {
+    const { folder } = await call("/api/keep", { folder: copy.dataset.folder });
+    location.href = `/run?folder=${encodeURIComponent(folder)}`;
+  } catch (error) { say(error.message); }
+};
+
 function list(table) {
   const body = table.tBodies[0], heads = [...table.tHead.rows[0].cells], rows = [...body.rows];
   const compareText = new Intl.Collator(undefined, { numeric: true, sensitivity: "base" }).compare;

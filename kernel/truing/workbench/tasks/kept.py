@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
@@ -119,8 +120,8 @@ def compared_page(before: str, after: str) -> str:
     return html_of(comparison_page(*differences_of_paths(before, after, refused).sides()))
 
 
-def workbook(folder: str) -> bytes:
-    """Return the tables of a run as an .xlsx workbook, from its document."""
+def workbook(folder: str) -> str:
+    """Return the tables of a run as an .xlsx workbook, from its document; its bytes as base64."""
     document: Mapping[str, Any] = load_either(Path(folder))
     named = str((document.get("plugin") or {}).get("model", ""))
     if str(document.get("schema")).startswith("truing.diagnosis"):
@@ -128,4 +129,4 @@ def workbook(folder: str) -> bytes:
     if named.endswith(".py"):
         raise UsageError("the run names a file as its calculation")
     demand_library()
-    return run_workbook(document, offer_of(named, lambda _: None).model)
+    return base64.b64encode(run_workbook(document, offer_of(named, lambda _: None).model)).decode()
