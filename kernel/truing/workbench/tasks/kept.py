@@ -19,6 +19,7 @@ from truing.runs.comparison import Change, compared, in_order, words_of
 from truing.runs.folder import load_either
 from truing.runs.index import FolderEntry, entry_at
 from truing.runs.spreadsheet import run_workbook
+from truing.templating import ENGLISH
 from truing.workbooks.writing import demand_library
 
 READ = ("results.json", "diagnosis.json", "run.json", "inputs.toml", "sheet.html")
@@ -117,7 +118,7 @@ def compared_page(before: str, after: str) -> str:
     def refused(plugin: str, file: Path) -> Any:
         raise UsageError(f"{file.name} is no folder of a run; choose two of the list")
 
-    return html_of(comparison_page(*differences_of_paths(before, after, refused).sides()))
+    return html_of(comparison_page(*differences_of_paths(before, after, refused).sides(ENGLISH)))
 
 
 def workbook(folder: str) -> str:
