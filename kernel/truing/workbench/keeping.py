@@ -24,7 +24,7 @@ from truing.atomic import place_folder
 from truing.errors import OutputError, UsageError
 from truing.report.pdf import find_browser, pdf_bytes
 from truing.workbench.bench import Bench, bench_of, body_of, page, word
-from truing.workbench.folder import DOCUMENTS, contents, place_of_run
+from truing.workbench.folder import DOCUMENTS, contents, place_of_run, program_of
 from truing.workbench.guard import SHEET_POLICY
 from truing.workbench.places import below
 
@@ -126,9 +126,11 @@ def files_of(path: Path) -> list[dict[str, Any]]:
 
 
 def _can_make(path: Path, entry: Mapping[str, Any]) -> dict[str, bool]:
-    """Tell what can be made of a run on demand and is not there."""
+    """Tell what can be made of a run on demand and is not there; a run with cases needs the file of these."""
+    is_plain = entry["kind"] == "run" and not entry["cases"]
     return {
         "pdf": not (path / "sheet.pdf").is_file() and (path / "sheet.html").is_file() and find_browser() is not None,
+        "word": is_plain and not (path / "sheet.docx").is_file() and find_spec("docx") is not None,
         "xlsx": entry["kind"] == "run" and not (path / "results.xlsx").is_file() and find_spec("openpyxl") is not None,
     }
 
@@ -191,6 +193,20 @@ def _files_below(path: Path) -> dict[str, Path]:
 def _to_keep(content: bytes, name: str, kind: str) -> Response:
     headers = {"content-disposition": f"attachment; filename*=UTF-8''{quote(name, safe='')}"}
     return Response(content, media_type=kind, headers={**headers, "content-security-policy": SHEET_POLICY})
+
+
+async def word_document(request: Request) -> Response:
+    """Begin to make the Word document of a run, in the background: the run is calculated again."""
+    bench, document = bench_of(request), await body_of(request)
+    path = run_folder(bench, word(document, "folder"))
+    name = below(bench.root, path)
+    entry = next((each for each in (await listing(bench))["entries"] if each["name"] == name), None)
+    if entry is None or entry["kind"] != "run":
+        raise UsageError(f"{name} is no run that can be calculated again")
+    seen = await anyio.to_thread.run_sync(contents, bench.root)
+    plugin = bench.plugin(program_of(entry["model"], name, seen.programs) or entry["model"])
+    job = bench.start("kept.word", f"Word document of {name}", name, folder=str(path), plugin=plugin)
+    return JSONResponse(job.as_json())
 
 
 async def keep(request: Request) -> Response:
@@ -265,6 +281,7 @@ ROUTES = [
     Route("/compared", compared),
     Route("/made/{kind}", made),
     Route("/api/changed", changed, methods=["POST"]),
+    Route("/api/word", word_document, methods=["POST"]),
     Route("/api/keep", keep, methods=["POST"]),
     Route("/file/{name:path}", file),
 ]

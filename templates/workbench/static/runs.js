@@ -1,8 +1,32 @@
 // The list of runs and diagnoses: sorted by a column, filtered by words, two chosen to be compared.
-import { call, made, say } from "./workbench.js";
+import { call, listen, made, say, tell } from "./workbench.js";
 
 const table = document.getElementById("runs");
 if (table) list(table);
+
+// The Word document is made in the background; once it is there, it is a file like the others.
+const word = document.getElementById("word");
+let making = "";
+if (word) {
+  word.onclick = async () => {
+    try {
+      making = (await call("/api/word", { folder: word.dataset.folder })).ident;
+      word.disabled = true;
+    } catch (error) { say(error.message); }
+  };
+  listen("", ({ jobs }) => {
+    const job = jobs.find((each) => each.ident === making);
+    if (!job || !["done", "failed", "cancelled"].includes(job.status)) return;
+    making = "";
+    if (job.status !== "done") { word.disabled = false; return; }
+    const address = `/file/${[...word.dataset.folder.split("/"), "sheet.docx"].map(encodeURIComponent).join("/")}?download`;
+    const link = made("a", { textContent: "Sheet, Word", href: address, download: "" });
+    word.parentElement.replaceChildren(link);
+    document.getElementById("keep").open = true;
+    tell("The Word document is there: see Download.");
+    link.focus();
+  });
+}
 
 const copy = document.getElementById("copy");
 if (copy) copy.onclick = async () => {

@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 import base64
+import json
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 from truing.api.differences import differences_of_paths
+from truing.api.model import LoadedModel
 from truing.errors import TruingError, UsageError
 from truing.kernel import offer_of
 from truing.numbers import pretty
 from truing.report.comparison_page import comparison_page
 from truing.report.html_printer import html_of
 from truing.report.index_page import margin_words
+from truing.report.word_printer import demand_word_library
 from truing.runs.comparison import Change, compared, in_order, words_of
 from truing.runs.folder import load_either
 from truing.runs.index import FolderEntry, entry_at
 from truing.runs.spreadsheet import run_workbook
+from truing.studies.bench import Progress
 from truing.templating import ENGLISH
 from truing.workbooks.writing import demand_library
 
@@ -131,3 +135,16 @@ def workbook(folder: str) -> str:
         raise UsageError("the run names a file as its calculation")
     demand_library()
     return base64.b64encode(run_workbook(document, offer_of(named, lambda _: None).model)).decode()
+
+
+def word(folder: str, plugin: str, progress: Progress) -> dict[str, str]:
+    """Calculate a run again and put its sheet beside it as a Word document.
+
+    Raises UsageError where the numbers are others than those of the run: the document would not be its sheet.
+    """
+    demand_word_library()
+    path = Path(folder)
+    made = LoadedModel(offer_of(plugin, lambda _: None)).run(path / "inputs.toml", progress=progress)
+    if compared(load_either(path), json.loads(json.dumps(made.document))):
+        raise UsageError("calculated again the run has other numbers, so it gets no Word document; run its file again")
+    return {"written": made.sheet(path / "sheet.docx").name}
