@@ -30,6 +30,7 @@ import socket
 import threading
 import time
 from collections.abc import Iterator
+from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
 
@@ -576,6 +577,28 @@ TEXTS = [
 ]  # fmt: skip
 
 
+def doing(page: str) -> list[str]:
+    """Return the attributes of a page that would run something, as a browser reads it."""
+    reader = Attributes()
+    reader.feed(page)
+    return [
+        f"{name}={value}" for name, value in reader.seen
+        if name.startswith("on") or value.strip().lower().startswith("javascript:")
+    ]  # fmt: skip
+
+
+class Attributes(HTMLParser):
+    """Reads the attributes of all elements."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.seen: list[tuple[str, str]] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        """Take note of the attributes of an element."""
+        self.seen += [(name, value or "") for name, value in attrs]
+
+
 @pytest.mark.parametrize("text", TEXTS)
 def test_text(client: TestClient, root: Path, text: str) -> None:
     named = re.sub(r'[<>"|?*\\/:]', "_", text).strip(" .")
@@ -595,8 +618,7 @@ def test_text(client: TestClient, root: Path, text: str) -> None:
             assert page.headers["content-type"] == "text/html; charset=utf-8"
             for sign in ("<script>alert", "<img src=x", "<svg onload", "' onmouseover='", '" onmouseover', ">49<"):
                 assert sign not in page.text
-            for tag in re.findall(r"<[a-zA-Z][^>]*>", page.text):
-                assert not re.search(r"\son\w+\s*=|javascript:", tag), tag
+            assert doing(page.text) == []
     finally:
         for file in (f"{named}.toml", "hostile.toml"):
             (root / file).unlink()

@@ -9,13 +9,13 @@ import subprocess
 import sys
 import zipfile
 from collections.abc import Iterator
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import pytest
 from made_runs import HOSTILE, check, made_runs, run
 from starlette.testclient import TestClient
+from test_drafted import book
 
 from shared import Calc
 from truing.api.differences import differences_of_paths
@@ -30,7 +30,7 @@ from truing.workbench.guard import Key
 from truing.workbench.keeping import pairs_of
 from truing.workbench.server import application
 from truing.workbench.tasks import task
-from truing.workbench.tasks.drafts import checked, from_workbook, made, placeholder
+from truing.workbench.tasks.drafts import checked, made, placeholder
 from truing.workbench.tasks.kept import words_of_changes
 from truing.workbench.workers import TaskError, fault_of
 
@@ -316,15 +316,25 @@ def test_the_placeholder_is_that_of_calc_new(calc: Calc, tmp_path: Path) -> None
         assert text.replace("own-projectx", "own-project") == beside.read_text(encoding="utf-8"), name
 
 
-@pytest.mark.skipif(find_spec("openpyxl") is None, reason="workbooks need openpyxl")
-def test_a_workbook_is_drafted_and_written(tmp_path: Path) -> None:
-    from openpyxl import Workbook
-
-    book = Workbook()
-    for line in (["Force", 120, "N"], ["Area", 28, "mm^2"], ["Pressure", "=B1/B2", "MPa"]):
-        book.active.append(line)
-    book.save(tmp_path / "pin.xlsx")
-    form = {"name": "from_book", "title": "", "inputs": [], "results": []}
-    with pytest.raises(TruingError, match="never stored"):
-        from_workbook(form, str(tmp_path), "pin.xlsx", False)
+def test_a_workbook_is_drafted_and_written(client: TestClient, tmp_path: Path) -> None:
+    book(tmp_path / "pin.xlsx", [("Force", 120, "N"), ("Area", 30, "mm^2"), ("Pressure", "=B1/B2", "MPa", None, 4.0)])
+    about = {"form": {"name": "from_book", "title": ""}, "book": "pin.xlsx", "place": ""}
+    drafted = client.post("/api/new/draft", json=about).json()
+    assert (drafted["inputs"], drafted["results"], drafted["said"]) == (2, 1, [])
     assert not (tmp_path / "from_book.py").exists()
+    made_here = client.post("/api/new/make", json={**about, "kind": "workbook"}).json()
+    assert made_here["file"] == "from_book.py"
+    assert (tmp_path / "from_book.py").read_text(encoding="utf-8") == drafted["text"]
+    said = client.post("/api/program", json={"file": "from_book.py"})
+    assert (said.status_code, said.json()["title"]) == (200, "From book")  # made here, so it needs no confirming
+    for place in ("../x", "a#b", "Sheet9"):
+        assert client.post("/api/new/draft", json={**about, "place": place}).status_code == 422
+
+
+def test_a_workbook_whose_values_were_never_stored_is_refused(client: TestClient, tmp_path: Path) -> None:
+    book(tmp_path / "pin.xlsx", [("Force", 120, "N"), ("Twice", "=2*B1", "N")])
+    about = {"form": {"name": "never_stored", "title": ""}, "book": "pin.xlsx", "place": "", "kind": "workbook"}
+    answer = client.post("/api/new/make", json=about)
+    assert "never stored" in faults(answer)[0]
+    assert str(tmp_path) not in answer.text
+    assert not (tmp_path / "never_stored.py").exists()

@@ -144,12 +144,12 @@ def _last_runs(seen: Contents, entries: list[Mapping[str, Any]]) -> dict[str, Ma
             parent, stem = place_of_run(entry["name"])
             newest.setdefault((parent, stem), entry)
             newest.setdefault(("", stem), entry)
-    ends = {}
+    ends: dict[str, Mapping[str, Any]] = {}
     for each in seen.inputs:
         path = Path("runs", each.name).with_suffix("")
-        entry = newest.get((path.parent.as_posix(), path.name)) or newest.get(("", path.name))
-        if entry is not None:
-            ends[each.name] = {name: entry[name] for name in ("name", "date", "verdict", "state")}
+        last = newest.get((path.parent.as_posix(), path.name)) or newest.get(("", path.name))
+        if last is not None:
+            ends[each.name] = {name: last[name] for name in ("name", "date", "verdict", "state")}
     return ends
 
 
