@@ -68,15 +68,15 @@ def faults(answer: Any) -> list[str]:
 def test_the_folder_is_told_apart_by_what_its_files_are(tmp_path: Path) -> None:
     run(tmp_path / "runs" / "press", date="2026-11-02T08:00:00+0100", head='project = "P"')
     for name, text in {
-        "press.toml": 'plugin = "press"\n', "pyproject.toml": '[project]\nname = "x"\n', "half.toml": "plugin = \n",
-        "other.toml": "a = \n", "bare.toml": "[inputs]\nload = 1\n", "belt.py": "def truing_models(): ...",
+        "press.toml": 'plugin = "press"\n', "pyproject.toml": '[project]\nname = "x"\n',
+        "half.toml": "plugin = 'press\n", "other.toml": "a = \n", "bare.toml": "[inputs]\nload = 1\n", "belt.py": "def truing_models(): ...",
         "tool.py": "print()", "rows.csv": "a\n1\n", ".hidden.toml": 'plugin = "x"\n',
     }.items():  # fmt: skip
         (tmp_path / name).write_text(text, encoding="utf-8")
     seen = contents(tmp_path)
     assert [(each.name, each.plugin, each.fault.partition(":")[0]) for each in seen.inputs] == [
         ("bare.toml", "", 'names no calculation; write plugin = "NAME" above its sections'),
-        ("half.toml", "", "is no TOML"), ("press.toml", "press", ""),
+        ("half.toml", "press", "is no TOML"), ("press.toml", "press", ""),
     ]  # fmt: skip
     assert (seen.programs, seen.data, seen.runs) == (("belt.py",), ("rows.csv",), ("runs/press",))
     assert tuple(document for document, _ in DOCUMENTS_OF_RUNS.values()) == DOCUMENTS

@@ -18,7 +18,8 @@ MARK = b"truing_models"
 """What stands in every Python file that offers a calculation."""
 BEGINNING = 200_000
 """Bytes of a Python file in which its mark is looked for."""
-_NAMES_PLUGIN = re.compile(r"^\s*(plugin\s*=|\[inputs\])", re.MULTILINE)
+_PLUGIN = re.compile(r"^\s*plugin\s*=\s*[\"']?([\w.]*)", re.MULTILINE)
+"""The calculation that a file names which cannot be read as TOML."""
 _NUMBER = re.compile(r"[-_ ]\d+$")
 
 
@@ -68,7 +69,10 @@ def _inputs_file(root: Path, path: Path) -> InputsFile | None:
     try:
         document = tomllib.loads(text)
     except (ValueError, RecursionError) as error:
-        return InputsFile(name, "", f"is no TOML: {error}") if _NAMES_PLUGIN.search(text) else None
+        named = _PLUGIN.search(text)
+        if named is None and "[inputs]" not in text:
+            return None
+        return InputsFile(name, named[1] if named else "", f"is no TOML: {error}")
     plugin = document.get("plugin")
     if isinstance(plugin, str) and plugin:
         return InputsFile(name, plugin)

@@ -125,6 +125,8 @@ def _calculated(bench: Bench, seen: Contents) -> list[tuple[Any, str]]:
     pairs = []
     for each in seen.inputs:
         program = program_of(each.plugin, each.name, seen.programs)
+        if each.fault:
+            continue
         if each.plugin and not program and not each.plugin.endswith(".py"):
             pairs.append((each, each.plugin))
         elif program and _is_confirmed(bench, program):
