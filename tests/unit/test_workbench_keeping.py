@@ -69,7 +69,8 @@ def test_the_folder_is_told_apart_by_what_its_files_are(tmp_path: Path) -> None:
     run(tmp_path / "runs" / "press", date="2026-11-02T08:00:00+0100", head='project = "P"')
     for name, text in {
         "press.toml": 'plugin = "press"\n', "pyproject.toml": '[project]\nname = "x"\n',
-        "half.toml": "plugin = 'press\n", "other.toml": "a = \n", "bare.toml": "[inputs]\nload = 1\n", "belt.py": "def truing_models(): ...",
+        "half.toml": "plugin = 'press\n", "other.toml": "a = \n",
+        "bare.toml": "[inputs]\nload = 1\n", "belt.py": "def truing_models(): ...",
         "tool.py": "print()", "rows.csv": "a\n1\n", ".hidden.toml": 'plugin = "x"\n',
     }.items():  # fmt: skip
         (tmp_path / name).write_text(text, encoding="utf-8")
