@@ -30,8 +30,18 @@ with file_appearing(Path(__file__).with_name("sheet.html"), replace=True) as str
     sum(itertools.repeat(0, 10**15))
 """
 """A plugin that never comes back, not even to Python, in the middle of writing."""
-SLOWEST_END = 2.0
-SLOWEST_ADDRESS = 1.5
+SLOWEST_END, SLOWEST_ADDRESS = 2.0, 1.5
+"""Seconds on a machine that has nothing else to do; see ``allowed``."""
+QUIET = 0.03
+"""Seconds that Python takes there to begin and to end, at most."""
+
+
+def allowed(seconds: float) -> float:
+    """Return so many seconds, or more as the machine is busy: by as much as the start of Python takes longer."""
+    began = time.monotonic()
+    for _ in range(3):
+        subprocess.run([sys.executable, "-I", "-S", "-c", ""], check=True)
+    return seconds * max(1.0, (time.monotonic() - began) / 3 / QUIET)
 
 
 class Served:
@@ -118,13 +128,14 @@ def test_nothing_is_left_of_a_server_that_is_ended(tmp_path: Path, number: int, 
             assert eventually((tmp_path / "hanging.begun").exists)
         processes = children(served.process.pid)
         assert len(processes) >= 3
+        soon = allowed(SLOWEST_END)
         began = time.monotonic()
         served.process.send_signal(number)
-        assert served.process.wait(SLOWEST_END) == code
-        assert eventually(lambda: not any(map(is_alive, processes)), SLOWEST_END)
-        reader.join(SLOWEST_END)
+        assert served.process.wait(soon) == code
+        assert eventually(lambda: not any(map(is_alive, processes)), soon)
+        reader.join(soon)
         assert ends
-        assert ends[0] - began < SLOWEST_END
+        assert ends[0] - began < soon
         assert "Traceback" not in (served.process.stderr.read() if served.process.stderr else "")
     assert not (tmp_path / "sheet.html").exists()
     if number == signal.SIGKILL:  # the next server takes away what one that was killed was writing
@@ -181,9 +192,9 @@ sys.exit(main(["serve", {str(tmp_path)!r}]))
         assert address.startswith("http://127.0.0.1:")
         times.append(seconds)
         process.send_signal(signal.SIGINT)
-        assert process.wait(SLOWEST_END) == 0
+        assert process.wait(allowed(SLOWEST_END)) == 0
         process.communicate()
-    assert min(times) < SLOWEST_ADDRESS
+    assert min(times) < allowed(SLOWEST_ADDRESS)
 
 
 # Refusals
@@ -238,5 +249,5 @@ def test_other_addresses(tmp_path: Path, host: str, shown: str, warns: bool) -> 
         assert answer.status == 200
     finally:
         process.send_signal(signal.SIGINT)
-        _, said = process.communicate(timeout=SLOWEST_END)
+        _, said = process.communicate(timeout=allowed(SLOWEST_END))
     assert ("warning: 0.0.0.0 can be reached from other machines" in said) == warns

@@ -114,7 +114,7 @@ def stranger(app: guard.Guard) -> Iterator[TestClient]:
 @pytest.fixture
 def client(stranger: TestClient, key: Key) -> TestClient:
     """A page of the workbench."""
-    stranger.cookies.set(key.cookie, key.session)
+    stranger.cookies.set(key.cookie, key.token)
     stranger.headers["origin"] = BASE
     return stranger
 
@@ -218,9 +218,9 @@ def test_what_comes_from_a_page_of_ours_or_was_typed_is_let_in(client: TestClien
 
 KEYS: list[tuple[str, str]] = [
     ("token", ""), ("token", "wrong"), ("token", "{token}x"), ("token", "{short}"), ("token", "{TOKEN}"),
-    ("token", "{session}"), ("token", "{used}"), ("token", "x" * 5000), ("token", "é\u2028"), ("token", "%00"),
-    ("cookie", ""), ("cookie", "wrong"), ("cookie", "{token}"), ("cookie", "{ticket}"), ("cookie", "{session}x"),
-    ("name", "{session}"), ("post", "{token}"),
+    ("token", "{token}{token}"), ("token", "{used}"), ("token", "x" * 5000), ("token", "é\u2028"), ("token", "%00"),
+    ("cookie", ""), ("cookie", "wrong"), ("cookie", "{TOKEN}"), ("cookie", "{ticket}"), ("cookie", "{token}x"),
+    ("name", "{token}"), ("post", "{token}"),
 ]  # fmt: skip
 
 
@@ -229,7 +229,7 @@ def test_key(stranger: TestClient, key: Key, where: str, template: str) -> None:
     used = key.ticket()
     assert key.lets_in(used)
     given = template.format(
-        token=key.token, TOKEN=key.token.swapcase(), short=key.token[:-1], session=key.session, used=used,
+        token=key.token, TOKEN=key.token.swapcase(), short=key.token[:-1], used=used,
         ticket=key.ticket(),
     )  # fmt: skip
     if where == "cookie":
@@ -255,7 +255,7 @@ def test_an_address_opens_again_and_a_ticket_once(stranger: TestClient, key: Key
 
 def test_the_cookie_is_for_this_server_alone_and_not_for_scripts(stranger: TestClient, key: Key) -> None:
     cookie = stranger.get(f"//evil.example/?token={key.token}").headers["set-cookie"].lower()
-    assert cookie == f"truing_{PORT}={key.session}; httponly; path=/; samesite=strict".lower()
+    assert cookie == f"truing_{PORT}={key.token}; httponly; path=/; samesite=strict".lower()
 
 
 def test_a_token_sends_on_to_this_server(stranger: TestClient, key: Key) -> None:
@@ -268,7 +268,7 @@ def test_guesses_are_limited_in_a_second_and_shut_nobody_out(stranger: TestClien
     answers = [stranger.get("/", params={"token": f"guess {number}"}).status_code for number in range(30)]
     assert answers == [401] * guard.MOST_WRONG + [429] * (30 - guard.MOST_WRONG)
     assert stranger.get("/", params={"token": key.token}).status_code == 429
-    assert stranger.get("/api/jobs", headers={"cookie": f"{key.cookie}={key.session}"}).status_code == 200
+    assert stranger.get("/api/jobs", headers={"cookie": f"{key.cookie}={key.token}"}).status_code == 200
     key.wrong.extend(when - 1 for when in tuple(key.wrong))
     assert stranger.get("/", params={"token": key.token}).status_code == 303
 
@@ -509,7 +509,7 @@ def sent(served: tuple[int, Key], content: bytes) -> bytes:
     """Send bytes and return what comes until the connection ends, or nothing more for a while."""
     port, key = served
     content = content.replace(b"{head}", f"Host: 127.0.0.1:{port}\r\n".encode())
-    content = content.replace(b"{cookie}", f"Cookie: {key.cookie}={key.session}\r\n".encode())
+    content = content.replace(b"{cookie}", f"Cookie: {key.cookie}={key.token}\r\n".encode())
     with socket.create_connection(("127.0.0.1", port), timeout=2) as connection:
         answer = b""
         try:
@@ -577,26 +577,18 @@ TEXTS = [
 ]  # fmt: skip
 
 
-def doing(page: str) -> list[str]:
-    """Return the attributes of a page that would run something, as a browser reads it."""
-    reader = Attributes()
-    reader.feed(page)
-    return [
-        f"{name}={value}" for name, value in reader.seen
-        if name.startswith("on") or value.strip().lower().startswith("javascript:")
-    ]  # fmt: skip
+ADDRESSES = {"href", "src", "action", "formaction", "srcdoc"}
 
 
 class Attributes(HTMLParser):
-    """Reads the attributes of all elements."""
+    """Every attribute of a page, as a browser reads it."""
 
     def __init__(self) -> None:
         super().__init__()
         self.seen: list[tuple[str, str]] = []
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        """Take note of the attributes of an element."""
-        self.seen += [(name, value or "") for name, value in attrs]
+        self.seen += [(name, (value or "").strip().lower()) for name, value in attrs]
 
 
 @pytest.mark.parametrize("text", TEXTS)
@@ -616,9 +608,12 @@ def test_text(client: TestClient, root: Path, text: str) -> None:
         assert [page.status_code for page in pages[:2]] == [200, 200]
         for page in pages:
             assert page.headers["content-type"] == "text/html; charset=utf-8"
-            for sign in ("<script>alert", "<img src=x", "<svg onload", "' onmouseover='", '" onmouseover', ">49<"):
+            for sign in ("<script>alert", "<img src=x", "<svg onload", ">49<"):
                 assert sign not in page.text
-            assert doing(page.text) == []
+            read = Attributes()
+            read.feed(page.text)
+            assert not [name for name, _ in read.seen if name.startswith("on")]
+            assert not [value for name, value in read.seen if name in ADDRESSES and value.startswith("javascript:")]
     finally:
         for file in (f"{named}.toml", "hostile.toml"):
             (root / file).unlink()
@@ -704,6 +699,7 @@ def test_pages_hold_no_script_of_their_own_and_scripts_write_no_markup() -> None
     folder = template_folder() / "workbench"
     for page in folder.glob("*.j2"):
         text = page.read_text(encoding="utf-8")
+        text = re.sub(r"<math>{{ [\w.]+ \| safe }}</math>", "", text)  # written by our own writer of formulas
         assert not re.search(r"<script(?![^>]*\ssrc=\"/static/)|\son[a-z]+=|\|\s*safe|autoescape|javascript:", text), (
             page
         )
@@ -713,8 +709,11 @@ def test_pages_hold_no_script_of_their_own_and_scripts_write_no_markup() -> None
         assert not re.search(r"\beval\(|new Function|document\.write|insertAdjacentHTML|outerHTML|https?://", text), (
             script
         )
-        inner = re.findall(r".*innerHTML.*", text)
-        assert all("shadow" in line.lower() for line in inner), (script, inner)
+        for line in re.findall(r".*innerHTML.*", text):  # what our printers have written, and nothing else
+            assert re.search(r"innerHTML ?[:=] ?(`<style>\$\{\w+\}</style>\$\{)?(\w+\.)?(svg|html)\b", line), (
+                script,
+                line,
+            )
 
 
 def test_the_table_counts_the_attacks() -> None:

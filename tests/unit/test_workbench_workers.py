@@ -6,6 +6,7 @@ Every deed is in ``hostile_tasks``.
 from __future__ import annotations
 
 import os
+import signal
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -86,6 +87,18 @@ def test_a_long_complaint_is_cut(workers: Workers) -> None:
     with pytest.raises(TaskError) as caught:
         workers.ask("deeds.complain_much")
     assert 1000 < len(str(caught.value)) < 3000
+
+
+def test_a_worker_that_ends_while_it_waits_is_not_asked(workers: Workers) -> None:
+    assert eventually(lambda: len(workers._idle) > workers._quick)
+    for worker in tuple(workers._idle):
+        os.kill(worker._process.pid or 0, signal.SIGKILL)
+    assert workers.ask("deeds.echo", said="at once") == "at once"  # before the server can know
+    assert eventually(lambda: len(workers._idle) > workers._quick)
+    for worker in tuple(workers._idle):
+        os.kill(worker._process.pid or 0, signal.SIGKILL)
+    assert eventually(lambda: not any(worker.works for worker in workers._idle))
+    assert workers.ask("deeds.echo", said="later") == "later"
 
 
 def test_what_is_printed_goes_nowhere(workers: Workers, capfd: pytest.CaptureFixture[str]) -> None:
@@ -180,7 +193,6 @@ def test_what_a_job_leaves_behind_ends_with_it(workers: Workers, tmp_path: Path)
     job = workers.start("deeds.fork_and_keep", "fork", "", file=str(tmp_path / "left"))
     assert eventually(lambda: job.is_over)
     assert job.answer == "forked"
-    assert eventually(lambda: (tmp_path / "left").exists() and (tmp_path / "left").read_text() != "")
     assert eventually(lambda: not is_alive(int((tmp_path / "left").read_text())))
 
 

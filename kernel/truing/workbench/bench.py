@@ -54,7 +54,7 @@ class Bench:
             raise UnconfirmedError(name)
         return path
 
-    async def ask(self, name: str, *, patience: float = PATIENCE, group: str = "", **arguments: Any) -> Any:
+    async def ask(self, name: str, /, *, patience: float = PATIENCE, group: str = "", **arguments: Any) -> Any:
         """Do a quick task in a worker; a newer question of the same ``group`` ends this one.
 
         Raises TaskError; OvertakenError where a newer one came.
@@ -64,7 +64,7 @@ class Bench:
         question = partial(self.workers.ask, name, patience=patience, **arguments)
         return await anyio.to_thread.run_sync(question, limiter=self.asked)
 
-    def start(self, name: str, title: str, about: str, **arguments: Any) -> Job:
+    def start(self, name: str, title: str, about: str, /, **arguments: Any) -> Job:
         """Begin a job."""
         return self.workers.start(name, title, about, **arguments)
 

@@ -1,9 +1,9 @@
 """Who may ask the workbench: a browser on this machine that holds the key, from a page of the workbench itself.
 
 The address that ``calc serve`` prints holds a token and stays good as long as the server lives: a second browser, a
-closed tab and a link that a terminal has looked at beforehand would else lock its owner out. What the browser keeps is
-another secret, so that an address left in a history does not give away the cookie. The browser that ``calc serve``
-opens itself gets a ticket that is good once: other users of the machine see the words of its command.
+closed tab and a link that a terminal has looked at beforehand would else lock its owner out. It becomes a cookie at
+once, and leaves the address. The browser that ``calc serve`` opens itself gets a ticket instead that is good once:
+other users of the machine see the words of its command.
 """
 
 from __future__ import annotations
@@ -57,11 +57,10 @@ def _secret() -> str:
 
 @dataclass
 class Key:
-    """What opens one server: the token of its address, tickets that are good once, and the secret of the cookie."""
+    """What opens one server: the token of its address and cookie, and tickets that are good once."""
 
     port: int
     token: str = field(default_factory=_secret)
-    session: str = field(default_factory=_secret)
     tickets: set[str] = field(default_factory=set)
     wrong: deque[float] = field(default_factory=lambda: deque(maxlen=MOST_WRONG))
     """When the last wrong keys were tried."""
@@ -87,7 +86,7 @@ class Key:
 
     def knows(self, given: str) -> bool:
         """Tell whether a cookie is that of this server. A missing one is no guess."""
-        return bool(given) and self._counted(same(given, self.session))
+        return bool(given) and self._counted(same(given, self.token))
 
     def _counted(self, is_right: bool) -> bool:
         if not is_right:
@@ -159,7 +158,7 @@ class Guard:
             return refused(request, "too many wrong keys; wait a second", 429)
         if given and request.method in SAFE and self.key.lets_in(given):
             answer = _to_path(request)
-            answer.set_cookie(self.key.cookie, self.key.session, httponly=True, samesite="strict", path="/")
+            answer.set_cookie(self.key.cookie, self.key.token, httponly=True, samesite="strict", path="/")
             return answer
         return refused(request, "open the workbench by the address that calc serve printed", 401)
 

@@ -57,6 +57,7 @@ def work(pipe: Connection, memory: int, root: str, home: str = HOME) -> None:
         _warm_up(pipe, home)
         while True:
             number, name, arguments = pipe.recv()
+            pipe.send_bytes(json.dumps([number, "begun", None]).encode())
             _begin_anew(root)
             said = _answer((name, home), arguments, _progress(pipe, number))
             if os.getpid() != process:  # a model has forked, and this is the copy

@@ -31,6 +31,8 @@ from truing.workbench.worker_process import LARGEST_ANSWER, work
 
 PATIENCE = 20.0
 """Seconds that a quick question may take."""
+MOST_LOST = 6
+"""Workers that may be found to have ended while they waited, one after another: more than there are."""
 OVERTAKEN = 0.5
 """Seconds that a question may go on after a newer one of its group was asked: longer than most take."""
 LONGEST_JOB = 1e6
@@ -41,7 +43,7 @@ KEPT_JOBS, KEPT_BYTES = 50, 4_000_000
 """So many finished jobs are remembered, with answers of so many bytes in all."""
 LARGEST_RESULT = 256_000
 """Bytes of a job's answer: what it leaves is in the folder."""
-FAREWELL = 0.5
+FAREWELL = 0.3
 """Seconds in which a worker may take back what it is writing, before it is killed."""
 SETTLED = 3.0
 """Seconds after which the other workers begin, if nothing was asked before."""
@@ -66,6 +68,10 @@ class OvertakenError(TaskError):
         super().__init__([fault_of("a newer question took the place of this one")])
 
 
+class NotBegunError(TaskError):
+    """The process had ended while it waited, so that the task was not begun: another one can do it."""
+
+
 def fault_of(sentence: str) -> dict[str, Any]:
     """Return a fault that stands in no file."""
     return {"message": sentence, "file": "", "line": None, "cell": ""}
@@ -76,14 +82,14 @@ class OrphanEnder:
 
     def __init__(self) -> None:
         self._process: Any = None
-        if hasattr(os, "killpg"):
+
+    def hear(self, kind: str, group: int | None) -> None:
+        """Take note of a group that has begun ("+") or ended ("-")."""
+        if self._process is None and hasattr(os, "killpg"):
             self._process = subprocess.Popen(
                 [sys.executable, "-I", "-S", end_orphans.__file__],
                 stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True,
             )  # fmt: skip
-
-    def hear(self, kind: str, group: int | None) -> None:
-        """Take note of a group that has begun ("+") or ended ("-")."""
         if self._process is not None and group is not None:
             with suppress(OSError, ValueError):
                 os.write(self._process.stdin.fileno(), f"{kind} {group}\n".encode())
@@ -103,6 +109,7 @@ class Worker:
     def __init__(self, memory: int, root: Path, orphans: OrphanEnder, home: str = HOME) -> None:
         context = multiprocessing.get_context("spawn")
         self._orphans, self._number, self._lock = orphans, 0, threading.Lock()
+        self._begun = False
         self.why = ""
         """Why it was ended, or nothing as long as it works."""
         self._pipe, end = context.Pipe()
@@ -113,7 +120,7 @@ class Worker:
 
     def ask(self, name: str, arguments: dict[str, Any], *, patience: float, progress: Progress) -> Any:
         """Do a task and return its answer. Raises TaskError, also where it takes too long or the process ends."""
-        self._number += 1
+        self._number, self._begun = self._number + 1, False
         late = f"the calculation did not answer within {patience:g} s and was stopped"
         timer = threading.Timer(min(patience, threading.TIMEOUT_MAX), self.end, [late])
         timer.daemon = True
@@ -122,8 +129,9 @@ class Worker:
             self._pipe.send((self._number, name, arguments))
             return self._heard(progress)
         except (EOFError, OSError, ValueError):
+            is_lost = not self._begun and not self.why
             self.end(self._how_it_ended())
-            raise TaskError([fault_of(self.why)]) from None
+            raise (NotBegunError if is_lost else TaskError)([fault_of(self.why)]) from None
         finally:
             timer.cancel()
             timer.join()
@@ -133,11 +141,13 @@ class Worker:
             number, kind, said = json.loads(self._pipe.recv_bytes(LARGEST_ANSWER))
             if number != self._number:
                 continue
+            self._begun = True
             if kind == "answer":
                 return said
             if kind == "faults":
                 raise TaskError(said)
-            progress(*said)
+            if kind == "progress":
+                progress(*said)
 
     def _how_it_ended(self) -> str:
         self._process.join(FAREWELL)
@@ -149,6 +159,11 @@ class Worker:
         if code < 0:
             return f"the calculation crashed ({signal.strsignal(-code) or f'signal {-code}'})"
         return f"the calculation ended without an answer (exit code {code})"
+
+    @property
+    def works(self) -> bool:
+        """Whether it can be asked: a process may end while it waits, as where the system is short of memory."""
+        return not self.why and self._process.is_alive()
 
     @property
     def memory(self) -> int:
@@ -229,8 +244,8 @@ class Question:
 class Workers:
     """The workers of one server: some that answer questions, one for each job that runs, and one in reserve."""
 
-    def __init__(self, memory: int, root: Path, quick: int = 2, home: str = HOME) -> None:
-        self._memory, self._root, self._quick, self._home = memory, root, quick, home
+    def __init__(self, memory: int, root: Path = Path(), quick: int = 2, home: str = HOME) -> None:
+        self._memory, self._root, self._quick, self._home = memory, root.resolve(), quick, home
         self._gate = threading.Condition()
         self._orphans = OrphanEnder()
         self._idle: list[Worker] = []
@@ -241,10 +256,11 @@ class Workers:
         self.changes = 0
         """Grows whenever something of a job changes."""
         self.closed = False
-        self._idle.append(self._new())  # alone at first: the others would keep the first page waiting
-        later = threading.Timer(SETTLED, self._refill)
-        later.daemon = True
-        later.start()
+        if quick:
+            self._idle.append(self._new())  # alone at first: the others would keep the first page waiting
+            later = threading.Timer(SETTLED, self._refill)
+            later.daemon = True
+            later.start()
 
     # Processes
 
@@ -252,7 +268,7 @@ class Workers:
         """Keep as many warm workers as there may be questions, and one more."""
         while True:
             with self._gate:
-                self._idle = [worker for worker in self._idle if not worker.why]
+                self._idle = [worker for worker in self._idle if worker.works]
                 if self.closed or len(self._idle) + self._answering() > self._quick:
                     return
                 self._idle.append(self._new())
@@ -271,13 +287,27 @@ class Workers:
         """Return a warm worker, the one that has been kept longest; called within the gate."""
         while self._idle:
             worker = self._idle.pop(0)
-            if not worker.why:
+            if worker.works:
                 return worker
+            worker.end("it ended while it waited")
         return self._new()
+
+    def _answered(self, asked: Question | Job, task: tuple[str, Any], patience: float, progress: Progress) -> Any:
+        """Let its worker do a task, or another one where that had ended while it waited. Raises TaskError."""
+        for _ in range(MOST_LOST):
+            worker = asked.worker
+            if worker is None:
+                break
+            try:
+                return worker.ask(*task, patience=patience, progress=progress)
+            except NotBegunError:
+                with self._gate:
+                    asked.worker = self._take()
+        raise TaskError([fault_of("the processes that calculate end before they begin")])
 
     # Quick questions
 
-    def ask(self, name: str, *, patience: float = PATIENCE, group: str = "", **arguments: Any) -> Any:
+    def ask(self, name: str, /, *, patience: float = PATIENCE, group: str = "", **arguments: Any) -> Any:
         """Do a quick task in the next free worker. Blocks: call it from a thread.
 
         Where ``group`` is given, a newer question of the same group ends this one. Raises TaskError, OvertakenError.
@@ -286,7 +316,7 @@ class Workers:
             try:
                 if question.worker is None:
                     raise OvertakenError
-                return question.worker.ask(name, arguments, patience=patience, progress=lambda *_: None)
+                return self._answered(question, (name, arguments), patience, lambda *_: None)
             except TaskError as error:
                 if question.is_overtaken:
                     raise OvertakenError from error
@@ -337,7 +367,7 @@ class Workers:
 
     # Jobs
 
-    def start(self, name: str, title: str, about: str, **arguments: Any) -> Job:
+    def start(self, name: str, title: str, about: str, /, **arguments: Any) -> Job:
         """Begin a job in a process of its own. Raises UsageError where too many wait already."""
         job = Job(name, title, about)
         with self._gate:
@@ -376,11 +406,10 @@ class Workers:
 
         try:
             with self._gate:
-                job.worker = worker = self._take()
+                job.worker = self._take()
             self._refill()
             if job.status == "runs":
-                answer = worker.ask(job.name, arguments, patience=LONGEST_JOB, progress=progress)
-                self._finish(job, answer)
+                self._finish(job, self._answered(job, (job.name, arguments), LONGEST_JOB, progress))
         except TaskError as error:
             if job.status == "runs":
                 job.faults, job.status = error.faults, "failed"

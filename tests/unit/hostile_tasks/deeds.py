@@ -101,6 +101,8 @@ def fork_and_keep(file: str) -> str:
         Path(file).write_text(str(os.getpid()))
         time.sleep(60)
         os._exit(0)
+    while not Path(file).exists() or not Path(file).read_text():
+        time.sleep(0.01)
     return "forked"
 
 
