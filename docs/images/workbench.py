@@ -56,7 +56,8 @@ def edited(page: Any, base: str) -> None:
     page.goto(f"{base}edit?file=inputs.toml")
     page.get_by_text("3557").first.wait_for()
     for angle in ("20 deg", "30 deg"):
-        page.get_by_label("crank from the bottom dead centre").first.fill(angle)
+        page.get_by_label("Search the fields").fill("crank_angle")
+        page.locator("[id='inputs/crank_angle']").fill(angle)
         page.wait_for_timeout(1500)
         page.get_by_role("button", name="Save", exact=True).click()
         page.get_by_role("button", name="Run", exact=True).click()
