@@ -24,7 +24,7 @@ import truing
 from truing.report.pdf import find_browser, sandbox_arguments
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "press_off_by_40_um"
-COLOURS = 96
+COLOURS = 128
 PATIENCE = 180_000
 """Milliseconds that a run or a diagnosis may take."""
 
@@ -39,7 +39,7 @@ def served(folder: Path) -> Iterator[str]:
         process.send_signal(signal.SIGINT)
 
 
-def photographed(page: Any, name: str, height: int = 800) -> None:
+def photographed(page: Any, name: str, height: int) -> None:
     """Write the upper part of what the window shows, in few colours, beside this file."""
     page.wait_for_timeout(1500)
     shot = page.screenshot(clip={"x": 0, "y": 0, "width": page.viewport_size["width"], "height": height})
@@ -63,7 +63,8 @@ def edited(page: Any, base: str) -> None:
     page.get_by_role("button", name="Save", exact=True).click()
     page.get_by_role("button", name="Run", exact=True).click()
     ended(page)
-    photographed(page, "workbench.png")
+    page.get_by_text("Sliders", exact=True).click()
+    photographed(page, "workbench.png", 860)
 
 
 def measured(page: Any, base: str) -> None:
@@ -105,7 +106,7 @@ def main() -> None:
         with served(folder) as opening:
             browser = player.chromium.launch(executable_path=str(find_browser()), args=sandbox_arguments())
             base = opening.partition("?")[0]
-            page = browser.new_page(viewport={"width": 1280, "height": 800}, color_scheme="light")
+            page = browser.new_page(viewport={"width": 1280, "height": 860}, color_scheme="light")
             page.goto(opening)
             edited(page, base)
             measured(page, base)
