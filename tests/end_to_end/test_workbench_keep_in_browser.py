@@ -192,6 +192,8 @@ def test_a_run_is_shown_and_its_files_are_kept(served: Workbench, page: Any, tmp
     packed.value.save_as(tmp_path / "press.zip")
     with zipfile.ZipFile(tmp_path / "press.zip") as archive:
         assert sorted(archive.namelist()) == ["press/results.json", "press/run.json", "press/sheet.html"]
+    page.get_by_role("button", name="Keep a copy").click()
+    page.wait_for_url("**/run?folder=runs%2Fpress-1")
 
 
 def test_a_calculation_is_made_and_opens(served: Workbench, page: Any) -> None:

@@ -52,7 +52,8 @@ class Here:
 def client(tmp_path: Path) -> Iterator[TestClient]:
     key = Key(8000)
     app = application(tmp_path, key, frozenset({HOST}), Here())  # type: ignore[arg-type]
-    with TestClient(app, base_url=f"http://{HOST}", cookies={key.cookie: key.session}) as client:
+    with TestClient(app, base_url=f"http://{HOST}") as client:
+        client.get("/", params={"token": key.token})
         client.headers["origin"] = f"http://{HOST}"
         yield client
 
@@ -95,6 +96,13 @@ def test_the_first_page_loads_no_plugin_and_asks_no_worker(client: TestClient, m
     monkeypatch.setattr(Here, "ask", None)
     answer = client.get("/")
     assert (answer.status_code, "rv_wear" in answer.text, "press_linkage" in answer.text) == (200, True, True)
+
+
+def test_a_picture_is_drawn_once(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn = client.post("/api/picture", json={"plugin": "rv_wear"}).json()
+    assert (drawn["title"], drawn["svg"][:4]) == ("Disc, pins and crank", "<svg")
+    monkeypatch.setattr(Here, "ask", None)
+    assert client.post("/api/picture", json={"plugin": "rv_wear"}).json() == drawn
 
 
 def test_the_server_imports_no_numpy() -> None:
@@ -206,6 +214,11 @@ def test_a_printed_sheet_can_load_and_run_nothing(
     assert (answer.content, answer.headers["content-type"]) == (b"%PDF", "application/pdf")
     assert printed[0].index("default-src 'none'") < printed[0].index("<script>")
     sheet.write_text("<script>1</script><!DOCTYPE html><html><head>")
+    assert client.get("/made/pdf", params={"folder": "press"}).status_code == 422
+    outside = tmp_path.parent / f"{tmp_path.name}.html"
+    outside.write_text("<!DOCTYPE html><html><head>")
+    sheet.unlink()
+    sheet.symlink_to(outside)
     assert client.get("/made/pdf", params={"folder": "press"}).status_code == 422
     assert len(printed) == 1
 

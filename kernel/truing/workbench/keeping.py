@@ -140,8 +140,9 @@ async def made(request: Request) -> Response:
     bench, kind = bench_of(request), request.path_params["kind"]
     path = run_folder(bench, request.query_params.get("folder", ""))
     if kind == "pdf":
+        sheet = bench.path(f"{below(bench.root, path)}/sheet.html")
         async with _printer(bench):
-            content = await anyio.to_thread.run_sync(_printed, path / "sheet.html")
+            content = await anyio.to_thread.run_sync(_printed, sheet)
         return _to_keep(content, f"{path.name}.pdf", "application/pdf")
     if kind == "xlsx":
         content = base64.b64decode(await bench.ask("kept.workbook", folder=str(path)))

@@ -85,10 +85,12 @@ async def picture(request: Request) -> Response:
     """Give the first figure of a calculation at its example; drawn once as long as the server lives."""
     bench, document = bench_of(request), await body_of(request)
     plugin = bench.plugin(word(document, "plugin"))
-    key = ("picture", plugin, _changed_at(plugin))
-    if key not in bench.kept:
-        bench.kept[key] = await bench.ask("models.picture", plugin=plugin)
-    return JSONResponse(bench.kept[key])
+    stamp = _changed_at(plugin)
+    known, drawn = bench.kept.get(("picture", plugin), (None, None))
+    if known != stamp:
+        drawn = await bench.ask("models.picture", plugin=plugin)
+        bench.kept["picture", plugin] = stamp, drawn
+    return JSONResponse(drawn)
 
 
 def _changed_at(plugin: str) -> int:
