@@ -189,9 +189,12 @@ def test_a_run_is_shown_and_its_files_are_kept(served: Workbench, page: Any, tmp
     assert (tmp_path / "results.json").read_bytes() == (served.folder / "runs/press/results.json").read_bytes()
     with page.expect_download() as packed:
         page.get_by_role("link", name="Share: whole folder as .zip").click()
+    assert packed.value.suggested_filename == "press.zip"
     packed.value.save_as(tmp_path / "press.zip")
     with zipfile.ZipFile(tmp_path / "press.zip") as archive:
         assert sorted(archive.namelist()) == ["press/results.json", "press/run.json", "press/sheet.html"]
+    page.get_by_role("link", name="Results, workbook").click()
+    page.locator("#said", has_text="no plugin offers 'press'").wait_for()
     page.get_by_role("button", name="Keep a copy").click()
     page.wait_for_url("**/run?folder=runs%2Fpress-1")
 

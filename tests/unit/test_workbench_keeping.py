@@ -172,7 +172,7 @@ def test_only_folders_of_runs_are_given(client: TestClient, tmp_path: Path, fold
     outside = tmp_path.parent / f"{tmp_path.name}-outside"
     run(outside)
     (tmp_path / "link").symlink_to(outside)
-    for address in ("/run", "/made/zip", "/made/pdf", "/made/xlsx"):
+    for address in ("/run", "/api/made/zip", "/api/made/pdf", "/api/made/xlsx"):
         assert client.get(address, params={"folder": folder}).status_code == 422
     assert client.get("/compare", params={"before": folder, "after": folder}).status_code == 422
 
@@ -182,7 +182,7 @@ def test_a_packed_run_holds_its_own_files_and_no_link(client: TestClient, tmp_pa
     (tmp_path / "secret.txt").write_text("secret")
     (tmp_path / "press" / "link.txt").symlink_to(tmp_path / "secret.txt")
     (tmp_path / "press" / ".hidden").write_text("hidden")
-    answer = client.get("/made/zip", params={"folder": "press"})
+    answer = client.get("/api/made/zip", params={"folder": "press"})
     names = zipfile.ZipFile(io.BytesIO(answer.content)).namelist()
     assert names == ["press/results.json", "press/run.json", "press/sheet.html"]
     assert answer.headers["content-disposition"] == "attachment; filename*=UTF-8''press.zip"
@@ -210,16 +210,16 @@ def test_a_printed_sheet_can_load_and_run_nothing(
     run(tmp_path / "press", date="2026-11-02T08:00:00+0100")
     sheet = tmp_path / "press" / "sheet.html"
     sheet.write_text('<!DOCTYPE html>\n<html lang="en">\n<head><script>1</script></head>')
-    answer = client.get("/made/pdf", params={"folder": "press"})
+    answer = client.get("/api/made/pdf", params={"folder": "press"})
     assert (answer.content, answer.headers["content-type"]) == (b"%PDF", "application/pdf")
     assert printed[0].index("default-src 'none'") < printed[0].index("<script>")
     sheet.write_text("<script>1</script><!DOCTYPE html><html><head>")
-    assert client.get("/made/pdf", params={"folder": "press"}).status_code == 422
+    assert client.get("/api/made/pdf", params={"folder": "press"}).status_code == 422
     outside = tmp_path.parent / f"{tmp_path.name}.html"
     outside.write_text("<!DOCTYPE html><html><head>")
     sheet.unlink()
     sheet.symlink_to(outside)
-    assert client.get("/made/pdf", params={"folder": "press"}).status_code == 422
+    assert client.get("/api/made/pdf", params={"folder": "press"}).status_code == 422
     assert len(printed) == 1
 
 

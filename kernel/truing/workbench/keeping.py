@@ -280,7 +280,7 @@ ROUTES = [
     Route("/run", run_page),
     Route("/compare", compare_page),
     Route("/compared", compared),
-    Route("/made/{kind}", made),
+    Route("/api/made/{kind}", made),
     Route("/api/changed", changed, methods=["POST"]),
     Route("/api/word", word_document, methods=["POST"]),
     Route("/api/keep", keep, methods=["POST"]),

@@ -1,5 +1,5 @@
 // The list of runs and diagnoses: sorted by a column, filtered by words, two chosen to be compared.
-import { call, listen, made, say, tell } from "./workbench.js";
+import { Faults, call, listen, made, say, tell } from "./workbench.js";
 
 const table = document.getElementById("runs");
 if (table) list(table);
@@ -27,6 +27,21 @@ if (word) {
     link.focus();
   });
 }
+
+// What is made when it is asked for: said while it is made, and what goes wrong is said and not downloaded.
+for (const link of document.querySelectorAll('a[href^="/api/made/"]')) link.onclick = async (event) => {
+  event.preventDefault();
+  tell(`${link.textContent}: the download begins as soon as it is made.`);
+  try {
+    const answer = await fetch(link.href);
+    if (!answer.ok) throw new Faults((await answer.json()).faults);
+    const name = decodeURIComponent(answer.headers.get("content-disposition").split("''")[1]);
+    const address = URL.createObjectURL(await answer.blob());
+    made("a", { href: address, download: name }).click();
+    setTimeout(() => URL.revokeObjectURL(address), 60000);
+    tell("");
+  } catch (error) { tell(""); say(error.message); }
+};
 
 const copy = document.getElementById("copy");
 if (copy) copy.onclick = async () => {
