@@ -37,6 +37,8 @@ class Bench:
     workers: Workers
     confirmed: set[str] = field(default_factory=set)
     """The plugins in files that the user let run, by path, as long as the server lives."""
+    kept: dict[Any, Any] = field(default_factory=dict)
+    """Answers that stay true as long as the server lives, or as long as their key says: figures, names of programs."""
     asked: anyio.CapacityLimiter = field(default_factory=lambda: anyio.CapacityLimiter(MOST_ASKED))
 
     def path(self, name: str) -> Path:

@@ -15,7 +15,7 @@ from truing.errors import TruingError, UsageError
 from truing.templating import template_folder
 from truing.texts import one_line
 from truing.workbench import editing, jobs, keeping, making, measuring, picking, seeing
-from truing.workbench.bench import Bench, faulty, page
+from truing.workbench.bench import Bench, UnconfirmedError, faulty, page
 from truing.workbench.guard import Guard, Key
 from truing.workbench.workers import TaskError, Workers, fault_of
 
@@ -52,6 +52,8 @@ def _wants_json(request: Request) -> bool:
 async def _said(request: Request, error: Exception) -> Response:
     if _wants_json(request):
         return faulty(error)
+    if isinstance(error, UnconfirmedError):
+        return page(request, "confirm.html.j2", 409, title=f"Run {error.file}?", file=error.file)
     faults = error.faults if isinstance(error, TaskError) else [fault_of(str(error))]
     return page(request, "fault.html.j2", 422, title="This cannot be shown", faults=faults)
 
