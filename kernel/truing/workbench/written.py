@@ -50,7 +50,14 @@ class Written:
 
     def __init__(self, text: str) -> None:
         self.lines = text.split("\n")
-        self.entries = sorted(_entries(text, self.lines), key=lambda entry: entry.first)
+        self._entries: list[Entry] | None = None
+
+    @property
+    def entries(self) -> list[Entry]:
+        """What stands in the text, in its order."""
+        if self._entries is None:
+            self._entries = sorted(_entries(self.text, self.lines), key=lambda entry: entry.first)
+        return self._entries
 
     @property
     def text(self) -> str:
@@ -60,7 +67,7 @@ class Written:
     def put(self, first: int, last: int, lines: Sequence[str]) -> None:
         """Put other lines in the place of some."""
         self.lines[first:last] = lines
-        self.entries = Written(self.text).entries
+        self._entries = None
 
     def lines_of(self, entry: Entry) -> list[str]:
         """Return the lines of an entry."""
