@@ -33,7 +33,7 @@ async def edit_page(request: Request) -> Response:
     bench = bench_of(request)
     path = bench.path(request.query_params.get("file", ""))
     name = below(bench.root, path)
-    opened = await bench.ask("form.opened", path=str(path), name=name)
+    opened = await bench.ask("form.opened", path=str(path), called=name)
     plugin = request.query_params.get("plugin", "") or opened["plugin"]
     if not plugin:
         raise UsageError(f'{name} names no calculation; write plugin = "NAME" in its first line')
@@ -71,7 +71,7 @@ async def read(request: Request) -> Response:
     path = bench.path(word(document, "file"))
     if not path.exists():
         return JSONResponse({"gone": True, "digest": digest_of(b"")})
-    opened = await bench.ask("form.opened", path=str(path), name=below(bench.root, path))
+    opened = await bench.ask("form.opened", path=str(path), called=below(bench.root, path))
     differences = await bench.ask("form.differences", mine=word(document, "text"), theirs=opened["text"])
     return JSONResponse({**opened, "differences": differences})
 

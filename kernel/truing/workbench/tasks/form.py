@@ -51,7 +51,7 @@ def _fields(plugin: str) -> dict[str, Field]:
     return {each.key: each for group in _groups(plugin) for part in group.parts for each in part.fields}
 
 
-def opened(path: str, name: str) -> dict[str, Any]:
+def opened(path: str, called: str) -> dict[str, Any]:
     """Return the text of a file, the calculation it names, and its digest. Raises InputError with one sentence."""
     file = Path(path)
     try:
@@ -59,10 +59,10 @@ def opened(path: str, name: str) -> dict[str, Any]:
         content = file.read_bytes()
         text = text_of(content, file).replace("\r\n", "\n")
     except InputError as error:
-        raise InputError([Fault(f"{name}: {fault.message}", name, fault.line) for fault in error.faults]) from None
+        raise InputError([Fault(f"{called}: {fault.message}", called, fault.line) for fault in error.faults]) from None
     except OSError as error:
-        raise InputError([Fault(f"{name}: cannot be read: {error.strerror}", name)]) from None
-    plugin = read_document(text, name).data.get("plugin", "")
+        raise InputError([Fault(f"{called}: cannot be read: {error.strerror}", called)]) from None
+    plugin = read_document(text, called).data.get("plugin", "")
     digest = hashlib.sha256(content).hexdigest()
     return {"text": text, "plugin": plugin if isinstance(plugin, str) else "", "digest": digest}
 
