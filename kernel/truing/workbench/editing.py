@@ -81,8 +81,7 @@ async def save(request: Request) -> Response:
     bench, document = bench_of(request), await body_of(request)
     path, text, base = bench.path(word(document, "file")), word(document, "text"), word(document, "base")
     name = below(bench.root, path)
-    answer = await anyio.to_thread.run_sync(_saved, path, name, text, base)
-    return JSONResponse(answer, 409 if "conflict" in answer else 200)
+    return JSONResponse(await anyio.to_thread.run_sync(_saved, path, name, text, base))
 
 
 def _saved(path: Path, name: str, text: str, base: str) -> dict[str, Any]:

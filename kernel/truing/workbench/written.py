@@ -226,12 +226,10 @@ def _restated(statement: str, key: KeyPath, literal: str | None, entry: Entry) -
     table, names = document, list(key)
     for index, name in enumerate(names[:-1]):
         if not isinstance(table.get(name), Mapping):  # "flank.csv" becomes { file = "flank.csv" }
-            inner = tomlkit.inline_table()
-            if isinstance(table.get(name), str):
-                inner["file"] = str(table[name])
-                if names[index + 1 :] == ["file"]:
-                    break
-            table[name] = inner
+            if names[index + 1 :] == ["file"] and isinstance(table.get(name), str):
+                break
+            file = f"file = {toml_value(str(table[name]))}" if isinstance(table.get(name), str) else ""
+            table[name] = tomlkit.value(f"{{ {file} }}")
         table = table[name]
     else:
         index = len(names) - 1

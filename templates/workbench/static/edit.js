@@ -78,6 +78,7 @@ function work() {
 
 async function once() {
   const [key, wanted] = waiting.entries().next().value ?? [null, null];
+  if (wanted && !("value" in wanted)) step = null; // of what has been typed, not of the text before it
   waiting.delete(key);
   isStale = false;
   const sent = text.value, when = epoch, from = wanted ? begin(key) : sent;
@@ -92,6 +93,7 @@ async function once() {
     if (answer.text !== sent) put(answer.text);
     if (step && wanted) step.after = answer.text;
     show(answer);
+    if (wanted && "unit" in wanted) showField(fields.get(key), true);
   } catch (error) {
     const field = fields.get(key);
     if (field) answered(field, [error.message], ""); else say(error.message);
@@ -136,7 +138,7 @@ function stated_of(field) { return state?.fields[field.key]; }
 
 function write(element, words) { if (element.textContent !== words) element.textContent = words; }
 
-function showField(field) {
+function showField(field, isMadeHere = false) {
   const stated = stated_of(field), value = stated?.value, isStated = value !== undefined;
   answered(field, stated?.faults ?? [], stated?.answer ?? "");
   field.element.classList.toggle("is-stated", isStated);
@@ -148,7 +150,7 @@ function showField(field) {
     for (const box of field.element.querySelectorAll("input")) box.checked = isStated ? value.includes?.(box.value) : true;
   } else if (field.kind === "switch") {
     field.control.checked = isStated ? value === true : "default" in field.control.dataset;
-  } else if (document.activeElement !== field.control && !waiting.has(field.key)) {
+  } else if (isMadeHere || (document.activeElement !== field.control && !waiting.has(field.key))) {
     if (isStated && field.control.tagName === "SELECT" && ![...field.control.options].some((option) => option.value === String(value))) {
       field.control.append(made("option", { value: String(value), textContent: String(value) }));
     }
