@@ -1,0 +1,181 @@
+"""What the text of an inputs file gives, without studies: numbers, the inputs that matter most, the whole sheet."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, replace
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from truing.arrays import one_thread
+from truing.calculation import Calculation, calculate
+from truing.declare.fields import InputField
+from truing.declare.goals import Vary
+from truing.evaluate import evaluate_rows
+from truing.inputs_file import setup_from_text
+from truing.inputs_file.sentences import told_by_line
+from truing.inputs_file.values import broken_demand
+from truing.numbers import format_number
+from truing.report.html_printer import html_of
+from truing.report.live import live_sheet
+from truing.report.page_one import key_results
+from truing.report.run import sheet_of
+from truing.runs.folder import load_either
+from truing.setup import Setup
+from truing.studies.checks import requirements
+from truing.studies.sampling import Scatter, scatter_of
+from truing.units import from_si, read_quantity, to_si, unit_text
+from truing.workbench.tasks.loaded import loaded
+
+MOST_SLIDERS = 6
+PLACES = 200
+"""So many places a slider has."""
+AROUND = 0.25
+"""A slider reaches so far to both sides, as a share of its value, where neither bounds nor a variation are declared."""
+NEARER = 10
+"""So often the end of a slider that breaks a bound is brought half the way to where the input stands."""
+SHARE = 0.01
+"""An input without a tolerance is moved by so much of its value to see how much it matters."""
+
+
+def nominal(plugin: str, file: str, folder: str, text: str) -> Calculation:
+    """Calculate a text without its studies. Raises InputError with every fault, or with what is impossible."""
+    setup = replace(setup_from_text(text, loaded(plugin), file=file, folder=Path(folder)), studies=())
+    with told_by_line(setup):
+        return calculate(setup)
+
+
+def numbers(plugin: str, file: str, folder: str, text: str, run: str = "", name: str = "") -> dict[str, Any]:
+    """Return the live sheet of a text; beside the run in the folder ``run``, called ``name``, where one is given."""
+    saved = load_either(Path(run)) if run else None
+    return asdict(live_sheet(nominal(plugin, file, folder, text), saved, name))
+
+
+def whole(plugin: str, file: str, folder: str, text: str) -> str:
+    """Return the whole sheet of a text as a page."""
+    calculation = nominal(plugin, file, folder, text)
+    return html_of(sheet_of(calculation, loaded(plugin), started=time.time()))
+
+
+# Sliders: the inputs that matter most
+
+
+@dataclass(frozen=True)
+class Slider:
+    """An input to be dragged: where it stands, and from where to where, in ``unit``, as it is stated; and why it."""
+
+    name: str
+    note: str
+    unit: str
+    value: float
+    low: float
+    high: float
+    step: float
+    why: str
+
+
+def sliders(plugin: str, file: str, folder: str, text: str) -> list[dict[str, Any]]:
+    """Return the inputs to first order most of the limits and key results, the strongest first.
+
+    An input is moved to both sides by its standard deviation where it scatters, else by 1 % of its value; what counts
+    is the largest change of any limit or key result, as a share of the limit, or of the result.
+    """
+    calculation = nominal(plugin, file, folder, text)
+    setup, scatter = calculation.setup, scatter_of(calculation.setup)
+    steps = {name: step for name in setup.model.input_fields if (step := _step(setup, scatter, name)) > 0}
+    targets = _targets(calculation)
+    effects = _effects(setup, steps, targets)
+    ranked = sorted(effects.items(), key=lambda effect: -effect[1][0])
+    made = (_slider(setup, scatter, name, share, result) for name, (share, result) in ranked if share > 0)
+    return [asdict(slider) for slider in made if slider is not None][:MOST_SLIDERS]
+
+
+def _step(setup: Setup, scatter: Scatter, name: str) -> float:
+    """Return by how much an input is moved; 0 for one that is no number, is left open, or has neither size nor scatter."""
+    if setup.model.input_fields[name].kind != "float":
+        return 0.0
+    value = float(setup.nominal(name))
+    sd = scatter.sd_of(name)
+    return sd or SHARE * abs(value) if isfinite(value) else 0.0
+
+
+def _targets(calculation: Calculation) -> dict[str, float]:
+    """Return the results that are looked at, each with the size (SI) that a change of it is compared with."""
+    setup, sizes = calculation.setup, {}
+    limited = [require.result for require in requirements(setup)]
+    limits = {check.name: abs(to_si(check.limit, check.unit)) for check in calculation.checks
+              if not check.chance and not check.flag and isfinite(check.limit)}  # fmt: skip
+    for name in dict.fromkeys([*limited, *key_results(calculation)]):
+        field, value = setup.model.own_result_fields.get(name), calculation.answers.get(name)
+        if field is not None and not field.along and value is not None and np.ndim(value) == 0 and isfinite(value):
+            sizes[name] = limits.get(name) or abs(float(value)) or 1.0
+    return sizes
+
+
+@one_thread()
+def _effects(setup: Setup, steps: Mapping[str, float], targets: Mapping[str, float]) -> dict[str, tuple[float, str]]:
+    """Return by input the largest relative change of any target, and of which: central differences, in one batch."""
+    names, rows = [*steps], 2 * len(steps)
+    columns = {}
+    for index, name in enumerate(names):
+        values = np.full(rows, float(setup.nominal(name)))
+        values[2 * index] += steps[name]
+        values[2 * index + 1] -= steps[name]
+        columns[name] = values
+    answer = evaluate_rows(setup, columns, rows, wanted=[*targets]).results if names and targets else {}
+    effects: dict[str, tuple[float, str]] = {}
+    for index, name in enumerate(names):
+        changes = {
+            target: abs(float(answer[target][2 * index] - answer[target][2 * index + 1])) / 2 / size
+            for target, size in targets.items()
+            if answer
+        }
+        known = {target: change for target, change in changes.items() if isfinite(change)}
+        if known:
+            target = max(known, key=lambda each: known[each])
+            effects[name] = known[target], target
+    return effects
+
+
+def _slider(setup: Setup, scatter: Scatter, name: str, share: float, result: str) -> Slider | None:
+    """Make the slider of an input; None where it cannot be moved."""
+    field, unit = setup.model.input_fields[name], setup.stated_unit(name)
+    value = float(setup.nominal(name))
+    low, high = _reach(setup, scatter, field, value)
+    shown = [float(from_si(each, unit)) for each in (low, high)]
+    step = 10.0 ** np.floor(np.log10((shown[1] - shown[0]) / PLACES)) if shown[1] > shown[0] else 0.0
+    if not step:
+        return None
+    low, high = (round(end / step) * step for end in shown)
+    by = "its scatter" if scatter.sd_of(name) else "1 % of it"
+    note = setup.model.result_fields[result].spec.note or result.replace("_", " ")
+    return Slider(
+        name, field.spec.note or name.replace("_", " "), unit_text(unit) if unit else "", float(from_si(value, unit)),
+        float(f"{low:.12g}"), float(f"{high:.12g}"), float(f"{step:.12g}"),
+        f"{by} moves {note} by {format_number(100 * share, 2)} %",
+    )  # fmt: skip
+
+
+def _reach(setup: Setup, scatter: Scatter, field: InputField, value: float) -> tuple[float, float]:
+    """Return between which ends (SI) an input is dragged: the variation that is declared, else about where it stands."""
+    varied = next(
+        (each for each in setup.model.objectives if isinstance(each, Vary) and each.input == field.name), None
+    )
+    if varied is not None and varied.low and varied.high:
+        low, high = (float(read_quantity(str(end), field.unit)) for end in (varied.low, varied.high))
+        return min(low, value), max(high, value)
+    around = AROUND * abs(value) or 6 * scatter.sd_of(field.name)
+    return _kept(field, value, value - around), _kept(field, value, value + around)
+
+
+def _kept(field: InputField, value: float, end: float) -> float:
+    """Bring an end nearer until it keeps the declared bounds."""
+    for _ in range(NEARER):
+        if not broken_demand(field, end):
+            return end
+        end = (end + value) / 2
+    return value
