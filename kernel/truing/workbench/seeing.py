@@ -27,7 +27,7 @@ async def numbers(request: Request) -> Response:
     name = word(document, "run", "")
     run = str(bench.path(name)) if name else ""
     said = about(bench, document)
-    return JSONResponse(await bench.ask("results.numbers", **said, text=word(document, "text"), run=run, name=name))
+    return JSONResponse(await bench.ask("results.numbers", **said, text=word(document, "text"), run=run, called=name))
 
 
 async def whole(request: Request) -> Response:
@@ -36,8 +36,10 @@ async def whole(request: Request) -> Response:
 
 
 async def sliders(request: Request) -> Response:
-    """Give the inputs that matter most for a text."""
-    return JSONResponse({"sliders": await _asked("results.sliders", request)})
+    """Give the inputs of a text that can be dragged, and those that matter most."""
+    bench, document = bench_of(request), await body_of(request)
+    said, ranked = about(bench, document), document.get("ranked") is not False
+    return JSONResponse(await bench.ask("results.sliders", **said, text=word(document, "text"), ranked=ranked))
 
 
 async def figure(request: Request) -> Response:
@@ -53,7 +55,7 @@ async def sweep(request: Request) -> Response:
 async def _asked(task: str, request: Request, *names: str) -> Any:
     """Do a task with the text of a request, and with further words of it."""
     bench, document = bench_of(request), await body_of(request)
-    more = {name: word(document, name) for name in names}
+    more: dict[str, Any] = {name: word(document, name) for name in names}
     return await bench.ask(task, **about(bench, document), text=word(document, "text"), **more)
 
 

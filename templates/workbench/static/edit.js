@@ -14,6 +14,7 @@ async function refresh(change) {
     const state = await call("/api/state", { ...about, text: text.value, change });
     if (state.text !== text.value) { undone.push(text.value); text.value = state.text; }
     show(state);
+    document.dispatchEvent(new CustomEvent("truing:state", { detail: { text: text.value, state } }));
   } catch (error) { say(error.message); }
   busy = false;
   mark();
@@ -25,10 +26,6 @@ function show(state) {
     const input = field.querySelector("input"), value = state.stated[JSON.parse(field.dataset.path).join(".")];
     if (document.activeElement !== input) input.value = value ?? "";
   }
-  const results = document.getElementById("results");
-  results.replaceChildren();
-  for (const fault of state.faults) { const line = document.createElement("p"); line.className = "bad"; line.textContent = fault.message; results.append(line); }
-  for (const row of state.results) { const line = document.createElement("p"); line.textContent = `${row.note || row.name}: ${row.value}`; results.append(line); }
 }
 
 function mark() {
@@ -43,15 +40,14 @@ document.getElementById("form").addEventListener("input", (event) => {
 text.addEventListener("input", () => refresh());
 document.getElementById("undo").onclick = () => { text.value = undone.pop(); refresh(); };
 document.getElementById("save").onclick = save;
-async function save() {
+export async function save() {
   const answer = await call("/api/save", { file: about.file, text: text.value, base: saved.digest });
   if ("conflict" in answer) { say("The file has changed on disk; nothing was written."); return false; }
   saved = { text: text.value, digest: answer.digest };
   mark();
   return true;
 }
-document.getElementById("run").onclick = async () => {
-  try { if (await save()) await call("/api/run", about); } catch (error) { say(error.message); }
-};
+export function change(path, value) { return refresh({ path, value }); }
+export function textNow() { return text.value; }
 listen(about.file, () => {});
 refresh();

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -21,7 +23,10 @@ from truing.studies.sweep import Sweep, Swept, curves
 from truing.units import unit_text
 from truing.workbench.tasks.results import nominal
 
-POINTS = 61
+POINTS, FEWEST = 61, 11
+"""So many points a curve has, and so few where the model is slow."""
+PATIENCE = 2.0
+"""Seconds that the points of a curve may take, as far as one calculation tells."""
 
 
 def first(plugin: str, file: str, folder: str, text: str) -> dict[str, str]:
@@ -35,20 +40,21 @@ def sweep(plugin: str, file: str, folder: str, text: str, over: str, low: str, h
 
     Raises UsageError for a range that is none, and where nothing changes along it.
     """
+    started = time.perf_counter()
     calculation = nominal(plugin, file, folder, text)
-    ends = f"{low.strip()}..{high.strip()}"
-    swept, moving = _along(calculation, over, ends, _wanted(calculation))
+    points = int(np.clip(PATIENCE / (time.perf_counter() - started), FEWEST, POINTS))
+    asked = Sweep(over=over, at=f"{low.strip()}..{high.strip()}", points=points, results=_wanted(calculation))
+    swept, moving = _along(calculation, asked)
     if not moving:
-        swept, moving = _along(calculation, over, ends, ())
+        swept, moving = _along(calculation, replace(asked, results=()))
     if not moving:
         raise UsageError(f"no result changes along '{over}' between {low} and {high}")
     svg = draw(curves(swept, moving[:MOST_CURVES]), title=f"Along {over.replace('_', ' ')}", ident="s")
     return {"svg": svg, "said": [*_met(swept), *swept.gaps()]}
 
 
-def _along(calculation: Calculation, over: str, at: str, names: tuple[str, ...]) -> tuple[Swept, list[str]]:
-    """Return these results along an input, as they are printed, and those of them that change."""
-    asked = Sweep(over=over, at=at, points=POINTS, results=names)
+def _along(calculation: Calculation, asked: Sweep) -> tuple[Swept, list[str]]:
+    """Return results along an input, as they are printed, and those of them that change."""
     with open_executor("serial") as executor:
         bench = Bench(calculation.setup, calculation.results, executor, calculation.answers, absent=calculation.absent)
         swept = outcome_as_printed(asked.run(bench), calculation.setup)
@@ -66,8 +72,7 @@ def _met(swept: Swept) -> list[str]:
     """Say in a sentence each where limits are kept along the input."""
     unit = unit_text(swept.units[swept.over])
     return [
-        f"{result.replace('_', ' ')} {limit}: kept {kept}"
-        if at is None
-        else f"{result.replace('_', ' ')} {limit}: met at {with_unit(format_number(at), unit)}, kept {kept}"
+        f"{str(result).replace('_', ' ')} {limit}: "
+        + (f"kept {kept}" if not isinstance(at, float) else f"met at {with_unit(format_number(at), unit)}, kept {kept}")
         for result, limit, at, kept in swept.limit_table().rows
     ]

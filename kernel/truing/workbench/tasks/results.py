@@ -49,10 +49,10 @@ def nominal(plugin: str, file: str, folder: str, text: str) -> Calculation:
         return calculate(setup)
 
 
-def numbers(plugin: str, file: str, folder: str, text: str, run: str = "", name: str = "") -> dict[str, Any]:
-    """Return the live sheet of a text; beside the run in the folder ``run``, called ``name``, where one is given."""
+def numbers(plugin: str, file: str, folder: str, text: str, run: str = "", called: str = "") -> dict[str, Any]:
+    """Return the live sheet of a text; beside a run, in the folder ``run`` and called ``called``, where one is given."""
     saved = load_either(Path(run)) if run else None
-    return asdict(live_sheet(nominal(plugin, file, folder, text), saved, name))
+    return asdict(live_sheet(nominal(plugin, file, folder, text), saved, called))
 
 
 def whole(plugin: str, file: str, folder: str, text: str) -> str:
@@ -66,36 +66,46 @@ def whole(plugin: str, file: str, folder: str, text: str) -> str:
 
 @dataclass(frozen=True)
 class Slider:
-    """An input to be dragged: where it stands, and from where to where, in ``unit``, as it is stated; and why it."""
+    """An input to be dragged: where it stands, and from where to where, in ``unit``, as it is stated.
+
+    ``printed`` is the unit as people read it; ``why`` says how much the input moves, where that was looked at.
+    """
 
     name: str
     note: str
     unit: str
+    printed: str
     value: float
     low: float
     high: float
     step: float
-    why: str
+    why: str = ""
 
 
-def sliders(plugin: str, file: str, folder: str, text: str) -> list[dict[str, Any]]:
-    """Return the inputs to first order most of the limits and key results, the strongest first.
+def sliders(plugin: str, file: str, folder: str, text: str, ranked: bool = True) -> dict[str, Any]:
+    """Return every input that can be dragged, and the names of those that matter most, the strongest first.
 
-    An input is moved to both sides by its standard deviation where it scatters, else by 1 % of its value; what counts
-    is the largest change of any limit or key result, as a share of the limit, or of the result.
+    To find these an input is moved to both sides by its standard deviation where it scatters, else by 1 % of its value;
+    what counts is the largest change of any limit or key result, as a share of the limit, or of the result.
     """
-    calculation = nominal(plugin, file, folder, text)
-    setup, scatter = calculation.setup, scatter_of(calculation.setup)
+    setup = setup_from_text(text, loaded(plugin), file=file, folder=Path(folder))
+    scatter = scatter_of(setup)
     steps = {name: step for name in setup.model.input_fields if (step := _step(setup, scatter, name)) > 0}
-    targets = _targets(calculation)
-    effects = _effects(setup, steps, targets)
-    ranked = sorted(effects.items(), key=lambda effect: -effect[1][0])
-    made = (_slider(setup, scatter, name, share, result) for name, (share, result) in ranked if share > 0)
-    return [asdict(slider) for slider in made if slider is not None][:MOST_SLIDERS]
+    known = {name: slider for name in steps if (slider := _slider(setup, scatter, name)) is not None}
+    if not ranked:
+        return {"inputs": [asdict(slider) for slider in known.values()], "most": []}
+    effects = _effects(setup, steps, _targets(nominal(plugin, file, folder, text)))
+    order = sorted((name for name in known if effects.get(name, (0.0, ""))[0] > 0), key=lambda name: -effects[name][0])
+    for name, (share, result) in effects.items():
+        if name in known:
+            by = "its scatter" if scatter.sd_of(name) else "1 % of it"
+            why = f"{by} moves {result.replace('_', ' ')} by {format_number(100 * share, 2)} %"
+            known[name] = replace(known[name], why=why)
+    return {"inputs": [asdict(slider) for slider in known.values()], "most": order[:MOST_SLIDERS]}
 
 
 def _step(setup: Setup, scatter: Scatter, name: str) -> float:
-    """Return by how much an input is moved; 0 for one that is no number, is left open, or has neither size nor scatter."""
+    """Return by how much an input is moved; 0 for one that is no number, left open, or without size and scatter."""
     if setup.model.input_fields[name].kind != "float":
         return 0.0
     value = float(setup.nominal(name))
@@ -141,30 +151,25 @@ def _effects(setup: Setup, steps: Mapping[str, float], targets: Mapping[str, flo
     return effects
 
 
-def _slider(setup: Setup, scatter: Scatter, name: str, share: float, result: str) -> Slider | None:
+def _slider(setup: Setup, scatter: Scatter, name: str) -> Slider | None:
     """Make the slider of an input; None where it cannot be moved."""
     field, unit = setup.model.input_fields[name], setup.stated_unit(name)
     value = float(setup.nominal(name))
-    low, high = _reach(setup, scatter, field, value)
-    shown = [float(from_si(each, unit)) for each in (low, high)]
-    step = 10.0 ** np.floor(np.log10((shown[1] - shown[0]) / PLACES)) if shown[1] > shown[0] else 0.0
-    if not step:
+    low, high = (float(from_si(end, unit)) for end in _reach(setup, scatter, field, value))
+    if not high > low:
         return None
-    low, high = (round(end / step) * step for end in shown)
-    by = "its scatter" if scatter.sd_of(name) else "1 % of it"
-    note = setup.model.result_fields[result].spec.note or result.replace("_", " ")
+    step = 10.0 ** np.floor(np.log10((high - low) / PLACES))
+    low, high, step = (float(f"{each:.12g}") for each in (round(low / step) * step, round(high / step) * step, step))
     return Slider(
-        name, field.spec.note or name.replace("_", " "), unit_text(unit) if unit else "", float(from_si(value, unit)),
-        float(f"{low:.12g}"), float(f"{high:.12g}"), float(f"{step:.12g}"),
-        f"{by} moves {note} by {format_number(100 * share, 2)} %",
+        name=name, note=field.spec.note or name.replace("_", " "), unit=unit, printed=unit_text(unit) if unit else "",
+        value=float(f"{float(from_si(value, unit)):.12g}"), low=low, high=high, step=step,
     )  # fmt: skip
 
 
 def _reach(setup: Setup, scatter: Scatter, field: InputField, value: float) -> tuple[float, float]:
-    """Return between which ends (SI) an input is dragged: the variation that is declared, else about where it stands."""
-    varied = next(
-        (each for each in setup.model.objectives if isinstance(each, Vary) and each.input == field.name), None
-    )
+    """Return between which ends (SI) an input is dragged: its declared variation, else about where it stands."""
+    variations = [each for each in setup.model.objectives if isinstance(each, Vary)]
+    varied = next((each for each in variations if each.input == field.name), None)
     if varied is not None and varied.low and varied.high:
         low, high = (float(read_quantity(str(end), field.unit)) for end in (varied.low, varied.high))
         return min(low, value), max(high, value)

@@ -18,7 +18,8 @@ from truing.studies.bench import Progress
 from truing.workbench.tasks.loaded import loaded
 
 CHAPTER = re.compile(
-    r'<section id="([\w-]+)" class="chapter"[^>]*>\s*<h2[^>]*>(?:<span class="place">.*?</span>)?(.*?)</h2>.*?</section>',
+    r'<section id="([\w-]+)" class="chapter"[^>]*>\s*'
+    r'<h2[^>]*>(?:<span class="place">.*?</span>)?(.*?)</h2>.*?</section>',
     re.DOTALL,
 )
 """A chapter of a sheet that our printer wrote: its identifier and its title."""
