@@ -27,8 +27,10 @@ from truing.report.run import sheet_of
 from truing.runs.folder import load_either
 from truing.setup import Setup
 from truing.studies.checks import requirements
+from truing.studies.reading import read_range
 from truing.studies.sampling import Scatter, scatter_of
-from truing.units import from_si, read_quantity, to_si, unit_text
+from truing.studies.sweep import Sweep
+from truing.units import from_si, to_si, unit_factor, unit_text
 from truing.workbench.tasks.loaded import loaded
 
 MOST_SLIDERS = 6
@@ -36,6 +38,10 @@ PLACES = 200
 """So many places a slider has."""
 AROUND = 0.25
 """A slider reaches so far to both sides, as a share of its value, where neither bounds nor a variation are declared."""
+FEWEST_WHOLE = 3
+"""A whole number is dragged by so much to both sides at the least."""
+LEAST = 1e-3
+"""An input that moves no result by more than such a part of what the strongest does has no slider by itself."""
 NEARER = 10
 """So often the end of a slider that breaks a bound is brought half the way to where the input stands."""
 SHARE = 0.01
@@ -50,7 +56,7 @@ def nominal(plugin: str, file: str, folder: str, text: str) -> Calculation:
 
 
 def numbers(plugin: str, file: str, folder: str, text: str, run: str = "", called: str = "") -> dict[str, Any]:
-    """Return the live sheet of a text; beside a run, in the folder ``run`` and called ``called``, where one is given."""
+    """Return the live sheet of a text; beside a run, in the folder ``run`` and called ``called``, where one is."""
     saved = load_either(Path(run)) if run else None
     return asdict(live_sheet(nominal(plugin, file, folder, text), saved, called))
 
@@ -85,32 +91,34 @@ class Slider:
 def sliders(plugin: str, file: str, folder: str, text: str, ranked: bool = True) -> dict[str, Any]:
     """Return every input that can be dragged, and the names of those that matter most, the strongest first.
 
-    To find these an input is moved to both sides by its standard deviation where it scatters, else by 1 % of its value;
-    what counts is the largest change of any limit or key result, as a share of the limit, or of the result.
+    To find these an input is moved to both sides by its standard deviation where it scatters, else by 1 % of the range
+    in which the model varies or sweeps it, else of its value. What counts is the largest change of any limit or key
+    result, as a share of the limit, or of the result.
     """
     setup = setup_from_text(text, loaded(plugin), file=file, folder=Path(folder))
     scatter = scatter_of(setup)
-    steps = {name: step for name in setup.model.input_fields if (step := _step(setup, scatter, name)) > 0}
-    known = {name: slider for name in steps if (slider := _slider(setup, scatter, name)) is not None}
+    known = {name: slider for name in setup.model.input_fields if (slider := _slider(setup, scatter, name)) is not None}
     if not ranked:
         return {"inputs": [asdict(slider) for slider in known.values()], "most": []}
+    steps = {name: step for name in known if (step := _step(setup, scatter, name)) > 0}
     effects = _effects(setup, steps, _targets(nominal(plugin, file, folder, text)))
-    order = sorted((name for name in known if effects.get(name, (0.0, ""))[0] > 0), key=lambda name: -effects[name][0])
+    least = LEAST * max((share for share, _ in effects.values()), default=0.0)
+    order = sorted((name for name, (share, _) in effects.items() if share > least), key=lambda name: -effects[name][0])
     for name, (share, result) in effects.items():
-        if name in known:
-            by = "its scatter" if scatter.sd_of(name) else "1 % of it"
-            why = f"{by} moves {result.replace('_', ' ')} by {format_number(100 * share, 2)} %"
-            known[name] = replace(known[name], why=why)
+        part = "it" if _declared_range(setup, setup.model.input_fields[name]) is None else "its range"
+        by = "its scatter" if scatter.sd_of(name) else f"1 % of {part}"
+        why = f"{by} moves {result.replace('_', ' ')} by {format_number(100 * share, 2)} %"
+        known[name] = replace(known[name], why=why)
     return {"inputs": [asdict(slider) for slider in known.values()], "most": order[:MOST_SLIDERS]}
 
 
 def _step(setup: Setup, scatter: Scatter, name: str) -> float:
-    """Return by how much an input is moved; 0 for one that is no number, left open, or without size and scatter."""
+    """Return by how much an input is moved; 0 for a whole number, and for 0 that does not scatter."""
     if setup.model.input_fields[name].kind != "float":
         return 0.0
-    value = float(setup.nominal(name))
-    sd = scatter.sd_of(name)
-    return sd or SHARE * abs(value) if isfinite(value) else 0.0
+    declared = _declared_range(setup, setup.model.input_fields[name])
+    size = abs(float(setup.nominal(name))) if declared is None else declared[1] - declared[0]
+    return scatter.sd_of(name) or SHARE * size
 
 
 def _targets(calculation: Calculation) -> dict[str, float]:
@@ -152,13 +160,14 @@ def _effects(setup: Setup, steps: Mapping[str, float], targets: Mapping[str, flo
 
 
 def _slider(setup: Setup, scatter: Scatter, name: str) -> Slider | None:
-    """Make the slider of an input; None where it cannot be moved."""
+    """Make the slider of an input; None for one that is no number, or cannot be moved."""
     field, unit = setup.model.input_fields[name], setup.stated_unit(name)
-    value = float(setup.nominal(name))
+    if field.kind not in {"float", "whole", "integer"} or not isfinite(value := float(setup.nominal(name))):
+        return None
     low, high = (float(from_si(end, unit)) for end in _reach(setup, scatter, field, value))
     if not high > low:
         return None
-    step = 10.0 ** np.floor(np.log10((high - low) / PLACES))
+    step = 10.0 ** np.floor(np.log10((high - low) / PLACES)) if field.kind == "float" else 1.0
     low, high, step = (float(f"{each:.12g}") for each in (round(low / step) * step, round(high / step) * step, step))
     return Slider(
         name=name, note=field.spec.note or name.replace("_", " "), unit=unit, printed=unit_text(unit) if unit else "",
@@ -167,14 +176,25 @@ def _slider(setup: Setup, scatter: Scatter, name: str) -> Slider | None:
 
 
 def _reach(setup: Setup, scatter: Scatter, field: InputField, value: float) -> tuple[float, float]:
-    """Return between which ends (SI) an input is dragged: its declared variation, else about where it stands."""
-    variations = [each for each in setup.model.objectives if isinstance(each, Vary)]
-    varied = next((each for each in variations if each.input == field.name), None)
-    if varied is not None and varied.low and varied.high:
-        low, high = (float(read_quantity(str(end), field.unit)) for end in (varied.low, varied.high))
-        return min(low, value), max(high, value)
-    around = AROUND * abs(value) or 6 * scatter.sd_of(field.name)
+    """Return between which ends (SI) an input is dragged: as the model varies or sweeps it, else about its value."""
+    if (declared := _declared_range(setup, field)) is not None:
+        return min(declared[0], value), max(declared[1], value)
+    around = AROUND * abs(value) or 6 * scatter.sd_of(field.name) or unit_factor(field.unit)
+    if field.kind != "float":
+        around = max(round(around), FEWEST_WHOLE)
     return _kept(field, value, value - around), _kept(field, value, value + around)
+
+
+def _declared_range(setup: Setup, field: InputField) -> tuple[float, float] | None:
+    """Return between which ends (SI) the model itself varies or sweeps an input; None where it does neither."""
+    ranges = [f"{each.low}..{each.high}" for each in setup.model.objectives
+              if isinstance(each, Vary) and each.input == field.name and each.low]  # fmt: skip
+    studies = (each for each in setup.model.studies if isinstance(each, Sweep) and each.over == field.name)
+    ranges += [each.at for each in studies if each.at]
+    if not ranges:
+        return None
+    points = read_range(ranges[0], field.unit, 2)
+    return float(points.min()), float(points.max())
 
 
 def _kept(field: InputField, value: float, end: float) -> float:
@@ -182,5 +202,5 @@ def _kept(field: InputField, value: float, end: float) -> float:
     for _ in range(NEARER):
         if not broken_demand(field, end):
             return end
-        end = (end + value) / 2
+        end = (end + value) / 2 if field.kind == "float" else float(round((end + value) / 2))
     return value
