@@ -119,7 +119,7 @@ const slower = newest(async (text) => {
   await dragged(text);
   await lastRun(text);
 });
-const follows = soon((text) => slower(text), 120);
+const follows = soon((text) => slower(text), 350);
 
 async function drawn(text) {
   try {
