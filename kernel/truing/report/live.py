@@ -131,7 +131,7 @@ def _marked(calculation: Calculation, table: Any, marks: Mapping[str, Change]) -
         label = row[1] if isinstance(row[1], tuple) else (row[1],)
         change = marks.get(next((str(piece.text) for piece in label if isinstance(piece, Marked)
                                  and piece.kind == "bracketed code"), ""))  # fmt: skip
-        rows.append(row if change is None else (*row[:2], _before(row[2], change), *row[3:]))
+        rows.append(row if change is None else (*row[:2], _before(row[2], change, row[3]), *row[3:]))
         states.append("" if change is None else "changed")
     return replace(table, rows=tuple(rows), states=tuple(states))
 
@@ -147,15 +147,14 @@ def _marked_checks(calculation: Calculation, changes: Sequence[Change]) -> Table
     return replace(table, rows=tuple(rows), states=tuple(states))
 
 
-def _before(value: Text, change: Change) -> Text:
-    """Write a value with what it was in the saved run, and by how much it moved."""
+def _before(value: Text, change: Change, unit: Text = "") -> Text:
+    """Write a value with what it was in the saved run, and by how much it moved; its unit may stand beside already."""
     piece = change.before if isinstance(change.before, Mapping) else {}
-    number = piece.get("value")
-    is_number = isinstance(number, (int, float)) and not isinstance(number, bool)
-    was: Text = Value(format_number(number, RESULT_DIGITS), unit_text(piece.get("unit") or "")) if is_number else (
-        words_of(change)[2] if change.before is not None else "not there"
-    )  # fmt: skip
+    number, by = piece.get("value"), amount_of(change)
+    if isinstance(number, (int, float)) and not isinstance(number, bool):
+        own = unit_text(piece.get("unit") or "")
+        was = Value(format_number(number, RESULT_DIGITS), "" if own == unit else own)
+    else:
+        was = Value(words_of(change)[2] if change.before is not None else "not there")
     pieces = value if isinstance(value, tuple) else (value,)
-    by = amount_of(change)
-    shown = was if isinstance(was, tuple) else (was,)
-    return (*pieces, Marked("break", ", "), "was ", *shown, f" ({by})" if by else "")
+    return (*pieces, Marked("break", ", "), "was ", was, f" ({by})" if by else "")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ from truing.templating import template_folder
 from truing.workbench.bench import Bench, bench_of, body_of, word
 from truing.workbench.editing import about
 from truing.workbench.places import below
+from truing.workbench.workers import TaskError
 
 RUNS = "runs"
 HOST = re.compile(r"^(\s*)(?::root|html|body)(?= \{)", re.MULTILINE)
@@ -26,37 +28,46 @@ async def numbers(request: Request) -> Response:
     bench, document = bench_of(request), await body_of(request)
     name = word(document, "run", "")
     run = str(bench.path(name)) if name else ""
-    said = about(bench, document)
-    return JSONResponse(await bench.ask("results.numbers", **said, text=word(document, "text"), run=run, called=name))
+    return await _answer("results.numbers", bench, document, run=run, called=name)
 
 
 async def whole(request: Request) -> Response:
     """Give the whole sheet of a text, as a page for a frame that can do nothing."""
-    return JSONResponse({"html": await _asked("results.whole", request)})
+    return await _asked("results.whole", request)
 
 
 async def sliders(request: Request) -> Response:
     """Give the inputs of a text that can be dragged, and those that matter most."""
     bench, document = bench_of(request), await body_of(request)
-    said, ranked = about(bench, document), document.get("ranked") is not False
-    return JSONResponse(await bench.ask("results.sliders", **said, text=word(document, "text"), ranked=ranked))
+    return await _answer("results.sliders", bench, document, ranked=document.get("ranked") is not False)
 
 
 async def figure(request: Request) -> Response:
     """Draw the figure of page one for a text."""
-    return JSONResponse(await _asked("figures.first", request))
+    return await _asked("figures.first", request)
 
 
 async def sweep(request: Request) -> Response:
     """Draw results along an input of a text."""
-    return JSONResponse(await _asked("figures.sweep", request, "over", "low", "high"))
+    return await _asked("figures.sweep", request, "over", "low", "high")
 
 
-async def _asked(task: str, request: Request, *names: str) -> Any:
+async def _asked(task: str, request: Request, *names: str) -> Response:
     """Do a task with the text of a request, and with further words of it."""
-    bench, document = bench_of(request), await body_of(request)
-    more: dict[str, Any] = {name: word(document, name) for name in names}
-    return await bench.ask(task, **about(bench, document), text=word(document, "text"), **more)
+    document = await body_of(request)
+    return await _answer(task, bench_of(request), document, **{name: word(document, name) for name in names})
+
+
+async def _answer(task: str, bench: Bench, document: Mapping[str, Any], **more: Any) -> Response:
+    """Do a task with the text of a request; what is wrong with a text that is being typed is an answer like any other.
+
+    Raises UsageError for what is wrong with the request itself.
+    """
+    text = word(document, "text")
+    try:
+        return JSONResponse(await bench.ask(task, **about(bench, document), text=text, **more))
+    except TaskError as error:
+        return JSONResponse({"faults": error.faults})
 
 
 async def run(request: Request) -> Response:
@@ -81,10 +92,7 @@ async def last(request: Request) -> Response:
     """Give the last run of a file beside its text, and all runs that it can be compared with."""
     bench, document = bench_of(request), await body_of(request)
     run = _folder(bench, bench.path(word(document, "file")))
-    said = about(bench, document)
-    return JSONResponse(
-        await bench.ask("runs.last", **said, text=word(document, "text"), run=str(run), root=str(bench.root))
-    )
+    return await _answer("runs.last", bench, document, run=str(run), root=str(bench.root))
 
 
 async def chapter(request: Request) -> Response:

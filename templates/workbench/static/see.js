@@ -1,7 +1,7 @@
 // Results beside the form: numbers after every change, then figure, sliders and curves; runs in the background.
 //   hears truing:state ({text}) of edit.js; says truing:shown ({text}) once the numbers of a text are there
 
-import { call, listen, say } from "./workbench.js";
+import { call, Faults, listen, say } from "./workbench.js";
 import { change, save, textNow } from "./edit.js";
 
 const page = document.getElementById("edit");
@@ -12,6 +12,13 @@ function made(name, properties = {}, ...children) {
   const element = Object.assign(document.createElement(name), properties);
   element.append(...children);
   return element;
+}
+
+// An answer about the text; what is wrong with the text is thrown.
+async function asked(address, body) {
+  const answer = await call(address, { ...about, ...body });
+  if (answer.faults) throw new Faults(answer.faults);
+  return answer;
 }
 
 function put(element, text) { if (element.textContent !== text) element.textContent = text; }
@@ -53,19 +60,17 @@ function follow(old, fresh) {
     else if (known.nodeName !== node.nodeName) known.replaceWith(node);
     else if (node.nodeType !== Node.ELEMENT_NODE) { if (known.data !== node.data) { known.data = node.data; moved(known.parentElement); } }
     else {
-      if (known.className.replace(/ ?moved/, "") !== node.className) known.className = node.className;
+      if (known.className !== node.className) known.className = node.className;
       follow(known, node);
     }
   });
   for (const rest of before.slice(after.length)) rest.remove();
 }
 
+// Let a number that changed light up, without making the browser lay the page out for each of them.
+const still = matchMedia("(prefers-reduced-motion: reduce)");
 function moved(element) {
-  const cell = element?.closest("td");
-  if (!cell) return;
-  cell.classList.remove("moved");
-  void cell.offsetWidth;
-  cell.classList.add("moved");
+  if (!still.matches) element?.closest("td")?.animate([{ background: "var(--warn-tint)" }, { background: "transparent" }], 1200);
 }
 
 // Numbers
@@ -75,7 +80,7 @@ let shown = null, failed = "";
 const numbers = newest(async (text) => {
   const slow = setTimeout(() => { put(at("said"), "Calculating …"); at("said").classList.remove("hidden"); }, 700);
   try {
-    const answer = await call("/api/numbers", { ...about, text, run: at("beside").value });
+    const answer = await asked("/api/numbers", { text, run: at("beside").value });
     const fresh = made("template", { innerHTML: answer.html }).content, rest = fresh.querySelector(".sections");
     rest.remove();
     follow(front, fresh);
@@ -123,7 +128,7 @@ const follows = soon((text) => slower(text), 350);
 
 async function drawn(text) {
   try {
-    const { svg, caption } = await call("/api/figure", { ...about, text });
+    const { svg, caption } = await asked("/api/figure", { text });
     at("figure").hidden = !svg;
     drawing.replaceChildren(made("div", { className: "drawing", innerHTML: svg }));
     put(at("caption"), caption);
@@ -141,7 +146,7 @@ const moving = newest(({ name, unit }, value) => change(["inputs", name], unit ?
 async function dragged(text) {
   let answer;
   const first = inputs.size === 0;
-  try { answer = await call("/api/sliders", { ...about, text, ranked: first }); } catch { return; }
+  try { answer = await asked("/api/sliders", { text, ranked: first }); } catch { return; }
   for (const input of answer.inputs) inputs.set(input.name, { ...inputs.get(input.name), ...input, why: input.why || inputs.get(input.name)?.why || "" });
   if (first) offered(answer.most);
   for (const [name, slider] of sliders) placed(inputs.get(name), slider);
@@ -202,7 +207,7 @@ const sweep = newest(async () => {
   if (!over || !at("along").open) return;
   put(at("swept"), "Calculating …");
   try {
-    const { svg, said } = await call("/api/sweep", { ...about, text: textNow(), over, low: at("low").value, high: at("high").value });
+    const { svg, said } = await asked("/api/sweep", { text: textNow(), over, low: at("low").value, high: at("high").value });
     curves.replaceChildren(made("div", { className: "drawing", innerHTML: svg }));
     at("met").replaceChildren(...said.map((text) => made("li", { textContent: text })));
     put(at("swept"), "");
@@ -262,7 +267,7 @@ async function ended(now) {
 
 async function lastRun(text) {
   let answer;
-  try { answer = await call("/api/last", { ...about, text }); } catch { return; }
+  try { answer = await asked("/api/last", { text }); } catch { return; }
   comparable(answer.runs);
   at("older").hidden = !answer.run || !answer.older;
   at("differences").replaceChildren(...(answer.differences ?? []).map((text) => made("li", { textContent: text })));
@@ -288,11 +293,11 @@ function folded({ ident, title }, name, open) {
   return details;
 }
 
-// A page in a frame in which nothing runs; it is as high as what it shows.
-function framed(html, title) {
+// A page in a frame in which nothing runs; a chapter is as high as what it shows.
+function framed(html, title, fits = true) {
   const frame = made("iframe", { title, srcdoc: html });
   frame.setAttribute("sandbox", "allow-same-origin");
-  frame.addEventListener("load", () => {
+  if (fits) frame.addEventListener("load", () => {
     const fit = () => { frame.style.height = `${frame.contentDocument.documentElement.scrollHeight + 4}px`; };
     fit();
     frame.contentDocument.addEventListener("toggle", fit, true);
@@ -316,7 +321,7 @@ at("whole").addEventListener("toggle", async () => {
   if (!at("whole").open) return;
   put(at("whole-said"), "Writing the sheet …");
   try {
-    at("whole").append(framed((await call("/api/whole", { ...about, text: textNow() })).html, "Sheet of this text"));
+    at("whole").append(framed((await asked("/api/whole", { text: textNow() })).html, "Sheet of this text", false));
     put(at("whole-said"), "");
   } catch (error) { put(at("whole-said"), sentence(error)); }
 });

@@ -26,11 +26,11 @@ from truing.report.page_one import key_results
 from truing.report.run import sheet_of
 from truing.runs.folder import load_either
 from truing.setup import Setup
-from truing.studies.checks import requirements
+from truing.studies.checks import is_known, limit_amount, requirements
 from truing.studies.reading import read_range
 from truing.studies.sampling import Scatter, scatter_of
 from truing.studies.sweep import Sweep
-from truing.units import from_si, to_si, unit_factor, unit_text
+from truing.units import from_si, unit_factor, unit_text
 from truing.workbench.tasks.loaded import loaded
 
 MOST_SLIDERS = 6
@@ -61,10 +61,10 @@ def numbers(plugin: str, file: str, folder: str, text: str, run: str = "", calle
     return asdict(live_sheet(nominal(plugin, file, folder, text), saved, called))
 
 
-def whole(plugin: str, file: str, folder: str, text: str) -> str:
+def whole(plugin: str, file: str, folder: str, text: str) -> dict[str, str]:
     """Return the whole sheet of a text as a page."""
     calculation = nominal(plugin, file, folder, text)
-    return html_of(sheet_of(calculation, loaded(plugin), started=time.time()))
+    return {"html": html_of(sheet_of(calculation, loaded(plugin), started=time.time()))}
 
 
 # Sliders: the inputs that matter most
@@ -123,12 +123,13 @@ def _step(setup: Setup, scatter: Scatter, name: str) -> float:
 
 def _targets(calculation: Calculation) -> dict[str, float]:
     """Return the results that are looked at, each with the size (SI) that a change of it is compared with."""
-    setup, sizes = calculation.setup, {}
-    limited = [require.result for require in requirements(setup)]
-    limits = {check.name: abs(to_si(check.limit, check.unit)) for check in calculation.checks
-              if not check.chance and not check.flag and isfinite(check.limit)}  # fmt: skip
-    for name in dict.fromkeys([*limited, *key_results(calculation)]):
-        field, value = setup.model.own_result_fields.get(name), calculation.answers.get(name)
+    setup, answers, sizes = calculation.setup, calculation.answers, {}
+    requires = requirements(setup)
+    limits = {require.result: abs(float(limit_amount(require, setup, answers))) for require in requires
+              if require.kind != "within" and not require.is_flag and is_known(require, setup, answers)
+              and np.ndim(limit_amount(require, setup, answers)) == 0}  # fmt: skip
+    for name in dict.fromkeys([*(require.result for require in requires), *key_results(calculation)]):
+        field, value = setup.model.own_result_fields.get(name), answers.get(name)
         if field is not None and not field.along and value is not None and np.ndim(value) == 0 and isfinite(value):
             sizes[name] = limits.get(name) or abs(float(value)) or 1.0
     return sizes
