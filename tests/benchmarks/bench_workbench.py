@@ -1,4 +1,4 @@
-"""How soon do numbers follow a keystroke: in a browser, for every shipped calculation, beside the bare call of the model.
+"""How soon do numbers follow a keystroke: in a browser, for every shipped calculation, beside the call of the model.
 
 Run it: ``python -m pytest tests/benchmarks/bench_workbench.py -s``. A key is pressed in a field of the form; the time
 counts until the numbers of that very text stand on the page. Keys follow one another as typed, so that figure, sliders
@@ -28,7 +28,8 @@ if TYPE_CHECKING:
 OVERHEAD = 0.1
 """Seconds that everything but the model may take."""
 WANTED = 0.3
-PRESSES, PAUSE, CALLS = 15, 0.2, 5
+"""Seconds that a keystroke may take, on a machine that does nothing else."""
+PRESSES, PAUSE, CALLS, ENOUGH = 15, 0.2, 5, 0.3
 SHIPPED = [*Kernel.installed().offers]
 PRESS = """([field, value]) => new Promise((done) => {
     const input = document.getElementById(field), text = document.getElementById('text'), started = performance.now();
@@ -60,17 +61,19 @@ def bench(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Workbench]:
         yield served
 
 
-def bare_call(name: str, folder: Path) -> float:
-    """Return the median time of the model alone, s."""
+def bare_call(name: str, folder: Path) -> tuple[float, float]:
+    """Return the median time of the model alone, s, and how many times longer it took than the processor worked."""
     text = (folder / f"{name}.toml").read_text(encoding="utf-8")
     offer = Kernel.installed().offer(name)
     setup = replace(setup_from_text(text, offer, file=f"{name}.toml", folder=folder), studies=())
-    seconds = []
-    for _ in range(CALLS):
+    seconds: list[float] = []
+    worked, all_of_them = time.process_time(), time.perf_counter()
+    while len(seconds) < CALLS or sum(seconds) < ENOUGH:
         start = time.perf_counter()
         answered(setup)
         seconds.append(time.perf_counter() - start)
-    return statistics.median(seconds)
+    busy = (time.perf_counter() - all_of_them) / (time.process_time() - worked)
+    return statistics.median(seconds), max(1.0, busy)
 
 
 def presses(page: Any, name: str) -> list[float]:
@@ -94,11 +97,12 @@ def presses(page: Any, name: str) -> list[float]:
 def test_numbers_follow_a_keystroke(name: str, bench: Workbench, browser: "Browser") -> None:  # noqa: F811
     page = bench.page(browser)
     page.goto(f"{bench.address}edit?file={name}.toml")
-    seconds, bare = presses(page, name), bare_call(name, bench.folder)
+    seconds, (bare, busy) = presses(page, name), bare_call(name, bench.folder)
     page.context.close()
     median = statistics.median(seconds)
     print(
         f"\n{name}: {1000 * median:.0f} ms (largest {1000 * max(seconds):.0f} ms), model alone {1000 * bare:.1f} ms, "
-        f"ratio to model and {1000 * OVERHEAD:.0f} ms overhead {median / (bare + OVERHEAD):.2f}"
+        f"ratio to model and {1000 * OVERHEAD:.0f} ms overhead {median / (bare + OVERHEAD):.2f}; "
+        f"the machine was {busy:.1f} times as busy as it can be alone"
     )
-    assert median <= max(WANTED, 2 * (bare + OVERHEAD))
+    assert median <= WANTED * busy

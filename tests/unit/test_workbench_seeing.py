@@ -59,7 +59,7 @@ def test_numbers_are_those_of_the_text_by_section_with_their_units(tmp_path: Pat
     live = results.numbers(**about(TEXT.replace("120 N", "0.24 kN"), tmp_path))
     words = shown(live["html"])
     assert f"contact pressure pressure {240 / 28:.5g}" in words  # N / mm^2 = MPa
-    assert "sliding distance distance 0.36 km" in words  # 0.5 m/s for 200 h
+    assert "sliding distance distance 360 km" in words  # 0.5 m/s for 200 h
     assert f"worn depth depth {3e-8 * 240 / 28 / 2100 * 360e3 * 1e6:.5g} µm" in words
     assert re.findall(r'data-title="([^"]*)"><summary', live["html"]) == ["Contact", "Wear"]
     assert live["headline"] == "Undecided"
@@ -79,9 +79,7 @@ def test_what_differs_from_a_saved_run_is_marked_with_its_value_before(ran: Path
     live = results.numbers(**about(TEXT.replace("120 N", "150 N"), ran), **beside)
     rows = {re.search(r"<code>(.*?)</code>", row)[1]: shown(row)  # type: ignore[index]
             for row in re.findall(r'<tr class="changed">.*?</tr>', live["html"], re.DOTALL)}  # fmt: skip
-    assert (
-        live["changed"] == len(rows) == 3
-    )  # pressure, depth and the price of a band of 3 % follow the load, the distance does not
+    assert live["changed"] == len(rows) == 3  # pressure, depth, and the price of a band of 3 %
     assert f"was {120 / 28:.5g} (+25 %)" in rows["pressure"]
     assert "(+25 %)" in rows["depth"]
     assert "load: 120 N → 150 N (+25 %)" in shown(live["html"])
