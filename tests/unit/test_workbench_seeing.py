@@ -61,7 +61,7 @@ def test_numbers_are_those_of_the_text_by_section_with_their_units(tmp_path: Pat
     assert f"contact pressure pressure {240 / 28:.5g}" in words  # N / mm^2 = MPa
     assert "sliding distance distance 360 km" in words  # 0.5 m/s for 200 h
     assert f"worn depth depth {3e-8 * 240 / 28 / 2100 * 360e3 * 1e6:.5g} µm" in words
-    assert re.findall(r'data-title="([^"]*)"><summary', live["html"]) == ["Contact", "Wear"]
+    assert re.findall(r'data-title="([^"]*)"><summary', live["html"]) == ["Contact", "Wear", "Further results"]
     assert live["headline"] == "Undecided"
     assert "reliability would" in words
 

@@ -60,17 +60,23 @@ function follow(old, fresh) {
     else if (known.nodeName !== node.nodeName) known.replaceWith(node);
     else if (node.nodeType !== Node.ELEMENT_NODE) { if (known.data !== node.data) { known.data = node.data; moved(known.parentElement); } }
     else {
-      if (known.className !== node.className) known.className = node.className;
+      if (known.className !== node.className && !standing.has(known)) known.className = node.className;
       follow(known, node);
     }
   });
   for (const rest of before.slice(after.length)) rest.remove();
 }
 
-// Let a number that changed light up, without making the browser lay the page out for each of them.
-const still = matchMedia("(prefers-reduced-motion: reduce)");
+// Let numbers that changed stand out for a while: two changes of colour for all of them, nothing that moves.
+const standing = new Set();
+let settles;
 function moved(element) {
-  if (!still.matches) element?.closest("td")?.animate([{ background: "var(--warn-tint)" }, { background: "transparent" }], 1200);
+  const cell = element?.closest("td");
+  if (!cell) return;
+  cell.classList.add("moved");
+  standing.add(cell);
+  clearTimeout(settles);
+  settles = setTimeout(() => { for (const each of standing) each.classList.remove("moved"); standing.clear(); }, 1500);
 }
 
 // Numbers
@@ -141,7 +147,11 @@ document.addEventListener("truing:shown", ({ detail }) => { if (!detail.failed) 
 // Sliders
 
 const inputs = new Map(), sliders = new Map();
-const moving = newest(({ name, unit }, value) => change(["inputs", name], unit ? `${value} ${unit}` : Number(value)));
+let dragging = false;
+const moving = newest(async ({ name, unit }, value) => {
+  dragging = true;
+  try { await change(["inputs", name], unit ? `${value} ${unit}` : Number(value)); } finally { dragging = false; }
+});
 
 async function dragged(text) {
   let answer;
@@ -149,6 +159,7 @@ async function dragged(text) {
   try { answer = await asked("/api/sliders", { text, ranked: first }); } catch { return; }
   for (const input of answer.inputs) inputs.set(input.name, { ...inputs.get(input.name), ...input, why: input.why || inputs.get(input.name)?.why || "" });
   if (first) offered(answer.most);
+  if (dragging || text !== textNow()) return;  // the sliders are ahead of this text
   for (const [name, slider] of sliders) placed(inputs.get(name), slider);
 }
 
