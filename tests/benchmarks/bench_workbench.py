@@ -32,7 +32,7 @@ WANTED = 0.3
 PRESSES, PAUSE, CALLS, ENOUGH = 15, 0.2, 5, 0.3
 SHIPPED = [*Kernel.installed().offers]
 PRESS = """([field, value]) => new Promise((done) => {
-    const input = document.getElementById(field), text = document.getElementById('text'), started = performance.now();
+    const input = document.querySelector(`.field[data-path*='"${field}"'] input`), started = performance.now();
     let asked = '';
     const answered = (event) => { asked = event.detail.text; };
     const shown = (event) => {
@@ -86,7 +86,7 @@ def presses(page: Any, name: str) -> list[float]:
     unit = page.locator(".see-slider output").first.inner_text().partition(" ")[2]
     seconds = []
     for press in range(PRESSES):
-        took, failed = page.evaluate(PRESS, [f"inputs.{field}", f"{value + (press % 3) * step:.12g} {unit}".strip()])
+        took, failed = page.evaluate(PRESS, [field, f"{value + (press % 3) * step:.12g} {unit}".strip()])
         assert not failed, f"{name}: {failed}"
         seconds.append(took / 1000)
         page.wait_for_timeout(1000 * PAUSE)

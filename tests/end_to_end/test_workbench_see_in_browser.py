@@ -68,7 +68,7 @@ def holds(page: Any, part: str, words: str) -> None:
 
 
 def type_load(page: Any, load: str) -> None:
-    page.locator("[id='inputs.load']").fill(load)
+    page.locator(".field[data-path*='\"load\"'] input").first.fill(load)
 
 
 def test_numbers_follow_a_keystroke_and_a_slider_changes_the_text_as_typing_does(window: Any) -> None:

@@ -251,7 +251,7 @@ async function run() {
     followed([job]);
   } catch (error) { say(error.message); }
 }
-if (document.getElementById("run")) document.getElementById("run").onclick = run;
+document.getElementById("run").onclick = run;
 at("cancel").onclick = () => call("/api/cancel", { job: job.ident }).catch((error) => say(error.message));
 
 function followed(jobs) {

@@ -35,7 +35,7 @@ def first(plugin: str, file: str, folder: str, text: str) -> dict[str, str]:
     return {"svg": "", "caption": ""} if view is None else {"svg": view.svg, "caption": view.caption}
 
 
-def sweep(plugin: str, file: str, folder: str, text: str, over: str, low: str, high: str) -> dict[str, Any]:
+def sweep(plugin: str, file: str, folder: str, text: str, *, over: str, low: str, high: str) -> dict[str, Any]:
     """Return curves along an input between two ends (texts with units) as SVG, where limits are met, and what fails.
 
     Raises UsageError for a range that is none, and where nothing changes along it.

@@ -55,7 +55,7 @@ def nominal(plugin: str, file: str, folder: str, text: str) -> Calculation:
         return calculate(setup)
 
 
-def numbers(plugin: str, file: str, folder: str, text: str, run: str = "", called: str = "") -> dict[str, Any]:
+def numbers(plugin: str, file: str, folder: str, text: str, *, run: str = "", called: str = "") -> dict[str, Any]:
     """Return the live sheet of a text; beside a run, in the folder ``run`` and called ``called``, where one is."""
     saved = load_either(Path(run)) if run else None
     return asdict(live_sheet(nominal(plugin, file, folder, text), saved, called))
@@ -88,7 +88,7 @@ class Slider:
     why: str = ""
 
 
-def sliders(plugin: str, file: str, folder: str, text: str, ranked: bool = True) -> dict[str, Any]:
+def sliders(plugin: str, file: str, folder: str, text: str, *, ranked: bool = True) -> dict[str, Any]:
     """Return every input that can be dragged, and the names of those that matter most, the strongest first.
 
     To find these an input is moved to both sides by its standard deviation where it scatters, else by 1 % of the range

@@ -34,7 +34,7 @@ def run(plugin: str, file: str, output: str, root: str, progress: Progress) -> d
     return {"folder": name, "verdict": made.verdict, "sheet": f"{name}/sheet.html"}
 
 
-def last(plugin: str, file: str, folder: str, text: str, run: str, root: str) -> dict[str, Any]:
+def last(plugin: str, file: str, folder: str, text: str, *, run: str, root: str) -> dict[str, Any]:
     """Return the run of a file beside its text: whether what the text states differs, and in what; its chapters.
 
     ``runs`` are all runs of the same calculation in the folder, the newest first.
@@ -80,7 +80,7 @@ def chapter(run: str, ident: str) -> str:
     if found is None:
         raise UsageError(f"the sheet of {Path(run).name} has no chapter '{ident[:40]}'")
     head = _sheet(Path(run)).partition("<body>")[0]
-    return f'{head}<body><main class="sheet">{found}</main></body></html>'
+    return f'{head}<body><main class="sheet part">{found}</main></body></html>'
 
 
 def _sheet(run: Path) -> str:
