@@ -79,34 +79,61 @@ function moved(element) {
   settles = setTimeout(() => { for (const each of standing) each.classList.remove("moved"); standing.clear(); }, 1500);
 }
 
-// Numbers
+// Numbers: one question at a time, the newest next; where a model hangs, one more beside it. Late answers are dropped.
 
-let shown = null, failed = "";
+const SLOW = 700, HANGS = 1500, MOST = 2; // ms until the page says that it waits, and until one more is asked; questions
+let shown = null, failed = "", isSlow = false;
+let wanted = null, asking = 0, began = 0, latest = 0, answered = 0;
 
-const numbers = newest(async (text) => {
-  const slow = setTimeout(() => { put(at("said"), "Calculating …"); at("said").classList.remove("hidden"); }, 700);
-  try {
-    const answer = await asked("/api/numbers", { text, run: at("beside").value });
-    const fresh = made("template", { innerHTML: answer.html }).content, rest = fresh.querySelector(".sections");
-    rest.remove();
-    follow(front, fresh);
-    follow(sections, rest);
-    shown = text;
-    failed = "";
-    const beside = at("beside").value;
-    const differ = answer.changed === null ? "" : ` ${answer.changed || "No"} result${answer.changed === 1 ? " differs" : "s differ"} from ${beside}.`;
-    put(at("said"), `${answer.headline}.${differ}`);
-    at("said").classList.toggle("hidden", !differ);
-  } catch (error) {
-    failed = sentence(error);
-    put(at("said"), failed);
-    at("said").classList.remove("hidden");
-  }
+function numbers(text) { wanted = text; next(); }
+
+function next() {
+  if (wanted === null || asking >= MOST) return;
+  const wait = asking ? began + HANGS - performance.now() : 0;
+  if (wait > 0) { setTimeout(next, wait + 1); return; }
+  const text = wanted;
+  wanted = null;
+  asking += 1;
+  began = performance.now();
+  numbered(text, latest += 1).finally(() => { asking -= 1; next(); });
+}
+
+async function numbered(text, number) {
+  const beside = at("beside").value, slow = setTimeout(() => waits(number), SLOW);
+  let answer = null, fault = "";
+  try { answer = await asked("/api/numbers", { text, run: beside }); } catch (error) { fault = sentence(error); }
   clearTimeout(slow);
-  at("said").classList.toggle("bad", failed !== "");
+  if (number < answered) return;
+  answered = number;
+  failed = fault;
+  isSlow = false;
+  if (answer) { written(answer); shown = text; }
+  const differ = !answer || answer.changed === null ? "" : ` ${answer.changed || "No"} result${answer.changed === 1 ? " differs" : "s differ"} from ${beside}.`;
+  tells(answer ? `${answer.headline}.${differ}` : failed, !answer || differ);
   marked();
   document.dispatchEvent(new CustomEvent("truing:shown", { detail: { text, failed } }));
-});
+}
+
+function waits(number) {
+  if (number < latest) return;
+  isSlow = true;
+  tells("Calculating …", true);
+  marked();
+}
+
+function written(answer) {
+  const fresh = made("template", { innerHTML: answer.html }).content, rest = fresh.querySelector(".sections");
+  rest.remove();
+  follow(front, fresh);
+  follow(sections, rest);
+}
+
+// Say what became of the text; where the numbers say it as well, for screen readers alone.
+function tells(words, isSeen) {
+  put(at("said"), words);
+  at("said").classList.toggle("hidden", !isSeen);
+  at("said").classList.toggle("bad", failed !== "" && !isSlow);
+}
 
 function sentence(error) {
   const [first, ...more] = error.faults ?? [{ message: error.message }];
@@ -117,7 +144,7 @@ function sentence(error) {
 
 // What is on the page may be of an earlier text: after a fault, or while the model is calculating.
 function marked() {
-  const stale = failed !== "" && shown !== null;
+  const stale = shown !== null && (failed !== "" || isSlow);
   at("mark").hidden = !stale;
   for (const name of ["numbers", "sections", "drawing"]) at(name).classList.toggle("stale", stale);
 }
