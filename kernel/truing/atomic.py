@@ -113,6 +113,20 @@ def place_folder(folder: Path, files: Mapping[str, str | bytes], what: str) -> N
         raise OutputError(f"{folder}: the {what} cannot be written: {error.strerror or error}") from error
 
 
+@contextmanager
+def alone(folder: Path) -> Iterator[None]:
+    """Let one process at a time in that asks for this folder; where folders cannot be locked, all of them."""
+    handle = os.open(folder, os.O_RDONLY) if fcntl is not None else -1
+    try:
+        if fcntl is not None:
+            with suppress(OSError):  # some network drives cannot
+                fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
+    finally:
+        if handle >= 0:
+            os.close(handle)
+
+
 def recover(folder: Path) -> None:
     """Bring back what a death between two renames has left without its name; delete what other deaths have left."""
     target = _followed(folder)

@@ -184,10 +184,10 @@ def _effects(model: Model[Any, Any]) -> Iterator[str]:
         for unknown in effect.unknowns:
             bounds = f"from {plain(unknown.low)} to {plain(unknown.high)} {unknown.unit}".strip()
             yield from _comment("; ".join(part for part in (unknown.note, bounds) if part), "#   ")
-            yield f"# {unknown.name} = {toml_value(_middle(unknown))}"
+            yield f"# {unknown.name} = {toml_value(middle_of(unknown))}"
 
 
-def _middle(unknown: Unknown) -> str:
+def middle_of(unknown: Unknown) -> str:
     """Return nothing for an amplitude, the middle (on a logarithmic scale where positive) for a shape."""
     value = 0.0
     if not unknown.is_amplitude:

@@ -14,7 +14,7 @@ from pymdownx.slugs import slugify
 
 from manual import gallery
 from manual.families import Family, families
-from manual.input_groups import Group, groups
+from truing.example_groups import Group, groups
 from manual.models import environment, offers
 from manual.places import DOCS, place_in_site
 from truing.declare.model import Model, formula_scope

@@ -122,6 +122,18 @@ def statements(text: str) -> Iterator[Statement]:
         position = end + 1
 
 
+def heading_of(statement: str) -> KeyPath | None:
+    """Return the path of a heading such as ``[effects.warm_up]``; None for any other text."""
+    header = _HEADER.fullmatch(statement)
+    return _parts(header[2]) if header is not None and (header[1], header[3]) == ("[", "]") else None
+
+
+def name_of(statement: str) -> KeyPath | None:
+    """Return the path that ``name = value`` gives a value, below its heading; None for any other text."""
+    assignment = _ASSIGNMENT.match(statement)
+    return _parts(assignment[1]) if assignment is not None else None
+
+
 def _end_of_statement(text: str, position: int) -> int | None:
     """Return where the statement ends, or None when it never closes."""
     start, depth = position, 0

@@ -134,6 +134,11 @@ def read_text(path: Path, *, instead: str) -> str:
         content = path.read_bytes()
     except OSError as error:
         raise InputError([Fault(f"cannot be read: {error.strerror}", str(path), 1)]) from error
+    return text_of(content, path)
+
+
+def text_of(content: bytes, path: Path) -> str:
+    """Return what a text file holds; raises InputError with one sentence where it is no UTF-8."""
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:

@@ -208,15 +208,15 @@ function addSlider(name) {
   output.setAttribute("for", ident);
   range.setAttribute("aria-describedby", why.id);
   const label = made("label", { textContent: input.note, htmlFor: ident });
-  range.addEventListener("input", () => { put(output, `${range.value} ${input.printed}`); moving(input, range.value); });
+  range.addEventListener("input", () => { sliders.get(name).movedAt = performance.now(); put(output, `${range.value} ${input.printed}`); moving(input, range.value); });
   at("sliders").append(made("div", { className: "see-slider" }, label, output, range, why));
-  sliders.set(name, { range, output });
+  sliders.set(name, { range, output, movedAt: -Infinity });
   placed(input, sliders.get(name));
 }
 
 // Bring a slider to where its input stands; it gets other ends only where the input lies outside of them.
-function placed(input, { range, output }) {
-  if (range.matches(":active")) return;
+function placed(input, { range, output, movedAt }) {
+  if (range.matches(":active") || performance.now() - movedAt < 1000) return; // it is ahead; another answer follows
   if (input.value < Number(range.min) || input.value > Number(range.max)) Object.assign(range, { min: input.low, max: input.high, step: input.step });
   range.value = input.value;
   put(output, `${input.value} ${input.printed}`);

@@ -155,7 +155,11 @@ function ended(job, line) {
   bar.remove();
   stage.textContent = text;
   stage.classList.toggle("bad", job.status === "failed");
-  if (job.answer?.sheet) stage.after(made("a", { href: `/file/${job.answer.sheet.split("/").map(encodeURIComponent).join("/")}`, textContent: "Open the sheet" }));
+  if (job.answer?.folder) {
+    const link = made("a", { href: `/run?folder=${encodeURIComponent(job.answer.folder)}`, textContent: "Open it" });
+    link.setAttribute("aria-label", `Open it: ${job.title}`);
+    stage.after(link);
+  }
   stop.textContent = "Close";
   stop.setAttribute("aria-label", `Close: ${job.title}`);
   stop.onclick = () => { element.remove(); lines.set(job.ident, { ...line, element }); };
@@ -218,7 +222,8 @@ document.addEventListener("DOMContentLoaded", () => {
   const bar = document.querySelector(".bar"), tools = document.querySelector(".tools");
   const measure = () => {
     document.documentElement.style.setProperty("--bar", `${bar.offsetHeight}px`);
-    if (tools) document.documentElement.style.setProperty("--tools", `${tools.offsetHeight}px`);
+    tools?.classList.toggle("is-tall", tools.offsetHeight > innerHeight / 6);
+    if (tools) document.documentElement.style.setProperty("--tools", `${tools.classList.contains("is-tall") ? 0 : tools.offsetHeight}px`);
   };
   const watching = new ResizeObserver(measure);
   watching.observe(bar);
