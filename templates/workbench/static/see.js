@@ -174,6 +174,7 @@ document.addEventListener("truing:shown", ({ detail }) => { if (!detail.failed) 
 // Sliders
 
 const inputs = new Map(), sliders = new Map();
+const AHEAD = 1000; // ms for which a slider that was moved stays where it is, whatever comes of an earlier text
 let dragging = false;
 const moving = newest(async ({ name, unit }, value) => {
   dragging = true;
@@ -215,8 +216,13 @@ function addSlider(name) {
 }
 
 // Bring a slider to where its input stands; it gets other ends only where the input lies outside of them.
-function placed(input, { range, output, movedAt }) {
-  if (range.matches(":active") || performance.now() - movedAt < 1000) return; // it is ahead; another answer follows
+function placed(input, slider) {
+  const { range, output, movedAt } = slider;
+  clearTimeout(slider.later);
+  if (range.matches(":active") || performance.now() - movedAt < AHEAD) { // it is ahead of what is answered
+    slider.later = setTimeout(() => placed(inputs.get(input.name), slider), AHEAD);
+    return;
+  }
   if (input.value < Number(range.min) || input.value > Number(range.max)) Object.assign(range, { min: input.low, max: input.high, step: input.step });
   range.value = input.value;
   put(output, `${input.value} ${input.printed}`);
