@@ -97,7 +97,8 @@ def presses(page: Any, name: str) -> list[float]:
 def test_numbers_follow_a_keystroke(name: str, bench: Workbench, browser: "Browser") -> None:  # noqa: F811
     page = bench.page(browser)
     page.goto(f"{bench.address}edit?file={name}.toml")
-    seconds, (bare, busy) = presses(page, name), bare_call(name, bench.folder)
+    before, seconds, after = bare_call(name, bench.folder), presses(page, name), bare_call(name, bench.folder)
+    bare, busy = min(before[0], after[0]), max(before[1], after[1])
     page.context.close()
     median = statistics.median(seconds)
     print(
