@@ -32,6 +32,25 @@ def input_hash(setup: Setup) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
+def stated_differences(before: Setup, after: Setup) -> list[tuple[str, str, str]]:
+    """Return what decides the results and differs between two setups of a model: its name, before and after as TOML.
+
+    Empty where both have the same ``input_hash``, but for the content of data files.
+    """
+    said = [dict(_entries(setup)) for setup in (before, after)]
+    names = [name for name in dict.fromkeys([*said[0], *said[1]]) if said[0].get(name) != said[1].get(name)]
+    return [(name, said[0].get(name, ""), said[1].get(name, "")) for name in names]
+
+
+def _entries(setup: Setup) -> Iterator[tuple[str, str]]:
+    """Yield what stands in the sections that decide the results; an input by its name alone."""
+    for section, content in _sections(setup, None):
+        if section != "sheet":
+            for name, value in content.items():
+                label = name if section == "inputs" else f"{section}.{name}"
+                yield label, value if isinstance(value, str) else toml_value(value)
+
+
 def complete_inputs(setup: Setup, folder: Path | None = None) -> str:
     """Write an inputs file that gives this run again: what was read, with every default filled in.
 

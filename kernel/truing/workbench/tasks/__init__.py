@@ -7,7 +7,7 @@ from typing import Any
 
 from truing.heavy import Later
 
-MODULES = ("diagnoses", "drafts", "figures", "form", "kept", "models", "records", "runs")
+MODULES = ("diagnoses", "drafts", "figures", "form", "kept", "models", "records", "results", "runs")
 """The modules whose public functions the server may call by the name ``module.function``, and no others."""
 
 

@@ -22,12 +22,13 @@ from truing.inputs_file.document import InputsDocument, read_document
 from truing.inputs_file.entries import sections
 from truing.inputs_file.files import LARGEST_INPUTS, refuse_file, text_of
 from truing.inputs_file.values import FileEntry, InputsRead
-from truing.kernel import Offer, offer_of
+from truing.kernel import Offer
 from truing.numbers import STATED_DIGITS, format_difference, format_value, with_unit
 from truing.setup import Setup
 from truing.units import from_si, read_quantity
 from truing.units.names import PURE
 from truing.workbench.tasks.fields import Field, FieldGroup, groups_of
+from truing.workbench.tasks.loaded import loaded
 from truing.workbench.written import Written, changed_text, literal_in, switched_text
 
 WIDTH = 110
@@ -36,9 +37,8 @@ MOST_DIFFERENCES = 200
 """So many places of a conflict are shown."""
 
 
-@lru_cache(maxsize=8)
 def _offer(plugin: str) -> Offer:
-    return offer_of(plugin, lambda text: None)
+    return loaded(plugin)
 
 
 @lru_cache(maxsize=8)
@@ -201,7 +201,9 @@ def _stated(
         answer = _answer(model, field, raw, folder)
         if field.kind == "tolerance" and setup is not None:
             by_input = scatter.get(field.path[1], {})
-            sds = {name: with_unit(*format_difference(each.sd, setup.unit_of(name), 4)) for name, each in by_input.items()}
+            sds = {
+                name: with_unit(*format_difference(each.sd, setup.unit_of(name), 4)) for name, each in by_input.items()
+            }
             answer = f"sd {next(iter(sds.values()))}" if sds else "off"
         answers[key] = {"value": _shown(raw, field, written), "line": document.place(field.path)[1], "answer": answer}
     for name in model.effects:

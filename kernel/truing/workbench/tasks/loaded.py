@@ -1,0 +1,23 @@
+"""The calculations of a worker: each loaded once, a file anew when it has changed."""
+
+from __future__ import annotations
+
+import sys
+from functools import lru_cache
+from pathlib import Path
+
+from truing.kernel import Offer, offer_of
+
+
+def loaded(plugin: str) -> Offer:
+    """Return an installed calculation, or that of a file as it is now. Raises UnknownPluginError, PluginError."""
+    return _loaded(plugin, Path(plugin).stat().st_mtime_ns if plugin.endswith(".py") and Path(plugin).is_file() else 0)
+
+
+@lru_cache(maxsize=8)
+def _loaded(plugin: str, stamp: int) -> Offer:
+    if stamp:
+        for name, module in [*sys.modules.items()]:  # as it was before the file changed
+            if getattr(module, "__file__", None) == plugin:
+                del sys.modules[name]
+    return offer_of(plugin, lambda text: None)
