@@ -145,6 +145,7 @@ class _Known:
 def diagnose_section(model: Model[Any, Any]) -> FileSection:
     """Return what may be asked of a diagnosis."""
     effects, of_model = model.known_effects, f"of {model.name}"
+    causes = _competing(model)
     numbers = {name: field.unit for name, field in model.input_fields.items() if field.varies}
     unknowns = [f"{name}.{unknown.name}" for name, effect in effects.items() for unknown in effect.unknowns]
     known = {**dict.fromkeys([*effects, *unknowns], ""), **numbers}
@@ -156,6 +157,8 @@ def diagnose_section(model: Model[Any, Any]) -> FileSection:
     results = _Known(f"result {of_model} that can be measured in rows", units)
     beyond = "Rows whose true value lies {} what was read, by result: a column of the data and the word it holds there."
     options: dict[str, tuple[str, Callable[[str, Any], Any], dict[str, Any]]] = {
+        "causes": ("What competes to explain the record: effects, input:NAME, unknown. Everything where it is empty.",
+                   partial(_names, causes), {**_LIST, "items": {"enum": list(causes.units)}}),
         "per_file": ("Effects, single unknowns (effect.unknown) and inputs that every file has for itself.",
                      partial(_names, own), {**_LIST, "items": {"type": "string"}, "examples": [list(effects)[:1]]}),
         "hold_out": ("Rows that only judge, by a column of the data and the word it holds there.",
@@ -184,6 +187,13 @@ def diagnose_section(model: Model[Any, Any]) -> FileSection:
 
 
 _LIST = {"type": "array", "default": []}
+
+
+def _competing(model: Model[Any, Any]) -> _Known:
+    """Return what may compete to explain a record."""
+    tolerated = [f"input:{name}" for tolerance in model.tolerances.values() for name in tolerance.on]
+    kind = f"effect of {model.name}, tolerance of it as input:NAME, or 'unknown' for a curve that nobody registered"
+    return _Known(kind, dict.fromkeys([*model.known_effects, *tolerated, "unknown"], ""))
 
 
 def _texts(examples: Mapping[str, str]) -> dict[str, Any]:
