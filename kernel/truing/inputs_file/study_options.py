@@ -156,7 +156,7 @@ def diagnose_section(model: Model[Any, Any]) -> FileSection:
     deviations = {name: f"1 {difference_unit(unit)}".strip() for name, unit in units.items()}
     results = _Known(f"result {of_model} that can be measured in rows", units)
     beyond = "Rows whose true value lies {} what was read, by result: a column of the data and the word it holds there."
-    options: dict[str, tuple[str, Callable[[str, Any], Any], dict[str, Any]]] = {
+    options: dict[str, _Asked] = {
         "causes": ("What competes to explain the record: effects, input:NAME, unknown. Everything where it is empty.",
                    partial(_names, causes), {**_LIST, "items": {"enum": list(causes.units)}}),
         "per_file": ("Effects, single unknowns (effect.unknown) and inputs that every file has for itself.",
@@ -179,11 +179,15 @@ def diagnose_section(model: Model[Any, Any]) -> FileSection:
         "budget": ("How many calls of the model on all rows the search may make; 0 leaves it to how long one takes.",
                    _count, {"type": "integer", "minimum": 0, "default": 0, "examples": [1000]}),
     }  # fmt: skip
-    entries = {
-        name: FileEntry(partial(_read_asked, name, read), {**schema, "description": words})
-        for name, (words, read, schema) in options.items()
-    }
-    return FileSection("", "What is asked of a diagnosis.", entries)
+    return FileSection("", "What is asked of a diagnosis.", {name: _entry(name, *of) for name, of in options.items()})
+
+
+_Asked = tuple[str, Callable[[str, Any], Any], dict[str, Any]]
+"""What an option is for, what reads it, and its schema."""
+
+
+def _entry(name: str, words: str, read: Callable[[str, Any], Any], schema: Mapping[str, Any]) -> FileEntry:
+    return FileEntry(partial(_read_asked, name, read), {**schema, "description": words})
 
 
 _LIST = {"type": "array", "default": []}
