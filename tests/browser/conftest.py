@@ -1,10 +1,8 @@
-"""The browser, and the sheets it looks at."""
+"""The sheets that the browser looks at."""
 
 from __future__ import annotations
 
 import shutil
-import subprocess
-import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -19,7 +17,6 @@ from truing.inputs_file import read_setup
 from truing.kernel import Kernel
 from truing.published import compare_published
 from truing.report.html_printer import html_of
-from truing.report.pdf import find_browser, sandbox_arguments
 from truing.report.sheet import make_sheet
 from truing.runs.provenance import provenance_of
 from truing.setup import SheetOptions
@@ -28,13 +25,6 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, ViewportSize
 
 DATA = Path(__file__).parents[1] / "data"
-QUIET = [
-    "--disable-gpu",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--no-first-run",
-]
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -42,15 +32,6 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if Path(__file__).parent in item.path.parents:
             item.add_marker(pytest.mark.browser)
-
-
-@pytest.fixture(scope="session")
-def chromium() -> Path:
-    """The browser of this machine; without one the tests are skipped, but never where CI=true says it must be there."""
-    found = find_browser()
-    if found is None:
-        missed("no Chromium, Chrome or Edge on this machine (CHROME_PATH names one): the sheet was not looked at")
-    return found
 
 
 FONTS = {
@@ -85,19 +66,6 @@ def fonts(browser: Browser) -> dict[str, str]:
         missed(f"the fonts {', '.join(missing)} are not on this machine (Debian: fonts-dejavu-core, fonts-liberation)")
     rules = {name: [f'--{use}: "{family}";' for use, family in families.items()] for name, families in FONTS.items()}
     return {"the machine's": ":root { }", **{name: f":root {{ {' '.join(lines)} }}" for name, lines in rules.items()}}
-
-
-@pytest.fixture(scope="session")
-def browser(chromium: Path) -> Iterator[Browser]:
-    from playwright.sync_api import sync_playwright
-
-    driver = Path(sys.executable).with_name("playwright")
-    if driver.exists() and subprocess.run([driver, "--version"], capture_output=True).returncode:
-        missed("Playwright does not start on this machine (Debian: libatomic1): the sheet was not looked at")
-    with sync_playwright() as play:
-        running = play.chromium.launch(executable_path=chromium, args=[*QUIET, *sandbox_arguments()])
-        yield running
-        running.close()
 
 
 SCREEN: ViewportSize = {"width": 1200, "height": 900}
