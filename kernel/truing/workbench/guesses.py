@@ -1,7 +1,7 @@
 """What a column of a measured file may be to a model, where its name says it in other words: a guess, to be confirmed.
 
-A guess goes by near names and their parts, by symbols and notes, and by the unit, which must be one of the same quantity.
-``temp_C`` is read as a temperature in degC.
+A guess goes by near names and their parts, by symbols and notes, and by the unit, which must be one of the same
+quantity. ``temp_C`` is read as a temperature in degC.
 """
 
 from __future__ import annotations

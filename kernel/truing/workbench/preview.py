@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from xml.sax.saxutils import escape
 
 import numpy as np
@@ -36,7 +37,7 @@ def thinned(x: Matrix, y: Matrix) -> Indices:
         return rows
     edges = np.linspace(0, len(rows), MOST // 2 + 1).astype(np.intp)
     ends: list[int] = []
-    for start, end in zip(edges[:-1], edges[1:], strict=True):
+    for start, end in pairwise(edges.tolist()):
         part = rows[start:end]
         low, high = part[np.argmin(y[part])], part[np.argmax(y[part])]
         ends += sorted({int(low), int(high)}, key=lambda row: float(x[row]))

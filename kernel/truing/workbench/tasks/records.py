@@ -18,7 +18,7 @@ from truing.inputs_file import setup_from_text
 from truing.inputs_file.values import SIGMA
 from truing.kernel import Offer, offer_of
 from truing.measurements.csv_text import ColumnNames, Header, plain_numbers, read_cell
-from truing.measurements.table import RUN, opened_table
+from truing.measurements.table import RUN, Known, opened_table
 from truing.setup import NamedColumn
 from truing.units import difference_unit
 from truing.units.names import PURE
@@ -107,7 +107,7 @@ def _opened(plugin: str, path: Path, named: dict[str, NamedColumn]) -> OpenFile:
 def _read(plugin: str, path: Path, stamp: tuple[int, int], named: tuple[tuple[str, NamedColumn], ...]) -> OpenFile:
     """Read a file as written; one that has not changed is read once. ``stamp`` is its time and size."""
     model = _offer(plugin).model
-    known = {**declared_units(model), **model.input_fields}
+    known: dict[str, Known] = {**declared_units(model), **model.input_fields}
     with opened_table(path, ColumnNames(dict(named)), known, model.measurable) as table:
         cells: list[list[str]] = [[] for _ in table.headers]
         lines: list[int] = []
@@ -131,7 +131,7 @@ def _columns(opened: OpenFile, model: Model[Any, Any]) -> Iterator[dict[str, Any
         guess = guessed.get(key)
         yield {
             "index": index, "key": key, "text": header.text, "name": header.name, "role": role,
-            "unit": header.unit, "declared": units.get(header.name, ""), "stated": bool(header.key == key and header.key),
+            "unit": header.unit, "declared": units.get(header.name, ""), "stated": bool(header.key),
             "values": int(finite.size), "low": _end(finite.min()) if finite.size else None,
             "high": _end(finite.max()) if finite.size else None, "guess": guess and asdict(guess),
         }  # fmt: skip
@@ -194,7 +194,7 @@ def _row(opened: OpenFile, row: int) -> dict[str, Any]:
 
 
 def _wrong(opened: OpenFile, faults: Sequence[Fault]) -> dict[str, Any]:
-    """Return the rows that are wrong, each with its reasons and the columns these name; and faults of the whole file."""
+    """Return the rows that are wrong, each with its reasons and the columns they name; and faults of the whole file."""
     place = {line: row for row, line in enumerate(opened.lines)}
     by_line: dict[int, list[Fault]] = {}
     others = [fault for fault in faults if fault.line is None or fault.line not in place]
