@@ -54,9 +54,10 @@ async def measure_page(request: Request) -> Response:
     content = await anyio.to_thread.run_sync(path.read_bytes)
     name, text = below(bench.root, path), content.decode("utf-8", "replace")
     chosen = [below(bench.root, bench.path(each)) for each in request.query_params.getlist("data")]
+    plugin = request.query_params.get("plugin", "") or plugin_of(path)
     return page(
-        request, "measure.html.j2", title="Measure", file=name, plugin=plugin_of(path), text=text,
-        digest=digest_of(content), inputs=inputs, data=data, chosen=chosen,
+        request, "measure.html.j2", title="Measure", file=name, plugin=plugin, text=text, digest=digest_of(content),
+        inputs=inputs, data=data, chosen=chosen,
     )  # fmt: skip
 
 
@@ -243,9 +244,10 @@ async def diagnosis_page(request: Request) -> Response:
         beside = {"folder": whole, **await bench.ask("diagnoses.shown", root=str(bench.root), folder=whole)}
     file = below(bench.root, bench.path(asked["file"])) if asked.get("file") else ""
     data = [below(bench.root, bench.path(each)) for each in asked.getlist("data")]
+    plugin = asked.get("plugin", "") or shown["plugin"]
     return page(
         request, "measure_diagnosis.html.j2", title="Diagnosis", shown=shown, at=folder, beside=beside, file=file,
-        data=data, target=_target(bench, file or f"{shown['plugin']}.toml", shown),
+        plugin=plugin, data=data, target=_target(bench, file or f"{shown['plugin']}.toml", shown),
     )  # fmt: skip
 
 

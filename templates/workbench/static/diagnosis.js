@@ -3,6 +3,7 @@ import { ask, call, say, tell } from "./workbench.js";
 import { planShown, watched } from "./experiment.js";
 
 const page = document.getElementById("diagnosis"), { folder, file, plugin } = page.dataset, data = JSON.parse(page.dataset.data);
+const own = plugin.endsWith(".py") ? [["plugin", plugin]] : [];
 
 document.getElementById("accept")?.addEventListener("submit", async (event) => {
   event.preventDefault();
@@ -20,7 +21,7 @@ for (const button of document.querySelectorAll("[data-only]")) {
       const job = await call("/api/diagnose", { file, plugin, data, causes: button.dataset.only.split("|") });
       tell("This suspicion is fitted alone …");
       watched(job.ident, (done) => {
-        const query = new URLSearchParams([["folder", done.folder], ["file", file], ...data.map((name) => ["data", name])]);
+        const query = new URLSearchParams([["folder", done.folder], ["file", file], ...own, ...data.map((name) => ["data", name])]);
         location.href = `/measure/diagnosis?${query}`;
       });
     } catch (error) { say(error.message); }

@@ -6,6 +6,7 @@ const page = document.getElementById("measure"), files = document.getElementById
 const about = { file: page.dataset.file, plugin: page.dataset.plugin };
 const chosen = JSON.parse(page.dataset.chosen);
 let text = JSON.parse(page.dataset.text), saved = { text, digest: page.dataset.digest };
+const own = about.plugin.endsWith(".py") ? [["plugin", about.plugin]] : [];  // a calculation in a file of the folder
 let changes = [], answer = null, turn = 0, known = null;
 
 // Files
@@ -58,7 +59,7 @@ lying.addEventListener("change", (event) => {
 // What the files hold
 
 async function refresh(...more) {
-  const query = new URLSearchParams([["file", about.file], ...chosen.map((name) => ["data", name])]);
+  const query = new URLSearchParams([["file", about.file], ...own, ...chosen.map((name) => ["data", name])]);
   history.replaceState(null, "", `/measure?${query}`);
   const mine = ++turn;
   if (!chosen.length) { files.replaceChildren(); shown(null); return; }
@@ -111,7 +112,7 @@ function fileShown(file, number) {
   return section;
 }
 
-function scrolling(table) { const box = made("div", { className: "scroll", tabIndex: 0 }, table); box.setAttribute("role", "region"); box.setAttribute("aria-label", table.caption?.textContent ?? "Table"); return box; }
+function scrolling(table, of) { const box = made("div", { className: "scroll", tabIndex: 0 }, table); box.setAttribute("role", "region"); box.setAttribute("aria-label", `${table.caption.textContent}: ${of}`); return box; }
 
 function heads(...titles) { return made("thead", {}, made("tr", {}, ...titles.map((title) => made("th", { scope: "col", textContent: title })))); }
 
@@ -122,7 +123,7 @@ function cellsTable(file, rows, caption) {
     ...(hasReasons ? [made("td", { className: "reason bad", textContent: row.reasons.join("; ") })] : []),
     ...row.cells.map((cell, index) => made("td", { className: row.bad?.includes(index) ? "bad" : "", textContent: cell }))));
   const titles = ["Line", ...(hasReasons ? ["What is wrong"] : []), ...file.columns.map((column) => column.text)];
-  return scrolling(made("table", { className: "cells" }, made("caption", { textContent: caption }), heads(...titles), made("tbody", {}, ...body)));
+  return scrolling(made("table", { className: "cells" }, made("caption", { textContent: caption }), heads(...titles), made("tbody", {}, ...body)), file.name);
 }
 
 function wrongRows(file, count) {
@@ -140,7 +141,7 @@ function columnsTable(file, number) {
     made("td", { className: "number", textContent: column.values }),
     made("td", { className: "number", textContent: column.low === null ? "" : column.low === column.high ? column.low : `${column.low} … ${column.high}` })));
   return scrolling(made("table", { className: "file-columns" }, made("caption", { textContent: "Columns" }),
-    heads("As written", "Is to the model", "Unit", "Numbers", "From … to"), made("tbody", {}, ...rows)));
+    heads("As written", "Is to the model", "Unit", "Numbers", "From … to"), made("tbody", {}, ...rows)), file.name);
 }
 
 function roleOf(column, number) {
@@ -193,7 +194,8 @@ function figureOf(file, number) {
   const numeric = file.columns.filter((column) => column.values > 1);
   if (!numeric.length) return "";
   const now = drawn.get(file.name) ?? {};
-  const measured = numeric.find((column) => column.role === "measured") ?? numeric.find((column) => column.guess) ?? numeric.at(-1);
+  const results = answer.roles[0].of.map((each) => each.name);
+  const measured = numeric.find((column) => results.includes(column.name) || results.includes(column.guess?.name)) ?? numeric.at(-1);
   const select = (ident, label, options, value) => {
     const element = made("select", { id: `${ident}-${number}` }, ...options.map(([each, name]) => made("option", { value: each, textContent: name })));
     element.value = value;
@@ -253,7 +255,7 @@ async function diagnose(causes) {
     const job = await call("/api/diagnose", { ...about, data: chosen, causes });
     tell("The diagnosis runs; you may go on or close this page, its folder stays.");
     watched(job.ident, (done) => {
-      const query = new URLSearchParams([["folder", done.folder], ["file", about.file], ...chosen.map((name) => ["data", name])]);
+      const query = new URLSearchParams([["folder", done.folder], ["file", about.file], ...own, ...chosen.map((name) => ["data", name])]);
       location.href = `/measure/diagnosis?${query}`;
     });
   } catch (error) { say(error.message); }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import os
 from collections.abc import Iterator, Mapping, Sequence
@@ -18,9 +19,11 @@ from truing.inputs_file import read_setup, setup_from_text
 from truing.inputs_file.assemble import toml_value
 from truing.kernel import Offer, offer_of
 from truing.measurements import table_text
+from truing.measurements.csv_text import name_and_unit
 from truing.report.diagnosis_words import headline, spoken, verdict_word
 from truing.runs.inputs_written import complete_inputs
 from truing.studies.bench import Progress
+from truing.units import unit_text
 
 CAUSES = "studies.diagnose.causes"
 
@@ -86,7 +89,7 @@ def shown(root: str, folder: str) -> dict[str, Any]:
             "ranking": [_ranked(each) for each in document["ranking"]],
             "gain": [_gain(name, each) for name, each in document["gain"].items() if name != "stability"],
             "warnings": document["warnings"],
-            "experiment": _experiment(document["experiment"]),
+            "experiment": _experiment(document["experiment"], _result_units(path)),
             "is_extended": (path / "extended.toml").is_file(),
         }
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
@@ -104,13 +107,13 @@ def _cause(cause: Mapping[str, Any]) -> dict[str, Any]:
     sizes = [_size(name, each) for name, each in cause["unknowns"].items()]
     return {
         "name": cause["effect"], "title": spoken(cause["effect"]), "sizes": sizes, "share": round(100 * cause["share"]),
-        "same_as": cause["same_as"], "remedy": cause.get("remedy") or "",
+        "same_as": [spoken(name) for name in cause["same_as"]], "remedy": cause.get("remedy") or "",
     }  # fmt: skip
 
 
 def _size(name: str, fitted: Mapping[str, Any]) -> str:
     ends = ["open" if end is None else f"{end:.3g}" for end in fitted["interval95"]]
-    return f"{spoken(name)} {fitted['value']:.3g} {fitted['unit']} (95 %: {ends[0]} … {ends[1]})"
+    return f"{spoken(name)} {fitted['value']:.3g} {unit_text(fitted['unit'])} (95 %: {ends[0]} … {ends[1]})"
 
 
 def _ranked(alternative: Mapping[str, Any]) -> dict[str, Any]:
@@ -121,7 +124,7 @@ def _ranked(alternative: Mapping[str, Any]) -> dict[str, Any]:
 
 def _gain(name: str, gain: Mapping[str, Any]) -> dict[str, Any]:
     sizes = {key: gain[key] for key in ("rmse_before", "rmse_after", "noise_floor")}
-    texts = {key: f"{size['value']:.3g} {size['unit']}" for key, size in sizes.items()}
+    texts = {key: f"{size['value']:.3g} {unit_text(size['unit'])}" for key, size in sizes.items()}
     return {"result": name, "title": spoken(name), **texts, "p_value": gain["p_value"]}
 
 
@@ -153,10 +156,18 @@ def plan(
     """Plan the experiment that tells causes apart; return it in words, and its readings as a table and as CSV."""
     os.chdir(root)
     made: Plan = LoadedModel(_offer(plugin)).plan(causes, Path(file), noise=noise, budget=budget, progress=progress)
-    return {"sentences": list(made.sentences), "experiment": _experiment(made.document["experiment"])}
+    units = {name: made.planned.setup.print_unit(name) for name in made.planned.noise}
+    return {"sentences": list(made.sentences), "experiment": _experiment(made.document["experiment"], units)}
 
 
-def _experiment(experiment: Mapping[str, Any] | None) -> dict[str, Any] | None:
+def _result_units(path: Path) -> dict[str, str]:
+    """Return the units of the measured results, as the rows of a diagnosis have them in their headers."""
+    with (path / "rows.csv").open(encoding="utf-8", newline="") as stream:
+        named = (name_and_unit(cell.strip()) for cell in next(csv.reader(stream), []))
+    return {name: unit or "" for name, unit in named if name}
+
+
+def _experiment(experiment: Mapping[str, Any] | None, units: Mapping[str, str]) -> dict[str, Any] | None:
     """Return the readings of an experiment as a table: headers, rows, and the CSV file to be filled in."""
     if experiment is None:
         return None
@@ -164,7 +175,7 @@ def _experiment(experiment: Mapping[str, Any] | None) -> dict[str, Any] | None:
         f"{name} [{setting['unit'] or '1'}]": setting["values"] for name, setting in experiment["settings"].items()
     }
     empty = [None] * experiment["readings"]
-    results = {f"{name}": empty for name in experiment["results"]}
+    results = {f"{name} [{units.get(name) or '1'}]": empty for name in experiment["results"]}
     text = table_text([*columns, *results], [*columns.values(), *results.values()])
     rows = [[f"{value:.6g}" for value in row] for row in zip(*columns.values(), strict=True)]
     chance = experiment["chance"]
