@@ -194,8 +194,6 @@ function figureOf(file, number) {
   const numeric = file.columns.filter((column) => column.values > 1);
   if (!numeric.length) return "";
   const now = drawn.get(file.name) ?? {};
-  const results = answer.roles[0].of.map((each) => each.name);
-  const measured = numeric.find((column) => results.includes(column.name) || results.includes(column.guess?.name)) ?? numeric.at(-1);
   const select = (ident, label, options, value) => {
     const element = made("select", { id: `${ident}-${number}` }, ...options.map(([each, name]) => made("option", { value: each, textContent: name })));
     element.value = value;
@@ -203,18 +201,19 @@ function figureOf(file, number) {
     return [made("label", { htmlFor: element.id, textContent: label }), element];
   };
   const names = numeric.map((column) => [column.index, column.text]);
-  const [showLabel, show] = select("show", "Show", names, now.shown ?? measured.index);
+  const [showLabel, show] = select("show", "Show", names, now.shown ?? file.figure.shown);
   const [overLabel, over] = select("over", "over", [[-1, "the rows"], ...names], now.over ?? -1);
   const place = made("div", { className: "figure" }), root = place.attachShadow({ mode: "open" });
+  const put = (svg) => { root.innerHTML = `<style>${FIGURE}</style>${svg || "<p>nothing to be drawn</p>"}`; };
   async function draw() {
     const asked = { shown: Number(show.value), over: Number(over.value) };
     drawn.set(file.name, asked);
     try {
       const said = await call("/api/column-figure", { ...about, text, of: file.name, ...asked });
-      root.innerHTML = `<style>${FIGURE}</style>${said.svg || "<p>nothing to be drawn</p>"}`;
+      put(said.svg);
     } catch (error) { root.textContent = error.message; }
   }
-  draw();
+  if (drawn.has(file.name)) draw(); else put(file.figure.svg);
   return made("div", {}, made("div", { className: "figure-of" }, showLabel, show, overLabel, over), place);
 }
 

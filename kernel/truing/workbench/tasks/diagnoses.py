@@ -9,12 +9,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from truing.api.model import LoadedModel
-from truing.api.plan import Plan
-from truing.api.records import MeasuredRecord
 from truing.diagnosis.causes import INPUT
 from truing.diagnosis.result import UNKNOWN
 from truing.errors import UsageError
+from truing.heavy import Later
 from truing.inputs_file import read_setup, setup_from_text
 from truing.inputs_file.assemble import toml_value
 from truing.kernel import Offer, offer_of
@@ -25,6 +23,9 @@ from truing.runs.inputs_written import complete_inputs
 from truing.studies.bench import Progress
 from truing.units import unit_text
 
+model: Any = Later("truing.api.model")
+recorded: Any = Later("truing.api.records")
+"""Figures come with them: pages that show a folder do without."""
 CAUSES = "studies.diagnose.causes"
 
 
@@ -36,13 +37,13 @@ def candidates(plugin: str, file: str, folder: str, text: str) -> dict[str, Any]
     """Return what may compete to explain a record, what competes by the inputs file, and what can be planned for."""
     offer = _offer(plugin)
     setup = setup_from_text(text, offer, file=file, folder=Path(folder))
-    model = setup.model
+    declared = setup.model
     several = [
         {"name": name, "title": spoken(name), "about": effect.looks_like or effect.why,
-         "kind": "effect" if name in model.effects else "gauge"}
-        for name, effect in model.known_effects.items()
+         "kind": "effect" if name in declared.effects else "gauge"}
+        for name, effect in declared.known_effects.items()
     ]  # fmt: skip
-    for tolerance in model.tolerances.values():
+    for tolerance in declared.tolerances.values():
         several += [
             {"name": INPUT + name, "title": spoken(INPUT + name), "about": tolerance.why, "kind": "input"}
             for name in tolerance.on
@@ -50,8 +51,8 @@ def candidates(plugin: str, file: str, folder: str, text: str) -> dict[str, Any]
     words = "a curve that nobody registered, over whatever was measured"
     several.append({"name": UNKNOWN, "title": "something unknown", "about": words, "kind": "unknown"})
     results = [
-        {"name": name, "unit": setup.print_unit(name)} for name in model.measurable
-        if not model.own_result_fields[name].along
+        {"name": name, "unit": setup.print_unit(name)} for name in declared.measurable
+        if not declared.own_result_fields[name].along
     ]  # fmt: skip
     return {"candidates": several, "causes": list(setup.diagnose.causes), "results": results}
 
@@ -65,9 +66,9 @@ def diagnose(
     """
     os.chdir(root)
     Path(output).parent.mkdir(parents=True, exist_ok=True)
-    record = MeasuredRecord(tuple(Path(name) for name in data))
+    record = recorded.MeasuredRecord(tuple(Path(name) for name in data))
     stated = {CAUSES: toml_value(causes)} if causes else {}
-    made = LoadedModel(_offer(plugin)).diagnose(
+    made = model.LoadedModel(_offer(plugin)).diagnose(
         record, Path(file), output=Path(output), set=stated, progress=progress
     )  # fmt: skip
     said = [f"{verdict_word(made.result)}.", *headline(made.result)]
@@ -155,7 +156,7 @@ def plan(
 ) -> dict[str, Any]:  # fmt: skip
     """Plan the experiment that tells causes apart; return it in words, and its readings as a table and as CSV."""
     os.chdir(root)
-    made: Plan = LoadedModel(_offer(plugin)).plan(causes, Path(file), noise=noise, budget=budget, progress=progress)
+    made = model.LoadedModel(_offer(plugin)).plan(causes, Path(file), noise=noise, budget=budget, progress=progress)
     units = {name: made.planned.setup.print_unit(name) for name in made.planned.noise}
     return {"sentences": list(made.sentences), "experiment": _experiment(made.document["experiment"], units)}
 

@@ -12,15 +12,15 @@ import numpy as np
 
 from truing.arrays import Matrix
 from truing.declare.model import Model
-from truing.diagnosis.data_rows import declared_units, part_of, read_data_files, tidy
+from truing.diagnosis.data_rows import DataRows, declared_units, part_of, read_data_files, tidy
 from truing.errors import Fault, InputError
 from truing.inputs_file import setup_from_text
 from truing.inputs_file.values import SIGMA
 from truing.kernel import Offer, offer_of
-from truing.measurements.csv_text import ColumnNames, Header, plain_numbers, read_cell
+from truing.measurements.csv_text import ColumnNames, Header, OpenTable, plain_numbers, read_cell
 from truing.measurements.table import RUN, Known, opened_table
 from truing.setup import NamedColumn
-from truing.units import difference_unit
+from truing.units import difference_unit, from_si
 from truing.units.names import PURE
 from truing.workbench.guesses import Column, Guess, Quantity, guesses
 from truing.workbench.preview import Axis, drawn
@@ -35,15 +35,24 @@ ROLES = {"word": "input", "series": "input", "axis": "place along an axis", "lab
 
 @dataclass(frozen=True)
 class OpenFile:
-    """A measured file as written: its headers, its columns as text, and the line of every row."""
+    """A measured file: its headers, the line of every row, what is wrong with it, and what became of its rows.
+
+    ``cells`` are the columns as text; of a file with nothing wrong only those of its beginning, and ``values`` holds
+    the columns that are numbers by their places, in the units of their headers, (n,).
+    """
 
     headers: tuple[Header, ...]
     cells: tuple[tuple[str, ...], ...]
     lines: tuple[int, ...]
     decimal_comma: bool
+    faults: tuple[Fault, ...]
+    notes: tuple[str, ...]
+    values: Mapping[int, Matrix]
 
     def numbers(self, column: int) -> Matrix:
         """Return a column as numbers, NaN for what is none, (n,)."""
+        if not self.faults:
+            return self.values.get(column, np.full(len(self.lines), np.nan))
         cells = self.cells[column]
         fast = plain_numbers(cells)
         return fast if fast is not None else np.array([_number(cell, self.decimal_comma) for cell in cells])
@@ -76,46 +85,74 @@ def columns(plugin: str, file: str, folder: str, text: str, data: Sequence[str],
 def _of_file(offer: Offer, path: Path, name: str, named: dict[str, NamedColumn]) -> dict[str, Any]:
     """Return what one file holds; of one that cannot be read at all, why."""
     answer: dict[str, Any] = {"name": name, "rows": 0, "columns": [], "first": [], "wrong": [], "faults": []}
-    answer |= {"notes": [], "more": 0}
+    answer |= {"notes": [], "more": 0, "figure": {}}
     try:
         opened = _opened(offer.name, path, named)
     except InputError as error:
         return answer | {"faults": [_fault(fault) for fault in error.faults]}
-    faults: Sequence[Fault] = ()
-    try:
-        (rows,) = read_data_files([path], offer, named)
-        tidied = tidy(rows, offer.model)
-        answer["notes"] = [tidied.counts[0].sentence(), *tidied.notes]
-    except InputError as error:
-        faults = error.faults
-    answer["rows"] = len(opened.lines)
+    answer["rows"], answer["notes"] = len(opened.lines), list(opened.notes)
     answer["columns"] = list(_columns(opened, offer.model))
+    answer["figure"] = _first_figure(opened, answer["columns"], offer.model)
     answer["first"] = [_row(opened, row) for row in range(min(FIRST_ROWS, len(opened.lines)))]
-    return answer | _wrong(opened, faults)
+    return answer | _wrong(opened)
 
 
 def _opened(plugin: str, path: Path, named: dict[str, NamedColumn]) -> OpenFile:
+    return _read(plugin, path, _stamp(path), tuple(sorted(named.items())))
+
+
+def _stamp(path: Path) -> tuple[int, int]:
+    """Return the time and size of a file, by which it is known again."""
     try:
         state = path.stat()
-        stamp = (state.st_mtime_ns, state.st_size)
     except OSError:
-        stamp = (0, 0)
-    return _read(plugin, path, stamp, tuple(sorted(named.items())))
+        return 0, 0
+    return state.st_mtime_ns, state.st_size
 
 
 @lru_cache(maxsize=4)
 def _read(plugin: str, path: Path, stamp: tuple[int, int], named: tuple[tuple[str, NamedColumn], ...]) -> OpenFile:
-    """Read a file as written; one that has not changed is read once. ``stamp`` is its time and size."""
-    model = _offer(plugin).model
-    known: dict[str, Known] = {**declared_units(model), **model.input_fields}
-    with opened_table(path, ColumnNames(dict(named)), known, model.measurable) as table:
-        cells: list[list[str]] = [[] for _ in table.headers]
-        lines: list[int] = []
-        for chunk, lines_of in table.chunks():
-            lines += lines_of
-            for column, more in zip(cells, chunk, strict=True):
-                column.extend(more)
-        return OpenFile(table.headers, tuple(map(tuple, cells)), tuple(lines), table.decimal_comma)
+    """Read a file; one that has not changed is read once. ``stamp`` is its time and size.
+
+    Raises InputError where it cannot be read at all.
+    """
+    offer, faults, rows = _offer(plugin), tuple[Fault, ...](), None
+    try:
+        (rows,) = read_data_files([path], offer, dict(named))
+    except InputError as error:
+        faults = tuple(error.faults)
+    known: dict[str, Known] = {**declared_units(offer.model), **offer.model.input_fields}
+    with opened_table(path, ColumnNames(dict(named)), known, offer.model.measurable) as table:
+        cells, lines = _texts(table, whole=rows is None)
+        headers = table.headers
+    if rows is None:
+        return OpenFile(headers, cells, lines, table.decimal_comma, faults, (), {})
+    values = {place: _as_written(rows, header) for place, header in enumerate(headers) if _is_number(rows, header.name)}
+    tidied = tidy(rows, offer.model)
+    notes = (tidied.counts[0].sentence(), *tidied.notes)
+    return OpenFile(headers, cells, tuple(rows.lines.tolist()), table.decimal_comma, (), notes, values)
+
+
+def _texts(table: OpenTable, *, whole: bool) -> tuple[tuple[tuple[str, ...], ...], tuple[int, ...]]:
+    """Return the columns of a file as text, and the lines of its rows: of all, or of those at its beginning."""
+    cells: list[list[str]] = [[] for _ in table.headers]
+    lines: list[int] = []
+    for chunk, lines_of in table.chunks():
+        lines += lines_of
+        for column, more in zip(cells, chunk, strict=True):
+            column.extend(more)
+        if not whole:
+            break
+    return tuple(map(tuple, cells)), tuple(lines)
+
+
+def _is_number(rows: DataRows, name: str) -> bool:
+    return name in rows.columns and rows.columns[name].dtype != object
+
+
+def _as_written(rows: DataRows, header: Header) -> Matrix:
+    """Return a column in the unit of its header; where nobody knows that, it is as it stands."""
+    return from_si(rows.columns[header.name], "" if header.unit in PURE else header.unit or "")
 
 
 def _columns(opened: OpenFile, model: Model[Any, Any]) -> Iterator[dict[str, Any]]:
@@ -193,9 +230,9 @@ def _row(opened: OpenFile, row: int) -> dict[str, Any]:
     return {"line": opened.lines[row], "cells": [column[row][:LONGEST_CELL] for column in opened.cells]}
 
 
-def _wrong(opened: OpenFile, faults: Sequence[Fault]) -> dict[str, Any]:
+def _wrong(opened: OpenFile) -> dict[str, Any]:
     """Return the rows that are wrong, each with its reasons and the columns they name; and faults of the whole file."""
-    place = {line: row for row, line in enumerate(opened.lines)}
+    place, faults = {line: row for row, line in enumerate(opened.lines)}, opened.faults
     by_line: dict[int, list[Fault]] = {}
     others = [fault for fault in faults if fault.line is None or fault.line not in place]
     for fault in faults:
@@ -228,16 +265,23 @@ def figure(
     except InputError:
         named = {}
     opened = _opened(offer.name, path, named)
-    rows = np.arange(1.0, len(opened.lines) + 1)
+    return {"svg": _drawn(opened, shown, over)}
+
+
+def _drawn(opened: OpenFile, shown: int, over: int) -> str:
+    wrong = {fault.line for fault in opened.faults}
+    rows = np.array([row for row, line in enumerate(opened.lines) if line in wrong] if wrong else [], dtype=np.intp)
     y = Axis(opened.headers[shown].text, opened.numbers(shown))
-    x = Axis("row", rows) if over < 0 else Axis(opened.headers[over].text, opened.numbers(over))
-    return {"svg": drawn(x, y, _wrong_rows(offer, path, named, opened))}
+    x = opened.numbers(over) if over >= 0 else np.arange(1.0, len(opened.lines) + 1)
+    return drawn(Axis(opened.headers[over].text if over >= 0 else "row", x), y, rows)
 
 
-def _wrong_rows(offer: Offer, path: Path, named: dict[str, NamedColumn], opened: OpenFile) -> Any:
-    try:
-        read_data_files([path], offer, named)
-    except InputError as error:
-        wrong = {fault.line for fault in error.faults}
-        return np.flatnonzero(np.isin(np.array(opened.lines), [line for line in wrong if line is not None]))
-    return np.zeros(0, dtype=np.intp)
+def _first_figure(opened: OpenFile, known: Sequence[Mapping[str, Any]], model: Model[Any, Any]) -> dict[str, Any]:
+    """Return the figure that is shown before another one is chosen: a measured result over the rows."""
+    numeric = [column for column in known if column["values"] > 1]
+    if not numeric:
+        return {}
+    results = set(model.measurable)
+    measured = [each for each in numeric if each["name"] in results or (each["guess"] or {}).get("name") in results]
+    shown = (measured[:1] or numeric[-1:])[0]["index"]
+    return {"shown": shown, "over": -1, "svg": _drawn(opened, shown, -1)}
