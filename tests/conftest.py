@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from xdist.scheduler import WorkStealingScheduling
 
-from one_browser import browser, chromium  # noqa: F401
+from one_browser import browser, chromium, firefox, player  # noqa: F401
 from shared import GUESTS, ROOT, TESTS, build_wheels, copied_guest, made_once
 from truing.executors import WorkerPool, open_executor
 from workbench_browser import workbench  # noqa: F401
@@ -45,7 +45,7 @@ that no worker is left alone with them."""
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Put first what is to come first; mark what needs a browser."""
     for item in items:
-        if "browser" in getattr(item, "fixturenames", ()):
+        if {"browser", "firefox"} & set(getattr(item, "fixturenames", ())):
             item.add_marker(pytest.mark.browser)
     order = {name: place for place, name in enumerate(FIRST)}
     items.sort(key=lambda item: min(order.get(name, len(FIRST)) for name in (item.path.stem, *item.path.parts)))

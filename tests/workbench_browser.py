@@ -42,7 +42,7 @@ class Workbench:
         are refused), ``said`` what it complained of: errors of scripts, of the console, and broken requests.
         """
         context = browser.new_context(viewport={"width": width, "height": height}, color_scheme=colours)  # type: ignore[arg-type]
-        context.set_default_timeout(10_000)
+        context.set_default_timeout(30_000)
         page: Any = context.new_page()
         page.requested, page.outside, page.said = [], [], []
 

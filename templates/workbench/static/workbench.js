@@ -25,7 +25,7 @@ export async function call(address, body, { signal } = {}) {
     await call("/api/confirm", { file: said.confirm });
     return call(address, body, { signal });
   }
-  if (!answer.ok && answer.status !== 409) throw new Faults(said.faults);
+  if (said.overtaken || (!answer.ok && answer.status !== 409)) throw new Faults(said.faults);
   return said;
 }
 
@@ -64,6 +64,11 @@ function shownAt(ident, text) {
   const close = made("button", { type: "button", className: "plain", textContent: "Close", onclick: () => shownAt(ident, "") });
   document.getElementById(ident).replaceChildren(...(text ? [made("p", { textContent: text }), close] : []));
 }
+
+// What nobody catches is said all the same.
+addEventListener("unhandledrejection", (event) => {
+  if (event.reason instanceof Faults) { event.preventDefault(); say(event.reason.message); }
+});
 
 document.addEventListener("keydown", (event) => {
   if (event.key === "Escape" && !document.querySelector("dialog[open]")) { say(""); shownAt("told", ""); }
@@ -150,7 +155,11 @@ function ended(job, line) {
   bar.remove();
   stage.textContent = text;
   stage.classList.toggle("bad", job.status === "failed");
-  if (job.answer?.sheet) stage.after(made("a", { href: `/file/${job.answer.sheet.split("/").map(encodeURIComponent).join("/")}`, textContent: "Open the sheet" }));
+  if (job.answer?.folder) {
+    const link = made("a", { href: `/run?folder=${encodeURIComponent(job.answer.folder)}`, textContent: "Open it" });
+    link.setAttribute("aria-label", `Open it: ${job.title}`);
+    stage.after(link);
+  }
   stop.textContent = "Close";
   stop.setAttribute("aria-label", `Close: ${job.title}`);
   stop.onclick = () => { element.remove(); lines.set(job.ident, { ...line, element }); };
@@ -213,7 +222,8 @@ document.addEventListener("DOMContentLoaded", () => {
   const bar = document.querySelector(".bar"), tools = document.querySelector(".tools");
   const measure = () => {
     document.documentElement.style.setProperty("--bar", `${bar.offsetHeight}px`);
-    if (tools) document.documentElement.style.setProperty("--tools", `${tools.offsetHeight}px`);
+    tools?.classList.toggle("is-tall", tools.offsetHeight > innerHeight / 6);
+    if (tools) document.documentElement.style.setProperty("--tools", `${tools.classList.contains("is-tall") ? 0 : tools.offsetHeight}px`);
   };
   const watching = new ResizeObserver(measure);
   watching.observe(bar);
