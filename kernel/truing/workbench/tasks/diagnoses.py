@@ -58,7 +58,7 @@ def candidates(plugin: str, file: str, folder: str, text: str) -> dict[str, Any]
 
 
 def diagnose(
-    plugin: str, file: str, root: str, data: list[str], output: str, causes: list[str], progress: Progress
+    plugin: str, file: str, root: str, *, data: list[str], output: str, causes: list[str], progress: Progress
 ) -> dict[str, Any]:  # fmt: skip
     """Diagnose measured files and write the folder of the diagnosis; return where it is, and the verdict in words.
 
@@ -152,7 +152,7 @@ def accepted(plugin: str, root: str, folder: str, file: str, target: str) -> str
 
 
 def plan(
-    plugin: str, file: str, root: str, causes: list[str], noise: dict[str, str], budget: int, progress: Progress
+    plugin: str, file: str, root: str, *, causes: list[str], noise: dict[str, str], budget: int, progress: Progress
 ) -> dict[str, Any]:  # fmt: skip
     """Plan the experiment that tells causes apart; return it in words, and its readings as a table and as CSV."""
     os.chdir(root)

@@ -70,7 +70,7 @@ def _offer(plugin: str) -> Offer:
     return offer_of(plugin, lambda text: None)
 
 
-def columns(plugin: str, file: str, folder: str, text: str, data: Sequence[str], root: str) -> dict[str, Any]:
+def columns(plugin: str, file: str, folder: str, text: str, *, data: Sequence[str], root: str) -> dict[str, Any]:
     """Return what files hold by what an inputs file says of their columns, and what is wrong with them."""
     offer = _offer(plugin)
     try:
@@ -256,7 +256,7 @@ def _fault(fault: Fault) -> dict[str, Any]:
 
 
 def figure(
-    plugin: str, file: str, folder: str, text: str, root: str, data: str, shown: int, over: int
+    plugin: str, file: str, folder: str, text: str, *, root: str, data: str, shown: int, over: int
 ) -> dict[str, str]:  # fmt: skip
     """Return a column of a file over another one (-1: over its rows) as SVG; wrong rows in red."""
     offer, path = _offer(plugin), Path(root) / data
