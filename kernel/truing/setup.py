@@ -55,6 +55,8 @@ class SwitchedOn:
 class DiagnoseOptions:
     """What is asked of a diagnosis.
 
+    ``causes`` names what competes: effects, tolerated inputs as "input:NAME", and "unknown" for shapes that nobody
+    registered; empty where everything does.
     ``per_file`` names effects, single unknowns ("effect.unknown") and inputs that every file has for itself.
     ``hold_out`` marks rows that only judge, "column = word". ``box`` holds the range (SI) in which an input or
     condition can be set for the next measurement, where it is not the declared one. ``budget`` is how many calls of the
@@ -64,6 +66,7 @@ class DiagnoseOptions:
     compared as logarithms. ``noise`` holds the standard deviation of one reading (SI) for what is planned before data.
     """
 
+    causes: tuple[str, ...] = ()
     per_file: tuple[str, ...] = ()
     hold_out: str = ""
     box: Mapping[str, tuple[float, float]] = field(default_factory=dict)

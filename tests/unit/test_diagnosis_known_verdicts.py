@@ -13,6 +13,7 @@ from diagnosis_models import (
     Array,
     Asked,
     Bench,
+    assert_sized,
     drive_model,
     ends,
     fit_of,
@@ -27,6 +28,7 @@ from truing.diagnosis.engine import laid_out
 from truing.diagnosis.machine import calibration_of
 from truing.diagnosis.noise import SMALLEST_SHARE
 from truing.diagnosis.result import DiagnosisResult
+from truing.setup import DiagnoseOptions
 
 PROPER = Asked(drive_model())
 WARM_AND_WORN = replace(wide(90, seed=15), travel=np.full(90, 100.0))
@@ -172,3 +174,36 @@ def test_a_gauge_that_is_off_by_millimetres_does_not_drive_inputs_out_of_their_t
     assert np.abs(made.null.moved).max() < 1
     moved = made.null.predicted["deflection"] - machine.base["deflection"]
     assert np.abs(moved).max() / UM < 2  # one deviation of both inputs at 20 kN
+
+
+# Only some causes compete, as [studies.diagnose] causes says: a suspicion is tried, or others are switched off.
+
+
+def asked_only(tmp_path: Path, *causes: str) -> DiagnosisResult:
+    """The diagnosis of a lead error of 0.05 um/mm under a scatter of 0.2 um, where only these causes compete."""
+    bench = wide(90, seed=5)
+    error = 0.05 * bench.travel + np.random.default_rng(5).normal(0, 0.2, len(bench))
+    asked = Asked(drive_model(), diagnose=DiagnoseOptions(causes=causes))
+    return asked.diagnosed(tmp_path, bench.shown(error))
+
+
+def test_a_right_suspicion_is_sized_and_in_doubt_because_nothing_else_was_compared(tmp_path: Path) -> None:
+    found = asked_only(tmp_path, "lead_error")
+    assert [rival.causes for rival in found.ranking] == [("lead_error",), ()]
+    assert_sized(found.causes[0].unknowns[0], 0.05e-3, within=0.2)
+    assert (found.verdict, name_sets(found)) == ("undecided", [{"lead_error"}])
+    assert any(text.startswith("only lead_error competed") for text in found.warnings)
+    assert found.gain[0].rmse_after.value < 0.1 * found.gain[0].rmse_before.value
+
+
+def test_a_wrong_suspicion_is_worth_nothing(tmp_path: Path) -> None:
+    found = asked_only(tmp_path, "thermal_growth")
+    assert (found.verdict, found.causes) == ("undecided", ())
+    assert {rival.causes for rival in found.ranking} == {("thermal_growth",), ()}
+
+
+def test_a_curve_that_nobody_registered_shows_that_the_right_cause_was_switched_off(tmp_path: Path) -> None:
+    found = asked_only(tmp_path, "thermal_growth", "input:shaft", "unknown")
+    assert (found.verdict, found.remainder is not None) == ("unknown", True)
+    assert any(text.startswith("only thermal_growth, input:shaft, unknown competed") for text in found.records.notes)
+    assert not any(text.startswith("only ") for text in found.warnings)

@@ -577,6 +577,7 @@ def test_a_shipped_example_is_handed_out_as_it_is(tmp_path: Path) -> None:
 # What is asked of a diagnosis in the inputs file: read, refused, written back, offered by the schema.
 
 TEXT = """[studies.diagnose]
+causes = ["running_in", "input:load", "unknown"]
 per_file = ["sensor_offset", "running_in.extra", "load"]
 hold_out = "record = validation"
 box = { probe_temperature = "15..40 degC", load = "0.05..0.2 kN", rate = "1e-8..5e-8", angle = "-90..90 deg" }
@@ -590,6 +591,7 @@ lognormal = ["depth"]
 
 def test_the_options_in_si() -> None:
     options = pin(TEXT).diagnose
+    assert options.causes == ("running_in", "input:load", "unknown")
     assert options.per_file == ("sensor_offset", "running_in.extra", "load")
     assert options.held_out == ("record", "validation")
     assert set(options.box) == {"probe_temperature", "load", "rate", "angle"}
@@ -617,6 +619,8 @@ def test_they_are_written_back_as_they_are_and_can_be_set_on_the_command_line() 
     ("line", "expected"),
     [
         ("per_fil = []", "study 'diagnose' has no option 'per_fil'. Did you mean 'per_file'?"),
+        ('causes = ["runing_in"]', "Did you mean 'running_in'?"),
+        ('causes = ["load"]', "causes names 'load', which is no effect of pin_wear, tolerance of it as input:NAME, or"),
         ('per_file = "load"', "study 'diagnose': per_file = 'load' is no list of names"),
         ('per_file = ["runing_in"]', "Did you mean 'running_in'?"),
         ('per_file = ["running_in.extras"]', "Did you mean 'running_in.extra'?"),

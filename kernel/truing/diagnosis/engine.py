@@ -8,7 +8,7 @@ as it was drawn from; estimates, intervals and gains are those of all rows.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
@@ -17,7 +17,7 @@ import numpy as np
 
 from truing.arrays import one_thread
 from truing.declare.near_miss import near_miss
-from truing.diagnosis.causes import effects_of, followed_by, inputs_of
+from truing.diagnosis.causes import Candidate, effects_of, followed_by, inputs_of
 from truing.diagnosis.choice import Chosen, Rival, choose, rivals_of
 from truing.diagnosis.competition import Competition, Start, competition_of, search
 from truing.diagnosis.extended import Extended, probe
@@ -35,7 +35,7 @@ from truing.diagnosis.gain import contradictions_of, gains_of, nested, thinned_o
 from truing.diagnosis.learning import first_noise
 from truing.diagnosis.machine import Calibration, calibration_of
 from truing.diagnosis.records import FEWEST_READINGS, Records
-from truing.diagnosis.result import Alternative, DiagnosisResult, ResultCurves, readable_unit
+from truing.diagnosis.result import UNKNOWN, Alternative, DiagnosisResult, ResultCurves, readable_unit
 from truing.diagnosis.sample import sample_of
 from truing.diagnosis.sentences import say
 from truing.diagnosis.unregistered import shapes_of
@@ -119,7 +119,8 @@ def diagnose(
         answer = _answer(chosen, setup, told)
         if propose is not None:
             answer = propose(chosen, answer)
-        return replace(answer, hindrances=(*competition.extended.budget.told(), *_too_rough(answer, chosen)))
+        spent, alone = competition.extended.budget.told(), _only_asked(setup, with_unknown=False)
+        return replace(answer, hindrances=(*spent, *_too_rough(answer, chosen), *alone))
 
 
 @contextmanager
@@ -135,7 +136,7 @@ def _nothing_remembered(setup: Setup) -> Iterator[None]:
 
 def laid_out(machine: Calibration) -> Competition:
     """Lay out what competes on the records of a machine, and fit the model as it is."""
-    records, effects = machine.records, effects_of(machine)
+    records, effects = machine.records, asked_for(effects_of(machine), machine.start)
     orders = {
         followed_by(cause.effect): range(int(number.low), int(number.high) + 1)
         for cause in effects
@@ -144,9 +145,24 @@ def laid_out(machine: Calibration) -> Competition:
         if number.whole
     }
     has_steps = any(cause.is_kernel and cause.name == "step" for cause in effects)
-    causes = [*effects, *inputs_of(machine), *shapes_of(records, orders, has_steps=has_steps)]
+    others = [*inputs_of(machine), *shapes_of(records, orders, has_steps=has_steps)]
+    causes = [*effects, *asked_for(others, machine.start)]
     sample = sample_of(machine, first_noise(machine), ~records.held_out)
     return competition_of(Extended(machine), causes, sample)
+
+
+def asked_for(causes: Sequence[Candidate], setup: Setup) -> list[Candidate]:
+    """Return the causes that may compete, as ``[studies.diagnose] causes`` says; all where it says nothing."""
+    wanted = setup.diagnose.causes
+    return [cause for cause in causes if not wanted or cause.name in wanted]
+
+
+def _only_asked(setup: Setup, *, with_unknown: bool) -> list[str]:
+    """Say that others were not looked for. Where shapes that nobody registered competed, it speaks against nothing."""
+    wanted = setup.diagnose.causes
+    if not wanted or (UNKNOWN in wanted) is not with_unknown:
+        return []
+    return [say("only asked", causes=", ".join(wanted))]
 
 
 def _check_options(setup: Setup) -> None:
@@ -167,11 +183,11 @@ def _answer(chosen: Chosen, setup: Setup, progress: Progress) -> DiagnosisResult
     alternatives = [
         partial(alternative_of, chosen, rival, with_sizes=rank < SIZED) for rank, rival in enumerate(chosen.rivals)
     ]
-    alike = alike_of(chosen)
+    alike, notes = alike_of(chosen), (*_hard(chosen, units), *_only_asked(setup, with_unknown=True))
     progress("gain", FINE, FINE)
     return DiagnosisResult(
         setup=setup,
-        records=replace(machine.records, notes=(*machine.records.notes, *_hard(chosen, units))),
+        records=replace(machine.records, notes=(*machine.records.notes, *notes)),
         measured=tuple(machine.records.measured),
         units=units,
         wrong=wrong_of(chosen, units),

@@ -389,6 +389,10 @@ WARNING: Final[Mapping[str, Kind]] = {
         "readings: this may be what is wrong; make it finer",
         "The calculation's own steps are as large as the error.",
     ),
+    "only asked": Kind(
+        "only {causes} competed, as [studies.diagnose] causes says: whatever else explains the record was not compared",
+        "A suspicion was tried, or others were switched off. Diagnose without the option before you change a machine.",
+    ),
 }
 
 DOUBT: Final[Mapping[str, Kind]] = {

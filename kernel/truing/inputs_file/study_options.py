@@ -145,6 +145,7 @@ class _Known:
 def diagnose_section(model: Model[Any, Any]) -> FileSection:
     """Return what may be asked of a diagnosis."""
     effects, of_model = model.known_effects, f"of {model.name}"
+    causes = _competing(model)
     numbers = {name: field.unit for name, field in model.input_fields.items() if field.varies}
     unknowns = [f"{name}.{unknown.name}" for name, effect in effects.items() for unknown in effect.unknowns]
     known = {**dict.fromkeys([*effects, *unknowns], ""), **numbers}
@@ -155,7 +156,9 @@ def diagnose_section(model: Model[Any, Any]) -> FileSection:
     deviations = {name: f"1 {difference_unit(unit)}".strip() for name, unit in units.items()}
     results = _Known(f"result {of_model} that can be measured in rows", units)
     beyond = "Rows whose true value lies {} what was read, by result: a column of the data and the word it holds there."
-    options: dict[str, tuple[str, Callable[[str, Any], Any], dict[str, Any]]] = {
+    options: dict[str, _Asked] = {
+        "causes": ("What competes to explain the record: effects, input:NAME, unknown. Everything where it is empty.",
+                   partial(_names, causes), {**_LIST, "items": {"enum": list(causes.units)}}),
         "per_file": ("Effects, single unknowns (effect.unknown) and inputs that every file has for itself.",
                      partial(_names, own), {**_LIST, "items": {"type": "string"}, "examples": [list(effects)[:1]]}),
         "hold_out": ("Rows that only judge, by a column of the data and the word it holds there.",
@@ -176,14 +179,25 @@ def diagnose_section(model: Model[Any, Any]) -> FileSection:
         "budget": ("How many calls of the model on all rows the search may make; 0 leaves it to how long one takes.",
                    _count, {"type": "integer", "minimum": 0, "default": 0, "examples": [1000]}),
     }  # fmt: skip
-    entries = {
-        name: FileEntry(partial(_read_asked, name, read), {**schema, "description": words})
-        for name, (words, read, schema) in options.items()
-    }
-    return FileSection("", "What is asked of a diagnosis.", entries)
+    return FileSection("", "What is asked of a diagnosis.", {name: _entry(name, *of) for name, of in options.items()})
+
+
+_Asked = tuple[str, Callable[[str, Any], Any], dict[str, Any]]
+"""What an option is for, what reads it, and its schema."""
+
+
+def _entry(name: str, words: str, read: Callable[[str, Any], Any], schema: Mapping[str, Any]) -> FileEntry:
+    return FileEntry(partial(_read_asked, name, read), {**schema, "description": words})
 
 
 _LIST = {"type": "array", "default": []}
+
+
+def _competing(model: Model[Any, Any]) -> _Known:
+    """Return what may compete to explain a record."""
+    tolerated = [f"input:{name}" for tolerance in model.tolerances.values() for name in tolerance.on]
+    kind = f"effect of {model.name}, tolerance of it as input:NAME, or 'unknown' for a curve that nobody registered"
+    return _Known(kind, dict.fromkeys([*model.known_effects, *tolerated, "unknown"], ""))
 
 
 def _texts(examples: Mapping[str, str]) -> dict[str, Any]:

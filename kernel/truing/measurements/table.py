@@ -112,7 +112,7 @@ def read_table(
     A column whose header is a fault is left out of ``columns``. Raises InputError where the file cannot be read at all.
     """
     names = ColumnNames(named)
-    with _opened(path, names, known, results) as file:
+    with opened_table(path, names, known, results) as file:
         columns = [_column(header, known, is_measured, words, unknown) for header in file.headers]
         lines, texts = _taken(columns, file, keep_texts=not is_measured)
     usable = [column for column in columns if column.header.name and not column.fault]
@@ -140,9 +140,10 @@ def _taken(columns: Sequence[_Column], file: OpenTable, *, keep_texts: bool) -> 
     return lines, texts
 
 
-def _opened(
+def opened_table(
     path: TableSource, names: ColumnNames, known: Mapping[str, Known], results: Collection[str]
 ) -> AbstractContextManager[OpenTable]:
+    """Open a file of any kind that is read, its cells still as text. Raises InputError where it cannot be one."""
     if isinstance(path, Path) and is_workbook(path):
         return opened_workbook(path, names)
     if isinstance(path, Path) and is_recording(path):

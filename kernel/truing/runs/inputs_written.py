@@ -141,7 +141,7 @@ def _of_diagnosis(setup: Setup) -> dict[str, Any]:
         for name, ends in options.clipped.items()
     }
     said = {
-        "per_file": list(options.per_file), "hold_out": options.hold_out, "box": box,
+        "causes": list(options.causes), "per_file": list(options.per_file), "hold_out": options.hold_out, "box": box,
         "at_least": dict(options.at_least), "at_most": dict(options.at_most), "clipped": clipped,
         "lognormal": list(options.lognormal), "budget": options.budget,
         "noise": {name: str(exact(sd, difference_unit(fields[name].unit))) for name, sd in options.noise.items()},

@@ -1,0 +1,305 @@
+// The page of measured files: taking them in, what their columns are, what is wrong with them, and what explains them.
+import { ask, call, Faults, listen, made, say, tell } from "./workbench.js";
+import { planShown, watched } from "./experiment.js";
+
+const page = document.getElementById("measure"), files = document.getElementById("files");
+const about = { file: page.dataset.file, plugin: page.dataset.plugin };
+const chosen = JSON.parse(page.dataset.chosen);
+let text = JSON.parse(page.dataset.text), saved = { text, digest: page.dataset.digest };
+const own = about.plugin.endsWith(".py") ? [["plugin", about.plugin]] : [];  // a calculation in a file of the folder
+let changes = [], answer = null, turn = 0, known = null;
+
+// Files
+
+const drop = document.getElementById("drop"), upload = document.getElementById("upload"), lying = document.getElementById("lying");
+upload.addEventListener("change", async () => { await takeIn([...upload.files]); upload.value = ""; });
+for (const name of ["dragenter", "dragover"]) drop.addEventListener(name, (event) => { event.preventDefault(); drop.classList.add("is-over"); });
+for (const name of ["dragleave", "drop"]) drop.addEventListener(name, () => drop.classList.remove("is-over"));
+drop.addEventListener("drop", (event) => { event.preventDefault(); takeIn([...event.dataTransfer.files]); });
+
+async function takeIn(several) {
+  for (const file of several) {
+    try {
+      const name = await sent(file);
+      if (!name) continue;
+      if (!chosen.includes(name)) chosen.push(name);
+      listed(name);
+    } catch (error) { say(error.message); }
+  }
+  refresh();
+}
+
+async function sent(file, replace = "") {
+  tell(`${file.name} is taken in …`);
+  const address = `/api/upload?name=${encodeURIComponent(file.name)}${replace}`;
+  const reply = await fetch(address, { method: "POST", headers: { "content-type": "application/octet-stream" }, body: file });
+  const said = await reply.json();
+  if (said.exists) {
+    const other = `${said.file} is there already and holds something else.\nReplace it?`;
+    return await ask(other, "Replace it", "Keep it as it is") ? sent(file, "&replace=yes") : null;
+  }
+  if (!reply.ok) throw new Faults(said.faults);
+  tell(`${said.file} is there`);
+  return said.file;
+}
+
+function listed(name) {
+  const box = [...lying.querySelectorAll("input")].find((each) => each.value === name);
+  if (box) { box.checked = true; return; }
+  lying.hidden = false;
+  lying.append(made("label", { className: "pick" }, made("input", { type: "checkbox", name: "data", value: name, checked: true }), ` ${name}`));
+}
+
+lying.addEventListener("change", (event) => {
+  const name = event.target.value;
+  if (event.target.checked) chosen.push(name); else chosen.splice(chosen.indexOf(name), 1);
+  refresh();
+});
+
+// What the files hold
+
+async function refresh(...more) {
+  const query = new URLSearchParams([["file", about.file], ...own, ...chosen.map((name) => ["data", name])]);
+  history.replaceState(null, "", `/measure?${query}`);
+  const mine = ++turn;
+  if (!chosen.length) { files.replaceChildren(); shown(null); return; }
+  files.setAttribute("aria-busy", "true");
+  try {
+    const said = await call("/api/columns", { ...about, text, data: chosen, changes: more });
+    changes.push(...more);
+    text = said.text;
+    if (mine !== turn) return;
+    shown(said);
+  } catch (error) { if (mine === turn) say(error.message); }
+  files.setAttribute("aria-busy", "false");
+}
+
+function shown(said) {
+  answer = said;
+  document.getElementById("faults").replaceChildren(...(said?.faults ?? []).map(faultLine));
+  if (said) {
+    const focused = document.activeElement?.id;
+    files.replaceChildren(...said.files.map(fileShown));
+    document.getElementById(focused)?.focus();
+  }
+  const guesses = said ? said.files.flatMap((file) => file.columns).filter((column) => column.guess).length : 0;
+  document.getElementById("tools").hidden = !said;
+  const all = document.getElementById("confirm-all");
+  all.hidden = !guesses;
+  all.textContent = guesses === 1 ? "Confirm the guess" : `Confirm all ${guesses} guesses`;
+  document.getElementById("keep").disabled = text === saved.text;
+  document.getElementById("kept").textContent = text === saved.text ? "" : "The columns are not kept yet.";
+  document.getElementById("competing").hidden = !said;
+  if (said) compete();
+}
+
+function faultLine(fault) {
+  const at = [fault.file, fault.line].filter(Boolean).join(":");
+  return made("li", {}, at ? `${at}: ` : "", fault.message);
+}
+
+function fileShown(file, number) {
+  const section = made("section", { className: "panel" });
+  section.setAttribute("aria-labelledby", `file-${number}`);
+  const wrong = file.wrong.length + file.more;
+  const title = made("h2", { id: `file-${number}`, textContent: file.name });
+  const count = made("p", { className: "quiet", textContent: [file.rows ? `${file.rows} rows` : "", ...file.notes].filter(Boolean).join("; ") });
+  section.append(title, count, made("ul", { className: "faults" }, ...file.faults.map(faultLine)));
+  if (!file.columns.length) return section;
+  if (wrong) section.append(wrongRows(file, wrong));
+  section.append(columnsTable(file, number), figureOf(file, number));
+  section.append(made("details", { open: !wrong }, made("summary", { textContent: "First rows" }), cellsTable(file, file.first, "First rows")));
+  return section;
+}
+
+function scrolling(table, of) { const box = made("div", { className: "scroll", tabIndex: 0 }, table); box.setAttribute("role", "region"); box.setAttribute("aria-label", `${table.caption.textContent}: ${of}`); return box; }
+
+function heads(...titles) { return made("thead", {}, made("tr", {}, ...titles.map((title) => made("th", { scope: "col", textContent: title })))); }
+
+function cellsTable(file, rows, caption) {
+  const hasReasons = rows.some((row) => row.reasons);
+  const body = rows.map((row) => made("tr", { className: row.reasons ? "wrong" : "" },
+    made("th", { scope: "row", textContent: row.line }),
+    ...(hasReasons ? [made("td", { className: "reason bad", textContent: row.reasons.join("; ") })] : []),
+    ...row.cells.map((cell, index) => made("td", { className: row.bad?.includes(index) ? "bad" : "", textContent: cell }))));
+  const titles = ["Line", ...(hasReasons ? ["What is wrong"] : []), ...file.columns.map((column) => column.text)];
+  return scrolling(made("table", { className: "cells" }, made("caption", { textContent: caption }), heads(...titles), made("tbody", {}, ...body)), file.name);
+}
+
+function wrongRows(file, count) {
+  const more = file.more ? `, the first ${file.wrong.length} of them` : "";
+  return cellsTable(file, file.wrong, `${count === 1 ? "One row is" : `${count} rows are`} wrong${more}`);
+}
+
+// Columns
+
+function columnsTable(file, number) {
+  const rows = file.columns.map((column) => made("tr", {},
+    made("th", { scope: "row", textContent: column.text }),
+    made("td", {}, roleOf(column, number), guessOf(column)),
+    made("td", {}, unitOf(column, number)),
+    made("td", { className: "number", textContent: column.values }),
+    made("td", { className: "number", textContent: column.low === null ? "" : column.low === column.high ? column.low : `${column.low} … ${column.high}` })));
+  return scrolling(made("table", { className: "file-columns" }, made("caption", { textContent: "Columns" }),
+    heads("As written", "Is to the model", "Unit", "Numbers", "From … to"), made("tbody", {}, ...rows)), file.name);
+}
+
+function roleOf(column, number) {
+  const select = made("select", { id: `role-${number}-${column.index}` });
+  select.setAttribute("aria-label", `${column.text} is to the model`);
+  select.append(made("option", { value: "", textContent: "nothing: something an error may depend on" }), made("option", { value: "run", textContent: "run label" }));
+  for (const { group, of } of answer.roles) {
+    select.append(made("optgroup", { label: group }, ...of.map((each) => made("option", { value: each.name, title: each.note, textContent: each.name }))));
+  }
+  select.value = column.role === "other" ? "" : column.name;
+  select.onchange = () => {
+    const name = select.value;
+    const own = column.text.replace(/ *\[.*\]$/, "");
+    if (!name) return refresh({ key: column.key, name: column.stated && own !== column.name ? null : `other_${own}` });
+    const unit = column.unit ?? unitDeclared(name);
+    return refresh({ key: column.key, name, unit: column.text.includes("[") && !column.stated ? "" : unit });
+  };
+  return select;
+}
+
+function unitDeclared(name) { return answer.roles.flatMap((group) => group.of).find((each) => each.name === name)?.unit ?? ""; }
+
+function unitOf(column, number) {
+  const input = made("input", { id: `unit-${number}-${column.index}`, value: column.unit ?? "", size: 9, spellcheck: false, autocomplete: "off", placeholder: column.declared });
+  input.setAttribute("aria-label", `unit of ${column.text}`);
+  input.disabled = column.role === "run";
+  input.onchange = () => refresh({ key: column.key, name: column.name, unit: input.value.trim() });
+  return input;
+}
+
+function guessOf(column) {
+  if (!column.guess) return "";
+  const { name, unit } = column.guess, words = [name === column.name ? "" : name, unit].filter(Boolean).join(", ");
+  const button = made("button", { type: "button", textContent: "Confirm", onclick: () => refresh(confirmed(column)) });
+  button.setAttribute("aria-label", `Confirm that ${column.text} is ${words}`);
+  return made("div", { className: "guess" }, made("span", { className: "badge undecided", textContent: "guess" }), made("span", { textContent: words }), button);
+}
+
+function confirmed(column) { return { key: column.key, name: column.guess.name, unit: column.guess.unit }; }
+
+document.getElementById("confirm-all").onclick = () => {
+  const guessed = answer.files.flatMap((file) => file.columns).filter((column) => column.guess);
+  refresh(...new Map(guessed.map((column) => [column.key, confirmed(column)])).values());
+};
+
+// The figure of a column
+
+const drawn = new Map();
+function figureOf(file, number) {
+  const numeric = file.columns.filter((column) => column.values > 1);
+  if (!numeric.length) return "";
+  const now = drawn.get(file.name) ?? {};
+  const select = (ident, label, options, value) => {
+    const element = made("select", { id: `${ident}-${number}` }, ...options.map(([each, name]) => made("option", { value: each, textContent: name })));
+    element.value = value;
+    element.onchange = draw;
+    return [made("label", { htmlFor: element.id, textContent: label }), element];
+  };
+  const names = numeric.map((column) => [column.index, column.text]);
+  const [showLabel, show] = select("show", "Show", names, now.shown ?? file.figure.shown);
+  const [overLabel, over] = select("over", "over", [[-1, "the rows"], ...names], now.over ?? -1);
+  const place = made("div", { className: "figure" }), root = place.attachShadow({ mode: "open" });
+  const put = (svg) => { root.innerHTML = `<style>${FIGURE}</style>${svg || "<p>nothing to be drawn</p>"}`; };
+  async function draw() {
+    const asked = { shown: Number(show.value), over: Number(over.value) };
+    drawn.set(file.name, asked);
+    try {
+      const said = await call("/api/column-figure", { ...about, text, of: file.name, ...asked });
+      put(said.svg);
+    } catch (error) { root.textContent = error.message; }
+  }
+  if (drawn.has(file.name)) draw(); else put(file.figure.svg);
+  return made("div", {}, made("div", { className: "figure-of" }, showLabel, show, overLabel, over), place);
+}
+
+const FIGURE = `svg { width: 100%; height: auto; font: 12px system-ui, sans-serif; fill: currentColor; color: var(--ink); }
+  path { fill: none; stroke: var(--accent); stroke-width: 1.4; vector-effect: non-scaling-stroke; }
+  .points { stroke-width: 4; stroke-linecap: round; } .axis { stroke: var(--edge); } .grid { stroke: var(--line); stroke-width: 1; } .wrong { stroke: var(--bad); stroke-width: 2; }`;
+
+// Kept in the inputs file, without losing what another hand has written there
+
+async function keep() {
+  if (text === saved.text) return;
+  const said = await call("/api/save", { file: about.file, text, base: saved.digest });
+  if ("conflict" in said) {
+    text = said.conflict;
+    saved = { text, digest: said.digest };
+    const again = changes;
+    changes = [];
+    await refresh(...again);
+    tell(`${about.file} had been changed; your columns are now in what is there`);
+    return keep();
+  }
+  saved = { text, digest: said.digest };
+  changes = [];
+  document.getElementById("keep").disabled = true;
+  document.getElementById("kept").textContent = `kept in ${about.file}`;
+}
+document.getElementById("keep").onclick = () => keep().catch((error) => say(error.message));
+addEventListener("beforeunload", (event) => { if (text !== saved.text) event.preventDefault(); });
+
+// Diagnose
+
+document.getElementById("diagnose").onclick = () => diagnose(causesOn());
+document.getElementById("try").onclick = () => diagnose([document.getElementById("suspicion").value]);
+
+async function diagnose(causes) {
+  try {
+    await keep();
+    const job = await call("/api/diagnose", { ...about, data: chosen, causes });
+    tell("The diagnosis runs; you may go on or close this page, its folder stays.");
+    watched(job.ident, (done) => {
+      const query = new URLSearchParams([["folder", done.folder], ["file", about.file], ...own, ...chosen.map((name) => ["data", name])]);
+      location.href = `/measure/diagnosis?${query}`;
+    });
+  } catch (error) { say(error.message); }
+}
+
+function causesOn() {
+  const boxes = [...document.querySelectorAll("#candidate-list input")];
+  return boxes.every((box) => box.checked) ? [] : boxes.filter((box) => box.checked).map((box) => box.value);
+}
+
+const KINDS = { effect: "Effects of the model", gauge: "What a gauge may show", input: "Inputs outside of their tolerance", unknown: "Not registered" };
+
+async function compete() {
+  if (known) return;
+  try { known = await call("/api/candidates", { ...about, text }); } catch (error) { return; }
+  const suspicion = document.getElementById("suspicion"), list = document.getElementById("candidate-list"), plan = document.getElementById("plan-causes");
+  for (const [kind, title] of Object.entries(KINDS)) {
+    const several = known.candidates.filter((each) => each.kind === kind);
+    if (!several.length) continue;
+    const tick = (each, name, checked) => made("label", { title: each.about ?? "" }, made("input", { type: "checkbox", name, value: each.name, checked }), ` ${each.title}`);
+    const isOn = (each) => !known.causes.length || known.causes.includes(each.name);
+    list.append(made("fieldset", {}, made("legend", { textContent: title }), made("div", { className: "ticks" }, ...several.map((each) => tick(each, "cause", isOn(each))))));
+    if (kind === "unknown") continue;
+    suspicion.append(made("optgroup", { label: title }, ...several.map((each) => made("option", { value: each.name, textContent: each.title }))));
+    plan.append(...several.map((each) => tick(each, "plan", false)));
+  }
+  document.getElementById("plan-noise").append(...known.results.map(({ name, unit }) => made("label", { className: "field" }, `Standard deviation of one reading of ${name}`, made("input", { name: `noise:${name}`, placeholder: unit ? `1 ${unit}` : "1", spellcheck: false }))));
+}
+
+document.getElementById("plan-form").addEventListener("submit", async (event) => {
+  event.preventDefault();
+  const form = new FormData(event.target), noise = {};
+  for (const [name, value] of form) if (name.startsWith("noise:") && value.trim()) noise[name.slice(6)] = value.trim();
+  try {
+    const causes = form.getAll("plan");
+    if (causes.length < 2) throw new Error("Choose two causes or more that are to be told apart.");
+    const job = await call("/api/plan", { ...about, causes, noise, budget: Number(form.get("budget")) });
+    watched(job.ident, (done) => planShown(document.getElementById("plan"), done.experiment, done.sentences));
+  } catch (error) { say(error.message); }
+});
+
+listen(about.file, (seen) => {
+  if (seen.digest && seen.digest !== saved.digest && text === saved.text && seen.digest !== listen.told) {
+    listen.told = seen.digest;
+    tell(`${about.file} has changed; load the page anew to see it`);
+  }
+});
+refresh();
