@@ -24,6 +24,9 @@ HEAVY = {
     "pluggy",
     "tomlkit",
     "openpyxl",
+    "starlette",
+    "uvicorn",
+    "multiprocessing",
 }
 NOT_FOR_A_RUN = {
     "pint", "dask", "narwhals", "rich", "tomlkit", "sklearn", "pymoo", "openpyxl", "docx", "pypdf",
@@ -55,6 +58,7 @@ def imported(*arguments: str) -> tuple[int, set[str], str]:
     [
         (["--help"], "Commands:"),
         (["run", "--help"], "--set NAME=VALUE"),
+        (["serve", "--help"], "--no-browser"),
         (["--version"], "truing "),
         (["plugins", "--names"], "press_linkage\n"),
         (["--names", "plugins"], None),

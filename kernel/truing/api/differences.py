@@ -136,8 +136,11 @@ def _side_of_folder(path: Path, name: str, document: Mapping[str, Any], plugin: 
         page = (folder / "sheet.html").read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError):
         page = ""
+    named = str((document.get("plugin") or {}).get("model"))
+    if not plugin and named.endswith(".py"):  # a file runs only where the user names it: this may come from anywhere
+        return Side(name, document, figures_of(page))
     try:  # the names get their notes from the model
-        offer = offer_of(plugin or str((document.get("plugin") or {}).get("model")), lambda _: None)
+        offer = offer_of(plugin or named, lambda _: None)
     except TruingError:
         return Side(name, document, figures_of(page))
     return Side(name, document, figures_of(page), offer.model, offer.origin.file)

@@ -16,7 +16,7 @@ from starlette.routing import Route
 from truing.atomic import write_files
 from truing.errors import UsageError
 from truing.workbench.bench import Bench, bench_of, body_of, digest_of, names, page, word
-from truing.workbench.picking import plugin_of
+from truing.workbench.picking import calculation_of
 from truing.workbench.places import below
 from truing.workbench.written import changed_text
 
@@ -28,7 +28,7 @@ async def edit_page(request: Request) -> Response:
     content = await anyio.to_thread.run_sync(path.read_bytes) if path.is_file() else None
     if content is None:
         raise UsageError(f"there is no file {request.query_params.get('file', '')[:80]}")
-    plugin = request.query_params.get("plugin", "") or plugin_of(path)
+    plugin = request.query_params.get("plugin", "") or await anyio.to_thread.run_sync(calculation_of, bench, path)
     text = content.decode("utf-8", "replace")
     form = await bench.ask("form.described", plugin=bench.plugin(plugin))
     name = below(bench.root, path)
