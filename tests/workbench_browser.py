@@ -35,8 +35,10 @@ class Workbench:
     opening: str
     process: subprocess.Popen[str]
 
-    def page(self, browser: Browser, *, width: int = 1280, height: int = 900, colours: str = "light") -> Any:
-        """Return a page in a context of its own, on the first page of the folder.
+    def page(
+        self, browser: Browser, at: str = "", *, width: int = 1280, height: int = 900, colours: str = "light"
+    ) -> Any:
+        """Return a page in a context of its own, on the first page of the folder or ``at`` another.
 
         ``requested`` are the addresses that it asked for, ``outside`` those of them that are not the server's (which
         are refused), ``said`` what it complained of: errors of scripts, of the console, and broken requests.
@@ -55,7 +57,7 @@ class Workbench:
         page.on("console", lambda said: page.said.append(f"{said.type}: {said.text}") if said.type == "error" else None)
         page.on("pageerror", lambda error: page.said.append(f"error: {error}"))
         context.route(lambda address: not address.startswith(self.address), lambda route: route.abort())
-        page.goto(self.opening)
+        page.goto(self.opening.replace("/?", f"/{at}?"))
         return page
 
 

@@ -14,18 +14,16 @@ import pytest
 from shown_in_docs import EXAMPLES
 
 import truing
-from workbench_browser import Workbench, axe, serving, sideways
+from workbench_browser import Workbench, axe, sideways
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from playwright.sync_api import Browser
 
 PRESS = EXAMPLES / "press_off_by_40_um"
 PAGES = {
     "folder": "",
     "edit": "edit?file=inputs.toml",
-    "measure": "measure",
+    "measure": "measure?data=measured.csv",
     "runs": "runs",
     "compare": "compare?before=runs/as_drawn&after=runs/turned",
     "new": "new",
@@ -70,7 +68,7 @@ def filled(workbench: Workbench) -> Workbench:
 @pytest.fixture(scope="module")
 def window(browser: Browser, filled: Workbench) -> Iterator[Any]:
     """One page for all tests that only look."""
-    page = filled.page(browser)
+    page = filled.page(browser, "runs")
     yield page
     page.context.close()
 
@@ -82,6 +80,8 @@ def seen(page: Any, address: str) -> int:
     status: int = page.goto(address).status
     if "/edit" in address and status == 200:
         page.get_by_text(SLIDER).first.wait_for(state="attached")
+    if "/measure" in address and status == 200:
+        page.get_by_role("heading", name="measured.csv").wait_for()
     return status
 
 
@@ -165,20 +165,6 @@ def test_the_whole_way_by_keyboard(browser: Browser, filled: Workbench) -> None:
     page.context.close()
 
 
-def test_a_page_says_that_the_server_has_stopped_and_keeps_what_was_typed(browser: Browser, tmp_path: Path) -> None:
-    (tmp_path / "inputs.toml").write_text(INPUTS, encoding="utf-8")
-    with serving(tmp_path) as served:
-        page = served.page(browser)
-        page.goto(served.address + "edit?file=inputs.toml")
-        page.locator("#text").press_sequentially("# mine")
-    page.locator("#gone", has_text="The server has stopped").wait_for()
-    saving = "async () => (await import('/static/workbench.js')).call('/api/save', {}).catch(error => error.message)"
-    assert page.evaluate(saving).startswith("The server has stopped. Start calc serve again")
-    assert axe(page) == []
-    assert "# mine" in page.locator("#text").input_value()
-    page.context.close()
-
-
 def test_the_whole_way_in_firefox(firefox: Browser, filled: Workbench) -> None:
     """From the list of the folder to a changed value, its answer, the saved file; each page fits a phone."""
     (filled.folder / "inputs.toml").write_text(INPUTS, encoding="utf-8")
@@ -197,4 +183,18 @@ def test_the_whole_way_in_firefox(firefox: Browser, filled: Workbench) -> None:
         assert sideways(page) == []
     assert axe(page) == []
     assert page.outside == []
+    page.context.close()
+
+
+def test_a_page_says_that_the_server_has_stopped_and_keeps_what_was_typed(browser: Browser, filled: Workbench) -> None:
+    """The server of this file ends here, so this test stands last."""
+    (filled.folder / "inputs.toml").write_text(INPUTS, encoding="utf-8")
+    page = filled.page(browser, "runs")
+    seen(page, filled.address + PAGES["edit"])
+    page.locator("#text").press_sequentially("# mine")
+    filled.process.terminate()
+    page.locator("#gone", has_text="The server has stopped").wait_for()
+    saving = "async () => (await import('/static/workbench.js')).call('/api/save', {}).catch(error => error.message)"
+    assert page.evaluate(saving).startswith("The server has stopped. Start calc serve again")
+    assert "# mine" in page.locator("#text").input_value()
     page.context.close()
