@@ -19,7 +19,6 @@ from truing.drafted import CAN_BE_WRITTEN, TAKEN, Draft, Quantity, draft_of, dra
 from truing.errors import DeclarationError, Fault, InputError, TruingError, UnitError, UsageError
 from truing.formulas import Formula, evaluate, evaluate_quantities, parse, symbol_mathml, symbol_text
 from truing.formulas.tree import one_spaced, walk
-from truing.kernel import offer_of
 from truing.new_project import (
     SPELLING,
     NewPlugin,
@@ -34,6 +33,7 @@ from truing.new_project import (
 )
 from truing.numbers import format_value, with_unit
 from truing.units import check_unit, from_si, human_dimension, pint_quantity, read_quantity, to_si
+from truing.workbench.tasks.loaded import loaded
 from truing.workbooks.reading import file_of
 
 LONGEST_NOTE = 200
@@ -342,7 +342,7 @@ def _written(root: Path, plan: NewPlugin, text: str) -> str:
     path = root / f"{plan.name}.py"
     write_single_file(path, text)
     try:
-        calculate(replace(LoadedModel(offer_of(str(path), lambda _: None)).setup(), studies=()))
+        calculate(replace(LoadedModel(loaded(str(path))).setup(), studies=()))
     except BaseException:
         path.unlink(missing_ok=True)
         sys.modules.pop(plan.name, None)

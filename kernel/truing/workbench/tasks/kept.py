@@ -12,7 +12,6 @@ from typing import Any
 from truing.api.differences import differences_of_paths
 from truing.api.model import LoadedModel
 from truing.errors import TruingError, UsageError
-from truing.kernel import offer_of
 from truing.numbers import pretty
 from truing.report.comparison_page import comparison_page
 from truing.report.html_printer import html_of
@@ -24,6 +23,7 @@ from truing.runs.index import FolderEntry, entry_at
 from truing.runs.spreadsheet import run_workbook
 from truing.studies.bench import Progress
 from truing.templating import ENGLISH
+from truing.workbench.tasks.loaded import loaded
 from truing.workbooks.writing import demand_library
 
 READ = ("results.json", "diagnosis.json", "run.json", "inputs.toml", "sheet.html")
@@ -134,7 +134,7 @@ def workbook(folder: str) -> str:
     if named.endswith(".py"):
         raise UsageError("the run names a file as its calculation")
     demand_library()
-    return base64.b64encode(run_workbook(document, offer_of(named, lambda _: None).model)).decode()
+    return base64.b64encode(run_workbook(document, loaded(named).model)).decode()
 
 
 def word(folder: str, plugin: str, progress: Progress) -> dict[str, str]:
@@ -144,7 +144,7 @@ def word(folder: str, plugin: str, progress: Progress) -> dict[str, str]:
     """
     demand_word_library()
     path = Path(folder)
-    made = LoadedModel(offer_of(plugin, lambda _: None)).run(path / "inputs.toml", progress=progress)
+    made = LoadedModel(loaded(plugin)).run(path / "inputs.toml", progress=progress)
     if compared(load_either(path), json.loads(json.dumps(made.document))):
         raise UsageError("calculated again the run has other numbers, so it gets no Word document; run its file again")
     return {"written": made.sheet(path / "sheet.docx").name}

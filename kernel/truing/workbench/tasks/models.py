@@ -14,9 +14,10 @@ from truing.declare.sources import Effect, Tolerance
 from truing.errors import InputError, TruingError
 from truing.example_file import text_to_fill_in
 from truing.inputs_file import read_setup
-from truing.kernel import Kernel, Offer, offer_of
+from truing.kernel import Kernel, Offer
 from truing.report.chapters import Figures, Writing, front_figure
 from truing.report.document import FigureView
+from truing.workbench.tasks.loaded import loaded
 
 
 def installed() -> dict[str, Any]:
@@ -28,7 +29,7 @@ def installed() -> dict[str, Any]:
 
 def one(plugin: str) -> dict[str, Any]:
     """Return the same of one model."""
-    return _said(offer_of(plugin, lambda text: None))
+    return _said(loaded(plugin))
 
 
 def _said(offer: Offer) -> dict[str, Any]:
@@ -46,7 +47,7 @@ def _said(offer: Offer) -> dict[str, Any]:
 
 def example(plugin: str) -> str:
     """Return the inputs file that ``calc init`` writes."""
-    return text_to_fill_in(offer_of(plugin, lambda text: None))
+    return text_to_fill_in(loaded(plugin))
 
 
 def picture(plugin: str) -> dict[str, str]:
@@ -55,7 +56,7 @@ def picture(plugin: str) -> dict[str, str]:
     A figure that needs what a study finds is not drawn, and the next one is.
     """
     with suppress(TruingError):
-        setup = LoadedModel(offer_of(plugin, lambda text: None)).setup()
+        setup = LoadedModel(loaded(plugin)).setup()
         calculation = calculate(replace(setup, studies=()))
         for view in _figures(Writing(calculation, "normal", Figures())):
             return {"title": view.title, "svg": view.svg}
@@ -78,7 +79,7 @@ def looked_through(root: str, files: Sequence[Mapping[str, str]]) -> dict[str, s
     faults = {}
     for file in files:
         try:
-            read_setup(Path(root, file["name"]), offer_of(file["plugin"], lambda text: None))
+            read_setup(Path(root, file["name"]), loaded(file["plugin"]))
         except InputError as error:
             first = error.faults[0]
             more = len(error.faults) - 1
