@@ -93,7 +93,12 @@ class Part:
     def as_json(self) -> dict[str, Any]:
         """Every property by name."""
         shown = {"title": self.title, "text": self.text, "has_switch": self.has_switch, "name": (*self.path, "")[-1]}
-        return {**shown, "path": self.path, "key": "/".join(self.path), "fields": [each.as_json for each in self.fields]}
+        return {
+            **shown,
+            "path": self.path,
+            "key": "/".join(self.path),
+            "fields": [each.as_json for each in self.fields],
+        }
 
 
 @dataclass(frozen=True)
@@ -136,7 +141,9 @@ def _input(declared: InputField, remark: str) -> Iterator[Field]:
     )  # fmt: skip
     if isinstance(spec, Loaded):
         for option in list(signature(spec.reader).parameters)[1:]:
-            yield Field(("inputs", declared.name, option), f"{declared.name}: {option}", "toml", hint="option of the file")
+            yield Field(
+                ("inputs", declared.name, option), f"{declared.name}: {option}", "toml", hint="option of the file"
+            )
 
 
 def _like(declared: InputField) -> str:
@@ -245,7 +252,9 @@ def _conditions(model: Model[Any, Any]) -> FieldGroup:
 def _studies(model: Model[Any, Any]) -> FieldGroup:
     names = [study.name for study in model.studies]
     run = Field(("studies", "run"), "Studies that run", "list", default=", ".join(names), choices=tuple(names))
-    seed = Field(("studies", "seed"), "Where the random numbers begin", "number", default=str(DEFAULT_SEED), bounds="≥ 0")
+    seed = Field(
+        ("studies", "seed"), "Where the random numbers begin", "number", default=str(DEFAULT_SEED), bounds="≥ 0"
+    )
     parts = [Part([run, seed] if names else [seed]), *(_study(study) for study in model.studies)]
     if "diagnose" not in names:
         words = {"per_file": "a list: effects and inputs that every file has for itself",
@@ -271,7 +280,9 @@ def _option(study: Study, name: str, hint: Any) -> Field:
     if hint is bool:
         return Field(path, label, "switch", default=_typed(bool(value)), search=study.name)
     if get_origin(hint) is Literal:
-        return Field(path, label, "choice", default=str(value), choices=tuple(map(str, get_args(hint))), search=study.name)
+        return Field(
+            path, label, "choice", default=str(value), choices=tuple(map(str, get_args(hint))), search=study.name
+        )
     known = isinstance(value, (str, int, float)) or (
         isinstance(value, (list, tuple)) and all(isinstance(each, (str, int, float)) for each in value)
     )
@@ -284,9 +295,13 @@ def _sheet() -> FieldGroup:
     said = {"detail": "how much the sheet shows", "paper": "what it is printed on",
             "units": "of all that people read; as declared without it", "language": "of the sheet"}  # fmt: skip
     default = {"detail": "normal", "paper": "A4", "units": "", "language": ENGLISH}
-    fields = [Field(("sheet", name), name.replace("_", " ").capitalize(), "text", hint=words) for name, words in HEAD.items()]
+    fields = [
+        Field(("sheet", name), name.replace("_", " ").capitalize(), "text", hint=words) for name, words in HEAD.items()
+    ]
     fields += [
-        Field(("sheet", name), name.capitalize(), "choice", default=default[name], choices=tuple(names), hint=said[name])
+        Field(
+            ("sheet", name), name.capitalize(), "choice", default=default[name], choices=tuple(names), hint=said[name]
+        )
         for name, names in choices.items()
     ]
     return FieldGroup("Head of the sheet", (Part(fields),))

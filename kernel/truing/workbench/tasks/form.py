@@ -201,7 +201,9 @@ def _stated(
         answer = _answer(model, field, raw, folder)
         if field.kind == "tolerance" and setup is not None:
             by_input = scatter.get(field.path[1], {})
-            sds = {name: with_unit(*format_difference(each.sd, setup.unit_of(name), 4)) for name, each in by_input.items()}
+            sds = {
+                name: with_unit(*format_difference(each.sd, setup.unit_of(name), 4)) for name, each in by_input.items()
+            }
             answer = f"sd {next(iter(sds.values()))}" if sds else "off"
         answers[key] = {"value": _shown(raw, field, written), "line": document.place(field.path)[1], "answer": answer}
     for name in model.effects:
