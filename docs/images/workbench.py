@@ -20,10 +20,11 @@ from typing import Any
 from PIL import Image
 from playwright.sync_api import sync_playwright
 
+import truing
 from truing.report.pdf import find_browser, sandbox_arguments
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "press_off_by_40_um"
-COLOURS = 96
+COLOURS = 128
 PATIENCE = 180_000
 """Milliseconds that a run or a diagnosis may take."""
 
@@ -38,10 +39,11 @@ def served(folder: Path) -> Iterator[str]:
         process.send_signal(signal.SIGINT)
 
 
-def photographed(page: Any, name: str) -> None:
-    """Write what the window shows, in few colours, beside this file."""
+def photographed(page: Any, name: str, height: int) -> None:
+    """Write the upper part of what the window shows, in few colours, beside this file."""
     page.wait_for_timeout(1500)
-    picture = Image.open(BytesIO(page.screenshot())).convert("RGB")
+    shot = page.screenshot(clip={"x": 0, "y": 0, "width": page.viewport_size["width"], "height": height})
+    picture = Image.open(BytesIO(shot)).convert("RGB")
     picture.quantize(COLOURS, dither=Image.Dither.NONE).save(Path(__file__).with_name(name), optimize=True)
 
 
@@ -52,28 +54,34 @@ def ended(page: Any) -> None:
 
 
 def edited(page: Any, base: str) -> None:
-    """Change an angle of the press and run it, twice."""
+    """Turn the cranks of the press, and run it."""
     page.goto(f"{base}edit?file=inputs.toml")
     page.get_by_text("3557").first.wait_for()
-    for angle in ("20 deg", "30 deg"):
-        page.get_by_label("crank from the bottom dead centre").first.fill(angle)
-        page.wait_for_timeout(1500)
-        page.get_by_role("button", name="Save", exact=True).click()
-        page.get_by_role("button", name="Run", exact=True).click()
-        ended(page)
-    photographed(page, "workbench.png")
+    page.get_by_label("Search the fields").fill("crank")
+    page.locator("[id='inputs/crank_angle']").fill("30 deg")
+    page.get_by_text("3547").first.wait_for()
+    page.get_by_role("button", name="Save", exact=True).click()
+    page.get_by_role("button", name="Run", exact=True).click()
+    ended(page)
+    page.get_by_text("Sliders", exact=True).click()
+    photographed(page, "workbench.png", 860)
 
 
 def measured(page: Any, base: str) -> None:
-    """Open the record, confirm what its columns are, and diagnose it."""
+    """Open the record, and diagnose it."""
     page.goto(f"{base}measure?data=measured.csv")
-    photographed(page, "workbench_measure.png")
+    page.get_by_role("heading", name="measured.csv").wait_for()
+    page.get_by_role("heading", name="measured.csv").evaluate("node => scrollTo(0, node.offsetTop - 60)")
+    photographed(page, "workbench_measure.png", 760)
+    page.get_by_role("button", name="Diagnose", exact=True).click()
+    page.wait_for_url("**/measure/diagnosis?*", timeout=PATIENCE)
+    photographed(page, "workbench_diagnosis.png", 700)
 
 
 def listed(page: Any, base: str) -> None:
     """Show the runs and the diagnosis."""
     page.goto(f"{base}runs")
-    photographed(page, "workbench_runs.png")
+    photographed(page, "workbench_runs.png", 300)
 
 
 def on_a_phone(browser: Any, opening: str, base: str) -> None:
@@ -83,7 +91,7 @@ def on_a_phone(browser: Any, opening: str, base: str) -> None:
     page.goto(f"{base}edit?file=inputs.toml")
     page.get_by_role("tab", name="Results").click()
     page.get_by_text("3547").first.wait_for()
-    photographed(page, "workbench_phone.png")
+    photographed(page, "workbench_phone.png", 700)
 
 
 def main() -> None:
@@ -93,10 +101,12 @@ def main() -> None:
         folder.mkdir()
         for name in ("inputs.toml", "measured.csv"):
             shutil.copy(EXAMPLE / name, folder)
+        as_drawn = folder / "runs" / "as_drawn"
+        truing.load("press_linkage").run(folder / "inputs.toml", output=as_drawn, progress=False)
         with served(folder) as opening:
             browser = player.chromium.launch(executable_path=str(find_browser()), args=sandbox_arguments())
             base = opening.partition("?")[0]
-            page = browser.new_page(viewport={"width": 1280, "height": 800}, color_scheme="light")
+            page = browser.new_page(viewport={"width": 1280, "height": 860}, color_scheme="light")
             page.goto(opening)
             edited(page, base)
             measured(page, base)

@@ -20,7 +20,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 from truing.errors import OutputError
 
@@ -90,6 +90,56 @@ def write_files(files: Mapping[Path, str | bytes]) -> None:
             _put_in_place(moves)
     except OSError as error:
         raise OutputError(f"{path}: cannot be written: {error.strerror or error}") from error
+
+
+@contextmanager
+def file_appearing(path: Path, *, replace: bool = False) -> Iterator[BinaryIO]:
+    """Give a stream into a file that appears whole when the block ends, and not at all where it raises.
+
+    Where the system has files without a name (Linux), not even a death in between leaves anything. A file that is there
+    is replaced only if asked. Raises OutputError.
+    """
+    try:
+        if not replace and os.path.lexists(path):
+            raise FileExistsError(errno.EEXIST, "it is there already; choose another name", str(path))
+        with _made_parents(path.parent), ExitStack() as stack:
+            stream = None if replace else stack.enter_context(_nameless(path))
+            if stream is not None:
+                yield stream
+                stream.flush()
+                _name(stream, path)
+                return
+            move = stack.enter_context(_file_beside(path, b""))
+            with move.part.open("wb") as stream:
+                yield stream
+            if not replace and os.path.lexists(path):
+                raise FileExistsError(errno.EEXIST, "it is there already; choose another name", str(path))
+            _put_in_place([move])
+    except OSError as error:
+        raise OutputError(f"{path}: cannot be written: {error.strerror or error}") from error
+
+
+@contextmanager
+def _nameless(path: Path) -> Iterator[BinaryIO | None]:
+    """Give a stream into a file that has no name yet, or None where the system has none such."""
+    try:
+        handle = os.open(path.parent, os.O_TMPFILE | os.O_WRONLY, 0o666)
+    except (OSError, AttributeError):
+        yield None
+        return
+    with os.fdopen(handle, "wb") as stream:
+        yield stream
+
+
+def _name(stream: BinaryIO, path: Path) -> None:
+    """Give an open file without a name its own, which nothing may have. Raises OSError."""
+    folder = os.open("/proc/self/fd", os.O_RDONLY)
+    try:
+        os.link(str(stream.fileno()), path, src_dir_fd=folder, follow_symlinks=True)
+    except FileExistsError:
+        raise FileExistsError(errno.EEXIST, "it is there already; choose another name", str(path)) from None
+    finally:
+        os.close(folder)
 
 
 def place_folder(folder: Path, files: Mapping[str, str | bytes], what: str) -> None:
@@ -181,12 +231,11 @@ def _file_beside(path: Path, content: str | bytes) -> Iterator[Move]:
     recover(target)
     handle, name = tempfile.mkstemp(dir=target.parent, prefix=_prefix(target), suffix=PART)
     part = Path(name)
-    with _deleted(part, target):
-        with os.fdopen(handle, "wb") as stream:
-            stream.write(_bytes(content))
+    with os.fdopen(handle, "wb") as stream, _deleted(part, target), _held(part):
+        stream.write(_bytes(content))
+        stream.close()
         part.chmod(mode)
-        with _held(part):
-            yield Move(part, target, path, _inode(part))
+        yield Move(part, target, path, _inode(part))
 
 
 @contextmanager

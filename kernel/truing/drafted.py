@@ -1,4 +1,4 @@
-"""A single-file plugin drafted from a column of a sheet: numbers become inputs, formulas become results.
+"""A single-file plugin drafted from a column of a sheet, or from what was typed: inputs, results, their formulas.
 
 Every result is computed from the stored values of the cells that it names, and compared with the value that is stored
 in its own cell. So a factor that only converts units gives itself away, cell by cell.
@@ -41,7 +41,7 @@ MOST_FACTORS = 12
 SAME = 1e-9
 """A result equals the stored value within this, relatively: spreadsheets store 15 digits."""
 NEVER_STORED = "no value was stored"
-_TAKEN = {*ARGUMENTS, *CONSTANTS, "np", "given", "found", "inputs", "results", "cells"}
+TAKEN = frozenset({*ARGUMENTS, *CONSTANTS, "np", "given", "found", "inputs", "results", "cells", "known"})
 """Names with a meaning in the drafted file."""
 Place = tuple[int, int]
 """Row and column of a cell, counted from 1."""
@@ -49,10 +49,11 @@ Place = tuple[int, int]
 
 @dataclass(frozen=True)
 class Quantity:
-    """A number or a formula of the sheet; ``stored`` is its value in ``unit``, ``formula`` empty for an input.
+    """A number or a formula, of a sheet or typed; ``stored`` is its value in ``unit``, ``formula`` empty for an input.
 
     ``typed`` is the formula as it stands in the cell; ``why`` says why it could not be
-    translated, and ``unknown_unit`` is what stands in the place of its unit and is none.
+    translated, and ``unknown_unit`` is what stands in the place of its unit and is none. ``symbol`` and ``bounds``
+    (such as "above=0.0") are of quantities that were typed, which have no cell.
     """
 
     name: str
@@ -65,6 +66,8 @@ class Quantity:
     formula: str = ""
     why: str = ""
     unknown_unit: str = ""
+    symbol: str = ""
+    bounds: tuple[str, ...] = ()
 
     @property
     def printed(self) -> str:
@@ -129,15 +132,16 @@ def draft_of(path: Path) -> Draft:
     return Draft(sheet, tuple(inputs), tuple(quantity for quantity, _ in checked), tuple(left_out), tuple(said))
 
 
-def drafted_file(plan: NewPlugin, draft: Draft, book: str) -> str:
-    """Return the Python file of a draft; ``book`` is the name of the workbook."""
+def drafted_file(plan: NewPlugin, draft: Draft, book: str = "") -> str:
+    """Return the Python file of a draft; ``book`` is the name of the workbook, empty where there is none."""
     known = {quantity.name for quantity in draft.inputs}
-    code = {quantity.name: _code(quantity.formula, known) for quantity in draft.results}
+    argument = "cells" if book else "known"
+    code = {quantity.name: _code(quantity.formula, known, argument) for quantity in draft.results}
     words: dict[str, Any] = {
-        **plan.words, "draft": draft, "book": book, "quoted": python_text, "code": code,
+        **plan.words, "draft": draft, "book": book, "quoted": python_text, "code": code, "argument": argument,
         "uses_numpy": any("np." in line for line in code.values()),
     }  # fmt: skip
-    return rendered("single/from_workbook.py.j2", words)
+    return rendered("single/drafted.py.j2", words)
 
 
 # The sheet: which columns hold what
@@ -191,7 +195,7 @@ def _columns(grid: _Grid, rows: set[int], value: int) -> tuple[int, int, int]:
 def _quantities(grid: _Grid, places: list[Place], column: int) -> tuple[list[Quantity], list[LeftOut]]:
     """Return what the cells of the column are, with their units, and the formulas whose value is no number."""
     label, unit, remark = _columns(grid, {row for row, _ in places}, column)
-    found, left_out, taken = list[Quantity](), list[LeftOut](), set(_TAKEN)
+    found, left_out, taken = list[Quantity](), list[LeftOut](), set(TAKEN)
     for row, _ in places:
         cell = grid.address(row, column).rpartition("!")[2]
         note, own_unit = _label(_text(grid, row, label))
@@ -234,7 +238,7 @@ def _name(note: str, cell: str, taken: set[str]) -> str:
     while words and not spelled("_".join(words)) and not spelled("_".join([*words, "value"])):
         words.pop()
     plain = spelled("_".join(words)) or spelled("_".join([*words, "value"])) if words else f"cell_{cell.lower()}"
-    plain = name = f"{plain}_value" if plain in _TAKEN else plain
+    plain = name = f"{plain}_value" if plain in TAKEN else plain
     number = 1
     while name in taken:
         number += 1
@@ -365,30 +369,67 @@ class _Without(ast.NodeTransformer):
 # The function: the same formulas in numpy
 
 
-def _code(formula: str, inputs: set[str]) -> str:
-    """Return a formula as the function of the plugin computes it: inputs are fields of ``cells``."""
-    tree = _AsCode(inputs).visit(ast.parse(formula, mode="eval").body)
+NUMPY = {
+    "asin": "arcsin", "acos": "arccos", "atan": "arctan", "atan2": "arctan2",
+    **dict.fromkeys(("sqrt", "cbrt", "exp", "log", "log10", "abs", "sign")),
+    **dict.fromkeys(("sin", "cos", "tan", "sinh", "cosh", "tanh")),
+}  # fmt: skip
+"""Functions that numpy has, by what it calls them where that is something else."""
+PAIRWISE = {"min": "minimum", "max": "maximum", "hypot": "hypot"}
+"""Functions of several numbers, which numpy takes two by two."""
+WRITTEN_OUT = {
+    "cot": "1 / np.tan({0})", "inv": "np.tan({0}) - ({0})", "either": "np.where(np.isnan({0}), {1}, {0})",
+}  # fmt: skip
+"""Functions that numpy has not, in words of it."""
+CAN_BE_WRITTEN = frozenset({*NUMPY, *PAIRWISE, *WRITTEN_OUT, "cases"})
+"""Functions of a formula that are written as code here: those of numbers. ``sum`` and ``mean`` are of series."""
+
+
+def _code(formula: str, inputs: set[str], argument: str) -> str:
+    """Return a formula as the function of the plugin computes it: inputs are fields of its argument."""
+    tree = _AsCode(inputs, argument).visit(ast.parse(formula, mode="eval").body)
     return ast.unparse(tree).replace(" ** ", "**")
 
 
 class _AsCode(ast.NodeTransformer):
     """Writes inputs as fields and functions as those of numpy."""
 
-    def __init__(self, inputs: set[str]) -> None:
-        self.inputs = inputs
+    def __init__(self, inputs: set[str], argument: str) -> None:
+        self.inputs, self.argument = inputs, argument
 
     def visit_Name(self, node: ast.Name) -> ast.expr:
-        """Return a field of ``cells``, a constant of numpy, or the name of a result."""
+        """Return a field of the argument, a constant of numpy, or the name of a result."""
         if node.id == "pi":
             return ast.Attribute(ast.Name("np"), "pi")
-        return ast.Attribute(ast.Name("cells"), node.id) if node.id in self.inputs else node
+        return ast.Attribute(ast.Name(self.argument), node.id) if node.id in self.inputs else node
 
     def visit_Call(self, node: ast.Call) -> ast.expr:
-        """Return a call of numpy; of several numbers the least and the greatest are taken two by two."""
+        """Return a call of numpy; functions of several numbers are taken two by two."""
         assert isinstance(node.func, ast.Name)
+        function = node.func.id
         arguments: list[ast.expr] = [self.visit(argument) for argument in node.args]
-        pairwise = {"min": "minimum", "max": "maximum"}.get(node.func.id)
-        function = ast.Attribute(ast.Name("np"), pairwise or node.func.id)
-        if pairwise is None:
-            return ast.Call(function, arguments, [])
-        return reduce(lambda one, other: ast.Call(function, [one, other], []), arguments)
+        if function in PAIRWISE:
+            return reduce(lambda one, other: _numpy(PAIRWISE[function], one, other), arguments)
+        if function in WRITTEN_OUT:
+            text = WRITTEN_OUT[function].format(*map(ast.unparse, arguments))
+            return ast.parse(text, mode="eval").body
+        if function == "cases":
+            pairs = list(zip(arguments[:-1:2], arguments[1::2], strict=True))
+            return reduce(lambda rest, pair: _numpy("where", pair[1], pair[0], rest), reversed(pairs), arguments[-1])
+        return _numpy(NUMPY.get(function) or function, *arguments)
+
+    def visit_Compare(self, node: ast.Compare) -> ast.expr:
+        """Return a comparison of arrays; one of three or more sides is two or more comparisons."""
+        sides: list[ast.expr] = [self.visit(side) for side in (node.left, *node.comparators)]
+        links = [ast.Compare(sides[i], [sign], [sides[i + 1]]) for i, sign in enumerate(node.ops)]
+        return reduce(lambda one, other: _numpy("logical_and", one, other), list[ast.expr](links))
+
+    def visit_BoolOp(self, node: ast.BoolOp) -> ast.expr:
+        """Return what joins conditions, for arrays."""
+        joint = "logical_and" if isinstance(node.op, ast.And) else "logical_or"
+        conditions: list[ast.expr] = [self.visit(condition) for condition in node.values]
+        return reduce(lambda one, other: _numpy(joint, one, other), conditions)
+
+
+def _numpy(function: str, *arguments: ast.expr) -> ast.expr:
+    return ast.Call(ast.Attribute(ast.Name("np"), function), list(arguments), [])

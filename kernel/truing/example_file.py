@@ -24,8 +24,10 @@ from truing.inputs_file.values import bounds_in_words, plain
 from truing.inputs_file.workbook import COLUMNS, SHEET
 from truing.kernel import Offer
 from truing.setup import DEFAULT_SEED
+from truing.templating import ENGLISH, languages
 from truing.units.grammar import split
 from truing.units.names import PURE
+from truing.units.systems import UNIT_SYSTEMS
 from truing.workbooks.writing import SheetTable, workbook_bytes
 
 WIDTH = 100
@@ -36,6 +38,8 @@ SHEET_WORDS = {
     **{name: ({"logo": "logo.svg", "style": "house.css"}.get(name, ""), words) for name, words in HEAD_WORDS.items()},
     "detail": ("normal", "how much the sheet shows: short, normal or full"),
     "paper": ("A4", "A4 or letter"),
+    "units": ("SI", f"units of all that people read: {' or '.join(UNIT_SYSTEMS)}; without it those that are declared"),
+    "language": (ENGLISH, f"language of the sheet: {' or '.join(languages())}"),
 }
 """What may stand in ``[sheet]``: a value to begin with, and what it is."""
 

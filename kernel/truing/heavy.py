@@ -6,7 +6,7 @@ A file that needs one imports its name from here at the top, like any other; the
 from __future__ import annotations
 
 from importlib import import_module
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 
 class Later:
@@ -21,10 +21,25 @@ class Later:
         return getattr(import_module(self._homes.get(name, self._name)), name)
 
 
+if TYPE_CHECKING:
+    import narwhals as narwhals
+    import pint as pint
+    from scipy import optimize as optimize
+else:
+    narwhals = Later("narwhals")
+    pint = Later("pint")
+    optimize = Later("scipy.optimize")
 gaussian_process: Any = Later("sklearn.gaussian_process")
 gaussian_kernels: Any = Later("sklearn.gaussian_process.kernels")
 learning_exceptions: Any = Later("sklearn.exceptions")
 stats: Any = Later("scipy.stats")
+rich: Any = Later(
+    "rich",
+    Console="rich.console",
+    Live="rich.live",
+    ProgressBar="rich.progress_bar",
+    Table="rich.table",
+)
 ipython_display: Any = Later("IPython.display")
 integrate: Any = Later("scipy.integrate")
 sparse: Any = Later("scipy.sparse")

@@ -11,12 +11,7 @@ from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
-from rich.console import Console
-from rich.live import Live
-from rich.progress_bar import ProgressBar
-from rich.table import Table
-
-from truing.heavy import ipython_display
+from truing.heavy import ipython_display, rich
 from truing.studies.bench import Progress, silent
 
 PATIENCE = 2.0
@@ -147,17 +142,17 @@ class Tasks:
     def _new_line(self) -> Any:
         if in_notebook():
             return NotebookLine(self._drawn)
-        console = Console(stderr=True)
-        return Live(console=console, transient=True, refresh_per_second=5, get_renderable=self._drawn)
+        console = rich.Console(stderr=True)
+        return rich.Live(console=console, transient=True, refresh_per_second=5, get_renderable=self._drawn)
 
     def _drawn(self) -> Any:
         """Draw the present task: its name, a bar, how much is done, and how long it will take."""
         task, now = self.task, time.monotonic()
         known = task.share > 0
-        bar = ProgressBar(total=1.0, completed=task.share, width=30, pulse=not known, animation_time=now)
+        bar = rich.ProgressBar(total=1.0, completed=task.share, width=30, pulse=not known, animation_time=now)
         left = task.left(now)
         time_words = f"{spoken(left)} left" if left is not None else f"{now - task.began:.0f} s so far"
-        table = Table.grid(padding=(0, 1))
+        table = rich.Table.grid(padding=(0, 1))
         table.add_row(task.name, bar, f"{100 * task.share:.0f} %" if known else "", time_words)
         return table
 

@@ -18,8 +18,8 @@ from truing.declare.sources import Effect, Unknown
 from truing.declare.spreads import Distribution, Off, Spread, Target, settled
 from truing.errors import UsageError
 from truing.kernel import Added, Origin
-from truing.templating import ENGLISH, languages
-from truing.units.systems import UnitSystem, in_system
+from truing.templating import ENGLISH, demand_language
+from truing.units.systems import UNIT_SYSTEMS, UnitSystem, in_system
 
 DEFAULT_SEED = 0
 
@@ -273,11 +273,19 @@ class Setup(Case):
         return tuple(each for each in self.correlations if each.pair <= scattering)
 
 
-def in_language(setup: Setup, language: str) -> Setup:
-    """Return a setup with its sheet in a language; "" leaves it as it is. Raises UsageError for an unknown one."""
-    if language and language not in languages():
-        raise UsageError(f"language: choose {' or '.join(languages())}, not '{language}'.")
-    return replace(setup, sheet=replace(setup.sheet, language=language)) if language else setup
+def sheet_in(setup: Setup, *, units: str = "", language: str = "") -> Setup:
+    """Return a setup with its sheet in these units and this language; "" leaves what it has.
+
+    Raises UsageError for units or a language that are not known.
+    """
+    demand_language(language)
+    systems = {str(system): system for system in UNIT_SYSTEMS}
+    if units and units not in systems:
+        raise UsageError(f"units: choose {' or '.join(systems)}, not '{units:.40}'.")
+    sheet = setup.sheet
+    return replace(
+        setup, sheet=replace(sheet, units=systems.get(units, sheet.units), language=language or sheet.language)
+    )
 
 
 def default_setup(model: Model[Any, Any], origin: Origin | None = None, **values: Any) -> Setup:

@@ -9,6 +9,8 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+from truing.errors import UsageError
+
 ENGLISH = "en"
 """The language in which everything is written; the others are translations of it."""
 
@@ -16,6 +18,12 @@ ENGLISH = "en"
 def languages() -> list[str]:
     """Return the languages that a sheet can be in, English first."""
     return [ENGLISH, *sorted(file.stem for file in (template_folder() / "words").glob("*.toml"))]
+
+
+def demand_language(language: str) -> None:
+    """Raise UsageError for a language that a sheet cannot be in; "" is none."""
+    if language and language not in languages():
+        raise UsageError(f"language: choose {' or '.join(languages())}, not '{language:.40}'.")
 
 
 def template_folder() -> Path:

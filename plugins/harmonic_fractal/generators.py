@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.fft import next_fast_len
+import scipy
 
 from truing import Array
 
@@ -170,7 +170,7 @@ def _covariance(distance: Array, exponent: float, reach: float) -> tuple[Array, 
 def field_side(dimension: float, shape: tuple[int, int]) -> int:
     """Return the side, in points, of the square field from which a patch of this shape is cut."""
     least = 2.0 * _reach(dimension) * float(np.hypot(*shape))
-    return 2 * int(next_fast_len(int(np.ceil(least / 2.0)) + 1, real=True))
+    return 2 * int(scipy.fft.next_fast_len(int(np.ceil(least / 2.0)) + 1, real=True))
 
 
 def _reach(dimension: float) -> float:

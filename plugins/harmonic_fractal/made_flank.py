@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
-from scipy.ndimage import gaussian_filter
+import scipy
 
 from harmonic_fractal import generators
 from harmonic_fractal.estimate import Estimate, Estimation, estimate_of
@@ -322,7 +322,7 @@ def _filtered(heights: Array, made: Made, *, across: bool) -> Array:
     if not margin:
         return heights.copy()
     deviation = DEVIATION * float(made.filter_cutoff) / float(made.spacing)
-    seen = gaussian_filter(heights, (deviation if across else 0.0, deviation), truncate=REACH)
+    seen = scipy.ndimage.gaussian_filter(heights, (deviation if across else 0.0, deviation), truncate=REACH)
     rows = slice(margin, -margin) if across else slice(None)
     return np.asarray(seen[rows, margin:-margin], dtype=np.float64)
 

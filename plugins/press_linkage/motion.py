@@ -11,7 +11,7 @@ from functools import partial
 from typing import NamedTuple, TypeVar
 
 import numpy as np
-from scipy.interpolate import CubicSpline, PchipInterpolator
+import scipy
 
 from press_linkage.kinematics import (
     Half,
@@ -78,7 +78,7 @@ def course(press: MovingPress) -> CrankCourse:
         return _over_angle(press, times - times[0])
     if not np.isfinite(speeds).all():
         return _no_course(times)
-    law = CubicSpline(times, TURN * speeds)
+    law = scipy.interpolate.CubicSpline(times, TURN * speeds)
     turned = law.antiderivative()(times)
     return CrankCourse(press.start_angle + turned - turned[0], law(times), law(times, 1))
 
@@ -106,7 +106,7 @@ def _over_angle(press: MovingPress, elapsed: Array) -> CrankCourse:
     if not np.all(shares > 0):
         return _no_course(elapsed)
     around = np.concatenate([angles - TURN, angles, angles + TURN])
-    law = PchipInterpolator(around, np.tile(shares, 3))
+    law = scipy.interpolate.PchipInterpolator(around, np.tile(shares, 3))
     places = np.arange(len(angles) * CELLS + 1) / CELLS
     edges = np.interp(places, np.arange(len(angles) + 1), np.append(angles, angles[0] + TURN))
     clock = np.concatenate([[0.0], np.cumsum(_duration(law, edges[:-1], edges[1:]))])
@@ -123,7 +123,7 @@ def _over_angle(press: MovingPress, elapsed: Array) -> CrankCourse:
     return CrankCourse(angle + TURN * (turns + more), full * share, full * full * share * law(angle, 1))
 
 
-def _duration(law: PchipInterpolator, start: Float, end: Float) -> Array:
+def _duration(law: "scipy.interpolate.PchipInterpolator", start: Float, end: Float) -> Array:
     """The time from one angle to another at full speed 1 rad/s: the integral of 1/law, by Gauss and Legendre."""
     nodes, weights = GAUSS
     half = np.asarray(0.5 * (end - start))[..., np.newaxis]

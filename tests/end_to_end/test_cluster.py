@@ -129,7 +129,7 @@ def test_a_plugin_in_one_file_reaches_the_cluster_and_another_one_there_is_refus
     address = cluster.with_workers(2).address
     file = tmp_path / "own_wear.py"
     file.write_text(PIN.read_text(encoding="utf-8"), encoding="utf-8")
-    words = ("run", file, "-q", "--set", "studies.reliability.draws=40000")
+    words = ("run", file, "-q", "--set", "studies.reliability.draws=140000")
     there = calc(*words, "-o", "there", "--cluster", address)
     assert there.code == 0, there.err
     assert run_of(tmp_path / "there")["warnings"] == []

@@ -9,6 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+import docx
 import pytest
 
 import truing
@@ -279,5 +280,30 @@ def test_a_page_of_another_ending_is_refused_before_anything_runs(runs: Calc) ->
     assert (answer.code, answer.out, answer.err) == (
         2,
         "",
-        "calc: page.txt: a page of two sheets ends in .html, .md or .pdf\n",
+        "calc: page.txt: a sheet ends in .html, .md, .pdf or .docx\n",
     )
+
+
+def test_a_language_without_a_page_and_one_that_is_none_are_refused_before_anything_runs(runs: Calc) -> None:
+    pageless = runs("compare", "first", "no such folder", "--language", "de")
+    assert (pageless.code, pageless.out) == (2, "")
+    assert pageless.err == "calc: --language is that of the page; name the page with -o, too\n"
+    unknown = runs("compare", "first", "no such folder", "--language", "xx", "-o", "page.md")
+    assert (unknown.code, unknown.err) == (2, "calc: language: choose en or de, not 'xx'.\n")
+
+
+def test_the_page_is_written_in_german_and_for_word(tmp_path: Path) -> None:
+    spring = truing.load(SPRING).given(set={"studies.run": "[]"})
+    before, after = spring.run(progress=False), spring.run(coil_diameter="7 mm", progress=False)
+    differences = after.compare(before)
+    page = differences.sheet(tmp_path / "page.md", language="de").read_text(encoding="utf-8")
+    # 8 F D K / (pi d^3) of 37.2 N is 796.1 MPa, where 700 MPa is permitted
+    assert "bisher 595.5 MPa und jetzt 796.1 MPa, wobei ≤ 700 MPa verlangt ist." in page
+    assert "| Vorher | Nachher |\n| --- | --- |\n| ![Vorher: Force](data:" in page
+    in_hand = docx.Document(str(differences.sheet(tmp_path / "page.docx", language="de")))
+    assert len(in_hand.inline_shapes) == 2
+    folders = before.save(tmp_path / "before"), after.save(tmp_path / "after")
+    read = docx.Document(str(truing.compare(*folders, plugin=str(SPRING)).sheet(tmp_path / "read.docx")))
+    said = [paragraph.text for paragraph in read.paragraphs]
+    assert not read.inline_shapes
+    assert said.count("This figure was read from a sheet: it stands there, and cannot be drawn for Word.") == 2

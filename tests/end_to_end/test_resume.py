@@ -22,7 +22,10 @@ from truing.studies import sampling
 fcntl = pytest.importorskip("fcntl", reason="a console signal there stops the test too")
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
-SMALL = ("run", PIN, "-q", "--set", 'studies.run=["reliability"]', "--set", "studies.reliability.draws=60000")
+SMALL = (
+    "run", PIN, "-q", "--set", 'studies.run=["reliability"]',
+    "--set", "studies.reliability.draws=60000", "--set", "studies.reliability.batch=16384",
+)  # fmt: skip
 
 
 def test_a_killed_run_goes_on_where_it_was(calc: Calc, tmp_path: Path) -> None:

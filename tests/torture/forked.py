@@ -18,6 +18,7 @@ from typing import IO
 
 from truing.cli import main
 from truing.watching import WatchedFiles
+from truing.workbench.listening import Server
 
 POLL = 0.05
 LONGEST = 60
@@ -126,6 +127,15 @@ def stop_watching() -> None:
         raise KeyboardInterrupt
 
     WatchedFiles.changed = stop  # type: ignore[assignment, method-assign]
+
+
+def stop_serving() -> None:
+    """Let ``calc serve`` end as by Ctrl+C when it waits for the first page; called in the fork."""
+
+    def stop(server: Server, sockets: object) -> None:
+        raise KeyboardInterrupt
+
+    Server.run = stop  # type: ignore[assignment, method-assign]
 
 
 BAR = Path(__file__).parent / "bar.py"

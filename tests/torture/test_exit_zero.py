@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from forked import End, Redirection, filled, forked, stop_watching
+from forked import End, Redirection, filled, forked, stop_serving, stop_watching
 
 from truing.cli.app import app
 
@@ -37,6 +37,7 @@ VERBS = {
     "explain": "explain bar.py stress",
     "init": "init bar.py",
     "index": "index .",
+    "serve": "serve . --no-browser",
     "plugins": "plugins --names",
     "new": "new mine",
     "completion": "completion bash",
@@ -108,8 +109,9 @@ def ended(
     stderr: Redirection | None = None,
     encoding: str = "utf-8",
 ) -> End:
-    """Run a verb; a watch, which goes on until somebody ends it, is interrupted after its first run."""
-    before: Callable[[], object] = (lambda: None) if not verb.startswith("watch") else stop_watching
+    """Run a verb; a watch or a server, which goes on until somebody ends it, is interrupted once it has begun."""
+    ends: dict[str, Callable[[], object]] = {"watch": stop_watching, "serve": stop_serving}
+    before = ends.get(verb.partition(" ")[0], lambda: None)
     return forked(VERBS[verb].split(), place, stdout=stdout, stderr=stderr, encoding=encoding, before=before)
 
 

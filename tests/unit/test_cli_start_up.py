@@ -1,4 +1,4 @@
-"""What the command line costs before it works: help and names import nothing heavy and no plugin."""
+"""What the command line costs before it works: help and names import nothing heavy, a run what it needs."""
 
 from __future__ import annotations
 
@@ -24,18 +24,30 @@ HEAVY = {
     "pluggy",
     "tomlkit",
     "openpyxl",
+    "starlette",
+    "uvicorn",
+    "multiprocessing",
 }
+NOT_FOR_A_RUN = {
+    "pint", "dask", "narwhals", "rich", "tomlkit", "sklearn", "pymoo", "openpyxl", "docx", "pypdf",
+    "scipy.fft", "scipy.integrate", "scipy.interpolate", "scipy.ndimage", "scipy.optimize", "scipy.sparse",
+    "scipy.stats",
+    "truing.describe", "truing.diagnosis", "truing.gauge", "truing.experiments.planning", "truing.api.differences",
+    "truing.api.findings", "truing.report.comparison_page", "truing.report.diagnosis_sheet", "truing.runs.comparison",
+    "truing.runs.diagnosis_files", "truing.runs.index",
+}  # fmt: skip
+"""What other verbs need, and studies that this run does not have."""
 PROBE = """
 import json, sys
 from truing.cli import main
 code = main(sys.argv[1:])
 sys.stdout.flush()
-print(json.dumps([code, sorted({name.partition(".")[0] for name in sys.modules})]), file=sys.stderr)
+print(json.dumps([code, sorted(sys.modules)]), file=sys.stderr)
 """
 
 
 def imported(*arguments: str) -> tuple[int, set[str], str]:
-    """Run ``calc`` in a fresh process and return exit code, packages imported, and what it printed."""
+    """Run ``calc`` in a fresh process and return exit code, modules imported, and what it printed."""
     done = subprocess.run([sys.executable, "-c", PROBE, *arguments], capture_output=True, text=True, check=True)
     code, names = json.loads(done.stderr.rstrip("\n").split("\n")[-1])
     return code, set(names), done.stdout
@@ -46,6 +58,7 @@ def imported(*arguments: str) -> tuple[int, set[str], str]:
     [
         (["--help"], "Commands:"),
         (["run", "--help"], "--set NAME=VALUE"),
+        (["serve", "--help"], "--no-browser"),
         (["--version"], "truing "),
         (["plugins", "--names"], "press_linkage\n"),
         (["--names", "plugins"], None),
@@ -62,7 +75,16 @@ def test_nothing_heavy_is_imported(arguments: list[str], words: str | None) -> N
 def test_the_probe_sees_what_is_imported() -> None:
     code, names, _ = imported("describe", str(Path(__file__).parents[1] / "data" / "pin_wear.py"))
     assert code == 0
-    assert {"numpy", "pluggy", "pint"} <= names
+    assert {"numpy", "pluggy", "jinja2"} <= names
+
+
+def test_a_run_imports_what_it_needs(tmp_path: Path) -> None:
+    """Also where other plugins are installed, which would need more."""
+    plugin = Path(__file__).parents[1] / "data" / "pin_wear.py"
+    code, names, _ = imported("run", str(plugin), "--output", str(tmp_path / "pin"))
+    assert code == 0
+    assert {"press_linkage", "matplotlib.figure", "scipy.special", "truing.studies.reliability"} <= names
+    assert names & NOT_FOR_A_RUN == set()
 
 
 # What is printed: a terminal shows it and obeys none of it.

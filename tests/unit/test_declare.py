@@ -36,7 +36,7 @@ from truing import (
     zone,
 )
 from truing.declare.fields import input_fields, result_fields
-from truing.declare.spreads import Band, Spread, Target, read_spread, with_width
+from truing.declare.spreads import Band, Spread, Stream, Target, read_spread, with_width
 from truing.errors import DeclarationError, UnitError, UsageError
 from truing.fits import tolerance
 from truing.setup import default_setup
@@ -220,7 +220,7 @@ def test_spreads_mean_what_they_say(spread: Any, sd: float, mean: float) -> None
     distribution = spread.resolve(target())
     assert distribution.sd == pytest.approx(sd, rel=1e-12)
     assert distribution.mean == pytest.approx(mean, rel=1e-12)
-    values = distribution.draw(np.random.default_rng(0), 50_000)
+    values = distribution.draw(Stream(50_000, [(np.random.default_rng(0), slice(0, 50_000))]))
     assert values.mean() == pytest.approx(mean, abs=5 * sd / math.sqrt(50_000))
     assert values.std() == pytest.approx(sd, rel=0.01)
     standard = np.random.default_rng(1).standard_normal(50_000)

@@ -83,14 +83,14 @@ from truing.report.diagnosis_words import (
 from truing.report.document import BlockView, Document, FigureView, Fold, Items, Paragraph, TableView, plain_text
 from truing.report.html_printer import html_of
 from truing.report.markdown_printer import markdown_of
-from truing.runs import spreadsheet
+from truing.runs import diagnosis_files as beside
 from truing.runs.diagnosis_document import diagnosis_document
+from truing.runs.diagnosis_files import diagnosis_files, diagnosis_tables
 from truing.runs.extension import extended_setup, extended_text
-from truing.runs.folder import demand_place, diagnosis_files, is_ours, json_text, write_folder, write_outcome
+from truing.runs.folder import demand_place, is_ours, json_text, write_folder, write_outcome
 from truing.runs.index import _of_diagnosis
 from truing.runs.new_effect import new_effect_source, safe_expression
 from truing.runs.provenance import provenance_of
-from truing.runs.spreadsheet import diagnosis_tables
 from truing.setup import Setup, default_setup
 
 
@@ -390,7 +390,7 @@ def test_the_tables_hold_causes_and_rows(monkeypatch: pytest.MonkeyPatch) -> Non
             assert {row["unit"] for row in said} == {fitted["unit"]}
     measured = list(csv.DictReader(tables["rows.csv"].splitlines()))
     assert [int(row["line"]) for row in measured] == list(made.records.lines)
-    monkeypatch.setattr(spreadsheet, "MOST_ROWS", len(measured) - 1)
+    monkeypatch.setattr(beside, "MOST_ROWS", len(measured) - 1)
     tables = diagnosis_tables(made)
     assert list(tables) == ["results.csv"]
     assert tables["results.csv"].splitlines()[-1] == f"diagnosis,rows,,,{len(measured)},,,,,in arrays.npz"
@@ -563,8 +563,9 @@ SAID = {
                   "Taken as the first of them: rod heating, expansion 11.80 µm/(m·K)",
                   "Hold rod temperature 50 °C, crank angle 28.65°; load −50 kN and 50 kN in turn: 2 readings in 1.5 h "
                   "tell rod heating or warm up and sensor drift apart with a chance of 96 % (95 %: 90 … 98).",
-                  "No measurement proposed here tells rod heating and warm up apart; a fact from elsewhere does: "
-                  "whether rod heating, expansion (of the rod) is 11.8 µm/(m·K) or whether warm up, size is 3.1 µm"],
+                  "No setting tells rod heating and warm up apart; a measurement of another quantity does: "
+                  "rod heating, expansion (of the rod) to ±5.7 µm/(m·K) (11.8 µm/(m·K) if it is rod heating) or "
+                  "warm up, size to ±1.2 µm (3.1 µm if it is warm up)"],
     "unknown": ["Something that no registered cause explains is in slide position, over crank angle: order 7"],
     "remainder": ["rod heating, expansion 11.80", "Beside it something that no registered cause explains"],
 }  # fmt: skip
@@ -649,13 +650,30 @@ def test_what_to_do_about_a_cause_is_said_on_page_one_on_the_terminal_and_in_the
     items = next(chapter.blocks[0] for chapter in sheet.front if chapter.ident == "what-to-do")
     assert isinstance(items, Items)
     (text,) = map(plain_text, items.texts)
-    assert text == f"The rod grows where the motor warms it. {told.remedy}"
+    assert text == told.remedy
     assert any(told.remedy in line for line in report(told_about, Path("runs/x")))
     assert written(told_about)["causes"][0]["remedy"] == told.remedy
     silent = next(chapter.blocks[0] for chapter in page_of("named")[0].front if chapter.ident == "what-to-do")
     assert isinstance(silent, Items)
-    assert plain_text(silent.texts[0]).endswith(f". {NO_REMEDY}")
+    assert plain_text(silent.texts[0]) == NO_REMEDY
     assert written(made)["causes"][0]["remedy"] == ""
+
+
+def test_page_one_says_what_a_cause_is_where_it_is_named_first() -> None:
+    """In its author's words: of the named one, of a rival, and of an input; nothing where nobody wrote anything."""
+    told = list(map(plain_text, page_of("named")[0].banner.sentences))
+    assert told[0].startswith("What the model misses in slide position: rod heating, expansion 11.80")
+    assert told[1] == "Rod heating means: the rod grows where the motor warms it."
+    (drift,) = (each for each in named().setup.model.known_effects.values() if each.name == "sensor_drift")
+    open_told = list(map(plain_text, page_of("ambiguous")[0].banner.sentences))
+    assert "is drawn alike by rod heating, warm up or sensor drift" in open_told[0]
+    assert open_told[1] == f"{told[1]} Sensor drift means: {drift.why or drift.looks_like}."
+    joint = replace(HEATING, effect="joint_play")
+    play = sheet_of(replace(named(), causes=(joint,)))
+    assert not any("Joint play means" in plain_text(text) for text in play.banner.sentences)
+    rod = replace(HEATING, effect="input:rod", unknowns=())
+    meant = [plain_text(text) for text in sheet_of(replace(named(), causes=(rod,))).banner.sentences]
+    assert "Rod outside of its tolerance means: length of the rod." in meant
 
 
 def test_page_one_says_what_the_machine_would_do_without_the_cause() -> None:
@@ -827,7 +845,7 @@ def _demand_true_proposals(made: DiagnosisResult, said: str, everything: str) ->
         assert all(together([name]) in said for name in experiment.tells)
         assert f"{experiment.readings} readings" in everything
     if made.ties:
-        assert "a fact from elsewhere does" in said
+        assert "for this machine they stay one" in said or "a measurement of another quantity does" in said
         assert "No setting can be proposed" not in said
 
 

@@ -17,6 +17,7 @@ from truing.diagnosis.result import (
     Amount,
     Cause,
     Contradiction,
+    Course,
     DiagnosisResult,
     Fact,
     FittedUnknown,
@@ -201,9 +202,31 @@ def test_nobody_reads_sine_and_cosine() -> None:
     assert "A part of the wave of eccentricity is 1 µm in one half of the rows" in " ".join(said)
     assert any("runout (noticed above 3 µm)" in text for text in said)
     sizes = {"sine": Amount(3e-6, "um"), "cosine": Amount(4e-6, "um")}
-    facts = tuple(Fact("eccentricity", f"eccentricity.{part}", size) for part, size in sizes.items())
+    facts = tuple(Fact("eccentricity", f"eccentricity.{part}", size, "", replace(size, value=size.value / 2))
+                  for part, size in sizes.items())  # fmt: skip
     tie = Tie(("eccentricity", "runout"), facts)
-    assert tie_text(tie).endswith("whether eccentricity, amplitude is 5 µm")
+    assert tie_text(tie).endswith(": eccentricity, amplitude to ±2.5 µm (5 µm if it is eccentricity)")
+
+
+@pytest.mark.parametrize(("start", "said"), [(50.0, "18 K above"), (31.0, ""), (18.0, "14 K below")])
+def test_an_experiment_that_begins_elsewhere_says_how_far(start: float, said: str) -> None:
+    """The record ended at 32 °C, after a range of 22 K; what can be set at will is not brought anywhere."""
+    made = SAMPLES["ambiguous"]()
+    assert made.experiment is not None
+    assert not any(kind_of(text) == "bring first" for text in headline(made))
+    courses = (Course("rod_temperature", "ramp", 273.15 + start, 333.15), *made.experiment.courses[1:])
+    lengths, heating, *others = SLIDE.errors
+    assert isinstance(heating, Effect)
+    slow = replace(heating, needs=[replace(need, role="follows") for need in heating.needs])
+    temperature = made.records.covariates["rod_temperature"]
+    ended = replace(temperature, values=np.append(temperature.values[:-1], 273.15 + 32.0))
+    follows = replace(
+        made, experiment=replace(made.experiment, courses=courses),
+        setup=replace(made.setup, model=replace(SLIDE, errors=[lengths, slow, *others])),
+        records=replace(made.records, covariates={**made.records.covariates, "rod_temperature": ended}),
+    )  # fmt: skip
+    brought = [text for text in headline(follows) if kind_of(text) == "bring first"]
+    assert [re.findall(r"\((.*) where the record ended\)", text) for text in brought] == ([[said]] if said else [])
 
 
 def test_the_manual_explains_every_kind_once() -> None:

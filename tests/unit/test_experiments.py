@@ -11,8 +11,10 @@ from typing import Any
 import numpy as np
 import pytest
 from diagnosis_models import Asked, Deflection, Drive, chosen_as, drive, drive_model, fit_of, wide
+from diagnosis_samples import records_of
 from numpy.testing import assert_allclose
 from scipy.stats import binomtest
+from scipy.stats import t as student_t
 
 from truing import Condition, Effect, Float, Model, Unknown
 from truing.diagnosis.choice import Chosen
@@ -20,11 +22,13 @@ from truing.diagnosis.machine import Calibration
 from truing.diagnosis.records import Covariate, Records
 from truing.diagnosis.result import Experiment
 from truing.errors import DeclarationError, UsageError
+from truing.experiments import BUDGET
 from truing.experiments.chances import Simulation
-from truing.experiments.design import BUDGET, ENOUGH, MOST_READINGS
+from truing.experiments.design import ENOUGH, MOST_READINGS
+from truing.experiments.facts import tie_of
 from truing.experiments.planning import planned
-from truing.experiments.proposal import among, designed_for, next_experiment
-from truing.experiments.reach import Reach, reach_of
+from truing.experiments.proposal import among, designed_for, next_experiment, rival_fits
+from truing.experiments.reach import Reach, ended_at, reach_of
 from truing.measurements import RowsFile
 from truing.setup import DiagnoseOptions, Setup, default_setup
 
@@ -75,6 +79,25 @@ def test_the_separation_that_is_promised_is_that_of_a_refit_with_the_readings_ad
 def test_where_no_setting_separates_two_causes_none_is_proposed(tmp_path: Path, is_named: bool) -> None:
     chosen = one_sign(tmp_path, {"load": (1e3, 20e3)}, 1.0, is_named=is_named)
     assert next_experiment(chosen) == (None, [], [("sensor_offset", "clearance")])
+
+
+@pytest.mark.parametrize("noise", [1.0, 4.0, 12.0])
+def test_what_is_to_be_measured_instead_is_said_with_the_accuracy_that_decides(tmp_path: Path, noise: float) -> None:
+    """3 um are known to t s / n^0.5 from n = 40 rows: what is left of them, to either side, is the accuracy needed.
+
+    Where nothing is left no measurement decides, and none is proposed.
+    """
+    chosen = one_sign(tmp_path, {"load": (1e3, 20e3)}, noise)
+    tie = tie_of(("sensor_offset", "clearance"), rival_fits(chosen), chosen.competition)
+    known = float(student_t.ppf(0.975, 39)) * noise * np.sqrt(40 / 39) / np.sqrt(40)
+    if known > 3:
+        assert tie.facts == ()
+        return
+    assert [(fact.explanation, fact.quantity) for fact in tie.facts] == [
+        ("sensor_offset", "sensor_offset.deflection"), ("clearance", "clearance.gap"),
+    ]  # fmt: skip
+    assert_allclose([fact.value.value for fact in tie.facts], 3e-6, rtol=1e-6)
+    assert_allclose([fact.accuracy.value for fact in tie.facts], (3 - known) / 2 * 1e-6, rtol=0.02)
 
 
 def test_rivals_are_separated_inside_the_box(tmp_path: Path) -> None:
@@ -169,6 +192,26 @@ def test_histories_go_on_and_sums_agree() -> None:
         assert set(np.unique(made["way"])) <= {-1.0, 0.0, 1.0}
         moved = np.diff(made["angle"])
         assert_allclose(made["way"][1:][moved != 0], np.sign(moved[moved != 0]))
+
+
+def test_what_follows_begins_where_the_record_ended_or_at_an_end_of_its_range() -> None:
+    """After 4 h the warmth is 20 + 20 (1 - e^-4) = 39.634 degC: it is held there, or goes up or down."""
+    warmth = next(each for each in at_work().quantities if each.name == "warmth")
+    courses = warmth.courses(12)
+    ended = 273.15 + 39.634
+    assert (courses[0].way, courses[0].start) == ("held", pytest.approx(ended, abs=1e-3))
+    assert {round(course.start, 2) for course in courses} == {283.15, round(ended, 2), 333.15}
+    from_there = [course.end for course in courses if course.way == "ramp" and abs(course.start - ended) < 1e-3]
+    assert sorted(np.sign(np.subtract(from_there, ended))) == [-1, 1]
+
+
+def test_a_quantity_ended_where_its_last_run_did() -> None:
+    """After 2 h of the last of three runs it is 20 + 25 (1 - e^-1.44) degC, in whatever order the rows stand."""
+    records = records_of()
+    ended = 293.15 + 25 * (1 - np.exp(-7200 / 5000))
+    assert ended < records.covariates["rod_temperature"].values.max() - 4
+    shuffled = records.part(np.append(np.arange(120), 120 + np.random.default_rng(1).permutation(40)))
+    assert [ended_at(each, "rod_temperature") for each in (records, shuffled)] == pytest.approx([ended, ended])
 
 
 def test_what_is_at_its_end_goes_no_farther() -> None:

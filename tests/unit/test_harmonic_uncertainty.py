@@ -138,7 +138,7 @@ def drawn(rows: int, **inputs: Any) -> dict[str, Any]:
 
 def test_every_study_draws_pairs(flanks: list[Flank]) -> None:
     setup = default_setup(HARMONIC_FRACTAL, surface=flanks[0])
-    columns = scatter_of(setup).draw(seed=3, batch=0, rows=4000)
+    columns = scatter_of(setup).draw(seed=3, first=0, rows=4000)
     pairs = flanks[0].resampled
     together = np.stack([columns["dimension_deviation"], columns["roughness_deviation"]])
     correlations = [float(np.asarray(np.corrcoef(each))[0, 1]) for each in (together, pairs.T)]

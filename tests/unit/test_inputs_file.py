@@ -20,6 +20,7 @@ from truing.declare.spreads import Band, Grade, Off, Zone
 from truing.errors import InfeasibleError, InputError, PluginError
 from truing.example_file import example_text, text_to_fill_in
 from truing.inputs_file import json_schema, read_setup, setup_from_settings, setup_from_text
+from truing.inputs_file.assemble import OF_THE_SHEET
 from truing.inputs_file.entries import HEAD
 from truing.inputs_file.sentences import located, told_by_line
 from truing.kernel import Kernel
@@ -553,13 +554,14 @@ def test_what_the_head_of_a_sheet_may_hold_is_listed_to_be_filled_in(name: str, 
     """Without their marks all of its lines are read, and the example says what it said before."""
     offer = Kernel.installed().offer(name)
     text = text_to_fill_in(offer)
-    known = {*HEAD, "detail", "paper"}
+    known = {*HEAD, *OF_THE_SHEET}
     assert {line.lstrip("# ").partition(" =")[0] for line in text.split("\n")} >= known
     assert tomllib.loads(text) == tomllib.loads(example_text(offer))
     opened = re.sub(rf"^# (?=({'|'.join(known)}) = )", "", text, flags=re.MULTILINE)
     assert tomllib.loads(opened)["sheet"].keys() == known
     setup = setup_from_text(opened, offer, file=str(tmp_path / "in.toml"), folder=tmp_path)
     assert (setup.sheet.paper, setup.sheet.head["logo"], setup.sheet.head["style"]) == ("A4", "logo.svg", "house.css")
+    assert (setup.sheet.units, setup.sheet.language) == ("SI", "en")
 
 
 def test_a_shipped_example_is_handed_out_as_it_is(tmp_path: Path) -> None:

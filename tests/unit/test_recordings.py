@@ -16,6 +16,7 @@ import jsonschema
 import numpy as np
 import pandas
 import pytest
+from asammdf import MDF, Signal
 from sample_models import PIN_OFFER, PIN_WEAR
 from scipy.io import savemat
 
@@ -102,8 +103,6 @@ def test_mdf_of_version_3_reads_as_well(tmp_path: Path) -> None:
 
 
 def test_invalid_samples_of_an_mdf_are_missing(tmp_path: Path) -> None:
-    from asammdf import MDF, Signal
-
     times = np.arange(4.0)
     bits = np.array([False, True, False, False])
     with MDF(version="4.10") as file:
@@ -113,8 +112,6 @@ def test_invalid_samples_of_an_mdf_are_missing(tmp_path: Path) -> None:
 
 
 def test_a_formula_in_a_file_is_not_executed(tmp_path: Path) -> None:
-    from asammdf import MDF, Signal
-
     times = np.arange(3.0)
     with MDF(version="4.10") as file:
         file.append(

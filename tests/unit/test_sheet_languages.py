@@ -30,6 +30,7 @@ from truing.kernel import Kernel, Offer
 from truing.measurements import read_cases
 from truing.published import compare_published
 from truing.report import chapters
+from truing.report.comparison_page import Side, comparison_page
 from truing.report.diagnosis_sheet import make_diagnosis_sheet
 from truing.report.document import (
     Chapter,
@@ -47,11 +48,11 @@ from truing.report.html_printer import html_of
 from truing.report.markdown_printer import markdown_of
 from truing.report.sheet import make_sheet, study_sheet
 from truing.report.translation import (
+    COMPARISON,
     DIAGNOSIS,
     ENGLISH_WORDS,
     GAP,
     LISTS,
-    STUDY,
     Catalogue,
     catalogue_of,
     kernel_catalogue,
@@ -59,8 +60,9 @@ from truing.report.translation import (
     translated,
     words_in,
 )
+from truing.report.wording import STUDY
 from truing.runs.provenance import provenance_of
-from truing.setup import SheetOptions, default_setup, in_language
+from truing.setup import SheetOptions, default_setup, sheet_in
 from truing.templating import ENGLISH, languages, template_folder
 
 FOREIGN = [language for language in languages() if language != ENGLISH]
@@ -294,6 +296,59 @@ def test_every_word_of_a_diagnosis_is_translated(name: str, language: str) -> No
     assert unknown_in(sheet, pseudo(language).at(DIAGNOSIS), written | OF_SAMPLES) == []
 
 
+RUN: Mapping[str, Any] = {
+    "kernel": "1.0", "seed": 1, "verdict": "passes", "plugin": {"name": "press", "version": "1.0", "model": "press"},
+    "inputs": {"load": {"value": 1.0, "unit": "N"}, "gap": {"value": 1.0, "unit": "mm"}},
+    "tolerances": {"load": {"spread": "sd 1 %", "on": {"load": {"sd": 1.0}}}},
+    "conditions": {"rod_temperature": {"value": 20.0, "unit": "degC"}}, "effects": {"wear": {"value": 1.0}},
+    "results": {"depth": {"value": [1.0, 2.0], "unit": "um"}, "large": {"array": "large", "shape": [9]},
+                **{f"path_{place}": {"value": 1.0, "unit": "mm"} for place in range(12)}},
+    "checks": [{"name": f"stress_{place}", "value": 1.0, "limit": 2.0, "unit": "MPa", "margin": 0.5, "passed": True,
+                "relation": "≤", "state": "passes"} for place in range(5)],
+    "studies": {"sweep": {"values": [1.0, 2.0]}},
+}  # fmt: skip
+"""What a run wrote, with something of every kind that is compared."""
+
+
+def moved(piece: Any) -> Any:
+    """The same with every number twice as large, and every limit that passed failed."""
+    if isinstance(piece, Mapping):
+        more = {"state": "fails", "passed": False} if "state" in piece else {}
+        return {name: moved(each) for name, each in piece.items()} | more
+    if isinstance(piece, list):
+        return [moved(each) for each in piece]
+    return 2 * piece if isinstance(piece, float) else piece
+
+
+OTHER_RUN = {
+    **moved(RUN), "kernel": "2.0", "seed": 2, "verdict": "fails", "effects": {"drift": {"value": 1.0}},
+    "plugin": {"name": "press", "version": "2.0", "model": "press"}, "inputs": {"load": {"value": 2.0, "unit": "N"}},
+}  # fmt: skip
+FOUND: Mapping[str, Any] = {
+    "schema": "truing.diagnosis/1", "verdict": "none", "unique": None, "alternatives": [], "causes": [], "rows": 10,
+    "runs": 1, "input_hash": "8", "measured": "9", "held_out": 0, "files": {},
+    "wrong": {"depth": {"rmse": {"value": 1.0, "unit": "um"}, "noise_floor": {"value": 1.0, "unit": "um"}}},
+}  # fmt: skip
+CAUSE = {"effect": "wear", "unknowns": {"rate": {"value": 1.0, "unit": "um", "interval95": [0.0, 2.0]}}}
+OTHERS_FOUND = (
+    {**moved(FOUND), "verdict": "named", "unique": True, "causes": [CAUSE], "remainder": {"depends_on": "load"}},
+    {**FOUND, "verdict": "unknown", "alternatives": [{"causes": ["wear"]}], "causes": [moved(CAUSE)]},
+    {**FOUND, "verdict": "undecided", "causes": [{**CAUSE, "unknowns": {"rate": {"value": 9.0, "unit": "um"}}}]},
+)
+
+
+@pytest.mark.parametrize("language", FOREIGN)
+@pytest.mark.parametrize("pair", [(RUN, OTHER_RUN), (OTHER_RUN, RUN), (RUN, {**RUN}),
+                                  *zip((FOUND, *OTHERS_FOUND), OTHERS_FOUND, strict=False)])  # fmt: skip
+def test_every_word_of_a_page_of_two_is_translated(pair: tuple[Any, Any], language: str) -> None:
+    page = comparison_page(*(Side("side", document) for document in pair))
+    authors = {name.replace("_", " ") for document in pair for kind in ("inputs", "results", "conditions", "effects")
+               for name in document.get(kind, {})}  # fmt: skip
+    names = {*authors, "side", "press", "Truing", "load", "sweep", "wear", "drift", "wear.rate", "depth.rmse",
+             "depth.noise_floor", "sd 1 %", "sd 2 %", *(f"stress {place}" for place in range(5))}  # fmt: skip
+    assert unknown_in(page, pseudo(language).at(COMPARISON), frozenset(names)) == []
+
+
 @pytest.mark.parametrize("language", FOREIGN)
 @pytest.mark.parametrize("kind", SENTENCES)
 def test_every_sentence_of_a_diagnosis_has_a_translation_with_its_gaps(kind: str, language: str) -> None:
@@ -486,7 +541,7 @@ def test_a_plugin_in_one_file_brings_its_own_words(pulley: Path) -> None:
 ])  # fmt: skip
 def test_faulty_words_of_a_plugin_are_left_out_and_named(pulley: Path, content: str, sentence: str) -> None:
     (pulley.parent / "words" / "de.toml").write_text(content, encoding="utf-8")
-    words = catalogue_of(in_language(truing.load(pulley).setup(), "de"))
+    words = catalogue_of(sheet_in(truing.load(pulley).setup(), language="de"))
     (fault,) = words.faults
     assert fault.startswith(f"{pulley.parent / 'words' / 'de.toml'}: these words of a sheet are left out: ")
     assert sentence in fault
@@ -498,12 +553,12 @@ def test_an_unknown_language_is_refused_with_the_choices(pulley: Path) -> None:
     with pytest.raises(InputError, match=r"made.toml:2: language: choose en or de\."):
         setup_from_text('[sheet]\nlanguage = "xx"\n', offer, file="made.toml", folder=pulley.parent)
     with pytest.raises(UsageError, match="language: choose en or de, not 'xx'"):
-        in_language(truing.load(pulley).setup(), "xx")
+        sheet_in(truing.load(pulley).setup(), language="xx")
 
 
 def test_every_place_of_words_is_a_gap_or_a_kind_of_sheet() -> None:
     for language in FOREIGN:
         places = words_in(template_folder() / "words" / f"{language}.toml")
         gaps = {gap for words in places.values() for text in words for gap in GAP.findall(text)}
-        assert {*places} - gaps <= {"", DIAGNOSIS, STUDY, "Added"}
+        assert {*places} - gaps <= {"", COMPARISON, DIAGNOSIS, STUDY, "Added"}
         assert gaps >= LISTS

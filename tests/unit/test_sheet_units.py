@@ -121,13 +121,13 @@ SENTENCES = [
 
 @pytest.mark.parametrize(("said", "expected"), SENTENCES)
 def test_quantities_in_a_sentence_are_brought_over_and_words_stay(said: str, expected: str) -> None:
-    assert SheetUnits("inch").text(said) == expected
-    assert SheetUnits("").text(said) == said
+    assert SheetUnits("inch").said(said) == expected
+    assert SheetUnits("").said(said) == said
 
 
 def test_a_word_that_is_a_unit_too_stays_and_a_unit_by_hand_wins() -> None:
-    assert SheetUnits("SI").text("4 in all, 5 in, 63 lbf·ft") == "4 in all, 127 mm, 85.42 N·m"
-    assert SheetUnits("inch", frozenset({"mm"})).text("2 mm and 3 N") == "2 mm and 0.6744 lbf"
+    assert SheetUnits("SI").said("4 in all, 5 in, 63 lbf·ft") == "4 in all, 127 mm, 85.42 N·m"
+    assert SheetUnits("inch", frozenset({"mm"})).said("2 mm and 3 N") == "2 mm and 0.6744 lbf"
 
 
 # A small machine with every kind of quantity
@@ -374,7 +374,7 @@ def test_the_axes_of_a_figure_have_round_numbers_of_the_other_unit() -> None:
     panel.text(10, 10, "25.4 mm")
     panel.plot([0], [1], label="−50.8, 254")
     panel.legend(title="offsets, mm")
-    brought_over(figure, SheetUnits("inch").unit, SheetUnits("inch").text)
+    brought_over(figure, SheetUnits("inch").unit, SheetUnits("inch").said)
     assert (panel.get_xlabel(), panel.get_ylabel()) == ("width, in", "µin along the normal")
     FigureCanvasAgg(figure).draw()
     written = {round(float(tick.get_loc()), 6): tick.label1.get_text() for tick in panel.xaxis.get_major_ticks()}
@@ -397,7 +397,7 @@ def test_panels_that_share_an_axis_and_drawings_to_scale_are_in_one_unit() -> No
     scale.plot([0, 254], [0, 254])
     scale.set(aspect="equal", xlabel="mm")
     for panel in (above, scale):
-        FigureCanvasAgg(brought_over(panel.figure, SheetUnits("inch").unit, SheetUnits("inch").text)).draw()
+        FigureCanvasAgg(brought_over(panel.figure, SheetUnits("inch").unit, SheetUnits("inch").said)).draw()
     assert [panel.get_xlabel() for panel in (above, below, scale)] == ["x, in", "x, in", "in"]
     for axis in (below.xaxis, scale.xaxis, scale.yaxis):
         assert "10" in {
@@ -421,5 +421,5 @@ def test_another_word_is_refused_with_the_choices(word: str) -> None:
     with pytest.raises(InputError, match=r"shaft\.toml:2: units: choose SI or inch"):
         read(f'[sheet]\nunits = "{word}"\n')
     run = LoadedModel(OFFER, text=("", "shaft.toml", Path())).run(progress=False)
-    with pytest.raises(UsageError, match=rf"units is '{word}'; choose SI or inch"):
+    with pytest.raises(UsageError, match=rf"units: choose SI or inch, not '{word}'"):
         run.sheet("sheet.md", units=word)

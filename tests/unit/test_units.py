@@ -17,6 +17,7 @@ from truing.errors import UnitError
 from truing.numbers import format_difference, format_number, format_value, pretty, with_unit
 from truing.units import names
 from truing.units.meaning import _suggestions
+from truing.units.sizes import SIZES
 
 # Definitions: SI Brochure (9th edition), and for the others NIST SP 811, appendix B.8 (exact where the unit is exact).
 IN_SI = [
@@ -315,6 +316,18 @@ def test_sizes_agree_with_pint(name):
     definition = names.SYMBOLS[name][0]
     size = units.registry().Quantity(1.0, definition).to_base_units().magnitude
     assert units.unit_factor(name) == pytest.approx(size, rel=1e-14)
+
+
+def test_what_is_written_down_of_a_unit_is_what_pint_says():
+    """Every definition of a symbol, and no other; the last digit may differ from one release of pint to the next."""
+    assert {definition for definition, _ in names.SYMBOLS.values() if definition.isidentifier()} == SIZES.keys()
+    for name, (size, bases) in SIZES.items():
+        said, base = units.registry().get_base_units(name)
+        exponents = {
+            unit: float(exponent or 1) for unit, _, exponent in (each.partition("^") for each in bases.split())
+        }
+        assert exponents == dict(base._units), name
+        assert size == pytest.approx(said, rel=1e-15), name
 
 
 def test_pint_quantities_prove_dimensions():

@@ -10,13 +10,13 @@ from typing import Any, Protocol
 
 from truing.api.notebook import html_table, paragraphs
 from truing.api.tables import frame_of
-from truing.declare.model import Model
 from truing.errors import Fault, InputError, TruingError, UsageError
 from truing.kernel import offer_of
 from truing.report.comparison_page import Side, comparison_page, figures_of
-from truing.report.run import demand_page, write_sheet
+from truing.report.run import demand_ending, write_sheet
 from truing.runs.comparison import Change, compared, in_order, words_of
 from truing.runs.folder import load_either
+from truing.templating import ENGLISH, demand_language
 from truing.workbooks.reading import file_of, is_workbook
 
 CHANGE_COLUMNS = ("what", "name", "before", "after", "change")
@@ -29,8 +29,8 @@ class Finished(Protocol):
     def document(self) -> dict[str, Any]:
         """What results.json holds."""
 
-    def side(self, name: str) -> Side:
-        """Return what a page of two runs is written from."""
+    def side(self, name: str, language: str) -> Side:
+        """Return what a page of two runs is written from, its figures in a language; "" is that of the run."""
 
 
 @dataclass(frozen=True)
@@ -39,8 +39,8 @@ class Differences:
 
     changes: tuple[Change, ...]
     documents: tuple[Mapping[str, Any], Mapping[str, Any]]
-    sides: Callable[[], tuple[Side, Side]]
-    """Makes what the page is written from: both documents, their figures, and their models."""
+    sides: Callable[[str], tuple[Side, Side]]
+    """Makes what the page is written from, in a language: both documents, their figures, and their models."""
 
     def __repr__(self) -> str:
         return "\n".join("  ".join(words_of(change)) for change in self.changes) or "equal"
@@ -54,13 +54,15 @@ class Differences:
         rows = [words_of(change) for change in self.changes]
         return frame_of({name: [row[index] for row in rows] for index, name in enumerate(CHANGE_COLUMNS)})
 
-    def sheet(self, path: str | Path) -> Path:
-        """Write the two side by side, with their figures, as HTML, Markdown or PDF, as the name ends.
+    def sheet(self, path: str | Path, *, language: str = "") -> Path:
+        """Write the two side by side, with their figures, as HTML, Markdown, PDF or a Word document, as the name ends.
 
-        Raises OutputError.
+        ``language`` is "en" (that of "", too) or "de". Figures of a folder stay as they were drawn, and Word cannot
+        take them. Raises OutputError, and UsageError for another language.
         """
-        demand_page(Path(path))
-        return write_sheet(path, lambda: comparison_page(*self.sides()))
+        demand_language(language)
+        demand_ending(Path(path))
+        return write_sheet(path, lambda: comparison_page(*self.sides(language), language or ENGLISH))
 
     def _repr_html_(self) -> str:
         rows = [words_of(change) for change in self.changes]
@@ -68,7 +70,7 @@ class Differences:
 
 
 def differences_of(
-    before: Mapping[str, Any], after: Mapping[str, Any], sides: Callable[[], tuple[Side, Side]]
+    before: Mapping[str, Any], after: Mapping[str, Any], sides: Callable[[str], tuple[Side, Side]]
 ) -> Differences:
     """Compare two documents. Raises UsageError for a run beside a diagnosis."""
     return Differences(tuple(in_order(compared(before, after))), (before, after), sides)
@@ -88,14 +90,14 @@ def differences_of_paths(
     named = [_plugin_of(path, plugin) if document is None else "" for path, document in zip(paths, read, strict=True)]
     done = [run(name, path) if name else None for name, path in zip(named, paths, strict=True)]
 
-    def side(index: int) -> Side:
+    def side(index: int, language: str) -> Side:
         ran, document = done[index], read[index]
         if ran is not None:
-            return ran.side(names[index])
+            return ran.side(names[index], language)
         return _side_of_folder(paths[index], names[index], document or {}, plugin)
 
     first, second = (document if ran is None else ran.document for ran, document in zip(done, read, strict=True))
-    return differences_of(first or {}, second or {}, lambda: (side(0), side(1)))
+    return differences_of(first or {}, second or {}, lambda language: (side(0, language), side(1, language)))
 
 
 def is_inputs_file(path: Path) -> bool:
@@ -134,12 +136,11 @@ def _side_of_folder(path: Path, name: str, document: Mapping[str, Any], plugin: 
         page = (folder / "sheet.html").read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError):
         page = ""
-    return Side(name, document, figures_of(page), _model(plugin or str((document.get("plugin") or {}).get("model"))))
-
-
-def _model(name: str) -> Model[Any, Any] | None:
-    """Return an installed model, from which the names get their notes; None where it cannot be loaded."""
-    try:
-        return offer_of(name, lambda _: None).model
+    named = str((document.get("plugin") or {}).get("model"))
+    if not plugin and named.endswith(".py"):  # a file runs only where the user names it: this may come from anywhere
+        return Side(name, document, figures_of(page))
+    try:  # the names get their notes from the model
+        offer = offer_of(plugin or named, lambda _: None)
     except TruingError:
-        return None
+        return Side(name, document, figures_of(page))
+    return Side(name, document, figures_of(page), offer.model, offer.origin.file)

@@ -9,32 +9,19 @@ from dataclasses import dataclass, fields, replace
 from functools import cached_property, partial
 from pathlib import Path
 from types import NoneType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from matplotlib.figure import Figure
-
-from truing.api.differences import Differences, differences_of, differences_of_paths
-from truing.api.findings import NamedCause, Ranking, Residuals, causes_of
 from truing.api.notebook import bullets, fold, heading, html_table, joined, paragraphs, picture, table_html
-from truing.api.plan import Plan
-from truing.api.records import MeasuredRecord
-from truing.api.run import Run, demand_files, in_units, performed
+from truing.api.run import Run, demand_files, performed
 from truing.api.study import StudyResult
 from truing.api.tables import LABEL, beside, frame_text, settings_of, text_of
 from truing.declare.correlations import Correlated
 from truing.declare.model import Study
 from truing.declare.near_miss import near_miss
-from truing.describe import description, sections
-from truing.diagnosis import result as found
-from truing.diagnosis.engine import diagnose
-from truing.diagnosis.reading import read_records
-from truing.diagnosis.result import Verdict
 from truing.errors import Fault, InputError, UsageError
 from truing.example_file import example_of, text_to_fill_in
-from truing.experiments.design import BUDGET
-from truing.experiments.planning import planned
-from truing.experiments.proposal import proposed
-from truing.gauge import shown_by_gauge
+from truing.experiments import BUDGET
+from truing.heavy import Later
 from truing.inputs_file import read_setup, setup_from_text
 from truing.inputs_file.assemble import toml_value
 from truing.inputs_file.sentences import told_by_line
@@ -42,20 +29,45 @@ from truing.kernel import Offer, offer_of
 from truing.measurements import RowsFile, read_rows
 from truing.progress import progress_bar
 from truing.published import ComparedRow, compare_published
-from truing.report.comparison_page import Side, figures_in
-from truing.report.diagnosis_chapters import fitted_table
-from truing.report.diagnosis_sheet import data_words, diagnosis_sheet_of, questions
-from truing.report.diagnosis_words import headline, verdict_word
 from truing.report.run import run_info, sheets_of, write_sheet
-from truing.runs.diagnosis_document import diagnosis_document
-from truing.runs.extension import extended_text
-from truing.runs.folder import demand_place, diagnosis_files, write_outcome
-from truing.setup import Setup, in_language
+from truing.runs.folder import demand_place, write_outcome
+from truing.setup import Setup, sheet_in
 from truing.studies.bench import Progress
 from truing.studies.frequency import Frequency
 from truing.studies.sweep import Sweep
 from truing.units import difference_unit
 from truing.units.grammar import shown
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from truing import describe, gauge
+    from truing.api import differences, findings
+    from truing.api import plan as plans
+    from truing.api import records as measured
+    from truing.api.differences import Differences
+    from truing.api.findings import NamedCause, Ranking, Residuals
+    from truing.api.plan import Plan
+    from truing.api.records import MeasuredRecord
+    from truing.diagnosis import engine, reading
+    from truing.diagnosis.result import DiagnosisResult, Verdict
+    from truing.experiments import planning, proposal
+    from truing.report import comparison_page, diagnosis_chapters, diagnosis_sheet, diagnosis_words
+    from truing.report.comparison_page import Side
+    from truing.runs import diagnosis_document, diagnosis_files, extension
+else:  # what a call is for is loaded when it is called: a run needs no diagnosis
+    describe, gauge = Later("truing.describe"), Later("truing.gauge")
+    differences, findings = Later("truing.api.differences"), Later("truing.api.findings")
+    plans, measured = Later("truing.api.plan"), Later("truing.api.records")
+    engine, reading = Later("truing.diagnosis.engine"), Later("truing.diagnosis.reading")
+    planning, proposal = Later("truing.experiments.planning"), Later("truing.experiments.proposal")
+    comparison_page, diagnosis_chapters, diagnosis_sheet, diagnosis_words = (
+        Later(f"truing.report.{name}")
+        for name in ("comparison_page", "diagnosis_chapters", "diagnosis_sheet", "diagnosis_words")
+    )
+    diagnosis_document, diagnosis_files, extension = (
+        Later(f"truing.runs.{name}") for name in ("diagnosis_document", "diagnosis_files", "extension")
+    )
 
 
 @dataclass(frozen=True)
@@ -227,7 +239,7 @@ class LoadedModel:
         rows = read_rows(frame_text(frame, units or {}), self.offer, setup)
         _demand_known(rows, setup)
         with told_by_line(setup):
-            shown_rows = shown_by_gauge(setup, rows)
+            shown_rows = gauge.shown_by_gauge(setup, rows)
         results: dict[str, Any] = {
             f"{name} [{shown_rows.units[name] or '1'}]": column for name, column in shown_rows.values.items()
         }
@@ -268,12 +280,11 @@ class LoadedModel:
             def as_one(stage: str, step: int, steps: int) -> None:
                 report("diagnosis" if steps else stage, step, steps)
 
-            started, records = time.time(), read_records(record.files, self.offer, setup)
-            diagnosis = Diagnosis(self.offer, diagnose(setup, records, progress=as_one, propose=proposed), started)
+            started, records = time.time(), reading.read_records(record.files, self.offer, setup)
+            result = engine.diagnose(setup, records, progress=as_one, propose=proposal.proposed)
+            diagnosis = Diagnosis(self.offer, result, started)
             report("sheet and PDF" if pdf else "sheet", 0, 0)
-            if output is None:
-                return diagnosis
-            return replace(diagnosis, note=diagnosis.written(Path(output), **files))
+            return diagnosis if output is None else replace(diagnosis, note=diagnosis.written(Path(output), **files))
 
     def plan(
         self,
@@ -303,11 +314,11 @@ class LoadedModel:
         setup = self.setup(inputs, set={**stated, **(set or {})}, **values)
         with progress_bar(progress) as report, told_by_line(setup):
             report("experiment", 0, 0)
-            return Plan(self.offer, planned(setup, causes, budget=budget))
+            return plans.Plan(self.offer, planning.planned(setup, causes, budget=budget))
 
     def describe(self) -> dict[str, Any]:
         """Return everything the model declares, as ``calc describe --json`` prints it."""
-        return description(self.offer)
+        return describe.description(self.offer)
 
     def verify(self, *, progress: Progress | bool = True) -> list[ComparedRow]:
         """Return every number that the source prints beside ours, as ``calc verify`` compares them."""
@@ -321,7 +332,7 @@ class LoadedModel:
     def _repr_html_(self) -> str:
         """Show what the model takes and answers, and what could make it wrong."""
         said = self.describe()
-        tables = sections(said)
+        tables = describe.sections(said)
         inputs = html_table(tables.pop("Inputs", ()), ("input", "symbol", "default", "unit", ""))
         results = html_table(tables.pop("Results", ()), ("result", "symbol", "unit", ""))
         studies = [f"Studies: {', '.join(said['studies'])}"] if said["studies"] else []
@@ -335,7 +346,7 @@ class LoadedModel:
 
 def _demand_record(record: Any) -> None:
     """Raise UsageError, saying how a record is made, for anything else."""
-    if not isinstance(record, MeasuredRecord):
+    if not isinstance(record, measured.MeasuredRecord):
         made = "truing.read(files, model) or truing.record(dataframe, model)"
         raise UsageError(f"a {type(record).__name__} is no record; make one with {made}")
 
@@ -361,12 +372,13 @@ class Diagnosis:
     """
 
     offer: Offer
-    result: found.DiagnosisResult
+    result: DiagnosisResult
     started: float
     note: str = ""
 
     def __repr__(self) -> str:
-        return f"<Diagnosis of {self.offer.name}: {' '.join([f'{verdict_word(self.result)}.', *self.sentences])}>"
+        said = [f"{diagnosis_words.verdict_word(self.result)}.", *self.sentences]
+        return f"<Diagnosis of {self.offer.name}: {' '.join(said)}>"
 
     @property
     def verdict(self) -> Verdict:
@@ -376,7 +388,7 @@ class Diagnosis:
     @property
     def sentences(self) -> tuple[str, ...]:
         """The verdict in words: what is wrong, how sure, what to do."""
-        return tuple(headline(self.result))
+        return tuple(diagnosis_words.headline(self.result))
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -394,27 +406,27 @@ class Diagnosis:
     @cached_property
     def causes(self) -> tuple[NamedCause, ...]:
         """The causes that are named, the largest first."""
-        return causes_of(self.result)
+        return findings.causes_of(self.result)
 
     @cached_property
     def document(self) -> dict[str, Any]:
         """What diagnosis.json holds."""
-        return diagnosis_document(self.result)
+        return diagnosis_document.diagnosis_document(self.result)
 
     @property
     def ranking(self) -> Ranking:
         """The explanations that were compared, the best first."""
-        return Ranking(self.result)
+        return findings.Ranking(self.result)
 
     @property
     def residuals(self) -> Residuals:
         """What the model leaves of the readings, before and after."""
-        return Residuals(self.result)
+        return findings.Residuals(self.result)
 
     @property
     def extended(self) -> LoadedModel:
         """The model with the causes on and its inputs calibrated. Raises UsageError where nothing was found."""
-        text = extended_text(self.result)
+        text = extension.extended_text(self.result)
         if not text:
             raise UsageError("nothing was named and nothing calibrated: there is no extended model")
         return LoadedModel(self.offer, (), (text, "extended.toml", Path.cwd()))
@@ -429,8 +441,8 @@ class Diagnosis:
         ``units`` are "SI" or "inch", ``language`` "en" or "de"; "" those of the diagnosis. Raises OutputError, and
         UsageError for others.
         """
-        result = replace(self.result, setup=in_language(in_units(self.result.setup, units), language))
-        return write_sheet(path, partial(diagnosis_sheet_of, result, self.started))
+        result = replace(self.result, setup=sheet_in(self.result.setup, units=units, language=language))
+        return write_sheet(path, partial(diagnosis_sheet.diagnosis_sheet_of, result, self.started))
 
     def save(self, folder: str | Path, *, pdf: bool = False, docx: bool = False, xlsx: bool = False) -> Path:
         """Write the folder that ``calc diagnose`` writes; an earlier diagnosis there goes.
@@ -447,33 +459,37 @@ class Diagnosis:
 
     def written(self, folder: Path, *, pdf: bool = False, docx: bool = False, xlsx: bool = False) -> str:
         """Write the folder and return what became of the PDF."""
-        sheet = diagnosis_sheet_of(self.result, self.started)
+        sheet = diagnosis_sheet.diagnosis_sheet_of(self.result, self.started)
         sheets, note = sheets_of(sheet, folder, pdf=pdf, word=docx)
         info = {**run_info(self.started), "data": dict(self.result.records.digests)}
         write_outcome(
             folder, "diagnosis", self.result.setup, self.document, provenance=sheet.provenance, run_info=info,
-            files=diagnosis_files(self.result, sheets, folder, xlsx=xlsx),
+            files=diagnosis_files.diagnosis_files(self.result, sheets, folder, xlsx=xlsx),
         )  # fmt: skip
         return note
 
     def compare(self, before: Diagnosis) -> Differences:
         """Return what differs from ``before`` to this diagnosis: data, verdict, causes, errors, gain."""
-        return differences_of(before.document, self.document, lambda: (before.side("before"), self.side("after")))
-
-    def side(self, name: str) -> Side:
-        """Return what a page of two diagnoses is written from: the document, and the figures of the sheet."""
-        return Side(
-            name, self.document, figures_in(diagnosis_sheet_of(self.result, self.started)), self.result.setup.model
+        return differences.differences_of(
+            before.document,
+            self.document,
+            lambda language: (before.side("before", language), self.side("after", language)),
         )
+
+    def side(self, name: str, language: str = "") -> Side:
+        """Return what a page of two diagnoses is written from: the document, and the figures of the sheet."""
+        result = replace(self.result, setup=sheet_in(self.result.setup, language=language))
+        figures = comparison_page.figures_in(diagnosis_sheet.diagnosis_sheet_of(result, self.started))
+        return comparison_page.Side(name, self.document, figures, result.setup.model, self.offer.origin.file)
 
     def _repr_html_(self) -> str:
         """Show the verdict, the causes, the residuals before and after, and the rest folded away."""
-        said = [f"{verdict_word(self.result)}. {' '.join(self.sentences)}"]
+        said = [f"{diagnosis_words.verdict_word(self.result)}. {' '.join(self.sentences)}"]
         warned = [f"Warning: {text}" for text in self.warnings]
-        table = table_html(fitted_table(self.result)) if self.causes else ""
-        lines = {**questions(self.result), **({"Record": list(self.notes)} if self.notes else {})}
+        table = table_html(diagnosis_chapters.fitted_table(self.result)) if self.causes else ""
+        lines = {**diagnosis_sheet.questions(self.result), **({"Record": list(self.notes)} if self.notes else {})}
         rest = "".join(fold(title, bullets(texts)) for title, texts in lines.items())
-        head = heading(f"Diagnosis of {self.result.setup.model.title}, {data_words(self.result)}")
+        head = heading(f"Diagnosis of {self.result.setup.model.title}, {diagnosis_sheet.data_words(self.result)}")
         shown = picture(self.residuals.drawn, "Residuals before and after")
         return joined(head + paragraphs([*said, *warned]), table, shown, fold("More", rest))
 
@@ -498,6 +514,6 @@ def compare(
     Each is a folder that was written, or an inputs file (.toml, .xlsx), which runs now; ``plugin`` runs it where it
     names none. Raises TruingError with one sentence.
     """
-    return differences_of_paths(
+    return differences.differences_of_paths(
         before, after, lambda name, file: load(name).run(file, progress=progress), plugin=plugin
     )  # fmt: skip

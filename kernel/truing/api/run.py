@@ -10,9 +10,8 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from math import nan
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from truing.api.differences import Differences, differences_of
 from truing.api.notebook import MOST_ROWS, fold, heading, html_table, joined, paragraphs, table_html
 from truing.api.study import StudyResult
 from truing.api.tables import frame_of, frame_text, quantity_of
@@ -22,12 +21,12 @@ from truing.declare.near_miss import near_miss
 from truing.errors import UsageError
 from truing.executors import BatchLog, open_executor
 from truing.formulas import symbol_text
+from truing.heavy import Later
 from truing.inputs_file.sentences import told_by_line
 from truing.kernel import Offer
 from truing.measurements import read_cases
 from truing.numbers import format_value, with_unit
 from truing.progress import progress_bar
-from truing.report.comparison_page import Side, figures_in
 from truing.report.document import Document, plain_text
 from truing.report.limits import check_table
 from truing.report.run import run_info, sheet_of, sheets_of, write_sheet
@@ -38,12 +37,19 @@ from truing.runs.documents import results_document
 from truing.runs.folder import FolderKind, demand_place, run_files, write_outcome
 from truing.runs.partial import code_of, identity_of, kept_batches
 from truing.runs.provenance import provenance_of
-from truing.setup import Setup, in_language
+from truing.setup import Setup, sheet_in
 from truing.studies.bench import Progress, silent
 from truing.studies.checks import Check, State
 from truing.units import from_si
-from truing.units.systems import UNIT_SYSTEMS
 from truing.workbooks.writing import demand_library
+
+if TYPE_CHECKING:
+    from truing.api import differences
+    from truing.api.differences import Differences
+    from truing.report import comparison_page
+    from truing.report.comparison_page import Side
+else:  # a run is seldom compared
+    differences, comparison_page = Later("truing.api.differences"), Later("truing.report.comparison_page")
 
 FIRST = 12
 """So many results are shown, in the order declared; a click shows the others."""
@@ -142,8 +148,7 @@ class Run:
         ``units`` are "SI" or "inch", ``language`` "en" or "de"; "" those of the run. Raises OutputError, and UsageError
         for others.
         """
-        calculation = replace(self.calculation, setup=in_language(in_units(self._setup, units), language))
-        return write_sheet(path, partial(replace(self, calculation=calculation)._sheet, silent))
+        return write_sheet(path, partial(self._printed(units=units, language=language)._sheet, silent))
 
     def save(
         self, folder: str | Path, *, pdf: bool = False, docx: bool = False, excel: bool = False, xlsx: bool = False
@@ -181,11 +186,16 @@ class Run:
 
     def compare(self, before: Run) -> Differences:
         """Return what differs from ``before`` to this run: settings, inputs, results, checks, studies."""
-        return differences_of(before.document, self.document, lambda: (before.side("before"), self.side("after")))
+        return differences.differences_of(
+            before.document,
+            self.document,
+            lambda language: (before.side("before", language), self.side("after", language)),
+        )
 
-    def side(self, name: str) -> Side:
-        """Return what a page of two runs is written from: the document, and the figures of the sheet."""
-        return Side(name, self.document, figures_in(self._sheet(silent)), self._setup.model)
+    def side(self, name: str, language: str = "") -> Side:
+        """Return what a page of two runs is written from: the document, and the figures of the sheet in a language."""
+        figures = comparison_page.figures_in(self._printed(language=language)._sheet(silent))
+        return comparison_page.Side(name, self.document, figures, self._setup.model, self.offer.origin.file)
 
     def _repr_html_(self) -> str:
         """Show the verdict, the limits, the results, and what is to be known beside them."""
@@ -200,6 +210,10 @@ class Run:
         said = " ".join(map(plain_text, banner.sentences))
         title = heading(self._setup.model.title) + paragraphs([f"{banner.headline}. {said}"])
         return joined(title, warned, limits, results, more, fold("All cases", every))
+
+    def _printed(self, *, units: str = "", language: str = "") -> Run:
+        setup = sheet_in(self._setup, units=units, language=language)
+        return replace(self, calculation=replace(self.calculation, setup=setup))
 
     def _sheet(self, progress: Progress) -> Document:
         how: dict[str, Any] = {"started": self.started, "cases": self.cases, "alone": self.alone}
@@ -221,13 +235,6 @@ class Run:
                 "value": float(from_si(value, unit)), "unit": unit, "note": result.spec.note,
                 "text": with_unit(number, printed),
             }  # fmt: skip
-
-
-def in_units(setup: Setup, units: str) -> Setup:
-    """Return a setup whose sheet is in these units; "" leaves its own. Raises UsageError for other words."""
-    if units not in {"", *UNIT_SYSTEMS}:
-        raise UsageError(f"units is '{units:.40}'; choose {' or '.join(UNIT_SYSTEMS)}")
-    return replace(setup, sheet=replace(setup.sheet, units=units or setup.sheet.units))  # type: ignore[arg-type]
 
 
 def performed(

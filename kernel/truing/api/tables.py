@@ -8,12 +8,11 @@ from importlib.util import find_spec
 from numbers import Number, Real
 from typing import Any
 
-import narwhals as nw
 import numpy as np
-import pint
 
 from truing.declare.model import Model
 from truing.errors import UsageError
+from truing.heavy import narwhals, pint
 from truing.inputs_file.assemble import toml_value
 from truing.measurements import TableText, table_text
 from truing.units import from_si, pint_quantity
@@ -33,14 +32,14 @@ def frame_of(columns: Mapping[str, Sequence[Any]]) -> Any:
     library = next(iter([*in_use, *(name for name in LIBRARIES if find_spec(name))]), None)
     if library is None:
         raise UsageError(f"a table in Python needs one of {', '.join(LIBRARIES)}: pip install pandas")
-    return nw.from_dict(dict(columns), backend=library).to_native()  # type: ignore[arg-type]
+    return narwhals.from_dict(dict(columns), backend=library).to_native()  # type: ignore[arg-type]
 
 
 def beside(frame: Any, columns: Mapping[str, Any], *, without: Collection[str] = ()) -> Any:
     """Return a dataframe with further columns, of the library that it came from, and without its own of some names."""
-    table = nw.from_native(frame, eager_only=True)
+    table = narwhals.from_native(frame, eager_only=True)
     table = table.select(name for name in table.columns if name_in(str(name)) not in without)
-    made = [nw.new_series(name, list(values), backend=table.implementation) for name, values in columns.items()]
+    made = [narwhals.new_series(name, list(values), backend=table.implementation) for name, values in columns.items()]
     return table.with_columns(*made).to_native()
 
 
@@ -73,12 +72,12 @@ def frame_text(frame: Any, units: Mapping[str, str], *, gaps: bool = False, name
 def _table(frame: Any) -> Any:
     """Return a dataframe as narwhals has it. Raises UsageError where it is none, or names a row or column twice."""
     try:
-        table = nw.from_native(frame, eager_only=True)
+        table = narwhals.from_native(frame, eager_only=True)
     except TypeError:
         raise UsageError(f"{type(frame).__name__} is no dataframe of {', '.join(LIBRARIES)}") from None
     except Exception as error:  # narwhals' own, for columns of one name
         raise UsageError(f"the dataframe cannot be read: {error}") from None
-    index = nw.maybe_get_index(table)
+    index = narwhals.maybe_get_index(table)
     if index is not None and not index.is_unique:
         twice = index[index.duplicated()].tolist()[0]
         raise UsageError(f"the index of the dataframe names the row {twice!r} twice; reset_index() numbers the rows")
@@ -88,7 +87,7 @@ def _table(frame: Any) -> Any:
 def _demand_one_kind(table: Any) -> None:
     """Raise UsageError where a column holds numbers in one row and texts in another."""
     for name in table.columns:
-        if table[name].dtype not in (nw.Object, nw.String):
+        if table[name].dtype not in (narwhals.Object, narwhals.String):
             continue
         kinds = {_kind(value) for value in table[name].to_list() if not _is_missing(value)}
         if len(kinds) > 1:

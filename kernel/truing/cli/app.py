@@ -60,7 +60,7 @@ def _loaded(module: str) -> Callable[[Callable[P, None]], Callable[P, None]]:
         def call(*args: P.args, **kwargs: P.kwargs) -> int:
             asked = SimpleNamespace(**kwargs)
             said = [f"sheet.{name}={kwargs[name]}" for name in ("units", "language") if kwargs.get(name)]
-            if said:
+            if said and "changed" in kwargs:
                 asked.changed = [*(asked.changed or ()), *said]
             return int(getattr(Later(f"truing.cli.{module}"), declared.__name__)(settings_of(asked.context), asked))
 
@@ -270,8 +270,9 @@ def compare(
     second: Annotated[Path, typer.Argument(help="Another one of the same kind.", autocompletion=runs)],
     output: Annotated[
         Path | None,
-        typer.Option("--output", "-o", help="Write both side by side, with figures: .html, .md or .pdf."),
+        typer.Option("--output", "-o", help="Write both side by side, with figures: .html, .md, .pdf or .docx."),
     ] = None,
+    language: Language = "",
     plugin: Annotated[
         str,
         typer.Option("--plugin", help="What runs inputs files that name none.", autocompletion=candidates.plugins),

@@ -17,11 +17,13 @@ from truing.api.differences import differences_of_paths
 from truing.api.run import Run
 from truing.cli.console import GAP, Settings, aligned, harmless, out, out_json, put
 from truing.cli.load import find_model
+from truing.errors import UsageError
 from truing.report.index_page import listing_document, summary_of, write_index
-from truing.report.run import demand_page
+from truing.report.run import demand_ending
 from truing.runs.comparison import Change, compared, words_of
 from truing.runs.index import list_folder
 from truing.studies.checks import EXIT_CODES
+from truing.templating import demand_language
 from truing.texts import one_line
 
 
@@ -43,9 +45,11 @@ def index(settings: Settings, asked: SimpleNamespace) -> int:
 
 def compare(settings: Settings, asked: SimpleNamespace) -> int:
     """Show inputs, results and checks that changed: exit 0 when equal, 1 when different."""
-
     if asked.output is not None:
-        demand_page(asked.output)
+        demand_ending(asked.output)
+    elif asked.language:
+        raise UsageError("--language is that of the page; name the page with -o, too")
+    demand_language(asked.language)
 
     def run(plugin: str, file: Path) -> Run:
         return find_model(plugin, settings).run(file, progress=not settings.quiet)
@@ -53,7 +57,7 @@ def compare(settings: Settings, asked: SimpleNamespace) -> int:
     differences = differences_of_paths(asked.first, asked.second, run, plugin=asked.plugin)
     changes = differences.changes
     if asked.output is not None:
-        differences.sheet(asked.output)
+        differences.sheet(asked.output, language=asked.language)
     if asked.as_json:
         out_json({"equal": not changes, "changes": [asdict(change) for change in compared(*differences.documents)]})
     elif not changes:

@@ -16,7 +16,7 @@ from truing.cases import CaseResult, CasesTable
 from truing.cli.console import Settings, aligned, out, out_json, say
 from truing.cli.load import find_model, say_example
 from truing.errors import UsageError
-from truing.numbers import ABSENT, format_ends, format_value, with_unit
+from truing.numbers import ABSENT, counted, format_ends, format_value, with_unit
 from truing.report.document import Value
 from truing.report.limits import check_rows, least_margin
 from truing.report.sheet import sentence_of_cases
@@ -81,8 +81,9 @@ def _say_beside(done: Run, tables: Sequence[Path], settings: Settings) -> None:
         settings.say(done.note)
     if tables:
         settings.say(f"for a spreadsheet: {' and '.join(map(str, tables))}")
-    if done.computed["resumed"]:
-        settings.say(f"{done.computed['resumed']} finished batches of an interrupted run were taken up")
+    if resumed := done.computed["resumed"]:
+        batches = counted(resumed, "finished batch", "finished batches")
+        settings.say(f"{batches} of an interrupted run {'was' if resumed == 1 else 'were'} taken up")
     setup = done.calculation.setup
     stated = len(setup.source.stated & set(setup.model.input_fields))
     settings.detail(f"plugin {setup.origin.name} {setup.origin.version} from {setup.origin.file}")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import threading
 import webbrowser
 from types import SimpleNamespace
 from typing import Any
@@ -10,9 +12,13 @@ from truing.cli.console import Settings, out
 from truing.errors import UsageError
 from truing.heavy import Later
 
-server: Any = Later("truing.workbench.server")
-LOOPBACK = {"127.0.0.1", "localhost", "::1"}
-NEEDED = "the workbench needs libraries that are not installed; install them with: pip install 'truing[web]'"
+listening: Any = Later("truing.workbench.listening")
+LIBRARIES = {"starlette", "uvicorn", "tomlkit", "h11", "anyio"}
+NEEDED = "the workbench needs {}, which is not installed; install it with: pip install 'truing[web]'"
+REACHED = (
+    "warning: {} can be reached from other machines, and nothing on the way is encrypted; whoever has the address can "
+    "read and change the folder and run its calculations"
+)
 
 
 def serve(settings: Settings, asked: SimpleNamespace) -> int:
@@ -20,18 +26,30 @@ def serve(settings: Settings, asked: SimpleNamespace) -> int:
     folder = asked.folder
     if not folder.is_dir():
         raise UsageError(f"{folder} is no folder; name the one with your inputs files")
-    if asked.host not in LOOPBACK:
-        settings.say(f"warning: {asked.host} can be reached from other machines; whoever has the address can use it")
+    if not os.access(folder, os.R_OK | os.X_OK):
+        raise UsageError(f"{folder} cannot be read; ask its owner, or name another folder")
 
-    def ready(address: str) -> None:
+    def ready(address: str, own: str) -> None:
+        if not listening.is_loopback(asked.host):
+            settings.say(REACHED.format(asked.host))
+        if not os.access(folder, os.W_OK):
+            settings.say(f"warning: {folder} is read-only; nothing can be saved there")
         out(f"workbench of {folder.resolve()}: {address}")
         settings.say("Ctrl-C ends it")
         if not asked.no_browser:
-            webbrowser.open(address)
+            threading.Thread(target=webbrowser.open, args=(own,), daemon=True).start()
 
-    try:
-        run = server.serve
-    except ImportError:
-        raise UsageError(NEEDED) from None
-    run(folder, host=asked.host, port=asked.port, memory=int(asked.memory * 2**30), ready=ready)
+    _with_libraries()(folder, host=asked.host, port=asked.port, memory=int(asked.memory * 2**30), ready=ready)
     return 0
+
+
+def _with_libraries() -> Any:
+    """Return what serves. Raises UsageError where a library of the extra is missing."""
+    try:
+        Later("tomlkit").parse  # noqa: B018  # is needed with the first change, and must not be missed then
+        return listening.serve
+    except ImportError as error:
+        missing = (error.name or "").partition(".")[0]
+        if missing not in LIBRARIES:
+            raise
+        raise UsageError(NEEDED.format(missing)) from None

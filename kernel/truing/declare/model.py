@@ -263,7 +263,7 @@ class Model(Generic[I, R]):
         spec = Found(unit=units[0], note=note, method=method)
         return {TOTAL_PRICE: ResultField(name=TOTAL_PRICE, path=(TOTAL_PRICE,), spec=spec, symbol="")}
 
-    @property
+    @cached_property
     def tolerances(self) -> dict[str, Tolerance]:
         """The tolerances by name."""
         return {source.name: source for source in self.errors if isinstance(source, Tolerance)}

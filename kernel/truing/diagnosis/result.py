@@ -272,15 +272,17 @@ class Experiment:
 
 @dataclass(frozen=True)
 class Fact:
-    """What would have to be so if an explanation is the right one: a quantity that may be known from elsewhere.
+    """What would have to be so if an explanation is the right one: a quantity that can be measured by other means.
 
-    ``quantity`` is "EFFECT.UNKNOWN" or "input:NAME", ``note`` what it was declared to be, in words.
+    ``quantity`` is "EFFECT.UNKNOWN" or "input:NAME", ``note`` what it was declared to be, in words. ``accuracy`` is how
+    well it must be known, either way, to decide.
     """
 
     explanation: str
     quantity: str
     value: Amount
-    note: str = ""
+    note: str
+    accuracy: Amount
 
 
 @dataclass(frozen=True)

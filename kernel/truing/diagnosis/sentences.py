@@ -53,6 +53,7 @@ VERDICT: Final[Mapping[str, Kind]] = {
         "The named cause with its fitted size. In brackets the range in which the true size lies in 95 of 100 such "
         "records, if the cause is the right one.",
     ),
+    "means": Kind("{cause} means: {text}", "What a cause is, in the words of its author, where it is named first."),
     "drawn alike": Kind(
         "what the model misses in {results} is drawn alike by {explanations}",
         "Each of these fits as well as the others, or nearly. The record cannot say which is the right one.",
@@ -288,17 +289,25 @@ NEXT: Final[Mapping[str, Kind]] = {
         "that goes beyond what was measured so far: {settings}; check first that the machine permits it",
         "Settings outside of the range of the record, beside that range.",
     ),
+    "bring first": Kind(
+        "before that, bring {settings}",
+        "What follows from the work of the machine cannot be set. Let the machine get there, as a warm one cools down: "
+        "the experiment begins elsewhere than the record ended.",
+    ),
     "left open": Kind(
         "nothing that is proposed here settles {explanations}", "For these another record, or a check of the gauge."
     ),
     "fact decides": Kind(
-        "no measurement proposed here tells {explanations} apart; a fact from elsewhere does: {facts}",
-        "Look it up or measure the part.",
+        "no setting tells {explanations} apart; a measurement of another quantity does: {facts}",
+        "Measure the part, or look it up.",
     ),
-    "fact": Kind("whether {quantity} is {size}", "The fact that would decide."),
+    "fact": Kind(
+        "{quantity} to ±{accuracy} ({size} if it is {explanation})",
+        "What to measure, how well at the least, and what it then is.",
+    ),
     "nothing decides": Kind(
-        "no measurement proposed here tells {explanations} apart; only a fact from elsewhere does",
-        "The two stay one for this machine.",
+        "no measurement proposed here tells {explanations} apart: for this machine they stay one",
+        "What they say of the machine is too alike to be measured by other means, too.",
     ),
     "nothing to separate": Kind(
         "no other explanation comes near; there is nothing left to separate", "No further reading is needed for this."

@@ -18,10 +18,11 @@ from truing.diagnosis.extended import Extended, elsewhere
 from truing.diagnosis.machine import Calibration
 from truing.diagnosis.ranking import lowest_first
 from truing.diagnosis.result import APART, Course
+from truing.experiments import BUDGET
 from truing.experiments.duels import Duel, Explained, duels, machine_there
 from truing.experiments.reach import Reach
 
-BUDGET, FEWEST = 12, 4
+FEWEST = 4
 """So many readings are proposed at most where nothing else is asked for, and so many at least."""
 LOOKED_AT = 6
 """Readings of an experiment while it is looked for: each stands for as many as are asked for."""
@@ -42,9 +43,9 @@ MOST_READINGS = 100
 """Nobody takes more: what so many readings do not tell apart is told apart by a fact, or not at all."""
 EFFORT: Mapping[str, float] = {"held": 0.0, "ramp": 0.1, "in turn": 0.15, "to and fro": 0.15}
 """What a course must be worth, in the logarithm of the separation, to be taken before a plainer one: a tenth of it."""
-ELSEWHERE, LATER = 0.03, 0.1
-"""The same for what is held where it usually is not, or goes downward, and for a history that goes farther than it
-must."""
+ELSEWHERE, LATER, BROUGHT = 0.03, 0.1, 0.1
+"""The same for what is held where it usually is not, or goes downward, for a history that goes farther than it must,
+and for what has to be brought to its start first, which is a ramp before the experiment."""
 
 
 @dataclass(frozen=True)
@@ -130,8 +131,10 @@ def _decided(separations: Mapping[tuple[str, str], float]) -> set[tuple[str, str
 def _effort(stand: Stand, courses: Mapping[str, Course]) -> float:
     """Return what an experiment must be worth more than a plainer one."""
     effort = 0.0
+    slow = {quantity.name for quantity in stand.reach.quantities if quantity.role == "follows"}
     for name, choices in stand.courses.items():
         course = courses[name]
+        effort += BROUGHT * (name in slow and course.start != choices[0].start)
         if choices[0].way == "ramp":  # a clock
             effort += LATER * choices.index(course)
         else:

@@ -1,4 +1,4 @@
-"""Further results, and facts from elsewhere, that tell explanations apart where no setting does.
+"""Further results, and measurements of other quantities, that tell explanations apart where no setting does.
 
 Two causes may draw one curve on everything measured and still differ in a result that nobody measured. What the rivals
 say of it at the rows there are, each as it is fitted, is held against what machines within their tolerances differ in
@@ -7,11 +7,11 @@ it: no gauge is known for it, so this is the only noise.
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterator, Sequence
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
-from math import log, sqrt
+from math import hypot, log, sqrt
 from typing import Any
 
 import numpy as np
@@ -19,15 +19,18 @@ import numpy as np
 from truing.arrays import Matrix
 from truing.declare.fields import Axis
 from truing.declare.goals import Maximise, Minimise, Require
+from truing.diagnosis.causes import INPUT
+from truing.diagnosis.competition import Competition
 from truing.diagnosis.extended import switched_on
 from truing.diagnosis.findings import in_unit
 from truing.diagnosis.fitted import Fit, input_value
+from truing.diagnosis.intervals import certainty_of, places_of
 from truing.diagnosis.machine import Calibration, Predicted, calibration_of, predict
 from truing.diagnosis.ranking import lowest_first
 from truing.diagnosis.result import APART, Amount, Fact, NextPoint, Tie, readable_unit
 from truing.diagnosis.sentences import say
 from truing.experiments.duels import name_of
-from truing.units import read_quantity
+from truing.units import difference_unit, read_quantity
 from truing.units.names import PURE
 
 ROWS = 40
@@ -38,6 +41,11 @@ NEARLY = 0.95
 """Of several rows that tell as clearly the one is told in which the difference is largest."""
 LEAST_SHARE = 1e-3
 """Of the result itself: no gauge is trusted with less."""
+FINEST = 0.05
+"""Of an unknown itself: what is known of it by other means (a coefficient of expansion, of friction, a stiffness) is
+seldom better, and nothing finer is asked for."""
+NORMAL = 1.96
+"""Standard deviations within which 95 % of all machines are."""
 
 
 @dataclass(frozen=True)
@@ -62,26 +70,89 @@ def joined_pairs(pairs: Sequence[tuple[str, str]]) -> list[tuple[str, ...]]:
     return groups
 
 
-def tie_of(names: Sequence[str], explanations: Sequence[Fit]) -> Tie:
-    """Return explanations that cannot be told apart, with what would have to be so for each of them alone."""
+def tie_of(names: Sequence[str], explanations: Sequence[Fit], competition: Competition) -> Tie:
+    """Return explanations that cannot be told apart, with the measurements of other quantities that would.
+
+    A quantity is named where it can be told from what another explanation says of it: their distance is more than how
+    well both are known from the record, and what is left of it, either way, is the accuracy that is needed. What asks
+    for more than anybody knows (``FINEST``) is left away.
+    """
     tied = [each for each in explanations if name_of(each) in names]
-    facts = [fact for each in tied for fact in _facts(each)]
-    stated = Counter(fact.quantity for fact in facts)
-    return Tie(tuple(names), tuple(fact for fact in facts if len(tied) < 2 or stated[fact.quantity] < len(tied)))
+    stated = [_stated(each, competition) for each in tied]
+    facts = []
+    for fit, own in zip(tied, stated, strict=True):
+        for quantity in own.values():
+            others = [each for each in stated if quantity.name not in each] if len(tied) > 1 else [{}]
+            distances = [quantity.clear_of(each) for each in others]
+            accuracy = min(distances, default=0.0) / 2
+            if accuracy > quantity.finest:
+                size = Amount(quantity.value, quantity.unit)
+                needed = Amount(accuracy, difference_unit(quantity.unit))
+                facts.append(Fact(name_of(fit), quantity.name, size, quantity.note, needed))
+    return Tie(tuple(names), tuple(facts))
 
 
-def _facts(fit: Fit) -> Iterator[Fact]:
-    """Give the quantities that an explanation states: unknowns that are not zero, and inputs outside of their band."""
-    start = fit.sample.machine.start
-    for on in switched_on(fit.causes, fit.values, fit.sample.machine):
+@dataclass(frozen=True)
+class _Stated:
+    """A quantity that an explanation states, SI: its value, half of its 95 % interval, and the same without a cause."""
+
+    name: str
+    value: float
+    reach: float
+    unit: str
+    note: str
+    otherwise: float = 0.0
+    otherwise_reach: float = 0.0
+
+    def clear_of(self, other: Mapping[str, _Stated]) -> float:
+        """Return how far it is from what another explanation says of it, beyond what is known of both.
+
+        What bears its name there but for a number at the end ("expansion", "expansion_1") is the same quantity. An
+        explanation without it says that there is nothing, or of an input that it is within its tolerance.
+        """
+        alike = [each for each in other.values() if (each.stem, each.unit) == (self.stem, self.unit)]
+        values = [(each.value, each.reach) for each in alike] or [(self.otherwise, self.otherwise_reach)]
+        return min(abs(self.value - value) - hypot(self.reach, reach) for value, reach in values)
+
+    @property
+    def finest(self) -> float:
+        """How well it can be known by other means, either way: a part as well as its tolerance asks."""
+        return 0.0 if self.name.startswith(INPUT) else FINEST * abs(self.value)
+
+    @property
+    def stem(self) -> str:
+        """The name of the unknown, or of the input, without its number."""
+        return re.sub(r"_?\d+$", "", re.split("[.:]", self.name)[-1])
+
+
+def _stated(fit: Fit, competition: Competition) -> dict[str, _Stated]:
+    """Return the quantities that an explanation states, by name: amplitudes, and inputs outside of their band."""
+    fit = fit.in_sample(competition.sample)
+    machine, start = fit.sample.machine, fit.sample.machine.start
+    certainty = certainty_of(fit, competition.extended)
+    reach: dict[str, float] = {}
+    made: dict[str, _Stated] = {}
+    for cause in fit.causes:
+        for index in cause.amplitudes:
+            place = places_of(fit, cause)[index]
+            half = certainty.reach_of(place) * float(certainty.units[place])
+            if cause.tolerated < 0:
+                reach.setdefault(f"{cause.name}.{cause.numbers[index].name}", half)
+                continue
+            tolerated = machine.inputs[cause.tolerated]
+            declared, known = start.model.input_fields.get(tolerated.name), start.model.known_conditions
+            note = known[tolerated.name].note if declared is None else declared.spec.note
+            name = f"{INPUT}{tolerated.name}"
+            made.setdefault(name, _Stated(
+                name, input_value(fit, cause.tolerated), half * tolerated.sd, start.unit_of(tolerated.name), note,
+                tolerated.design, NORMAL * tolerated.sd,
+            ))  # fmt: skip
+    for on in switched_on(fit.causes, fit.values, machine):
         for unknown in on.effect.unknowns:
-            if value := on.values.get(unknown.name, 0.0):
-                quantity = f"{on.effect.name}.{unknown.name}"
-                yield Fact(name_of(fit), quantity, Amount(float(value), unknown.unit), unknown.note)
-    for name, value in _shifted(fit).items():
-        declared, known = start.model.input_fields.get(name), start.model.known_conditions
-        note = known[name].note if declared is None else declared.spec.note
-        yield Fact(name_of(fit), f"input:{name}", Amount(value, start.unit_of(name)), note)
+            name, value = f"{on.effect.name}.{unknown.name}", float(on.values.get(unknown.name, 0.0))
+            if value and name in reach:
+                made[name] = _Stated(name, value, reach[name], unknown.unit, unknown.note)
+    return made
 
 
 def _shifted(fit: Fit) -> dict[str, float]:

@@ -27,7 +27,8 @@ from truing.diagnosis.records import FEWEST_READINGS, Covariate, Records
 from truing.diagnosis.result import Amount, Experiment
 from truing.diagnosis.sample import NoiseModel, sample_of
 from truing.errors import UsageError
-from truing.experiments.design import BUDGET, LOOKED_AT, TRIED, Stand, designed
+from truing.experiments import BUDGET
+from truing.experiments.design import LOOKED_AT, TRIED, Stand, designed
 from truing.experiments.duels import explained
 from truing.experiments.proposal import experiment_of, grown
 from truing.experiments.reach import Quantity, Reach, range_of, role_of, tied_of

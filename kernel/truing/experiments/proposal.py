@@ -43,7 +43,7 @@ def proposed(chosen: Chosen, answer: DiagnosisResult) -> DiagnosisResult:
     explanations = rival_fits(chosen) if is_physical(chosen.best) else []
     asked, apart = result_to_measure(chosen.competition.sample.machine, explanations)
     left = [pair for pair in tied if frozenset(pair) not in apart]
-    ties = tuple(tie_of(names, explanations) for names in joined_pairs(left))
+    ties = tuple(tie_of(names, explanations, chosen.competition) for names in joined_pairs(left))
     if asked is not None:
         suffices = points and points[-1].needed <= len(points) and not tied
         points = [*points, asked] if suffices else [asked, *points]

@@ -2,7 +2,8 @@
 
 An experiment gives every quantity a course over its readings. Hours and wear go on from the last row. What they gain by
 a rate is the sum of that rate over the time. What is derived from another quantity follows from the course of that one.
-A temperature that follows from the work goes from one end of its range to the other no faster than it did so far.
+A temperature that follows from the work goes on from where the record ended, no faster than it did so far; where it
+begins elsewhere it has to be brought there first.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from truing.declare.fields import Role
 from truing.declare.sources import SINCE_START, Condition
 from truing.diagnosis.data_rows import is_angle
 from truing.diagnosis.machine import Calibration
-from truing.diagnosis.records import Covariate
+from truing.diagnosis.records import Covariate, Records
 from truing.diagnosis.result import Course
 from truing.measurements.derived import TIME, derive
 from truing.setup import Setup
@@ -42,7 +43,8 @@ ADVANCES = (0.5, 1.0)
 class Quantity:
     """One input or condition that an experiment has a course for, SI.
 
-    ``stands`` is where a history is, ``usual`` where anything else is held unless something is gained elsewhere.
+    ``stands`` is where a history is, ``usual`` where anything else is held unless something is gained elsewhere: of
+    what follows from others where the record ended.
     ``pace`` is what a history gains from one reading to the next, ``slowness`` how many seconds something that follows
     takes per unit and ``most`` how far it gets in one record. ``levels`` are the few values of a column without others.
     """
@@ -66,9 +68,10 @@ class Quantity:
         held = [Course(self.name, "held", place, place) for place in dict.fromkeys((self.usual, *places))]
         ends = (places[0], places[-1]), (places[-1], places[0])
         if self.role == "follows":
-            most = min(self.most, self.high - self.low)
-            ways = [(self.low, self.low + most), (self.high, self.high - most)] if most > 0 else []
-            return [held[0], *held[1::4], *(Course(self.name, "ramp", *ends) for ends in ways)]
+            begins = dict.fromkeys((self.usual, self.low, self.high))
+            ways = [(begin, max(self.low, begin - self.most)) for begin in begins]
+            ways += [(begin, min(self.high, begin + self.most)) for begin in begins]
+            return [held[0], *held[1::4], *(Course(self.name, "ramp", *ends) for ends in ways if ends[0] != ends[1])]
         ramps = (
             [] if self.levels else [Course(self.name, way, *pair) for way in ("ramp", "to and fro") for pair in ends]
         )
@@ -203,7 +206,7 @@ def _quantity(machine: Calibration, name: str, clock: Quantity | None) -> Quanti
         return None
     role: Role = "goes_on" if covariate.role == "time" else role_of(setup, name)
     low, high = range_of(setup, name, _ends(covariate))
-    usual = float(np.median(finite))
+    usual = ended_at(machine.records, name) if role == "follows" else float(np.median(finite))
     if role == "goes_on":
         stands, counts = _farthest(covariate), condition is not None and condition.history == SINCE_START
         high = stands + high - low if counts else max(high, stands)
@@ -215,11 +218,21 @@ def _quantity(machine: Calibration, name: str, clock: Quantity | None) -> Quanti
     distinct = np.unique(finite)
     levels = tuple(distinct.tolist()) if 1 < len(distinct) <= FEW_VALUES else ()
     usual = min(levels, key=lambda level: abs(level - usual)) if levels else usual
-    made = Quantity(name, role, low, high, usual, levels=levels)
+    made = Quantity(name, role, low, high, min(max(usual, low), high), levels=levels)
     if role != "follows" or clock is None:
         return made
     slowness = _slowness(machine.records.covariates[TIME].filled, covariate.filled)
     return replace(made, slowness=slowness, most=(clock.high - clock.stands) / slowness)
+
+
+def ended_at(records: Records, name: str) -> float:
+    """Return where a quantity was when the last run ended, SI: at its latest time, else in its last row."""
+    values, clock = records.covariates[name].values, records.covariates.get(TIME)
+    rows = np.flatnonzero((records.run_of == records.run_of[-1]) & np.isfinite(values))
+    if not len(rows):
+        rows = np.flatnonzero(np.isfinite(values))
+    at = rows[-1] if clock is None else rows[int(np.argmax(clock.filled[rows]))]
+    return float(values[at])
 
 
 def _ends(covariate: Covariate) -> tuple[float, float]:

@@ -9,12 +9,11 @@ from functools import partial, reduce
 from typing import Any
 
 import numpy as np
-import pint
-from pint.util import UnitsContainer
 from scipy.special import ndtr
 
 from truing.errors import DeclarationError, UnitError
 from truing.formulas.tree import CONSTANTS, SIGNS, Formula, Node, source
+from truing.heavy import pint
 from truing.units import human_dimension
 from truing.units import registry as shared_registry
 
@@ -118,7 +117,7 @@ def _power(base: Any, exponent: Any) -> Any:
 def _raised(base: Any, power: float, magnitude: Any) -> Any:
     """Return a quantity whose dimension is that of the base to an exact power."""
     exact = {unit: own * _exact(power) for unit, own in base.unit_items()}
-    return base._REGISTRY.Quantity(magnitude, UnitsContainer(exact, non_int_type=Fraction))
+    return base._REGISTRY.Quantity(magnitude, pint.util.UnitsContainer(exact, non_int_type=Fraction))
 
 
 def _root(function: Callable[..., Any], degree: int, values: Any) -> Any:
@@ -179,7 +178,7 @@ def evaluate_quantities(formula: Formula, values: Mapping[str, pint.Quantity[Any
     held: dict[str, Any] = {}
     for name in formula.names:
         quantity = registry.Quantity(_held(formula, name, values)).to_base_units()
-        exact = UnitsContainer(_powers(quantity), non_int_type=Fraction)
+        exact = pint.util.UnitsContainer(_powers(quantity), non_int_type=Fraction)
         held[name] = registry.Quantity(np.asarray(quantity.magnitude, dtype=float), exact)
     equation = None if formula.left is None else ast.BinOp(formula.left, ast.Sub(), formula.right)
     try:

@@ -11,7 +11,17 @@ from functools import lru_cache
 from typing import Final, NoReturn
 
 from truing.errors import DeclarationError
-from truing.formulas.tree import ANY_NUMBER, ARGUMENTS, CONSTANTS, SIGNS, Formula, Node, one_spaced, walk
+from truing.formulas.tree import (
+    ANY_NUMBER,
+    ARGUMENTS,
+    CONSTANTS,
+    SIGNS,
+    Formula,
+    Node,
+    expressions_in,
+    one_spaced,
+    walk,
+)
 
 LONGEST: Final = 2000
 DEEPEST: Final = 50
@@ -100,7 +110,7 @@ def _levels(body: ast.AST) -> int:
     level, layer = 0, [body]
     while layer and level <= DEEPEST:
         level += 1
-        layer = [child for node in layer for child in ast.iter_child_nodes(node) if isinstance(child, ast.expr)]
+        layer = [child for node in layer for child in expressions_in(node)]
     return level
 
 

@@ -41,7 +41,8 @@ from truing.report.equations import equation_of, state_equation
 from truing.report.figures import draw, in_words, phase, states_over_time
 from truing.report.limits import MOST_CHECKS
 from truing.report.sheet_units import AS_DECLARED, SheetUnits
-from truing.report.translation import ENGLISH_WORDS, STUDY, Catalogue
+from truing.report.translation import ENGLISH_WORDS, Catalogue
+from truing.report.wording import STUDY
 from truing.studies.drawings import labelled
 from truing.units import from_si
 
@@ -168,7 +169,7 @@ def _state_equation(writing: Writing) -> Iterator[Chapter]:
     for name, spec in dynamics.state_fields.items():
         symbol = (Marked("symbol", spec.symbol), " ") if spec.symbol else ()
         start = str(spec.start) if isinstance(spec.start, str) else f"{spec.start:g} {spec.unit}".strip()
-        start = writing.figures.units.text(start) if not isinstance(spec.start, str) else start
+        start = writing.figures.units.said(start) if not isinstance(spec.start, str) else start
         begins = "as the calculation sets it" if dynamics.start is not None else f"at {start.replace('_', ' ')}"
         equation = state_equation(model, name)
         entries.append(ResultEntry(name, label_of(spec.note, name), equation, (*symbol, f"begins {begins}")))

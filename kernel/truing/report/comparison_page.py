@@ -34,10 +34,12 @@ from truing.report.document import (
     unit_as_said,
 )
 from truing.report.limits import check_value, margin_value, relative_margins
-from truing.runs.comparison import Change, amount_of, compared, growth, in_order, number_in, pieces_of, same, words_of
+from truing.report.translation import COMPARISON, Catalogue, catalogue, translated
+from truing.runs.comparison import Change, amounts_of, compared, growth, in_order, number_in, pieces_of, same, words_of
 from truing.runs.index import VERDICTS
 from truing.runs.provenance import Provenance
 from truing.studies.checks import EXIT_CODES, HEADLINES, Check
+from truing.templating import ENGLISH
 from truing.units import difference_unit, from_si, same_dimension, to_si
 from truing.units.names import LEVELS
 
@@ -69,6 +71,8 @@ class Side:
     document: Mapping[str, Any]
     figures: tuple[FigureView, ...] = ()
     model: Model[Any, Any] | None = None
+    file: str = ""
+    """Of the plugin, beside which its words in other languages lie."""
 
     @property
     def plugin(self) -> Mapping[str, Any]:
@@ -93,11 +97,13 @@ class _Declared:
         )
 
 
-def comparison_page(before: Side, after: Side) -> Document:
-    """Say what differs between two runs, or two diagnoses. Raises UsageError for one of each.
+def comparison_page(before: Side, after: Side, language: str = ENGLISH) -> Document:
+    """Say what differs between two runs, or two diagnoses, in a language. Raises UsageError for one of each.
 
-    Numbers in two units of one dimension are compared in the unit of the second.
+    Numbers in two units of one dimension are compared in the unit of the second. Figures stay as they were drawn.
     """
+    words = catalogue(language, (before.file, after.file), COMPARISON)
+    before, after = (replace(side, figures=tuple(_titled(side.figures, words))) for side in (before, after))
     changes = [change for change in map(in_one_unit, compared(before.document, after.document))
                if not same(change.before, change.after)]  # fmt: skip
     by_kind: dict[str, list[Change]] = {}
@@ -109,24 +115,31 @@ def comparison_page(before: Side, after: Side) -> Document:
         *_inputs(by_kind, declared), *_worded(by_kind, GIVEN_KINDS), *_limits(by_kind, declared),
         *_first_results(by_kind, declared), *_worded(by_kind, DIAGNOSIS_KINDS), *_figures(pairs),
         *_worded(by_kind, STUDY_KINDS), *_further_results(by_kind, declared),
-        *_unchanged(after, declared, changes, pairs), _sources(before, after),
+        *_unchanged(after, declared, changes, pairs), _sources(before, after, words.faults),
     ]  # fmt: skip
     title = " and ".join(dict.fromkeys(map(_title, (before, after))))
-    return Document(
+    page = Document(
         kind="Comparison",
-        title=f"{title}: {before.name} and {after.name}",
-        head=Head(title, "", (("Before", before.name), ("After", after.name)), (), f"{before.name} and {after.name}"),
+        title=f"{title}: {before.name}, {after.name}",
+        head=Head(title, "", (("Before", before.name), ("After", after.name)), (), f"{before.name}, {after.name}"),
         detail="normal",
         summary="",
         banner=_banner(before, after, by_kind, declared),
         chapters=tuple(replace(chapter, number=str(place), ident=chapter.ident or f"chapter-{place}")
                        for place, chapter in enumerate(chapters, 1)),
-        warnings=(),
+        warnings=words.faults,
         provenance=Provenance(
             kernel=str(after.document.get("kernel", "")), plugin=str(after.plugin.get("name", "")),
             plugin_version=str(after.plugin.get("version", "")), python="",
         ),
     )  # fmt: skip
+    return translated(page, words)
+
+
+def _titled(figures: Iterable[FigureView], words: Catalogue) -> Iterator[FigureView]:
+    """Say the titles of figures in one language, so that those of two sheets meet."""
+    for view in figures:
+        yield replace(view, title=words.said(view.title), caption=words.said(view.caption))
 
 
 def _title(side: Side) -> str:
@@ -171,7 +184,7 @@ def _banner(before: Side, after: Side, by_kind: Mapping[str, Sequence[Change]], 
     ]  # fmt: skip
     said: list[Text] = [("Because ", *joined(why, "; "), ".")] if why and words != other else []
     said += [("Limits: ", *joined(why, "; "), ".")] if why and words == other else []
-    said.append(f"{', '.join(counts)}." if counts else "Inputs and results are equal." if not by_kind else
+    said.append((*joined(counts), ".") if counts else "Inputs and results are equal." if not by_kind else
                 "No input and no result changed.")  # fmt: skip
     return Banner(mood, headline, (*said, *_other_settings(before, after)))
 
@@ -329,7 +342,7 @@ def difference(change: Change) -> Text:
     """Write how far a number moved, with its unit; of what is no number what ``calc compare`` says."""
     before, after = number_in(change.before), number_in(change.after)
     if before is None or after is None or (change.before.get("unit") or "") != (change.after.get("unit") or ""):
-        return amount_of(change)
+        return joined(amounts_of(change))
     unit = unit_as_said(difference_unit(str(change.after.get("unit") or "")))
     text = format_number(after - before, RESULT_DIGITS)
     return Value(text if text.startswith("-") else f"+{text}", unit)
@@ -373,7 +386,7 @@ def _limit_table(changes: Sequence[Change], fields: Mapping[str, InputField | Re
         assert last is not None
         values = [Value(ABSENT) if check is None else check_value(check, check.value) for check in checks]
         margins = [Value(ABSENT) if check is None else margin_value(check, relative=is_relative) for check in checks]
-        relative = _relative(change) if None not in checks else amount_of(change)
+        relative = _relative(change) if None not in checks else joined(amounts_of(change))
         rows.append((_check_label(last, fields), *values, relative, _limit_cell(checks), *margins, _states(checks)))
         states.append(last.state)
     title = (
@@ -408,7 +421,7 @@ def _worded(by_kind: Mapping[str, Sequence[Change]], titles: Mapping[str, str]) 
     """Write what is no single number in the words of ``calc compare``; a column that says nothing is left out."""
     heads = (Column("Name", kind="name"), Column("Before"), Column("After"), Column("Change"))
     for kind, title in titles.items():
-        rows = [words_of(change)[1:] for change in by_kind.get(kind, ())]
+        rows = [(*words_of(change)[1:4], joined(amounts_of(change))) for change in by_kind.get(kind, ())]
         shown = [place for place, cells in enumerate(zip(*rows, strict=True)) if any(cells)]
         if rows:
             cells = tuple(tuple(row[place] for place in shown) for row in rows)
@@ -513,7 +526,8 @@ def _unchanged(
             blocks.append(TableView(f"{title}: {len(pieces)}", columns, tuple(rows), kind="key"))
     named = {kind: [name.replace("_", " ") for name in pieces] for kind, pieces in stayed.items() if pieces}
     named["figures"] = [pair.title for pair in pairs if is_same_figure(pair)]
-    blocks += [Paragraph(f"{kind.capitalize()}: {', '.join(names)}.") for kind, names in named.items() if names]
+    titles = {kind: {**GIVEN_KINDS, **DIAGNOSIS_KINDS}.get(kind, kind.capitalize()) for kind in named}
+    blocks += [Paragraph((titles[kind], ": ", *joined(names), ".")) for kind, names in named.items() if names]
     large = [name for name, piece in (kinds.get("results") or {}).items() if "array" in (piece or {})]
     if large:
         words = f"Not compared, because their numbers stand in arrays.npz alone: {', '.join(large)}."
@@ -524,18 +538,19 @@ def _unchanged(
         yield Chapter("What did not change", (Fold(title, tuple(blocks)),), "unchanged")
 
 
-def _sources(before: Side, after: Side) -> Chapter:
+def _sources(before: Side, after: Side, faults: Iterable[str]) -> Chapter:
     """Say what was compared: folders or files, versions, hashes, seeds."""
 
     def row(title: str, of: Callable[[Side], Text]) -> tuple[Text, ...]:
         return (title, *(of(side) for side in (before, after)))
 
     rows = (
-        row("Called", lambda side: side.name),
+        row("Called", lambda side: Marked("code", side.name)),
         row("Calculation", lambda side: f"{side.plugin.get('model', '')} {side.plugin.get('version', '')}".strip()),
         row("Truing", lambda side: str(side.document.get("kernel", ""))),
         row("Inputs", lambda side: Marked("code", str(side.document.get("input_hash", "")))),
         row("Seed", lambda side: str(side.document.get("seed", ""))),
     )
     columns = (Column("", kind="name"), Column("Before"), Column("After"))
-    return Chapter("What was compared", (TableView("", columns, rows),), "provenance")
+    blocks: tuple[BlockView, ...] = (TableView("", columns, rows), *(Paragraph(fault, "warning") for fault in faults))
+    return Chapter("What was compared", blocks, "provenance")

@@ -58,18 +58,18 @@ def parting_of(diagnosis: DiagnosisResult) -> Parting | None:
     names = experiment.results if experiment is not None and experiment.gaps else tuple(curves)
     ahead = dict(zip(experiment.parted, experiment.gaps, strict=True)) if experiment else {}
     floors = {wrong.result: wrong.noise_floor.value or 1.0 for wrong in diagnosis.wrong}
+    on_record = {name: tuple(_apart(diagnosis, curves[name], pair) for pair in pairs) for name in names}
+    at = {name: tuple(ahead[pair][:, index] if pair in ahead else None for pair in pairs)
+          for index, name in enumerate(names)}  # fmt: skip
 
     def size(name: str) -> float:
-        on = [each for pair in pairs if (each := _apart(diagnosis, curves[name], pair)) is not None]
-        there = [gaps[:, names.index(name)] for pair, gaps in ahead.items() if pair in pairs]
-        return max((float(np.nanmax(np.abs(each))) for each in (*on, *there)), default=0.0) / floors.get(name, 1.0)
+        known = [each for each in (*on_record[name], *at[name]) if each is not None]
+        return max((float(np.nanmax(np.abs(each))) for each in known), default=0.0) / floors.get(name, 1.0)
 
     result = max(names, key=size)
-    on_record = tuple(_apart(diagnosis, curves[result], pair) for pair in pairs)
-    at = tuple(ahead[pair][:, names.index(result)] if pair in ahead else None for pair in pairs)
-    if all(each is None for each in (*on_record, *at)):
+    if all(each is None for each in (*on_record[result], *at[result])):
         return None
-    return Parting(result, covariate, pairs, on_record, at, proposed)
+    return Parting(result, covariate, pairs, on_record[result], at[result], proposed)
 
 
 def _pairs_of(diagnosis: DiagnosisResult) -> tuple[tuple[str, str], ...]:

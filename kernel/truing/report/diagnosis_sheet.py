@@ -11,15 +11,15 @@ import numpy as np
 
 from truing.diagnosis.records import file_labels
 from truing.diagnosis.result import Amount, DiagnosisResult, explanations_of, stated_remedy
-from truing.diagnosis.sentences import sentence
+from truing.diagnosis.sentences import say, sentence
 from truing.report import diagnosis_figures as figures
 from truing.report import translation
 from truing.report.chapters import Figures, numbered
 from truing.report.diagnosis_chapters import diagnosis_chapters
 from truing.report.diagnosis_remedy import then_table
 from truing.report.diagnosis_sizes import amount_text
-from truing.report.diagnosis_units import diagnosis_as_printed, words_as_printed
-from truing.report.diagnosis_words import about_of, headline, prose, remedy_of, spoken, verdict_word, what_decides
+from truing.report.diagnosis_units import diagnosis_as_printed
+from truing.report.diagnosis_words import headline, meaning_of, prose, remedy_of, spoken, verdict_word, what_decides
 from truing.report.document import (
     Banner,
     BlockView,
@@ -35,7 +35,8 @@ from truing.report.document import (
 from truing.report.sheet import end_chapters, head_faults, head_of
 from truing.report.sheet_units import sheet_units
 from truing.report.translation import catalogue_of, translated
-from truing.runs.folder import data_digests
+from truing.report.wording import in_words
+from truing.runs.diagnosis_files import data_digests
 from truing.runs.provenance import Provenance, provenance_of
 
 DIAGNOSIS = "Diagnosis"
@@ -45,6 +46,8 @@ LINE, GAP, WIDE = 4.3, 1.7, 105
 """Height of a line and of the gap behind a paragraph, mm, and the characters of a line."""
 MOST_OTHERS = 3
 """Of so many other explanations page one says what they would ask for."""
+MOST_MEANINGS = 5
+"""Of so many causes page one says what they are."""
 BELOW, BESIDE = "Below", "On the right"
 DOUBT = "Whether this is the cause is open: settle that before anything is changed on the machine."
 
@@ -83,8 +86,7 @@ def make_diagnosis_sheet(diagnosis: DiagnosisResult, *, provenance: Provenance) 
         warnings=warnings,
         provenance=provenance,
     )
-    printed: Document = words_as_printed(document, units)
-    return translated(printed, words)
+    return translated(in_words(document, units), words)
 
 
 def _texts(blocks: Iterable[BlockView]) -> Iterator[str]:
@@ -107,9 +109,19 @@ def _figure_height(texts: Iterable[str]) -> float:
 
 
 def _answer(diagnosis: DiagnosisResult) -> Iterator[str]:
-    """Give the headline but for what decides, which stands under what to do."""
+    """Give the headline but for what decides, which stands under what to do; where causes are named, what each is."""
     decides = {sentence(text) for text in what_decides(diagnosis)}
-    yield from (text for text in headline(diagnosis) if text not in decides)
+    names = (cause.effect for cause in diagnosis.causes)
+    others = (name for explanation in explanations_of(diagnosis) for name in explanation)
+    left = [name for name in dict.fromkeys((*names, *others)) if meaning_of(diagnosis, name)][:MOST_MEANINGS]
+    for text in headline(diagnosis):
+        if text in decides:
+            continue
+        yield text
+        here = [name for name in left if spoken(name).lower() in text.lower()]
+        left = [name for name in left if name not in here]
+        said = (sentence(say("means", cause=spoken(name), text=meaning_of(diagnosis, name))) for name in here)
+        yield from [" ".join(said)] * bool(here)
 
 
 def _page_one(
@@ -147,11 +159,9 @@ def _what_to_do(diagnosis: DiagnosisResult) -> Iterator[BlockView]:
 
 
 def _remedies(diagnosis: DiagnosisResult) -> Iterator[tuple[str, Text]]:
-    """Say of every named cause what it is and what to do, and of others that are open what they would ask for."""
+    """Say of every named cause what to do, and of others that are open what they would ask for."""
     named = [cause.effect for cause in diagnosis.causes]
-    for name in named:
-        about, remedy = about_of(diagnosis, name), remedy_of(diagnosis, name)
-        yield spoken(name), (sentence(about), " ", remedy) if about else remedy
+    yield from ((spoken(name), remedy_of(diagnosis, name)) for name in named)
     others = dict.fromkeys(name for names in explanations_of(diagnosis) for name in names if name not in named)
     stated = [(name, prose(stated_remedy(diagnosis, name))) for name in others]
     yield from [(f"{spoken(name)}, if it is that", remedy) for name, remedy in stated if remedy][:MOST_OTHERS]
@@ -160,8 +170,11 @@ def _remedies(diagnosis: DiagnosisResult) -> Iterator[tuple[str, Text]]:
 def questions(diagnosis: DiagnosisResult) -> dict[str, tuple[str, ...]]:
     """Return what a diagnosis says to each of its questions, line by line, in the units of its sheet."""
     chapters = diagnosis_chapters(diagnosis_as_printed(diagnosis), Figures(skipped=True))
-    chapters = words_as_printed(tuple(chapters), sheet_units(diagnosis.setup))
-    return {chapter.title.removesuffix(" measurement"): chapter.lines for chapter in chapters if chapter.lines}
+    said = sheet_units(diagnosis.setup).said
+    return {
+        chapter.title.removesuffix(" measurement"): tuple(map(said, chapter.lines))
+        for chapter in chapters if chapter.lines
+    }  # fmt: skip
 
 
 def data_line(diagnosis: DiagnosisResult) -> str:

@@ -32,6 +32,7 @@ from truing.diagnosis.result import (
     stated_remedy,
 )
 from truing.diagnosis.sentences import records_words, say, sentence
+from truing.experiments.reach import ended_at, role_of
 from truing.numbers import format_number, pretty
 from truing.report.diagnosis_sizes import (
     TO,
@@ -43,6 +44,7 @@ from truing.report.diagnosis_sizes import (
     wave_name,
 )
 from truing.report.document import unit_as_said
+from truing.units import difference_unit
 
 CERTAIN, LIKELY = 0.005, 0.05
 MUCH, FEW_BLOCKS = 0.5, 0.25
@@ -129,6 +131,16 @@ def about_of(diagnosis: DiagnosisResult, cause: str) -> str:
         return "an input that must lie outside of its tolerance"
     effect = diagnosis.setup.model.known_effects.get(cause)
     return "" if effect is None else prose(effect.why or effect.looks_like)
+
+
+def meaning_of(diagnosis: DiagnosisResult, cause: str) -> str:
+    """Say in its author's words what a cause is, of an input what that one is; nothing where nobody wrote anything."""
+    if not cause.startswith("input:"):
+        return about_of(diagnosis, cause)
+    name, model = cause.removeprefix("input:"), diagnosis.setup.model
+    declared = model.input_fields.get(name)
+    note = declared.spec.note if declared is not None else model.known_conditions[name].note
+    return prose(note)
 
 
 def verdict_word(diagnosis: DiagnosisResult) -> str:
@@ -302,9 +314,28 @@ def what_decides(diagnosis: DiagnosisResult) -> Iterator[str]:
     for sentences in ways if is_result_first(diagnosis) else reversed(ways):
         yield from sentences
     if diagnosis.experiment is not None:
+        yield from _bring_words(diagnosis, diagnosis.experiment)
         yield from _beyond_words(diagnosis, diagnosis.experiment)
     yield from map(tie_text, diagnosis.ties)
     yield from _left_open(diagnosis)
+
+
+def _bring_words(diagnosis: DiagnosisResult, experiment: Experiment) -> Iterator[str]:
+    """Say how far what follows from the work has to be brought before the experiment can begin."""
+    brought = []
+    for course in experiment.courses:
+        covariate = diagnosis.records.covariates.get(course.name)
+        if covariate is None or covariate.role == "time" or role_of(diagnosis.setup, course.name) != "follows":
+            continue
+        away = course.start - ended_at(diagnosis.records, course.name)
+        if abs(away) > BEYOND * float(np.nanmax(covariate.values) - np.nanmin(covariate.values)):
+            unit = experiment.units[course.name]
+            distance = amount_text(readable(Amount(abs(away), difference_unit(unit))), 2)
+            side = "above" if away > 0 else "below"
+            begin = _end(experiment, course.name, course.start)
+            brought.append(f"{spoken(course.name)} to {begin} ({distance} {side} where the record ended)")
+    if brought:
+        yield say("bring first", settings=listed(brought))
 
 
 def _beyond_words(diagnosis: DiagnosisResult, experiment: Experiment) -> Iterator[str]:
@@ -414,19 +445,24 @@ def tie_text(tie: Tie) -> str:
 
 
 def _facts(facts: Sequence[Fact]) -> Iterator[str]:
-    """Say what would have to be so; the two parts of a wave are one amplitude."""
-    values = {fact.quantity: fact.value.value for fact in facts}
+    """Say what to measure, and how well; the two parts of a wave are one amplitude."""
+    known = {fact.quantity: fact for fact in facts}
     for fact in facts:
         effect, _, unknown = fact.quantity.partition(".")
         partner = f"{effect}.{partner_of(unknown)}"
-        note, value, shown = (f" ({fact.note})" if fact.note else ""), fact.value, spoken(fact.quantity)
-        if partner in values:
+        note, shown = (f" ({fact.note})" if fact.note else ""), spoken(fact.quantity)
+        sizes = [fact.value, fact.accuracy]
+        if partner in known:
             if "cosine" in unknown:
                 continue
-            value = replace(value, value=math.hypot(value.value, values[partner]))
+            parts = zip(sizes, (known[partner].value, known[partner].accuracy), strict=True)
+            sizes = [replace(part, value=math.hypot(part.value, other.value)) for part, other in parts]
             shown, note = f"{sight_name(fact.quantity)}, amplitude", ""
-        quantity = f"{shown.removesuffix(' outside of its tolerance')}{note}"
-        yield say("fact", quantity=quantity, size=amount_text(readable(value)))
+        size, accuracy = map(readable, sizes)
+        yield say(
+            "fact", quantity=f"{shown.removesuffix(' outside of its tolerance')}{note}", size=amount_text(size),
+            accuracy=amount_text(accuracy, 2), explanation=together([fact.explanation]),
+        )  # fmt: skip
 
 
 def settings_text(point: NextPoint) -> str:

@@ -169,7 +169,7 @@ def tolerance_table(setup: Setup) -> TableView:
             scatter += [Marked("break", ", "), "mean ", mean]
         targets = ", ".join(on.replace("_", " ") for on in distributions)
         units = SheetUnits(setup.sheet.units)
-        why, spread = units.text(tolerance.why), units.text(setup.spread_of(name).text)
+        why, spread = units.said(tolerance.why), units.said(setup.spread_of(name).text)
         rows.append((name.replace("_", " "), targets, spread, tuple(scatter), with_source(why, tolerance.source)))
     return TableView("How the inputs scatter about their nominal values", columns, tuple(rows), kind="tolerances")
 

@@ -32,8 +32,8 @@ def index_html(listing: Listing, target: Path) -> str:
     title = f"Runs and diagnoses in {folder.name or folder.absolute().name}"
     return page(
         "index.html.j2", title, styles=("sheet.css", "index.css"), title=title, summary=summary_of(listing),
-        listing=listing, most=SHOWN, link=partial(_link, folder.absolute(), target), margin=_margin, number=_number,
-        script=script, digest=digest,
+        listing=listing, most=SHOWN, link=partial(_link, folder.absolute(), target), margin=margin_words,
+        number=_number, script=script, digest=digest,
     )  # fmt: skip
 
 
@@ -58,7 +58,8 @@ def _link(folder: Path, target: Path, sheet: str) -> str:
         return (folder / sheet).as_uri()
 
 
-def _margin(entry: FolderEntry) -> str:
+def margin_words(entry: FolderEntry) -> str:
+    """Say the smallest margin of a run in per cent of its limit, or as a number where the limit is 0."""
     if entry.margin is None:
         return ABSENT
     least = next(one for one in entry.findings if one.margin is not None)

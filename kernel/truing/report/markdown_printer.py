@@ -87,7 +87,7 @@ def _blocks(blocks: Iterable[BlockView], words: Catalogue) -> Iterator[str]:
                 yield _picture(block.title, block.svg)
                 yield f"**{words.said('Figure')} {block.number}.** {escaped(block.caption)}"
             case FigurePair():
-                yield _pair(block)
+                yield _pair(block, words)
             case ResultEntry():
                 yield from _entry(block, words)
             case Fold(title, inner):
@@ -100,11 +100,13 @@ def _picture(title: str, svg: str) -> str:
     return f"![{escaped(title)}](data:image/svg+xml;base64,{base64.b64encode(svg.encode()).decode()})"
 
 
-def _pair(pair: FigurePair) -> str:
+def _pair(pair: FigurePair, words: Catalogue) -> str:
     """Write two drawings side by side, as the cells of a table."""
-    sides = (("Before", pair.before), ("After", pair.after))
-    cells = ["no such figure" if side is None else _picture(f"{word}: {side.title}", side.svg) for word, side in sides]
-    return f"**Figure {pair.number}.** {escaped(pair.title)}\n\n" + _rows([["Before", "After"], ["---", "---"], cells])
+    heads, none = [words.said("Before"), words.said("After")], words.said("No such figure.")
+    sides = zip(heads, (pair.before, pair.after), strict=True)
+    cells = [none if side is None else _picture(f"{word}: {side.title}", side.svg) for word, side in sides]
+    title = f"**{words.said('Figure')} {pair.number}.** {escaped(pair.title)}"
+    return f"{title}\n\n" + _rows([heads, ["---", "---"], cells])
 
 
 def _items(items: Items) -> Iterator[str]:

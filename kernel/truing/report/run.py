@@ -107,12 +107,6 @@ def write_sheet(path: str | Path, make: Callable[[], Document]) -> Path:
     return file
 
 
-def demand_page(file: Path) -> None:
-    """Raise OutputError for the name of a page with figures of two sheets that Word, or nothing, would write."""
-    if file.suffix.lower() not in {*WRITERS} - {".docx"}:
-        raise OutputError(f"{file}: a page of two sheets ends in .html, .md or .pdf")
-
-
 def demand_ending(file: Path) -> str:
     """Return the ending of a sheet's name, in small letters. Raises OutputError for one that no sheet has."""
     ending = file.suffix.lower()

@@ -47,7 +47,8 @@ from truing.report.given import correlation_table, effect_blocks, input_blocks, 
 from truing.report.limits import MOST_CHECKS, check_table, check_value, least_margin
 from truing.report.page_one import MOST_WARNINGS, page_one
 from truing.report.sheet_units import SheetUnits, as_printed, cases_as_printed, sheet_units
-from truing.report.translation import STUDY, catalogue_of, translated
+from truing.report.translation import catalogue_of, translated
+from truing.report.wording import STUDY
 from truing.runs.provenance import Provenance
 from truing.setup import Setup
 from truing.studies.checks import HEADLINES, SHORT
@@ -390,7 +391,7 @@ def _compared(
         ratio = f"{row.ratio:.4f}" if row.ratio is not None else ABSENT
         verdict = ("matches" if row.matches else "differs") + ("" if row.as_stated else ", not as stated")
         settings = ", ".join(f"{name.replace('_', ' ')} = {text}" for name, text in printed.settings.items())
-        said = "as above" if printed.settings == before else units.text(settings) or "defaults"
+        said = "as above" if printed.settings == before else units.said(settings) or "defaults"
         cells = (name, printed.where, *_side_by_side(row, units.unit(printed.unit)), ratio, verdict)
         rows.append((*cells, said) if with_settings else cells)
         before = printed.settings

@@ -18,6 +18,7 @@ from truing.declare.blocks import Block, Cell, Drawing, Table, Words
 from truing.errors import UnitError
 from truing.numbers import digits_in, format_number, pretty, with_unit
 from truing.report.figure_units import brought_over
+from truing.report.wording import READ_ELSEWHERE
 from truing.setup import Setup
 from truing.studies.bench import OutcomeT, printed_in
 from truing.studies.checks import Check, Proposal, check_name, margin_of, requirements
@@ -67,9 +68,15 @@ class SheetUnits:
         except UnitError:
             return unit
 
-    def text(self, text: str) -> str:
+    def said(self, text: str) -> str:
         """Bring the quantities in a sentence over, ranges and tolerances with them; all other words stay."""
         return _QUANTITY.sub(self._quantity, text) if self.system else text
+
+    name = said
+
+    def at(self, place: str) -> SheetUnits:
+        """Return the units of the sentences of a place: what was read elsewhere stays as it stands there."""
+        return AS_DECLARED if place in READ_ELSEWHERE else self
 
     def _quantity(self, match: re.Match[str]) -> str:
         """Return what stands for a number, or several, with a unit: the same where the unit has no counterpart."""
@@ -95,9 +102,9 @@ class SheetUnits:
         if not self.system:
             return block
         if isinstance(block, Words):
-            return replace(block, text=self.text(block.text))
+            return replace(block, text=self.said(block.text))
         if isinstance(block, Drawing):
-            return replace(block, caption=self.text(block.caption))
+            return replace(block, caption=self.said(block.caption))
         return self._table(block)
 
     def _table(self, table: Table) -> Table:
@@ -106,17 +113,17 @@ class SheetUnits:
 
         def cell(index: int, value: Cell) -> Cell:
             if isinstance(value, str):
-                return self.text(value)
+                return self.said(value)
             changed = index < len(units) and shown[index] != units[index]
             return _number(value, units[index], shown[index]) if changed else value
 
         rows = [[cell(index, value) for index, value in enumerate(row)] for row in table.rows]
-        return replace(table, rows=rows, units=shown, note=self.text(table.note))
+        return replace(table, rows=rows, units=shown, note=self.said(table.note))
 
     def drawn(self, make: Callable[[], Any]) -> Any:
         """Draw a figure and bring its axes over."""
         figure = make()
-        return brought_over(figure, self.unit, self.text) if self.system else figure
+        return brought_over(figure, self.unit, self.said) if self.system else figure
 
 
 AS_DECLARED = SheetUnits()
@@ -137,9 +144,9 @@ def as_printed(calculation: Calculation) -> Calculation:
         setup=setup,
         outcomes={name: outcome_as_printed(each, setup) for name, each in calculation.outcomes.items()},
         decided=_decided(calculation.decided, setup, units),
-        warnings=tuple(map(units.text, calculation.warnings)),
-        failed=tuple((row, units.text(reason)) for row, reason in calculation.failed),
-        absent={name: units.text(reason) for name, reason in calculation.absent.items()},
+        warnings=tuple(map(units.said, calculation.warnings)),
+        failed=tuple((row, units.said(reason)) for row, reason in calculation.failed),
+        absent={name: units.said(reason) for name, reason in calculation.absent.items()},
     )
 
 
@@ -150,7 +157,7 @@ def cases_as_printed(cases: CasesTable | None, setup: Setup) -> CasesTable | Non
     units, shown = sheet_units(setup), printing(setup)
 
     def printed(case: CaseResult) -> CaseResult:
-        reason = None if case.reason is None else units.text(case.reason)
+        reason = None if case.reason is None else units.said(case.reason)
         return replace(case, decided=_decided(case.decided, shown, units), reason=reason)
 
     return replace(cases, cases=tuple(map(printed, cases.cases)))
@@ -197,14 +204,14 @@ def _decided(decided: Decided, shown: Setup, units: SheetUnits) -> Decided:
 
 
 def _proposal(proposal: Proposal, printed: Callable[[Check], Check], units: SheetUnits) -> Proposal:
-    changes = tuple((name, units.text(stated), units.text(new)) for name, stated, new in proposal.changes)
+    changes = tuple((name, units.said(stated), units.said(new)) for name, stated, new in proposal.changes)
     return replace(proposal, changes=changes, checks=tuple(map(printed, proposal.checks)))
 
 
 def _check(check: Check, by_hand: str, units: SheetUnits) -> Check:
     """Bring a limit over. A margin is a share of the limit, or a distance: of a level of temperature it is new."""
     if check.flag or check.chance:
-        return replace(check, compared=units.text(check.compared), note=units.text(check.note))
+        return replace(check, compared=units.said(check.compared), note=units.said(check.note))
     unit = by_hand or units.unit(check.unit)
     if not meaning(check.unit).level:  # the distance from a level is a difference
         unit = difference_unit(unit)
@@ -217,7 +224,7 @@ def _check(check: Check, by_hand: str, units: SheetUnits) -> Check:
     elif not check.limit:
         margin *= unit_factor(check.unit) / unit_factor(unit)
     proposed = None if check.proposed is None else _check(check.proposed, by_hand, units)
-    said = replace(check, compared=units.text(check.compared), note=units.text(check.note))
+    said = replace(check, compared=units.said(check.compared), note=units.said(check.note))
     return replace(said, value=value, limit=limit, unit=unit, margin=margin, proposed=proposed)
 
 
@@ -309,5 +316,5 @@ def _label(name: str, value: Any, units: SheetUnits, kinds: tuple[type, ...]) ->
     if name == "units" and isinstance(value, Mapping):
         return {key: units.unit(unit) for key, unit in value.items()}
     if isinstance(value, str):
-        return units.text(value)
+        return units.said(value)
     return relabelled(value, units, kinds)

@@ -10,43 +10,28 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 from typing import Any, Final, TypeAlias
 
 from truing.errors import OutputError
-from truing.report.document import (
-    Banner,
-    BlockView,
-    Chapter,
-    Column,
-    Document,
-    FigurePair,
-    FigureView,
-    Fold,
-    Head,
-    Items,
-    Marked,
-    Paragraph,
-    Piece,
-    ResultEntry,
-    TableView,
-    Text,
-    Value,
-)
+from truing.report.document import Document, Head
+from truing.report.wording import in_words
 from truing.setup import Setup
-from truing.studies.checks import SHORT
 from truing.templating import ENGLISH, template_folder
 
 FOLDER: Final = "words"
 """Beside the files of a plugin: the folder of its words, a TOML file for each language."""
 PLACES: Final = "in"
-"""The table of words that hold in one place alone: in the gap of that name, or in ``DIAGNOSIS`` or ``STUDY``."""
-DIAGNOSIS, STUDY = "diagnosis", "study"
-"""The sheet of a diagnosis, and the chapter of a study: short texts such as "{result} over {covariate}" are the
-kernel's there, and may be anybody's elsewhere."""
+"""The table of words that hold in one place alone: in the gap of that name, or in ``DIAGNOSIS``, ``COMPARISON`` or
+``STUDY``."""
+DIAGNOSIS: Final = "diagnosis"
+"""The sheet of a diagnosis: short texts such as "{result} over {covariate}" are the kernel's there, as they are in
+the chapter of a study, and may be anybody's elsewhere."""
+COMPARISON: Final = "comparison"
+"""The page of two runs, or of two diagnoses."""
 LISTS: Final = frozenset({
     "causes", "conditions", "course", "covariates", "explanation", "explanations", "facts", "inputs", "met", "names",
     "others", "reasons", "results", "settings", "shares", "waves",
@@ -225,13 +210,18 @@ def catalogue_of(setup: Setup, place: str = "") -> Catalogue:
 
     ``place`` is ``DIAGNOSIS`` for the sheet of a diagnosis.
     """
-    language = setup.sheet.language
+    sources = (*(added.file for added in setup.source.added), setup.origin.file)
+    return catalogue(setup.sheet.language, sources, place)
+
+
+def catalogue(language: str, sources: Iterable[str], place: str = "") -> Catalogue:
+    """Return the kernel's words in a language, and those of plugins whose files these are; the last one's count."""
     if language == ENGLISH:
         return ENGLISH_WORDS
     places = {name: dict(words) for name, words in kernel_words(language).items()}
     own: dict[str, str] = {}
     faults: list[str] = []
-    for source in dict.fromkeys((*(added.file for added in setup.source.added), setup.origin.file)):
+    for source in dict.fromkeys(sources):
         file = Path(source).parent / FOLDER / f"{language}.toml"
         if source.endswith(".py") and file.is_file():
             try:
@@ -292,20 +282,7 @@ def translated(document: Document, words: Catalogue) -> Document:
     """Return a document in the language of a catalogue. Its ``lines`` for the terminal stay English."""
     if words.is_english:
         return document
-    head, banner = document.head, document.banner
-    return replace(
-        document,
-        language=words.language,
-        kind=words.said(document.kind),
-        title=words.said(document.title),
-        head=_head(head, words),
-        summary=words.said(document.summary),
-        banner=Banner(banner.mood, words.said(banner.headline), _texts(banner.sentences, words)),
-        alarms=tuple(map(words.said, document.alarms)),
-        front=tuple(_chapter(chapter, words) for chapter in document.front),
-        chapters=tuple(_chapter(chapter, words) for chapter in document.chapters),
-        warnings=tuple(map(words.said, document.warnings)),
-    )
+    return replace(in_words(document, words), language=words.language, head=_head(document.head, words))
 
 
 def _head(head: Head, words: Catalogue) -> Head:
@@ -318,74 +295,3 @@ def _head(head: Head, words: Catalogue) -> Head:
         signatures=tuple((words.said(label), text) for label, text in head.signatures),
         footer=" · ".join(map(words.said, head.footer.split(" · "))),
     )
-
-
-def _chapter(chapter: Chapter, words: Catalogue) -> Chapter:
-    inside = words.at(STUDY if chapter.title.startswith("Study: ") else "")
-    return replace(chapter, title=words.said(chapter.title), blocks=_blocks(chapter.blocks, inside))
-
-
-def _blocks(blocks: Iterable[BlockView], words: Catalogue) -> tuple[BlockView, ...]:
-    return tuple(_block(block, words) for block in blocks)
-
-
-def _block(block: BlockView, words: Catalogue) -> BlockView:
-    match block:
-        case Paragraph(text):
-            return replace(block, text=_text(text, words))
-        case Items("provenance", texts, labels):
-            pairs = zip(texts, labels, strict=True)
-            said = tuple(_text(text, words.at(label)) for text, label in pairs)
-            return replace(block, texts=said, labels=tuple(map(words.said, labels)))
-        case Items(_, texts, labels):
-            return replace(block, texts=_texts(texts, words), labels=tuple(map(words.said, labels)))
-        case TableView():
-            return _table(block, words)
-        case FigureView():  # its drawing was translated when it was drawn
-            return replace(block, title=words.said(block.title), caption=words.said(block.caption))
-        case FigurePair(title):  # each of the two has the words of its own sheet
-            return replace(block, title=words.said(title))
-        case ResultEntry():
-            label, value, method = (_text(text, words) for text in (block.label, block.value, block.method))
-            return replace(block, label=label, value=value, method=method)
-        case Fold(title, inner):
-            return replace(block, title=words.said(title), blocks=_blocks(inner, words))
-
-
-def _table(table: TableView, words: Catalogue) -> TableView:
-    columns = tuple(replace(column, title=_column(column, words)) for column in table.columns)
-    rows = tuple(_texts(row, words) for row in table.rows)
-    return replace(table, title=words.said(table.title), columns=columns, rows=rows, note=_text(table.note, words))
-
-
-def _column(column: Column, words: Catalogue) -> str:
-    return words.said(words.name(column.title))
-
-
-def _texts(texts: Iterable[Text], words: Catalogue) -> tuple[Text, ...]:
-    return tuple(_text(text, words) for text in texts)
-
-
-def _text(text: Text, words: Catalogue) -> Text:
-    """Translate every piece; where a name in files follows, the first piece is what its author calls it."""
-    if not isinstance(text, tuple):
-        return _piece(text, words.said, words)
-    is_label = any(isinstance(piece, Marked) and piece.kind == "bracketed code" for piece in text)
-    first: Callable[[str], str] = words.name if is_label else words.said
-    return tuple(_piece(piece, words.said if index else first, words) for index, piece in enumerate(text))
-
-
-def _piece(piece: Piece, said: Callable[[str], str], words: Catalogue) -> Piece:
-    match piece:
-        case str():
-            return said(piece)
-        case Value(text, unit):
-            return Value(words.said(text), unit)
-        case Marked("strong" | "aside", Value(text, unit)):
-            return replace(piece, text=Value(words.said(text), unit))
-        case Marked("strong" | "aside" | "break", str() as text):
-            return replace(piece, text=words.said(text))
-        case Marked("state", state):
-            return replace(piece, word=words.said(SHORT[str(state)]))  # type: ignore[index]
-        case _:
-            return piece

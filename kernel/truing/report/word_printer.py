@@ -22,6 +22,7 @@ from truing.report.document import (
     Chapter,
     Document,
     Equation,
+    FigurePair,
     FigureView,
     Fold,
     Items,
@@ -94,7 +95,8 @@ def word_of(document: Document) -> bytes:
     _head(page, document)
     for index, chapter in enumerate(document.front):
         _chapter(page, chapter, index, highest=LOWER * document.figure_height)
-    page.add(_signatures(document.head.signatures, page))
+    if document.head.signatures:
+        page.add(_signatures(document.head.signatures, page))
     listed = [*document.front, *document.chapters]
     if document.detail != "short":
         page.add(*_contents(listed, page.words))
@@ -272,6 +274,8 @@ def _add_blocks(page: _Page, blocks: Iterable[BlockView], highest: float) -> Non
         match block:
             case FigureView():
                 _figure(page, block, highest)
+            case FigurePair():
+                _pair(page, block, highest / 2)
             case Fold(title, inner, printed):
                 if printed:
                     page.add(_paragraph(_run(_safe(title)), "Heading2"))
@@ -326,12 +330,35 @@ def _equation(equation: Equation) -> Iterator[str]:
 
 
 def _figure(page: _Page, view: FigureView, highest: float) -> None:
-    """Draw a figure again as pixels, as large as it is drawn where the page has room; say where that fails."""
-    try:
-        stream = BytesIO(draw_png(view.drawing, title=view.title))
-    except PluginError:  # it was drawn once, and a run is not lost for a picture
+    """Write a figure with its caption; say where it cannot be drawn again: a run is not lost for a picture."""
+    if not _picture(page, view, highest):
         page.add(_paragraph(_run(_safe(f"The figure '{view.title}' could not be drawn again."), bold=True)))
         return
+    page.add(_caption(page, view.number, view.caption))
+
+
+def _pair(page: _Page, pair: FigurePair, highest: float) -> None:
+    """Write two figures one below the other; those that were read from a sheet cannot be drawn again."""
+    for word, view in (("Before", pair.before), ("After", pair.after)):
+        page.add(_paragraph(_run(page.words.said(word), color=GREY), shape=KEEP_NEXT))
+        if view is None:
+            page.add(_paragraph(_run(page.words.said("No such figure.")), shape=KEEP_NEXT))
+        elif not _picture(page, view, highest):
+            words = page.words.said("This figure was read from a sheet: it stands there, and cannot be drawn for Word.")
+            page.add(_paragraph(_run(words), shape=KEEP_NEXT))
+    page.add(_caption(page, pair.number, pair.title))
+
+
+def _caption(page: _Page, number: int, text: str) -> str:
+    return _paragraph(_run(f"{page.words.said('Figure')} {number}. ", bold=True) + _run(_safe(text)), "Caption")
+
+
+def _picture(page: _Page, view: FigureView, highest: float) -> bool:
+    """Draw a figure again as pixels, as large as it is drawn where the page has room; tell whether it can be drawn."""
+    try:
+        stream = BytesIO(draw_png(view.drawing, title=view.title))
+    except PluginError:
+        return False
     picture = page.word.add_picture(stream)
     wide, high = (size / PIXELS_PER_INCH * INCH for size in _pixels(stream.getvalue()))
     share = min(1.0, page.width / wide, highest / high)
@@ -339,11 +366,7 @@ def _figure(page: _Page, view: FigureView, highest: float) -> None:
     picture._inline.docPr.set("descr", _safe(plain_text(view.caption)))
     picture._inline.docPr.set("name", f"Figure {view.number}")
     page.word.paragraphs[-1].paragraph_format.keep_with_next = True
-    page.add(
-        _paragraph(
-            _run(f"{page.words.said('Figure')} {view.number}. ", bold=True) + _run(_safe(view.caption)), "Caption"
-        )
-    )
+    return True
 
 
 def _pixels(png: bytes) -> tuple[int, int]:

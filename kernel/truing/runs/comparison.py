@@ -178,15 +178,21 @@ def words_of(change: Change) -> tuple[str, str, str, str, str]:
 
 def amount_of(change: Change) -> str:
     """Say by how much something changed: +12.5 %, x 40, now FAILS, new, gone; nothing where there is no number."""
+    return ", ".join(amounts_of(change))
+
+
+def amounts_of(change: Change) -> tuple[str, ...]:
+    """Say by how much something changed, part by part."""
     if change.before is None:
-        return "new"
+        return ("new",)
     if change.after is None:
-        return "gone"
+        return ("gone",)
     if change.kind == "studies":
-        return f"{counted(differing(change.before, change.after), 'value differs', 'values differ')} (see results.json)"
+        count = differing(change.before, change.after)
+        return (f"{counted(count, 'value differs', 'values differ')} (see results.json)",)
     flip = f"now {'passes' if change.after['passed'] else SHORT[change.after['state']]}" if change.flipped else ""
     parts = [flip, _moved(change), _series(change), _limit(change), _scatter(change), _interval(change)]
-    return ", ".join(part for part in parts if part)
+    return tuple(filter(None, parts))
 
 
 def _moved(change: Change) -> str:

@@ -162,7 +162,10 @@ def _use(diagnosis: DiagnosisResult) -> dict[str, Any]:
         "ties": [
             {
                 "explanations": list(tie.explanations),
-                "facts": [{**_named(fact, *facts), **_plain(fact.value)} for fact in tie.facts],
+                "facts": [
+                    {**_named(fact, *facts), **_plain(fact.value), "accuracy": _plain(fact.accuracy)["value"]}
+                    for fact in tie.facts
+                ],
             }
             for tie in diagnosis.ties
         ],

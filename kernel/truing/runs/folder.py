@@ -15,19 +15,14 @@ import numpy as np
 
 from truing.atomic import place_folder, recover
 from truing.calculation import Calculation
-from truing.diagnosis.records import file_labels
-from truing.diagnosis.result import DiagnosisResult
 from truing.errors import OutputError, PluginError, UnknownPluginError
 from truing.measurements import EXCEL, INERT
 from truing.runs.documents import SCHEMA, large_arrays
-from truing.runs.extension import extended_text
 from truing.runs.inputs_written import complete_inputs
-from truing.runs.new_effect import new_effect_source
 from truing.runs.provenance import Provenance
-from truing.runs.spreadsheet import cases_parquet, diagnosis_tables, diagnosis_workbook, run_tables, run_workbook
+from truing.runs.spreadsheet import cases_parquet, run_tables, run_workbook
 from truing.setup import Setup
 from truing.studies.bench import Outcome, files_of
-from truing.units import from_si
 
 RUN_SCHEMA = "truing.run/1"
 FolderKind = Literal["run", "diagnosis"]
@@ -157,7 +152,7 @@ def _loaded(folder: Path, kind: FolderKind) -> dict[str, Any]:
     return document
 
 
-# What stands beside the documents: arrays, tables for a spreadsheet, the extended model, files that studies leave
+# What stands beside the document of a run: arrays, tables for a spreadsheet, files that studies leave
 
 
 def run_files(
@@ -181,20 +176,6 @@ def run_files(
     if large := large_arrays(calculation):
         files["arrays.npz"] = npz_bytes(large)
     return files | study_files(calculation.outcomes, files)
-
-
-def diagnosis_files(
-    diagnosis: DiagnosisResult, sheets: Mapping[str, str | bytes], folder: Path, *, xlsx: bool = False
-) -> dict[str, str | bytes]:
-    """Return the files of a diagnosis by name: its sheets, tables and curves, the extension where there is one.
-
-    Tables are CSV; ``xlsx`` adds a workbook.
-    """
-    extension = {"extended.toml": extended_text(diagnosis, folder), "new_effect.py": new_effect_source(diagnosis)}
-    curves = npz_bytes(curve_arrays(diagnosis))
-    book = {"diagnosis.xlsx": diagnosis_workbook(diagnosis)} if xlsx else {}
-    extension = {name: text for name, text in extension.items() if text}
-    return {"arrays.npz": curves, **sheets, **diagnosis_tables(diagnosis), **extension, **book}
 
 
 NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,99}", re.ASCII)
@@ -226,21 +207,3 @@ KEPT = (
     "results.csv", "cases.csv", "cases.parquet", "results.xlsx",
 )  # fmt: skip
 """Names that a run folder uses itself, or may use."""
-
-
-def data_digests(diagnosis: DiagnosisResult) -> dict[str, str]:
-    """Return the SHA-256 of every data file by the name it is given on the sheet."""
-    records = diagnosis.records
-    labels = zip(file_labels(records.files), records.files, strict=True)
-    return {label: records.digests.get(file, "") for label, file in labels}
-
-
-def curve_arrays(diagnosis: DiagnosisResult) -> dict[str, Any]:
-    """Return what arrays.npz holds: per result measured, before and after in its printed unit; file, line and run."""
-    records = diagnosis.records
-    arrays: dict[str, Any] = {"file": records.file_of, "line": records.lines, "run": records.run_of}
-    for curves in diagnosis.curves:
-        unit = diagnosis.setup.print_unit(curves.result)
-        for name in ("measured", "before", "after"):
-            arrays[f"{curves.result}.{name}"] = from_si(getattr(curves, name), unit)
-    return arrays

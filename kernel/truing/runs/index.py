@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import tomllib
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -111,12 +113,9 @@ def list_folder(folder: Path) -> Listing:
 def _walk(root: Path, path: Path, depth: int) -> Iterator[FolderEntry | Other]:
     """Yield what a folder is or holds; one with neither run nor diagnosis in it is said to be foreign."""
     name = path.relative_to(root).as_posix()
-    kind = next((kind for kind, (document, _) in DOCUMENTS.items() if (path / document).exists()), None)
-    if kind is not None:
-        try:
-            yield _entry(path, name if name != "." else root.absolute().name, kind)
-        except (_DamagedError, RecursionError) as fault:
-            yield Other(name, str(fault) or "its documents are nested too deeply")
+    made = entry_at(path, name if name != "." else root.absolute().name)
+    if made is not None:
+        yield made
         return
     try:
         inside = sorted(os.scandir(path), key=lambda child: child.name)
@@ -137,6 +136,17 @@ def _walk(root: Path, path: Path, depth: int) -> Iterator[FolderEntry | Other]:
             yield from _walk(root, path / child.name, depth + 1)
     if depth and not folders:
         yield Other(name, "holds no run and no diagnosis" if inside else "is empty")
+
+
+def entry_at(path: Path, name: str) -> FolderEntry | Other | None:
+    """Read the run or diagnosis that a folder is; None where it is neither, Other where it cannot be read."""
+    kind = next((kind for kind, (document, _) in DOCUMENTS.items() if (path / document).exists()), None)
+    if kind is None:
+        return None
+    try:
+        return _entry(path, name, kind)
+    except (_DamagedError, RecursionError) as fault:
+        return Other(name, str(fault) or "its documents are nested too deeply")
 
 
 def _entry(path: Path, name: str, kind: FolderKind) -> FolderEntry:
@@ -229,12 +239,29 @@ def _date(path: Path) -> tuple[str, float | None]:
     return made.strftime("%Y-%m-%d %H:%M"), stamp
 
 
+_SHEET = re.compile(r"^\[sheet\][^\n]*\n(?:(?!\[)[^\n]*\n?)*", re.MULTILINE)
+"""The lines of the section of the sheet, in a text without quotations over several lines."""
+
+
 def _head(path: Path) -> dict[str, str]:
     """Return project, drawing and revision of the inputs file beside the documents."""
     try:
-        stated = tomllib.loads(path.read_text(encoding="utf-8")).get("sheet")
+        text = path.read_text(encoding="utf-8")
+        stated = _sheet_of(text)
     except (OSError, ValueError, RecursionError):
         return {}
     if not isinstance(stated, Mapping):
         return {}
     return {name: str(stated[name]) for name in HEAD if str(stated.get(name) or "").strip()}
+
+
+def _sheet_of(text: str) -> Any:
+    """Return the section of the sheet. It is read alone where that can be done: a long file takes twenty times as long.
+
+    Raises ValueError for what is no TOML.
+    """
+    lines = _SHEET.search(text) if '"""' not in text and "'''" not in text else None
+    if lines is not None:
+        with suppress(ValueError):
+            return tomllib.loads(lines[0]).get("sheet")
+    return tomllib.loads(text).get("sheet")

@@ -9,7 +9,6 @@ from math import exp, inf
 from typing import Any, Literal
 
 import numpy as np
-from scipy.optimize import Bounds, LinearConstraint, brentq, milp, minimize, nnls
 from scipy.special import ndtri
 
 from truing.arrays import Matrix, one_thread
@@ -21,6 +20,7 @@ from truing.declare.spreads import Band, Grade, Zone, shift_per_width
 from truing.errors import TruingError, UsageError
 from truing.evaluate import acting_inputs
 from truing.fits import GRADES
+from truing.heavy import optimize
 from truing.prices import price_answers, price_of
 from truing.setup import Setup
 from truing.studies.bench import Bench
@@ -811,7 +811,7 @@ def largest_variance(demand: Demand, mean: float) -> float | None:
         return None
     if short(12.0) >= 0:
         return float("inf")
-    log_sd: float = brentq(short, -1.5, 12.0, xtol=1e-15, rtol=1e-14)
+    log_sd: float = optimize.brentq(short, -1.5, 12.0, xtol=1e-15, rtol=1e-14)
     return float((reach * 10.0**log_sd) ** 2)
 
 
@@ -851,9 +851,9 @@ def _solve(problem: AllocationProblem, bounds: Mapping[str, float], margin: floa
     costs = np.array([part.cost(grade) for _, part, grade in choices])
     together = _Together.of(problem, [(name, grade) for name, _, grade in choices])
     one_each = np.array([[float(name == part) for name, *_ in choices] for part in problem.parts])
-    constraints: list[Any] = [LinearConstraint(np.pad(one_each, ((0, 0), (0, together.size))), 1.0, 1.0)]
+    constraints: list[Any] = [optimize.LinearConstraint(np.pad(one_each, ((0, 0), (0, together.size))), 1.0, 1.0)]
     if together.size:
-        constraints.append(LinearConstraint(together.products(), 0.0, 0.0))
+        constraints.append(optimize.LinearConstraint(together.products(), 0.0, 0.0))
     for demand, bound in bounds.items():
         alone, pairs, rest = together.variances(demand)
         room = bound * (1 - margin) - problem.fixed[demand] - rest
@@ -861,11 +861,11 @@ def _solve(problem: AllocationProblem, bounds: Mapping[str, float], margin: floa
             return None
         scale = room if room > 0 else bound
         added = np.array([part.added(demand, grade) for _, part, grade in choices]) + alone
-        constraints.append(LinearConstraint(np.append(added, pairs)[None] / scale, -np.inf, room / scale))
-    answer = milp(
+        constraints.append(optimize.LinearConstraint(np.append(added, pairs)[None] / scale, -np.inf, room / scale))
+    answer = optimize.milp(
         np.append(costs, np.zeros(together.size)) / np.abs(costs).max(),
         integrality=np.append(np.ones(len(choices)), np.zeros(together.size)).astype(np.int64),
-        bounds=Bounds(0, 1),
+        bounds=optimize.Bounds(0, 1),
         constraints=constraints,
         options={"mip_rel_gap": 0.0},
     )
@@ -1119,8 +1119,8 @@ def _solved(objective: Any, start: Matrix, ends: tuple[Matrix, Matrix], constrai
     """Return where SLSQP ends, inside the bounds; None where it loses itself."""
     held: Any = {"type": "ineq", **constraint}
     options: Any = {"ftol": 1e-13, "maxiter": 300}
-    answer = minimize(
-        objective, start, jac=True, method="SLSQP", bounds=Bounds(*ends), constraints=held, options=options
+    answer = optimize.minimize(
+        objective, start, jac=True, method="SLSQP", bounds=optimize.Bounds(*ends), constraints=held, options=options
     )
     x = np.clip(np.asarray(answer.x, dtype=float), *ends)
     return x if np.isfinite(x).all() else None
@@ -1141,5 +1141,5 @@ def _residual(search: AllocationSearch, x: Matrix) -> float:
     size = float(np.linalg.norm(gradient))
     if not size:
         return 0.0
-    left = float(nnls(np.array(forces).T, gradient)[1]) if forces else size
+    left = float(optimize.nnls(np.array(forces).T, gradient)[1]) if forces else size
     return left / size

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from scipy.optimize import linear_sum_assignment, root
 
 from truing.arrays import Matrix
 from truing.declare.batch import watching
@@ -20,6 +19,7 @@ from truing.declare.fields import Axis, read, with_values
 from truing.declare.near_miss import near_miss
 from truing.errors import ConvergenceError, UnitError, UsageError
 from truing.evaluate import acting_inputs
+from truing.heavy import optimize
 from truing.setup import Setup
 from truing.studies.bench import Bench, Outcome
 from truing.studies.drawings import BLUE, GREY, WIDTH, labelled
@@ -179,7 +179,9 @@ def _units(setup: Setup, dynamics: Dynamics[Any, Any, Any]) -> dict[str, str]:
 
 def _paired(before: Complex, after: Complex) -> Complex:
     """Return poles in the order of those before, each with the nearest one."""
-    return after[linear_sum_assignment(np.abs(before[:, None] - after))[1]] if len(before) == len(after) else after
+    if len(before) != len(after):
+        return after
+    return after[optimize.linear_sum_assignment(np.abs(before[:, None] - after))[1]]
 
 
 # The linear model: differences of law and results about an operating point, many machines in one call
@@ -296,7 +298,7 @@ def equilibrium(dynamics: Dynamics[Any, Any, Any], inputs: Any, start: Matrix) -
         return law[:, -1], _slopes(law, [STEP] * len(states))[0]
 
     with np.errstate(all="ignore"):
-        solved = root(rate, start / sizes, jac=True, method="lm", options={"xtol": 1e-14, "ftol": 1e-14}).x
+        solved = optimize.root(rate, start / sizes, jac=True, method="lm", options={"xtol": 1e-14, "ftol": 1e-14}).x
         left, slopes = rate(solved)
     allowed = STILL * (np.abs(slopes) @ (1 + np.abs(solved)))
     moving = [name for name, is_left in zip(dynamics.state_fields, ~(np.abs(left) <= allowed), strict=True) if is_left]

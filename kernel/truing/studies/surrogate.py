@@ -18,7 +18,6 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from scipy.optimize import minimize
 
 from truing.arrays import Matrix, one_thread
 from truing.declare.blocks import Block, Drawing, Table, Words
@@ -27,7 +26,7 @@ from truing.errors import DeclarationError, UnitError, UsageError
 from truing.evaluate import Rows, acting_inputs, evaluate_rows
 from truing.executors import in_order, keepable, stays_here
 from truing.formulas import Formula, evaluate, evaluate_quantities, parse
-from truing.heavy import gaussian_kernels, gaussian_process, learning_exceptions, stats
+from truing.heavy import gaussian_kernels, gaussian_process, learning_exceptions, optimize, stats
 from truing.packed import Packed, pack, unpack
 from truing.setup import Setup
 from truing.studies.bench import Bench, Outcome, StepProgress
@@ -596,7 +595,8 @@ def fitted(places: Matrix, values: Matrix, study: Surrogate, seed: int, done: Ca
     kernel = gaussian_kernels.ConstantKernel(10.0, AMPLITUDES) * shape + gaussian_kernels.WhiteKernel(1e-6, NOISES)
 
     def searched(likelihood: Any, start: Any, bounds: Any) -> tuple[Any, float]:
-        optimum: Any = minimize(likelihood, start, method="L-BFGS-B", jac=True, bounds=bounds)  # as scikit-learn does
+        # as scikit-learn does
+        optimum: Any = optimize.minimize(likelihood, start, method="L-BFGS-B", jac=True, bounds=bounds)
         done()
         return optimum.x, optimum.fun
 

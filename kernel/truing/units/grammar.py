@@ -92,6 +92,7 @@ def normalised(text: str) -> str:
     return re.sub(r"\bdeg(?:rees?)?\.?\s*([CF])\b|°\s+([CF])\b", lambda match: "deg" + (match[1] or match[2]), plain)
 
 
+@lru_cache(maxsize=2048)
 def split(text: str) -> Quantity:
     """Take a text apart: "3136 N*m" is Quantity(3136.0, "N*m"), "5" is Quantity(5.0, "").
 

@@ -1,6 +1,7 @@
 """What a unit text means: its size in SI, its dimension, its angle exponent; and the one pint registry behind it.
 
-pint is asked for single full names only ("newton"), never for a user's text.
+What the units of our symbols are stands in ``sizes``. pint is asked for other single full names only ("furlong"), never
+for a user's text.
 """
 
 from __future__ import annotations
@@ -15,12 +16,13 @@ from hashlib import sha256
 from threading import Lock
 from typing import Any
 
-import pint
 from platformdirs import user_cache_path
 
 from truing.errors import UnitError
+from truing.heavy import pint
 from truing.units import grammar, names
 from truing.units.grammar import shown
+from truing.units.sizes import SIZES
 
 _BUILDING = Lock()
 Dimension = tuple[tuple[str, Fraction], ...]
@@ -115,7 +117,7 @@ def _named(name: str) -> Meaning:
     prefix, bare = split_prefix(name)
     if bare in names.SYMBOLS:
         definition = names.SYMBOLS[bare][0]
-        own = meaning(definition) if not definition.isidentifier() else _from_pint(definition)
+        own = meaning(definition) if not definition.isidentifier() else _of_size(*SIZES[definition])
         power = names.PREFIXES[prefix] if prefix else 0
         factor = own.factor * 10.0**power if power >= 0 else own.factor / 10.0**-power
         return _made(factor, own.dimension, own.angle)
@@ -165,14 +167,16 @@ def _is_quantity(name: str) -> bool:
 def _from_pint(name: str) -> Meaning:
     size, base = registry().get_base_units(name)
     factor: Any = size
-    dimension, angle = [], Fraction(0)
-    for unit, exponent in dict(base._units).items():
-        exact = Fraction(str(exponent)).limit_denominator(12)
-        if unit == "radian":
-            angle = exact
-        elif unit != "count":
-            dimension.append((unit, exact))
-    return _made(float(factor), tuple(sorted(dimension)), angle)
+    bases = (f"{unit}^{Fraction(str(exponent)).limit_denominator(12)}" for unit, exponent in dict(base._units).items())
+    return _of_size(float(factor), " ".join(bases))
+
+
+def _of_size(factor: float, bases: str) -> Meaning:
+    """Make a meaning of a size in SI and of base units with their exponents ("kilogram meter second^-2")."""
+    exponents = {unit: Fraction(exponent or 1) for unit, _, exponent in (base.partition("^") for base in bases.split())}
+    angle = exponents.pop("radian", Fraction(0))
+    exponents.pop("count", None)
+    return _made(factor, tuple(sorted(exponents.items())), angle)
 
 
 def _near(name: str) -> str:

@@ -17,7 +17,7 @@ from truing.units.meaning import Meaning, meaning
 
 UnitSystem: TypeAlias = Literal["", "SI", "inch"]
 """Millimetre and newton, or inch and pound (US customary); "" leaves every unit as it is declared."""
-UNIT_SYSTEMS = ("SI", "inch")
+UNIT_SYSTEMS: tuple[UnitSystem, ...] = ("SI", "inch")
 
 WHOLE: Mapping[str, Mapping[str, str]] = {
     "inch": {

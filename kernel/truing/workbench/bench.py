@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import AsyncIterator, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache, partial
 from pathlib import Path
@@ -15,13 +15,18 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from starlette.requests import Request
 from starlette.responses import HTMLResponse, JSONResponse
 
+from truing.atomic import file_appearing
 from truing.errors import UsageError
 from truing.templating import template_folder
 from truing.workbench.places import inside
-from truing.workbench.workers import PATIENCE, Job, TaskError, Workers, fault_of
+from truing.workbench.workers import PATIENCE, Job, OvertakenError, TaskError, Workers, fault_of
 
-LARGEST_BODY = 20_000_000
-"""Bytes of a request that is no upload of a measured file."""
+LARGEST_BODY = 4_000_000
+"""Bytes of a request that is no upload of a measured file: as data of Python it takes up to thirty times as many."""
+LARGEST_UPLOAD = 500_000_000
+"""Bytes of an uploaded file: ten million rows."""
+MOST_ASKED = 30
+"""Questions that may wait at the same time; each holds a thread, and files are read by others."""
 
 
 @dataclass(frozen=True)
@@ -32,6 +37,9 @@ class Bench:
     workers: Workers
     confirmed: set[str] = field(default_factory=set)
     """The plugins in files that the user let run, by path, as long as the server lives."""
+    kept: dict[Any, Any] = field(default_factory=dict)
+    """Answers that stay true as long as the server lives, or as long as their key says: figures, names of programs."""
+    asked: anyio.CapacityLimiter = field(default_factory=lambda: anyio.CapacityLimiter(MOST_ASKED))
 
     def path(self, name: str) -> Path:
         """Return a file of the folder. Raises UsageError for one outside."""
@@ -46,11 +54,17 @@ class Bench:
             raise UnconfirmedError(name)
         return path
 
-    async def ask(self, name: str, *, patience: float = PATIENCE, **arguments: Any) -> Any:
-        """Do a quick task in a worker. Raises TaskError."""
-        return await anyio.to_thread.run_sync(partial(self.workers.ask, name, patience=patience, **arguments))
+    async def ask(self, name: str, /, *, patience: float = PATIENCE, group: str = "", **arguments: Any) -> Any:
+        """Do a quick task in a worker; a newer question of the same ``group`` ends this one.
 
-    def start(self, name: str, title: str, about: str, **arguments: Any) -> Job:
+        Raises TaskError; OvertakenError where a newer one came.
+        """
+        if group:
+            arguments["group"] = group
+        question = partial(self.workers.ask, name, patience=patience, **arguments)
+        return await anyio.to_thread.run_sync(question, limiter=self.asked)
+
+    def start(self, name: str, title: str, about: str, /, **arguments: Any) -> Job:
         """Begin a job."""
         return self.workers.start(name, title, about, **arguments)
 
@@ -77,23 +91,66 @@ def page(request: Request, template: str, status: int = 200, **words: Any) -> HT
 
 
 async def body_of(request: Request) -> Mapping[str, Any]:
-    """Return the JSON of a request. Raises UsageError where it is none, or too much."""
-    if request.headers.get("content-type", "").partition(";")[0] != "application/json":
+    """Return the JSON of a request. Raises UsageError where it is none, says something twice, or is too much."""
+    if request.headers.get("content-type", "").partition(";")[0].strip().lower() != "application/json":
         raise UsageError("the request holds no JSON")
-    size = 0
-    parts: list[bytes] = []
-    async for part in request.stream():
-        size += len(part)
-        if size > LARGEST_BODY:
-            raise UsageError("the request is too large")
-        parts.append(part)
+    content = b"".join([part async for part in bounded(request, LARGEST_BODY)])
     try:
-        document = await anyio.to_thread.run_sync(json.loads, b"".join(parts))
+        document = await anyio.to_thread.run_sync(_json, content)
     except (ValueError, RecursionError):
         raise UsageError("the request holds no JSON") from None
     if not isinstance(document, dict):
         raise UsageError("the request holds no JSON object")
     return document
+
+
+def _json(content: bytes) -> Any:
+    """Read JSON as the standard has it: no name twice in an object, no NaN. Raises ValueError."""
+
+    def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        document = dict(pairs)
+        if len(document) != len(pairs):
+            raise ValueError("a name stands twice in an object")
+        return document
+
+    def no_number(word: str) -> Any:
+        raise ValueError(f"{word} is no number")
+
+    return json.loads(content.decode("utf-8"), object_pairs_hook=once, parse_constant=no_number)
+
+
+async def bounded(request: Request, most: int) -> AsyncIterator[bytes]:
+    """Give the body of a request part by part. Raises TooLargeError as soon as it is known to be longer than most."""
+    said = request.headers.get("content-length", "0")
+    if not said.isascii() or not said.isdigit() or len(said) > 15 or int(said) > most:
+        raise TooLargeError(most)
+    size = 0
+    async for part in request.stream():
+        size += len(part)
+        if size > most:
+            raise TooLargeError(most)
+        yield part
+
+
+async def received(request: Request, path: Path, most: int = LARGEST_UPLOAD, *, replace: bool = False) -> int:
+    """Write the body of a request to a file of the folder, which appears whole or not at all; return its bytes.
+
+    ``path`` is one that ``Bench.path`` gave. Raises UsageError where the body is too large or ends early, OutputError
+    where the file cannot be written, or is there already and is not to be replaced.
+    """
+    size = 0
+    with file_appearing(path, replace=replace) as stream:
+        async for part in bounded(request, most):
+            size += len(part)
+            await anyio.to_thread.run_sync(stream.write, part)
+    return size
+
+
+class TooLargeError(UsageError):
+    """A request that brings more than it may."""
+
+    def __init__(self, most: int) -> None:
+        super().__init__(f"the request brings more than the {most / 1e6:g} MB that are taken")
 
 
 def word(document: Mapping[str, Any], name: str, default: str | None = None) -> str:
@@ -114,6 +171,10 @@ def names(document: Mapping[str, Any], name: str) -> list[str]:
 
 def faulty(error: Exception, status: int = 422) -> JSONResponse:
     """Answer with what is wrong, fault by fault."""
+    if isinstance(error, OvertakenError):
+        return JSONResponse({"faults": error.faults, "overtaken": True}, 409)
+    if isinstance(error, TooLargeError):
+        status = 413
     if isinstance(error, UnconfirmedError):
         return JSONResponse({"faults": [fault_of(str(error))], "confirm": error.file}, 409)
     faults = error.faults if isinstance(error, TaskError) else [fault_of(str(error))]

@@ -18,6 +18,7 @@ from starlette.routing import Route
 from truing.atomic import alone, write_files
 from truing.errors import OutputError, UsageError
 from truing.workbench.bench import Bench, bench_of, body_of, digest_of, page, word
+from truing.workbench.picking import calculation_of
 from truing.workbench.places import DATA, below, files_below
 
 LARGEST_TEXT = 2_000_000
@@ -34,7 +35,7 @@ async def edit_page(request: Request) -> Response:
     path = bench.path(request.query_params.get("file", ""))
     name = below(bench.root, path)
     opened = await bench.ask("form.opened", path=str(path), called=name)
-    plugin = request.query_params.get("plugin", "") or opened["plugin"]
+    plugin = request.query_params.get("plugin", "") or await anyio.to_thread.run_sync(calculation_of, bench, path)
     if not plugin:
         raise UsageError(f'{name} names no calculation; write plugin = "NAME" in its first line')
     form = await bench.ask("form.described", plugin=bench.plugin(plugin))

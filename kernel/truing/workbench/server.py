@@ -1,29 +1,23 @@
-"""The workbench as a web application, and the server that runs it until Ctrl-C."""
+"""The workbench as a web application: every page and call, and what is said where one fails."""
 
 from __future__ import annotations
 
-import socket
-from collections.abc import AsyncIterator, Callable
-from contextlib import asynccontextmanager
 from pathlib import Path
-from typing import Any
 
 from starlette.applications import Starlette
 from starlette.exceptions import HTTPException
-from starlette.requests import Request
+from starlette.requests import ClientDisconnect, Request
 from starlette.responses import Response
 from starlette.routing import Mount
 from starlette.staticfiles import StaticFiles
 
-from truing.errors import OutputError, TruingError
-from truing.heavy import Later
+from truing.errors import TruingError, UsageError
 from truing.templating import template_folder
+from truing.texts import one_line
 from truing.workbench import editing, jobs, keeping, making, measuring, picking, seeing
-from truing.workbench.bench import Bench, faulty, page
+from truing.workbench.bench import Bench, UnconfirmedError, faulty, page
 from truing.workbench.guard import Guard, Key
 from truing.workbench.workers import TaskError, Workers, fault_of
-
-uvicorn: Any = Later("uvicorn")
 
 
 def application(root: Path, key: Key, hosts: frozenset[str], workers: Workers) -> Guard:
@@ -39,17 +33,16 @@ def application(root: Path, key: Key, hosts: frozenset[str], workers: Workers) -
     ]
     app = Starlette(
         routes=[*routes, Mount("/static", StaticFiles(directory=template_folder() / "workbench" / "static"))],
-        exception_handlers={TruingError: _said, TaskError: _said, HTTPException: _missing},
-        lifespan=_lifespan,
+        exception_handlers={
+            TruingError: _said,
+            TaskError: _said,
+            HTTPException: _missing,
+            ClientDisconnect: _too_slow,
+            Exception: _broken,
+        },
     )
     app.state.bench = Bench(root.resolve(), workers)
     return Guard(app, key, hosts)
-
-
-@asynccontextmanager
-async def _lifespan(app: Starlette) -> AsyncIterator[None]:
-    yield
-    app.state.bench.workers.close()
 
 
 def _wants_json(request: Request) -> bool:
@@ -59,6 +52,8 @@ def _wants_json(request: Request) -> bool:
 async def _said(request: Request, error: Exception) -> Response:
     if _wants_json(request):
         return faulty(error)
+    if isinstance(error, UnconfirmedError):
+        return page(request, "confirm.html.j2", 409, title=f"Run {error.file}?", file=error.file)
     faults = error.faults if isinstance(error, TaskError) else [fault_of(str(error))]
     return page(request, "fault.html.j2", 422, title="This cannot be shown", faults=faults)
 
@@ -71,32 +66,10 @@ async def _missing(request: Request, error: Exception) -> Response:
     return page(request, "fault.html.j2", status, title="Not found", faults=[fault])
 
 
-def serve(root: Path, *, host: str, port: int, memory: int, ready: Callable[[str], None]) -> None:
-    """Serve a folder until it is interrupted; ``ready`` gets the address once pages can be opened.
+async def _too_slow(request: Request, error: Exception) -> Response:
+    return faulty(UsageError("the request did not come in time, or not whole"), 408)
 
-    Raises OutputError where the port is taken.
-    """
-    listening = socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET, socket.SOCK_STREAM)
-    try:
-        listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        listening.bind((host, port))
-    except OSError as error:
-        listening.close()
-        raise OutputError(f"{host}:{port} cannot be opened: {error.strerror or error}; name another --port") from None
-    port = listening.getsockname()[1]
-    key, shown = Key(port), f"[{host}]" if ":" in host else host
-    hosts = frozenset(f"{name}:{port}" for name in {shown, "localhost", "127.0.0.1"})
-    workers = Workers(memory)
-    app = application(root, key, hosts, workers)
-    config = uvicorn.Config(
-        app, log_level="error", timeout_graceful_shutdown=1, server_header=False, date_header=False, lifespan="on",
-        h11_max_incomplete_event_size=64_000,
-    )  # fmt: skip
-    server = uvicorn.Server(config)
-    listening.listen(128)
-    ready(f"http://{shown}:{port}/?token={key.token}")
-    try:
-        server.run(sockets=[listening])
-    finally:
-        workers.close()
-        listening.close()
+
+async def _broken(request: Request, error: Exception) -> Response:
+    words = one_line(f"{type(error).__name__}: {error}")
+    return faulty(UsageError(f"{words} (this is a fault of the workbench; please report it)"), 500)

@@ -7,14 +7,17 @@ from typing import Any
 
 from truing.heavy import Later
 
-MODULES = ("diagnoses", "drafts", "figures", "form", "models", "records", "runs")
+MODULES = ("diagnoses", "drafts", "figures", "form", "kept", "models", "records", "runs")
 """The modules whose public functions the server may call by the name ``module.function``, and no others."""
 
 
-def task(name: str) -> Callable[..., Any]:
-    """Return the function of a task. Raises KeyError for a name that is none."""
+HOME = "truing.workbench.tasks"
+
+
+def task(name: str, home: str = HOME) -> Callable[..., Any]:
+    """Return the function of a task; ``home`` is the package of its module. Raises KeyError for a name that is none."""
     module, _, function = name.partition(".")
-    if module not in MODULES or function.startswith("_"):
+    if module not in Later(home).MODULES or function.startswith("_"):
         raise KeyError(name)
-    known: Callable[..., Any] = getattr(Later(f"truing.workbench.tasks.{module}"), function)
+    known: Callable[..., Any] = getattr(Later(f"{home}.{module}"), function)
     return known

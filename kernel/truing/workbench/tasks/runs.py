@@ -1,14 +1,12 @@
-"""Runs: made from a file, and listed."""
+"""Runs: made from a file."""
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from truing.api.model import LoadedModel
 from truing.kernel import offer_of
-from truing.runs.index import list_folder
 from truing.studies.bench import Progress
 
 
@@ -19,8 +17,3 @@ def run(plugin: str, file: str, output: str, root: str, progress: Progress) -> d
     made = model.run(Path(file), output=Path(output), progress=progress)
     name = Path(output).relative_to(root).as_posix()
     return {"folder": name, "verdict": made.verdict, "sheet": f"{name}/sheet.html"}
-
-
-def listed(root: str) -> list[dict[str, Any]]:
-    """Return the runs and diagnoses below a folder, the newest first."""
-    return [asdict(entry) for entry in list_folder(Path(root)).entries]
