@@ -1,4 +1,4 @@
-"""The form of an inputs file in a browser: typing, answers, undo, the file as others change it, two tabs, two servers."""
+"""The form of an inputs file in a browser: typing, answers, undo, conflicts, two tabs, two servers."""
 
 from __future__ import annotations
 

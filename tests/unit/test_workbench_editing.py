@@ -116,7 +116,8 @@ def state(
 def test_a_field_answers_with_the_sentence_of_the_command_line_or_with_its_value() -> None:
     path = ["inputs", "crank_radius"]
     good = state({"path": path, "value": "36 cm"})
-    assert good["fields"]["inputs/crank_radius"] == {"value": "36 cm", "line": 33, "answer": "= 0.36 m"}
+    line = 1 + next(n for n, said in enumerate(good["text"].split("\n")) if said.startswith("crank_radius"))
+    assert good["fields"]["inputs/crank_radius"] == {"value": "36 cm", "line": line, "answer": "= 0.36 m"}
     bad = state({"path": path, "value": '3"; [x]\n'})
     assert bad["fields"]["inputs/crank_radius"]["value"] == '3"; [x]\n'
     with pytest.raises(InputError) as caught:

@@ -1,4 +1,4 @@
-"""The fields of a model's inputs file, group by group: what each is, in which units, within which bounds, its default."""
+"""The fields of a model's inputs file, group by group: what each is, its units, bounds and default."""
 
 from __future__ import annotations
 
@@ -252,9 +252,7 @@ def _conditions(model: Model[Any, Any]) -> FieldGroup:
 def _studies(model: Model[Any, Any]) -> FieldGroup:
     names = [study.name for study in model.studies]
     run = Field(("studies", "run"), "Studies that run", "list", default=", ".join(names), choices=tuple(names))
-    seed = Field(
-        ("studies", "seed"), "Where the random numbers begin", "number", default=str(DEFAULT_SEED), bounds="≥ 0"
-    )
+    seed = Field(("studies", "seed"), "Random numbers begin with", "number", default=str(DEFAULT_SEED), bounds="≥ 0")
     parts = [Part([run, seed] if names else [seed]), *(_study(study) for study in model.studies)]
     if "diagnose" not in names:
         words = {"per_file": "a list: effects and inputs that every file has for itself",
