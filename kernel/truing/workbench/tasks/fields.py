@@ -152,7 +152,7 @@ def _like(declared: InputField) -> str:
     return ""
 
 
-def _symbol(symbol: str) -> dict[str, str]:
+def _symbol(symbol: str) -> dict[str, Any]:
     return {"symbol": symbol_mathml(symbol), "search": symbol_text(symbol)} if symbol else {}
 
 
@@ -204,7 +204,7 @@ def _tolerances(model: Model[Any, Any]) -> FieldGroup:
     return FieldGroup("Tolerances", (Part(fields),), text)
 
 
-def _symbol_of(model: Model[Any, Any], on: Sequence[str]) -> dict[str, str]:
+def _symbol_of(model: Model[Any, Any], on: Sequence[str]) -> dict[str, Any]:
     declared = model.input_fields.get(on[0]) if len(on) == 1 else None
     return _symbol(declared.symbol) if declared is not None else {}
 
@@ -242,7 +242,7 @@ def _conditions(model: Model[Any, Any]) -> FieldGroup:
         Field(
             ("conditions", name), printable(condition.note) or name, _kind(condition.unit), unit=condition.unit,
             units=menu(condition.unit),
-            default=plain(condition.reference) if condition.unit in PURE else f"{plain(condition.reference)} {condition.unit}",
+            default=f"{plain(condition.reference)} {condition.unit if condition.unit not in PURE else ''}".strip(),
         )
         for name, condition in model.known_conditions.items()
     ]  # fmt: skip
