@@ -1,4 +1,4 @@
-"""The form of an inputs file in a browser: typing, answers, undo, the file as others change it, two tabs, two servers."""
+"""The form of an inputs file in a browser: typing, answers, undo, conflicts, two tabs, two servers."""
 
 from __future__ import annotations
 
@@ -96,7 +96,10 @@ def test_a_file_is_edited_by_keyboard_alone_and_every_other_line_stays(page: Any
     told(page, "details[open] .faulty:not(:empty)", "1 fault")
     page.keyboard.press("Backspace")
     told(page, ANSWER, "= 0.4 m")
-    assert page.evaluate("[document.activeElement.id, document.activeElement.selectionStart]") == ["inputs/crank_radius", 6]
+    assert page.evaluate("[document.activeElement.id, document.activeElement.selectionStart]") == [
+        "inputs/crank_radius",
+        6,
+    ]
     page.keyboard.press("Control+S")
     told(page, "#saved", "saved")
     page.wait_for_selector("#save:disabled")
@@ -152,9 +155,9 @@ def test_a_fault_of_the_text_leads_to_its_field_or_its_line(page: Any) -> None:
     page.locator("#faults button", has_text="36 N").first.click()
     assert page.evaluate("document.activeElement.id") == "inputs/crank_radius"
     page.locator("#faults .line").first.click()
-    assert page.evaluate("getSelection().toString() || text.value.slice(text.selectionStart, text.selectionEnd)").startswith(
-        "crank_radius"
-    )
+    assert page.evaluate(
+        "getSelection().toString() || text.value.slice(text.selectionStart, text.selectionEnd)"
+    ).startswith("crank_radius")
 
 
 def test_what_others_write_is_shown_and_in_a_conflict_nothing_is_lost(page: Any, file: Path) -> None:

@@ -14,11 +14,11 @@ from pymdownx.slugs import slugify
 
 from manual import gallery
 from manual.families import Family, families
-from truing.example_groups import Group, groups
 from manual.models import environment, offers
 from manual.places import DOCS, place_in_site
 from truing.declare.model import Model, formula_scope
 from truing.describe import description
+from truing.example_groups import Group, groups
 from truing.formulas import parse
 from truing.formulas.write_mathml import MATHML
 from truing.inputs_file import json_schema

@@ -53,7 +53,7 @@ def _data_files(folder: Path) -> list[str]:
 async def state(request: Request) -> Response:
     """Answer a text, and a change of it where one is asked: what it states, field by field, and what is wrong."""
     bench, document = bench_of(request), await body_of(request)
-    asked = {"text": word(document, "text"), "saved": word(document, "saved", word(document, "text"))}
+    asked: dict[str, Any] = {"text": word(document, "text"), "saved": word(document, "saved", word(document, "text"))}
     change = document.get("change")
     if change is not None and not isinstance(change, dict):
         raise UsageError("the change is no table")

@@ -295,7 +295,7 @@ def _close(written: Written, heading: Entry, saved: Written, *, always: bool = F
 
 
 def _insert(written: Written, path: KeyPath, literal: str, order: Sequence[str]) -> None:
-    """State a value that was not stated: at its example in comments, else among its neighbours, else in a new section."""
+    """State a value that was not stated: at its example in comments, among its neighbours, or in a new section."""
     section, line = path[:-1], f"{toml_key(path[-1])} = {literal}"
     heading = _opened(written, section)
     if heading is None:

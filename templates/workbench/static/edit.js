@@ -43,6 +43,7 @@ function replace(value) {
   epoch += 1;
   step = null;
   put(value);
+  mark();
   work();
 }
 

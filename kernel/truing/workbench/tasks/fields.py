@@ -1,4 +1,4 @@
-"""The fields of a model's inputs file, group by group: what each is, in which units, within which bounds, its default."""
+"""The fields of a model's inputs file, group by group: what each is, its units, bounds and default."""
 
 from __future__ import annotations
 
@@ -152,7 +152,7 @@ def _like(declared: InputField) -> str:
     return ""
 
 
-def _symbol(symbol: str) -> dict[str, str]:
+def _symbol(symbol: str) -> dict[str, Any]:
     return {"symbol": symbol_mathml(symbol), "search": symbol_text(symbol)} if symbol else {}
 
 
@@ -204,7 +204,7 @@ def _tolerances(model: Model[Any, Any]) -> FieldGroup:
     return FieldGroup("Tolerances", (Part(fields),), text)
 
 
-def _symbol_of(model: Model[Any, Any], on: Sequence[str]) -> dict[str, str]:
+def _symbol_of(model: Model[Any, Any], on: Sequence[str]) -> dict[str, Any]:
     declared = model.input_fields.get(on[0]) if len(on) == 1 else None
     return _symbol(declared.symbol) if declared is not None else {}
 
@@ -242,7 +242,7 @@ def _conditions(model: Model[Any, Any]) -> FieldGroup:
         Field(
             ("conditions", name), printable(condition.note) or name, _kind(condition.unit), unit=condition.unit,
             units=menu(condition.unit),
-            default=plain(condition.reference) if condition.unit in PURE else f"{plain(condition.reference)} {condition.unit}",
+            default=f"{plain(condition.reference)} {condition.unit if condition.unit not in PURE else ''}".strip(),
         )
         for name, condition in model.known_conditions.items()
     ]  # fmt: skip
@@ -252,9 +252,7 @@ def _conditions(model: Model[Any, Any]) -> FieldGroup:
 def _studies(model: Model[Any, Any]) -> FieldGroup:
     names = [study.name for study in model.studies]
     run = Field(("studies", "run"), "Studies that run", "list", default=", ".join(names), choices=tuple(names))
-    seed = Field(
-        ("studies", "seed"), "Where the random numbers begin", "number", default=str(DEFAULT_SEED), bounds="≥ 0"
-    )
+    seed = Field(("studies", "seed"), "Random numbers begin with", "number", default=str(DEFAULT_SEED), bounds="≥ 0")
     parts = [Part([run, seed] if names else [seed]), *(_study(study) for study in model.studies)]
     if "diagnose" not in names:
         words = {"per_file": "a list: effects and inputs that every file has for itself",
