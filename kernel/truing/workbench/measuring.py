@@ -11,7 +11,7 @@ import os
 import re
 import tempfile
 import unicodedata
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -23,14 +23,10 @@ from starlette.routing import Route
 
 from truing.atomic import write_files
 from truing.errors import OutputError, UsageError
-from truing.heavy import Later
 from truing.workbench.bench import Bench, bench_of, body_of, digest_of, names, page, word
 from truing.workbench.editing import about
 from truing.workbench.picking import plugin_of
 from truing.workbench.places import DATA, INPUTS, below, files_below
-from truing.workbench.written import changed_text
-
-tomlkit: Any = Later("tomlkit")
 
 LARGEST_UPLOAD = 512_000_000
 """Bytes of a measured file: as many as are read of a table."""
@@ -164,29 +160,21 @@ def _put(part: Path, target: Path, digest: str, replace: bool) -> bool:
 async def columns(request: Request) -> Response:
     """Answer what files hold by a text of [columns], with changes of it where some are asked."""
     bench, document = bench_of(request), await body_of(request)
-    text, data = word(document, "text"), _data(bench, document)
-    for change in document.get("changes") or []:
-        text = _with_column(text, change)
     answered = await bench.ask(
-        "records.columns", patience=PREVIEW_PATIENCE, **about(bench, document), text=text, data=data,
-        root=str(bench.root),
+        "records.columns", patience=PREVIEW_PATIENCE, **about(bench, document), text=word(document, "text"),
+        changes=list(_changes(document)), data=_data(bench, document), root=str(bench.root),
     )  # fmt: skip
-    return JSONResponse({**answered, "text": text})
+    return JSONResponse(answered)
 
 
-def _with_column(text: str, change: Any) -> str:
-    """State what a column is, by what its file calls it; a name of None takes the entry out."""
-    if not isinstance(change, dict):
+def _changes(document: Mapping[str, Any]) -> Iterator[dict[str, str]]:
+    """Give what columns are to be, each by what its file calls it; without a name its entry goes."""
+    asked = document.get("changes") or []
+    if not isinstance(asked, list) or not all(isinstance(change, dict) for change in asked):
         raise UsageError("a change of a column has the texts 'key', 'name' and 'unit'")
-    key, unit = word(change, "key"), word(change, "unit", "")
-    if change.get("name") is None:
-        return changed_text(text, ("columns", key), None)
-    name = word(change, "name")
-    if not unit:
-        return changed_text(text, ("columns", key), name)
-    column = tomlkit.inline_table()
-    column.update({"name": name, "unit": unit})
-    return changed_text(text, ("columns", key), column)
+    for change in asked:
+        name = "" if change.get("name") is None else word(change, "name")
+        yield {"key": word(change, "key"), "name": name, "unit": word(change, "unit", "")}
 
 
 def _data(bench: Bench, document: Any) -> list[str]:

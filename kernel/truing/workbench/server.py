@@ -72,4 +72,7 @@ async def _too_slow(request: Request, error: Exception) -> Response:
 
 async def _broken(request: Request, error: Exception) -> Response:
     words = one_line(f"{type(error).__name__}: {error}")
-    return faulty(UsageError(f"{words} (this is a fault of the workbench; please report it)"), 500)
+    fault = UsageError(f"{words} (this is a fault of the workbench; please report it)")
+    if _wants_json(request):
+        return faulty(fault, 500)
+    return page(request, "fault.html.j2", 500, title="This page failed", faults=[fault_of(str(fault))])

@@ -15,7 +15,6 @@ from truing.errors import UsageError
 from truing.heavy import Later
 from truing.inputs_file import read_setup, setup_from_text
 from truing.inputs_file.assemble import toml_value
-from truing.kernel import Offer, offer_of
 from truing.measurements import table_text
 from truing.measurements.csv_text import name_and_unit
 from truing.report.diagnosis_words import headline, spoken, verdict_word
@@ -29,13 +28,9 @@ recorded: Any = Later("truing.api.records")
 CAUSES = "studies.diagnose.causes"
 
 
-def _offer(plugin: str) -> Offer:
-    return offer_of(plugin, lambda text: None)
-
-
 def candidates(plugin: str, file: str, folder: str, text: str) -> dict[str, Any]:
     """Return what may compete to explain a record, what competes by the inputs file, and what can be planned for."""
-    offer = _offer(plugin)
+    offer = loaded(plugin)
     setup = setup_from_text(text, offer, file=file, folder=Path(folder))
     declared = setup.model
     several = [
@@ -68,7 +63,7 @@ def diagnose(
     Path(output).parent.mkdir(parents=True, exist_ok=True)
     record = recorded.MeasuredRecord(tuple(Path(name) for name in data))
     stated = {CAUSES: toml_value(causes)} if causes else {}
-    made = model.LoadedModel(_offer(plugin)).diagnose(
+    made = model.LoadedModel(loaded(plugin)).diagnose(
         record, Path(file), output=Path(output), set=stated, progress=progress
     )  # fmt: skip
     said = [f"{verdict_word(made.result)}.", *headline(made.result)]
@@ -134,7 +129,7 @@ def accepted(plugin: str, root: str, folder: str, file: str, target: str) -> str
 
     What restricted the search to some causes goes, where the inputs file of the diagnosis (``file``) does not say so.
     """
-    path, offer = Path(root) / folder / "extended.toml", _offer(plugin)
+    path, offer = Path(root) / folder / "extended.toml", loaded(plugin)
     if not path.is_file():
         raise UsageError("nothing was named and nothing calibrated: there is no extended model")
     text = path.read_text(encoding="utf-8")
@@ -156,7 +151,7 @@ def plan(
 ) -> dict[str, Any]:  # fmt: skip
     """Plan the experiment that tells causes apart; return it in words, and its readings as a table and as CSV."""
     os.chdir(root)
-    made = model.LoadedModel(_offer(plugin)).plan(causes, Path(file), noise=noise, budget=budget, progress=progress)
+    made = model.LoadedModel(loaded(plugin)).plan(causes, Path(file), noise=noise, budget=budget, progress=progress)
     units = {name: made.planned.setup.print_unit(name) for name in made.planned.noise}
     return {"sentences": list(made.sentences), "experiment": _experiment(made.document["experiment"], units)}
 

@@ -15,8 +15,9 @@ from truing.declare.model import Model
 from truing.diagnosis.data_rows import DataRows, declared_units, part_of, read_data_files, tidy
 from truing.errors import Fault, InputError
 from truing.inputs_file import setup_from_text
+from truing.inputs_file.assemble import toml_value
 from truing.inputs_file.values import SIGMA
-from truing.kernel import Offer, offer_of
+from truing.kernel import Offer
 from truing.measurements.csv_text import ColumnNames, Header, OpenTable, plain_numbers, read_cell
 from truing.measurements.table import RUN, Known, opened_table
 from truing.setup import NamedColumn
@@ -24,6 +25,8 @@ from truing.units import difference_unit, from_si
 from truing.units.names import PURE
 from truing.workbench.guesses import Column, Guess, Quantity, guesses
 from truing.workbench.preview import Axis, drawn
+from truing.workbench.tasks.loaded import loaded
+from truing.workbench.written import changed_text
 
 FIRST_ROWS = 8
 """So many rows are shown from the top of a file."""
@@ -65,21 +68,32 @@ def _number(cell: str, decimal_comma: bool) -> float:
         return float("nan")
 
 
-@lru_cache(maxsize=8)
-def _offer(plugin: str) -> Offer:
-    return offer_of(plugin, lambda text: None)
+def columns(
+    plugin: str,
+    file: str,
+    folder: str,
+    text: str,
+    *,
+    changes: Sequence[Mapping[str, str]],
+    data: Sequence[str],
+    root: str,
+) -> dict[str, Any]:
+    """Return what files hold by what an inputs file says of their columns, and what is wrong with them.
 
-
-def columns(plugin: str, file: str, folder: str, text: str, *, data: Sequence[str], root: str) -> dict[str, Any]:
-    """Return what files hold by what an inputs file says of their columns, and what is wrong with them."""
-    offer = _offer(plugin)
+    ``changes`` of what it says come first; the text with them is part of the answer.
+    """
+    offer = loaded(plugin)
+    for change in changes:
+        stated = {"name": change["name"], "unit": change["unit"]} if change["unit"] else change["name"]
+        literal = toml_value(stated) if change["name"] else None
+        text = changed_text(text, ("columns", change["key"]), literal)
     try:
         named: Mapping[str, NamedColumn] = setup_from_text(text, offer, file=file, folder=Path(folder)).columns
         faults: list[dict[str, Any]] = []
     except InputError as error:
         named, faults = {}, [_fault(fault) for fault in error.faults]
     files = [_of_file(offer, Path(root) / name, name, dict(named)) for name in data]
-    return {"faults": faults, "files": files, "roles": _roles(offer.model)}
+    return {"faults": faults, "files": files, "roles": _roles(offer.model), "text": text}
 
 
 def _of_file(offer: Offer, path: Path, name: str, named: dict[str, NamedColumn]) -> dict[str, Any]:
@@ -116,7 +130,7 @@ def _read(plugin: str, path: Path, stamp: tuple[int, int], named: tuple[tuple[st
 
     Raises InputError where it cannot be read at all.
     """
-    offer, faults, rows = _offer(plugin), tuple[Fault, ...](), None
+    offer, faults, rows = loaded(plugin), tuple[Fault, ...](), None
     try:
         (rows,) = read_data_files([path], offer, dict(named))
     except InputError as error:
@@ -259,7 +273,7 @@ def figure(
     plugin: str, file: str, folder: str, text: str, *, root: str, data: str, shown: int, over: int
 ) -> dict[str, str]:  # fmt: skip
     """Return a column of a file over another one (-1: over its rows) as SVG; wrong rows in red."""
-    offer, path = _offer(plugin), Path(root) / data
+    offer, path = loaded(plugin), Path(root) / data
     try:
         named = dict(setup_from_text(text, offer, file=file, folder=Path(folder)).columns)
     except InputError:
