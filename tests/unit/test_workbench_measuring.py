@@ -100,7 +100,7 @@ def test_thinning_keeps_the_peaks_and_the_order() -> None:
 
 
 def columns(folder: Path, text: str, *files: str) -> Any:
-    return records.columns("roller_screw_shift", "inputs.toml", str(folder), text, data=files, root=str(folder))
+    return records.columns("roller_screw_shift", "inputs.toml", str(folder), text, changes=[], data=files, root=str(folder))
 
 
 def test_wrong_rows_come_with_the_sentences_of_the_command_line(tmp_path: Path) -> None:

@@ -25,7 +25,7 @@ from truing.atomic import write_files
 from truing.errors import OutputError, UsageError
 from truing.workbench.bench import Bench, bench_of, body_of, digest_of, names, page, word
 from truing.workbench.editing import about
-from truing.workbench.picking import plugin_of
+from truing.workbench.picking import calculation_of, plugin_of
 from truing.workbench.places import DATA, INPUTS, below, files_below
 
 LARGEST_UPLOAD = 512_000_000
@@ -50,7 +50,7 @@ async def measure_page(request: Request) -> Response:
     content = await anyio.to_thread.run_sync(path.read_bytes)
     name, text = below(bench.root, path), content.decode("utf-8", "replace")
     chosen = [below(bench.root, bench.path(each)) for each in request.query_params.getlist("data")]
-    plugin = request.query_params.get("plugin", "") or plugin_of(path)
+    plugin = request.query_params.get("plugin", "") or await anyio.to_thread.run_sync(calculation_of, bench, path)
     return page(
         request, "measure.html.j2", title="Measure", file=name, plugin=plugin, text=text, digest=digest_of(content),
         inputs=inputs, data=data, chosen=chosen,

@@ -6,7 +6,7 @@ follow by further questions, which workers answer.
 
 from __future__ import annotations
 
-import tomllib
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -26,6 +26,10 @@ from truing.workbench.places import below
 
 MOST_LOOKED_THROUGH = 200
 """So many inputs files are read for faults at the most."""
+
+NAMED = re.compile(r"""^[ \t]*plugin[ \t]*=[ \t]*(["'])([^"'\\\r\n]*)\1[ \t]*(?:#.*)?\r?$""", re.MULTILINE)
+LONGEST_HEAD = 64_000
+"""Bytes of an inputs file in which the line is looked for that names its calculation."""
 
 
 async def first_page(request: Request) -> Response:
@@ -48,12 +52,17 @@ def _is_confirmed(bench: Bench, name: str) -> bool:
 
 
 def plugin_of(path: Path) -> str:
-    """Return the calculation that an inputs file names, or nothing."""
+    """Return the calculation that an inputs file names before its first section, or nothing.
+
+    Only that line is read: a text that takes long to read as TOML is left to workers.
+    """
     try:
-        named = tomllib.loads(path.read_text(encoding="utf-8")).get("plugin", "")
-    except (OSError, ValueError, RecursionError):
+        with path.open("rb") as file:
+            head = file.read(LONGEST_HEAD).decode("utf-8-sig", "replace")
+    except OSError:
         return ""
-    return named if isinstance(named, str) else ""
+    named = NAMED.search(head.partition("\n[")[0])
+    return named[2] if named else ""
 
 
 def calculation_of(bench: Bench, path: Path) -> str:

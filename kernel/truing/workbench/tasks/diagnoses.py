@@ -21,6 +21,7 @@ from truing.report.diagnosis_words import headline, spoken, verdict_word
 from truing.runs.inputs_written import complete_inputs
 from truing.studies.bench import Progress
 from truing.units import unit_text
+from truing.workbench.tasks.loaded import loaded
 
 model: Any = Later("truing.api.model")
 recorded: Any = Later("truing.api.records")
