@@ -101,7 +101,7 @@ def test_it_lists_every_verb_and_every_plugin_with_its_effects() -> None:
 
 def test_the_pictures_are_there_and_not_heavy() -> None:
     pictures = re.findall(r"!\[[^\]]+\]\(([^)]+)\)", README.read_text(encoding="utf-8"))
-    assert [Path(picture).name for picture in pictures] == ["sheet.png", "diagnosis.png"]
+    assert [Path(picture).name for picture in pictures] == ["sheet.png", "diagnosis.png", "workbench.png"]
     for picture in pictures:
         assert (ROOT / picture).stat().st_size < 400_000
         assert (ROOT / picture).read_bytes().startswith(b"\x89PNG")

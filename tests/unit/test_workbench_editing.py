@@ -110,7 +110,7 @@ def state(
 ) -> dict[str, Any]:
     """The answer to a change of the example."""
     before = example(plugin) if text is None else text
-    return form.state(plugin, "press.toml", ".", before, before, change)
+    return form.state(plugin, "press.toml", ".", before, saved=before, change=change)
 
 
 def test_a_field_answers_with_the_sentence_of_the_command_line_or_with_its_value() -> None:

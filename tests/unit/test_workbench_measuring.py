@@ -100,7 +100,9 @@ def test_thinning_keeps_the_peaks_and_the_order() -> None:
 
 
 def columns(folder: Path, text: str, *files: str) -> Any:
-    return records.columns("roller_screw_shift", "inputs.toml", str(folder), text, changes=[], data=files, root=str(folder))
+    return records.columns(
+        "roller_screw_shift", "inputs.toml", str(folder), text, changes=[], data=files, root=str(folder)
+    )
 
 
 def test_wrong_rows_come_with_the_sentences_of_the_command_line(tmp_path: Path) -> None:
@@ -196,7 +198,7 @@ def test_a_confirmed_column_stands_in_the_text_and_comments_stay(served: tuple[T
     change = {"key": "torque_Nm", "name": "friction_torque", "unit": "N*m"}
     answer = client.post("/api/columns", json={**asked, "changes": [change]}).json()
     assert answer["text"].startswith(INPUTS)
-    assert 'torque_Nm = {name = "friction_torque", unit = "N*m"}' in answer["text"]
+    assert 'torque_Nm = { name = "friction_torque", unit = "N*m" }' in answer["text"]
     assert answer["files"][0]["columns"][5]["role"] == "measured"
     again = {**asked, "text": answer["text"], "changes": [{"key": "torque_Nm", "name": None}]}
     assert "torque_Nm" not in client.post("/api/columns", json=again).json()["text"]

@@ -18,6 +18,7 @@ MARK = b"truing_models"
 """What stands in every Python file that offers a calculation."""
 BEGINNING = 200_000
 """Bytes of a Python file in which its mark is looked for."""
+MOST_DOTS = 1000
 _PLUGIN = re.compile(r"^\s*plugin\s*=\s*[\"']?([\w.]*)", re.MULTILINE)
 """The calculation that a file names which cannot be read as TOML."""
 _NUMBER = re.compile(r"[-_ ]\d+$")
@@ -66,6 +67,9 @@ def _inputs_file(root: Path, path: Path) -> InputsFile | None:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError):
         return None
+    if max(line.count(".") for line in text.split("\n")) > MOST_DOTS:  # a name of so many parts takes long to read
+        named = _PLUGIN.search(text)
+        return InputsFile(name, named[1] if named else "", f"has a line with more than {MOST_DOTS} dots")
     try:
         document = tomllib.loads(text)
     except (ValueError, RecursionError) as error:

@@ -78,7 +78,13 @@ def described(plugin: str) -> dict[str, Any]:
 
 
 def state(
-    plugin: str, file: str, folder: str, text: str, saved: str | None = None, change: Mapping[str, Any] | None = None
+    plugin: str,
+    file: str,
+    folder: str,
+    text: str,
+    *,
+    saved: str | None = None,
+    change: Mapping[str, Any] | None = None,
 ) -> dict[str, Any]:
     """Return a text, changed where that is asked, what it states by field, and what is wrong with it.
 
