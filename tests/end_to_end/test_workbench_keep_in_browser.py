@@ -225,7 +225,7 @@ def test_a_calculation_is_made_and_opens(served: Workbench, page: Any) -> None:
     page.get_by_role("button", name="Make the calculation").click()
     page.get_by_role("button", name="Begin pin.toml and open it").click()
     page.wait_for_url("**/edit?file=pin.toml&plugin=pin.py")
-    page.locator("#results", has_text="4.2857").wait_for()
+    page.locator("#see-numbers", has_text="4.2857").wait_for()
     page.get_by_role("button", name="Run", exact=True).click()
     until(page, (served.folder / "runs" / "pin" / "sheet.html").is_file)
     page.goto(served.address + "runs")

@@ -43,7 +43,7 @@ def test_from_a_file_with_names_of_its_own_to_an_accepted_cause(
     page.wait_for_url("**/measure/diagnosis?**", timeout=60_000)
     kept = (workbench.folder / "inputs.toml").read_text(encoding="utf-8")
     assert kept.startswith((SCREW / "inputs.toml").read_text(encoding="utf-8"))
-    assert 'torque_Nm = {name = "friction_torque", unit = "N*m"}' in kept
+    assert 'torque_Nm = { name = "friction_torque", unit = "N*m" }' in kept
     assert "cause named" in page.get_by_role("heading", name="Verdict").text_content()
     assert "mesh friction" in page.locator("#causes h3").text_content()
     assert page.frame_locator("iframe.sheet").get_by_text("mesh friction").count()

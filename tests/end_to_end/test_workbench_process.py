@@ -176,15 +176,15 @@ def visit(address):
     text = Path({str(tmp_path / "press.toml")!r}).read_text()
     state = json.loads(call("/api/state", file="press.toml", plugin="press_linkage", text=text))
     opener.open(base + "/edit?file=press.toml").read()
-    print(json.dumps([len(page), len(state["results"]), sorted(sys.modules)]), file=sys.stderr)
+    print(json.dumps([len(page), len(state["fields"]), sorted(sys.modules)]), file=sys.stderr)
     signal.raise_signal(signal.SIGINT)
 serve.webbrowser.open = visit
 sys.exit(main(["serve", {str(tmp_path)!r}]))
 """
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
-    page, results, modules = json.loads(next(line for line in done.stderr.splitlines() if line.startswith("[")))
+    page, fields, modules = json.loads(next(line for line in done.stderr.splitlines() if line.startswith("[")))
     assert page > 1000
-    assert results > 3
+    assert fields > 3
     roots = {name.partition(".")[0] for name in modules}
     assert "starlette" in roots
     assert roots & {"numpy", "scipy", "matplotlib", "pint", "sklearn", "pymoo", "press_linkage", "rv_wear"} == set()

@@ -86,7 +86,7 @@ def columns(
     for change in changes:
         stated = {"name": change["name"], "unit": change["unit"]} if change["unit"] else change["name"]
         literal = toml_value(stated) if change["name"] else None
-        text = changed_text(text, ("columns", change["key"]), literal)
+        text = changed_text(text, ("columns", change["key"]), literal, saved="")
     try:
         named: Mapping[str, NamedColumn] = setup_from_text(text, offer, file=file, folder=Path(folder)).columns
         faults: list[dict[str, Any]] = []
