@@ -12,7 +12,7 @@ from typing import Any
 from truing.calculation import Calculation
 from truing.numbers import RESULT_DIGITS, format_number
 from truing.report.chapters import RANK, Figures, Writing, front_figure, result_table
-from truing.report.document import Chapter, Document, FigureView, Items, Marked, TableView, Text, Value
+from truing.report.document import Banner, Chapter, Document, FigureView, Items, Marked, TableView, Text, Value
 from truing.report.html_printer import page
 from truing.report.limits import check_table
 from truing.report.page_one import key_results
@@ -25,6 +25,7 @@ from truing.runs.provenance import provenance_of
 from truing.units import unit_text
 
 FURTHER = "Further results"
+RUN_DECIDES = "Run calculates the studies of this file."
 COMPARED = {"inputs", "tolerances", "correlations", "conditions", "effects", "results", "checks"}
 """What is compared with a saved run: what a calculation without its studies has."""
 
@@ -57,13 +58,21 @@ def live_sheet(calculation: Calculation, saved: Mapping[str, Any] | None = None,
     provenance = provenance_of(calculation.setup)
     document = Document(
         kind=SHEET, title="", head=head_of(calculation.setup, provenance), detail="normal",
-        summary="", banner=banner_of(calculation, None), front=tuple(front), chapters=tuple(sections),
+        summary="", banner=_banner(calculation), front=tuple(front), chapters=tuple(sections),
         warnings=calculation.warnings, provenance=provenance,
     )  # fmt: skip
     document = translated(document, words)
     html = page("workbench/live.html.j2", "", styles=(), sheet=document, language=document.language)
     banner = document.banner
     return LiveSheet(html, banner.mood, banner.headline, None if saved is None else len(marks))
+
+
+def _banner(calculation: Calculation) -> Banner:
+    """Say the verdict; of limits that only studies decide, that a run does so."""
+    banner = banner_of(calculation, None)
+    if calculation.verdict != "undecided":
+        return banner
+    return replace(banner, sentences=(*banner.sentences, RUN_DECIDES))
 
 
 def live_figure(calculation: Calculation) -> FigureView | None:
