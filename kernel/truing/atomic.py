@@ -231,7 +231,7 @@ def _file_beside(path: Path, content: str | bytes) -> Iterator[Move]:
     recover(target)
     handle, name = tempfile.mkstemp(dir=target.parent, prefix=_prefix(target), suffix=PART)
     part = Path(name)
-    with os.fdopen(handle, "wb") as stream, _deleted(part, target), _held(part):
+    with _deleted(part, target), os.fdopen(handle, "wb") as stream, _held(part):
         stream.write(_bytes(content))
         stream.close()
         part.chmod(mode)

@@ -262,7 +262,6 @@ GOOD = {
 """Every kind of function that a formula may have here; results out of order; bounds with 0 and without."""
 
 
-@pytest.mark.usefixtures("kit_shares_processes")
 def test_what_is_made_is_calculated_as_by_hand_and_keeps_the_kit(tmp_path: Path) -> None:
     """1200 N on 20 mm^2 are 60 MPa, 40 % of twice 75 MPa; the last result by Python's own functions of numbers."""
     said = checked(GOOD, str(tmp_path))
