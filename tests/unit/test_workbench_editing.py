@@ -20,6 +20,7 @@ from truing.kernel import offer_of
 from truing.workbench.guard import Key
 from truing.workbench.server import application
 from truing.workbench.tasks import form, task
+from truing.workbench.tasks.loaded import loaded
 from truing.workbench.workers import TaskError, fault_of
 from truing.workbench.written import changed_text, switched_text
 
@@ -66,7 +67,7 @@ def test_a_change_and_its_way_back_give_the_same_bytes(plugin: str) -> None:
 @pytest.mark.parametrize("plugin", MODELS)
 def test_an_effect_of_the_example_goes_on_and_off_without_a_trace(plugin: str) -> None:
     text = example(plugin)
-    for effect in form._offer(plugin).model.effects.values():
+    for effect in loaded(plugin).model.effects.values():
         literals = {unknown.name: "0.5" for unknown in effect.unknowns}
         on = switched_text(text, ("effects", effect.name), literals, on=True, saved=text)
         assert set(stated(on, ("effects", effect.name))) == set(literals)
@@ -121,7 +122,7 @@ def test_a_field_answers_with_the_sentence_of_the_command_line_or_with_its_value
     bad = state({"path": path, "value": '3"; [x]\n'})
     assert bad["fields"]["inputs/crank_radius"]["value"] == '3"; [x]\n'
     with pytest.raises(InputError) as caught:
-        setup_from_text(bad["text"], form._offer("press_linkage"), file="press.toml", folder=Path())
+        setup_from_text(bad["text"], loaded("press_linkage"), file="press.toml", folder=Path())
     assert [fault["message"] for fault in bad["faults"]] == [fault.message for fault in caught.value.faults]
     assert bad["faults"][0]["key"] == "inputs/crank_radius"
     assert (
@@ -148,7 +149,7 @@ def test_a_text_that_is_no_toml_still_fills_the_form() -> None:
 
 def test_the_form_asks_for_all_that_the_model_declares() -> None:
     for plugin in MODELS:
-        model, keys = form._offer(plugin).model, set(form._fields(plugin))
+        model, keys = loaded(plugin).model, set(form._fields(plugin))
         assert {f"inputs/{name}" for name in model.input_fields} <= keys
         assert {f"tolerances/{name}" for name in model.tolerances} <= keys
         assert {f"conditions/{name}" for name in model.conditions} <= keys

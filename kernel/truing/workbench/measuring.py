@@ -25,8 +25,9 @@ from truing.atomic import write_files
 from truing.errors import OutputError, UsageError
 from truing.workbench.bench import Bench, bench_of, body_of, digest_of, names, page, word
 from truing.workbench.editing import about
-from truing.workbench.picking import calculation_of, plugin_of
-from truing.workbench.places import DATA, INPUTS, below, files_below
+from truing.workbench.folder import contents
+from truing.workbench.picking import calculation_of
+from truing.workbench.places import DATA, below
 
 LARGEST_UPLOAD = 512_000_000
 """Bytes of a measured file: as many as are read of a table."""
@@ -58,10 +59,8 @@ async def measure_page(request: Request) -> Response:
 
 
 def _listed(root: Path) -> tuple[list[dict[str, str]], list[str]]:
-    inputs = [{"name": below(root, path), "plugin": plugin_of(path)} for path in files_below(root, INPUTS)]
-    data = [below(root, path) for path in files_below(root, DATA) if not {"runs"} & set(path.relative_to(root).parts)]
-    kept = [each for each in inputs if each["plugin"] and not each["name"].startswith("runs/")]
-    return kept, data
+    seen = contents(root)
+    return [{"name": each.name, "plugin": each.plugin} for each in seen.inputs if each.plugin], list(seen.data)
 
 
 # Taking files in

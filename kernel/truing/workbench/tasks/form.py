@@ -22,7 +22,6 @@ from truing.inputs_file.document import InputsDocument, read_document
 from truing.inputs_file.entries import sections
 from truing.inputs_file.files import LARGEST_INPUTS, refuse_file, text_of
 from truing.inputs_file.values import FileEntry, InputsRead
-from truing.kernel import Offer
 from truing.numbers import STATED_DIGITS, format_difference, format_value, with_unit
 from truing.setup import Setup
 from truing.units import from_si, read_quantity
@@ -37,13 +36,9 @@ MOST_DIFFERENCES = 200
 """So many places of a conflict are shown."""
 
 
-def _offer(plugin: str) -> Offer:
-    return loaded(plugin)
-
-
 @lru_cache(maxsize=8)
 def _groups(plugin: str) -> list[FieldGroup]:
-    return groups_of(_offer(plugin))
+    return groups_of(loaded(plugin))
 
 
 @lru_cache(maxsize=8)
@@ -69,7 +64,7 @@ def opened(path: str, called: str) -> dict[str, Any]:
 
 def described(plugin: str) -> dict[str, Any]:
     """Return title and groups of fields of a calculation."""
-    model = _offer(plugin).model
+    model = loaded(plugin).model
     groups = [
         {"title": group.title, "text": group.text, "parts": [part.as_json for part in group.parts]}
         for group in _groups(plugin)
@@ -97,7 +92,7 @@ def state(
     setup: Setup | None = None
     faults: Sequence[Fault] = ()
     try:
-        setup = setup_from_text(text, _offer(plugin), file=file, folder=Path(folder))
+        setup = setup_from_text(text, loaded(plugin), file=file, folder=Path(folder))
     except InputError as error:
         faults = error.faults
     except TruingError as error:
@@ -119,7 +114,7 @@ def _changed(plugin: str, text: str, saved: str | None, change: Mapping[str, Any
     if not isinstance(path, list) or not path or not all(isinstance(name, str) for name in path):
         raise UsageError("the change names no path")
     if "on" in change:
-        return _switched(_offer(plugin).model, text, saved, path, on=bool(change["on"]))
+        return _switched(loaded(plugin).model, text, saved, path, on=bool(change["on"]))
     field = _fields(plugin).get("/".join(path))
     if field is None:
         raise UsageError(f"the form has no field {json.dumps(path)[:80]}")
@@ -196,7 +191,7 @@ def _stated(
     plugin: str, document: InputsDocument, folder: Path, written: Written, setup: Setup | None
 ) -> dict[str, dict[str, Any]]:
     """Return, by field, what is stated: as typed, in which line, and what it comes to."""
-    model, scatter = _offer(plugin).model, setup.distributions() if setup is not None else {}
+    model, scatter = loaded(plugin).model, setup.distributions() if setup is not None else {}
     answers: dict[str, dict[str, Any]] = {}
     for key, field in _fields(plugin).items():
         raw = _raw(document.data, field.path)
@@ -250,7 +245,7 @@ def _answer(model: Model[Any, Any], field: Field, raw: Any, folder: Path) -> str
 
 def _keys_by_line(document: InputsDocument, plugin: str) -> dict[int, str]:
     """Return the field, or the effect, that a line is about."""
-    known = {*_fields(plugin), *(f"effects/{name}" for name in _offer(plugin).model.effects)}
+    known = {*_fields(plugin), *(f"effects/{name}" for name in loaded(plugin).model.effects)}
     lines: dict[int, str] = {}
     for path, (_, line) in sorted(document.places.items(), key=lambda placed: len(placed[0])):
         key = next(("/".join(path[:length]) for length in (3, 2) if "/".join(path[:length]) in known), "")

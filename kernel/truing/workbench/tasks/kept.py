@@ -23,7 +23,7 @@ from truing.runs.index import FolderEntry, entry_at
 from truing.runs.spreadsheet import run_workbook
 from truing.studies.bench import Progress
 from truing.templating import ENGLISH
-from truing.workbench.tasks.loaded import loaded
+from truing.workbench.tasks.loaded import loaded, stamp_of
 from truing.workbooks.writing import demand_library
 
 READ = ("results.json", "diagnosis.json", "run.json", "inputs.toml", "sheet.html")
@@ -51,15 +51,7 @@ def listed(root: str, folders: Sequence[str]) -> dict[str, Any]:
 
 def _stamps(path: Path) -> tuple[tuple[int, int], ...]:
     """Return time and size of what an entry is read from; two zeros for what is not there."""
-    return tuple(map(_stamp, (path / name for name in READ)))
-
-
-def _stamp(path: Path) -> tuple[int, int]:
-    try:
-        status = path.stat()
-    except OSError:
-        return 0, 0
-    return status.st_mtime_ns, status.st_size
+    return tuple(map(stamp_of, (path / name for name in READ)))
 
 
 @lru_cache(maxsize=5000)

@@ -21,3 +21,12 @@ def _loaded(plugin: str, stamp: int) -> Offer:
             if getattr(module, "__file__", None) == plugin:
                 del sys.modules[name]
     return offer_of(plugin, lambda text: None)
+
+
+def stamp_of(path: Path) -> tuple[int, int]:
+    """Return time and size of a file, by which it is known again; two zeros for one that is not there."""
+    try:
+        status = path.stat()
+    except OSError:
+        return 0, 0
+    return status.st_mtime_ns, status.st_size

@@ -25,7 +25,7 @@ from truing.units import difference_unit, from_si
 from truing.units.names import PURE
 from truing.workbench.guesses import Column, Guess, Quantity, guesses
 from truing.workbench.preview import Axis, drawn
-from truing.workbench.tasks.loaded import loaded
+from truing.workbench.tasks.loaded import loaded, stamp_of
 from truing.workbench.written import changed_text
 
 FIRST_ROWS = 8
@@ -112,16 +112,7 @@ def _of_file(offer: Offer, path: Path, name: str, named: dict[str, NamedColumn])
 
 
 def _opened(plugin: str, path: Path, named: dict[str, NamedColumn]) -> OpenFile:
-    return _read(plugin, path, _stamp(path), tuple(sorted(named.items())))
-
-
-def _stamp(path: Path) -> tuple[int, int]:
-    """Return the time and size of a file, by which it is known again."""
-    try:
-        state = path.stat()
-    except OSError:
-        return 0, 0
-    return state.st_mtime_ns, state.st_size
+    return _read(plugin, path, stamp_of(path), tuple(sorted(named.items())))
 
 
 @lru_cache(maxsize=4)
