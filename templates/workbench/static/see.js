@@ -209,21 +209,30 @@ function addSlider(name) {
   output.setAttribute("for", ident);
   range.setAttribute("aria-describedby", why.id);
   const label = made("label", { textContent: input.note, htmlFor: ident });
-  range.addEventListener("input", () => { sliders.get(name).movedAt = performance.now(); put(output, `${range.value} ${input.printed}`); moving(input, range.value); });
+  const slider = { range, output, unit: input.unit, movedAt: -Infinity };
+  range.addEventListener("input", () => {
+    const { unit, printed } = inputs.get(name);
+    if (unit !== slider.unit) return; // the text states another unit meanwhile: the slider takes it over first
+    slider.movedAt = performance.now();
+    put(output, `${range.value} ${printed}`);
+    moving({ name, unit }, range.value);
+  });
   at("sliders").append(made("div", { className: "see-slider" }, label, output, range, why));
-  sliders.set(name, { range, output, movedAt: -Infinity });
-  placed(input, sliders.get(name));
+  sliders.set(name, slider);
+  placed(input, slider);
 }
 
-// Bring a slider to where its input stands; it gets other ends only where the input lies outside of them.
+// Bring a slider to where its input stands; it gets other ends where the input lies outside of them, or has another unit.
 function placed(input, slider) {
-  const { range, output, movedAt } = slider;
+  const { range, output, unit, movedAt } = slider;
   clearTimeout(slider.later);
   if (range.matches(":active") || performance.now() - movedAt < AHEAD) { // it is ahead of what is answered
     slider.later = setTimeout(() => placed(inputs.get(input.name), slider), AHEAD);
     return;
   }
-  if (input.value < Number(range.min) || input.value > Number(range.max)) Object.assign(range, { min: input.low, max: input.high, step: input.step });
+  const isOutside = input.value < Number(range.min) || input.value > Number(range.max);
+  if (isOutside || unit !== input.unit) Object.assign(range, { min: input.low, max: input.high, step: input.step });
+  slider.unit = input.unit;
   range.value = input.value;
   put(output, `${input.value} ${input.printed}`);
 }
