@@ -1,7 +1,8 @@
-"""Servo-press linkage: exact slider position and its errors; and the press in motion, with its torque and forces."""
+"""Servo-press linkage: exact slider position and its errors; the press in motion; and the press under load."""
 
 from typing import Any
 
+from press_linkage.loaded_sheet import LOADED
 from press_linkage.model import PRESS_LINKAGE
 from press_linkage.motion_sheet import MOTION
 from truing import Model, hookimpl
@@ -9,5 +10,5 @@ from truing import Model, hookimpl
 
 @hookimpl
 def truing_models() -> "list[Model[Any, Any]]":
-    """Offer two calculations: press_linkage, and press_linkage.motion for forces over a stroke."""
-    return [PRESS_LINKAGE, MOTION]
+    """Offer press_linkage; press_linkage.motion for torque and joint forces; press_linkage.loaded for what gives way."""
+    return [PRESS_LINKAGE, MOTION, LOADED]

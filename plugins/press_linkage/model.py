@@ -55,14 +55,14 @@ def link(kind: str, symbol: str) -> Tolerance:
     )  # fmt: skip
 
 
-def joint(kind: str, half: str, *, coordinate: str, printed: str = "", radius: str = "") -> Tolerance:
+def joint(kind: str, half: str, coordinate: str, *, radius: str = "", printed: str = "", chosen: bool = True) -> Tolerance:
     """A joint that is mounted beside its place: along its radius or, with *radius*, across it.
 
-    What the printed reliabilities do not contain is off in the reading ``printed``.
+    What the printed reliabilities do not contain is off in the reading ``printed``, where the reading can be *chosen*.
     """
     spread = plus_minus(half, at_radius=radius)
     other = plus_minus(printed) if printed else off()
-    kept = radius == "" and not printed
+    kept = not chosen or (radius == "" and not printed)
     return Tolerance(
         kind,
         spread if kept else by_choice("reading", complete=spread, printed=other),
@@ -72,32 +72,35 @@ def joint(kind: str, half: str, *, coordinate: str, printed: str = "", radius: s
     )
 
 
-TOLERANCES = [
-    *(link(kind, symbol) for kind, symbol in LINKS.items()),
-    Tolerance(
-        "platform_arm", grade("IT7", size="platform_arm"), on=["platform_arm_deviation"], price=COST,
-        source="Table 3, k", why="length of the finished arm",
-    ),
-    joint("slider_half_width", "0.05 mm", coordinate="y_H"),
-    joint("slider_joint_angle", "0.05 mm", coordinate="z_H", radius="slider_half_width"),
-    joint("crank_pivot_radius", "0.1 mm", coordinate="y_A", printed="0.05 mm"),
-    joint("crank_pivot_angle", "0.1 mm", coordinate="z_A", radius="crank_pivot_radius"),
-    joint("platform_half_width", "0.05 mm", coordinate="y_E"),
-    joint("platform_joint_angle", "0.05 mm", coordinate="z_E", radius="platform_half_width"),
-    joint("ground_pivot_radius", "0.05 mm", coordinate="y_M and z_M"),
-    joint("ground_pivot_angle", "0.05 mm", coordinate="y_M and z_M", radius="ground_pivot_radius"),
-    Tolerance(
-        "crank_angle", off(), on=on_both("crank_angle"),
-        why="angle of the servo crank; the paper gives none, and at the dead centre it does not matter",
-    ),
-]  # fmt: skip
+def parts(*, chosen: bool = True) -> list[Tolerance]:
+    """The tolerances of the 29 sources: links, joints and crank angle, by the reading where it can be *chosen*."""
+    return [
+        *(link(kind, symbol) for kind, symbol in LINKS.items()),
+        Tolerance(
+            "platform_arm", grade("IT7", size="platform_arm"), on=["platform_arm_deviation"], price=COST,
+            source="Table 3, k", why="length of the finished arm",
+        ),
+        joint("slider_half_width", "0.05 mm", "y_H", chosen=chosen),
+        joint("slider_joint_angle", "0.05 mm", "z_H", radius="slider_half_width", chosen=chosen),
+        joint("crank_pivot_radius", "0.1 mm", "y_A", printed="0.05 mm", chosen=chosen),
+        joint("crank_pivot_angle", "0.1 mm", "z_A", radius="crank_pivot_radius", chosen=chosen),
+        joint("platform_half_width", "0.05 mm", "y_E", chosen=chosen),
+        joint("platform_joint_angle", "0.05 mm", "z_E", radius="platform_half_width", chosen=chosen),
+        joint("ground_pivot_radius", "0.05 mm", "y_M and z_M", chosen=chosen),
+        joint("ground_pivot_angle", "0.05 mm", "y_M and z_M", radius="ground_pivot_radius", chosen=chosen),
+        Tolerance(
+            "crank_angle", off(), on=on_both("crank_angle"),
+            why="angle of the servo crank; the paper gives none, and at the dead centre it does not matter",
+        ),
+    ]  # fmt: skip
+
 
 PRESS_LINKAGE = Model(
     name="press_linkage",
     title="Parallel-driven multi-link servo press: slider accuracy",
     function=press_linkage,
     derivatives=exact_derivatives,
-    errors=[*TOLERANCES, *EFFECTS],
+    errors=[*parts(), *EFFECTS],
     objectives=[
         Require("slider_position", within="position_limit", reliability="position_goal"),
         Require("slider_tilt", within="permitted_tilt", reliability="tilt_goal"),

@@ -28,7 +28,7 @@ from press_linkage.kinematics import (
     knee_side,
     platform_motion,
 )
-from press_linkage.motion_quantities import JointForce, Link, MovingPress, PressMotion
+from press_linkage.motion_quantities import DrivenPress, JointForce, Link, MovingPress, PressMotion
 from press_linkage.quantities import PressSide
 from truing import Array, Float, column, either, feasible
 
@@ -66,7 +66,7 @@ class CrankCourse(NamedTuple):
     acceleration: Float
 
 
-def course(press: MovingPress) -> CrankCourse:
+def course(press: DrivenPress) -> CrankCourse:
     """The motion of the cranks, by their speed over the times where that is stated, else by the law over the angle.
 
     Inputs that differ between n machines are columns (n, 1).
@@ -83,7 +83,7 @@ def course(press: MovingPress) -> CrankCourse:
     return CrankCourse(press.start_angle + turned - turned[0], law(times), law(times, 1))
 
 
-def _over_time(press: MovingPress, name: str, times: Array) -> Array | None:
+def _over_time(press: DrivenPress, name: str, times: Array) -> Array | None:
     """A series that is stated at the times, NaN where it does not fit them; None where it is not stated."""
     values = np.asarray(getattr(press, name), dtype=np.float64)
     if not values.size:
@@ -99,7 +99,7 @@ def _no_course(times: Array) -> CrankCourse:
     return CrankCourse(nothing, nothing, nothing)
 
 
-def _over_angle(press: MovingPress, elapsed: Array) -> CrankCourse:
+def _over_angle(press: DrivenPress, elapsed: Array) -> CrankCourse:
     """The speed is a function of the crank angle: the angle at a time is where the time along it is that time."""
     angles, shares = turn_table(press.speed_angle, press.speed_share, "speed_angle", "speed_share")
     feasible(bool(np.all(shares > 0)), "speed_share: a crank that stands still does not go on; each must be above 0")
@@ -146,7 +146,7 @@ def turn_table(angles: Float, values: Float, *names: str) -> tuple[Array, Array]
     return (angle, value) if fits and rises else (np.zeros(1), np.full(1, np.nan))
 
 
-def press_force(press: MovingPress, angle: Float) -> Float:
+def press_force(press: DrivenPress, angle: Float) -> Float:
     """The force on the slider at the times: as it is stated there, else over the crank angle, straight between."""
     stated = _over_time(press, "forming_force", np.atleast_1d(press.times))
     if stated is not None:
@@ -232,7 +232,7 @@ def _body(link: Link, polar: Polar, first: PointMotion, second: PointMotion) -> 
     )
 
 
-def side_motion(press: MovingPress, half: Half) -> SideMotion:
+def side_motion(press: DrivenPress, half: Half) -> SideMotion:
     """One side in the positions of ``half``, both cranks turning alike."""
     crank = half.parts.crank
     pin = PointMotion(JointPoint(-crank.z, crank.y), JointPoint(-crank.y, -crank.z))
@@ -412,7 +412,7 @@ def in_columns(value: D) -> D:
     return replace(value, **changed)  # type: ignore[type-var]
 
 
-def half_at(press: MovingPress, angle: Float) -> Half:
+def half_at(press: DrivenPress, angle: Float) -> Half:
     """One side at these crank angles, every loop closed and no position singular."""
     with np.errstate(invalid="ignore", divide="ignore"):
         parts = built(press, crank_at(press, angle), PressSide())

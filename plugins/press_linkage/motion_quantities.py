@@ -24,7 +24,7 @@ class Link:
 
 
 @inputs
-class MovingPress(Mechanism):
+class DrivenPress(Mechanism):
     """The mechanism with its masses, the law of its drive, and the force on its slider. Both sides are alike."""
 
     times: Float = given(ONE_TURN, "s", symbol="t", along="time", note="when the motion is looked at")
@@ -52,14 +52,20 @@ class MovingPress(Mechanism):
     drive: Link = part(Link, index="g", suffix="knee_drive", mass=136.0)
     upper: Link = part(Link, index="m", suffix="upper_knee", mass=267.0)
     lower: Link = part(Link, index="h", suffix="lower_knee", mass=251.0)
-    rotor_inertia: Float = given(200.0, "kg*m^2", symbol="J_D", note="of motor and gears, as it is felt at one crank",
-                                 source=ASSUMED, at_least=0, at_most=1e7)  # fmt: skip
     platform_mass: Float = given(2.0, "t", symbol="m_P", note="of the platform with its arm", source=ASSUMED,
                                  at_least=0, at_most=1e4)  # fmt: skip
     slider_mass: Float = given(20.0, "t", symbol="m_S", note="of the slider with what hangs on it", source=ASSUMED,
                                at_least=0, at_most=1e4)  # fmt: skip
     counterbalance: Float = given(196.0, "kN", symbol="F_C", note="force that lifts the slider, of air cylinders",
                                   source="assumed: carries 20 t", at_least=0, at_most=1e5)  # fmt: skip
+
+
+@inputs
+class MovingPress(DrivenPress):
+    """What the drive needs beside that: inertia of motor and gears, and friction."""
+
+    rotor_inertia: Float = given(200.0, "kg*m^2", symbol="J_D", note="of motor and gears, as it is felt at one crank",
+                                 source=ASSUMED, at_least=0, at_most=1e7)  # fmt: skip
     # Friction
     guide_friction: Float = given(0.0, "kN", symbol="F_G", note=f"dry friction in the guides of the slider, {NEUTRAL}",
                                   at_least=0, at_most=1e4)  # fmt: skip

@@ -1,0 +1,477 @@
+"""How far does the loaded press give way, does its slider tilt, and what do its guides carry?
+
+Statics of the whole press, both sides and off-centre loads: 14 displacements (crank pins B, knees G: y and z; platform
+and slider: y, z and tilt) and 16 springs (rods, knee links, cranks along and across, guides of platform and slider).
+A spring has a free length, by errors of parts and heat, and a play in which it carries next to nothing. Equilibrium is
+where the potential energy is least; it is convex, so there is one. Loads are the force on the slider, weights,
+counterbalance and the inertia of every body, by the motion of the nominal press.
+
+Range: displacements that are small beside the links (geometry to first order about the nominal position: a thousandth
+of the deflection per millimetre of it), play that is taken up along the line of its link, no friction, plane. Numbers
+or arrays, (k,) over the times and (n, k) of n machines; y towards side 1, z downward, tilt from y towards z.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from press_linkage.kinematics import Half
+from press_linkage.loaded_quantities import LoadedAnswers, LoadedPress
+from press_linkage.motion import (
+    SERIES,
+    Body,
+    CrankCourse,
+    SideMotion,
+    course,
+    demand,
+    half_at,
+    in_columns,
+    press_force,
+    side_motion,
+)
+from press_linkage.quantities import PressSide
+from truing import Array, Float, feasible
+
+GRAVITY = 9.80665  # m/s2
+JOINTS = 2  # per link
+FILM = 1e-4
+"""Share of its stiffness that a spring has within its play: an oil film. 8 N cross a play of 40 um of a joint."""
+MOST_ROUNDS = 80
+HALVINGS = 12
+"""Rounds until every spring is on the piece that was assumed; halvings of a step that goes too far."""
+SOFTEST, STIFFEST = 1e3, 1e15  # N/m: outside, a spring is none, or the equations lose their digits
+LARGEST = 0.1  # m: a greater play or free extension is no small displacement
+SIDES = ((1, 1.0), (2, -1.0))
+PINS, KNEES, PLATFORM, SLIDER = {1: 0, 2: 2}, {1: 4, 2: 6}, 8, 11
+FREEDOMS = 14
+RODS, DRIVES, UPPERS, LOWERS, ALONG, ACROSS = ({1: row, 2: row + 1} for row in range(0, 12, 2))
+PLATFORM_GUIDES, SLIDER_GUIDES = (12, 13), (14, 15)
+SPRINGS = 16
+
+Vector = tuple[Float, Float]
+
+
+class Springs(NamedTuple):
+    """The springs of the press: extension per displacement (..., 16, 14), stiffness, play, free extension (..., 16)."""
+
+    gradient: Array
+    stiffness: Array
+    play: Array
+    free: Array
+
+
+@dataclass(frozen=True)
+class Balance:
+    """The press in equilibrium: displacements (..., 14) and tension of the springs (..., 16)."""
+
+    moved: Array
+    tension: Array
+
+
+def _stacked(parts: Mapping[int, Float], count: int, shape: tuple[int, ...]) -> Array:
+    """Values by their place along a last axis, 0 elsewhere."""
+    whole = np.zeros((*shape, count))
+    for place, value in parts.items():
+        whole[..., place] = value
+    return whole
+
+
+# Where each spring lies, how stiff it is, and how much longer its parts have become
+
+
+def _turned(direction: Vector, sign: float) -> Vector:
+    """A direction of the mirrored coordinates of one side in those of the press."""
+    return sign * direction[0], direction[1]
+
+
+def _places(press: LoadedPress, half: Half, sign: float) -> dict[str, Vector]:
+    """Unit vectors of the links, outward in the coordinates of the press, and the crank across (growing angle)."""
+    lines = {"rod": half.rod, "drive": half.drive, "upper": half.upper, "lower": half.lower, "crank": half.parts.crank}
+    directions = {name: _turned((line.cosine, line.sine), sign) for name, line in lines.items()}
+    crank = half.parts.crank
+    return directions | {"across": _turned((-crank.sine, crank.cosine), sign)}
+
+
+def _gradients(press: LoadedPress, half: Half, shape: tuple[int, ...]) -> Array:
+    """Extension of each spring per displacement: of its second end along its line, less that of its first."""
+    rows: dict[int, dict[int, Float]] = {}
+    for side, sign in SIDES:
+        at = _places(press, half, sign)
+        pin, knee = PINS[side], KNEES[side]
+        y, z = at["rod"]
+        rows[RODS[side]] = {
+            pin: -y, pin + 1: -z, PLATFORM: y, PLATFORM + 1: z, PLATFORM + 2: z * sign * press.platform_half_width,
+        }  # fmt: skip
+        y, z = at["drive"]
+        rows[DRIVES[side]] = {
+            knee: y, knee + 1: z, PLATFORM: -y, PLATFORM + 1: -z, PLATFORM + 2: y * press.platform_arm,
+        }  # fmt: skip
+        y, z = at["upper"]
+        rows[UPPERS[side]] = {knee: y, knee + 1: z}
+        y, z = at["lower"]
+        rows[LOWERS[side]] = {
+            knee: -y, knee + 1: -z, SLIDER: y, SLIDER + 1: z, SLIDER + 2: z * sign * press.slider_half_width,
+        }  # fmt: skip
+        for row, name in ((ALONG, "crank"), (ACROSS, "across")):
+            rows[row[side]] = {pin: at[name][0], pin + 1: at[name][1]}
+    for body, guides, heights in _guided(press):
+        rows |= {guide: {body: 1.0, body + 2: -height} for guide, height in zip(guides, heights, strict=True)}
+    whole = np.zeros((*shape, SPRINGS, FREEDOMS))
+    for row, parts in rows.items():
+        whole[..., row, :] = _stacked(parts, FREEDOMS, shape)
+    return whole
+
+
+def _guided(press: LoadedPress) -> tuple[tuple[int, tuple[int, int], tuple[Float, Float]], ...]:
+    """Platform and slider with their guides, and how far below its middle each of these lies."""
+    half_span = 0.5 * press.platform_guide_span
+    return (
+        (PLATFORM, PLATFORM_GUIDES, (-half_span, half_span)),
+        (SLIDER, SLIDER_GUIDES, (-press.guide_above, press.guide_below)),
+    )
+
+
+def _stiffness(press: LoadedPress, half: Half, shape: tuple[int, ...]) -> Array:
+    """Bars in series with their joints; the frame at M along the upper link; pivot and drive behind the crank."""
+    modulus, joints = press.modulus, JOINTS / press.joint_stiffness
+    frame = half.upper.cosine**2 / press.ground_stiffness_sideways
+    frame = frame + half.upper.sine**2 / press.ground_stiffness_vertical
+    pivot = 1.0 / press.pivot_stiffness
+    soft = {
+        RODS[1]: press.rod_length / (modulus * press.section_rod) + joints,
+        DRIVES[1]: press.knee_drive_length / (modulus * press.section_knee_drive) + joints,
+        UPPERS[1]: press.upper_knee_length / (modulus * press.section_upper_knee) + joints + frame,
+        LOWERS[1]: press.lower_knee_length / (modulus * press.section_lower_knee) + joints,
+        ALONG[1]: press.crank_radius / (modulus * press.section_crank) + pivot,
+        ACROSS[1]: press.crank_radius**2 / press.drive_stiffness + pivot,
+    }
+    both = {row + other: 1.0 / value for row, value in soft.items() for other in (0, 1)}
+    both |= dict.fromkeys(PLATFORM_GUIDES, press.platform_guide_stiffness)
+    return _stacked(both | dict.fromkeys(SLIDER_GUIDES, press.guide_stiffness), SPRINGS, shape)
+
+
+def _play(press: LoadedPress, shape: tuple[int, ...]) -> Array:
+    """How far a spring extends or shortens until it carries: two joints of a link, the clearance of a guide."""
+    links = dict.fromkeys(range(ALONG[1]), JOINTS * press.joint_play)
+    links |= dict.fromkeys(PLATFORM_GUIDES, press.platform_guide_clearance)
+    return _stacked(links | dict.fromkeys(SLIDER_GUIDES, press.guide_clearance), SPRINGS, shape)
+
+
+def _free(press: LoadedPress, half: Half, shape: tuple[int, ...]) -> Array:
+    """How much longer each spring is when it carries nothing: by errors of its parts, by heat, and where it is held."""
+    free: dict[int, Float] = {}
+    warm, frame = press.expansion * press.link_rise, press.expansion * press.frame_rise
+    for side, sign in SIDES:
+        off = press.side_1 if side == 1 else press.side_2
+        at = _places(press, half, sign)
+        moved = _misplaced(press, off, sign, warm, frame)
+
+        def apart(line: str, end: Vector, start: Vector, at: dict[str, Vector] = at) -> Float:
+            return at[line][0] * (end[0] - start[0]) + at[line][1] * (end[1] - start[1])
+
+        still = (0.0, 0.0)
+        free[RODS[side]] = off.rod_length_deviation + warm * press.rod_length - apart("rod", moved["E"], still)
+        free[DRIVES[side]] = off.knee_drive_length_deviation + warm * press.knee_drive_length
+        free[DRIVES[side]] = free[DRIVES[side]] - apart("drive", still, moved["B5"])
+        free[UPPERS[side]] = off.upper_knee_length_deviation + warm * press.upper_knee_length
+        free[UPPERS[side]] = free[UPPERS[side]] - apart("upper", still, moved["M"])
+        free[LOWERS[side]] = off.lower_knee_length_deviation + warm * press.lower_knee_length
+        free[LOWERS[side]] = free[LOWERS[side]] - apart("lower", moved["H"], still)
+        free[ALONG[side]] = off.crank_radius_deviation + warm * press.crank_radius - apart("crank", still, moved["A"])
+        free[ACROSS[side]] = press.crank_radius * off.crank_angle_deviation - apart("across", still, moved["A"])
+    for guide, height in zip(SLIDER_GUIDES, _guided(press)[1][2], strict=True):
+        free[guide] = press.guide_inclination * (half.face + height - press.bolster_depth)
+    return _stacked(free, SPRINGS, shape)
+
+
+def _misplaced(
+    press: LoadedPress, off: PressSide, sign: float, warm: Float, frame: Float
+) -> dict[str, Vector]:
+    """Where the joints on platform, slider and frame lie beside their place: by their errors and by heat."""
+
+    def joint(kind: str, cosine: Float, sine: Float, growth: Float) -> Vector:
+        length = getattr(press, kind[0])
+        along = getattr(off, f"{kind[0]}_deviation") + growth * length
+        across = length * getattr(off, f"{kind[1]}_deviation")
+        return along * sign * cosine - across * sine, along * sine + across * sign * cosine
+
+    ground = np.cos(press.ground_pivot_angle), np.sin(press.ground_pivot_angle)
+    return {
+        "A": joint(("crank_pivot_radius", "crank_pivot_angle"), 1.0, 0.0, frame),  # type: ignore[arg-type]
+        "E": joint(("platform_half_width", "platform_joint_angle"), 1.0, 0.0, warm),  # type: ignore[arg-type]
+        "M": joint(("ground_pivot_radius", "ground_pivot_angle"), *ground, frame),  # type: ignore[arg-type]
+        "H": joint(("slider_half_width", "slider_joint_angle"), 1.0, 0.0, warm),  # type: ignore[arg-type]
+        "B5": (0.0, press.platform_arm_deviation + warm * press.platform_arm),
+    }
+
+
+def springs(press: LoadedPress, half: Half) -> Springs:
+    """All springs in the positions of ``half``; inputs as columns (n, 1) beside positions (k,) or (n, k)."""
+    gradient_shape = np.broadcast_shapes(np.shape(half.face), *_shapes(press))
+    return Springs(
+        gradient=_gradients(press, half, gradient_shape),
+        stiffness=_stiffness(press, half, gradient_shape),
+        play=_play(press, gradient_shape),
+        free=_free(press, half, gradient_shape),
+    )
+
+
+def _shapes(value: object) -> list[tuple[int, ...]]:
+    """The shapes of all inputs that differ between machines."""
+    shapes = []
+    for name, held in vars(value).items():
+        if name in OWN_SERIES or isinstance(held, str) or held is None:
+            continue
+        shapes += _shapes(held) if hasattr(held, "__dict__") and not isinstance(held, np.ndarray) else [np.shape(held)]
+    return shapes
+
+
+OWN_SERIES = SERIES | {"acceptance_angle"}
+
+
+# Loads: the force on the slider, weights, counterbalance, and the inertia of every body
+
+
+def loads(press: LoadedPress, side: SideMotion, crank: CrankCourse, force: Float, offset: Float) -> dict[int, Float]:
+    """The load on each displacement, by its place: forces N, moments N m."""
+    loads: dict[int, Float] = dict.fromkeys(range(FREEDOMS), 0.0)
+
+    def put(place: int, load: Float) -> None:
+        loads[place] = loads[place] + load
+
+    square = crank.speed * crank.speed
+    for body, mass, way in ((PLATFORM, press.platform_mass, side.platform), (SLIDER, press.slider_mass, side.slider)):
+        put(body + 1, mass * (GRAVITY - way.acceleration * square - way.speed * crank.acceleration))
+    put(SLIDER + 1, -press.counterbalance - force)
+    put(SLIDER + 2, -force * offset)
+    for number, sign in SIDES:
+        pin, knee = PINS[number], KNEES[number]
+        for link, first, last in (
+            ("crank", None, pin), ("rod", pin, "E"), ("drive", "B5", knee), ("upper", None, knee), ("lower", knee, "H"),
+        ):  # fmt: skip
+            ends = _on_the_ends(getattr(side, link), crank)
+            for end, (y, z) in zip((first, last), ends, strict=True):
+                if isinstance(end, int):
+                    put(end, sign * y)
+                    put(end + 1, z)
+                elif end is not None:  # on the platform or on the slider
+                    body = SLIDER if end == "H" else PLATFORM
+                    put(body, sign * y)
+                    put(body + 1, z)
+                    put(body + 2, sign * _moment(press, end, y, z))
+    return loads
+
+
+def _moment(press: LoadedPress, joint: str, y: Float, z: Float) -> Float:
+    """The moment of a force at a joint of side 1 about the middle of its body."""
+    if joint == "B5":
+        return -press.platform_arm * y
+    return (press.platform_half_width if joint == "E" else press.slider_half_width) * z
+
+
+def _on_the_ends(body: Body, crank: CrankCourse) -> tuple[Vector, Vector]:
+    """Weight and inertia of a link as two forces at its ends, outward and downward, with the same sum and moment."""
+    needs = demand(body, crank, 0.0)
+    y, z = body.line
+    square = y * y + z * z
+    along = body.centre * (needs.force.y * y + needs.force.z * z) / square
+    across = needs.moment / square
+    last = (-(along * y - across * z), -(along * z + across * y))
+    return (-needs.force.y - last[0], -needs.force.z - last[1]), last
+
+
+# Equilibrium
+
+
+def carried(of: Springs, apart: Array) -> Array:
+    """What springs carry that are so much longer than free: next to nothing within their play, beyond it the rest."""
+    beyond = apart - np.clip(apart, -of.play, of.play)
+    return np.asarray(of.stiffness * (FILM * apart + (1.0 - FILM) * beyond))
+
+
+def balanced(of: Springs, load: Array) -> Balance:
+    """Where the energy is least: Newton's method on its linear pieces, each step ending where the energy is least on it.
+
+    The energy is convex and quadratic in pieces; with the piece known, one step is exact. NaN where the geometry is, and
+    where springs are none.
+    """
+    load = np.broadcast_to(load, (*of.gradient.shape[:-2], FREEDOMS))
+    known = np.isfinite(of.gradient).all(axis=(-2, -1)) & np.isfinite(load).all(axis=-1)
+    known &= ((of.stiffness > SOFTEST) & (of.stiffness < STIFFEST)).all(axis=-1)
+    known &= (of.play < LARGEST).all(axis=-1) & (np.abs(of.free) < LARGEST).all(axis=-1)
+    moved = np.full(load.shape, np.nan)
+    if known.any():
+        moved[known] = _least(Springs(*(array[known] for array in of)), load[known])
+    return Balance(moved, carried(of, _apart(of, moved)))
+
+
+def _apart(of: Springs, moved: Array) -> Array:
+    """How much longer than free each spring is."""
+    return np.asarray((of.gradient @ moved[..., np.newaxis])[..., 0] - of.free)
+
+
+def _piece(of: Springs, apart: Array) -> Array:
+    """Whether a spring is within its play, 0, or beyond it, 1 or -1 by its sense; without play it always carries, 1."""
+    return np.where(of.play > 0.0, np.sign(apart) * (np.abs(apart) > of.play), 1.0)
+
+
+def _least(of: Springs, load: Array) -> Array:
+    """The displacements (m, 14) of least energy."""
+    moved, left = np.zeros(load.shape), np.arange(len(load))
+    for round_number in range(MOST_ROUNDS):
+        if not left.size:
+            break
+        part, here = Springs(*(array[left] for array in of)), load[left]
+        turned = np.swapaxes(part.gradient, -1, -2)
+        apart = _apart(part, moved[left])
+        piece = _piece(part, apart)
+        stiffness = part.stiffness * (np.where(piece == 0.0, FILM, 1.0) if round_number else 1.0)  # first without play
+        slope = here - (turned @ carried(part, apart)[..., np.newaxis])[..., 0]
+        matrix = (turned * stiffness[:, np.newaxis, :]) @ part.gradient
+        step = np.linalg.solve(matrix, slope[..., np.newaxis])[..., 0]
+        longer = (part.gradient @ step[..., np.newaxis])[..., 0]
+        reached = apart + longer
+        exact = (_piece(part, reached) == piece).all(axis=-1) & (round_number > 0)
+        share = np.where(exact, 1.0, _share(part, apart, longer, (here * step).sum(axis=-1)))
+        moved[left] += share[:, np.newaxis] * step
+        left = left[~exact]
+    moved[left] = np.nan
+    return moved
+
+
+def _share(of: Springs, apart: Array, longer: Array, work: Array) -> Array:
+    """The share of a step at which the energy is least on it, at most 1: where springs take up all that loads give."""
+
+    def left_over(share: Array) -> Array:
+        return np.asarray((longer * carried(of, apart + share[:, np.newaxis] * longer)).sum(axis=-1) - work)
+
+    low, high = np.zeros(len(work)), np.ones(len(work))
+    too_far = left_over(high) > 0.0
+    if not too_far.any():
+        return high
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        beyond = left_over(middle) > 0.0
+        low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
+    return np.where(too_far, high, 1.0)
+
+
+# The calculation itself
+
+
+def _standing(angle: Array) -> CrankCourse:
+    """Cranks that stand at these angles."""
+    return CrankCourse(angle, np.zeros(np.shape(angle)), np.zeros(np.shape(angle)))
+
+
+def at_angles(press: LoadedPress, crank: CrankCourse, force: Float, offset: Float) -> tuple[Half, Balance]:
+    """The press in equilibrium under this force at these crank angles; and its nominal position."""
+    half = half_at(press, crank.angle)
+    of = springs(press, half)
+    side = side_motion(press, half)
+    load = loads(press, side, crank, force, offset)
+    shape = np.broadcast_shapes(of.gradient.shape[:-2], *(np.shape(value) for value in load.values()))
+    wide = Springs(*(np.broadcast_to(array, (*shape, *array.shape[of.gradient.ndim - 2 :])) for array in of))
+    return half, balanced(wide, _stacked(load, FREEDOMS, shape))
+
+
+def lifted(press: LoadedPress, balance: Balance, force: Float) -> Float:
+    """How much higher the slider is over the bolster: displaced, and the bolster by columns and by heat."""
+    frame = press.expansion * press.frame_rise * press.bolster_depth
+    return -balance.moved[..., SLIDER + 1] + force / press.column_stiffness + frame
+
+
+def inclined(press: LoadedPress, balance: Balance, moment: Float) -> Float:
+    """The tilt of the slider to the bolster: displaced, and the columns stretched unevenly."""
+    columns = press.column_stiffness * press.column_half_distance**2
+    return balance.moved[..., SLIDER + 2] - moment / columns
+
+
+def press_under_load(given: LoadedPress) -> LoadedAnswers:
+    """The press over the times and in its acceptance test. Floats are numbers or (n,); series (k,)."""
+    press = replace(in_columns(given), acceptance_angle=given.acceptance_angle)
+    crank = course(press)
+    force = press_force(press, crank.angle)
+    half, balance = at_angles(press, crank, force, press.load_offset)
+    pushed = -balance.tension
+    tilt = inclined(press, balance, force * press.load_offset)
+    guides = [-pushed[..., guide] for guide in SLIDER_GUIDES]
+    largest = np.maximum(*(np.max(np.abs(guide), axis=-1) for guide in guides))
+    return LoadedAnswers(
+        time=np.atleast_1d(given.times),
+        crank_angle=crank.angle,
+        press_force=force,
+        slider_position=half.face,
+        deflection=lifted(press, balance, force),
+        slider_tilt=tilt,
+        slider_shift=balance.moved[..., SLIDER],
+        platform_tilt=balance.moved[..., PLATFORM + 2],
+        upper_guide_force=guides[0],
+        lower_guide_force=guides[1],
+        platform_guide_upper=balance.tension[..., PLATFORM_GUIDES[0]],
+        platform_guide_lower=balance.tension[..., PLATFORM_GUIDES[1]],
+        lower_link_1=pushed[..., LOWERS[1]],
+        lower_link_2=pushed[..., LOWERS[2]],
+        upper_link_1=pushed[..., UPPERS[1]],
+        upper_link_2=pushed[..., UPPERS[2]],
+        rod_1=pushed[..., RODS[1]],
+        rod_2=pushed[..., RODS[2]],
+        largest_guide_force=largest,
+        largest_tilt=np.max(np.abs(tilt), axis=-1),
+        **rated(press),
+        **accepted(press),
+    )
+
+
+def rated(press: LoadedPress) -> dict[str, Float]:
+    """The test under load at the bottom dead centre: no force, the rated one in the middle, the same at its offset."""
+    standing = _standing(np.zeros(1))
+    cases = ((0.0, 0.0), (press.rated_force, 0.0), (press.rated_force, press.rated_offset))
+    balances = [at_angles(press, standing, force, offset)[1] for force, offset in cases]
+    heights = [lifted(press, balance, force) for balance, (force, _) in zip(balances, cases, strict=True)]
+    tilts = [inclined(press, balance, f * y) for balance, (f, y) in zip(balances, cases, strict=True)]
+    deflection, slope = (heights[1] - heights[0])[..., 0], np.abs(tilts[2] - tilts[1])[..., 0]
+    rated_force, moment = press.rated_force, press.rated_force * press.rated_offset
+    return {
+        "rated_deflection": deflection,
+        "press_stiffness": _flat(rated_force) / deflection,
+        "rated_slope": slope,
+        "tilt_stiffness": _flat(moment) / slope,
+    }
+
+
+def _flat(value: Float) -> Float:
+    """A column (n, 1) as (n,), a number as it is."""
+    return np.asarray(value)[..., 0] if np.ndim(value) else value
+
+
+def accepted(press: LoadedPress) -> dict[str, Float]:
+    """The test without force: parallelism and squareness over its crank angles, and the travel by play."""
+    angles = np.atleast_1d(press.acceptance_angle)
+    feasible(angles.size > 1, "acceptance_angle: two crank angles or more, or there is no travel to measure over")
+    half, balance = at_angles(press, _standing(angles), 0.0, 0.0)
+    tilt = balance.moved[..., SLIDER + 2]
+    face = balance.moved[..., SLIDER] - tilt * press.face_depth
+    travel = np.ptp(np.broadcast_to(half.face, np.shape(face)), axis=-1)
+    return {
+        "parallelism": np.max(np.abs(tilt), axis=-1) * _flat(press.face_width),
+        "squareness": np.ptp(face, axis=-1) / travel,
+        "total_clearance": clearance(press),
+    }
+
+
+def clearance(press: LoadedPress) -> Float:
+    """How far the slider falls at the bottom dead centre when its load reverses, by virtual work on the taut press.
+
+    A force of one newton on the slider gives each link its force; its play, times this, is what the slider travels.
+    """
+    of = springs(press, half_at(press, np.zeros(1)))
+    taut = of._replace(play=np.zeros_like(of.play), free=np.zeros_like(of.free))
+    one = _stacked({SLIDER + 1: 1.0}, FREEDOMS, of.gradient.shape[:-2])
+    pressed = balanced(taut, one).tension
+    links = slice(0, ALONG[1])
+    return np.asarray(2.0 * (np.abs(pressed[..., links]) * of.play[..., links]).sum(axis=-1))[..., 0]
+
+
