@@ -10,5 +10,5 @@ from truing import Model, hookimpl
 
 @hookimpl
 def truing_models() -> "list[Model[Any, Any]]":
-    """Offer press_linkage; press_linkage.motion for torque and joint forces; press_linkage.loaded for what gives way."""
+    """Offer press_linkage; press_linkage.motion for torque and joint forces; press_linkage.loaded for deflection."""
     return [PRESS_LINKAGE, MOTION, LOADED]

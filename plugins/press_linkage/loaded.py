@@ -16,11 +16,13 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
+from press_linkage.effects import GRAVITY, JOINTS, KNEE
+from press_linkage.errors import face_sensitivities
 from press_linkage.kinematics import Half
 from press_linkage.loaded_quantities import LoadedAnswers, LoadedPress
 from press_linkage.motion import (
-    SERIES,
     Body,
     CrankCourse,
     SideMotion,
@@ -34,20 +36,18 @@ from press_linkage.motion import (
 from press_linkage.quantities import PressSide
 from truing import Array, Float, feasible
 
-GRAVITY = 9.80665  # m/s2
-JOINTS = 2  # per link
 FILM = 1e-4
 """Share of its stiffness that a spring has within its play: an oil film. 8 N cross a play of 40 um of a joint."""
 MOST_ROUNDS = 80
-HALVINGS = 12
-"""Rounds until every spring is on the piece that was assumed; halvings of a step that goes too far."""
+"""Until every spring is on the piece that was assumed; most presses need five."""
 SOFTEST, STIFFEST = 1e3, 1e15  # N/m: outside, a spring is none, or the equations lose their digits
 LARGEST = 0.1  # m: a greater play or free extension is no small displacement
 SIDES = ((1, 1.0), (2, -1.0))
 PINS, KNEES, PLATFORM, SLIDER = {1: 0, 2: 2}, {1: 4, 2: 6}, 8, 11
 FREEDOMS = 14
 RODS, DRIVES, UPPERS, LOWERS, ALONG, ACROSS = ({1: row, 2: row + 1} for row in range(0, 12, 2))
-PLATFORM_GUIDES, SLIDER_GUIDES = (12, 13), (14, 15)
+PLATFORM_GUIDES, SLIDER_GUIDES = (14, 12), (15, 13)
+"""Upper and lower."""
 SPRINGS = 16
 
 Vector = tuple[Float, Float]
@@ -70,9 +70,9 @@ class Balance:
     tension: Array
 
 
-def _stacked(parts: Mapping[int, Float], count: int, shape: tuple[int, ...]) -> Array:
+def _stacked(parts: Mapping[int, Float], count: int) -> Array:
     """Values by their place along a last axis, 0 elsewhere."""
-    whole = np.zeros((*shape, count))
+    whole = np.zeros((*np.broadcast_shapes(*(np.shape(value) for value in parts.values())), count))
     for place, value in parts.items():
         whole[..., place] = value
     return whole
@@ -94,7 +94,7 @@ def _places(press: LoadedPress, half: Half, sign: float) -> dict[str, Vector]:
     return directions | {"across": _turned((-crank.sine, crank.cosine), sign)}
 
 
-def _gradients(press: LoadedPress, half: Half, shape: tuple[int, ...]) -> Array:
+def _gradients(press: LoadedPress, half: Half) -> Array:
     """Extension of each spring per displacement: of its second end along its line, less that of its first."""
     rows: dict[int, dict[int, Float]] = {}
     for side, sign in SIDES:
@@ -118,10 +118,9 @@ def _gradients(press: LoadedPress, half: Half, shape: tuple[int, ...]) -> Array:
             rows[row[side]] = {pin: at[name][0], pin + 1: at[name][1]}
     for body, guides, heights in _guided(press):
         rows |= {guide: {body: 1.0, body + 2: -height} for guide, height in zip(guides, heights, strict=True)}
-    whole = np.zeros((*shape, SPRINGS, FREEDOMS))
-    for row, parts in rows.items():
-        whole[..., row, :] = _stacked(parts, FREEDOMS, shape)
-    return whole
+    flat = {row * FREEDOMS + column: value for row, parts in rows.items() for column, value in parts.items()}
+    whole = _stacked(flat, SPRINGS * FREEDOMS)
+    return whole.reshape(*whole.shape[:-1], SPRINGS, FREEDOMS)
 
 
 def _guided(press: LoadedPress) -> tuple[tuple[int, tuple[int, int], tuple[Float, Float]], ...]:
@@ -133,7 +132,7 @@ def _guided(press: LoadedPress) -> tuple[tuple[int, tuple[int, int], tuple[Float
     )
 
 
-def _stiffness(press: LoadedPress, half: Half, shape: tuple[int, ...]) -> Array:
+def _stiffness(press: LoadedPress, half: Half) -> Array:
     """Bars in series with their joints; the frame at M along the upper link; pivot and drive behind the crank."""
     modulus, joints = press.modulus, JOINTS / press.joint_stiffness
     frame = half.upper.cosine**2 / press.ground_stiffness_sideways
@@ -149,17 +148,17 @@ def _stiffness(press: LoadedPress, half: Half, shape: tuple[int, ...]) -> Array:
     }
     both = {row + other: 1.0 / value for row, value in soft.items() for other in (0, 1)}
     both |= dict.fromkeys(PLATFORM_GUIDES, press.platform_guide_stiffness)
-    return _stacked(both | dict.fromkeys(SLIDER_GUIDES, press.guide_stiffness), SPRINGS, shape)
+    return _stacked(both | dict.fromkeys(SLIDER_GUIDES, press.guide_stiffness), SPRINGS)
 
 
-def _play(press: LoadedPress, shape: tuple[int, ...]) -> Array:
+def _play(press: LoadedPress) -> Array:
     """How far a spring extends or shortens until it carries: two joints of a link, the clearance of a guide."""
     links = dict.fromkeys(range(ALONG[1]), JOINTS * press.joint_play)
     links |= dict.fromkeys(PLATFORM_GUIDES, press.platform_guide_clearance)
-    return _stacked(links | dict.fromkeys(SLIDER_GUIDES, press.guide_clearance), SPRINGS, shape)
+    return _stacked(links | dict.fromkeys(SLIDER_GUIDES, press.guide_clearance), SPRINGS)
 
 
-def _free(press: LoadedPress, half: Half, shape: tuple[int, ...]) -> Array:
+def _free(press: LoadedPress, half: Half) -> Array:
     """How much longer each spring is when it carries nothing: by errors of its parts, by heat, and where it is held."""
     free: dict[int, Float] = {}
     warm, frame = press.expansion * press.link_rise, press.expansion * press.frame_rise
@@ -183,12 +182,10 @@ def _free(press: LoadedPress, half: Half, shape: tuple[int, ...]) -> Array:
         free[ACROSS[side]] = press.crank_radius * off.crank_angle_deviation - apart("across", still, moved["A"])
     for guide, height in zip(SLIDER_GUIDES, _guided(press)[1][2], strict=True):
         free[guide] = press.guide_inclination * (half.face + height - press.bolster_depth)
-    return _stacked(free, SPRINGS, shape)
+    return _stacked(free, SPRINGS)
 
 
-def _misplaced(
-    press: LoadedPress, off: PressSide, sign: float, warm: Float, frame: Float
-) -> dict[str, Vector]:
+def _misplaced(press: LoadedPress, off: PressSide, sign: float, warm: Float, frame: Float) -> dict[str, Vector]:
     """Where the joints on platform, slider and frame lie beside their place: by their errors and by heat."""
 
     def joint(kind: str, cosine: Float, sine: Float, growth: Float) -> Vector:
@@ -209,26 +206,7 @@ def _misplaced(
 
 def springs(press: LoadedPress, half: Half) -> Springs:
     """All springs in the positions of ``half``; inputs as columns (n, 1) beside positions (k,) or (n, k)."""
-    gradient_shape = np.broadcast_shapes(np.shape(half.face), *_shapes(press))
-    return Springs(
-        gradient=_gradients(press, half, gradient_shape),
-        stiffness=_stiffness(press, half, gradient_shape),
-        play=_play(press, gradient_shape),
-        free=_free(press, half, gradient_shape),
-    )
-
-
-def _shapes(value: object) -> list[tuple[int, ...]]:
-    """The shapes of all inputs that differ between machines."""
-    shapes = []
-    for name, held in vars(value).items():
-        if name in OWN_SERIES or isinstance(held, str) or held is None:
-            continue
-        shapes += _shapes(held) if hasattr(held, "__dict__") and not isinstance(held, np.ndarray) else [np.shape(held)]
-    return shapes
-
-
-OWN_SERIES = SERIES | {"acceptance_angle"}
+    return Springs(_gradients(press, half), _stiffness(press, half), _play(press), _free(press, half))
 
 
 # Loads: the force on the slider, weights, counterbalance, and the inertia of every body
@@ -282,80 +260,122 @@ def _on_the_ends(body: Body, crank: CrankCourse) -> tuple[Vector, Vector]:
     return (-needs.force.y - last[0], -needs.force.z - last[1]), last
 
 
-# Equilibrium
+# Equilibrium: 14 springs would hold the press, so two numbers say how it shares its load among 16
 
 
-def carried(of: Springs, apart: Array) -> Array:
+def carried(of: "Springs | Chain", apart: Array) -> Array:
     """What springs carry that are so much longer than free: next to nothing within their play, beyond it the rest."""
     beyond = apart - np.clip(apart, -of.play, of.play)
     return np.asarray(of.stiffness * (FILM * apart + (1.0 - FILM) * beyond))
 
 
 def balanced(of: Springs, load: Array) -> Balance:
-    """Where the energy is least: Newton's method on its linear pieces, each step ending where the energy is least on it.
+    """Where the energy is least under these loads (..., 14). NaN where the geometry is, and where springs are none.
 
-    The energy is convex and quadratic in pieces; with the piece known, one step is exact. NaN where the geometry is, and
-    where springs are none.
+    With the gradient G = Q (R, 0)' and Z the last two columns of Q, tensions in equilibrium are N = Q (R'^-1 load, r),
+    and extensions fit together where Z' takes nothing from them: two equations for the two numbers r.
     """
-    load = np.broadcast_to(load, (*of.gradient.shape[:-2], FREEDOMS))
-    known = np.isfinite(of.gradient).all(axis=(-2, -1)) & np.isfinite(load).all(axis=-1)
-    known &= ((of.stiffness > SOFTEST) & (of.stiffness < STIFFEST)).all(axis=-1)
-    known &= (of.play < LARGEST).all(axis=-1) & (np.abs(of.free) < LARGEST).all(axis=-1)
-    moved = np.full(load.shape, np.nan)
-    if known.any():
-        moved[known] = _least(Springs(*(array[known] for array in of)), load[known])
-    return Balance(moved, carried(of, _apart(of, moved)))
+    known = np.asarray(np.isfinite(of.gradient).all(axis=(-2, -1)))
+    turned, upper = np.linalg.qr(np.where(known[..., np.newaxis, np.newaxis], of.gradient, np.eye(SPRINGS, FREEDOMS)),
+                                 mode="complete")  # fmt: skip
+    holds = np.linalg.solve(upper[..., :FREEDOMS, :], np.swapaxes(turned, -1, -2)[..., :FREEDOMS, :])
+    statics = (load[..., np.newaxis, :] @ holds)[..., 0, :]
+    known = known & np.isfinite(statics).all(axis=-1)
+    known = known & ((of.stiffness > SOFTEST) & (of.stiffness < STIFFEST)).all(axis=-1)
+    known = known & (of.play < LARGEST).all(axis=-1) & (np.abs(of.free) < LARGEST).all(axis=-1)
+    stiffness, play, free, balancing = (
+        np.broadcast_to(array, (*known.shape, SPRINGS))[known] for array in (of.stiffness, of.play, of.free, statics)
+    )
+    spare = np.swapaxes(turned, -1, -2)[..., FREEDOMS:, :]
+    apart = np.full((*known.shape, SPRINGS), np.nan)
+    spare = np.broadcast_to(spare, (*known.shape, *spare.shape[-2:]))[known]
+    apart[known] = _least(Chain(stiffness, play, free, balancing, spare))
+    moved = (holds @ (apart + of.free)[..., np.newaxis])[..., 0]
+    return Balance(moved, carried(of, apart))
 
 
-def _apart(of: Springs, moved: Array) -> Array:
-    """How much longer than free each spring is."""
-    return np.asarray((of.gradient @ moved[..., np.newaxis])[..., 0] - of.free)
+class Chain(NamedTuple):
+    """The springs of m presses (m, 16), tensions that balance the loads (m, 16), two that balance none (m, 2, 16)."""
+
+    stiffness: Array
+    play: Array
+    free: Array
+    statics: Array
+    spare: Array
 
 
-def _piece(of: Springs, apart: Array) -> Array:
+def _least(of: Chain) -> Array:
+    """How much longer than free each spring is (m, 16) where the energy is least.
+
+    Newton's method on the linear pieces of the springs, each step ending where the energy is least on it. The energy is
+    convex and quadratic in pieces: with the pieces known, one step is exact.
+    """
+    apart = _on_pieces(of, np.ones(of.play.shape), taut=True)
+    left = np.arange(len(apart))
+    for _ in range(MOST_ROUNDS):
+        if not left.size:
+            break
+        part, here = Chain(*(array[left] for array in of)), apart[left]
+        piece = _piece(part, here)
+        there = _on_pieces(part, piece)
+        exact = (_piece(part, there) == piece).all(axis=-1)
+        over = np.flatnonzero(~exact & (_left_over(part, there, there - here) > 0.0))
+        if over.size:
+            short = _share(Chain(*(array[over] for array in part)), here[over], there[over] - here[over])
+            there[over] = here[over] + short[:, np.newaxis] * (there[over] - here[over])
+        apart[left] = there
+        left = left[~exact]
+    apart[left] = np.nan
+    return apart
+
+
+def _piece(of: Chain, apart: Array) -> Array:
     """Whether a spring is within its play, 0, or beyond it, 1 or -1 by its sense; without play it always carries, 1."""
     return np.where(of.play > 0.0, np.sign(apart) * (np.abs(apart) > of.play), 1.0)
 
 
-def _least(of: Springs, load: Array) -> Array:
-    """The displacements (m, 14) of least energy."""
-    moved, left = np.zeros(load.shape), np.arange(len(load))
-    for round_number in range(MOST_ROUNDS):
-        if not left.size:
-            break
-        part, here = Springs(*(array[left] for array in of)), load[left]
-        turned = np.swapaxes(part.gradient, -1, -2)
-        apart = _apart(part, moved[left])
-        piece = _piece(part, apart)
-        stiffness = part.stiffness * (np.where(piece == 0.0, FILM, 1.0) if round_number else 1.0)  # first without play
-        slope = here - (turned @ carried(part, apart)[..., np.newaxis])[..., 0]
-        matrix = (turned * stiffness[:, np.newaxis, :]) @ part.gradient
-        step = np.linalg.solve(matrix, slope[..., np.newaxis])[..., 0]
-        longer = (part.gradient @ step[..., np.newaxis])[..., 0]
-        reached = apart + longer
-        exact = (_piece(part, reached) == piece).all(axis=-1) & (round_number > 0)
-        share = np.where(exact, 1.0, _share(part, apart, longer, (here * step).sum(axis=-1)))
-        moved[left] += share[:, np.newaxis] * step
-        left = left[~exact]
-    moved[left] = np.nan
-    return moved
+def _on_pieces(of: Chain, piece: Array, *, taut: bool = False) -> Array:
+    """The extensions if every spring were on this piece: two equations for what balances no load."""
+    soft = np.where(piece == 0.0, 1.0 / FILM, 1.0) / of.stiffness
+    shift = np.zeros(piece.shape) if taut else piece * (1.0 - FILM) * of.play
+    gap = (of.spare @ (soft * of.statics + shift + of.free)[..., np.newaxis])[..., 0]
+    yielding = of.spare * soft[:, np.newaxis, :]
+    first, mixed, second = (
+        (yielding[:, row] * of.spare[:, column]).sum(axis=-1) for row, column in ((0, 0), (0, 1), (1, 1))
+    )
+    shares = np.stack([mixed * gap[:, 1] - second * gap[:, 0], mixed * gap[:, 0] - first * gap[:, 1]], axis=-1)
+    shares = shares / (first * second - mixed * mixed)[:, np.newaxis]
+    return np.asarray(soft * (of.statics + (shares[:, np.newaxis, :] @ of.spare)[:, 0]) + shift)
 
 
-def _share(of: Springs, apart: Array, longer: Array, work: Array) -> Array:
-    """The share of a step at which the energy is least on it, at most 1: where springs take up all that loads give."""
+def _left_over(of: Chain, apart: Array, longer: Array) -> Array:
+    """The slope of the energy along a step: what springs that are so far apart take up, less what loads give (m,)."""
+    return np.asarray((longer * (carried(of, apart) - of.statics)).sum(axis=-1))
 
-    def left_over(share: Array) -> Array:
-        return np.asarray((longer * carried(of, apart + share[:, np.newaxis] * longer)).sum(axis=-1) - work)
 
-    low, high = np.zeros(len(work)), np.ones(len(work))
-    too_far = left_over(high) > 0.0
-    if not too_far.any():
-        return high
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        beyond = left_over(middle) > 0.0
-        low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
-    return np.where(too_far, high, 1.0)
+def _share(of: Chain, apart: Array, longer: Array) -> Array:
+    """The share of a step that goes too far at which the energy is least on it (m,).
+
+    The slope of the energy grows along the step, straight between the shares at which a spring reaches its play.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        reached = np.concatenate([(of.play - apart) / longer, (-of.play - apart) / longer], axis=-1)
+    ends = np.clip(np.nan_to_num(reached, nan=1.0), 0.0, 1.0)
+    shares = np.sort(np.pad(ends, ((0, 0), (1, 1)), constant_values=((0, 0), (0.0, 1.0))), axis=-1)
+    first, last = np.zeros(len(apart), dtype=int), np.full(len(apart), shares.shape[-1] - 1)
+
+    def at(place: NDArray[np.int_]) -> tuple[Array, Array]:
+        share = np.take_along_axis(shares, place[:, np.newaxis], axis=-1)
+        return share[:, 0], _left_over(of, apart + share * longer, longer)
+
+    while np.any(last - first > 1):
+        middle = (first + last) // 2
+        beyond = at(middle)[1] > 0.0
+        first, last = np.where(beyond, first, middle), np.where(beyond, middle, last)
+    (low, below), (high, above) = at(first), at(last)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        between = np.clip(np.nan_to_num(-below / (above - below), nan=1.0), 0.0, 1.0)
+    return np.asarray(low + (high - low) * between)
 
 
 # The calculation itself
@@ -372,9 +392,7 @@ def at_angles(press: LoadedPress, crank: CrankCourse, force: Float, offset: Floa
     of = springs(press, half)
     side = side_motion(press, half)
     load = loads(press, side, crank, force, offset)
-    shape = np.broadcast_shapes(of.gradient.shape[:-2], *(np.shape(value) for value in load.values()))
-    wide = Springs(*(np.broadcast_to(array, (*shape, *array.shape[of.gradient.ndim - 2 :])) for array in of))
-    return half, balanced(wide, _stacked(load, FREEDOMS, shape))
+    return half, balanced(of, _stacked(load, FREEDOMS))
 
 
 def lifted(press: LoadedPress, balance: Balance, force: Float) -> Float:
@@ -420,58 +438,41 @@ def press_under_load(given: LoadedPress) -> LoadedAnswers:
         rod_2=pushed[..., RODS[2]],
         largest_guide_force=largest,
         largest_tilt=np.max(np.abs(tilt), axis=-1),
-        **rated(press),
-        **accepted(press),
+        **tested(press),
     )
 
 
-def rated(press: LoadedPress) -> dict[str, Float]:
-    """The test under load at the bottom dead centre: no force, the rated one in the middle, the same at its offset."""
-    standing = _standing(np.zeros(1))
-    cases = ((0.0, 0.0), (press.rated_force, 0.0), (press.rated_force, press.rated_offset))
-    balances = [at_angles(press, standing, force, offset)[1] for force, offset in cases]
-    heights = [lifted(press, balance, force) for balance, (force, _) in zip(balances, cases, strict=True)]
-    tilts = [inclined(press, balance, f * y) for balance, (f, y) in zip(balances, cases, strict=True)]
-    deflection, slope = (heights[1] - heights[0])[..., 0], np.abs(tilts[2] - tilts[1])[..., 0]
-    rated_force, moment = press.rated_force, press.rated_force * press.rated_offset
+def tested(press: LoadedPress) -> dict[str, Float]:
+    """The acceptance test: at the bottom dead centre under load, and without force over its crank angles."""
+    angles = np.atleast_1d(press.acceptance_angle)
+    feasible(angles.size > 1, "acceptance_angle: two crank angles or more, or there is no travel to measure over")
+    none = np.zeros(angles.size)
+    force = np.concatenate([[0.0, 1.0, 1.0], none]) * press.rated_force
+    offset = np.concatenate([[0.0, 0.0, 1.0], none]) * press.rated_offset
+    half, balance = at_angles(press, _standing(np.concatenate([np.zeros(3), angles])), force, offset)
+    height, tilt = lifted(press, balance, force), inclined(press, balance, force * offset)
+    deflection, slope = height[..., 1] - height[..., 0], np.abs(tilt[..., 2] - tilt[..., 1])
+    free = slice(3, None)
+    face = balance.moved[..., free, SLIDER] - balance.moved[..., free, SLIDER + 2] * press.face_depth
     return {
         "rated_deflection": deflection,
-        "press_stiffness": _flat(rated_force) / deflection,
+        "press_stiffness": _flat(press.rated_force) / deflection,
         "rated_slope": slope,
-        "tilt_stiffness": _flat(moment) / slope,
+        "tilt_stiffness": _flat(press.rated_force * press.rated_offset) / slope,
+        "parallelism": np.max(np.abs(balance.moved[..., free, SLIDER + 2]), axis=-1) * _flat(press.face_width),
+        "squareness": np.ptp(face, axis=-1) / np.ptp(np.asarray(half.face)[..., free], axis=-1),
+        "total_clearance": clearance(press, half)[..., 0],
     }
 
 
 def _flat(value: Float) -> Float:
     """A column (n, 1) as (n,), a number as it is."""
-    return np.asarray(value)[..., 0] if np.ndim(value) else value
+    array = np.asarray(value)
+    return array[..., 0] if array.ndim else value
 
 
-def accepted(press: LoadedPress) -> dict[str, Float]:
-    """The test without force: parallelism and squareness over its crank angles, and the travel by play."""
-    angles = np.atleast_1d(press.acceptance_angle)
-    feasible(angles.size > 1, "acceptance_angle: two crank angles or more, or there is no travel to measure over")
-    half, balance = at_angles(press, _standing(angles), 0.0, 0.0)
-    tilt = balance.moved[..., SLIDER + 2]
-    face = balance.moved[..., SLIDER] - tilt * press.face_depth
-    travel = np.ptp(np.broadcast_to(half.face, np.shape(face)), axis=-1)
-    return {
-        "parallelism": np.max(np.abs(tilt), axis=-1) * _flat(press.face_width),
-        "squareness": np.ptp(face, axis=-1) / travel,
-        "total_clearance": clearance(press),
-    }
-
-
-def clearance(press: LoadedPress) -> Float:
-    """How far the slider falls at the bottom dead centre when its load reverses, by virtual work on the taut press.
-
-    A force of one newton on the slider gives each link its force; its play, times this, is what the slider travels.
-    """
-    of = springs(press, half_at(press, np.zeros(1)))
-    taut = of._replace(play=np.zeros_like(of.play), free=np.zeros_like(of.free))
-    one = _stacked({SLIDER + 1: 1.0}, FREEDOMS, of.gradient.shape[:-2])
-    pressed = balanced(taut, one).tension
-    links = slice(0, ALONG[1])
-    return np.asarray(2.0 * (np.abs(pressed[..., links]) * of.play[..., links]).sum(axis=-1))[..., 0]
-
-
+def clearance(press: LoadedPress, half: Half) -> Array:
+    """How far the slider falls when its load reverses: the play of each link times its force per force, both ways."""
+    face = face_sensitivities(half)
+    links = sum(np.abs(face[kind]) for kind in KNEE) + np.abs(face["platform_arm"] / half.rod.sine)
+    return np.asarray(2.0 * JOINTS * press.joint_play * links)

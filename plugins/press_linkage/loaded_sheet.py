@@ -122,8 +122,8 @@ SECTIONS = [
 ]  # fmt: skip
 
 LITERATURE = [
-    "The mechanism and the tolerances of its parts: Qian Huanan, Tao Jing, Yu Suiran (騫華楠, 陶璟, 于隨然). It gives no "
-    "sections, stiffness, clearance or masses.",
+    "The mechanism and the tolerances of its parts: Qian Huanan, Tao Jing, Yu Suiran (騫華楠, 陶璟, 于隨然). It gives "
+    "no sections, stiffness, clearance or masses.",
     "R. D. Cook, D. S. Malkus, M. E. Plesha, R. J. Witt, Concepts and applications of finite element analysis: bars in "
     "a plane by displacements and least potential energy.",
     "JIS B 6402:2020, Mechanical presses, accuracy classes and tests; ISO 6899, Acceptance conditions of open front "
@@ -145,6 +145,6 @@ LOADED = Model(
     sheet=SECTIONS,
     cites=LITERATURE,
     example=Path(__file__).with_name("loaded.toml"),
-    summary="How far does a servo press give way under a force beside its middle, what do its guides carry, and does it "
-    "pass its acceptance test?",
+    summary="How far does a servo press give way under a force beside its middle, what do its guides carry, and does "
+    "it pass its acceptance test?",
 )

@@ -55,7 +55,9 @@ def link(kind: str, symbol: str) -> Tolerance:
     )  # fmt: skip
 
 
-def joint(kind: str, half: str, coordinate: str, *, radius: str = "", printed: str = "", chosen: bool = True) -> Tolerance:
+def joint(
+    kind: str, half: str, coordinate: str, *, radius: str = "", printed: str = "", chosen: bool = True
+) -> Tolerance:
     """A joint that is mounted beside its place: along its radius or, with *radius*, across it.
 
     What the printed reliabilities do not contain is off in the reading ``printed``, where the reading can be *chosen*.

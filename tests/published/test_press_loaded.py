@@ -189,8 +189,8 @@ def test_a_press_that_grows_alike_opens_by_the_heat_of_its_shut_height() -> None
 
 
 def test_columns_alone_are_springs_in_closed_form() -> None:
-    answer = press_under_load(slow(ANGLES, FORCES, **{**RIGID, "column_stiffness": 8e9}, **SECTIONS, guide_stiffness=STIFF,
-                                   platform_guide_stiffness=STIFF))  # fmt: skip
+    answer = press_under_load(slow(ANGLES, FORCES, **{**RIGID, "column_stiffness": 8e9}, **SECTIONS,
+                                   guide_stiffness=STIFF, platform_guide_stiffness=STIFF))  # fmt: skip
     assert float(np.asarray(answer.press_stiffness)) == pytest.approx(8e9, rel=0.01)
     assert float(np.asarray(answer.tilt_stiffness)) == pytest.approx(8e9 * 2.0**2, rel=0.02)
 
