@@ -20,7 +20,7 @@ STROKE = tuple(step / 24 for step in range(25))
 """Times of the working stroke at 12 rpm, s: from 60 degrees before the bottom dead centre to 12 after it."""
 
 
-def size(value: float, unit: str, symbol: str, note: str, *, source: str = DRAWING, most: float = 1e6) -> Any:
+def size(value: float, unit: str, symbol: str, note: str, *, source: str = DRAWING, most: float = 1e5) -> Any:
     """Declare a number above 0."""
     return given(value, unit, symbol=symbol, note=note, source=source, above=0, at_most=most)
 

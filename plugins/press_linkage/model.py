@@ -5,6 +5,7 @@ from pathlib import Path
 from press_linkage.answers import Readings, chances, cycle, influence, synthesis
 from press_linkage.effects import EFFECTS
 from press_linkage.errors import exact_derivatives, press_linkage, source
+from press_linkage.over_the_stroke import OverTheStroke
 from press_linkage.published import FINDINGS, PUBLISHED
 from press_linkage.sheet import SECTIONS
 from truing import (
@@ -113,6 +114,7 @@ PRESS_LINKAGE = Model(
         Reliability(gives=chances),
         Allocation(rule="balanced", of="slider_position", finest="IT5", gives=synthesis),
         Readings(finest="IT5"),
+        OverTheStroke(),
     ],
     sheet=SECTIONS,
     published=PUBLISHED,

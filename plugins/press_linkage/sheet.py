@@ -101,6 +101,12 @@ def other_reading(record: "PressRun") -> Sequence[Block]:
     return [words, compared.table()]
 
 
+def bands_over_the_stroke(record: "PressRun") -> Sequence[Block]:
+    """The bands of all sources for the dead centre and for the stroke."""
+    found = record.studies.get("over_the_stroke")
+    return [] if found is None else found.shown()
+
+
 SECTIONS = [
     Section(
         "Mechanism and slider",
@@ -157,4 +163,11 @@ SECTIONS = [
         blocks=tightening,
     ),
     Section("Both readings of the paper", blocks=other_reading),
+    Section(
+        "Tolerances over the working stroke",
+        text="All 29 sources may be bought here, joints, slider and crank angle too, in the reading 'complete' and at the "
+        "price of the paper, one over the band. The design for the dead centre keeps its limits there; that for the "
+        "stroke keeps them at all its angles together.",
+        blocks=bands_over_the_stroke,
+    ),
 ]  # fmt: skip

@@ -54,6 +54,11 @@ BOUNDS: dict[str, dict[str, str]] = {
         "at least 0": "slider_mass counterbalance guide_friction bearing_friction mass_rod inertia_upper_knee",
         "at most 3": "centre_lower_knee",
     },
+    "press_linkage.loaded": {
+        "above 0": "joint_stiffness section_rod column_half_distance rated_force permitted_slope",
+        "at least 0": "joint_play guide_clearance platform_guide_span",
+        "at most 10": "platform_guide_span guide_above",
+    },
     "roller_screw_shift": {
         "above 0": "module face_width centre_distance screw_diameter roller_diameter rim_factor "
         "most_sliding_difference",
@@ -189,6 +194,10 @@ IMPOSSIBLE: dict[str, list[tuple[list[str], int, str]]] = {
         (['force_angle = { values = [0, 10], unit = "deg" }'], 3, "force has 4 values at 2 of force_angle"),
         (['bearing_friction = "150 mm"'], 3, "the press locks: its pins rub more than the drive can overcome"),
         (['lower_knee_length = "0.5 m"'], 3, "loop III, side 1 does not close"),
+    ],
+    "press_linkage.loaded": [
+        (['acceptance_angle = { values = [0], unit = "deg" }'], 3, "acceptance_angle: two crank angles or more"),
+        (['forming_force = ["1 kN"]'], 3, "forming_force has 1 values at 25 times; it needs one at each"),
     ],
     "roller_screw_shift": [
         (["roller_teeth = 20", "ring_teeth = 27"], 4, "the formulas hold for ring_teeth at least 8 above roller_teeth"),

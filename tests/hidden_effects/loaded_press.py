@@ -1,7 +1,7 @@
 """A press that gives way under load, by the least potential energy of its exact geometry. Nothing of the plugin.
 
 Two cranks, two knees, platform and slider have 14 coordinates, and stay where links, guides, weights and forces
-have the least energy together. Lengths and angles are exact, so nothing is linear but the springs. The gradient is taken by
+have the least energy together. Lengths and angles are exact, so nothing is linear but the springs. The gradient is by
 complex steps, the curvature by differences of it; the energy is differenced again in the tests. SI; y + jz with z down,
 side 2 with its own directions; a mass hangs at its centre of gravity. The press stands.
 """

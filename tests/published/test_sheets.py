@@ -20,7 +20,7 @@ from truing.inputs_file import setup_from_text
 from truing.setup import default_setup
 
 OFFERS = Kernel.installed(strict=True).offers
-WHOLE = ["roller_screw_shift", "rv_gearing", "rv_wear", "harmonic_fractal", "press_linkage.motion"]
+WHOLE = ["roller_screw_shift", "rv_gearing", "rv_wear", "harmonic_fractal", "press_linkage.motion", "press_linkage.loaded"]
 """Calculations whose sections show all of their results."""
 
 
@@ -56,6 +56,7 @@ ALONE: list[tuple[Drawn, int]] = [  # without any study, and how many figures ar
     (Drawn(plugin="rv_wear"), 4),
     (Drawn(plugin="harmonic_fractal"), 2),
     (Drawn(plugin="press_linkage.motion"), 3),
+    (Drawn(plugin="press_linkage.loaded"), 2),
 ]
 UNUSUAL: list[tuple[Drawn, int]] = [
     (Drawn(plugin="press_linkage", inputs={"crank_angle": "-60 deg", "ground_pivot_angle": "0.117 rad"},
@@ -76,6 +77,8 @@ UNUSUAL: list[tuple[Drawn, int]] = [
     (Drawn(plugin="press_linkage.motion", declared=("sweep",), inputs={
         "times": ["0 s", "1 s", "2 s"], "start_angle": "-10 deg", "crank_speed": ["12 rpm", "0 rpm", "-12 rpm"],
         "forming_force": ["0 N", "0 N", "0 N"]}), 4),
+    (Drawn(plugin="press_linkage.loaded", declared=("sweep",), inputs={
+        "platform_guide_span": "0 m", "joint_play": "0 um", "guide_clearance": "0 um", "load_offset": "0 mm"}), 3),
 ]  # fmt: skip
 
 
@@ -91,7 +94,7 @@ def test_every_figure_is_drawn_without_a_complaint(drawn: Drawn, count: int) -> 
     assert len(titles) == count, titles
 
 
-@pytest.mark.parametrize("plugin", ["press_linkage", *WHOLE[:3], "press_linkage.motion"])
+@pytest.mark.parametrize("plugin", ["press_linkage", *WHOLE[:3], *WHOLE[4:]])
 def test_every_line_of_the_example_can_be_switched_on(plugin: str) -> None:
     """Inputs, tolerances, effects with their unknowns, and conditions are all named; with every effect it runs."""
     offer = OFFERS[plugin]
