@@ -467,8 +467,7 @@ def tested(press: LoadedPress) -> dict[str, Float]:
 
 def _flat(value: Float) -> Float:
     """A column (n, 1) as (n,), a number as it is."""
-    array = np.asarray(value)
-    return array[..., 0] if array.ndim else value
+    return np.reshape(value, -1) if np.ndim(value) else value
 
 
 def clearance(press: LoadedPress, half: Half) -> Array:

@@ -1,7 +1,7 @@
 """Which tolerances of all 29 sources does a press need that keeps its limits over a working stroke, not at one angle?
 
-Every kind of error has one band for both sides and a price that is in inverse proportion to it (the paper's law), joints
-and slider included. To first order, with w the full bands, the variances of position and tilt at an angle are sums of
+Every kind of error has one band for both sides and a price in inverse proportion to it (the paper's law), joints and
+slider included. To first order, with w the full bands, the variances of position and tilt at an angle are sums of
 (derivative w/6)^2. The cost sum p/w is least where both limits keep their probability at every angle: convex in ln w.
 """
 
@@ -117,11 +117,13 @@ def cheapest(
     scale = min(1.0, float(1.0 / np.sqrt(np.max(weights @ high**2))))
     begin = np.clip(np.log(high * scale), np.log(low), np.log(high))
     worth = float((prices / high).sum())
+    limit: Any = {"type": "ineq", "fun": lambda y: 1.0 - weights @ np.exp(2 * y),
+                  "jac": lambda y: -2.0 * weights * np.exp(2 * y)}  # fmt: skip
     found = scipy.optimize.minimize(
-        lambda y: float((prices * np.exp(-y)).sum()) / worth, begin, jac=lambda y: -prices * np.exp(-y) / worth,
-        bounds=list(zip(np.log(low), np.log(high), strict=True)), method="SLSQP", options={"maxiter": 500, "ftol": 1e-12},
-        constraints={"type": "ineq", "fun": lambda y: 1.0 - weights @ np.exp(2 * y),
-                     "jac": lambda y: -2.0 * weights * np.exp(2 * y)},
+        lambda y: float((prices * np.exp(-y)).sum()) / worth, begin,
+        jac=lambda y: np.asarray(-prices * np.exp(-y) / worth),
+        bounds=scipy.optimize.Bounds(np.log(low), np.log(high)), method="SLSQP", options={"maxiter": 500, "ftol": 1e-12},
+        constraints=limit,
     )  # fmt: skip
     bands = np.exp(found.x)
     return np.asarray(bands / max(1.0, float(np.sqrt(np.max(weights @ bands**2)))))
@@ -165,7 +167,7 @@ def kept(
 
 @dataclass(frozen=True)
 class StrokeBands(Outcome):
-    """The bands of each design (15,), m or rad; what they cost, 1/mm; and the shares of machines that keep the limits."""
+    """The bands of each design (15,), m or rad; their cost, 1/mm; and the shares of machines that keep the limits."""
 
     bands: Mapping[str, Array]
     lengths: Array

@@ -1,7 +1,7 @@
-"""Bands of all 29 sources over a stroke: closed form at one angle, optimality by multipliers, machines of a press apart.
+"""Bands of all 29 sources over a stroke: closed form at one angle, optimality by multipliers, and machines.
 
-References: the Lagrangian of one limit in closed form; non-negative multipliers by another algorithm; the exact geometry
-of ``hidden_effects/press_machine.py``, which shares nothing with the plugin.
+References: the Lagrangian of one limit in closed form; non-negative multipliers by another algorithm; the exact
+geometry of ``hidden_effects/press_machine.py``, which shares nothing with the plugin.
 """
 
 from dataclasses import replace

@@ -20,7 +20,14 @@ from truing.inputs_file import setup_from_text
 from truing.setup import default_setup
 
 OFFERS = Kernel.installed(strict=True).offers
-WHOLE = ["roller_screw_shift", "rv_gearing", "rv_wear", "harmonic_fractal", "press_linkage.motion", "press_linkage.loaded"]
+WHOLE = [
+    "roller_screw_shift",
+    "rv_gearing",
+    "rv_wear",
+    "harmonic_fractal",
+    "press_linkage.motion",
+    "press_linkage.loaded",
+]
 """Calculations whose sections show all of their results."""
 
 
