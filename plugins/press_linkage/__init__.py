@@ -11,4 +11,4 @@ from truing import Model, hookimpl
 @hookimpl
 def truing_models() -> "list[Model[Any, Any]]":
     """Offer press_linkage; press_linkage.motion for torque and joint forces; press_linkage.loaded for deflection."""
-    return [PRESS_LINKAGE, MOTION, LOADED]
+    return [PRESS_LINKAGE, LOADED, MOTION]

@@ -395,16 +395,16 @@ def at_angles(press: LoadedPress, crank: CrankCourse, force: Float, offset: Floa
     return half, balanced(of, _stacked(load, FREEDOMS))
 
 
-def lifted(press: LoadedPress, balance: Balance, force: Float) -> Float:
+def lifted(press: LoadedPress, balance: Balance, force: Float) -> Array:
     """How much higher the slider is over the bolster: displaced, and the bolster by columns and by heat."""
     frame = press.expansion * press.frame_rise * press.bolster_depth
-    return -balance.moved[..., SLIDER + 1] + force / press.column_stiffness + frame
+    return np.asarray(-balance.moved[..., SLIDER + 1] + force / press.column_stiffness + frame)
 
 
-def inclined(press: LoadedPress, balance: Balance, moment: Float) -> Float:
+def inclined(press: LoadedPress, balance: Balance, moment: Float) -> Array:
     """The tilt of the slider to the bolster: displaced, and the columns stretched unevenly."""
     columns = press.column_stiffness * press.column_half_distance**2
-    return balance.moved[..., SLIDER + 2] - moment / columns
+    return np.asarray(balance.moved[..., SLIDER + 2] - moment / columns)
 
 
 def press_under_load(given: LoadedPress) -> LoadedAnswers:

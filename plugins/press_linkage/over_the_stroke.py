@@ -117,14 +117,18 @@ def cheapest(
     scale = min(1.0, float(1.0 / np.sqrt(np.max(weights @ high**2))))
     begin = np.clip(np.log(high * scale), np.log(low), np.log(high))
     worth = float((prices / high).sum())
-    limit: Any = {"type": "ineq", "fun": lambda y: 1.0 - weights @ np.exp(2 * y),
-                  "jac": lambda y: -2.0 * weights * np.exp(2 * y)}  # fmt: skip
-    found = scipy.optimize.minimize(
-        lambda y: float((prices * np.exp(-y)).sum()) / worth, begin,
-        jac=lambda y: np.asarray(-prices * np.exp(-y) / worth),
-        bounds=scipy.optimize.Bounds(np.log(low), np.log(high)), method="SLSQP", options={"maxiter": 500, "ftol": 1e-12},
-        constraints=limit,
-    )  # fmt: skip
+    limit = {
+        "type": "ineq", "fun": lambda y: 1.0 - weights @ np.exp(2 * y), "jac": lambda y: -2.0 * weights * np.exp(2 * y),
+    }  # fmt: skip
+    told: dict[str, Any] = {
+        "jac": lambda y: -prices * np.exp(-y) / worth, "bounds": scipy.optimize.Bounds(np.log(low), np.log(high)),
+        "method": "SLSQP", "options": {"maxiter": 500, "ftol": 1e-12}, "constraints": limit,
+    }  # fmt: skip
+
+    def cost(logarithms: Array) -> float:
+        return float((prices * np.exp(-logarithms)).sum()) / worth
+
+    found = scipy.optimize.minimize(cost, begin, **told)
     bands = np.exp(found.x)
     return np.asarray(bands / max(1.0, float(np.sqrt(np.max(weights @ bands**2)))))
 

@@ -165,9 +165,9 @@ SECTIONS = [
     Section("Both readings of the paper", blocks=other_reading),
     Section(
         "Tolerances over the working stroke",
-        text="All 29 sources may be bought here, joints, slider and crank angle too, in the reading 'complete' and "
-        "at the price of the paper, one over the band. The design for the dead centre keeps its limits there; that for the "
-        "stroke keeps them at all its angles together.",
+        text="All 29 sources may be bought here, joints, slider and crank angle too, in the reading 'complete' and at "
+        "the price of the paper, one over the band. The design for the dead centre keeps its limits there; that for "
+        "the stroke keeps them at all its angles together.",
         blocks=bands_over_the_stroke,
     ),
 ]  # fmt: skip

@@ -148,7 +148,9 @@ def test_a_table_that_would_replace_what_it_reads(refused: Refused, tmp_path: Pa
 def test_a_plugin_that_nobody_offers(refused: Refused) -> None:
     (found,) = refused("run", "press_linkge")
     drive = "harmonic_fractal, harmonic_fractal.made_flank, harmonic_fractal.run_up, harmonic_fractal.vibration"
-    ours = f"{drive}, press_linkage, press_linkage.motion, roller_screw_shift, rv_gearing, rv_wear"
+    ours = (
+        f"{drive}, press_linkage, press_linkage.loaded, press_linkage.motion, roller_screw_shift, rv_gearing, rv_wear"
+    )
     assert found == f"calc: no plugin offers 'press_linkge'. Did you mean 'press_linkage'? Installed: {ours}."
     (found,) = refused("describe", "./nowhere.py")
     assert found == "calc: ./nowhere.py: no such file"

@@ -22,7 +22,7 @@ MODELS = [
     "harmonic_fractal.made_flank",
     "harmonic_fractal.run_up",
     "harmonic_fractal.vibration",
-    *sorted([*INSTALLED[1:], "press_linkage.motion"]),
+    *sorted([*INSTALLED[1:], "press_linkage.loaded", "press_linkage.motion"]),
 ]
 
 
