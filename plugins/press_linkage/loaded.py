@@ -38,6 +38,7 @@ from truing import Array, Float, feasible
 
 FILM = 1e-4
 """Share of its stiffness that a spring has within its play: an oil film. 8 N cross a play of 40 um of a joint."""
+ROUNDING = 1e-13  # m and rad
 MOST_ROUNDS = 80
 """Until every spring is on the piece that was assumed; most presses need five."""
 SOFTEST, STIFFEST = 1e3, 1e15  # N/m: outside, a spring is none, or the equations lose their digits
@@ -459,10 +460,15 @@ def tested(press: LoadedPress) -> dict[str, Float]:
         "press_stiffness": _flat(press.rated_force) / deflection,
         "rated_slope": slope,
         "tilt_stiffness": _flat(press.rated_force * press.rated_offset) / slope,
-        "parallelism": np.max(np.abs(balance.moved[..., free, SLIDER + 2]), axis=-1) * _flat(press.face_width),
-        "squareness": np.ptp(face, axis=-1) / np.ptp(np.asarray(half.face)[..., free], axis=-1),
+        "parallelism": _more(np.max(np.abs(balance.moved[..., free, SLIDER + 2]), axis=-1)) * _flat(press.face_width),
+        "squareness": _more(np.ptp(face, axis=-1)) / np.ptp(np.asarray(half.face)[..., free], axis=-1),
         "total_clearance": clearance(press, half)[..., 0],
     }
+
+
+def _more(size: Array) -> Array:
+    """A size, 0 where it is nothing but rounding: an even press tilts by 1e-17."""
+    return np.where(size < ROUNDING, 0.0, size)
 
 
 def _flat(value: Float) -> Float:
