@@ -1,7 +1,7 @@
 """A press under load with something wrong: each effect against the energy of a press of its own.
 
 The press of ``loaded_press`` hides it: exact lengths and angles, and the place where its energy is least. Whether a
-diagnosis finds it in a record takes long: ``tests/torture/test_loaded_press.py``.
+diagnosis finds it in a record takes long: ``tests/torture/test_loaded_press_named.py``.
 """
 
 from collections.abc import Mapping
