@@ -13,7 +13,7 @@ from starlette.testclient import TestClient
 
 from shared import ROOT
 from truing.errors import UsageError
-from truing.workbench import measuring
+from truing.workbench import bench
 from truing.workbench.guard import Key
 from truing.workbench.guesses import Column, Quantity, guesses, split_unit
 from truing.workbench.measuring import harmless
@@ -183,10 +183,10 @@ def test_an_upload_is_bounded_whatever_it_says_of_its_size(
     served: tuple[TestClient, Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     client, folder = served
-    monkeypatch.setattr(measuring, "LARGEST_UPLOAD", 1000)
+    monkeypatch.setattr(bench, "LARGEST_UPLOAD", 1000)
     for content in (b"x" * 1001, iter([b"x" * 600, b"x" * 600])):
         answer = client.post("/api/upload?name=bomb.csv", content=content)
-        assert "bomb.csv is too large" in answer.json()["faults"][0]["message"]
+        assert answer.json()["faults"][0]["message"] == "bomb.csv is larger than the 0.001 MB that are taken"
     assert [path for path in folder.rglob("*") if "bomb" in path.name or "upload" in path.name] == []
 
 
