@@ -133,6 +133,18 @@ def test_a_guess_is_a_guess_until_columns_says_so(tmp_path: Path) -> None:
     assert (file["columns"][5]["role"], file["columns"][5]["guess"], file["faults"]) == ("measured", None, [])
 
 
+def test_a_unit_at_the_end_of_a_foreign_name_says_what_a_column_can_be(tmp_path: Path) -> None:
+    _, *rows = (SCREW / "measured.csv").read_text(encoding="utf-8").splitlines()
+    (tmp_path / "mine.csv").write_text("\n".join(["Zeit_min,Last_N,Drehzahl_rpm,T,Winkel,Moment_Nmm", *rows]))
+    (file,) = columns(tmp_path, INPUTS, "mine.csv")["files"]
+    alike = {column["text"]: column["of_this_unit"] for column in file["columns"]}
+    assert alike["Last_N"] == {"tangential_force": "N", "axial_load": "N"}
+    assert alike["Drehzahl_rpm"] == {"screw_speed": "rpm"}
+    assert alike["Moment_Nmm"] == {"friction_torque": "N*mm"}
+    assert alike["Zeit_min"] == {"time": "min"}
+    assert alike["T"] == alike["Winkel"] == {}
+
+
 def test_what_competes_and_how_a_restriction_leaves_an_accepted_file(tmp_path: Path) -> None:
     shutil.copytree(SCREW, tmp_path, dirs_exist_ok=True)
     known = diagnoses.candidates("roller_screw_shift", "inputs.toml", str(tmp_path), INPUTS)
