@@ -22,9 +22,11 @@ HEADS = {
     "root_safety_planet": "breakage, planet", "contact_safety_sun": "pitting, sun",
     "contact_safety_planet": "pitting, planet", "common_first": "common factor, sun and planet",
     "common_second": "disc and pins", "planet_kinds": "kinds of planet", "mesh_phases": "phases",
+    "efficiency": "efficiency", "reserve": "least safety over asked", "from_best": "from best",
 }  # fmt: skip
+MOST_SHOWN = 20  # groups of the front
 DIGITS: dict[groups.GroupColumn, int] = {"ratio": 4, "deviation": 3, "torque": 2, "centre_distance": 3, "circle_low": 2,
-                             "circle_high": 2}  # fmt: skip
+                             "circle_high": 2, "efficiency": 3, "reserve": 4, "from_best": 3}  # fmt: skip
 
 
 def search(record: figures.GearingRun) -> "Sequence[Block]":
@@ -46,6 +48,7 @@ def search(record: figures.GearingRun) -> "Sequence[Block]":
     return [
         table,
         _preferred(found),
+        _front(found),
         Words(figures.window_words(found)),
         Drawing("Groups in their window", partial(figures.groups_figure, found), caption),
         *_catalogue(found),
@@ -88,6 +91,26 @@ def _preferred(found: groups.FoundGroups) -> Table:
     table = _table(found, "Which groups are better", ("sun", "planet", *groups.MEETING), note)
     rows = [(*row, reason) for row, reason in zip(table.rows, found.reasons(), strict=True)]
     return replace(table, columns=(*table.columns, "reason"), rows=rows, units=(*table.units, ""))
+
+
+def _front(found: groups.FoundGroups) -> Table:
+    """List the groups that no other beats in all criteria, the one nearest to the best of all first."""
+    distance = found.column("from_best")
+    unbeaten = int(np.sum(np.isfinite(distance)))
+    order = np.argsort(distance, kind="stable")[: min(unbeaten, MOST_SHOWN)]
+    of = ", ".join(HEADS.get(name, name.replace("_", " ")) for name in found.criteria)
+    note = (
+        f"{unbeaten} of {len(distance)} groups, {len(order)} shown: against each of these every other group is worse "
+        f"in one of {of}, or no better in any. First the one nearest to the best of all at once, each criterion from "
+        '0 to 1 over these groups; your own need may weigh them otherwise: [studies.search] criteria = ["deviation", '
+        '"reserve"]. A size, safety or ratio that differs by less than matters counts as equal.'
+    )
+    some = replace(found, groups=found.groups.at(order), numbers=found.numbers[order],
+                   strength={name: values[order] for name, values in found.strength.items()})  # fmt: skip
+    columns = tuple(name for name in found.criteria if name not in ("sun", "planet"))
+    table = _table(some, "Groups that no other beats", ("sun", "planet", *columns), note)
+    rows = [(*row, _cell(distance[place], 3)) for row, place in zip(table.rows, order, strict=True)]
+    return replace(table, columns=(*table.columns, HEADS["from_best"]), rows=rows, units=(*table.units, ""))
 
 
 def _cell(value: float, places: int | None) -> float | None:
