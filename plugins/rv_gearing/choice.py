@@ -15,7 +15,6 @@ from truing import Array
 LARGE_IS_BETTER = ("efficiency", "reserve")  # and every safety; of all else little is better
 STEPS = {"deviation": 1e-3, "reserve": 0.05, "centre_distance": 1e-3, "efficiency": 1e-3}
 """What counts as a difference at all, SI: 0.1 % of the ratio, 0.05 of a safety, 1 mm, 0.1 % of the efficiency."""
-CRITERIA = ("deviation", "reserve", "centre_distance", "efficiency", "common_first")
 
 
 def costs(name: str, values: Array) -> Array:

@@ -360,6 +360,7 @@ GroupColumn = Literal[
 ]  # fmt: skip
 COLUMNS: tuple[GroupColumn, ...] = get_args(GroupColumn)
 SIZES, MEETING, STRENGTH, CHOICE = COLUMNS[1:10], COLUMNS[10:15], COLUMNS[15:23], COLUMNS[23:]
+CRITERIA: tuple[GroupColumn, ...] = ("deviation", "reserve", "centre_distance", "efficiency", "common_first")
 PERMITTED = tuple(f"permitted_{name}" for name in STRENGTH if "stress" in name)
 PRINTED = {"deviation": ("%", 100.0), "torque": ("N*m", 1.0), "efficiency": ("%", 100.0)} | dict.fromkeys(
     ("centre_distance", "circle_low", "circle_high"), ("mm", 1e3)
@@ -425,7 +426,7 @@ class GroupSearch:
     sort_by: GroupColumn = "group"
     descending: bool = False
     exact_only: bool = False
-    criteria: Sequence[GroupColumn] = choice.CRITERIA
+    criteria: Sequence[GroupColumn] = CRITERIA
     name: str = "search"
     gives: Callable[[Any], Any] | None = None
 
@@ -508,7 +509,7 @@ class FoundGroups(Outcome):
     stable: bool
     sort_by: GroupColumn
     descending: bool
-    criteria: tuple[GroupColumn, ...] = choice.CRITERIA
+    criteria: tuple[GroupColumn, ...] = CRITERIA
 
     def column(self, name: GroupColumn) -> "Array":
         """Return one column, SI."""
@@ -526,7 +527,7 @@ class FoundGroups(Outcome):
         if name == "reserve":
             asked = {"root": self.inputs.least_bending_safety, "contact": self.inputs.least_contact_safety}
             safeties = [self.strength[each] / asked[each.split("_")[0]] for each in STRENGTH if "safety" in each]
-            return np.min(np.stack(safeties), axis=0)
+            return np.asarray(np.min(np.stack(safeties), axis=0))
         wanted = [choice.costs(each, self.column(each)) for each in self.criteria]
         return choice.distance_to_best(wanted, choice.unbeaten(wanted))
 

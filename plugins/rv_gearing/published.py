@@ -11,6 +11,8 @@ from truing import Finding, Published
 EXAMPLE = "ISO/TR 6336-30:2017, example 1"
 HANDBOOK = "Pu Lianggui, Mechanical Design, table 10-5"
 TEXTBOOK = "Pu Lianggui, Mechanical Design, example 10-1"
+EXERCISE = "exercise on rating life, sarthaks.com 2642436"
+SLIDING = "the paper prints 0.998 and no friction; 0.05 of steel on pins that do not turn gives it"
 CATALOGUE = "catalogue of the maker, RV-110E"
 
 QUOTED = "as public calculation projects quote the report; not compared with the printed document"
@@ -127,6 +129,12 @@ PUBLISHED = [
     *catalogue(),
     Published(name="torque of the catalogue", result="output_torque", value=TORQUE, unit="N*m", where=CATALOGUE,
               settings={"studies.run": "[]"}, verdict="differs", why=LOSSES),
+    Published(name="million turns of a ball bearing of 16 kN under 2 kN", result="million_turns", value=512.0,
+              where=EXERCISE, kind="worked",
+              settings={"bearing_exponent": "3", "bearing_rating": "16 kN", "stated_crank_load": "2 kN",
+                        "studies.run": "[]"}),
+    Published(name="efficiency of disc and pins", result="pin_loss_efficiency", value=0.998, where="section 2",
+              settings={"studies.run": "[]"}, obtained="calibrated", why=SLIDING),
     *iso_example(),
     *textbook(),
     *handbook(),

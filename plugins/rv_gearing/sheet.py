@@ -8,8 +8,10 @@ from itertools import chain
 import numpy as np
 
 from rv_gearing import figures, groups, load_factors
+from rv_gearing.flank import FlankState
 from rv_gearing.material import Steel
 from rv_gearing.rating import Reserve
+from rv_gearing.second_stage import SecondStage
 from truing import Block, Drawing, Section, Swept, Table, Words
 
 # Tables, words and figures by section of the sheet: each is there where its study ran
@@ -305,9 +307,26 @@ SECTIONS = [
     ),
     Section(
         "Permissible root stress",
-        *both("bending_life_factor", "notch_sensitivity", "root_surface", "bending_size", "permitted_root_stress"),
+        *both("bending_life_factor", "notch_sensitivity", "root_surface", "bending_size", "mean_stress_factor",
+        "permitted_root_stress"),
         text="Planets of this stage mesh with the sun alone: their roots are not bent to both sides in every turn. "
-        "But robots reverse; then the endurance limit is to be lowered by a mean stress factor, about 0.7.",
+        "But robots reverse: state how large the opposite load is, by the stress ratio of each gear.",
+    ),
+    Section(
+        "Scuffing and micropitting",
+        *FlankState.__dataclass_fields__,
+        text="Flanks that slide heat one another; where the contact gets as hot as the lubricant bears in its test, "
+        "they weld for a moment and scuff. The flash method takes the hottest point, the integral method a mean of the "
+        "path: two independent readings of one risk. Where the oil film is thin beside the roughness, flanks turn "
+        "grey by micropitting; what the lubricant bears must come from its own test.",
+    ),
+    Section(
+        "Second stage and crank bearings",
+        *SecondStage.__dataclass_fields__,
+        text="Discs and pins without clearance: every force passes through the pitch point, so the pins of a disc push "
+        "with one resultant that turns with the crank. A crank bearing gets its share of it, and its share of the "
+        "torque, which stands in the disc; both meet once per turn. What clearance and wear change is the business "
+        "of the calculation rv_wear.",
     ),
     Section(
         "Safeties",
