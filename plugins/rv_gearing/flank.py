@@ -218,6 +218,22 @@ def film_over(path: Path, oil: Oil, heat: tuple[Float, Float], force: Float, sof
     return 1.6 * radius * (alpha * modulus) ** 0.6 * speed**0.7 * load**-0.13 * hot**0.22
 
 
+def friction_of(stage: Gearing, load: Float, speed_sum: Float, radius: Float, eta: Float) -> Float:
+    """Return the mean friction of the flanks; load in N/m, v in m/s, radius of relative curvature in mm, eta in mPa s."""
+    pressed = np.maximum(load / 1e3, 150.0) / (speed_sum * radius)
+    roughness = 1e6 * (stage.sun.flank_roughness + stage.planet.flank_roughness) / 12.0
+    calculated = 0.045 * pressed**0.2 * eta**-0.05 * 2.2 * (roughness / radius) ** 0.25 * stage.oil_factor
+    return either(stage.stated_friction, calculated)
+
+
+def scuffing_rises(stage: Gearing, eta: Float, welding: float) -> tuple[Float, Float]:
+    """Return above the oil, K, where flanks scuff by the flash and by the integral method; eta in mPa s."""
+    square, celsius = np.square(stage.scuffing_stage), stage.oil_temperature - ZERO
+    by_flash = 80.0 + (0.85 + 1.4 * welding) * stage.oil_factor * eta**-0.05 * square
+    by_integral = 0.23 + 0.3 * welding * (100e-6 / stage.viscosity) ** 0.02
+    return by_flash - celsius, 80.0 + 3.726 * square * stage.oil_factor * by_integral - celsius
+
+
 def flank_state(
     stage: Gearing, duty: Duty, mesh: MeshSize, sizes: tuple[GearSize, GearSize], factors: Float
 ) -> FlankState:
@@ -226,11 +242,8 @@ def flank_state(
     eta, over = 1e3 * oil.viscosity(stage.oil_temperature), np.minimum(mesh.total_contact_ratio, 3.5)
     load = duty.line_load * factors * (1.0 + 0.2 * np.sqrt(np.maximum(over - 2.0, 0.0) * (5.0 - over)))
     speed_sum = TURN * duty.mesh_speed * sizes[0].base_diameter * np.tan(mesh.working_angle)
-    radius = 1e3 * mesh.curvature / np.cos(mesh.base_helix_angle)
-    roughness = (stage.sun.flank_roughness + stage.planet.flank_roughness) / 12.0
-    pressed = np.maximum(load / 1e3, 150.0) / (speed_sum * radius)
-    calculated = 0.045 * pressed**0.2 * eta**-0.05 * 2.2 * (1e6 * roughness / radius) ** 0.25 * stage.oil_factor
-    friction = either(stage.stated_friction, calculated)
+    radius = mesh.curvature / np.cos(mesh.base_helix_angle)
+    friction = friction_of(stage, load, speed_sum, 1e3 * radius, eta)
     soft, heated = softness_of(stage), 0.5 * stage.lubrication_factor * (1.0 + stage.planets)
     path = path_of(stage, duty, mesh, sizes, 0.0 * (load * eta * friction * soft * heated))
     normal = load / np.cos(mesh.transverse_angle)
@@ -239,24 +252,20 @@ def flank_state(
     bulk = 0.47 * heated * mean
     tip = [(own[-1], other[-1]) for own, other in (path.radii, path.speeds)]
     tip_flash = friction * blok(normal, tip[0], tip[1], soft)
-    teeth = sizes[0].teeth / TURN
-    one = teeth * (np.tan(sizes[0].tip_angle) - np.tan(mesh.working_angle))
+    one = sizes[0].teeth / TURN * (np.tan(sizes[0].tip_angle) - np.tan(mesh.working_angle))
     two = mesh.contact_ratio - one
-    by_tip = mean_by_tip(one, two)
+    by_tip, approach = mean_by_tip(one, two), np.clip(1.4 - 4.0 / 15.0 * two / one, 0.6, 1.0)
     welding = 1.5 if stage.material == "nitrided" else 1.0
-    square, celsius = np.square(stage.scuffing_stage), stage.oil_temperature - ZERO
-    scuffs = 80.0 + (0.85 + 1.4 * welding) * stage.oil_factor * eta**-0.05 * square - celsius
-    approach = np.clip(1.4 - 4.0 / 15.0 * two / one, 0.6, 1.0)
+    scuffs = scuffing_rises(stage, eta, welding)
     at_work = stage.oil_temperature + bulk
     film = film_over(path, oil, (at_work, at_work + rises), normal * path.share, soft)
-    ratio = np.min(film, axis=0) / roughness
-    by_integral = 0.23 + 0.3 * welding * (100e-6 / stage.viscosity) ** 0.02
+    ratio = 12.0 * np.min(film, axis=0) / (stage.sun.flank_roughness + stage.planet.flank_roughness)
     return FlankState(
-        oil_viscosity=1e-3 * eta, speed_sum=speed_sum, normal_curvature=1e-3 * radius, flank_load=load, flank_friction=friction,
-        flash_temperature=largest, mean_flash_temperature=mean, bulk_rise=bulk, contact_rise=bulk + largest,
-        scuffing_rise=scuffs, permitted_contact_rise=scuffs - stage.least_scuffing_distance,
-        welding_factor=0.0 * load + welding, tip_contact_ratio=one, root_contact_ratio=two, tip_flash=tip_flash,
-        mean_by_tip=by_tip, integral_rise=(0.7 * heated + 1.5) * tip_flash * by_tip / approach,
-        scuffing_integral_rise=80.0 + 3.726 * square * stage.oil_factor * by_integral - celsius,
+        oil_viscosity=1e-3 * eta, speed_sum=speed_sum, normal_curvature=radius, flank_load=load,
+        flank_friction=friction, flash_temperature=largest, mean_flash_temperature=mean, bulk_rise=bulk,
+        contact_rise=bulk + largest, scuffing_rise=scuffs[0],
+        permitted_contact_rise=scuffs[0] - stage.least_scuffing_distance, welding_factor=0.0 * load + welding,
+        tip_contact_ratio=one, root_contact_ratio=two, tip_flash=tip_flash, mean_by_tip=by_tip,
+        integral_rise=(0.7 * heated + 1.5) * tip_flash * by_tip / approach, scuffing_integral_rise=scuffs[1],
         film_ratio=ratio, film_safety=ratio / stage.least_film_ratio,
     )  # fmt: skip

@@ -6,6 +6,7 @@ from rv_gearing.effects import EFFECTS
 from rv_gearing.groups import GroupSearch, listed
 from rv_gearing.published import FINDINGS, PUBLISHED
 from rv_gearing.rating import Capacity, Safeties, rating, rv_gearing
+from rv_gearing.shaping import Shifts
 from rv_gearing.sheet import SECTIONS
 from truing import Model, Reliability, Require, Sensitivity, Tolerance, normal
 
@@ -42,6 +43,7 @@ RV_GEARING = Model(
     ],
     studies=[
         GroupSearch(gives=listed),
+        Shifts(),
         Capacity(gives=rating),
         Safeties(over="load_torque", name="load"),
         Safeties(over="face_width", name="face_width"),

@@ -52,8 +52,9 @@ def test_the_mean_over_the_path_is_that_of_a_triangle_of_heat_and_continuous() -
     assert float(mean_by_tip(0.4999999, 0.5000001)) == pytest.approx(0.5, rel=2e-6)  # one pair alone: a triangle
     for one, two in ((0.8, 0.8), (0.9, 0.7), (0.7, 0.9), (0.95, 0.9)):
         both = one + two
-        halved = lambda x: abs(x) * (1.0 if one - 1 <= x <= 1 - two else 0.5)  # noqa: E731
-        exact = quad(halved, -two, one, points=[-(1 - one), 0, 1 - two])[0] / (both * one)
+        alone = quad(abs, one - 1, 1 - two, points=[0])[0]
+        shared = 0.5 * (quad(abs, -two, one - 1)[0] + quad(abs, 1 - two, one)[0])
+        exact = (alone + shared) / (both * one)
         assert float(mean_by_tip(one, two)) == pytest.approx(exact, rel=0.1)
     for two in (0.3, 0.6, 0.9):
         assert float(mean_by_tip(1 - 1e-12, two)) == pytest.approx(float(mean_by_tip(1.0, two)), rel=1e-9)

@@ -68,8 +68,8 @@ def test_flank_and_pin_touch_as_the_drawn_profile_does() -> None:
 
 def test_the_wear_calculation_of_the_same_disc_has_the_same_geometry() -> None:
     mesh = wear_geometry.Mesh(
-        pin_circle_radius=CIRCLE, pin_radius=PIN, eccentricity=K * CIRCLE / PINS, width=0.01, equidistant=0.0, shift=0.0,
-        torque=500.0, young_modulus=206e9, poisson_ratio=0.3, threshold=1e-6,
+        pin_circle_radius=CIRCLE, pin_radius=PIN, eccentricity=K * CIRCLE / PINS, width=0.01, equidistant=0.0,
+        shift=0.0, torque=500.0, young_modulus=206e9, poisson_ratio=0.3, threshold=1e-6,
     )  # fmt: skip
     angle = np.linspace(0.05, 3.0, 30)
     own = cycloid.relative_radius(K, PINS, (CIRCLE, PIN), angle)
