@@ -219,7 +219,7 @@ def film_over(path: Path, oil: Oil, heat: tuple[Float, Float], force: Float, sof
 
 
 def friction_of(stage: Gearing, load: Float, speed_sum: Float, radius: Float, eta: Float) -> Float:
-    """Return the mean friction of the flanks; load in N/m, v in m/s, radius of relative curvature in mm, eta in mPa s."""
+    """Return the mean friction of the flanks: load in N/m, v in m/s, radius of curvature in mm, eta in mPa s."""
     pressed = np.maximum(load / 1e3, 150.0) / (speed_sum * radius)
     roughness = 1e6 * (stage.sun.flank_roughness + stage.planet.flank_roughness) / 12.0
     calculated = 0.045 * pressed**0.2 * eta**-0.05 * 2.2 * (roughness / radius) ** 0.25 * stage.oil_factor

@@ -195,8 +195,8 @@ TOLD = {
     "sheet; the first is checked, as in the paper.",
     "Robots reverse, and the paper does not say so": "A planet of this stage meshes with the sun alone, so its teeth "
     "are not bent to both sides in each turn. A robot that goes to and fro bends them to both sides all the same; ISO "
-    "6336-3 then takes about 0.7 of the endurance limit for bending. State bending_limit_sun and bending_limit_planet "
-    "accordingly.",
+    "6336-3 then takes about 0.7 of the endurance limit for bending. State stress_ratio_sun and stress_ratio_planet, "
+    "-1 where the torque is the same both ways.",
     "The first group of the list is the one that is built": "Of the 25 groups the smallest, 20/55/40, has the centre "
     "distance of the maker's catalogue and the ratio 111. The paper prefers larger ones by accuracy and sharing of "
     "load. Larger groups carry more: contact stress falls from 1087 to 709 MPa from the first to the last, and the "

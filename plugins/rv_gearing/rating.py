@@ -202,10 +202,8 @@ def rv_gearing(stage: Gearing) -> Strength:
     for_contact = face.face_factor * sharing.transverse_factor * planets.planet_factor
     for_bending = face.face_factor_bending * sharing.transverse_factor_bending * planets.planet_factor_bending
     shares = dynamics.dynamic_factor * for_contact, dynamics.dynamic_factor * for_bending
-    steel, cycles, u = steel_of(stage), cycles_of(stage, load), mesh.tooth_ratio
-    pressed = duty.tangential_force / (sun_size.reference_diameter * duty.carrying_width) * (u + 1.0) / u
-    nominal = contact.zone_factor * contact.elasticity_factor * contact.contact_ratio_factor * contact.helix_factor
-    nominal = nominal * np.sqrt(pressed)
+    steel, cycles = steel_of(stage), cycles_of(stage, load)
+    nominal = stress_at_pitch_point(duty, sun_size.reference_diameter, mesh.tooth_ratio, contact)
     sun, planet = (
         gear_of(stage, which, shares, nominal, load=load, mesh=mesh, sizes=sizes, made=made, steel=steel, cycles=cycles,
                 contact=contact, bending=bending)
@@ -222,6 +220,12 @@ def rv_gearing(stage: Gearing) -> Strength:
         second=second_stage(stage, load, mesh.centre_distance),
         flank=flank_state(stage, duty, mesh, sizes, dynamics.dynamic_factor * for_contact),
     )  # fmt: skip
+
+
+def stress_at_pitch_point(duty: Duty, diameter: Float, u: Float, contact: stress_factors.ContactFactors) -> Float:
+    """Return the nominal contact stress at the pitch point, Pa, for the reference diameter of the sun, m."""
+    factors = contact.zone_factor * contact.elasticity_factor * contact.contact_ratio_factor * contact.helix_factor
+    return factors * np.sqrt(duty.tangential_force / (diameter * duty.carrying_width) * (u + 1.0) / u)
 
 
 def backlash_of(stage: Gearing, load: ToothLoad, mesh: MeshSize) -> Float:
