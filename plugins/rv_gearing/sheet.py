@@ -26,6 +26,8 @@ HEADS = {
     "common_second": "disc and pins", "planet_kinds": "kinds of planet", "mesh_phases": "phases",
     "efficiency": "efficiency", "reserve": "least safety over asked", "from_best": "from best",
 }  # fmt: skip
+FRONT = "Filled: no other group is as good in all criteria and better in one. Dashed: what is asked of the safeties."
+HEAT = "Blue: heat of one pair of teeth over the gears' own temperature, dotted its mean. Dashed: the pitch point."
 MOST_SHOWN = 20  # groups of the front
 DIGITS: dict[groups.GroupColumn, int] = {"ratio": 4, "deviation": 3, "torque": 2, "centre_distance": 3, "circle_low": 2,
                              "circle_high": 2, "efficiency": 3, "reserve": 4, "from_best": 3}  # fmt: skip
@@ -51,6 +53,7 @@ def search(record: figures.GearingRun) -> "Sequence[Block]":
         table,
         _preferred(found),
         _front(found),
+        Drawing("Groups that no other beats, by size and strength", partial(figures.front_figure, found), FRONT),
         Words(figures.window_words(found)),
         Drawing("Groups in their window", partial(figures.groups_figure, found), caption),
         *_catalogue(found),
@@ -130,6 +133,11 @@ def geometry(record: figures.GearingRun) -> "Sequence[Block]":
     )
     meshing = figures.meshing_of(record, record.acting)
     return [Drawing("Sun and planets, and one mesh", partial(figures.mesh_figure, meshing), caption)]
+
+
+def heat(record: figures.GearingRun) -> "Sequence[Block]":
+    """The heat along the path of contact."""
+    return [Drawing("Heat along the path of contact", partial(figures.heat_figure, record.acting), HEAT)]
 
 
 def bending(record: figures.GearingRun) -> "Sequence[Block]":
@@ -319,6 +327,7 @@ SECTIONS = [
         "they weld for a moment and scuff. The flash method takes the hottest point, the integral method a mean of the "
         "path: two independent readings of one risk. Where the oil film is thin beside the roughness, flanks turn "
         "grey by micropitting; what the lubricant bears must come from its own test.",
+        blocks=heat,
     ),
     Section(
         "Second stage and crank bearings",

@@ -17,7 +17,7 @@ from scipy.stats import hypergeom
 from drawn import words
 from gear_geometry.roots import Rack, external_root
 from rv_gearing import sheet
-from rv_gearing.figures import groups_figure, meshing_of, notched_of, stresses_figure
+from rv_gearing.figures import front_figure, groups_figure, heat_figure, meshing_of, notched_of, stresses_figure
 from rv_gearing.geometry import half_space, tooth, trochoid, undercut
 from rv_gearing.groups import CHOICE, MEETING, SIZES, STRENGTH, FoundGroups, GroupColumn, GroupSearch, listed
 from rv_gearing.model import RV_GEARING
@@ -120,6 +120,27 @@ def test_no_group_of_the_front_is_beaten_and_every_other_one_is() -> None:
     assert f"{count} of the 25 groups are on the front" in page
     assert f"{beaten.count(False)} of 422" in page
     assert f"no. {name:.0f}, {default.groups.sun[first]:.0f}/{default.groups.planet[first]:.0f}" in page
+
+
+def test_the_front_is_drawn_filled_and_the_others_hollow(whole: Calculation) -> None:
+    told = found(whole)
+    panel = front_figure(told).axes[0]
+    filled = np.concatenate([np.asarray(marks.get_offsets()) for marks in panel.collections])
+    on_front = np.isfinite(told.column("from_best"))
+    assert len(filled) == on_front.sum() == 18
+    hollow = panel.lines[0].get_xydata()
+    assert sorted(hollow[:, 0]) == pytest.approx(sorted(1e3 * told.groups.centre_distance[~on_front]))
+    ring = panel.lines[1].get_xydata()[0]
+    assert ring == pytest.approx([68.125, told.column("reserve")[12]])
+
+
+def test_the_heat_is_drawn_with_its_hottest_point_and_none_at_the_pitch_point() -> None:
+    stage = RV_GEARING.inputs()
+    answers = RV_GEARING.read_results(rv_gearing(stage))
+    drawn = heat_figure(stage).axes[0].lines[0].get_xydata()
+    assert drawn[:, 1].max() == pytest.approx(float(answers["flash_temperature"]))
+    assert drawn[np.abs(drawn[:, 0]) < 1e-9, 1] == pytest.approx([0.0], abs=1e-6)
+    assert np.ptp(drawn[:, 0]) == pytest.approx(1e3 * float(answers["contact_ratio"] * answers["base_pitch"]))
 
 
 def test_one_criterion_alone_leaves_its_best_groups() -> None:
