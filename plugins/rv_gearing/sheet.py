@@ -52,10 +52,10 @@ def search(record: figures.GearingRun) -> "Sequence[Block]":
     return [
         table,
         _preferred(found),
-        _front(found),
-        Drawing("Groups that no other beats, by size and strength", partial(figures.front_figure, found), FRONT),
         Words(figures.window_words(found)),
         Drawing("Groups in their window", partial(figures.groups_figure, found), caption),
+        _front(found),
+        Drawing("Groups that no other beats, by size and strength", partial(figures.front_figure, found), FRONT),
         *_catalogue(found),
     ]
 
