@@ -19,7 +19,9 @@ from truing import Array, Bench, Block, Outcome, Table, TruingError
 
 WIDEST, HALVINGS = 10.0, 15  # times the width of the run, either way; the last step is 0.02 % of the width
 GEARS = ("sun", "planet")
-SHAPE = ("contact_ratio", *(f"{name}_{gear}" for name in ("tip_thickness", "start_curvature") for gear in GEARS))
+OF_A_GEAR = ("tip_thickness", "start_curvature", "form_diameter", "base_diameter")
+SHAPE = ("contact_ratio", *(f"{name}_{gear}" for name in OF_A_GEAR for gear in GEARS))
+LEAST_CURVATURE = 1e-6  # of the base diameter: what is left of 0 by rounding
 HEAT = ("contact_rise", "permitted_contact_rise")
 
 
@@ -57,7 +59,7 @@ class Shifts:
         if not number:
             return ShapedGroups(stage=stage, groups=groups, grid=grid, width=np.zeros(table), shape={}, study=self)
         shape = {name: values.reshape(table) for name, values in bench.rows(columns, number, *SHAPE).items()}
-        allowed = self._allowed(stage, shape, columns).reshape(table)
+        allowed = self._allowed(float(stage.module), shape)
         width = _least_width(bench, columns, number, bench.part(self.name, 0.0, 1.0)).reshape(table)
         return ShapedGroups(stage=stage, groups=groups, grid=grid, shape=shape, study=self,
                             width=np.where(allowed, width, np.nan))  # fmt: skip
@@ -72,16 +74,15 @@ class Shifts:
             pairs = np.stack([line, own.sum() - line], axis=-1)
         return np.concatenate([own, pairs])
 
-    def _allowed(self, stage: Gearing, shape: Mapping[str, Array], columns: Mapping[str, Array]) -> NDArray[np.bool_]:
-        """Say of every row whether neither gear is undercut or sharp, and enough teeth meet above both fillets."""
-        module, angle = float(stage.module), float(stage.pressure_angle)
-        good = np.ravel(shape["contact_ratio"]) >= self.least_contact_ratio
-        straight = float(stage.dedendum) - float(stage.fillet) * (1.0 - np.sin(angle))
+    def _allowed(self, module: float, shape: Mapping[str, Array]) -> NDArray[np.bool_]:
+        """Say where neither gear is undercut or sharp, and enough teeth meet above both fillets."""
+        good = shape["contact_ratio"] >= self.least_contact_ratio
         for gear in GEARS:
-            teeth, shift = columns[f"{gear}_teeth"], columns[f"shift_{gear}"]
-            begin = 0.5 * teeth * np.sin(angle) - (straight - shift) / np.sin(angle)  # curvature of the involute there
-            good = good & (begin >= 0.0) & (np.ravel(shape[f"start_curvature_{gear}"]) >= begin * module)
-            good = good & (np.ravel(shape[f"tip_thickness_{gear}"]) >= self.least_tip * module)
+            tip, contact, form, base = (shape[f"{name}_{gear}"] for name in OF_A_GEAR)
+            begin = 0.5 * np.sqrt(
+                np.maximum(form**2 - base**2, 0.0)
+            )  # curvature of the involute; 0 where it is undercut
+            good = good & (begin > LEAST_CURVATURE * base) & (contact >= begin) & (tip >= self.least_tip * module)
         return np.asarray(good)
 
 
