@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from gear_geometry.mesh_load import shaken_by_error, viscosity_at, wave, wave_unknowns
+from rv_gearing.flank import TURN, blok, softness_of
 from rv_gearing.geometry import ToothLoad, load_of
 from rv_gearing.groups import centre_distance_of
 from rv_gearing.quantities import Gearing
@@ -132,10 +133,6 @@ def ratio_drift(stage: Gearing, strength: Strength, *, miscount: Float, input_an
 
 # How warm the flanks get where they slide on one another
 
-BLOK_FACTOR = 1.11  # for the heat of a Hertzian contact over its full width
-CONTACT_COEFFICIENT = 13784.0  # N/(m s^0.5 K) of steel: root of 50 W/(m K) times 3.8 MJ/(m³ K)
-TURN = 2.0 * np.pi
-
 
 def flash_temperature(stage: Gearing, strength: Strength, *, friction: Float) -> Strength:
     """The flanks are warmer than the oil by the flash of that end of the path of contact where it is the greater.
@@ -155,13 +152,11 @@ def flash_of(stage: Gearing, strength: Strength) -> Float:
     """
     speed = TURN * strength.duty.mesh_speed
     force = strength.duty.line_load / np.cos(strength.mesh.transverse_angle)
-    soft = sum((1.0 - gear.poisson_ratio**2) / gear.young_modulus for gear in (stage.sun, stage.planet))
-    found: list[Float] = []
-    for sun, planet in ends_of_path(strength):
-        width = 2.0 * np.sqrt(4.0 * force * (sun * planet / (sun + planet)) * soft / np.pi)  # Hertz
-        slip = np.abs(np.sqrt(speed * sun) - np.sqrt(speed * planet / strength.mesh.tooth_ratio))
-        found.append(BLOK_FACTOR * force * slip / (np.sqrt(width) * CONTACT_COEFFICIENT))
-    return np.maximum(found[0], found[1])
+    rises = [
+        blok(force, radii, (speed * radii[0], speed * radii[1] / strength.mesh.tooth_ratio), softness_of(stage))
+        for radii in ends_of_path(strength)
+    ]
+    return np.maximum(rises[0], rises[1])
 
 
 def ends_of_path(strength: Strength) -> tuple[tuple[Float, Float], tuple[Float, Float]]:

@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 
 from gear_geometry.drawing import BLUE, GREY, INK, ORANGE, PALE, panels, quiet
 from gear_geometry.roots import Arm, Rack, Root, external_arm, external_root
+from rv_gearing.flank import blok, path_of, softness_of
 from rv_gearing.geometry import gear, half_space, tooth, turned
 from rv_gearing.groups import FoundGroups, centre_distance_window, pin_circle_factors
 from rv_gearing.quantities import Gearing
-from rv_gearing.rating import SAFETIES, Strength
+from rv_gearing.rating import SAFETIES, Strength, rv_gearing
 from truing import Array, Record, Swept
 
 GearingRun = Record[Gearing, Strength]
@@ -88,6 +89,52 @@ def window_words(found: "FoundGroups") -> str:
     low, high = (MM * float(factor) * torque ** (1 / 3) for factor in pin_circle_factors(found.inputs))
     circles = f"{low:.2f} mm" if low == high else f"{low:.2f} to {high:.2f} mm"
     return f"Output torque {torque:.2f} N m; pin circle radius by equation 4: {circles}."
+
+
+def front_figure(found: "FoundGroups") -> "Figure":
+    """Draw strength over size: groups that no other beats filled, by deviation of the ratio; the others hollow."""
+    figure, panel = panels(1, 3.4)
+    centre, reserve = MM * found.groups.centre_distance, found.column("reserve")
+    distance = found.column("from_best")
+    front, hunting = np.isfinite(distance), found.groups.common_first == 1.0
+    panel.plot(centre[~front], reserve[~front], "o", markersize=4, fillstyle="none", color=GREY, markeredgewidth=0.8)
+    for kind, marker, words in ((hunting, "o", "hunting teeth"), (~hunting, "s", "common factor")):
+        shown = front & kind
+        marks = panel.scatter(centre[shown], reserve[shown], s=26, marker=marker, cmap="viridis_r", zorder=4,
+                              label=words, c=100.0 * np.abs(found.groups.deviation[shown]), vmin=0.0,
+                              vmax=100.0 * float(found.inputs.ratio_tolerance), linewidths=0)  # fmt: skip
+    figure.colorbar(marks, ax=panel, label="deviation of the ratio, %", pad=0.01)
+    _numbers(panel, found, centre, reserve)
+    if front.any():
+        best = int(np.nanargmin(distance))
+        panel.plot(centre[best], reserve[best], "o", markersize=12, fillstyle="none", color=ORANGE, markeredgewidth=1.6)
+        panel.annotate("nearest to the best", (centre[best], reserve[best]), (-9, 6), ha="right", fontsize=8,
+                       textcoords="offset points", color=ORANGE)  # fmt: skip
+    panel.axhline(1.0, color=INK, linewidth=0.9, linestyle=(0, (6, 3)))
+    panel.legend(frameon=False, loc="lower right")
+    quiet(panel, "centre distance, mm", "least safety over what is asked", alpha=0.35)
+    return figure
+
+
+def heat_figure(stage: "Gearing") -> "Figure":
+    """Draw the flash temperature along the path of contact, and the share of the load that one pair carries there."""
+    found = rv_gearing(stage)
+    path = path_of(stage, found.duty, found.mesh, (found.sun.size, found.planet.size))
+    along = MM * (path.radii[0] - 0.5 * found.sun.size.base_diameter * np.tan(found.mesh.working_angle))
+    normal = found.flank.flank_load / np.cos(found.mesh.transverse_angle)
+    rises = found.flank.flank_friction * blok(normal * path.share, path.radii, path.speeds, softness_of(stage))
+    figure, panel = panels(1, 2.8)
+    panel.fill_between(along, rises, color=PALE, linewidth=0)
+    panel.plot(along, rises, color=BLUE, marker="o", markersize=3)
+    panel.axhline(float(found.flank.mean_flash_temperature), color=BLUE, linewidth=0.9, linestyle=(0, (2, 2)))
+    panel.axvline(0.0, color=INK, linewidth=0.9, linestyle=(0, (6, 3)))
+    quiet(panel, "from the pitch point towards the tip of the sun, mm", "flash temperature, K", alpha=0.35)
+    panel.set_ylim(0, None)
+    other = panel.twinx()
+    other.plot(along, path.share, color=ORANGE, linewidth=1.0)
+    other.set_ylim(0, 1.6)
+    other.set_ylabel("share of the load", color=ORANGE)
+    return figure
 
 
 def stresses_figure(found: "FoundGroups") -> "Figure":

@@ -11,6 +11,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from rv_gearing import choice
 from rv_gearing.quantities import Gearing
 from truing import (
     Array,
@@ -355,12 +356,13 @@ GroupColumn = Literal[
     "group", "sun", "planet", "pins", "ratio", "deviation", "torque", "centre_distance", "circle_low", "circle_high",
     "common_first", "common_second", "planet_kinds", "mesh_phases", "preference", "root_stress_sun",
     "root_stress_planet", "contact_stress_sun", "contact_stress_planet", "root_safety_sun", "root_safety_planet",
-    "contact_safety_sun", "contact_safety_planet",
+    "contact_safety_sun", "contact_safety_planet", "efficiency", "reserve", "from_best",
 ]  # fmt: skip
 COLUMNS: tuple[GroupColumn, ...] = get_args(GroupColumn)
-SIZES, MEETING, STRENGTH = COLUMNS[1:10], COLUMNS[10:15], COLUMNS[15:]
+SIZES, MEETING, STRENGTH, CHOICE = COLUMNS[1:10], COLUMNS[10:15], COLUMNS[15:23], COLUMNS[23:]
+CRITERIA: tuple[GroupColumn, ...] = ("deviation", "reserve", "centre_distance", "efficiency", "common_first")
 PERMITTED = tuple(f"permitted_{name}" for name in STRENGTH if "stress" in name)
-PRINTED = {"deviation": ("%", 100.0), "torque": ("N*m", 1.0)} | dict.fromkeys(
+PRINTED = {"deviation": ("%", 100.0), "torque": ("N*m", 1.0), "efficiency": ("%", 100.0)} | dict.fromkeys(
     ("centre_distance", "circle_low", "circle_high"), ("mm", 1e3)
 )
 EXACT = 1e-12
@@ -407,21 +409,34 @@ class Listed:
     group_root_safety_planet: Float = listing("S_F2", "safety of the planet, breakage")
     group_contact_safety_sun: Float = listing("S_H1", "safety of the sun, pitting")
     group_contact_safety_planet: Float = listing("S_H2", "safety of the planet, pitting")
+    group_efficiency: Float = listing("eta", "efficiency, input to output", "%", "equations 6 and 7")
+    group_reserve: Float = listing("S_r", "least of all four safeties over what is asked of it")
+    group_from_best: Float = listing(
+        "d_0", "distance from the best of all criteria at once; none where another group beats this one"
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
 class GroupSearch:
-    """List all groups, sorted by one column; ``exact_only`` keeps those with just the wanted ratio."""
+    """List all groups, sorted by one column; ``exact_only`` keeps those with just the wanted ratio.
+
+    ``criteria`` are columns; which groups no other beats in all of them is marked, see ``choice``.
+    """
 
     sort_by: GroupColumn = "group"
     descending: bool = False
     exact_only: bool = False
+    criteria: Sequence[GroupColumn] = CRITERIA
     name: str = "search"
     gives: Callable[[Any], Any] | None = None
 
     def __post_init__(self) -> None:
         if self.sort_by not in COLUMNS:
             raise TruingError(f"study '{self.name}': the groups have no column '{self.sort_by}'")
+        wrong = [name for name in self.criteria if name not in COLUMNS or name in ("group", "from_best")]
+        if wrong or not self.criteria:
+            told = ", ".join(f"'{name}'" for name in wrong) or "nothing"
+            raise TruingError(f"study '{self.name}': criteria are columns of the groups, but {told} was asked for")
 
     def run(self, bench: "Bench") -> "FoundGroups":
         """Search with the duty of the inputs, and rate every group in one call."""
@@ -442,6 +457,7 @@ class GroupSearch:
             stable=_stable(stage, groups),
             sort_by=self.sort_by,
             descending=self.descending,
+            criteria=tuple(self.criteria),
         )
         return shown.sorted()
 
@@ -493,12 +509,27 @@ class FoundGroups(Outcome):
     stable: bool
     sort_by: GroupColumn
     descending: bool
+    criteria: tuple[GroupColumn, ...] = CRITERIA
 
     def column(self, name: GroupColumn) -> "Array":
         """Return one column, SI."""
         if name == "group":
             return self.numbers
+        if name in CHOICE:
+            return self._chosen(name)
         return self.strength[name] if name in self.strength else np.asarray(getattr(self.groups, name))
+
+    def _chosen(self, name: GroupColumn) -> "Array":
+        """Return a column that tells of choosing a group."""
+        groups = self.groups
+        if name == "efficiency":
+            return np.asarray(efficiency_of(self.inputs, groups.sun, groups.planet, groups.pins))
+        if name == "reserve":
+            asked = {"root": self.inputs.least_bending_safety, "contact": self.inputs.least_contact_safety}
+            safeties = [self.strength[each] / asked[each.split("_")[0]] for each in STRENGTH if "safety" in each]
+            return np.asarray(np.min(np.stack(safeties), axis=0))
+        wanted = [choice.costs(each, self.column(each)) for each in self.criteria]
+        return choice.distance_to_best(wanted, choice.unbeaten(wanted))
 
     def sorted(self) -> "FoundGroups":
         """Return the same in the order that was asked for; a deviation counts by its size, NaN comes last."""
@@ -525,6 +556,7 @@ class FoundGroups(Outcome):
             "rated": self.rated,
             "sort_by": self.sort_by,
             "descending": self.descending,
+            "criteria": list(self.criteria),
             "groups": columns,
             "reasons": self.reasons(),
         }
@@ -559,7 +591,7 @@ def printed_in(name: str) -> tuple[str, float]:
 def listed(found: FoundGroups) -> Listed:
     """The table as results of the run."""
     names: dict[str, GroupColumn] = {"group_sun_teeth": "sun", "group_planet_teeth": "planet"}
-    columns = {f"group_{name}": found.column(name) for name in (*SIZES[2:], *MEETING, *STRENGTH)}
+    columns = {f"group_{name}": found.column(name) for name in (*SIZES[2:], *MEETING, *STRENGTH, *CHOICE)}
     return Listed(
         group_count=float(found.count),
         exact_count=float(found.exact),

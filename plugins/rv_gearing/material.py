@@ -105,6 +105,10 @@ class GearLife:
         formula="either(stated_bending_life, cases(min((3e6 / load_cycles)**bending_life_slope, bending_life_most),"
         " load_cycles <= 3e6, max((3e6 / load_cycles)**0.02, 0.85)))",
     )  # fmt: skip
+    mean_stress_factor: Float = found(
+        "", symbol="Y_M", note="mean stress influence factor: 1 pulsating", source="ISO 6336-3:2006, annex B",
+        formula="1 / (1 - stress_ratio * (1 - mean_stress_sensitivity) / (1 + mean_stress_sensitivity))",
+    )  # fmt: skip
 
 
 @results
@@ -123,8 +127,8 @@ def cycles_of(stage: Gearing, load: ToothLoad) -> Cycles:
     return Cycles(load_cycles_sun=turns * stage.planets, load_cycles_planet=turns * load.sun / load.planet)
 
 
-def life_of(gear: Gear, steel: Steel, cycles: Float) -> GearLife:
-    """Return the life factors of one gear."""
+def life_of(gear: Gear, steel: Steel, cycles: Float, sensitivity: Float) -> GearLife:
+    """Return the life factors of one gear, with the mean stress factor for its sensitivity to mean stress."""
     contact = life_factor(
         cycles, steel.contact_life_knee, (steel.contact_life_slope, steel.contact_life_tail), steel.contact_life_most
     )
@@ -132,7 +136,17 @@ def life_of(gear: Gear, steel: Steel, cycles: Float) -> GearLife:
     return GearLife(
         contact_life_factor=either(gear.stated_contact_life, contact),
         bending_life_factor=either(gear.stated_bending_life, bending),
+        mean_stress_factor=mean_stress_factor(gear.stress_ratio, sensitivity),
     )
+
+
+def mean_stress_factor(ratio: Float, sensitivity: Float) -> Float:
+    """Return Y_M: largest stress that lasts at a stress ratio R <= 0 over that at R = 0.
+
+    A straight line in the diagram of amplitude over mean stress, of slope ``sensitivity`` M: sigma_a + M sigma_m is the
+    same for both, with sigma_a = sigma (1 - R)/2 and sigma_m = sigma (1 + R)/2.
+    """
+    return 1.0 / (1.0 - ratio * (1.0 - sensitivity) / (1.0 + sensitivity))
 
 
 def life_factor(cycles: Float, knee: Float, slopes: tuple[Float, Float], most: Float) -> Float:

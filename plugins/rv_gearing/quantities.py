@@ -41,6 +41,9 @@ class Gear:
     poisson_ratio: Float = given(0.3, "", symbol="nu", note="Poisson ratio", source=LOST, at_least=0, below=0.5)
     flank_roughness: Float = positive(4.0, "um", "R_z", "mean peak-to-valley roughness of the flank")
     root_roughness: Float = positive(4.0, "um", "R_z,F", "mean peak-to-valley roughness of the root")
+    stress_ratio: Float = given(0.0, "", symbol="R", note="root stress of the opposite load over that of the load: 0 "
+                                "pulsating, -1 where the drive reverses under the same torque", source=LOST,
+                                at_least=-2, at_most=0)  # fmt: skip
     stated_form_factor: Float = stated("Y_Fa", "form factor, load at the tip")
     stated_stress_correction: Float = stated("Y_Sa", "stress correction factor, load at the tip")
     stated_contact_life: Float = stated("Z_NT", "life factor for contact")
@@ -106,6 +109,28 @@ class Gearing:
         "without", source=LOST, at_least=1,
     )  # fmt: skip
     working_life: Float = positive(6000.0, "h", "L_h", "working time that is asked for")
+    # The second stage, and the bearings between its cranks and discs
+    pin_circle_radius: Float = given(None, "mm", symbol="R_p,st", note="of the pins; without it the middle of what "
+                                     "suits torque and centre distance", above=0, below=LARGEST)  # fmt: skip
+    eccentricity: Float = given(None, "mm", symbol="e_st", note="of the cranks; without it by short_width", above=0,
+                                below=LARGEST)  # fmt: skip
+    pin_radius: Float = given(None, "mm", symbol="r_rp,st", note="of the pins; without it by pin_gap", above=0,
+                              below=LARGEST)  # fmt: skip
+    disc_width: Float = given(None, "mm", symbol="B_st", note="of each disc; without it 0.12 of the pin circle radius",
+                              above=0, below=LARGEST)  # fmt: skip
+    short_width: Float = given(0.75, "", symbol="K_1,0", note="eccentricity times pins over pin circle radius; 0.6 to "
+                               "0.85", source=LOST, above=0, below=1)  # fmt: skip
+    pin_gap: Float = given(1.6, "", symbol="K_2", note="distance of neighbouring pins over their diameter", source=LOST,
+                           above=1)  # fmt: skip
+    disc_load_factor: Float = given(1.1, "", symbol="K_d", note="load of the worse disc over half of both", source=LOST,
+                                    at_least=1, at_most=2)  # fmt: skip
+    pin_friction: Float = positive(0.05, "", "mu_p", "of discs on pins that do not turn")
+    bearing_rating: Float = given(None, "kN", symbol="C", note="dynamic rating of one bearing between crank and disc; "
+                                  "without it what lasts the working time", above=0)  # fmt: skip
+    bearing_exponent: Float = given(10.0 / 3.0, "", symbol="p", note="of the life: 10/3 rollers and needles, 3 balls",
+                                    source="ISO 281:2007", at_least=1, at_most=10)  # fmt: skip
+    stated_crank_load: Float = given(None, "N", symbol="P_st", note="equivalent load of a crank bearing; calculated "
+                                     "where it is not stated", above=0)  # fmt: skip
     # Geometry and quality of the pair
     pressure_angle: Float = given(20.0, "deg", symbol="alpha_n", note="of the rack", source=LOST, above=10, below=30)
     helix_angle: Float = given(0.0, "deg", symbol="beta", note="0: spur", source=LOST, at_least=0, below=45)
@@ -126,11 +151,27 @@ class Gearing:
     proof_stress: Float = positive(800.0, "MPa", "sigma_0.2", "of through-hardened steel, for its notch sensitivity")
     density: Float = positive(7830.0, "kg/m**3", "rho", "of both gears, for their inertia", "ISO 6336-1:2006, 6.5.9")
     viscosity: Float = positive(100.0, "mm**2/s", "nu_40", "kinematic viscosity of the lubricant at 40 degC")
+    oil_density: Float = positive(892.0, "kg/m**3", "rho_15", "of the lubricant at 15 degC")
+    oil_factor: Float = positive(1.0, "", "X_L", "1 mineral oil, 0.8 polyalphaolefin, 0.6 to 0.7 polyglycol",
+                                 "ISO/TS 6336-20")  # fmt: skip
+    lubrication_factor: Float = positive(1.0, "", "X_S", "1 dipped, 1.2 sprayed or greased, 0.2 submerged",
+                                         "ISO/TS 6336-20")  # fmt: skip
+    scuffing_stage: Float = given(12.0, "", symbol="S_FZG", note="load stage at which the lubricant scuffs in the FZG "
+                                  "test A/8.3/90", source=LOST, at_least=1, at_most=14)  # fmt: skip
     oil_temperature: Float = given(40.0, "degC", symbol="theta_oil", note="of the lubricant at work", source=LOST,
                                    at_least=-60, at_most=250, role="follows")  # fmt: skip
     # What is asked
     least_contact_safety: Float = positive(1.1, "", "S_Hmin", "least safety against pitting")
     least_bending_safety: Float = positive(1.25, "", "S_Fmin", "least safety against breakage")
+    least_scuffing_distance: Float = given(50.0, "K", symbol="S_Theta", note="least distance of the contact "
+                                           "temperature from that at which it scuffs", source="ISO/TS 6336-20, advice",
+                                           at_least=0)  # fmt: skip
+    least_film_ratio: Float = positive(0.09, "", "lambda_GFP", "film over roughness below which micropitting begins; "
+                                       "of the lubricant", "ISO/TR 15144-1, figure A.1 at VG 100 and stage 10, as a "
+                                       "public project reads it")  # fmt: skip
+    mean_stress_sensitivity: Float = given(0.4, "", symbol="M", note="of the root: 0.4 makes the mean stress factor "
+                                           "0.7 where the load reverses fully", source=LOST, at_least=0,
+                                           at_most=1)  # fmt: skip
     stress_correction_of_test: Float = positive(2.0, "", "Y_ST", "stress correction of the reference test gears")
     single_contact: bool = given(
         True, note="contact stress at the inner point of single contact (ISO Z_B, Z_D; the paper leaves them out)"
@@ -146,6 +187,7 @@ class Gearing:
     stated_transverse_factor: Float = stated("K_H alpha", "transverse load factor for contact")
     stated_transverse_factor_bending: Float = stated("K_F alpha", "transverse load factor for bending")
     stated_planet_load_bending: Float = stated("K_Fp", "uneven sharing among the planets, for bending")
+    stated_friction: Float = stated("mu_mC", "mean friction of the flanks")
     stated_zone_factor: Float = stated("Z_H", "zone factor")
     stated_elasticity_factor: Float = given(
         None, "MPa**0.5", symbol="Z_E,st", note="elasticity factor; calculated where it is not stated", above=0

@@ -10,9 +10,11 @@ from numpy.typing import NDArray
 
 from gear_geometry.pairs import involute
 from rv_gearing import geometry, load_factors, stress_factors
+from rv_gearing.flank import FlankState, flank_state
 from rv_gearing.geometry import LEAST_LINE_LOAD, Duty, GearSize, MeshSize, ToothLoad, Which
 from rv_gearing.material import Cycles, GearLife, Steel, cycles_of, life_of, steel_of
 from rv_gearing.quantities import Gearing
+from rv_gearing.second_stage import SecondStage, second_stage
 from truing import Array, Bench, Block, Float, Outcome, Sweep, Swept, Table, TruingError, found, part, results
 
 # What the gearing calculation answers: the duty, every factor, the stresses, and what they may be
@@ -57,7 +59,7 @@ class GearStress:
     permitted_root_stress: Float = found(
         "MPa", symbol="sigma_FP", note="permitted root stress", source=BEARS_3,
         formula="bending_limit * stress_correction_of_test * bending_life_factor * notch_sensitivity * root_surface"
-        " * bending_size / least_bending_safety",
+        " * bending_size * mean_stress_factor / least_bending_safety",
     )  # fmt: skip
     root_safety: Float = found(
         "", symbol="S_F", note="safety against breakage, load at the tip; 1000 at most", source=BEARS_3,
@@ -127,6 +129,8 @@ class Strength:
     contact: stress_factors.ContactFactors = part(stress_factors.ContactFactors, suffix="")
     bending: stress_factors.BendingFactors = part(stress_factors.BendingFactors, suffix="")
     cycles: Cycles = part(Cycles, suffix="")
+    flank: FlankState = part(FlankState, suffix="")
+    second: SecondStage = part(SecondStage, suffix="")
     sun: GearStress = part(GearStress, index="1")
     planet: GearStress = part(GearStress, index="2")
 
@@ -145,14 +149,14 @@ def gear_of(
     """
     gear, place = (stage.sun, 0) if which == "sun" else (stage.planet, 1)
     root = stress_factors.root_of(stage, sizes[place], mesh, steel, which)
-    life = life_of(gear, steel, getattr(cycles, f"load_cycles_{which}"))
+    life = life_of(gear, steel, getattr(cycles, f"load_cycles_{which}"), stage.mean_stress_sensitivity)
     bent = load.duty.tangential_force / (load.duty.carrying_width * stage.module) * bending.helix_factor_bending
     at_tip = bent * bending.contact_ratio_factor_bending * root.form_factor * root.stress_correction
     at_outer = bent * bending.deep_tooth_factor * root.form_factor_outer * root.stress_correction_outer
     raised = stage.application_factor * shares[1]
     stress, outer = at_tip * raised * bending.tip_load_factor, at_outer * raised
     bears = gear.bending_limit * stage.stress_correction_of_test * life.bending_life_factor * root.notch_sensitivity
-    bears = bears * root.root_surface * root.bending_size
+    bears = bears * root.root_surface * root.bending_size * life.mean_stress_factor
     single = getattr(contact, f"single_contact_factor_{which}")
     pressed = single * nominal * np.sqrt(stage.application_factor * shares[0])
     strength = contact.lubricant_factor * contact.velocity_factor * contact.roughness_factor
@@ -198,10 +202,8 @@ def rv_gearing(stage: Gearing) -> Strength:
     for_contact = face.face_factor * sharing.transverse_factor * planets.planet_factor
     for_bending = face.face_factor_bending * sharing.transverse_factor_bending * planets.planet_factor_bending
     shares = dynamics.dynamic_factor * for_contact, dynamics.dynamic_factor * for_bending
-    steel, cycles, u = steel_of(stage), cycles_of(stage, load), mesh.tooth_ratio
-    pressed = duty.tangential_force / (sun_size.reference_diameter * duty.carrying_width) * (u + 1.0) / u
-    nominal = contact.zone_factor * contact.elasticity_factor * contact.contact_ratio_factor * contact.helix_factor
-    nominal = nominal * np.sqrt(pressed)
+    steel, cycles = steel_of(stage), cycles_of(stage, load)
+    nominal = stress_at_pitch_point(duty, sun_size.reference_diameter, mesh.tooth_ratio, contact)
     sun, planet = (
         gear_of(stage, which, shares, nominal, load=load, mesh=mesh, sizes=sizes, made=made, steel=steel, cycles=cycles,
                 contact=contact, bending=bending)
@@ -215,7 +217,15 @@ def rv_gearing(stage: Gearing) -> Strength:
         root_safety_outer=np.minimum(sun.root_safety_outer, planet.root_safety_outer), duty=duty, mesh=mesh,
         quality=quality, steel=steel, stiffness=stiffness, dynamics=dynamics, planets=planets, face=face,
         sharing=sharing, contact=contact, bending=bending, cycles=cycles, sun=sun, planet=planet,
+        second=second_stage(stage, load, mesh.centre_distance),
+        flank=flank_state(stage, duty, mesh, sizes, dynamics.dynamic_factor * for_contact),
     )  # fmt: skip
+
+
+def stress_at_pitch_point(duty: Duty, diameter: Float, u: Float, contact: stress_factors.ContactFactors) -> Float:
+    """Return the nominal contact stress at the pitch point, Pa, for the reference diameter of the sun, m."""
+    factors = contact.zone_factor * contact.elasticity_factor * contact.contact_ratio_factor * contact.helix_factor
+    return factors * np.sqrt(duty.tangential_force / (diameter * duty.carrying_width) * (u + 1.0) / u)
 
 
 def backlash_of(stage: Gearing, load: ToothLoad, mesh: MeshSize) -> Float:

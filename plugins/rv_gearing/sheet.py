@@ -8,8 +8,10 @@ from itertools import chain
 import numpy as np
 
 from rv_gearing import figures, groups, load_factors
+from rv_gearing.flank import FlankState
 from rv_gearing.material import Steel
 from rv_gearing.rating import Reserve
+from rv_gearing.second_stage import SecondStage
 from truing import Block, Drawing, Section, Swept, Table, Words
 
 # Tables, words and figures by section of the sheet: each is there where its study ran
@@ -22,9 +24,13 @@ HEADS = {
     "root_safety_planet": "breakage, planet", "contact_safety_sun": "pitting, sun",
     "contact_safety_planet": "pitting, planet", "common_first": "common factor, sun and planet",
     "common_second": "disc and pins", "planet_kinds": "kinds of planet", "mesh_phases": "phases",
+    "efficiency": "efficiency", "reserve": "least safety over asked", "from_best": "from best",
 }  # fmt: skip
+FRONT = "Filled: no other group is as good in all criteria and better in one. Dashed: what is asked of the safeties."
+HEAT = "Blue: heat of one pair of teeth over the gears' own temperature, dotted its mean. Dashed: the pitch point."
+MOST_SHOWN = 20  # groups of the front
 DIGITS: dict[groups.GroupColumn, int] = {"ratio": 4, "deviation": 3, "torque": 2, "centre_distance": 3, "circle_low": 2,
-                             "circle_high": 2}  # fmt: skip
+                             "circle_high": 2, "efficiency": 3, "reserve": 4, "from_best": 3}  # fmt: skip
 
 
 def search(record: figures.GearingRun) -> "Sequence[Block]":
@@ -48,6 +54,8 @@ def search(record: figures.GearingRun) -> "Sequence[Block]":
         _preferred(found),
         Words(figures.window_words(found)),
         Drawing("Groups in their window", partial(figures.groups_figure, found), caption),
+        _front(found),
+        Drawing("Groups that no other beats, by size and strength", partial(figures.front_figure, found), FRONT),
         *_catalogue(found),
     ]
 
@@ -90,6 +98,26 @@ def _preferred(found: groups.FoundGroups) -> Table:
     return replace(table, columns=(*table.columns, "reason"), rows=rows, units=(*table.units, ""))
 
 
+def _front(found: groups.FoundGroups) -> Table:
+    """List the groups that no other beats in all criteria, the one nearest to the best of all first."""
+    distance = found.column("from_best")
+    unbeaten = int(np.sum(np.isfinite(distance)))
+    order = np.argsort(distance, kind="stable")[: min(unbeaten, MOST_SHOWN)]
+    of = ", ".join(HEADS.get(name, name.replace("_", " ")) for name in found.criteria)
+    note = (
+        f"{unbeaten} of {len(distance)} groups, {len(order)} shown: against each of these every other group is worse "
+        f"in one of {of}, or no better in any. First the one nearest to the best of all at once, each criterion from "
+        '0 to 1 over these groups; your own need may weigh them otherwise: [studies.search] criteria = ["deviation", '
+        '"reserve"]. A size, safety or ratio that differs by less than matters counts as equal.'
+    )
+    some = replace(found, groups=found.groups.at(order), numbers=found.numbers[order],
+                   strength={name: values[order] for name, values in found.strength.items()})  # fmt: skip
+    columns = tuple(name for name in found.criteria if name not in ("sun", "planet"))
+    table = _table(some, "Groups that no other beats", ("sun", "planet", *columns), note)
+    rows = [(*row, _cell(distance[place], 3)) for row, place in zip(table.rows, order, strict=True)]
+    return replace(table, columns=(*table.columns, HEADS["from_best"]), rows=rows, units=(*table.units, ""))
+
+
 def _cell(value: float, places: int | None) -> float | None:
     if not np.isfinite(value):
         return None
@@ -105,6 +133,11 @@ def geometry(record: figures.GearingRun) -> "Sequence[Block]":
     )
     meshing = figures.meshing_of(record, record.acting)
     return [Drawing("Sun and planets, and one mesh", partial(figures.mesh_figure, meshing), caption)]
+
+
+def heat(record: figures.GearingRun) -> "Sequence[Block]":
+    """The heat along the path of contact."""
+    return [Drawing("Heat along the path of contact", partial(figures.heat_figure, record.acting), HEAT)]
 
 
 def bending(record: figures.GearingRun) -> "Sequence[Block]":
@@ -282,9 +315,27 @@ SECTIONS = [
     ),
     Section(
         "Permissible root stress",
-        *both("bending_life_factor", "notch_sensitivity", "root_surface", "bending_size", "permitted_root_stress"),
+        *both("bending_life_factor", "notch_sensitivity", "root_surface", "bending_size", "mean_stress_factor",
+        "permitted_root_stress"),
         text="Planets of this stage mesh with the sun alone: their roots are not bent to both sides in every turn. "
-        "But robots reverse; then the endurance limit is to be lowered by a mean stress factor, about 0.7.",
+        "But robots reverse: state how large the opposite load is, by the stress ratio of each gear.",
+    ),
+    Section(
+        "Scuffing and micropitting",
+        *FlankState.__dataclass_fields__,
+        text="Flanks that slide heat one another; where the contact gets as hot as the lubricant bears in its test, "
+        "they weld for a moment and scuff. The flash method takes the hottest point, the integral method a mean of the "
+        "path: two independent readings of one risk. Where the oil film is thin beside the roughness, flanks turn "
+        "grey by micropitting; what the lubricant bears must come from its own test.",
+        blocks=heat,
+    ),
+    Section(
+        "Second stage and crank bearings",
+        *SecondStage.__dataclass_fields__,
+        text="Discs and pins without clearance: every force passes through the pitch point, so the pins of a disc push "
+        "with one resultant that turns with the crank. A crank bearing gets its share of it, and its share of the "
+        "torque, which stands in the disc; both meet once per turn. What clearance and wear change is the business "
+        "of the calculation rv_wear.",
     ),
     Section(
         "Safeties",

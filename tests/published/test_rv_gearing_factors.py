@@ -239,6 +239,8 @@ STATED = {
     "stated_transverse_factor": (1.34, "transverse_factor", "contact_stress"),
     "stated_transverse_factor_bending": (1.35, "transverse_factor_bending", "root_stress_planet"),
     "stated_planet_load_bending": (1.36, "planet_factor_bending", "root_stress_sun"),
+    "stated_friction": (0.07, "flank_friction", "contact_rise"),
+    "stated_crank_load": (8e3, "equivalent_load", "needed_rating"),
     "stated_zone_factor": (2.37, "zone_factor", "contact_stress"),
     "stated_elasticity_factor": (181.4e3, "elasticity_factor", "contact_stress"),
     "stated_contact_ratio_factor": (0.91, "contact_ratio_factor", "contact_stress"),

@@ -12,13 +12,14 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.path import Path as Outline
+from scipy.stats import hypergeom
 
 from drawn import words
 from gear_geometry.roots import Rack, external_root
 from rv_gearing import sheet
-from rv_gearing.figures import groups_figure, meshing_of, notched_of, stresses_figure
+from rv_gearing.figures import front_figure, groups_figure, heat_figure, meshing_of, notched_of, stresses_figure
 from rv_gearing.geometry import half_space, tooth, trochoid, undercut
-from rv_gearing.groups import MEETING, SIZES, STRENGTH, FoundGroups, GroupColumn, GroupSearch, listed
+from rv_gearing.groups import CHOICE, MEETING, SIZES, STRENGTH, FoundGroups, GroupColumn, GroupSearch, listed
 from rv_gearing.model import RV_GEARING
 from rv_gearing.rating import SAFETIES, Capacity, Reserve, Safeties, rating, rv_gearing
 from truing import Swept, Table, TruingError
@@ -60,8 +61,8 @@ def test_the_list_is_a_result_of_the_run(whole: Calculation) -> None:
     assert whole.answers["group_number"].tolist() == list(range(1, 26))
     assert whole.answers["group_sun_teeth"][4] == 23
     assert whole.answers["group_planet_teeth"][4] == 63
-    for name in (*SIZES[2:], *MEETING, *STRENGTH):
-        assert whole.answers[f"group_{name}"].tolist() == found(whole).column(name).tolist()
+    for name in (*SIZES[2:], *MEETING, *STRENGTH, *CHOICE):
+        np.testing.assert_array_equal(whole.answers[f"group_{name}"], found(whole).column(name))
 
 
 @pytest.mark.parametrize("column", ["group", *SIZES, *MEETING, *STRENGTH])
@@ -91,6 +92,71 @@ def test_the_better_groups_come_first_where_the_list_is_sorted_so() -> None:
     for number in (4, 5, 1):
         _, sun, planet, *_, reason = rows[number]
         assert f"| {number} | {sun:.0f}/{planet:.0f} | {reason} |" in page
+
+
+def test_no_group_of_the_front_is_beaten_and_every_other_one_is() -> None:
+    """Pair by pair in whole steps: 0.1 % of the ratio, 0.05 of a safety, 1 mm, 0.1 % of the efficiency."""
+    calculation = run(GroupSearch(), fewest_pins=30, most_pins=60)
+    told = found(calculation)
+    columns = {name: told.column(name) for name in ("deviation", "reserve", "centre_distance", "efficiency")}
+    marks = [
+        (round(abs(dev) / 1e-3), -round(res / 0.05), round(size / 1e-3), -round(eta / 1e-3), common)
+        for dev, res, size, eta, common in zip(*columns.values(), told.groups.common_first, strict=True)
+    ]
+    beaten = [
+        any(all(a <= b for a, b in zip(other, own, strict=True)) and other != own for other in marks) for own in marks
+    ]
+    assert len(marks) == 422
+    assert np.isnan(told.column("from_best")).tolist() == beaten
+    table = next(block for block in sheet.search(calculation.record) if getattr(block, "title", "").endswith("beats"))
+    assert isinstance(table, Table)
+    assert len(table.rows) == sheet.MOST_SHOWN
+    assert table.rows[0][-1] == round(np.nanmin(told.column("from_best")), 3)
+    assert f"{beaten.count(False)} of 422 groups" in table.note
+    default = found(run(GroupSearch()))
+    first = int(np.nanargmin(default.column("from_best")))
+    count, name = int(np.sum(np.isfinite(default.column("from_best")))), default.numbers[first]
+    page = " ".join((Path(__file__).parents[2] / "docs/explanation/rv_gearing.md").read_text(encoding="utf-8").split())
+    assert f"{count} of the 25 groups are on the front" in page
+    assert f"{beaten.count(False)} of 422" in page
+    assert f"no. {name:.0f}, {default.groups.sun[first]:.0f}/{default.groups.planet[first]:.0f}" in page
+
+
+def test_the_front_is_drawn_filled_and_the_others_hollow(whole: Calculation) -> None:
+    told = found(whole)
+    panel = front_figure(told).axes[0]
+    filled = np.concatenate([np.asarray(marks.get_offsets()) for marks in panel.collections])
+    on_front = np.isfinite(told.column("from_best"))
+    assert len(filled) == on_front.sum() == 18
+    hollow = panel.lines[0].get_xydata()
+    assert sorted(hollow[:, 0]) == pytest.approx(sorted(1e3 * told.groups.centre_distance[~on_front]))
+    ring = panel.lines[1].get_xydata()[0]
+    assert ring == pytest.approx([68.125, told.column("reserve")[12]])
+
+
+def test_the_heat_is_drawn_with_its_hottest_point_and_none_at_the_pitch_point() -> None:
+    stage = RV_GEARING.inputs()
+    answers = RV_GEARING.read_results(rv_gearing(stage))
+    drawn = heat_figure(stage).axes[0].lines[0].get_xydata()
+    assert drawn[:, 1].max() == pytest.approx(float(answers["flash_temperature"]))
+    assert drawn[np.abs(drawn[:, 0]) < 1e-9, 1] == pytest.approx([0.0], abs=1e-6)
+    assert np.ptp(drawn[:, 0]) == pytest.approx(1e3 * float(answers["contact_ratio"] * answers["base_pitch"]))
+
+
+def test_one_criterion_alone_leaves_its_best_groups() -> None:
+    told = found(run(GroupSearch(criteria=("deviation",))))
+    assert told.numbers[~np.isnan(told.column("from_best"))].tolist() == [1, 6, 11, 18, 25]  # just the wanted ratio
+    assert set(told.column("from_best")[[0, 5, 10, 17, 24]]) == {0.0}
+    with pytest.raises(TruingError, match="criteria are columns of the groups, but 'price'"):
+        GroupSearch(criteria=("price",))  # type: ignore[arg-type]
+
+
+def test_how_often_the_papers_better_groups_hunt_is_what_chance_gives_in_a_seventh_of_all_draws() -> None:
+    """Nine of the first 22 by the numbers of this list; the finding prints both counts and the chance."""
+    hunting = found(run(GroupSearch())).groups.common_first[:22] == 1
+    better = np.array([3, 7, 10, 12, 13, 15, 20, 21, 22]) - 1
+    assert (int(hunting.sum()), int(hunting[better].sum())) == (13, 7)
+    assert hypergeom.sf(6, 22, 13, 9) == pytest.approx(0.149, abs=5e-4)
 
 
 def test_groups_with_just_the_wanted_ratio_keep_their_numbers() -> None:

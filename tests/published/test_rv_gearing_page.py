@@ -1,5 +1,6 @@
 """The numbers on the theory page of the gearing and in its findings are those that the calculation gives."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,10 @@ from rv_gearing.model import RV_GEARING
 from rv_gearing.published import FINDINGS
 from rv_gearing.quantities import Gearing
 from rv_gearing.rating import rv_gearing
+from rv_gearing.shaping import Shifts
+from truing.calculation import calculate
+from truing.setup import default_setup
+from truing.units import from_si
 
 PAGE = Page("rv_gearing")
 PAPER = RV_GEARING.inputs()
@@ -181,3 +186,29 @@ def test_the_numbers_in_the_findings_are_ours() -> None:
         f"{float(first.duty.sun_torque):.2f} instead of {float(first.duty.output_torque):.1f} N m",
     ]
     assert [each for each in numbers if each not in told] == []
+
+
+def test_heat_second_stage_and_shifts_of_the_example() -> None:
+    """Numbers of the page that no table holds, as the example gives them."""
+    fields = RV_GEARING.own_result_fields
+    answers = RV_GEARING.read_results(rv_gearing(RV_GEARING.inputs(group=1)))
+    told = {name: float(np.asarray(from_si(answers[name], fields[name].unit))) for name in fields if name in answers}
+    page = " ".join(PAGE.text.split())
+    for words in (
+        f"contact {told['contact_rise']:.1f} K above the oil, where {told['permitted_contact_rise']:.0f} K are "
+        "permitted",
+        f"it is {told['integral_rise']:.1f} K of {told['scuffing_integral_rise']:.0f} K",
+        f"film is {told['film_ratio']:.3f} of the roughness", f"with 0.05 it is {told['pin_loss_efficiency']:.4f}",
+        f"has {told['crank_load'] / 1e3:.1f} kN at most and $P$ = {told['equivalent_load'] / 1e3:.2f} kN at "
+        f"{told['crank_speed']:.0f} r/min: 6000 h need $C$ = {told['needed_rating']:.1f} kN",
+    ):  # fmt: skip
+        assert words in page, words
+    widths = []
+    for study in (Shifts(), Shifts(free_centre=True)):
+        setup = replace(default_setup(RV_GEARING, ratio_tolerance=1e-4), studies=[study])
+        widths.append(dict(calculate(setup).outcomes["shifts"].as_json())["groups"][0])
+    one, free = widths
+    stated, kept = one["face_width_as_stated"]["value"], one["face_width"]["value"]
+    saved = 100 * (1 - kept / stated)
+    assert f"{stated:.2f} mm without shift and {kept:.2f} mm with ±{one['shift_sun']:g}, {saved:.0f} % less" in page
+    assert f"{free['face_width']['value']:.2f} mm at {free['shift_sun']:g} and {free['shift_planet']:g}" in page

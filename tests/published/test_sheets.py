@@ -59,7 +59,7 @@ DISCS = (Modifications(points=3), NewMachines(draws=50))
 ALONE: list[tuple[Drawn, int]] = [  # without any study, and how many figures are known then
     (Drawn(plugin="press_linkage", inputs={"rod_length": "1.2 m"}), 3),
     (Drawn(plugin="roller_screw_shift"), 2),
-    (Drawn(plugin="rv_gearing"), 2),
+    (Drawn(plugin="rv_gearing"), 3),
     (Drawn(plugin="rv_wear"), 4),
     (Drawn(plugin="harmonic_fractal"), 2),
     (Drawn(plugin="press_linkage.motion"), 3),
@@ -71,9 +71,9 @@ UNUSUAL: list[tuple[Drawn, int]] = [
     (Drawn(plugin="roller_screw_shift", inputs={"least_contact_ratio": 1.2}, studies=(Shifting(points=501),)), 6),
     # The pair of module 8 mm fits no window: no group, and nothing to draw of groups.
     (Drawn(plugin="rv_gearing", studies=GROUPS, inputs={
-        "sun_teeth": 17, "planet_teeth": 103, "module": "8 mm", "helix_angle": "15.8 deg", "shift_sun": 0.145}), 3),
+        "sun_teeth": 17, "planet_teeth": 103, "module": "8 mm", "helix_angle": "15.8 deg", "shift_sun": 0.145}), 4),
     (Drawn(plugin="rv_gearing", studies=GROUPS,
-           inputs={"fewest_pins": 20, "most_pins": 40, "load_torque": -900.0}), 5),
+           inputs={"fewest_pins": 20, "most_pins": 40, "load_torque": -900.0}), 7),
     (Drawn(plugin="rv_wear", inputs={"working_time": "0 h", "phases": 4, "load_sharing": "hertz"}, studies=DISCS,
            declared=("sweep",)), 6),
     (Drawn(plugin="rv_wear", studies=DISCS, declared=("sweep",), inputs={

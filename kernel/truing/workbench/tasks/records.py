@@ -23,7 +23,7 @@ from truing.measurements.table import RUN, Known, opened_table
 from truing.setup import NamedColumn
 from truing.units import difference_unit, from_si
 from truing.units.names import PURE
-from truing.workbench.guesses import Column, Guess, Quantity, guesses
+from truing.workbench.guesses import Column, Guess, Quantity, guesses, of_this_unit
 from truing.workbench.preview import Axis, drawn
 from truing.workbench.tasks.loaded import loaded, stamp_of
 from truing.workbench.written import changed_text
@@ -168,6 +168,7 @@ def _columns(opened: OpenFile, model: Model[Any, Any]) -> Iterator[dict[str, Any
         role = RUN if header.name == RUN else part_of(header.name, model, is_number=bool(np.isfinite(numbers).any()))
         found.append((header, ROLES.get(role, role), numbers))
     guessed = _guessed([(header, role) for header, role, _ in found], model)
+    own = [quantity for quantity in _quantities(model) if not quantity.name.startswith(SIGMA)]
     for index, (header, role, numbers) in enumerate(found):
         finite, key = numbers[np.isfinite(numbers)], _key(header)
         guess = guessed.get(key)
@@ -176,7 +177,12 @@ def _columns(opened: OpenFile, model: Model[Any, Any]) -> Iterator[dict[str, Any
             "unit": header.unit, "declared": units.get(header.name, ""), "stated": bool(header.key),
             "values": int(finite.size), "low": _end(finite.min()) if finite.size else None,
             "high": _end(finite.max()) if finite.size else None, "guess": guess and asdict(guess),
+            "of_this_unit": of_this_unit(_unknown(header), own),
         }  # fmt: skip
+
+
+def _unknown(header: Header) -> Column:
+    return Column(_key(header), header.name or header.text, header.unit)
 
 
 def _end(value: Any) -> float:
@@ -191,7 +197,7 @@ def _key(header: Header) -> str:
 def _guessed(found: Sequence[tuple[Header, str]], model: Model[Any, Any]) -> dict[str, Guess]:
     """Return what columns may be that are nothing to the model, and the units of those that have none."""
     units, taken = _units(model), {header.name for header, role in found if role != "other"}
-    unknown = [Column(_key(each), each.name or each.text, each.unit) for each, role in found if role == "other"]
+    unknown = [_unknown(each) for each, role in found if role == "other"]
     made = guesses(unknown, [quantity for quantity in _quantities(model) if quantity.name not in taken])
     for header, role in found:
         declared = units.get(header.name, "")
@@ -220,8 +226,8 @@ def _roles(model: Model[Any, Any]) -> list[dict[str, Any]]:
     """Return what a column may be, in groups, each with unit and note."""
     quantities = {quantity.name: quantity for quantity in _quantities(model)}
     groups = {
-        "Measured results": model.measurable,
         "Conditions": list(model.known_conditions),
+        "Measured results": model.measurable,
         "Inputs": list(model.input_fields),
         "Standard deviations": [f"{SIGMA}{name}" for name in model.measurable],
     }
