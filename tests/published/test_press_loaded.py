@@ -5,6 +5,7 @@ the exact position; the torque of the press in motion; series of springs; what h
 """
 
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -211,3 +212,16 @@ def test_tight_guides_keep_the_slider_more_upright_than_wide_ones() -> None:
     )
     assert np.all(np.asarray(tight.largest_tilt) < np.asarray(wide.largest_tilt))
     assert np.all(np.diff(np.asarray(tight.largest_guide_force)) > 1e3)
+
+
+def test_the_theory_page_says_what_comes_out() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "explanation" / "press_linkage.md").read_text(encoding="utf-8")
+    answer = press_under_load(LoadedPress())
+    for said, value in (
+        ("gives way by {:.2f} mm", 1e3 * np.asarray(answer.rated_deflection)),
+        ("({:.0f} kN/mm)", 1e-6 * np.asarray(answer.press_stiffness)),
+        ("tilts by {:.3f} mm/m", 1e3 * np.asarray(answer.rated_slope)),
+        ("({:.0f} kN·m per", 1e-6 * np.asarray(answer.tilt_stiffness)),
+        ("lower guides carry {:.0f} kN", 1e-3 * np.asarray(answer.largest_guide_force)),
+    ):
+        assert said.format(float(value)) in page

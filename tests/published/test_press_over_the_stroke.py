@@ -5,6 +5,7 @@ geometry of ``hidden_effects/press_machine.py``, which shares nothing with the p
 """
 
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -81,3 +82,17 @@ def test_the_machines_of_a_press_apart_keep_the_limits_as_often() -> None:
         assert found.chances["stroke"][of][1] > goal - 0.02
     assert found.chances["dead centre"]["position"][1] < 0.8
     assert found.costs["dead centre"] < found.costs["stroke"]
+
+
+def test_the_theory_page_says_what_the_designs_cost_and_keep() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "explanation" / "press_linkage.md").read_text(encoding="utf-8")
+    setup = replace(default_setup(PRESS_LINKAGE), studies=(OverTheStroke(),))
+    found: Any = calculate(setup).outcomes["over_the_stroke"]
+    titles = ("bands of Table 3", "least cost for the dead centre", "least cost for the stroke")
+    for title, key in zip(titles, found.bands, strict=True):
+        row = next(line for line in page.splitlines() if line.startswith(f"| {title} |"))
+        cells = [float(cell.strip(" %")) for cell in row.split("|")[2:6]]
+        kept = [100 * found.chances[key]["position"][place] for place in (0, 1)]
+        assert cells[0] == pytest.approx(found.costs[key], abs=1.0)
+        assert cells[1:3] == pytest.approx(kept, abs=1.0)
+        assert cells[3] == pytest.approx(100 * found.chances[key]["tilt"][1], abs=1.0)
