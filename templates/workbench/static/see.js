@@ -312,6 +312,7 @@ function followed(jobs) {
 }
 
 async function ended(now) {
+  if (now.status === "done") numbers(textNow());  // the run may have decided what only its studies do
   await lastRun(textNow());
   const faults = now.faults.map((fault) => fault.message).join(" ");
   if (now.status === "failed") put(at("last"), `The run ended without results: ${faults}`);
