@@ -103,7 +103,7 @@ function fileShown(file, number) {
   section.setAttribute("aria-labelledby", `file-${number}`);
   const wrong = file.wrong.length + file.more;
   const title = made("h2", { id: `file-${number}`, textContent: file.name });
-  const count = made("p", { className: "quiet", textContent: [file.rows ? `${file.rows} rows` : "", ...file.notes].filter(Boolean).join("; ") });
+  const count = made("p", { className: "quiet", textContent: [file.rows && !file.notes.some((note) => note.startsWith(`${file.rows} rows`)) ? `${file.rows} rows` : "", ...file.notes].filter(Boolean).join("; ") });
   section.append(title, count, made("ul", { className: "faults" }, ...file.faults.map(faultLine)));
   if (file.columns.some((column) => column.guess)) section.append(made("p", { className: "note", textContent: "What a column may be is guessed below from its name and unit. A guess counts once you confirm it." }));
   if (!file.columns.length) return section;
@@ -284,7 +284,7 @@ const KINDS = { effect: "Effects of the model", gauge: "What a gauge may show", 
 async function compete() {
   if (!known) await offered();
   if (!known || !answer) return;
-  for (const column of answer.files.flatMap((file) => file.columns)) if (column.role === "result") addNoise(column.name);
+  for (const column of answer.files.flatMap((file) => file.columns)) if (column.role === "measured") addNoise(column.name);
 }
 
 async function offered() {

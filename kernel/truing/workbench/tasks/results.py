@@ -20,7 +20,6 @@ from truing.evaluate import evaluate_rows
 from truing.inputs_file import setup_from_text
 from truing.inputs_file.sentences import told_by_line
 from truing.inputs_file.values import broken_demand
-from truing.kernel import Offer
 from truing.numbers import format_number
 from truing.report.html_printer import html_of
 from truing.report.live import live_sheet
@@ -34,7 +33,7 @@ from truing.studies.reading import read_range
 from truing.studies.sampling import Scatter, scatter_of
 from truing.studies.sweep import Sweep
 from truing.units import from_si, unit_factor, unit_text
-from truing.workbench.tasks.loaded import loaded
+from truing.workbench.tasks.loaded import changed_since, loaded
 
 MOST_SLIDERS = 6
 PLACES = 200
@@ -71,18 +70,19 @@ def numbers(
     setup = setup_from_text(text, loaded(plugin), file=file, folder=Path(folder))
     calculation = _without_studies(setup)
     saved = load_either(Path(run)) if run else None
-    own = run_of(setup, loaded(plugin), Path(last)) if last and calculation.verdict == "undecided" else None
+    own = run_of(setup, plugin, Path(last)) if last and calculation.verdict == "undecided" else None
     return asdict(live_sheet(calculation, saved, called, own))
 
 
-def run_of(setup: Setup, offer: Offer, folder: Path) -> dict[str, Any] | None:
-    """Return what a run folder holds, where it is of these inputs and of this version of the calculation."""
+def run_of(setup: Setup, plugin: str, folder: Path) -> dict[str, Any] | None:
+    """Return what a run folder holds, where it is of these inputs and of the calculation as it is now."""
     try:
         document = load_either(folder)
     except UnknownPluginError:
         return None
-    same = (document.get("plugin") or {}).get("version") == offer.origin.version
-    return document if same and document.get("input_hash") == input_hash(setup) else None
+    same = (document.get("plugin") or {}).get("version") == loaded(plugin).origin.version
+    same = same and document.get("input_hash") == input_hash(setup) and not changed_since(plugin, folder)
+    return document if same else None
 
 
 def whole(plugin: str, file: str, folder: str, text: str) -> dict[str, str]:
