@@ -5,6 +5,7 @@ The pin's numbers are closed forms: 120 N on 28 mm^2 are 4.2857 MPa, and 80 MPa 
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -36,13 +37,15 @@ CRASHES = """    print("a line that nobody asked for")
         import os
 
         os._exit(3)
+    while np.any((pin.load == 601.0) | (pin.load == 602.0)):
+        pass
     pressure = pin.load / pin.area
 """
 
 
 @pytest.fixture(scope="module")
 def pins(workbench: Workbench) -> Workbench:
-    """A workbench over a pin that prints, and ends its process at 500 N."""
+    """A workbench over a pin that prints, ends its process at 500 N, and hangs at 601 N and 602 N."""
     source = PIN.read_text(encoding="utf-8").replace("    pressure = pin.load / pin.area\n", CRASHES)
     (workbench.folder / "own_pin.py").write_text(source, encoding="utf-8")
     (workbench.folder / "pin.toml").write_text(TEXT, encoding="utf-8")
@@ -122,6 +125,19 @@ def test_what_cannot_be_calculated_is_said_and_the_last_numbers_stay_and_are_mar
     holds(window, "#see-said", "Undecided.")
 
 
+def test_texts_that_hang_one_after_another_do_not_hold_up_the_next(window: Any) -> None:
+    for load in ("601 N", "602 N"):
+        type_load(window, load)
+        holds(window, "#see-said", "Calculating")
+        window.wait_for_timeout(1600)  # so long until one more question is asked beside one that hangs
+    began = time.monotonic()
+    type_load(window, "140 N")
+    holds(window, "#see-sections", "pressure5MPa")
+    assert time.monotonic() - began < 10  # and not the 20 s after which the first would have been given up
+    type_load(window, "120 N")
+    holds(window, "#see-sections", "4.2857")
+
+
 def test_curves_along_an_input_have_their_limit_and_follow_ends_that_are_typed_or_dragged(window: Any) -> None:
     window.locator("#see-along > summary").click()
     window.locator("#see-over").select_option("load")
@@ -183,4 +199,4 @@ def test_the_page_is_read_by_everybody_with_everything_open(window: Any) -> None
     assert window.locator("#see-numbers").is_visible()
     assert [*axe(window), *sideways(window)] == []
     assert window.outside == []
-    assert window.said == []
+    assert [said for said in window.said if "409" not in said] == []  # 409: a newer question took the place

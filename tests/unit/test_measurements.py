@@ -52,6 +52,44 @@ def data_faults(path: Path) -> list[str]:
     return faults(lambda: read(path))
 
 
+PLAIN = "time [h],depth [um],run\n" + "".join(f"{row}, {row / 8},a b\n" for row in range(20))
+
+
+@pytest.mark.parametrize(
+    "odd",
+    [
+        '1,"2",a',
+        "1,2,a#",
+        "# a remark",
+        ",,",
+        " , ,",
+        ",2,a",
+        "1,2,",
+        "\t1 ,2 ,a ",
+        "1,2",
+        "1,2,a,b",
+        "1,2,a,",
+        '1,"2,a',
+    ],
+)
+@pytest.mark.parametrize("behind", [3, 17])
+def test_rows_that_are_taken_apart_together_are_what_they_are_one_by_one(
+    odd: str, behind: int, table: Write, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lines = PLAIN.splitlines(keepends=True)
+    path = table("".join([*lines[:behind], f"{odd}\n", *lines[behind:]]))
+
+    def read_all() -> object:
+        read, found = read_table(path, KNOWN)
+        columns = {name: np.asarray(column, dtype=str).tolist() for name, column in read.columns.items()}
+        return columns, read.lines, read.count, found.found
+
+    monkeypatch.setattr("truing.measurements.csv_text.ROWS_AT_ONCE", 5)
+    together = read_all()
+    monkeypatch.setattr("truing.measurements.csv_text.CsvFile._plain_columns", lambda *_: None)
+    assert together == read_all()
+
+
 def pin_setup() -> Setup:
     return default_setup(PIN_WEAR, PIN_OFFER.origin)
 

@@ -38,15 +38,15 @@ import pytest
 import uvicorn
 from starlette.applications import Starlette
 from starlette.requests import Request
-from starlette.responses import JSONResponse, Response
+from starlette.responses import Response
 from starlette.routing import Route
 from starlette.testclient import TestClient
 from starlette.websockets import WebSocketDisconnect
 
 from truing.errors import UsageError
 from truing.templating import template_folder
-from truing.workbench import guard, listening
-from truing.workbench.bench import Bench, bench_of, received
+from truing.workbench import bench, guard, listening
+from truing.workbench.bench import Bench
 from truing.workbench.guard import FIXED, Key, hosts_of
 from truing.workbench.places import files_below, inside
 from truing.workbench.server import application
@@ -85,12 +85,6 @@ def key() -> Key:
     return Key(PORT)
 
 
-async def _take(request: Request) -> Response:
-    """Take an upload in, as a route does."""
-    path = bench_of(request).path(request.query_params["name"])
-    return JSONResponse({"bytes": await received(request, path, 100_000)})
-
-
 async def _fail(request: Request) -> Response:
     raise ZeroDivisionError(f"<script>{SECRET}</script>")
 
@@ -99,7 +93,6 @@ async def _fail(request: Request) -> Response:
 def app(root: Path, key: Key, workers: Workers) -> guard.Guard:
     guarded = application(root, key, hosts_of("127.0.0.1", PORT), workers)
     starlette: Starlette = guarded.app
-    starlette.router.routes.insert(0, Route("/api/take", _take, methods=["POST"]))
     starlette.router.routes.insert(0, Route("/api/fail", _fail))
     return guarded
 
@@ -304,7 +297,7 @@ def test_path(client: TestClient, root: Path, template: str) -> None:
         asked(client, "/api/confirm", file=name),
         asked(client, "/api/state", file=name, plugin=name + ".py", text=""),
         asked(client, "/api/run", file=name, plugin="press_linkage"),
-        client.post("/api/take", params={"name": name}, content=b"written"),
+        asked(client, "/api/columns", file="press.toml", plugin="press_linkage", text="", data=[name]),
         client.get("/edit", params={"file": name}),
         client.get("/events", params={"file": name or ".."}),
     ]
@@ -435,32 +428,45 @@ UPLOADS = [
 
 
 @pytest.mark.parametrize("kind", UPLOADS)
-def test_upload(client: TestClient, root: Path, kind: str) -> None:
+def test_upload(client: TestClient, root: Path, kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bench, "LARGEST_UPLOAD", 100_000)
+    (root / "data" / "folder.csv").mkdir(parents=True, exist_ok=True)
+    (root / "data" / "there.csv").write_text("a\n1\n", encoding="utf-8")
     before = everything(root)
     content: Any = b"x" * (200_000 if kind == "too large" else 10)
     headers: dict[str, str] = {}
-    name = {"there already": "press.toml", "folder": "runs"}.get(kind, "upload.csv")
-    (root / "runs").mkdir(exist_ok=True)
+    name = {"there already": "there.csv", "folder": "folder.csv"}.get(kind, "upload.csv")
     if "without" in kind:
         content = (b"x" * 10_000 for _ in range(20))
     if kind == "lies: more":
         content, headers = (b"x" * 10_000 for _ in range(20)), {"content-length": "10"}
     if kind == "length is no number":
         headers = {"content-length": "²"}
-    status = {"there already": 422, "folder": 422}.get(kind, 413)
+    status = {"there already": 409, "folder": 422}.get(kind, 413)
     for _ in range(20 if kind == "many" else 1):
         answer = client.post(
-            "/api/take", params={"name": name}, content=b"x" * 200_000 if kind == "many" else content,
+            "/api/upload", params={"name": name}, content=b"x" * 200_000 if kind == "many" else content,
             headers={name: value.encode() for name, value in headers.items()},
         )  # fmt: skip
         assert answer.status_code == status, answer.text
     assert everything(root) == before
 
 
+@pytest.mark.parametrize("template", PATHS, ids=range(len(PATHS)))
+def test_an_upload_lies_in_its_folder_whatever_its_name(client: TestClient, root: Path, template: str) -> None:
+    name, before = template.replace("{outside}", str(root.parent)).replace("{served}", str(root)), everything(root)
+    assert client.post("/api/upload", params={"name": f"{name}.csv"}, content=b"written").status_code in {200, 422}
+    new = [Path(path) for path in everything(root).keys() - before.keys()]
+    for path in new:
+        path.unlink()
+    assert {path.parent for path in new} <= {root / "data"}
+    assert everything(root) == before
+
+
 def test_an_upload_is_written_whole(client: TestClient, root: Path) -> None:
     content = bytes(range(256)) * 300
-    answer = client.post("/api/take", params={"name": "data/new.csv"}, content=content)
-    assert answer.json() == {"bytes": len(content)}
+    answer = client.post("/api/upload", params={"name": "new.csv"}, content=content)
+    assert answer.json() == {"file": "data/new.csv"}
     assert (root / "data" / "new.csv").read_bytes() == content
     (root / "data" / "new.csv").unlink()
 
@@ -639,9 +645,9 @@ def test_program(client: TestClient, root: Path, document: dict[str, str]) -> No
             asked(client, address, **{"file": "evil.toml", "text": "", **said})
         client.get("/")
         client.get("/edit", params={"file": "evil.toml", "plugin": said["plugin"]})
-        bench: Bench = client.app.app.state.bench
+        served: Bench = client.app.app.state.bench
         end = time.monotonic() + 10
-        while any(not job.is_over for job in bench.workers.jobs.values()) and time.monotonic() < end:
+        while any(not job.is_over for job in served.workers.jobs.values()) and time.monotonic() < end:
             time.sleep(0.02)
         assert not (root / "ran").exists()
     finally:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import tomllib
 from collections.abc import Iterator
 from functools import lru_cache
@@ -156,6 +157,14 @@ def test_the_form_asks_for_all_that_the_model_declares() -> None:
         assert {f"effects/{e.name}/{u.name}" for e in model.effects.values() for u in e.unknowns} <= keys
     assert form._fields("press_linkage")["inputs/crank_radius"].bounds == "> 0, < 30 m"
     assert task("form.described")("press_linkage")["groups"][1]["title"] == "The mechanism, one side"
+
+
+def test_the_form_of_a_program_follows_its_file(tmp_path: Path) -> None:
+    program = tmp_path / "pin_wear.py"
+    text = (Path(__file__).parents[1] / "data" / "pin_wear.py").read_text(encoding="utf-8")
+    for note in ("normal load on the pin", "weight on the pin, all of it"):
+        program.write_text(text.replace("normal load on the pin", note), encoding="utf-8")
+        assert note[1:] in json.dumps(task("form.described")(str(program)))
 
 
 class Here:

@@ -13,7 +13,7 @@ from starlette.testclient import TestClient
 
 from shared import ROOT
 from truing.errors import UsageError
-from truing.workbench import measuring
+from truing.workbench import bench
 from truing.workbench.guard import Key
 from truing.workbench.guesses import Column, Quantity, guesses, split_unit
 from truing.workbench.measuring import harmless
@@ -133,6 +133,18 @@ def test_a_guess_is_a_guess_until_columns_says_so(tmp_path: Path) -> None:
     assert (file["columns"][5]["role"], file["columns"][5]["guess"], file["faults"]) == ("measured", None, [])
 
 
+def test_a_unit_at_the_end_of_a_foreign_name_says_what_a_column_can_be(tmp_path: Path) -> None:
+    _, *rows = (SCREW / "measured.csv").read_text(encoding="utf-8").splitlines()
+    (tmp_path / "mine.csv").write_text("\n".join(["Zeit_min,Last_N,Drehzahl_rpm,T,Winkel,Moment_Nmm", *rows]))
+    (file,) = columns(tmp_path, INPUTS, "mine.csv")["files"]
+    alike = {column["text"]: column["of_this_unit"] for column in file["columns"]}
+    assert alike["Last_N"] == {"tangential_force": "N", "axial_load": "N"}
+    assert alike["Drehzahl_rpm"] == {"screw_speed": "rpm"}
+    assert alike["Moment_Nmm"] == {"friction_torque": "N*mm"}
+    assert alike["Zeit_min"] == {"time": "min"}
+    assert alike["T"] == alike["Winkel"] == {}
+
+
 def test_what_competes_and_how_a_restriction_leaves_an_accepted_file(tmp_path: Path) -> None:
     shutil.copytree(SCREW, tmp_path, dirs_exist_ok=True)
     known = diagnoses.candidates("roller_screw_shift", "inputs.toml", str(tmp_path), INPUTS)
@@ -183,10 +195,10 @@ def test_an_upload_is_bounded_whatever_it_says_of_its_size(
     served: tuple[TestClient, Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     client, folder = served
-    monkeypatch.setattr(measuring, "LARGEST_UPLOAD", 1000)
+    monkeypatch.setattr(bench, "LARGEST_UPLOAD", 1000)
     for content in (b"x" * 1001, iter([b"x" * 600, b"x" * 600])):
         answer = client.post("/api/upload?name=bomb.csv", content=content)
-        assert "bomb.csv is too large" in answer.json()["faults"][0]["message"]
+        assert answer.json()["faults"][0]["message"] == "bomb.csv is larger than the 0.001 MB that are taken"
     assert [path for path in folder.rglob("*") if "bomb" in path.name or "upload" in path.name] == []
 
 

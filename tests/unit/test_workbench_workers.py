@@ -127,7 +127,8 @@ def test_only_public_functions_of_tasks_are_called(workers: Workers) -> None:
             workers.ask(name)
 
 
-def test_a_newer_question_ends_the_older(workers: Workers) -> None:
+def test_a_newer_question_ends_the_older(workers: Workers, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("truing.workbench.workers.OVERTAKEN", 0.3)
     said: list[str] = []
 
     def older() -> None:

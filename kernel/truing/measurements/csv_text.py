@@ -202,13 +202,30 @@ class CsvFile:
         behind = 0
         while part := list(islice(self._lines, ROWS_AT_ONCE)):
             behind += len(part)
-            numbered = [(row, line) for text, line in part if (row := self._row(text, line)) is not None]
-            self.rows += len(numbered)
-            if numbered:
-                rows, lines = zip(*numbered, strict=True)
-                yield list(zip(*rows, strict=True)), lines
+            texts, lines = zip(*part, strict=True)
+            columns = self._plain_columns(texts)
+            if columns is None:
+                numbered = [(row, line) for text, line in part if (row := self._row(text, line)) is not None]
+                rows, lines = zip(*numbered, strict=True) if numbered else ((), ())
+                columns = list(zip(*rows, strict=True))
+            self.rows += len(lines)
+            if lines:
+                yield columns, lines
         if behind == sum(map(len, self.left_out.values())):
             self.faults.add("holds a header but no rows", self.header_line)
+
+    def _plain_columns(self, texts: Sequence[str]) -> list[tuple[str, ...]] | None:
+        """Return the columns of lines that are all rows of plain cells, taken apart at once; None for any others."""
+        between, together = len(self.headers) - 1, self.delimiter.join(texts)
+        if '"' in together or "#" in together or self.is_guarded:
+            return None
+        if any(text.count(self.delimiter) != between for text in texts):
+            return None
+        cells = together.split(self.delimiter)
+        if " " in together:
+            cells = [cell.lstrip(" ") for cell in cells]
+        columns = [tuple(cells[place :: between + 1]) for place in range(between + 1)]
+        return columns if all(map(str.strip, columns[0])) else None  # a row may be empty
 
     def _row(self, text: str, line: int) -> list[str] | None:
         """Return the cells of a line, as many as the header has; None where it is a fault or left out."""

@@ -12,7 +12,7 @@ from typing import Any
 
 import anyio
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from starlette.requests import Request
+from starlette.requests import ClientDisconnect, Request
 from starlette.responses import HTMLResponse, JSONResponse
 
 from truing.atomic import file_appearing
@@ -23,8 +23,8 @@ from truing.workbench.workers import PATIENCE, Job, OvertakenError, TaskError, W
 
 LARGEST_BODY = 4_000_000
 """Bytes of a request that is no upload of a measured file: as data of Python it takes up to thirty times as many."""
-LARGEST_UPLOAD = 500_000_000
-"""Bytes of an uploaded file: ten million rows."""
+LARGEST_UPLOAD = 512_000_000
+"""Bytes of an uploaded file: as many as are read of a table."""
 MOST_ASKED = 30
 """Questions that may wait at the same time; each holds a thread, and files are read by others."""
 
@@ -119,38 +119,60 @@ def _json(content: bytes) -> Any:
     return json.loads(content.decode("utf-8"), object_pairs_hook=once, parse_constant=no_number)
 
 
-async def bounded(request: Request, most: int) -> AsyncIterator[bytes]:
+async def bounded(request: Request, most: int, what: str = "the request") -> AsyncIterator[bytes]:
     """Give the body of a request part by part. Raises TooLargeError as soon as it is known to be longer than most."""
     said = request.headers.get("content-length", "0")
     if not said.isascii() or not said.isdigit() or len(said) > 15 or int(said) > most:
-        raise TooLargeError(most)
+        raise TooLargeError(most, what)
     size = 0
     async for part in request.stream():
         size += len(part)
         if size > most:
-            raise TooLargeError(most)
+            raise TooLargeError(most, what)
         yield part
 
 
-async def received(request: Request, path: Path, most: int = LARGEST_UPLOAD, *, replace: bool = False) -> int:
-    """Write the body of a request to a file of the folder, which appears whole or not at all; return its bytes.
+async def received(request: Request, path: Path, *, replace: bool = False) -> bool:
+    """Write the body of a request to a file of the folder, which appears whole or not at all.
 
-    ``path`` is one that ``Bench.path`` gave. Raises UsageError where the body is too large or ends early, OutputError
-    where the file cannot be written, or is there already and is not to be replaced.
+    ``path`` is one that ``Bench.path`` gave. Where a file is there that is not to be replaced, nothing is written:
+    return whether the body says the same. Raises UsageError where the body is too large, empty or ends early,
+    OutputError where the file cannot be written.
     """
-    size = 0
-    with file_appearing(path, replace=replace) as stream:
-        async for part in bounded(request, most):
-            size += len(part)
-            await anyio.to_thread.run_sync(stream.write, part)
-    return size
+    try:
+        if not replace and path.is_file():
+            return await _says_the_same(request, path)
+        with file_appearing(path, replace=replace) as stream:
+            async for part in _parts(request, path.name):
+                await anyio.to_thread.run_sync(stream.write, part)
+    except ClientDisconnect:
+        raise UsageError(f"{path.name} did not arrive whole") from None
+    return True
+
+
+async def _parts(request: Request, name: str) -> AsyncIterator[bytes]:
+    """Give an upload part by part. Raises UsageError where it is too large, or holds nothing."""
+    is_empty = True
+    async for part in bounded(request, LARGEST_UPLOAD, name):
+        is_empty = is_empty and not part
+        yield part
+    if is_empty:
+        raise UsageError(f"{name} is empty")
+
+
+async def _says_the_same(request: Request, path: Path) -> bool:
+    same = True
+    with path.open("rb") as there:
+        async for part in _parts(request, path.name):
+            same = same and await anyio.to_thread.run_sync(there.read, len(part)) == part
+        return same and not there.read(1)
 
 
 class TooLargeError(UsageError):
     """A request that brings more than it may."""
 
-    def __init__(self, most: int) -> None:
-        super().__init__(f"the request brings more than the {most / 1e6:g} MB that are taken")
+    def __init__(self, most: int, what: str) -> None:
+        super().__init__(f"{what} is larger than the {most / 1e6:g} MB that are taken")
 
 
 def word(document: Mapping[str, Any], name: str, default: str | None = None) -> str:

@@ -19,8 +19,7 @@ MARK = b"truing_models"
 BEGINNING = 200_000
 """Bytes of a Python file in which its mark is looked for."""
 MOST_DOTS = 1000
-_PLUGIN = re.compile(r"^\s*plugin\s*=\s*[\"']?([\w.]*)", re.MULTILINE)
-"""The calculation that a file names which cannot be read as TOML."""
+_PLUGIN = re.compile(r"^[ \t]*plugin[ \t]*=[ \t]*[\"']?([\w.]*)", re.MULTILINE)
 _NUMBER = re.compile(r"[-_ ]\d+$")
 
 
@@ -68,21 +67,27 @@ def _inputs_file(root: Path, path: Path) -> InputsFile | None:
     except (OSError, UnicodeDecodeError):
         return None
     if max(line.count(".") for line in text.split("\n")) > MOST_DOTS:  # a name of so many parts takes long to read
-        named = _PLUGIN.search(text)
-        return InputsFile(name, named[1] if named else "", f"has a line with more than {MOST_DOTS} dots")
+        return InputsFile(name, named_in(text), f"has a line with more than {MOST_DOTS} dots")
     try:
         document = tomllib.loads(text)
     except (ValueError, RecursionError) as error:
-        named = _PLUGIN.search(text)
-        if named is None and "[inputs]" not in text:
-            return None
-        return InputsFile(name, named[1] if named else "", f"is no TOML: {error}")
+        named = named_in(text)
+        return InputsFile(name, named, f"is no TOML: {error}") if named or "[inputs]" in text else None
     plugin = document.get("plugin")
     if isinstance(plugin, str) and plugin:
         return InputsFile(name, plugin)
     if isinstance(document.get("inputs"), dict):
         return InputsFile(name, "", 'names no calculation; write plugin = "NAME" above its sections')
     return None
+
+
+def named_in(text: str) -> str:
+    """Return the calculation that an inputs file names before its first section, or nothing.
+
+    Only that line is read: a text that is no TOML, or takes long to read as such, names one all the same.
+    """
+    named = _PLUGIN.search(text.partition("\n[")[0])
+    return named[1] if named else ""
 
 
 def _offers(path: Path) -> bool:

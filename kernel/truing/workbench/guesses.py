@@ -7,11 +7,12 @@ quantity. ``temp_C`` is read as a temperature in degC.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from difflib import SequenceMatcher
 
 from truing.errors import UnitError
+from truing.inputs_file.values import SIGMA
 from truing.units import check_unit, same_dimension
 from truing.units.names import PURE
 
@@ -28,7 +29,7 @@ SHORTEST = 3
 MEANT = {
     "C": "degC", "c": "degC", "celsius": "degC", "F": "degF", "sec": "s", "secs": "s", "seconds": "s", "mins": "min",
     "hours": "h", "hr": "h", "hrs": "h", "pct": "%", "percent": "%", "degree": "deg", "degrees": "deg", "U/min": "rpm",
-    "Nm": "N*m", "kNm": "kN*m", "1/min": "rpm",
+    "Nm": "N*m", "kNm": "kN*m", "Nmm": "N*mm", "1/min": "rpm",
 }  # fmt: skip
 """How units are called at the end of a name, where Truing does not call them so, or means something else by it."""
 _IN_BRACKETS = re.compile(r"^(?P<name>.*?)\s*[(/]\s*(?P<unit>[^()/]+(?:/[^()]+)?)\)?\s*$")
@@ -76,6 +77,15 @@ def guesses(columns: Sequence[Column], quantities: Sequence[Quantity]) -> dict[s
     return made
 
 
+def of_this_unit(column: Column, quantities: Sequence[Quantity]) -> dict[str, str]:
+    """Return the quantities that have the unit of a column, each with that unit; it may stand at the end of its name.
+
+    Empty where the column says no unit.
+    """
+    units = [column.unit] if column.unit is not None else [unit for _, unit in split_unit(column.name)][:1]
+    return {each.name: unit for unit in units if unit not in PURE for each in quantities if _fits(unit, each.unit)}
+
+
 def _of_one(column: Column, quantities: Sequence[Quantity]) -> Iterator[Guess]:
     """Give what a column may be, by its name with and without a unit at its end."""
     readings = [(column.name, column.unit)]
@@ -84,9 +94,10 @@ def _of_one(column: Column, quantities: Sequence[Quantity]) -> Iterator[Guess]:
     best: dict[str, Guess] = {}
     for name, unit in readings:
         alike = [quantity for quantity in quantities if _fits(unit, quantity.unit)]
+        is_only_one = sum(not quantity.name.startswith(SIGMA) for quantity in alike) == 1
         for quantity in alike:
             weight = _alikeness(name, quantity)
-            if unit is not None and unit not in PURE and len(alike) == 1:
+            if unit is not None and unit not in PURE and is_only_one:
                 weight = min(1.0, weight + BY_UNIT)
             own = "" if column.unit is not None or quantity.unit in PURE else unit or quantity.unit
             if weight >= LEAST and (quantity.name not in best or weight > best[quantity.name].weight):
@@ -153,8 +164,3 @@ def _alike(word: str, other: str) -> float:
 def _words(text: str) -> list[str]:
     """Return the words of a name or a note, in small letters; numbers are words."""
     return [word.lower() for word in _WORDS.findall(text)]
-
-
-def quantities_of(units: Mapping[str, str], about: Mapping[str, tuple[str, str]]) -> list[Quantity]:
-    """Return quantities by their units, with symbol and note where these are known."""
-    return [Quantity(name, unit, *about.get(name, ("", ""))) for name, unit in units.items()]

@@ -6,31 +6,25 @@ place of another one before the user has said so. What the columns are stands un
 
 from __future__ import annotations
 
-import hashlib
-import os
 import re
-import tempfile
 import unicodedata
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 import anyio
-from starlette.requests import ClientDisconnect, Request
+from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
 from truing.atomic import write_files
 from truing.errors import OutputError, UsageError
-from truing.workbench.bench import Bench, bench_of, body_of, digest_of, names, page, word
+from truing.workbench.bench import Bench, bench_of, body_of, digest_of, names, page, received, word
 from truing.workbench.editing import about
 from truing.workbench.folder import contents
 from truing.workbench.picking import calculation_of
 from truing.workbench.places import DATA, below
 
-LARGEST_UPLOAD = 512_000_000
-"""Bytes of a measured file: as many as are read of a table."""
 LONGEST_NAME = 120
 PREVIEW_PATIENCE = 60.0
 """Seconds that the preview of files may take: a table of the largest size is read in it."""
@@ -70,18 +64,10 @@ async def upload(request: Request) -> Response:
     """Take a file in. One of the same content is there already; one of another content only goes on request."""
     bench, replace = bench_of(request), request.query_params.get("replace") == "yes"
     name = harmless(request.query_params.get("name", ""))
-    stated = request.headers.get("content-length", "")
-    if stated.isdecimal() and int(stated) > LARGEST_UPLOAD:
-        raise UsageError(_too_large(name))
     target = bench.path(f"{TAKEN_IN}/{name}")
-    with _beside(target) as (part, stream):
-        try:
-            digest = await _streamed(request, stream, name)
-        except ClientDisconnect:
-            raise UsageError(f"{name} did not arrive whole") from None
-        answer = await anyio.to_thread.run_sync(_put, part, target, digest, replace)
+    is_there = await received(request, target, replace=replace)
     shown = {"file": below(bench.root, target)}
-    return JSONResponse(shown) if answer else JSONResponse({**shown, "exists": name}, 409)
+    return JSONResponse(shown) if is_there else JSONResponse({**shown, "exists": name}, 409)
 
 
 def harmless(name: str) -> str:
@@ -97,60 +83,6 @@ def harmless(name: str) -> str:
     if re.fullmatch(r"(?i)(con|prn|aux|nul|com\d|lpt\d)(\..*)?", stem):
         stem = f"_{stem}"
     return f"{stem.strip(' .')[:LONGEST_NAME]}{dot}{ending.lower()}"
-
-
-@contextmanager
-def _beside(target: Path) -> Iterator[tuple[Path, BinaryIO]]:
-    """Give a hidden file beside its place; what is left of it afterwards is deleted."""
-    try:
-        target.parent.mkdir(exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=target.parent, prefix=".upload.", suffix=".partial")
-    except OSError as error:
-        raise OutputError(f"{target.parent.name} cannot be written to: {error.strerror}") from None
-    part = Path(name)
-    try:
-        with os.fdopen(handle, "wb") as stream:
-            yield part, stream
-    finally:
-        part.unlink(missing_ok=True)
-
-
-async def _streamed(request: Request, stream: BinaryIO, name: str) -> str:
-    """Write the body of a request; return its fingerprint. Raises UsageError where it is too large or empty."""
-    size, digest = 0, hashlib.sha256()
-    async for chunk in request.stream():
-        size += len(chunk)
-        if size > LARGEST_UPLOAD:
-            raise UsageError(_too_large(name))
-        digest.update(chunk)
-        try:
-            await anyio.to_thread.run_sync(stream.write, chunk)
-        except OSError as error:
-            raise OutputError(f"{name} cannot be written: {error.strerror}") from None
-    if not size:
-        raise UsageError(f"{name} is empty")
-    stream.close()
-    return digest.hexdigest()
-
-
-def _too_large(name: str) -> str:
-    return f"{name} is too large; at most {LARGEST_UPLOAD / 1e6:g} MB are read"
-
-
-def _put(part: Path, target: Path, digest: str, replace: bool) -> bool:
-    """Give a file its name; tell whether it is there. One of another content stays, unless it is to be replaced."""
-    part.chmod(0o644)
-    if target.is_file():
-        with target.open("rb") as there:
-            if hashlib.file_digest(there, "sha256").hexdigest() == digest:
-                return True
-    if replace:
-        os.replace(part, target)
-        return True
-    with suppress(FileExistsError):
-        os.link(part, target)  # in one step, and never over another file
-        return True
-    return False
 
 
 # Columns

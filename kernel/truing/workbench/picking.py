@@ -6,7 +6,6 @@ follow by further questions, which workers answer.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -20,14 +19,13 @@ from truing.atomic import file_appearing
 from truing.entry_points import plugin_names
 from truing.errors import OutputError, UsageError
 from truing.workbench.bench import Bench, bench_of, body_of, page, word
-from truing.workbench.folder import Contents, contents, place_of_run, program_of
+from truing.workbench.folder import Contents, contents, named_in, place_of_run, program_of
 from truing.workbench.keeping import listing
 from truing.workbench.places import below
 
 MOST_LOOKED_THROUGH = 200
 """So many inputs files are read for faults at the most."""
 
-NAMED = re.compile(r"""^[ \t]*plugin[ \t]*=[ \t]*(["'])([^"'\\\r\n]*)\1[ \t]*(?:#.*)?\r?$""", re.MULTILINE)
 LONGEST_HEAD = 64_000
 """Bytes of an inputs file in which the line is looked for that names its calculation."""
 
@@ -51,23 +49,13 @@ def _is_confirmed(bench: Bench, name: str) -> bool:
     return str(bench.path(name)) in bench.confirmed
 
 
-def plugin_of(path: Path) -> str:
-    """Return the calculation that an inputs file names before its first section, or nothing.
-
-    Only that line is read: a text that takes long to read as TOML is left to workers.
-    """
-    try:
-        with path.open("rb") as file:
-            head = file.read(LONGEST_HEAD).decode("utf-8-sig", "replace")
-    except OSError:
-        return ""
-    named = NAMED.search(head.partition("\n[")[0])
-    return named[2] if named else ""
-
-
 def calculation_of(bench: Bench, path: Path) -> str:
     """Return what an inputs file is calculated by: an installed plugin, or a Python file of the folder."""
-    named = plugin_of(path)
+    try:
+        with path.open("rb") as file:
+            named = named_in(file.read(LONGEST_HEAD).decode("utf-8-sig", "replace"))
+    except OSError:
+        return ""
     if not named or named.partition(".")[0] in plugin_names():
         return named
     return program_of(named, below(bench.root, path), contents(bench.root).programs) or named

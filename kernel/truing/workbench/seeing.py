@@ -16,7 +16,7 @@ from truing.templating import template_folder
 from truing.workbench.bench import Bench, bench_of, body_of, word
 from truing.workbench.editing import about
 from truing.workbench.places import below
-from truing.workbench.workers import TaskError
+from truing.workbench.workers import OvertakenError, TaskError
 
 RUNS = "runs"
 HOST = re.compile(r"^(\s*)(?::root|html|body)(?= \{)", re.MULTILINE)
@@ -62,11 +62,15 @@ async def _asked(task: str, request: Request, *names: str) -> Response:
 async def _answer(task: str, bench: Bench, document: Mapping[str, Any], **more: Any) -> Response:
     """Do a task with the text of a request; what is wrong with a text that is being typed is an answer like any other.
 
-    Raises UsageError for what is wrong with the request itself.
+    A page that names itself waits for its newest question of a kind only. Raises UsageError for what is wrong with the
+    request itself, OvertakenError where the page has asked again.
     """
-    text = word(document, "text")
+    text, asking = word(document, "text"), word(document, "page", "")
+    group = f"{task} {asking}" if asking else ""
     try:
-        return JSONResponse(await bench.ask(task, **about(bench, document), text=text, **more))
+        return JSONResponse(await bench.ask(task, group=group, **about(bench, document), text=text, **more))
+    except OvertakenError:
+        raise
     except TaskError as error:
         return JSONResponse({"faults": error.faults})
 

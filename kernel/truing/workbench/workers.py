@@ -33,7 +33,7 @@ PATIENCE = 20.0
 """Seconds that a quick question may take."""
 MOST_LOST = 6
 """Workers that may be found to have ended while they waited, one after another: more than there are."""
-OVERTAKEN = 0.5
+OVERTAKEN = 2.0
 """Seconds that a question may go on after a newer one of its group was asked: longer than most take."""
 LONGEST_JOB = 1e6
 """Seconds that a job may take: as long as the user lets it."""

@@ -6,6 +6,7 @@ import { change, save, textNow } from "./edit.js";
 
 const page = document.getElementById("edit");
 const about = { file: page.dataset.file, plugin: page.dataset.plugin };
+const asker = { page: `${performance.timeOrigin} ${Math.random()}` }; // a newer question of this page ends an older one
 const at = (name) => document.getElementById(`see-${name}`);
 
 function made(name, properties = {}, ...children) {
@@ -16,7 +17,7 @@ function made(name, properties = {}, ...children) {
 
 // An answer about the text; what is wrong with the text is thrown.
 async function asked(address, body) {
-  const answer = await call(address, { ...about, ...body });
+  const answer = await call(address, { ...about, ...asker, ...body });
   if (answer.faults) throw new Faults(answer.faults);
   return answer;
 }
@@ -101,8 +102,10 @@ function next() {
 async function numbered(text, number) {
   const beside = at("beside").value, slow = setTimeout(() => waits(number), SLOW);
   let answer = null, fault = "";
-  try { answer = await asked("/api/numbers", { text, run: beside }); } catch (error) { fault = sentence(error); }
-  clearTimeout(slow);
+  try { answer = await asked("/api/numbers", { text, run: beside }); } catch (error) {
+    if (error.overtaken) return;
+    fault = sentence(error);
+  } finally { clearTimeout(slow); }
   if (number < answered) return;
   answered = number;
   failed = fault;

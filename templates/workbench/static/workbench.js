@@ -25,7 +25,7 @@ export async function call(address, body, { signal } = {}) {
     await call("/api/confirm", { file: said.confirm });
     return call(address, body, { signal });
   }
-  if (said.overtaken || (!answer.ok && answer.status !== 409)) throw new Faults(said.faults);
+  if (said.overtaken || (!answer.ok && answer.status !== 409)) throw Object.assign(new Faults(said.faults), { overtaken: said.overtaken });
   return said;
 }
 

@@ -27,7 +27,7 @@ from truing.setup import Setup
 from truing.units import from_si, read_quantity
 from truing.units.names import PURE
 from truing.workbench.tasks.fields import Field, FieldGroup, groups_of
-from truing.workbench.tasks.loaded import loaded
+from truing.workbench.tasks.loaded import loaded, version_of
 from truing.workbench.written import Written, changed_text, literal_in, switched_text
 
 WIDTH = 110
@@ -36,14 +36,19 @@ MOST_DIFFERENCES = 200
 """So many places of a conflict are shown."""
 
 
-@lru_cache(maxsize=8)
 def _groups(plugin: str) -> list[FieldGroup]:
-    return groups_of(loaded(plugin))
+    return _made(plugin, version_of(plugin))[0]
+
+
+def _fields(plugin: str) -> dict[str, Field]:
+    return _made(plugin, version_of(plugin))[1]
 
 
 @lru_cache(maxsize=8)
-def _fields(plugin: str) -> dict[str, Field]:
-    return {each.key: each for group in _groups(plugin) for part in group.parts for each in part.fields}
+def _made(plugin: str, version: tuple[int, int]) -> tuple[list[FieldGroup], dict[str, Field]]:
+    """Return the form of a calculation, and its fields by their keys."""
+    groups = groups_of(loaded(plugin))
+    return groups, {each.key: each for group in groups for part in group.parts for each in part.fields}
 
 
 def opened(path: str, called: str) -> dict[str, Any]:

@@ -11,12 +11,17 @@ from truing.kernel import Offer, offer_of
 
 def loaded(plugin: str) -> Offer:
     """Return an installed calculation, or that of a file as it is now. Raises UnknownPluginError, PluginError."""
-    return _loaded(plugin, Path(plugin).stat().st_mtime_ns if plugin.endswith(".py") and Path(plugin).is_file() else 0)
+    return _loaded(plugin, version_of(plugin))
+
+
+def version_of(plugin: str) -> tuple[int, int]:
+    """Return what tells a calculation in a file from the same after a change; of an installed one always the same."""
+    return stamp_of(Path(plugin)) if plugin.endswith(".py") else (0, 0)
 
 
 @lru_cache(maxsize=8)
-def _loaded(plugin: str, stamp: int) -> Offer:
-    if stamp:
+def _loaded(plugin: str, version: tuple[int, int]) -> Offer:
+    if any(version):
         for name, module in [*sys.modules.items()]:  # as it was before the file changed
             if getattr(module, "__file__", None) == plugin:
                 del sys.modules[name]
