@@ -34,7 +34,8 @@ load = "120 N"
 [studies]
 run = ["reliability"]
 """
-COLD = 15_000
+COLD = 60_000
+"""Milliseconds that an answer may take on a machine that does more."""
 SLOPE = 0.8
 """Micrometres by which the probe of the bench reads deeper for every kelvin above 20 degC."""
 
@@ -85,10 +86,10 @@ def test_a_program_is_confirmed_edited_run_and_changed_while_its_page_is_open(se
     page.get_by_role("link", name="pin.toml").click()
     page.get_by_role("dialog").get_by_role("button", name="Run it").click()
     page.wait_for_url("**/edit?file=pin.toml**")
-    numbers = page.locator("#see-numbers")
-    numbers.get_by_text("Undecided").wait_for()
+    numbers, results = page.locator("#see-numbers"), page.locator("#see-sections")
+    numbers.get_by_text("Undecided.").wait_for()
     page.locator("[id='inputs/load']").fill("100 N")
-    numbers.get_by_text(f"{depth(100, 200):.5g}").first.wait_for()
+    results.get_by_text(f"{depth(100, 200):.5g}").first.wait_for(state="attached")
     page.get_by_role("button", name="Run", exact=True).click()
     numbers.get_by_text("The last run, of these inputs, has decided it.").wait_for()
     assert numbers.locator(".verdict").inner_text().startswith("✓ Passes.")
@@ -97,9 +98,9 @@ def test_a_program_is_confirmed_edited_run_and_changed_while_its_page_is_open(se
     changed = program.read_text(encoding="utf-8").replace("+ pin.rate * pressure", "+ 3 * pin.rate * pressure")
     program.write_text(changed, encoding="utf-8")
     page.locator("[id='inputs/load']").fill("110 N")
-    numbers.get_by_text(f"{3 * depth(110, 200):.5g}").first.wait_for()
+    results.get_by_text(f"{3 * depth(110, 200):.5g}").first.wait_for(state="attached")
     page.locator("[id='inputs/load']").fill("100 N")
-    numbers.get_by_text("Undecided").wait_for()  # what ran was another program
+    numbers.get_by_text("Undecided.").wait_for()  # what ran was another program
     page.locator("#see-differences", has_text="pin_wear.py has changed since").wait_for()
     shutil.copy(PIN, program)
 
@@ -110,7 +111,7 @@ def two_versions(served: Workbench, page: Any, mine: str, theirs: str) -> Any:
     text.fill(text.input_value() + mine)
     file.write_text(file.read_text(encoding="utf-8") + theirs, encoding="utf-8")
     shown = page.locator("#conflict")
-    shown.get_by_role("heading", name="pin.toml has changed on disk").wait_for()
+    shown.get_by_text("pin.toml has changed on disk, and what you changed here is not saved").wait_for()
     assert [cell.strip() for cell in shown.locator("tbody td pre").all_inner_texts()] == [mine.strip(), theirs.strip()]
     return shown
 
@@ -153,12 +154,14 @@ def test_a_file_of_the_same_name_replaces_the_other_one_only_on_request(
         sent.write_text(table_text(*columns_of(measured(seed))), encoding="utf-8")
         page.set_input_files("#upload", sent)
         if answer:
-            page.get_by_role("dialog", name="data/bench.csv is there already").get_by_text(answer).click()
+            page.get_by_role("dialog", name="data/bench.csv is there already").get_by_role(
+                "button", name=answer
+            ).click()
         page.locator("#told", has_text="data/bench.csv is there" if answer != "Keep it as it is" else "").wait_for()
         page.get_by_label("depth [um] is to the model").wait_for()
         expected = before if answer == "Keep it as it is" else sent.read_text(encoding="utf-8")
         assert there.read_text(encoding="utf-8") == expected
-    page.get_by_label("data/bench.csv").uncheck()
+    page.get_by_role("checkbox", name="data/bench.csv").uncheck()
     page.get_by_text("No file is chosen yet.").wait_for()
 
 
@@ -196,11 +199,10 @@ def test_a_suspicion_is_tried_alone_and_a_cause_is_accepted_and_run(served: Work
     page.locator("#candidate-list").get_by_label("running in").uncheck()
     page.get_by_role("button", name="Diagnose", exact=True).click()
     page.wait_for_url(re.compile(r"/measure/diagnosis\?folder=runs%2Fmonday_some_causes"))
-    assert "Only " in page.locator("section", has=page.get_by_role("heading", name="Verdict")).inner_text()
-    page.get_by_role("link", name="Back to the measured files").click()
-    page.get_by_label("What if it were this?").select_option(label="running in")
-    page.get_by_role("button", name="Try it alone").first.click()
-    page.wait_for_url(re.compile(r"/measure/diagnosis\?folder=runs%2Fmonday_only_running_in"))
+    assert "thermal drift or warm probe" in page.locator("section", has=page.locator("#verdict-title")).inner_text()
+    stated = (served.folder / "runs" / "monday_some_causes" / "inputs.toml").read_text(encoding="utf-8")
+    assert '"warm_probe"' in stated
+    assert '"running_in"' not in stated
     page.get_by_role("link", name="Back to the measured files").click()
     page.get_by_label("What if it were this?").select_option(label="warm probe")
     page.get_by_role("button", name="Try it alone").first.click()
