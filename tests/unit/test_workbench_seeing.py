@@ -201,7 +201,7 @@ class Here:
 def test_calls_answer_faults_of_a_text_as_answers_and_keep_to_the_folder(ran: Path) -> None:
     app, workers = Starlette(routes=seeing.ROUTES), Here()
     app.state.bench = bench = Bench(ran, workers)  # type: ignore[arg-type]
-    shutil.copy(PIN, ran / "pin_wear.py")
+    shutil.copy2(PIN, ran / "pin_wear.py")  # with its time: it is no newer than the run
     bench.confirmed.add(str(ran / "pin_wear.py"))
     client = TestClient(app)
     body = {"file": "pin.toml", "plugin": "pin_wear.py", "text": TEXT}
