@@ -66,6 +66,21 @@ def test_numbers_are_those_of_the_text_by_section_with_their_units(tmp_path: Pat
     assert "reliability would" in words
 
 
+def test_what_a_run_of_the_same_inputs_has_decided_stands_on_top(tmp_path: Path) -> None:
+    text, last = TEXT.replace("run = []", 'run = ["reliability"]'), tmp_path / "runs" / "pin"
+    (tmp_path / "pin.toml").write_text(text, encoding="utf-8")
+    runs.run(str(PIN), str(tmp_path / "pin.toml"), str(last), str(tmp_path), lambda *_: None)
+    (check,) = runs.load_either(last)["checks"]
+    assert check["undecided"] == ""  # the run has decided what the text alone leaves open
+    live = results.numbers(**about(text, tmp_path), last=str(last))
+    words = shown(live["html"])
+    assert live["headline"] == {"passes": "Passes", "fails": "Fails"}[check["state"]]
+    assert f"{100 * check['value']:.5g} %" in words
+    assert "The last run, of these inputs, has decided it." in words
+    for other, run in ((text.replace("120 N", "121 N"), last), (text, tmp_path / "runs" / "none"), (text, "")):
+        assert results.numbers(**about(other, tmp_path), last=str(run))["headline"] == "Undecided"
+
+
 def test_numbers_say_what_a_text_gets_wrong_and_what_is_impossible(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="a length"):
         results.numbers(**about(TEXT.replace("120 N", "120 mm"), tmp_path))
@@ -186,7 +201,7 @@ class Here:
 def test_calls_answer_faults_of_a_text_as_answers_and_keep_to_the_folder(ran: Path) -> None:
     app, workers = Starlette(routes=seeing.ROUTES), Here()
     app.state.bench = bench = Bench(ran, workers)  # type: ignore[arg-type]
-    shutil.copy(PIN, ran / "pin_wear.py")
+    shutil.copy2(PIN, ran / "pin_wear.py")  # with its time: it is no newer than the run
     bench.confirmed.add(str(ran / "pin_wear.py"))
     client = TestClient(app)
     body = {"file": "pin.toml", "plugin": "pin_wear.py", "text": TEXT}

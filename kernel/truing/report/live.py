@@ -20,12 +20,13 @@ from truing.report.sheet import SHEET, banner_of, head_of
 from truing.report.sheet_units import as_printed, sheet_units
 from truing.report.translation import catalogue_of, translated
 from truing.runs.comparison import Change, amount_of, compared, words_of
-from truing.runs.documents import results_document
+from truing.runs.documents import decided_by, results_document
 from truing.runs.provenance import provenance_of
 from truing.units import unit_text
 
 FURTHER = "Further results"
 RUN_DECIDES = "Run calculates the studies of this file."
+HAS_DECIDED = "The last run, of these inputs, has decided it."
 COMPARED = {"inputs", "tolerances", "correlations", "conditions", "effects", "results", "checks"}
 """What is compared with a saved run: what a calculation without its studies has."""
 
@@ -40,12 +41,18 @@ class LiveSheet:
     changed: int | None = None
 
 
-def live_sheet(calculation: Calculation, saved: Mapping[str, Any] | None = None, name: str = "") -> LiveSheet:
+def live_sheet(
+    calculation: Calculation, saved: Mapping[str, Any] | None = None, name: str = "",
+    run: Mapping[str, Any] | None = None,
+) -> LiveSheet:  # fmt: skip
     """Write the numbers of a calculation whose studies did not run.
 
-    ``saved`` is results.json of a run ``name``: what differs from it is marked, with its value before. Raises
-    UsageError where that is no run.
+    ``saved`` is results.json of a run ``name``: what differs from it is marked, with its value before. ``run`` is that
+    of a run of the same inputs, with its studies: what these decided holds. Raises UsageError where ``saved`` is no
+    run.
     """
+    if run is not None:
+        calculation = replace(calculation, decided=decided_by(run, calculation.checks))
     words = catalogue_of(calculation.setup)
     changes = [] if saved is None else list(_changes(calculation, saved))
     calculation = as_printed(calculation)
@@ -58,7 +65,7 @@ def live_sheet(calculation: Calculation, saved: Mapping[str, Any] | None = None,
     provenance = provenance_of(calculation.setup)
     document = Document(
         kind=SHEET, title="", head=head_of(calculation.setup, provenance), detail="normal",
-        summary="", banner=_banner(calculation), front=tuple(front), chapters=tuple(sections),
+        summary="", banner=_banner(calculation, is_run=run is not None), front=tuple(front), chapters=tuple(sections),
         warnings=calculation.warnings, provenance=provenance,
     )  # fmt: skip
     document = translated(document, words)
@@ -67,9 +74,11 @@ def live_sheet(calculation: Calculation, saved: Mapping[str, Any] | None = None,
     return LiveSheet(html, banner.mood, banner.headline, None if saved is None else len(marks))
 
 
-def _banner(calculation: Calculation) -> Banner:
-    """Say the verdict; of limits that only studies decide, that a run does so."""
+def _banner(calculation: Calculation, *, is_run: bool) -> Banner:
+    """Say the verdict; of limits that only studies decide, that a run does so, or has done."""
     banner = banner_of(calculation, None)
+    if is_run:
+        return replace(banner, sentences=(*banner.sentences, HAS_DECIDED))
     if calculation.verdict != "undecided":
         return banner
     return replace(banner, sentences=(*banner.sentences, RUN_DECIDES))

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import PurePath
 from typing import Any
 
@@ -17,6 +18,7 @@ from truing.runs.provenance import Provenance
 from truing.setup import Setup, SwitchedOn
 from truing.studies.checks import Check, Proposal
 from truing.studies.sampling import scatter_of
+from truing.studies.verdicts import Decided
 from truing.units import difference_unit, from_si, unit_factor, unit_text
 from truing.units.names import PURE
 
@@ -84,6 +86,30 @@ def _proposal(proposal: Proposal | None) -> dict[str, Any] | None:
         return None
     changes = [{"name": name, "from": stated, "to": proposed} for name, stated, proposed in proposal.changes]
     return {"study": proposal.study, "what": proposal.what, "changes": changes}
+
+
+def decided_by(document: Mapping[str, Any], checks: Sequence[Check]) -> Decided:
+    """Return checks with the states that results.json of a run gives to those that are undecided, and its proposal."""
+    there = {check["name"]: check for check in document.get("checks") or [] if not check["undecided"]}
+    said = document.get("proposal")
+    proposal = said and Proposal(
+        said["study"], said["what"], tuple((each["name"], each["from"], each["to"]) for each in said["changes"]), ()
+    )
+    known = [_read_check(check, there[check.name]) if check.undecided and check.name in there else check
+             for check in checks]  # fmt: skip
+    return Decided(tuple(known), proposal)
+
+
+def _read_check(check: Check, said: Mapping[str, Any]) -> Check:
+    """Return a check with value, margin and state as they stand in results.json, in its units."""
+    value, limit, margin = (math.nan if said[name] is None else said[name] for name in ("value", "limit", "margin"))
+    stated = replace(
+        check, value=value, limit=limit, margin=margin, unit=said["unit"], compared=said["compared"],
+        passed=said["passed"], undecided="",
+    )  # fmt: skip
+    if said["proposed"] is None:
+        return stated
+    return replace(stated, proposed=replace(stated, value=said["proposed"], passed=said["state"] == "proposed"))
 
 
 def _cases(setup: Setup, cases: CasesTable) -> dict[str, Any]:

@@ -101,6 +101,7 @@ async def run_page(request: Request) -> Response:
         raise UsageError(f"{name}: {fault}")
     pairs = {after: before for before, after in pairs_of(made["entries"])}
     others = [each for each in made["entries"] if each["kind"] == entry["kind"] and each["name"] != name]
+    others.sort(key=lambda each: bool(each["model"] != entry["model"]))  # of the same calculation first, else by date
     return page(
         request, "run.html.j2", title=name, entry=entry, others=others, before=pairs.get(name, ""),
         files=await anyio.to_thread.run_sync(files_of, path), can=_can_make(path, entry),

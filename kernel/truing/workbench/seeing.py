@@ -28,7 +28,8 @@ async def numbers(request: Request) -> Response:
     bench, document = bench_of(request), await body_of(request)
     name = word(document, "run", "")
     run = str(bench.path(name)) if name else ""
-    return await _answer("results.numbers", bench, document, run=run, called=name)
+    last = str(_folder(bench, bench.path(word(document, "file"))))
+    return await _answer("results.numbers", bench, document, run=run, called=name, last=last)
 
 
 async def whole(request: Request) -> Response:

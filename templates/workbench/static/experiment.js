@@ -19,14 +19,14 @@ listen("", ({ jobs }) => {
 export function planShown(place, experiment, sentences = []) {
   const said = sentences.map((text) => made("p", { textContent: text }));
   if (!experiment) { place.replaceChildren(...said); return; }
-  const titles = ["", ...experiment.headers, ...experiment.results];
-  const head = made("thead", {}, made("tr", {}, ...titles.map((title) => made("th", { scope: "col", textContent: title || "Reading" }))));
+  const titles = ["", ...experiment.headers, ...experiment.results], isNumber = (index) => index > 0 && index <= experiment.headers.length;
+  const head = made("thead", {}, made("tr", {}, ...titles.map((title, index) => made("th", { scope: "col", className: isNumber(index) ? "number" : "", textContent: title || "Reading" }))));
   const rows = experiment.rows.map((cells, index) => made("tr", {}, made("th", { scope: "row", textContent: index + 1 }),
-    ...cells.map((cell) => made("td", { textContent: cell })), ...experiment.results.map(() => made("td", { className: "quiet", textContent: "to be read" }))));
+    ...cells.map((cell) => made("td", { className: "number", textContent: cell })), ...experiment.results.map(() => made("td", { className: "quiet", textContent: "to be read" }))));
   const table = made("table", { className: "cells" }, made("caption", { textContent: "Readings to take" }), head, made("tbody", {}, ...rows));
   const box = made("div", { className: "scroll", tabIndex: 0 }, table);
   const { value, low, high } = experiment.chance, share = (each) => `${Math.round(100 * each)} %`;
-  const chance = value === null ? "" : `The chance that it names the right one is ${share(value)} (95 %: ${share(low)} … ${share(high)}), simulated.`;
+  const chance = value === null || said.length ? "" : `The chance that it names the right one is ${share(value)} (95 %: ${share(low)} … ${share(high)}), simulated.`;
   const address = URL.createObjectURL(new Blob([experiment.csv], { type: "text/csv" }));
   place.replaceChildren(...said, made("p", { textContent: chance }), box,
     made("a", { className: "button", href: address, download: "experiment.csv", textContent: "Download as CSV" }),

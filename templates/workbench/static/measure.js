@@ -62,7 +62,7 @@ async function refresh(...more) {
   const query = new URLSearchParams([["file", about.file], ...own, ...chosen.map((name) => ["data", name])]);
   history.replaceState(null, "", `/measure?${query}`);
   const mine = ++turn;
-  if (!chosen.length) { files.replaceChildren(); shown(null); return; }
+  if (!chosen.length) { files.replaceChildren(made("p", { className: "empty", textContent: "No file is chosen yet. Its columns and its first rows will stand here." })); shown(null); return; }
   files.setAttribute("aria-busy", "true");
   try {
     const said = await call("/api/columns", { ...about, text, data: chosen, changes: more });
@@ -103,28 +103,35 @@ function fileShown(file, number) {
   section.setAttribute("aria-labelledby", `file-${number}`);
   const wrong = file.wrong.length + file.more;
   const title = made("h2", { id: `file-${number}`, textContent: file.name });
-  const count = made("p", { className: "quiet", textContent: [file.rows ? `${file.rows} rows` : "", ...file.notes].filter(Boolean).join("; ") });
+  const count = made("p", { className: "quiet", textContent: [file.rows && !file.notes.some((note) => note.startsWith(`${file.rows} rows`)) ? `${file.rows} rows` : "", ...file.notes].filter(Boolean).join("; ") });
   section.append(title, count, made("ul", { className: "faults" }, ...file.faults.map(faultLine)));
+  if (file.columns.some((column) => column.guess)) section.append(made("p", { className: "note", textContent: "What a column may be is guessed below from its name and unit. A guess counts once you confirm it." }));
   if (!file.columns.length) return section;
   if (wrong) section.append(wrongRows(file, wrong));
   section.append(columnsTable(file, number), figureOf(file, number));
-  section.append(made("details", { open: !wrong }, made("summary", { textContent: "First rows" }), cellsTable(file, file.first, "First rows")));
+  section.append(made("details", { open: !wrong }, made("summary", { textContent: "First rows" }), cellsTable(file, file.first)));
   return section;
 }
 
-function scrolling(table, of) { const box = made("div", { className: "scroll", tabIndex: 0 }, table); box.setAttribute("role", "region"); box.setAttribute("aria-label", `${table.caption.textContent}: ${of}`); return box; }
+function scrolling(table, of) { const box = made("div", { className: "scroll", tabIndex: 0 }, table); box.setAttribute("role", "region"); box.setAttribute("aria-label", `${table.caption?.textContent ?? "First rows"}: ${of}`); return box; }
 
-function heads(...titles) { return made("thead", {}, made("tr", {}, ...titles.map((title) => made("th", { scope: "col", textContent: title })))); }
+function heads(titles, isNumber) { return made("thead", {}, made("tr", {}, ...titles.map((title, index) => made("th", { scope: "col", className: isNumber(index) ? "number" : "", textContent: title })))); }
 
-function cellsTable(file, rows, caption) {
-  const hasReasons = rows.some((row) => row.reasons);
+// Rows as they are written; wrong ones say why, and on a phone show nothing but the cells that are.
+function cellsTable(file, rows, caption = "") {
+  const hasReasons = rows.some((row) => row.reasons), ahead = hasReasons ? 2 : 1;
+  const isNumber = (index) => file.columns[index]?.values > 0;
   const body = rows.map((row) => made("tr", { className: row.reasons ? "wrong" : "" },
-    made("th", { scope: "row", textContent: row.line }),
+    named(made("th", { scope: "row", textContent: row.line }), hasReasons ? "Line" : ""),
     ...(hasReasons ? [made("td", { className: "reason bad", textContent: row.reasons.join("; ") })] : []),
-    ...row.cells.map((cell, index) => made("td", { className: row.bad?.includes(index) ? "bad" : "", textContent: cell }))));
+    ...row.cells.map((cell, index) => named(made("td", { className: `${isNumber(index) ? "number" : ""} ${row.bad?.includes(index) ? "bad" : ""}`.trim(), textContent: cell }), hasReasons ? file.columns[index]?.text : ""))));
   const titles = ["Line", ...(hasReasons ? ["What is wrong"] : []), ...file.columns.map((column) => column.text)];
-  return scrolling(made("table", { className: "cells" }, made("caption", { textContent: caption }), heads(...titles), made("tbody", {}, ...body)), file.name);
+  const parts = [...(caption ? [made("caption", { textContent: caption })] : []), heads(titles, (index) => isNumber(index - ahead)), made("tbody", {}, ...body)];
+  return scrolling(made("table", { className: hasReasons ? "cells stacked" : "cells" }, ...parts), file.name);
 }
+
+// Name a cell for the phone, where no head of a column stands above it.
+function named(cell, label) { if (label) cell.dataset.label = label; return cell; }
 
 function wrongRows(file, count) {
   const more = file.more ? `, the first ${file.wrong.length} of them` : "";
@@ -137,17 +144,17 @@ function columnsTable(file, number) {
   const rows = file.columns.map((column) => made("tr", {},
     made("th", { scope: "row", textContent: column.text }),
     made("td", {}, roleOf(column, number), guessOf(column)),
-    made("td", {}, unitOf(column, number)),
-    made("td", { className: "number", textContent: column.values }),
-    made("td", { className: "number", textContent: column.low === null ? "" : column.low === column.high ? column.low : `${column.low} … ${column.high}` })));
-  return scrolling(made("table", { className: "file-columns" }, made("caption", { textContent: "Columns" }),
-    heads("As written", "Is to the model", "Unit", "Numbers", "From … to"), made("tbody", {}, ...rows)), file.name);
+    named(made("td", {}, unitOf(column, number)), "Unit"),
+    named(made("td", { className: "number", textContent: column.values }), "Numbers"),
+    named(made("td", { className: "number", textContent: column.low === null ? "" : column.low === column.high ? column.low : `${column.low} … ${column.high}` }), column.low === null ? "" : "From … to")));
+  return scrolling(made("table", { className: "file-columns stacked" }, made("caption", { textContent: "Columns" }),
+    heads(["As written", "Is to the model", "Unit", "Numbers", "From … to"], (index) => index > 2), made("tbody", {}, ...rows)), file.name);
 }
 
 function roleOf(column, number) {
   const select = made("select", { id: `role-${number}-${column.index}` });
   select.setAttribute("aria-label", `${column.text} is to the model`);
-  select.append(made("option", { value: "", textContent: "nothing: something an error may depend on" }), made("option", { value: "run", textContent: "run label" }));
+  select.append(made("option", { value: "", textContent: "nothing of the model (an error may depend on it)" }), made("option", { value: "run", textContent: "run label" }));
   const known = answer.roles.flatMap(({ of }) => of), alike = known.filter((each) => each.name in column.of_this_unit);
   for (const { group, of } of [...(alike.length ? [{ group: `In ${Object.values(column.of_this_unit)[0]}`, of: alike }] : []), ...answer.roles]) {
     select.append(made("optgroup", { label: group }, ...of.map((each) => made("option", { value: each.name, title: each.note, textContent: each.name }))));
@@ -220,19 +227,17 @@ function figureOf(file, number) {
 
 const FIGURE = `svg { width: 100%; height: auto; font: 12px system-ui, sans-serif; fill: currentColor; color: var(--ink); }
   path { fill: none; stroke: var(--accent); stroke-width: 1.4; vector-effect: non-scaling-stroke; }
-  .points { stroke-width: 4; stroke-linecap: round; } .axis { stroke: var(--edge); } .grid { stroke: var(--line); stroke-width: 1; } .wrong { stroke: var(--bad); stroke-width: 2; }`;
+  .points { stroke-width: 4; stroke-linecap: round; } .axis { stroke: var(--edge); } .grid { stroke: var(--line); stroke-width: 1; } .wrong { stroke: var(--bad); stroke-width: 2; }
+  @media (max-width: 48rem) { svg { font-size: 19px; } }`;
 
 // Kept in the inputs file, without losing what another hand has written there
 
 async function keep() {
   if (text === saved.text) return;
   const said = await call("/api/save", { file: about.file, text, base: saved.digest });
-  if ("conflict" in said) {
-    text = said.conflict;
-    saved = { text, digest: said.digest };
+  if (said.conflict) {
     const again = changes;
-    changes = [];
-    await refresh(...again);
+    if (await readAnew()) await refresh(...again);
     tell(`${about.file} had been changed; your columns are now in what is there`);
     return keep();
   }
@@ -240,6 +245,15 @@ async function keep() {
   changes = [];
   document.getElementById("keep").disabled = true;
   document.getElementById("kept").textContent = `kept in ${about.file}`;
+}
+// Take over what the file says now; false where it is gone, and saving writes it again.
+async function readAnew() {
+  const seen = await call("/api/read", { file: about.file, text });
+  if (seen.gone) { saved = { text: "", digest: seen.digest }; return false; }
+  text = seen.text;
+  saved = { text, digest: seen.digest };
+  changes = [];
+  return true;
 }
 document.getElementById("keep").onclick = () => keep().catch((error) => say(error.message));
 addEventListener("beforeunload", (event) => { if (text !== saved.text) event.preventDefault(); });
@@ -269,9 +283,17 @@ function causesOn() {
 const KINDS = { effect: "Effects of the model", gauge: "What a gauge may show", input: "Inputs outside of their tolerance", unknown: "Not registered" };
 
 async function compete() {
-  if (known) return;
-  try { known = await call("/api/candidates", { ...about, text }); } catch (error) { return; }
+  if (!known) await offered();
+  if (!known || !answer) return;
+  for (const column of answer.files.flatMap((file) => file.columns)) if (column.role === "measured") addNoise(column.name);
+}
+
+async function offered() {
+  try { known ??= await call("/api/candidates", { ...about, text }); } catch (error) { return; }
+  if (more.options.length > 1) return;
   const suspicion = document.getElementById("suspicion"), list = document.getElementById("candidate-list"), plan = document.getElementById("plan-causes");
+  const titles = known.candidates.map((each) => each.title);
+  for (const each of known.candidates) if (titles.filter((title) => title === each.title).length > 1) each.title += ` (${each.name})`;
   for (const [kind, title] of Object.entries(KINDS)) {
     const several = known.candidates.filter((each) => each.kind === kind);
     if (!several.length) continue;
@@ -282,8 +304,22 @@ async function compete() {
     suspicion.append(made("optgroup", { label: title }, ...several.map((each) => made("option", { value: each.name, textContent: each.title }))));
     plan.append(...several.map((each) => tick(each, "plan", false)));
   }
-  document.getElementById("plan-noise").append(...known.results.map(({ name, unit }) => made("label", { className: "field" }, `Standard deviation of one reading of ${name}`, made("input", { name: `noise:${name}`, placeholder: unit ? `1 ${unit}` : "1", spellcheck: false }))));
+  more.append(...known.results.map(({ name }) => made("option", { value: name, textContent: name })));
 }
+
+// How well a reading is known: of every result that is measured, and of those that are chosen beyond.
+const more = document.getElementById("plan-more"), noises = document.getElementById("plan-noise");
+
+function addNoise(name) {
+  const result = known.results.find((each) => each.name === name), box = `noise:${name}`;
+  if (!result) return null;
+  const there = noises.querySelector(`[name="${CSS.escape(box)}"]`);
+  if (there) return there;
+  const input = made("input", { name: box, placeholder: result.unit ? `1 ${result.unit}` : "1", spellcheck: false });
+  noises.append(made("label", { className: "field" }, `Standard deviation of one reading of ${name}`, input));
+  return input;
+}
+more.onchange = () => { if (more.value) addNoise(more.value)?.focus(); more.value = ""; };
 
 document.getElementById("plan-form").addEventListener("submit", async (event) => {
   event.preventDefault();
@@ -297,10 +333,12 @@ document.getElementById("plan-form").addEventListener("submit", async (event) =>
   } catch (error) { say(error.message); }
 });
 
-listen(about.file, (seen) => {
-  if (seen.digest && seen.digest !== saved.digest && text === saved.text && seen.digest !== listen.told) {
-    listen.told = seen.digest;
-    tell(`${about.file} has changed; load the page anew to see it`);
-  }
+let following = false;
+listen(about.file, async ({ digest }) => {
+  if (following || !digest || digest === saved.digest || text !== saved.text) return;
+  following = true;
+  try {
+    if (await readAnew()) { await refresh(); tell(`${about.file} has changed on disk; the columns are as it says now.`); }
+  } catch (error) { say(error.message); } finally { following = false; }
 });
 refresh();

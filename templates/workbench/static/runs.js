@@ -83,7 +83,7 @@ function list(table) {
       row.hidden = !wanted.every((word) => words.includes(word));
       shown += !row.hidden;
     }
-    count.textContent = wanted.length ? `${shown} of ${rows.length}` : `${rows.length}`;
+    count.textContent = wanted.length ? `${shown} of ${rows.length}` : `${rows.length} in all`;
   }
   filter.addEventListener("input", show);
 

@@ -62,6 +62,8 @@ function follow(old, fresh) {
     else if (node.nodeType !== Node.ELEMENT_NODE) { if (known.data !== node.data) { known.data = node.data; moved(known.parentElement); } }
     else {
       if (known.className !== node.className && !standing.has(known)) known.className = node.className;
+      const title = node.getAttribute("data-title"); // the head of the column, where cells stand below one another
+      if (title === null) known.removeAttribute("data-title"); else known.setAttribute("data-title", title);
       follow(known, node);
     }
   });
@@ -315,6 +317,7 @@ function followed(jobs) {
 }
 
 async function ended(now) {
+  if (now.status === "done") numbers(textNow());  // the run may have decided what only its studies do
   await lastRun(textNow());
   const faults = now.faults.map((fault) => fault.message).join(" ");
   if (now.status === "failed") put(at("last"), `The run ended without results: ${faults}`);

@@ -17,6 +17,7 @@ from truing.inputs_file import read_setup, setup_from_text
 from truing.inputs_file.assemble import toml_value
 from truing.measurements import table_text
 from truing.measurements.csv_text import name_and_unit
+from truing.numbers import format_number
 from truing.report.diagnosis_words import headline, spoken, verdict_word
 from truing.runs.inputs_written import complete_inputs
 from truing.studies.bench import Progress
@@ -27,6 +28,7 @@ model: Any = Later("truing.api.model")
 recorded: Any = Later("truing.api.records")
 """Figures come with them: pages that show a folder do without."""
 CAUSES = "studies.diagnose.causes"
+SIZE_DIGITS = 4
 
 
 def candidates(plugin: str, file: str, folder: str, text: str) -> dict[str, Any]:
@@ -109,8 +111,9 @@ def _cause(cause: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _size(name: str, fitted: Mapping[str, Any]) -> str:
-    ends = ["open" if end is None else f"{end:.3g}" for end in fitted["interval95"]]
-    return f"{spoken(name)} {fitted['value']:.3g} {unit_text(fitted['unit'])} (95 %: {ends[0]} … {ends[1]})"
+    ends = ["open" if end is None else format_number(end, SIZE_DIGITS) for end in fitted["interval95"]]
+    value = f"{spoken(name)} {format_number(fitted['value'], SIZE_DIGITS)} {unit_text(fitted['unit'])}".rstrip()
+    return f"{value} (95 %: {ends[0]} … {ends[1]})"
 
 
 def _ranked(alternative: Mapping[str, Any]) -> dict[str, Any]:
@@ -121,7 +124,9 @@ def _ranked(alternative: Mapping[str, Any]) -> dict[str, Any]:
 
 def _gain(name: str, gain: Mapping[str, Any]) -> dict[str, Any]:
     sizes = {key: gain[key] for key in ("rmse_before", "rmse_after", "noise_floor")}
-    texts = {key: f"{size['value']:.3g} {unit_text(size['unit'])}" for key, size in sizes.items()}
+    texts = {
+        key: f"{format_number(size['value'], 3)} {unit_text(size['unit'])}".rstrip() for key, size in sizes.items()
+    }
     return {"result": name, "title": spoken(name), **texts, "p_value": gain["p_value"]}
 
 

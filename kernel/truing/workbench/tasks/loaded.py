@@ -28,6 +28,14 @@ def _loaded(plugin: str, version: tuple[int, int]) -> Offer:
     return offer_of(plugin, lambda text: None)
 
 
+def changed_since(plugin: str, run: Path) -> bool:
+    """Whether the file of a calculation was written after a run of it; no installed one is."""
+    document = run / "results.json"
+    if not plugin.endswith(".py") or not document.is_file():
+        return False
+    return stamp_of(Path(plugin))[0] > document.stat().st_mtime_ns
+
+
 def stamp_of(path: Path) -> tuple[int, int]:
     """Return time and size of a file, by which it is known again; two zeros for one that is not there."""
     try:

@@ -17,7 +17,6 @@ from truing.errors import Fault, InputError
 from truing.inputs_file import setup_from_text
 from truing.inputs_file.assemble import toml_value
 from truing.inputs_file.values import SIGMA
-from truing.kernel import Offer
 from truing.measurements.csv_text import ColumnNames, Header, OpenTable, plain_numbers, read_cell
 from truing.measurements.table import RUN, Known, opened_table
 from truing.setup import NamedColumn
@@ -25,7 +24,7 @@ from truing.units import difference_unit, from_si
 from truing.units.names import PURE
 from truing.workbench.guesses import Column, Guess, Quantity, guesses, of_this_unit
 from truing.workbench.preview import Axis, drawn
-from truing.workbench.tasks.loaded import loaded, stamp_of
+from truing.workbench.tasks.loaded import loaded, stamp_of, version_of
 from truing.workbench.written import changed_text
 
 FIRST_ROWS = 8
@@ -92,32 +91,33 @@ def columns(
         faults: list[dict[str, Any]] = []
     except InputError as error:
         named, faults = {}, [_fault(fault) for fault in error.faults]
-    files = [_of_file(offer, Path(root) / name, name, dict(named)) for name in data]
+    files = [_of_file(plugin, Path(root) / name, name, dict(named)) for name in data]
     return {"faults": faults, "files": files, "roles": _roles(offer.model), "text": text}
 
 
-def _of_file(offer: Offer, path: Path, name: str, named: dict[str, NamedColumn]) -> dict[str, Any]:
+def _of_file(plugin: str, path: Path, name: str, named: dict[str, NamedColumn]) -> dict[str, Any]:
     """Return what one file holds; of one that cannot be read at all, why."""
+    model = loaded(plugin).model
     answer: dict[str, Any] = {"name": name, "rows": 0, "columns": [], "first": [], "wrong": [], "faults": []}
     answer |= {"notes": [], "more": 0, "figure": {}}
     try:
-        opened = _opened(offer.name, path, named)
+        opened = _opened(plugin, path, named)
     except InputError as error:
         return answer | {"faults": [_fault(fault) for fault in error.faults]}
     answer["rows"], answer["notes"] = len(opened.lines), list(opened.notes)
-    answer["columns"] = list(_columns(opened, offer.model))
-    answer["figure"] = _first_figure(opened, answer["columns"], offer.model)
+    answer["columns"] = list(_columns(opened, model))
+    answer["figure"] = _first_figure(opened, answer["columns"], model)
     answer["first"] = [_row(opened, row) for row in range(min(FIRST_ROWS, len(opened.lines)))]
     return answer | _wrong(opened)
 
 
 def _opened(plugin: str, path: Path, named: dict[str, NamedColumn]) -> OpenFile:
-    return _read(plugin, path, stamp_of(path), tuple(sorted(named.items())))
+    return _read(plugin, path, (version_of(plugin), stamp_of(path)), tuple(sorted(named.items())))
 
 
 @lru_cache(maxsize=4)
-def _read(plugin: str, path: Path, stamp: tuple[int, int], named: tuple[tuple[str, NamedColumn], ...]) -> OpenFile:
-    """Read a file; one that has not changed is read once. ``stamp`` is its time and size.
+def _read(plugin: str, path: Path, stamps: tuple[Any, ...], named: tuple[tuple[str, NamedColumn], ...]) -> OpenFile:
+    """Read a file; one that has not changed is read once. ``stamps`` tell it and the calculation from changed ones.
 
     Raises InputError where it cannot be read at all.
     """
@@ -275,7 +275,7 @@ def figure(
         named = dict(setup_from_text(text, offer, file=file, folder=Path(folder)).columns)
     except InputError:
         named = {}
-    opened = _opened(offer.name, path, named)
+    opened = _opened(plugin, path, named)
     return {"svg": _drawn(opened, shown, over)}
 
 

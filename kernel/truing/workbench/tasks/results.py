@@ -15,6 +15,7 @@ from truing.arrays import one_thread
 from truing.calculation import Calculation, calculate
 from truing.declare.fields import InputField
 from truing.declare.goals import Vary
+from truing.errors import UnknownPluginError
 from truing.evaluate import evaluate_rows
 from truing.inputs_file import setup_from_text
 from truing.inputs_file.sentences import told_by_line
@@ -25,13 +26,14 @@ from truing.report.live import live_sheet
 from truing.report.page_one import key_results
 from truing.report.run import sheet_of
 from truing.runs.folder import load_either
+from truing.runs.inputs_written import input_hash
 from truing.setup import Setup
 from truing.studies.checks import is_known, limit_amount, requirements
 from truing.studies.reading import read_range
 from truing.studies.sampling import Scatter, scatter_of
 from truing.studies.sweep import Sweep
 from truing.units import from_si, unit_factor, unit_text
-from truing.workbench.tasks.loaded import loaded
+from truing.workbench.tasks.loaded import changed_since, loaded
 
 MOST_SLIDERS = 6
 PLACES = 200
@@ -50,15 +52,37 @@ SHARE = 0.01
 
 def nominal(plugin: str, file: str, folder: str, text: str) -> Calculation:
     """Calculate a text without its studies. Raises InputError with every fault, or with what is impossible."""
-    setup = replace(setup_from_text(text, loaded(plugin), file=file, folder=Path(folder)), studies=())
+    return _without_studies(setup_from_text(text, loaded(plugin), file=file, folder=Path(folder)))
+
+
+def _without_studies(setup: Setup) -> Calculation:
     with told_by_line(setup):
-        return calculate(setup)
+        return calculate(replace(setup, studies=()))
 
 
-def numbers(plugin: str, file: str, folder: str, text: str, *, run: str = "", called: str = "") -> dict[str, Any]:
-    """Return the live sheet of a text; beside a run, in the folder ``run`` and called ``called``, where one is."""
+def numbers(
+    plugin: str, file: str, folder: str, text: str, *, run: str = "", called: str = "", last: str = ""
+) -> dict[str, Any]:  # fmt: skip
+    """Return the live sheet of a text; beside a run, in the folder ``run`` and called ``called``, where one is.
+
+    Limits that only studies decide are as the run in the folder ``last`` has decided them, where that is of this text.
+    """
+    setup = setup_from_text(text, loaded(plugin), file=file, folder=Path(folder))
+    calculation = _without_studies(setup)
     saved = load_either(Path(run)) if run else None
-    return asdict(live_sheet(nominal(plugin, file, folder, text), saved, called))
+    own = run_of(setup, plugin, Path(last)) if last and calculation.verdict == "undecided" else None
+    return asdict(live_sheet(calculation, saved, called, own))
+
+
+def run_of(setup: Setup, plugin: str, folder: Path) -> dict[str, Any] | None:
+    """Return what a run folder holds, where it is of these inputs and of the calculation as it is now."""
+    try:
+        document = load_either(folder)
+    except UnknownPluginError:
+        return None
+    same = (document.get("plugin") or {}).get("version") == loaded(plugin).origin.version
+    same = same and document.get("input_hash") == input_hash(setup) and not changed_since(plugin, folder)
+    return document if same else None
 
 
 def whole(plugin: str, file: str, folder: str, text: str) -> dict[str, str]:

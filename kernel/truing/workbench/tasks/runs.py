@@ -15,7 +15,7 @@ from truing.runs.folder import load_either
 from truing.runs.index import list_folder
 from truing.runs.inputs_written import input_hash, stated_differences
 from truing.studies.bench import Progress
-from truing.workbench.tasks.loaded import loaded
+from truing.workbench.tasks.loaded import changed_since, loaded
 
 CHAPTER = re.compile(
     r'<section id="([\w-]+)" class="chapter"[^>]*>\s*'
@@ -63,8 +63,10 @@ def _older(plugin: str, file: str, folder: str, text: str, run: Path) -> tuple[b
     document = load_either(run)
     if document.get("input_hash") == input_hash(now):
         version = (document.get("plugin") or {}).get("version")
-        same = version == offer.origin.version
-        return not same, [] if same else [f"the calculation was {version} then and is {offer.origin.version}"]
+        if version != offer.origin.version:
+            return True, [f"the calculation was {version} then and is {offer.origin.version}"]
+        changed = changed_since(plugin, run)
+        return changed, [f"{Path(plugin).name} has changed since"] if changed else []
     try:
         differing = stated_differences(read_setup(run / "inputs.toml", offer), now)
     except TruingError:
