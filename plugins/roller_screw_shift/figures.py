@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -15,6 +15,7 @@ from roller_screw_shift.objectives import SENSES, ShiftCourse, Three, course_of,
 from roller_screw_shift.optimum import LIMITS, MM, READING, READINGS, ChosenShift, Field, grid_optimum, signed
 from roller_screw_shift.quantities import Meshing, Pair
 from roller_screw_shift.strength import roller_fillet
+from roller_screw_shift.threads import sharing_of
 from truing import Array, Optimum, Record
 
 PairRun = Record[Pair, Meshing]
@@ -290,6 +291,22 @@ def path_of(pair: Pair) -> ContactPath:
     at_ring = float(ring.base_radius) * tangent + place
     ratio = float(pair.ring_teeth) / float(pair.roller_teeth)
     return ContactPath(place, 1.0 - at_ring / (ratio * at_roller), 1.0 - ratio * at_roller / at_ring)
+
+
+def threads_figure(pair: Pair) -> "Figure":
+    """Draw the load of every thread over the mean, with the nut held as stated and at the other end."""
+    figure, panel = panels(1, 3.2)
+    other: Literal["same_side", "far_side"] = "same_side" if pair.support == "far_side" else "far_side"
+    number = np.arange(1, pair.thread_turns + 1)
+    for support, line in ((pair.support, "o-"), (other, "--")):
+        shared = sharing_of(replace(pair, support=support))
+        for body, shares, colour in (("screw", shared.screw, BLUE), ("nut", shared.nut, ORANGE)):
+            panel.plot(number, shares, line, markersize=3.5, linewidth=1.2, color=colour,
+                       label=f"{body}, nut held at the {support.replace('_', ' ')}")  # fmt: skip
+    panel.axhline(1.0, color=GREY, linewidth=0.8)
+    quiet(panel, "thread of the roller, from the loaded end", "load over the mean")
+    panel.legend(fontsize=7.5)
+    return figure
 
 
 LOOKS = (("o", "white"), ("X", INK), ("D", ORANGE))

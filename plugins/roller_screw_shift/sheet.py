@@ -29,6 +29,10 @@ SLIDING = (
     "centre distance; the shift moves the ends of the path along them. Marks: root of the roller (left) and of "
     "the ring (right), each where the tip of the other gear meets it; the objective compares their magnitudes."
 )
+SHARES = (
+    "Load of each thread of a roller over the mean, from the end at which the screw is loaded. Dashed: with the nut "
+    "held at the other end."
+)
 PLANES = (
     "With one variable the front of the three objectives is a line. Where the stresses differ least (left) the sum is "
     "small and sliding is uneven; weights choose a place on the line."
@@ -63,6 +67,11 @@ def sliding(record: figures.PairRun) -> "Sequence[Block]":
     if chosen is not None and chosen.field is not None:
         shown = [("before", shown[0][1]), ("as stated", float(pair.roller_shift)), ("optimum", chosen.shift)]
     return [Drawing("Sliding along the path of contact", partial(figures.sliding_figure, pair, shown), SLIDING)]
+
+
+def threads(record: figures.PairRun) -> "Sequence[Block]":
+    """How the threads share the load."""
+    return [Drawing("Load of the threads", partial(figures.threads_figure, record.acting), SHARES)]
 
 
 def limits(record: figures.PairRun) -> "Sequence[Block]":
@@ -146,6 +155,21 @@ SECTIONS = [
         "slide most for the way they roll: usually at the roots, but at the tip where the path begins near the pitch "
         "point or beyond it. The largest of the path counts.",
         blocks=sliding,
+    ),
+    Section(
+        "Threads under the load",
+        *DECLARED[DECLARED.index("pitch") : DECLARED.index("nut_pitch_diameter")],
+        text="Screw, rollers and nut are bars, every thread a Hertzian contact with the screw and one with the nut. "
+        "The deflection is that of the engaged threads and bodies alone. There is no standard of roller screws: rating "
+        "and life are those of ISO 3408-5 for ball screws, by analogy, with every thread of a roller as a ball about "
+        "its axis; what unequal sharing costs follows from the weakest link.",
+        blocks=threads,
+    ),
+    Section(
+        "Threads against teeth",
+        *DECLARED[DECLARED.index("nut_pitch_diameter") : DECLARED.index("transmission_error")],
+        text="The teeth hold a roller to their ratio. Where the pitch diameters of the threads have another, the "
+        "roller slips around in the nut; where the starts have another, it creeps along.",
     ),
     Section(
         "Limits of the shift",

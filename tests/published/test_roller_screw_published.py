@@ -309,7 +309,7 @@ def test_the_front_is_the_interval(optimum: Any) -> None:
     shifts = np.array([design.inputs["roller_shift"] for design in optimum.front])
     low = brentq(lambda shift: difference_of_sliding(shift) - 3.08, -0.15, 0.1)
     assert [aim.sense for aim in optimum.aims] == ["maximise", "minimise", "minimise"]
-    assert {bound.name for bound in optimum.bounds} == set(MARGINS)
+    assert {bound.name for bound in optimum.bounds} == {*MARGINS, "margin_pressure"}
     assert shifts.max() <= shift_at(1.4) < shifts.max() + 0.01
     assert shifts.min() >= low > shifts.min() - 0.01
     for design in optimum.front:
