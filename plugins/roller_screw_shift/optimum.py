@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from math import isfinite, nan
 from typing import Any, Literal
 
@@ -172,6 +173,16 @@ class Field:
 
 def field_of(pair: Pair, span: tuple[float, float], points: int) -> Field | None:
     """Return where between the ends of ``span`` every limit is kept; None where no shift of the grid does."""
+    return _field(unweighed(pair), span, points)
+
+
+def unweighed(pair: Pair) -> Pair:
+    """Return the pair without what a field does not follow: so all readings of the weights share one."""
+    return replace(pair, weights="own_ranges", roller_shift=0.0)
+
+
+@lru_cache(maxsize=16)
+def _field(pair: Pair, span: tuple[float, float], points: int) -> Field | None:
     intervals = objectives.intervals_of(pair, span, points)
     if not intervals:
         return None
@@ -227,15 +238,19 @@ class Variant:
 def variants(pair: Pair, ratios: Sequence[float], span: tuple[float, float], points: int) -> Iterator[Variant | None]:
     """Give the optimum on the grid for every least contact ratio and every reading of the weights; None without one."""
     for ratio in ratios:
-        field = field_of(replace(pair, least_contact_ratio=ratio), span, points)
         for reading in READINGS:
-            if field is None:
-                yield None
-                continue
-            weights = objectives.weights_of(reading, field.ranges)
-            shift = grid_optimum(field, weights)
-            margin = objectives.course_of(field.pair, np.array([shift])).margins["margin_contact_ratio"][0]
-            yield Variant(ratio, reading, weights, shift, ratio + float(margin), limits_at(field, shift))
+            yield _variant(unweighed(replace(pair, least_contact_ratio=ratio)), reading, span, points)
+
+
+@lru_cache(maxsize=256)
+def _variant(pair: Pair, reading: str, span: tuple[float, float], points: int) -> Variant | None:
+    field = field_of(pair, span, points)
+    if field is None:
+        return None
+    ratio, weights = float(pair.least_contact_ratio), objectives.weights_of(reading, field.ranges)
+    shift = grid_optimum(field, weights)
+    margin = objectives.course_of(field.pair, np.array([shift])).margins["margin_contact_ratio"][0]
+    return Variant(ratio, reading, weights, shift, ratio + float(margin), limits_at(field, shift))
 
 
 def other_optimum(pair: Pair, span: tuple[float, float], points: int) -> float:
