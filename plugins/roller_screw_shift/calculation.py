@@ -179,6 +179,7 @@ def _mesh(pair: Pair, geometry: geo.Geometry) -> dict[str, Any]:
         "sliding_roller": roller,
         "sliding_ring": ring,
         "sliding_difference": np.abs(roller - ring),
+        "largest_sliding": np.maximum(np.maximum(*roots), np.maximum(*tips)),
         "ring_meshes": strength.load_of(pair).ring_meshes,
     }
 

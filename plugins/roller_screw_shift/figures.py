@@ -10,9 +10,20 @@ from numpy.typing import NDArray
 
 from gear_geometry.drawing import BLUE, GREEN, GREY, INK, ORANGE, PALE, panels, quiet
 from gear_geometry.pairs import involute
+from roller_screw_shift.calculation import meshing_of
 from roller_screw_shift.geometry import geometry_of
 from roller_screw_shift.objectives import SENSES, ShiftCourse, Three, course_of, normalised, weights_of
-from roller_screw_shift.optimum import LIMITS, MM, READING, READINGS, ChosenShift, Field, grid_optimum, signed
+from roller_screw_shift.optimum import (
+    LIMITS,
+    MM,
+    READING,
+    READINGS,
+    ChosenShift,
+    Field,
+    grid_optimum,
+    over_ratios,
+    signed,
+)  # fmt: skip
 from roller_screw_shift.quantities import Meshing, Pair
 from roller_screw_shift.strength import roller_fillet
 from roller_screw_shift.threads import sharing_of
@@ -111,6 +122,32 @@ def _lines(panel: Any, course: ShiftCourse) -> None:
     panel.axhline(0.0, color=INK, linewidth=0.9)
     panel.set_ylim(-0.3 * HIGHEST, HIGHEST)
     quiet(panel, "", "margin")
+
+
+RATIO_POINTS = 81
+
+
+def ratios_figure(chosen: "ChosenShift") -> "Figure":
+    """Draw the optimal shift, and the largest sliding there, over the least contact ratio that is asked for."""
+    figure, (above, below) = panels(2, 5.2, sharex=True)
+    wide = chosen.wide
+    if wide is None or chosen.reached is None:
+        return figure
+    highest = float(np.max(wide.course.margins["margin_contact_ratio"])) + float(wide.pair.least_contact_ratio)
+    ratios = np.linspace(float(wide.pair.least_contact_ratio), highest, RATIO_POINTS)
+    sliding = np.asarray(meshing_of(replace(wide.pair, roller_shift=wide.course.shifts)).largest_sliding)
+    lines = [(over_ratios(chosen, ratios, name, robust=False), MARKS[name][1], "-", READING[name]) for name in READINGS]
+    held = over_ratios(chosen, ratios, chosen.inputs.weights, robust=True)
+    lines.append((held, BLUE, "--", f"kept by {100 * chosen.probability:g} % of the screws"))
+    for shifts, colour, line, words in lines:
+        above.plot(ratios, shifts, line, color=colour, linewidth=1.4, label=words)
+        below.plot(ratios, np.interp(shifts, wide.course.shifts, sliding), line, color=colour, linewidth=1.4)
+    for panel in (above, below):
+        panel.axvline(float(chosen.inputs.least_contact_ratio), color=INK, linewidth=1.0, linestyle=(0, (4, 3)))
+    quiet(above, "", ROLLER)
+    quiet(below, "least contact ratio; dashed upright: as stated", "largest sliding")
+    above.legend(fontsize=7.5)
+    return figure
 
 
 # The outlines of the teeth: involutes, the root fillet that a rack leaves on the roller, and a round one on the ring

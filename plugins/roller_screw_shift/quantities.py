@@ -259,6 +259,11 @@ class Meshing:
                                 note="specific sliding of the ring that counts, its largest on the path of contact",
                                 formula="max(root_sliding_ring, tips_count * tip_sliding_ring)",
                                 source="sliding changes in one direction along the path")  # fmt: skip
+    largest_sliding: Float = found(
+        "", symbol="eta_max", note="largest specific sliding of either gear on the path of contact, by any reading",
+        formula="max(root_sliding_roller, tip_sliding_roller, root_sliding_ring, tip_sliding_ring)",
+        source="sliding changes in one direction along the path", key=True,
+    )  # fmt: skip
     ring_meshes: Float = found(
         "", symbol="n_I/n_E", note="meshes of a tooth of the ring while one of a roller meshes once; decides how fast "
         "either wears", formula="rollers * roller_teeth / ring_teeth", source="counts of teeth",

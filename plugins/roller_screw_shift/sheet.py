@@ -29,6 +29,11 @@ SLIDING = (
     "centre distance; the shift moves the ends of the path along them. Marks: root of the roller (left) and of "
     "the ring (right), each where the tip of the other gear meets it; the objective compares their magnitudes."
 )
+RATIOS = (
+    "Above: the optimal shift over the least contact ratio, by every reading of the weights; dashed: the best one that "
+    "as many screws keep as asked. Below: the largest sliding on the path at these shifts. Where the lines meet, "
+    "the limit decides; where they part, the weights do."
+)
 SHARES = (
     "Load of each thread of a roller over the mean, from the end at which the screw is loaded. Dashed: with the nut "
     "held at the other end."
@@ -101,6 +106,7 @@ def choice(record: figures.PairRun) -> "Sequence[Block]":
         Drawing("Objectives over the shift", partial(figures.objectives_figure, chosen), caption),
         *optimum.optimum_words(chosen, chosen.field),
         optimum.compared_table(chosen, chosen.field),
+        Drawing("The optimum by the contact ratio asked for", partial(figures.ratios_figure, chosen), RATIOS),
     ]
 
 
@@ -150,7 +156,7 @@ SECTIONS = [
     Section(
         "Sliding of the flanks",
         "root_sliding_roller", "tip_sliding_roller", "tips_count", "sliding_roller", "root_sliding_ring",
-        "tip_sliding_ring", "sliding_ring", "ring_meshes",
+        "tip_sliding_ring", "sliding_ring", "largest_sliding", "ring_meshes",
         text="At each end of the path of contact the root of one gear meets the tip of the other, and there the flanks "
         "slide most for the way they roll: usually at the roots, but at the tip where the path begins near the pitch "
         "point or beyond it. The largest of the path counts.",
@@ -181,7 +187,8 @@ SECTIONS = [
     Section(
         "The best shift",
         "shift_sum", "stress_difference", "sliding_difference", "optimal_shift_roller", "optimal_shift_ring",
-        "optimal_contact_ratio", "limit_distance", "kept_as_stated", "kept_at_optimum",
+        "optimal_contact_ratio", "limit_distance", "kept_as_stated", "kept_at_optimum", "robust_shift_roller",
+        "robust_shift_ring", "robust_contact_ratio", "kept_at_robust", "gentlest_shift", "gentlest_sliding",
         text="As in the paper: each objective is brought to 0 to 1 over its range, all are weighed and added, and "
         "Box's complex method with nine vertices looks for the least sum. A dense grid checks it.",
         blocks=choice,

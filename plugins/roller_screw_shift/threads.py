@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.linalg import solveh_banded
 from scipy.special import ellipe, ellipkm1
 
 from roller_screw_shift.quantities import Pair
@@ -210,7 +210,7 @@ def _solve(stiffness: Array, bars: Array, outer: Array, held: int) -> NDArray[np
     diagonal[:, held, 2] += bars[:, 2]
     band[2][:, :, 1:] = -stiffness
     band[0][:, 1:] = -bars[:, None, :]
-    solved = solveh_banded(band.reshape(4, -1), outer.ravel(), check_finite=False)
+    solved = scipy.linalg.solveh_banded(band.reshape(4, -1), outer.ravel(), check_finite=False)
     return np.asarray(solved.reshape(outer.shape))
 
 
