@@ -341,6 +341,7 @@ def threads_figure(pair: Pair) -> "Figure":
             panel.plot(number, shares, line, markersize=3.5, linewidth=1.2, color=colour,
                        label=f"{body}, nut held at the {support.replace('_', ' ')}")  # fmt: skip
     panel.axhline(1.0, color=GREY, linewidth=0.8)
+    panel.xaxis.get_major_locator().set_params(integer=True)
     quiet(panel, "thread of the roller, from the loaded end", "load over the mean")
     panel.legend(fontsize=7.5)
     return figure

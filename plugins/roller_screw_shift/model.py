@@ -23,7 +23,8 @@ LITERATURE = [
     "30(4), 2015, p. 58.",
     "Box, M. J., A new method of constrained optimization and a comparison with other methods, The Computer Journal 8 "
     "(1965), p. 42.",
-    "ISO 3408-5:2006, Ball screws, Part 5: Static and dynamic axial load ratings and operational life.",
+    "ISO 3408-5:2006, Ball screws, Part 5: Static and dynamic axial load ratings and operational life. ISO 281:2007, "
+    "Rolling bearings: Dynamic load ratings and rating life.",
     "Johnson, K. L., Contact Mechanics, Cambridge 1985, chapter 4.",
     "Guin, J. A., Modification of the complex method of constrained optimization, The Computer Journal 10 (1968), p. "
     "416.",

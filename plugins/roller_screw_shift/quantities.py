@@ -90,7 +90,7 @@ class Pair:
                                   "effects only", source="ISO 6336-1: about 14 for steel", above=0)  # fmt: skip
     # What is asked, and how it is weighed
     most_pressure: Float = given(4000.0, "MPa", symbol="p_max", note="largest pressure of the threads; beyond it they "
-                                 "are dented by more than 1e-4 of a ball", source="ISO 3408-5, by analogy",
+                                 "are dented by more than 1e-4 of a ball", source="usual for balls, by analogy",
                                  above=0)  # fmt: skip
     least_contact_ratio: Float = given(1.4, "", symbol="epsilon_min", note="least contact ratio", source=LOST_LIMIT,
                                        at_least=1, at_most=3)  # fmt: skip
@@ -145,7 +145,7 @@ RULE = "common design rule"
 NETWORK = "bars between springs, Newton's method"
 HERTZ = "ellipse of Hertz under the thread that is loaded most"
 WEAKEST_LINK = "lives of all threads by Weibull's weakest link, slope 10/9"
-ANALOGY = "ISO 3408-5 for ball screws, by analogy: every thread of a roller as a ball about its axis"
+ANALOGY = "ISO 3408-5 and ISO 281 for balls, by analogy: every thread of a roller as a ball about its axis"
 ROLLING = "kinematics of the screw with its nut at rest"
 
 
@@ -436,7 +436,8 @@ class Meshing:
     thread_pressure_nut: Float = found("MPa", symbol="p_N", note="largest pressure between roller and nut",
                                        method=HERTZ)  # fmt: skip
     margin_pressure: Float = found(
-        "", symbol="g_p", note="largest pressure under the one permitted, as a share", source="ISO 3408-5, by analogy",
+        "", symbol="g_p", note="largest pressure under the one permitted, as a share",
+        source="static limit of balls, by analogy",
         formula="1 - max(thread_pressure_screw, thread_pressure_nut) / most_pressure",
     )  # fmt: skip
     thread_deflection: Float = found("um", symbol="delta_a", note="way of the screw at its loaded end against the held "
@@ -449,27 +450,29 @@ class Meshing:
     curvature_ratio: Float = found("", symbol="gamma", note="ball of the roller over the circle of its centres, times "
                                    "the cosine", formula="roller_diameter / (screw_diameter + roller_diameter)",
                                    source=ANALOGY)  # fmt: skip
+    ball_diameter: Float = found("mm", symbol="D", note="of the ball that a thread of the roller stands for",
+                                 formula="roller_diameter / cos(contact_angle)", source=ANALOGY)  # fmt: skip
     screw_rating: Float = found(
         "kN", symbol="C_s", note="dynamic rating of one thread of all rollers on the screw", source=ANALOGY,
         numeric=True,
-        formula="1e-3 * 93.2 * (1 - sin(contact_angle * pi / 180) / 3) * curvature_ratio**0.3"
-        " * (1 - curvature_ratio)**1.39 / (1 + curvature_ratio)**(1 / 3) * cos(contact_angle * pi / 180)**0.86"
-        " * rollers**(2 / 3) * (roller_diameter / cos(contact_angle * pi / 180))**1.8 * tan(contact_angle * pi / 180)"
-        " * cos(helix_angle * pi / 180)**1.3",
+        formula="1e-3 * 88.2 * (1 - sin(contact_angle * pi / 180) / 3) * curvature_ratio**0.3"
+        " * (1 - curvature_ratio)**1.39 / (1 + curvature_ratio)**(1 / 3) * cos(contact_angle * pi / 180)**0.7"
+        " * rollers**(2 / 3) * cases(3.647 * ball_diameter**1.4, ball_diameter > 25.4, ball_diameter**1.8)"
+        " * tan(contact_angle * pi / 180) * cos(helix_angle * pi / 180)",
     )  # fmt: skip
     nut_rating: Float = found(
         "kN", symbol="C_n", note="dynamic rating of one thread of all rollers in the nut", source=ANALOGY,
-        formula="screw_rating * ((1 + curvature_ratio) / (1 - curvature_ratio))**1.723",
+        formula="screw_rating * ((1 + curvature_ratio) / (1 - curvature_ratio))**1.72",
     )  # fmt: skip
     dynamic_rating: Float = found(
         "kN", symbol="C_a", note="dynamic axial load rating of threads that share alike", source=ANALOGY, key=True,
-        formula="screw_rating * (1 + (screw_rating / nut_rating)**(10 / 3))**(-0.3) * thread_turns**0.86",
+        formula="screw_rating * (1 + (screw_rating / nut_rating)**(10 / 3))**(-0.3) * thread_turns**0.7",
     )  # fmt: skip
     acting_load: Float = found("kN", symbol="F", note="magnitude of the axial load, at least 1 mN",
                                method="keeps life and stiffness finite")  # fmt: skip
     thread_life: Float = found(
         "", symbol="L_10", note="turns of the screw that nine of ten outlive, with the threads sharing as they do",
-        formula="1e6 * (thread_turns**0.86 / acting_load * ((life_factor_screw / screw_rating)**(10 / 3)"
+        formula="1e6 * (thread_turns**0.7 / acting_load * ((life_factor_screw / screw_rating)**(10 / 3)"
         " + (life_factor_nut / nut_rating)**(10 / 3))**(-0.3))**3", source=ANALOGY, key=True,
     )  # fmt: skip
     # Ratio of threads and teeth

@@ -166,9 +166,10 @@ SECTIONS = [
         "Threads under the load",
         *DECLARED[DECLARED.index("pitch") : DECLARED.index("nut_pitch_diameter")],
         text="Screw, rollers and nut are bars, every thread a Hertzian contact with the screw and one with the nut. "
-        "The deflection is that of the engaged threads and bodies alone. There is no standard of roller screws: rating "
-        "and life are those of ISO 3408-5 for ball screws, by analogy, with every thread of a roller as a ball about "
-        "its axis; what unequal sharing costs follows from the weakest link.",
+        "The deflection is that of the engaged threads and bodies alone. There is no standard of roller screws: life "
+        "is told by analogy with ball screws, as in ISO 3408-5, from the rating of thrust ball bearings in ISO 281, "
+        "with every thread of a roller as a ball about its axis; what unequal sharing costs is told by the weakest "
+        "link.",
         blocks=threads,
     ),
     Section(
