@@ -107,7 +107,7 @@ def roller_screw_shift(pair: Pair) -> Meshing:
     require_roots(pair, roller, ring, fillet)
     shared = threads.sharing_of(pair)
     require_threads(pair, shared)
-    return _meshing(pair, geometry, fillet, roller, ring, _threads(pair, shared))
+    return _meshing(pair, geometry, fillet, roller, ring, loaded=_threads(pair, shared))
 
 
 def meshing_of(pair: Pair) -> Meshing:
@@ -120,12 +120,12 @@ def meshing_of(pair: Pair) -> Meshing:
     with np.errstate(all="ignore"):
         geometry, fillet = geo.geometry_of(pair), strength.roller_fillet(pair)
         roller, ring = strength.roller_tooth(pair, fillet), strength.ring_tooth(pair, geometry)
-        return _meshing(pair, geometry, fillet, roller, ring, dict.fromkeys(OF_THREADS, np.nan))
+        return _meshing(pair, geometry, fillet, roller, ring, loaded=dict.fromkeys(OF_THREADS, np.nan))
 
 
 def _meshing(
     pair: Pair, geometry: Geometry, fillet: Fillet, roller: strength.Tooth, ring: strength.Tooth,
-    loaded: Mapping[str, Any],
+    *, loaded: Mapping[str, Any],
 ) -> Meshing:  # fmt: skip
     mesh = _mesh(pair, geometry)
     return Meshing(

@@ -239,7 +239,8 @@ def life_of(pair: Pair, shared: Sharing) -> dict[str, Float]:
     def both(of_screw: Float, of_nut: Float) -> Float:
         """Return the rating of all contacts, those of either side loaded so many times as much as alike."""
         weak = (of_screw / screw) ** WEAKEST + (of_nut / nut) ** WEAKEST
-        return turns * weak ** (-1.0 / WEAKEST)
+        rating: Float = turns * weak ** (-1.0 / WEAKEST)
+        return rating
 
     return {
         "curvature_ratio": gamma, "ball_diameter": 1e-3 * ball, "screw_rating": screw, "nut_rating": nut,
