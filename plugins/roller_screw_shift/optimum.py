@@ -341,13 +341,6 @@ class Shifting:
         grid = grid_optimum(field, weights)
         box, remarks = self._box(bench, field, weights)
         best = grid if box is None else float(box.point[0])
-        screws = scatter.screws_of(bench)
-        least = float(pair.least_contact_ratio)
-        wide = field_of(replace(pair, least_contact_ratio=LOWEST_RATIO), span, self.points) or field
-        reached = scatter.ratio_course(
-            screws, (wide.intervals[0].low, wide.intervals[-1].high), self.probability, least
-        )  # fmt: skip
-        robust = robust_optimum(field, weights, scatter.held(screws, reached, self.probability, least))
         return ChosenShift(
             pair, span, equal,
             status=FOUND,
@@ -358,15 +351,27 @@ class Shifting:
             other=other_optimum(pair, span, self.points),
             variants=tuple(self._variants(bench, ratios, span)),
             factor=stress_factor(field, weights, grid),
-            compared=_compared(bench, field, best, robust),
-            kept=(screws.kept(float(pair.roller_shift)), screws.kept(best)),
-            robust=robust,
-            kept_robust=screws.kept(robust) if isfinite(robust) else nan,
-            probability=self.probability,
-            wide=wide,
-            reached=reached,
+            **self._scattered(bench, field, weights, best),
             remarks=remarks,
         )  # fmt: skip
+
+    def _scattered(self, bench: Bench, field: Field, weights: objectives.Three, best: float) -> dict[str, Any]:
+        """Return what scatter leaves of the shifts, the best of them that enough screws keep, and the comparison."""
+        pair: Pair = bench.inputs
+        screws, least = scatter.screws_of(bench), float(pair.least_contact_ratio)
+        wide = field_of(replace(pair, least_contact_ratio=LOWEST_RATIO), self.span, self.points) or field
+        span = wide.intervals[0].low, wide.intervals[-1].high
+        reached = scatter.ratio_course(screws, span, self.probability, least)
+        robust = robust_optimum(field, weights, scatter.held(screws, reached, self.probability, least))
+        return {
+            "compared": _compared(bench, field, best, robust),
+            "kept": (screws.kept(float(pair.roller_shift)), screws.kept(best)),
+            "robust": robust,
+            "kept_robust": screws.kept(robust) if isfinite(robust) else nan,
+            "probability": self.probability,
+            "wide": wide,
+            "reached": reached,
+        }
 
     @property
     def plan(self) -> Plan:
