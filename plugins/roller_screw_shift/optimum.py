@@ -329,7 +329,7 @@ class Shifting:
     def run(self, bench: Bench) -> "ChosenShift":
         """Find where every limit is kept, the ranges of the objectives there, the weights, and the optimum."""
         pair: Pair = bench.inputs
-        span = (float(self.span[0]), float(self.span[1]))
+        span = self.ends
         ratios = sorted({*self.ratios, float(pair.least_contact_ratio)})
         bench.progress(self.name, 0, _steps(ratios))
         field = field_of(pair, span, self.points)
@@ -359,7 +359,7 @@ class Shifting:
         """Return what scatter leaves of the shifts, the best of them that enough screws keep, and the comparison."""
         pair: Pair = bench.inputs
         screws, least = scatter.screws_of(bench), float(pair.least_contact_ratio)
-        wide = field_of(replace(pair, least_contact_ratio=LOWEST_RATIO), self.span, self.points) or field
+        wide = field_of(replace(pair, least_contact_ratio=LOWEST_RATIO), self.ends, self.points) or field
         span = wide.intervals[0].low, wide.intervals[-1].high
         reached = scatter.ratio_course(screws, span, self.probability, least)
         robust = robust_optimum(field, weights, scatter.held(screws, reached, self.probability, least))
@@ -372,6 +372,11 @@ class Shifting:
             "wide": wide,
             "reached": reached,
         }
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The lowest and the highest shift, as numbers."""
+        return float(self.span[0]), float(self.span[1])
 
     @property
     def plan(self) -> Plan:
