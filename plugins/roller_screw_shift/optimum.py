@@ -433,8 +433,11 @@ def robust_optimum(field: Field, weights: objectives.Three, held: Sequence[tuple
     return float(shifts[int(np.argmin(objectives.total(course.objectives, field.ranges, weights)))])
 
 
+CHARTED = 2001  # shifts of the dense course at which a chart looks
+
+
 def over_ratios(chosen: "ChosenShift", ratios: Array, reading: str, *, robust: bool) -> Array:
-    """Return the optimal shift by the least contact ratio (n,), on the grid; NaN where no shift keeps every limit.
+    """Return the optimal shift by the least contact ratio (n,), on a grid; NaN where no shift keeps every limit.
 
     ``robust``: where so many screws as asked reach that ratio, instead of the nominal pair.
     """
@@ -442,20 +445,23 @@ def over_ratios(chosen: "ChosenShift", ratios: Array, reading: str, *, robust: b
     if wide is None or chosen.reached is None:
         return np.full(len(ratios), nan)
     course = wide.course
-    nominal = course.margins["margin_contact_ratio"] + float(wide.pair.least_contact_ratio)
-    reached = chosen.reached.at(course.shifts) if robust else nominal
-    return np.array([_at_ratio(course, nominal >= ratio, reached >= ratio, reading) for ratio in ratios])
+    places = np.unique(np.linspace(0, len(course.shifts) - 1, CHARTED).astype(int))
+    shifts, values = course.shifts[places], course.objectives[:, places]
+    nominal = course.margins["margin_contact_ratio"][places] + float(wide.pair.least_contact_ratio)
+    reached = chosen.reached.at(shifts) if robust else nominal
+    return np.array([_at_ratio(shifts, values, (nominal >= ratio, reached >= ratio), reading) for ratio in ratios])
 
 
-def _at_ratio(course: objectives.ShiftCourse, kept: Array, allowed: Array, reading: str) -> float:
-    """Return the best of the allowed shifts, weighed over the ranges of those that the nominal pair keeps."""
-    if not np.any(allowed) or np.count_nonzero(kept) < 2:
+def _at_ratio(shifts: Array, values: Array, kept: tuple[Array, Array], reading: str) -> float:
+    """Return the best of the shifts that are allowed, the second kept, weighed over the ranges of the first."""
+    nominal, allowed = kept
+    if not np.any(allowed) or np.count_nonzero(nominal) < 2:
         return nan
-    low, high = course.objectives[:, kept].min(axis=1), course.objectives[:, kept].max(axis=1)
+    low, high = values[:, nominal].min(axis=1), values[:, nominal].max(axis=1)
     first, second, third = zip(low.tolist(), high.tolist(), strict=True)
     ranges = (first, second, third)
-    costs = objectives.total(course.objectives[:, allowed], ranges, objectives.weights_of(reading, ranges))
-    return float(course.shifts[allowed][int(np.argmin(costs))])
+    costs = objectives.total(values[:, allowed], ranges, objectives.weights_of(reading, ranges))
+    return float(shifts[allowed][int(np.argmin(costs))])
 
 
 def gentlest(field: Field) -> tuple[float, float]:
