@@ -7,7 +7,7 @@ import numpy as np
 
 from gear_geometry.roots import Fillet, gap_offset, notch
 from roller_screw_shift import geometry as geo
-from roller_screw_shift import strength
+from roller_screw_shift import strength, threads
 from roller_screw_shift.geometry import Geometry, involute_margin
 from roller_screw_shift.quantities import Meshing, Pair
 from truing import Float, feasible
@@ -84,6 +84,18 @@ def require_roots(pair: Pair, roller: strength.Tooth, ring: strength.Tooth, fill
         )
 
 
+def require_threads(pair: Pair, shared: threads.Sharing) -> None:
+    """Refuse bodies that are not there, and threads of which no sharing of the load is found."""
+    nut = threads.nut_diameter(pair)
+    feasible(pair.nut_outside > nut, "the nut has no wall: nut_outside must exceed the diameter of its thread")
+    feasible(pair.screw_bore < pair.screw_diameter, "the screw has no wall: reduce screw_bore")
+    feasible(nut > pair.roller_diameter, "the nut is no wider than a roller: enlarge nut_diameter")
+    feasible(
+        np.isfinite(shared.deflection),
+        "the threads find no balance: reduce roller_pitch_deviation, thread_compliance or thread_turns",
+    )
+
+
 # From the profile shift to geometry, objectives and constraints; one call answers for thousands of shifts
 
 
@@ -93,22 +105,28 @@ def roller_screw_shift(pair: Pair) -> Meshing:
     require_pair(pair, geometry)
     roller, ring = strength.roller_tooth(pair, fillet), strength.ring_tooth(pair, geometry)
     require_roots(pair, roller, ring, fillet)
-    return _meshing(pair, geometry, fillet, roller, ring)
+    shared = threads.sharing_of(pair)
+    require_threads(pair, shared)
+    return _meshing(pair, geometry, fillet, roller, ring, loaded=_threads(pair, shared))
 
 
 def meshing_of(pair: Pair) -> Meshing:
     """The same, but nothing is refused: NaN where a result does not exist, and a margin below 0 then or NaN.
 
+    The threads, which do not follow the shift, are left out: NaN too.
     Where a tip circle lies inside its base circle, what depends on the angle at the tip does not exist; where the tip
     of the ring meets no involute, sliding does not.
     """
     with np.errstate(all="ignore"):
         geometry, fillet = geo.geometry_of(pair), strength.roller_fillet(pair)
         roller, ring = strength.roller_tooth(pair, fillet), strength.ring_tooth(pair, geometry)
-        return _meshing(pair, geometry, fillet, roller, ring)
+        return _meshing(pair, geometry, fillet, roller, ring, loaded=dict.fromkeys(OF_THREADS, np.nan))
 
 
-def _meshing(pair: Pair, geometry: Geometry, fillet: Fillet, roller: strength.Tooth, ring: strength.Tooth) -> Meshing:
+def _meshing(
+    pair: Pair, geometry: Geometry, fillet: Fillet, roller: strength.Tooth, ring: strength.Tooth,
+    *, loaded: Mapping[str, Any],
+) -> Meshing:  # fmt: skip
     mesh = _mesh(pair, geometry)
     return Meshing(
         **_circles(geometry),
@@ -125,6 +143,7 @@ def _meshing(pair: Pair, geometry: Geometry, fillet: Fillet, roller: strength.To
         shift_sum=pair.roller_shift + geometry.ring_shift,
         stress_difference=np.abs(roller.stress - ring.stress),
         **_margins(pair, geometry, mesh),
+        **loaded,
         **dict.fromkeys(("transmission_error", "wear_depth", "axial_shift", "friction_torque"), 0.0),
         backlash=geo.backlash(geometry),
     )
@@ -160,6 +179,7 @@ def _mesh(pair: Pair, geometry: geo.Geometry) -> dict[str, Any]:
         "sliding_roller": roller,
         "sliding_ring": ring,
         "sliding_difference": np.abs(roller - ring),
+        "largest_sliding": np.maximum(np.maximum(*roots), np.maximum(*tips)),
         "ring_meshes": strength.load_of(pair).ring_meshes,
     }
 
@@ -185,9 +205,43 @@ def _cut(pair: Pair, ring: strength.Tooth) -> dict[str, Any]:
     return {f"cut_{name}_ring": np.where(strength.is_cut(pair), value, 0.0) for name, value in section.items()}
 
 
+NAMES = tuple(Meshing.__dataclass_fields__)
+OF_THREADS = NAMES[NAMES.index("pitch") : NAMES.index("transmission_error")]
+
+
+def _threads(pair: Pair, shared: threads.Sharing) -> dict[str, Any]:
+    """Return what the threads do by the names of their results."""
+    pitch, helix = pair.lead / pair.starts, np.arctan(pair.lead / (np.pi * pair.screw_diameter))
+    nut, ratio = threads.nut_diameter(pair), pair.ring_teeth / pair.roller_teeth
+    carried = pair.screw_diameter / (pair.screw_diameter + pair.roller_diameter * ratio)  # turns of the carrier
+    along = np.sin(pair.contact_angle) * np.cos(helix)
+    pressure = np.maximum(shared.pressure_screw, shared.pressure_nut)
+    return {
+        "pitch": pitch,
+        "helix_angle": helix,
+        "mean_thread_force": np.abs(pair.axial_load) / (pair.rollers * pair.thread_turns * along),
+        "thread_share_screw": np.max(shared.screw, axis=-1),
+        "thread_share_nut": np.max(shared.nut, axis=-1),
+        "thread_pressure_screw": shared.pressure_screw,
+        "thread_pressure_nut": shared.pressure_nut,
+        "margin_pressure": 1.0 - pressure / pair.most_pressure,
+        "thread_deflection": shared.deflection,
+        "axial_stiffness": shared.stiffness,
+        "life_factor_screw": shared.life_factor_screw,
+        "life_factor_nut": shared.life_factor_nut,
+        **threads.life_of(pair, shared),
+        "nut_pitch_diameter": nut,
+        "ratio_mismatch": nut / (pair.roller_diameter * ratio) - 1.0,
+        "slip_per_turn": np.pi * (nut - pair.roller_diameter * ratio) * carried,
+        "migration_per_turn": (pair.lead - pitch * ratio) * carried,
+    }
+
+
 # The constraints g1 to g10 of the paper and of gear geometry: above 0 is safe
 
-MARGINS = tuple(name for name in Meshing.__dataclass_fields__ if name.startswith("margin_"))
+MARGINS = tuple(
+    name for name in Meshing.__dataclass_fields__ if name.startswith("margin_") and name != "margin_pressure"
+)
 
 
 def _margins(pair: Pair, geometry: Geometry, mesh: Mapping[str, Any]) -> dict[str, Any]:

@@ -93,6 +93,16 @@ def rim_compliance(pair: Pair, *, softness: Float) -> Pair:
     return replace(pair, rim_factor=pair.rim_factor * (1.0 + softness))
 
 
+def soft_threads(pair: Pair, *, compliance: Float) -> Pair:
+    """Threads bend beside their contacts: each gives way in proportion to its load, on either side of the roller."""
+    return replace(pair, thread_compliance=pair.thread_compliance + compliance)
+
+
+def roller_pitch_error(pair: Pair, *, deviation: Float) -> Pair:
+    """The threads of the rollers stand farther apart than those of screw and nut: those at the ends touch first."""
+    return replace(pair, roller_pitch_deviation=pair.roller_pitch_deviation + deviation)
+
+
 # What the turning screw brings along: runout of roller and carrier, a roller that creeps along the screw
 
 TURN = 2.0 * np.pi
@@ -265,6 +275,20 @@ EFFECTS: list[Effect[Pair, Meshing]] = [
                   "stress of the ring then fits.",
            why="the ring is thin behind its teeth and bends as a whole",
            source="ISO 6336-3: rim factor Y_B = 1.15 ln(8.324 m/s_R) of an internal gear, 1.75 < s_R/m < 3.5"),
+    Effect("soft_threads", on_inputs=soft_threads,
+           unknowns=[Unknown("compliance", 0, 100, "um/kN", "of one thread on one side of a roller; 2 to 20")],
+           looks_like="the screw gives way more, in proportion to the load, where contacts alone stiffen with it",
+           remedy="Keep the effect on, and rate stiffness and sharing with it; the deflection measured is then met.",
+           why="threads bend and shear under their load, which contacts and bars leave out",
+           source="a spring behind every Hertzian contact; Yamamoto has its parts for a thread that touches all round"),
+    Effect("roller_pitch_error", on_inputs=roller_pitch_error,
+           unknowns=[Unknown("deviation", 0, 5, "um", "pitch of the rollers over that of screw and nut; to 1")],
+           looks_like="the screw gives way much more under small loads, until all threads touch; rollers of "
+                      "too small a pitch look nearly alike",
+           remedy="Fit rollers of the pitch of screw and nut, or rate the life with the effect on; the screw is then "
+                  "stiff from small loads on.",
+           why="the pitch of the rollers is not that of screw and nut, so that only threads at their ends touch",
+           source="network of bars and Hertzian contacts with gaps"),
     Effect("thermal_centre_distance", on_inputs=thermal_centre_distance, needs=[TEMPERATURE],
            unknowns=[Unknown("expansion", -40, 40, "um/(m*K)",
                              "linear, of screw and nut less that of the ring; steel 11.5")],

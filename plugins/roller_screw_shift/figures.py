@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -10,11 +10,23 @@ from numpy.typing import NDArray
 
 from gear_geometry.drawing import BLUE, GREEN, GREY, INK, ORANGE, PALE, panels, quiet
 from gear_geometry.pairs import involute
+from roller_screw_shift.calculation import meshing_of
 from roller_screw_shift.geometry import geometry_of
 from roller_screw_shift.objectives import SENSES, ShiftCourse, Three, course_of, normalised, weights_of
-from roller_screw_shift.optimum import LIMITS, MM, READING, READINGS, ChosenShift, Field, grid_optimum, signed
+from roller_screw_shift.optimum import (
+    LIMITS,
+    MM,
+    READING,
+    READINGS,
+    ChosenShift,
+    Field,
+    grid_optimum,
+    over_ratios,
+    signed,
+)  # fmt: skip
 from roller_screw_shift.quantities import Meshing, Pair
 from roller_screw_shift.strength import roller_fillet
+from roller_screw_shift.threads import sharing_of
 from truing import Array, Optimum, Record
 
 PairRun = Record[Pair, Meshing]
@@ -110,6 +122,32 @@ def _lines(panel: Any, course: ShiftCourse) -> None:
     panel.axhline(0.0, color=INK, linewidth=0.9)
     panel.set_ylim(-0.3 * HIGHEST, HIGHEST)
     quiet(panel, "", "margin")
+
+
+RATIO_POINTS = 81
+
+
+def ratios_figure(chosen: "ChosenShift") -> "Figure":
+    """Draw the optimal shift, and the largest sliding there, over the least contact ratio that is asked for."""
+    figure, (above, below) = panels(2, 5.2, sharex=True)
+    wide = chosen.wide
+    if wide is None or chosen.reached is None:
+        return figure
+    highest = float(np.max(wide.course.margins["margin_contact_ratio"])) + float(wide.pair.least_contact_ratio)
+    ratios = np.linspace(float(wide.pair.least_contact_ratio), highest, RATIO_POINTS)
+    sliding = np.asarray(meshing_of(replace(wide.pair, roller_shift=wide.course.shifts)).largest_sliding)
+    lines = [(over_ratios(chosen, ratios, name, robust=False), MARKS[name][1], "-", READING[name]) for name in READINGS]
+    held = over_ratios(chosen, ratios, chosen.inputs.weights, robust=True)
+    lines.append((held, BLUE, "--", f"kept by {100 * chosen.probability:g} % of the screws"))
+    for shifts, colour, line, words in lines:
+        above.plot(ratios, shifts, line, color=colour, linewidth=1.4, label=words)
+        below.plot(ratios, np.interp(shifts, wide.course.shifts, sliding), line, color=colour, linewidth=1.4)
+    for panel in (above, below):
+        panel.axvline(float(chosen.inputs.least_contact_ratio), color=INK, linewidth=1.0, linestyle=(0, (4, 3)))
+    quiet(above, "", ROLLER)
+    quiet(below, "least contact ratio; dashed upright: as stated", "largest sliding")
+    above.legend(fontsize=7.5)
+    return figure
 
 
 # The outlines of the teeth: involutes, the root fillet that a rack leaves on the roller, and a round one on the ring
@@ -290,6 +328,23 @@ def path_of(pair: Pair) -> ContactPath:
     at_ring = float(ring.base_radius) * tangent + place
     ratio = float(pair.ring_teeth) / float(pair.roller_teeth)
     return ContactPath(place, 1.0 - at_ring / (ratio * at_roller), 1.0 - ratio * at_roller / at_ring)
+
+
+def threads_figure(pair: Pair) -> "Figure":
+    """Draw the load of every thread over the mean, with the nut held as stated and at the other end."""
+    figure, panel = panels(1, 3.2)
+    other: Literal["same_side", "far_side"] = "same_side" if pair.support == "far_side" else "far_side"
+    number = np.arange(1, pair.thread_turns + 1)
+    for support, line in ((pair.support, "o-"), (other, "--")):
+        shared = sharing_of(replace(pair, support=support))
+        for body, shares, colour in (("screw", shared.screw, BLUE), ("nut", shared.nut, ORANGE)):
+            panel.plot(number, shares, line, markersize=3.5, linewidth=1.2, color=colour,
+                       label=f"{body}, nut held at the {support.replace('_', ' ')}")  # fmt: skip
+    panel.axhline(1.0, color=GREY, linewidth=0.8)
+    panel.xaxis.get_major_locator().set_params(integer=True)
+    quiet(panel, "thread of the roller, from the loaded end", "load over the mean")
+    panel.legend(fontsize=7.5)
+    return figure
 
 
 LOOKS = (("o", "white"), ("X", INK), ("D", ORANGE))

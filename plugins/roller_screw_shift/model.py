@@ -23,6 +23,9 @@ LITERATURE = [
     "30(4), 2015, p. 58.",
     "Box, M. J., A new method of constrained optimization and a comparison with other methods, The Computer Journal 8 "
     "(1965), p. 42.",
+    "ISO 3408-5:2006, Ball screws, Part 5: Static and dynamic axial load ratings and operational life. ISO 281:2007, "
+    "Rolling bearings: Dynamic load ratings and rating life.",
+    "Johnson, K. L., Contact Mechanics, Cambridge 1985, chapter 4.",
     "Guin, J. A., Modification of the complex method of constrained optimization, The Computer Journal 10 (1968), p. "
     "416.",
 ]
@@ -38,6 +41,7 @@ ROLLER_SCREW_SHIFT = Model(
         Minimise("stress_difference"),
         Minimise("sliding_difference"),
         *(Require(name, at_least="0 rad" if name == "margin_interference" else "0") for name in MARGINS),
+        Require("margin_pressure", at_least="0"),
     ],
     studies=[Shifting(gives=choice), Optimise(population=60, generations=40)],
     sheet=SECTIONS,

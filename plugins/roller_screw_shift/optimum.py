@@ -2,13 +2,15 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import isfinite, nan
+from functools import lru_cache
+from math import isfinite, isnan, nan
 from typing import Any, Literal
 
 import numpy as np
 
 from gear_geometry.drawing import signed as written
-from roller_screw_shift import objectives
+from roller_screw_shift import objectives, scatter
+from roller_screw_shift.calculation import meshing_of
 from roller_screw_shift.geometry import geometry_of
 from roller_screw_shift.quantities import Pair
 from truing import Array, Bench, Block, Float, Outcome, Table, TruingError, Words, found, results
@@ -23,6 +25,7 @@ ObjectiveCost = Callable[[Array], Array]
 
 AT_ONCE = 64
 HELD = 0.8  # of the way from the best vertex to the middle is left as the goal of the way back, after every try
+TOGETHER = 4  # tries on the way back are asked for at once; those behind the one that is taken do not count
 ALIKE = 4e-16  # of the largest cost: what differs by less cannot be told apart
 
 
@@ -137,16 +140,18 @@ def _stepped(cost: ObjectiveCost, cloud: _Cloud, span: tuple[Array, Array], plan
     others, costs = np.delete(cloud.points, worst, axis=0), np.delete(cloud.costs, worst)
     best = int(np.argmin(costs))
     middle, goal = others.mean(axis=0), others[best]
-    point = np.clip(middle + plan.reflection * (middle - cloud.points[worst]), *span)
-    value, tries = float(cost(point[None, :])[0]), 1
-    while not value < cloud.costs[worst]:
-        if np.abs(point - goal).max() < 0.5 * plan.spread:
-            point, value = goal, float(costs[best])
-            break
-        held = HELD**tries
-        point = 0.5 * (point + held * middle + (1.0 - held) * goal)
-        value, tries = float(cost(point[None, :])[0]), tries + 1
-    return _Cloud(np.vstack([others, point]), np.append(costs, value)), tries
+    way = [np.clip(middle + plan.reflection * (middle - cloud.points[worst]), *span)]
+    while np.abs(way[-1] - goal).max() >= 0.5 * plan.spread:
+        held = HELD ** len(way)
+        way.append(0.5 * (way[-1] + held * middle + (1.0 - held) * goal))
+    for first in range(0, len(way), TOGETHER):
+        values = cost(np.array(way[first : first + TOGETHER]))
+        better = np.flatnonzero(values < cloud.costs[worst])
+        if len(better):
+            place = int(better[0])
+            taken = way[first + place], float(values[place])
+            return _Cloud(np.vstack([others, taken[0]]), np.append(costs, taken[1])), first + place + 1
+    return _Cloud(np.vstack([others, goal]), np.append(costs, costs[best])), len(way)
 
 
 # The shift that the weighed sum of the objectives prefers: by Box's complex method, and on a dense grid as a check
@@ -172,6 +177,22 @@ class Field:
 
 def field_of(pair: Pair, span: tuple[float, float], points: int) -> Field | None:
     """Return where between the ends of ``span`` every limit is kept; None where no shift of the grid does."""
+    return _field(unweighed(pair), span, points)
+
+
+def unweighed(pair: Pair) -> Pair:
+    """Return the pair without what a field does not follow, so that all readings of the weights share one.
+
+    What is not stated is one and the same NaN then, and alike pairs are equal.
+    """
+    unknown: dict[str, Any] = {
+        name: nan for name, value in vars(pair).items() if isinstance(value, float) and isnan(value)
+    }
+    return replace(pair, weights="own_ranges", roller_shift=0.0, **unknown)
+
+
+@lru_cache(maxsize=16)
+def _field(pair: Pair, span: tuple[float, float], points: int) -> Field | None:
     intervals = objectives.intervals_of(pair, span, points)
     if not intervals:
         return None
@@ -227,15 +248,19 @@ class Variant:
 def variants(pair: Pair, ratios: Sequence[float], span: tuple[float, float], points: int) -> Iterator[Variant | None]:
     """Give the optimum on the grid for every least contact ratio and every reading of the weights; None without one."""
     for ratio in ratios:
-        field = field_of(replace(pair, least_contact_ratio=ratio), span, points)
         for reading in READINGS:
-            if field is None:
-                yield None
-                continue
-            weights = objectives.weights_of(reading, field.ranges)
-            shift = grid_optimum(field, weights)
-            margin = objectives.course_of(field.pair, np.array([shift])).margins["margin_contact_ratio"][0]
-            yield Variant(ratio, reading, weights, shift, ratio + float(margin), limits_at(field, shift))
+            yield _variant(unweighed(replace(pair, least_contact_ratio=ratio)), reading, span, points)
+
+
+@lru_cache(maxsize=256)
+def _variant(pair: Pair, reading: str, span: tuple[float, float], points: int) -> Variant | None:
+    field = field_of(pair, span, points)
+    if field is None:
+        return None
+    ratio, weights = float(pair.least_contact_ratio), objectives.weights_of(reading, field.ranges)
+    shift = grid_optimum(field, weights)
+    margin = objectives.course_of(field.pair, np.array([shift])).margins["margin_contact_ratio"][0]
+    return Variant(ratio, reading, weights, shift, ratio + float(margin), limits_at(field, shift))
 
 
 def other_optimum(pair: Pair, span: tuple[float, float], points: int) -> float:
@@ -268,7 +293,7 @@ def stress_factor(field: Field, weights: objectives.Three, shift: float) -> floa
 
 FOUND = "found"
 BEFORE = 2  # steps before the variants: the field, and Box's search with the grid beside it
-SCREWS = 8192  # drawn to tell what scatter leaves of the margins
+LOWEST_RATIO = 1.0  # of contact: below it the teeth part
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -276,7 +301,8 @@ class Shifting:
     """Choose the shift of the roller between the ends of ``span``; ``points`` are those of the dense grid.
 
     Box's method with ``vertices``, ``reflection`` and ``spread`` as in the paper; ``ratios`` are further least contact
-    ratios under which the optimum is found, by every reading of the weights.
+    ratios under which the optimum is found, by every reading of the weights. ``probability`` is the share of screws
+    that are to keep every limit, with the tolerances in force, at the shift proposed for them.
     """
 
     span: tuple[float, float] = (-2.0, 3.0)
@@ -285,6 +311,7 @@ class Shifting:
     reflection: float = 1.3
     spread: float = 1e-8
     ratios: tuple[float, ...] = (1.2, 1.4, 1.42)
+    probability: float = 0.99
     name: str = "shift"
     gives: Callable[[Any], Any] | None = None
 
@@ -295,12 +322,14 @@ class Shifting:
             raise TruingError(f"study '{self.name}': points = {self.points}, but a grid has 11 to 1000000")
         if not all(ratio >= 1 for ratio in self.ratios):
             raise TruingError(f"study '{self.name}': ratios are least contact ratios, 1 or more")
+        if not 0.5 <= self.probability <= 0.9999:
+            raise TruingError(f"study '{self.name}': probability = {self.probability:g}, but 0.5 to 0.9999 can be told")
         _ = self.plan  # which refuses what makes no complex
 
     def run(self, bench: Bench) -> "ChosenShift":
         """Find where every limit is kept, the ranges of the objectives there, the weights, and the optimum."""
         pair: Pair = bench.inputs
-        span = (float(self.span[0]), float(self.span[1]))
+        span = self.ends
         ratios = sorted({*self.ratios, float(pair.least_contact_ratio)})
         bench.progress(self.name, 0, _steps(ratios))
         field = field_of(pair, span, self.points)
@@ -322,10 +351,32 @@ class Shifting:
             other=other_optimum(pair, span, self.points),
             variants=tuple(self._variants(bench, ratios, span)),
             factor=stress_factor(field, weights, grid),
-            compared=_compared(bench, field, best),
-            kept=(_kept(bench, float(pair.roller_shift)), _kept(bench, best)),
+            **self._scattered(bench, field, weights, best),
             remarks=remarks,
         )  # fmt: skip
+
+    def _scattered(self, bench: Bench, field: Field, weights: objectives.Three, best: float) -> dict[str, Any]:
+        """Return what scatter leaves of the shifts, the best of them that enough screws keep, and the comparison."""
+        pair: Pair = bench.inputs
+        screws, least = scatter.screws_of(bench), float(pair.least_contact_ratio)
+        wide = field_of(replace(pair, least_contact_ratio=LOWEST_RATIO), self.ends, self.points) or field
+        span = wide.intervals[0].low, wide.intervals[-1].high
+        reached = scatter.ratio_course(screws, span, self.probability, least)
+        robust = robust_optimum(field, weights, scatter.held(screws, reached, self.probability, least))
+        return {
+            "compared": _compared(bench, field, best, robust),
+            "kept": (screws.kept(float(pair.roller_shift)), screws.kept(best)),
+            "robust": robust,
+            "kept_robust": screws.kept(robust) if isfinite(robust) else nan,
+            "probability": self.probability,
+            "wide": wide,
+            "reached": reached,
+        }
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The lowest and the highest shift, as numbers."""
+        return float(self.span[0]), float(self.span[1])
 
     @property
     def plan(self) -> Plan:
@@ -364,18 +415,60 @@ def _steps(ratios: Sequence[float]) -> int:
     return BEFORE + len(ratios) * len(READINGS)
 
 
-def _compared(bench: Bench, field: Field, best: float) -> Mapping[str, Any]:
-    """Geometry, sliding and stresses before, as stated and at the optimum, SI (3,) by name."""
-    at = np.array([before(field), float(bench.inputs.roller_shift), best])
+def _compared(bench: Bench, field: Field, best: float, robust: float) -> Mapping[str, Any]:
+    """Geometry, sliding and stresses before, as stated, at the optimum and at the robust one, SI (n,) by name."""
+    at = np.array([before(field), float(bench.inputs.roller_shift), best, *([robust] if isfinite(robust) else [])])
     found = bench.rows({"roller_shift": at}, len(at), *(name for _, name, *_ in ROWS[1:]))
     return {"roller_shift": at, **found}
 
 
-def _kept(bench: Bench, shift: float) -> float:
-    """The share of screws of this shift that keep every limit, with the tolerances in force."""
-    columns = {**bench.drawn(SCREWS), "roller_shift": np.full(SCREWS, shift)}
-    found = bench.rows(columns, SCREWS, *LIMITS)
-    return float(np.mean(np.all([found[name] >= 0.0 for name in LIMITS], axis=0)))
+def robust_optimum(field: Field, weights: objectives.Three, held: Sequence[tuple[float, float]]) -> float:
+    """Return the best shift of those that are held, by the same weighed sum; NaN where none is."""
+    if not held:
+        return nan
+    shifts = np.unique(np.concatenate([
+        np.ravel(held), *(field.course.shifts[(field.course.shifts > low) & (field.course.shifts < high)]
+                          for low, high in held)]))  # fmt: skip
+    course = objectives.course_of(field.pair, shifts)
+    return float(shifts[int(np.argmin(objectives.total(course.objectives, field.ranges, weights)))])
+
+
+CHARTED = 2001  # shifts of the dense course at which a chart looks
+
+
+def over_ratios(chosen: "ChosenShift", ratios: Array, reading: str, *, robust: bool) -> Array:
+    """Return the optimal shift by the least contact ratio (n,), on a grid; NaN where no shift keeps every limit.
+
+    ``robust``: where so many screws as asked reach that ratio, instead of the nominal pair.
+    """
+    wide = chosen.wide
+    if wide is None or chosen.reached is None:
+        return np.full(len(ratios), nan)
+    course = wide.course
+    places = np.unique(np.linspace(0, len(course.shifts) - 1, CHARTED).astype(int))
+    shifts, values = course.shifts[places], course.objectives[:, places]
+    nominal = course.margins["margin_contact_ratio"][places] + float(wide.pair.least_contact_ratio)
+    reached = chosen.reached.at(shifts) if robust else nominal
+    return np.array([_at_ratio(shifts, values, (nominal >= ratio, reached >= ratio), reading) for ratio in ratios])
+
+
+def _at_ratio(shifts: Array, values: Array, kept: tuple[Array, Array], reading: str) -> float:
+    """Return the best of the shifts that are allowed, the second kept, weighed over the ranges of the first."""
+    nominal, allowed = kept
+    if not np.any(allowed) or np.count_nonzero(nominal) < 2:
+        return nan
+    low, high = values[:, nominal].min(axis=1), values[:, nominal].max(axis=1)
+    first, second, third = zip(low.tolist(), high.tolist(), strict=True)
+    ranges = (first, second, third)
+    costs = objectives.total(values[:, allowed], ranges, objectives.weights_of(reading, ranges))
+    return float(shifts[allowed][int(np.argmin(costs))])
+
+
+def gentlest(field: Field) -> tuple[float, float]:
+    """Return the allowed shift at which the largest sliding on the path is least, on the grid, and that sliding."""
+    found = meshing_of(replace(field.pair, roller_shift=field.course.shifts))
+    place = int(np.argmin(found.largest_sliding))
+    return float(field.course.shifts[place]), float(np.asarray(found.largest_sliding)[place])
 
 
 def before(field: Field) -> float:
@@ -390,7 +483,9 @@ class ChosenShift(Outcome):
 
     Without any shift that keeps every limit ``field`` is None and ``status`` says why. ``equal`` is the shift at which
     both roots slide alike, whatever the limits; ``other`` the optimum by the other reading of the sliding; ``kept`` the
-    shares of screws, as stated and at the optimum, that keep every limit although their parts scatter.
+    shares of screws, as stated and at the optimum, that keep every limit although their parts scatter. ``robust`` is
+    the best shift at which ``probability`` of them do; NaN where there is none. ``wide`` is the field without a
+    limit of the contact ratio, ``reached`` what the screws reach of it.
     """
 
     inputs: Pair
@@ -405,7 +500,12 @@ class ChosenShift(Outcome):
     variants: tuple[Variant, ...] = ()
     factor: float | None = None
     compared: Mapping[str, Any] | None = None
-    kept: tuple[float, float] = (float("nan"), float("nan"))
+    kept: tuple[float, float] = (nan, nan)
+    robust: float = nan
+    kept_robust: float = nan
+    probability: float = nan
+    wide: Field | None = None
+    reached: scatter.RatioCourse | None = None
     remarks: tuple[str, ...] = ()
 
     @property
@@ -436,6 +536,9 @@ class ChosenShift(Outcome):
         entry["other_sliding_reading"] = {"reading": OTHER[self.inputs.sliding_reading], "shift": number(self.other)}
         entry["limits"] = list(self.limits)
         entry["kept"] = {"stated": number(self.kept[0]), "optimum": number(self.kept[1])}
+        entry["robust"] = {
+            "probability": self.probability, "shift": number(self.robust), "kept": number(self.kept_robust)
+        }  # fmt: skip
         entry["stress_factor"] = self.factor
         entry["variants"] = [vars(each) for each in self.variants]
         return entry
@@ -490,6 +593,7 @@ ROWS: tuple[tuple[str, str, str, float], ...] = (
     ("root stress of the ring, nominal", "nominal_stress_ring", "MPa", 1 / objectives.MEGA),
     ("specific sliding of the roller, largest", "sliding_roller", "", 1.0),
     ("specific sliding of the ring, largest", "sliding_ring", "", 1.0),
+    ("specific sliding, largest on the path", "largest_sliding", "", 1.0),
     ("sum of the shifts", "shift_sum", "", 1.0),
     ("difference of the root stresses", "stress_difference", "MPa", 1 / objectives.MEGA),
     ("difference of specific sliding", "sliding_difference", "", 1.0),
@@ -549,7 +653,10 @@ def compared_table(chosen: "ChosenShift", field: "Field") -> Table:
         if key in compared
     ]
     first = "no shift" if before(field) == 0.0 else "nearest to no shift"
-    return Table("Before and after", ("", "unit", f"{first} of the roller", "as stated", "optimum"), rows)
+    columns = ["", "unit", f"{first} of the roller", "as stated", "optimum"]
+    if isfinite(chosen.robust):
+        columns.append(f"kept by {100 * chosen.probability:g} %")
+    return Table("Before and after", tuple(columns), rows)
 
 
 def optimum_words(chosen: "ChosenShift", field: "Field") -> "list[Block]":
@@ -594,10 +701,15 @@ def _scatter_words(chosen: "ChosenShift") -> str:
     words = (
         f"With the tolerances in force {stated} of the screws keep every limit as stated, and {best} at the optimum."
     )
-    if chosen.limits and chosen.kept[1] < 0.999:
-        words += (
-            " An optimum that stands at a limit leaves nothing for scatter: stay away from it by what the parts need."
-        )
+    asked = f"{100 * chosen.probability:g} %"
+    if not isfinite(chosen.robust):
+        return words + f" There is no shift at which {asked} of them do."
+    if chosen.limits and chosen.kept[1] < chosen.probability:
+        words += " An optimum that stands at a limit leaves nothing for scatter."
+    words += (
+        f" The best shift at which {asked} do is {signed(chosen.robust)} for the roller, "
+        f"{signed(chosen.robust - chosen.shift)} beside the optimum."
+    )
     return words
 
 
@@ -632,6 +744,7 @@ def signed(value: float, digits: str = ".4f") -> str:
 KEPT = "over all shifts that keep every limit"
 RULE = "one over the square of half the range; or as the input weights states"
 BOX = "Box's complex method on the weighed sum"
+HELD_BY = "the weighed sum among shifts that enough of the screws drawn keep"
 DRAWN = "8192 screws drawn from the tolerances in force"
 
 
@@ -679,6 +792,16 @@ class ShiftChoice:
                                   method=DRAWN)  # fmt: skip
     kept_at_optimum: Float = found("%", symbol="n_opt", note="screws of the optimal shift that keep every limit",
                                    method=DRAWN)  # fmt: skip
+    robust_shift_roller: Float = found("", symbol="x_E,P", note="best shift of the roller at which as many screws keep "
+                                       "every limit as asked", method=HELD_BY, key=True)  # fmt: skip
+    robust_shift_ring: Float = found("", symbol="x_I,P", note="shift of the ring there", method="no backlash")
+    robust_contact_ratio: Float = found("", symbol="epsilon_P", note="contact ratio there, of the nominal pair",
+                                        method=HELD_BY)  # fmt: skip
+    kept_at_robust: Float = found("%", symbol="n_P", note="screws of that shift that keep every limit",
+                                  method=DRAWN)  # fmt: skip
+    gentlest_shift: Float = found("", symbol="x_E,s", note="shift of the roller at which the largest sliding on the "
+                                  "path is least", method="dense grid")  # fmt: skip
+    gentlest_sliding: Float = found("", symbol="eta_s", note="that sliding", method="dense grid")
     grid_shift: Float = found("", symbol="x_E,grid", note="optimal shift of the roller on a dense grid",
                               method="a check of Box's method")  # fmt: skip
     grid_distance: Float = found("", symbol="Delta x_grid", note="between both optima", method="magnitude")
@@ -714,6 +837,7 @@ def choice(chosen: ChosenShift) -> ShiftChoice:
         limit_distance=max(min(chosen.shift - part.low, part.high - chosen.shift), 0.0),
         kept_as_stated=chosen.kept[0],
         kept_at_optimum=chosen.kept[1],
+        **_robust(chosen, field, difference),
         grid_shift=chosen.grid,
         grid_distance=nan if chosen.box is None else abs(chosen.shift - chosen.grid),
         evaluations=nan if chosen.box is None else float(chosen.box.evaluations),
@@ -733,4 +857,20 @@ def _optimum(chosen: ChosenShift, difference: float) -> dict[str, float]:
         "optimal_contact_ratio": float(at.margins["margin_contact_ratio"][0])
         + float(chosen.inputs.least_contact_ratio),
         "optimal_margin": min(float(margin[0]) for margin in at.margins.values()),
+    }
+
+
+def _robust(chosen: ChosenShift, field: Field, difference: float) -> dict[str, float]:
+    """The numbers of the shift that scatter leaves, and of the one that slides least."""
+    margin = nan
+    if isfinite(chosen.robust):
+        margin = float(objectives.course_of(field.pair, np.array([chosen.robust])).margins["margin_contact_ratio"][0])
+    shift, sliding = gentlest(field)
+    return {
+        "robust_shift_roller": chosen.robust,
+        "robust_shift_ring": chosen.robust + difference,
+        "robust_contact_ratio": margin + float(chosen.inputs.least_contact_ratio),
+        "kept_at_robust": chosen.kept_robust,
+        "gentlest_shift": shift,
+        "gentlest_sliding": sliding,
     }

@@ -15,6 +15,7 @@ SET = "Table 1 of the paper is lost; one self-consistent set"
 STUB = "Table 1 of the paper is lost; the tip of the roller must not exceed the crest of its thread"
 CALIBRATED_SHIFTS = "Table 1 of the paper is lost; chosen so that both printed shifts mesh without backlash"
 CALIBRATED_LOAD = "chosen so that the largest difference of the root stresses is the printed 33.2 MPa"
+USUAL = "usual of roller screws"
 LOST_LIMIT = "the limit in equation 8 is lost; 1.2 is the common alternative"
 LARGEST = 10000.0  # mm: a size above it was meant in another unit
 
@@ -31,8 +32,28 @@ class Pair:
     # The screw
     screw_diameter: Float = size(30.0, "d_s", "pitch diameter of the thread of the screw")
     roller_diameter: Float = size(10.0, "d_r", "pitch diameter of the thread of a roller")
-    lead: Float = size(10.0, "l", "lead of the screw; acts with effects only")
+    lead: Float = size(10.0, "l", "lead of screw and nut")
     rollers: int = given(10, symbol="n_r", note="rollers that share the load", source=SET, at_least=1, at_most=100)
+    # The threads
+    starts: int = given(5, symbol="N", note="starts of the threads of screw and nut; the roller has one", source=SET,
+                        at_least=1, at_most=50)  # fmt: skip
+    thread_turns: int = given(20, symbol="n_t", note="threads of a roller that touch screw and nut", source=SET,
+                              at_least=2, at_most=500)  # fmt: skip
+    nut_diameter: Float = given(None, "mm", symbol="d_n", note="pitch diameter of the thread of the nut; else the one "
+                                "that fits screw and rollers", above=0, below=LARGEST)  # fmt: skip
+    contact_angle: Float = given(45.0, "deg", symbol="beta", note="of the flanks, from the plane across the axis to "
+                                 "their normal", source=USUAL, above=15, below=80)  # fmt: skip
+    profile_radius: Float = given(None, "mm", symbol="R", note="of the flank of the roller; else that of a ball about "
+                                  "its axis", above=0, below=LARGEST)  # fmt: skip
+    screw_bore: Float = given(0.0, "mm", symbol="d_b", note="bore of the screw", at_least=0, below=LARGEST)
+    nut_outside: Float = size(72.0, "D_n", "outer diameter of the nut")
+    support: Literal["same_side", "far_side"] = given(
+        "same_side", note="where the nut is held: at the end at which the screw is loaded, or at the other one",
+    )  # fmt: skip
+    elastic_modulus: Float = given(208.0, "GPa", symbol="E_m", note="of screw, rollers and nut", source="bearing steel",
+                                   above=0)  # fmt: skip
+    poisson: Float = given(0.3, "", symbol="nu", note="of screw, rollers and nut", source="steel", at_least=0,
+                           below=0.5)  # fmt: skip
     # The pair
     pressure_angle: Float = given(20.0, "deg", symbol="alpha", note="of the rack", source=PAPER, above=10, below=30)
     roller_teeth: Float = given(20.0, "", symbol="z_E", note="teeth of the roller", source=SET, at_least=8,
@@ -68,6 +89,9 @@ class Pair:
     mesh_stiffness: Float = given(14.0, "N/(mm*um)", symbol="c_gamma", note="mesh stiffness per face width; acts with "
                                   "effects only", source="ISO 6336-1: about 14 for steel", above=0)  # fmt: skip
     # What is asked, and how it is weighed
+    most_pressure: Float = given(4000.0, "MPa", symbol="p_max", note="largest pressure of the threads; beyond it they "
+                                 "are dented by more than 1e-4 of a ball", source="usual for balls, by analogy",
+                                 above=0)  # fmt: skip
     least_contact_ratio: Float = given(1.4, "", symbol="epsilon_min", note="least contact ratio", source=LOST_LIMIT,
                                        at_least=1, at_most=3)  # fmt: skip
     interference_margin: Float = given(0.05, "rad", symbol="G_min", note="least margin against interference of the "
@@ -90,6 +114,10 @@ class Pair:
         "from the ranges that it prints, or as it prints them",
     )
     # Neutral inputs: effects reach the calculation through them
+    thread_compliance: Float = given(0.0, "um/kN", symbol="c_t", note="neutral 0: what a thread gives way beside its "
+                                     "contact, screw and roller or roller and nut", at_least=0)  # fmt: skip
+    roller_pitch_deviation: Float = given(0.0, "um", symbol="Delta p", note="neutral 0: pitch of the rollers over that "
+                                          "of screw and nut", at_least=-100, at_most=100)  # fmt: skip
     face_load_factor: Float = given(1.0, "", symbol="K_Hbeta", note="neutral 1: uneven load along the face", above=0)
     dynamic_factor: Float = given(1.0, "", symbol="K_V", note="neutral 1: load in motion over load at rest", above=0)
     sharing_factor: Float = given(1.0, "", symbol="K_gamma", note="neutral 1: load of this roller over the mean",
@@ -114,6 +142,11 @@ SUBSTITUTE = "GB/T 3480-1997: the tooth of a substitute rack, load at the tip"
 ENVELOPE = "ISO 6336-3: envelope of the rounded tip of the cutter, tangent of 60°, load at the tip"
 CUT = "0 without a cutter; else of the ring as cut: "
 RULE = "common design rule"
+NETWORK = "bars between springs, Newton's method"
+HERTZ = "ellipse of Hertz under the thread that is loaded most"
+WEAKEST_LINK = "lives of all threads by Weibull's weakest link, slope 10/9"
+ANALOGY = "ISO 3408-5 and ISO 281 for balls, by analogy: every thread of a roller as a ball about its axis"
+ROLLING = "kinematics of the screw with its nut at rest"
 
 
 @results
@@ -226,6 +259,11 @@ class Meshing:
                                 note="specific sliding of the ring that counts, its largest on the path of contact",
                                 formula="max(root_sliding_ring, tips_count * tip_sliding_ring)",
                                 source="sliding changes in one direction along the path")  # fmt: skip
+    largest_sliding: Float = found(
+        "", symbol="eta_max", note="largest specific sliding of either gear on the path of contact, by any reading",
+        formula="max(root_sliding_roller, tip_sliding_roller, root_sliding_ring, tip_sliding_ring)",
+        source="sliding changes in one direction along the path", key=True,
+    )  # fmt: skip
     ring_meshes: Float = found(
         "", symbol="n_I/n_E", note="meshes of a tooth of the ring while one of a roller meshes once; decides how fast "
         "either wears", formula="rollers * roller_teeth / ring_teeth", source="counts of teeth",
@@ -380,6 +418,83 @@ class Meshing:
     margin_sliding: Float = found("", symbol="g_10", note="difference of sliding under the largest",
                                   formula="most_sliding_difference - sliding_difference",
                                   source="keeps the range of the third objective finite")  # fmt: skip
+    # Threads
+    pitch: Float = found("mm", symbol="p", note="from thread to thread; the lead of the roller",
+                         formula="lead / starts")  # fmt: skip
+    helix_angle: Float = found("deg", symbol="lambda", note="lead angle of the screw",
+                               formula="atan(lead / (pi * screw_diameter))")  # fmt: skip
+    mean_thread_force: Float = found(
+        "N", symbol="Q_m", note="normal force of a thread at the mean", source="balance along the axis",
+        formula="abs(axial_load) / (rollers * thread_turns * sin(contact_angle) * cos(helix_angle))",
+    )  # fmt: skip
+    thread_share_screw: Float = found("", symbol="kappa_S", note="largest load of a thread over the mean, at the screw",
+                                      method=NETWORK)  # fmt: skip
+    thread_share_nut: Float = found("", symbol="kappa_N", note="largest load of a thread over the mean, at the nut",
+                                    method=NETWORK)  # fmt: skip
+    thread_pressure_screw: Float = found("MPa", symbol="p_S", note="largest pressure between screw and roller",
+                                         method=HERTZ)  # fmt: skip
+    thread_pressure_nut: Float = found("MPa", symbol="p_N", note="largest pressure between roller and nut",
+                                       method=HERTZ)  # fmt: skip
+    margin_pressure: Float = found(
+        "", symbol="g_p", note="largest pressure under the one permitted, as a share",
+        source="static limit of balls, by analogy",
+        formula="1 - max(thread_pressure_screw, thread_pressure_nut) / most_pressure",
+    )  # fmt: skip
+    thread_deflection: Float = found("um", symbol="delta_a", note="way of the screw at its loaded end against the held "
+                                     "end of the nut", method=NETWORK)  # fmt: skip
+    axial_stiffness: Float = found("N/um", symbol="k_a", note="axial load over that way; of the engaged threads and "
+                                   "bodies", method=NETWORK, key=True)  # fmt: skip
+    life_factor_screw: Float = found("", symbol="K_S", note="load that tires threads that share alike as fast, over "
+                                     "the load: in the screw", method=WEAKEST_LINK)  # fmt: skip
+    life_factor_nut: Float = found("", symbol="K_N", note="the same in the nut", method=WEAKEST_LINK)
+    curvature_ratio: Float = found("", symbol="gamma", note="ball of the roller over the circle of its centres, times "
+                                   "the cosine", formula="roller_diameter / (screw_diameter + roller_diameter)",
+                                   source=ANALOGY)  # fmt: skip
+    ball_diameter: Float = found("mm", symbol="D", note="of the ball that a thread of the roller stands for",
+                                 formula="roller_diameter / cos(contact_angle)", source=ANALOGY)  # fmt: skip
+    screw_rating: Float = found(
+        "kN", symbol="C_s", note="dynamic rating of one thread of all rollers on the screw", source=ANALOGY,
+        numeric=True,
+        formula="1e-3 * 88.2 * (1 - sin(contact_angle * pi / 180) / 3) * curvature_ratio**0.3"
+        " * (1 - curvature_ratio)**1.39 / (1 + curvature_ratio)**(1 / 3) * cos(contact_angle * pi / 180)**0.7"
+        " * rollers**(2 / 3) * cases(3.647 * ball_diameter**1.4, ball_diameter > 25.4, ball_diameter**1.8)"
+        " * tan(contact_angle * pi / 180) * cos(helix_angle * pi / 180)",
+    )  # fmt: skip
+    nut_rating: Float = found(
+        "kN", symbol="C_n", note="dynamic rating of one thread of all rollers in the nut", source=ANALOGY,
+        formula="screw_rating * ((1 + curvature_ratio) / (1 - curvature_ratio))**1.72",
+    )  # fmt: skip
+    dynamic_rating: Float = found(
+        "kN", symbol="C_a", note="dynamic axial load rating of threads that share alike", source=ANALOGY, key=True,
+        formula="screw_rating * (1 + (screw_rating / nut_rating)**(10 / 3))**(-0.3) * thread_turns**0.7",
+    )  # fmt: skip
+    acting_load: Float = found("kN", symbol="F", note="magnitude of the axial load, at least 1 mN",
+                               method="keeps life and stiffness finite")  # fmt: skip
+    thread_life: Float = found(
+        "", symbol="L_10", note="turns of the screw that nine of ten outlive, with the threads sharing as they do",
+        formula="1e6 * (thread_turns**0.7 / acting_load * ((life_factor_screw / screw_rating)**(10 / 3)"
+        " + (life_factor_nut / nut_rating)**(10 / 3))**(-0.3))**3", source=ANALOGY, key=True,
+    )  # fmt: skip
+    # Ratio of threads and teeth
+    nut_pitch_diameter: Float = found("mm", symbol="d_N", note="pitch diameter of the nut, as stated or as it fits",
+                                      formula="cases(nut_diameter, nut_diameter > 0,"
+                                      " screw_diameter + 2 * roller_diameter)")  # fmt: skip
+    ratio_mismatch: Float = found(
+        "", symbol="Delta_i", note="ratio of the threads over that of the teeth, less 1", source=ROLLING,
+        formula="nut_pitch_diameter * roller_teeth / (roller_diameter * ring_teeth) - 1",
+    )  # fmt: skip
+    slip_per_turn: Float = found(
+        "um", symbol="s_N", note="slip around of a roller in the nut per turn of the screw: the teeth lead, the "
+        "thread of the screw rolls", source=ROLLING,
+        formula="pi * (nut_pitch_diameter - roller_diameter * ring_teeth / roller_teeth) * screw_diameter"
+        " / (screw_diameter + roller_diameter * ring_teeth / roller_teeth)",
+    )  # fmt: skip
+    migration_per_turn: Float = found(
+        "um", symbol="s_z", note="creep of a roller along the nut per turn of the screw; 0 with as many starts as the "
+        "ratio of the teeth", source=ROLLING,
+        formula="(lead - pitch * ring_teeth / roller_teeth) * screw_diameter"
+        " / (screw_diameter + roller_diameter * ring_teeth / roller_teeth)",
+    )  # fmt: skip
     # What effects act on
     transmission_error: Float = found("um", symbol="TE", note="along the line of action", method=BASE)
     wear_depth: Float = found("um", symbol="h", note="wear of the roller where it is deepest", method=BASE)

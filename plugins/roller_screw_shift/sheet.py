@@ -29,6 +29,15 @@ SLIDING = (
     "centre distance; the shift moves the ends of the path along them. Marks: root of the roller (left) and of "
     "the ring (right), each where the tip of the other gear meets it; the objective compares their magnitudes."
 )
+RATIOS = (
+    "Above: the optimal shift over the least contact ratio, by every reading of the weights; dashed: the best one that "
+    "as many screws keep as asked. Below: the largest sliding on the path at these shifts. Where the lines meet, "
+    "the limit decides; where they part, the weights do."
+)
+SHARES = (
+    "Load of each thread of a roller over the mean, from the end at which the screw is loaded. Dashed: with the nut "
+    "held at the other end."
+)
 PLANES = (
     "With one variable the front of the three objectives is a line. Where the stresses differ least (left) the sum is "
     "small and sliding is uneven; weights choose a place on the line."
@@ -65,6 +74,11 @@ def sliding(record: figures.PairRun) -> "Sequence[Block]":
     return [Drawing("Sliding along the path of contact", partial(figures.sliding_figure, pair, shown), SLIDING)]
 
 
+def threads(record: figures.PairRun) -> "Sequence[Block]":
+    """How the threads share the load."""
+    return [Drawing("Load of the threads", partial(figures.threads_figure, record.acting), SHARES)]
+
+
 def limits(record: figures.PairRun) -> "Sequence[Block]":
     """Which shifts keep every limit."""
     chosen = record.outcome(optimum.ChosenShift)
@@ -92,6 +106,7 @@ def choice(record: figures.PairRun) -> "Sequence[Block]":
         Drawing("Objectives over the shift", partial(figures.objectives_figure, chosen), caption),
         *optimum.optimum_words(chosen, chosen.field),
         optimum.compared_table(chosen, chosen.field),
+        Drawing("The optimum by the contact ratio asked for", partial(figures.ratios_figure, chosen), RATIOS),
     ]
 
 
@@ -141,11 +156,27 @@ SECTIONS = [
     Section(
         "Sliding of the flanks",
         "root_sliding_roller", "tip_sliding_roller", "tips_count", "sliding_roller", "root_sliding_ring",
-        "tip_sliding_ring", "sliding_ring", "ring_meshes",
+        "tip_sliding_ring", "sliding_ring", "largest_sliding", "ring_meshes",
         text="At each end of the path of contact the root of one gear meets the tip of the other, and there the flanks "
         "slide most for the way they roll: usually at the roots, but at the tip where the path begins near the pitch "
         "point or beyond it. The largest of the path counts.",
         blocks=sliding,
+    ),
+    Section(
+        "Threads under the load",
+        *DECLARED[DECLARED.index("pitch") : DECLARED.index("nut_pitch_diameter")],
+        text="Screw, rollers and nut are bars, every thread a Hertzian contact with the screw and one with the nut. "
+        "The deflection is that of the engaged threads and bodies alone. There is no standard of roller screws: life "
+        "is told by analogy with ball screws, as in ISO 3408-5, from the rating of thrust ball bearings in ISO 281, "
+        "with every thread of a roller as a ball about its axis; what unequal sharing costs is told by the weakest "
+        "link.",
+        blocks=threads,
+    ),
+    Section(
+        "Threads against teeth",
+        *DECLARED[DECLARED.index("nut_pitch_diameter") : DECLARED.index("transmission_error")],
+        text="The teeth hold a roller to their ratio. Where the pitch diameters of the threads have another, the "
+        "roller slips around in the nut; where the starts have another, it creeps along.",
     ),
     Section(
         "Limits of the shift",
@@ -157,7 +188,8 @@ SECTIONS = [
     Section(
         "The best shift",
         "shift_sum", "stress_difference", "sliding_difference", "optimal_shift_roller", "optimal_shift_ring",
-        "optimal_contact_ratio", "limit_distance", "kept_as_stated", "kept_at_optimum",
+        "optimal_contact_ratio", "limit_distance", "kept_as_stated", "kept_at_optimum", "robust_shift_roller",
+        "robust_shift_ring", "robust_contact_ratio", "kept_at_robust", "gentlest_shift", "gentlest_sliding",
         text="As in the paper: each objective is brought to 0 to 1 over its range, all are weighed and added, and "
         "Box's complex method with nine vertices looks for the least sum. A dense grid checks it.",
         blocks=choice,

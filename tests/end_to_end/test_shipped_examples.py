@@ -58,7 +58,7 @@ def test_the_strength_of_all_groups_as_cases(tmp_path: Path) -> None:
 def test_no_design_of_the_front_of_the_roller_screw_beats_another(tmp_path: Path) -> None:
     """A large sum is bought with a difference of the stresses."""
     found = example("roller_screw_shift", tmp_path, optimise__population=16, optimise__generations=6)
-    assert len(found["checks"]) == 11
+    assert len(found["checks"]) == 12
     assert found["results"]["optimal_shift_roller"]["value"] == pytest.approx(0.2525, abs=2e-3)
     assert found["studies"]["shift"]["limits"] == ["margin_contact_ratio"]
     front = found["studies"]["optimise"]["front"]

@@ -2,7 +2,8 @@
 
 Nothing of the plugin is imported. Lengths are mm, errors um, forces N, stresses MPa, times h. Loads are shared between
 slices of a face, and between rollers, by halving intervals until they balance; wear is added up place by place of the
-path; friction is integrated along it; backlash is what is left between tooth and space.
+path; friction is integrated along it; backlash is what is left between tooth and space. Threads press as the integrals
+of Hertz say, and find their loads in turns with what the bodies stretch.
 """
 
 from collections.abc import Mapping
@@ -97,6 +98,75 @@ def bearing_share(rows: Rows, hidden: Hidden) -> Array:
     """Share of the face that carries; the groove leaves the mesh a little faster than a cosine would."""
     angle = np.radians(ROLLER_TURNS * rows.screw_angle - of(hidden, "interrupted_tooth", "phase"))
     return np.asarray(1 - of(hidden, "interrupted_tooth", "lost") * ((1 + np.cos(angle)) / 2) ** 1.05)
+
+
+# Threads
+
+THREADS, PITCH, NUT, WALL = 20, 2.0, 50.0, 72.0
+YOUNG, SLANT = 208e3, cos(pi / 4)  # N/mm²
+FORCES = np.concatenate([[0.0], np.geomspace(1e-7, 2e5, 60_000)])  # N, on one thread
+
+
+def pressing(one: float, other: float) -> Array:
+    """Approach of two bodies by normal forces, mm: the axes at which the integrals of Hertz fit both curvatures, 1/mm.
+
+    The half space gives way by the integral of 1/D over a quarter turn, D = hypot(cos, k sin), and bends by those of
+    (k sin)²/D and cos²/D.
+    """
+    angle = (np.arange(4000) + 0.5) * pi / 8000
+
+    def bent(share: Array | float) -> tuple[Array, Array, Array]:
+        root = np.hypot(np.cos(angle), share * np.sin(angle))
+        shapes = np.ones_like(angle), (share * np.sin(angle)) ** 2, np.cos(angle) ** 2
+        whole, flat, steep = (np.asarray((shape / root).mean() * pi / 2) for shape in shapes)
+        return whole, flat, steep
+
+    def ratio(share: Array) -> Array:
+        _, flat, steep = bent(share)
+        return np.asarray(flat / steep)
+
+    low, high = min(one, other), max(one, other)
+    share = halved(lambda k: ratio(k) > low / high, np.array(1e-3), np.array(1.0))
+    whole, _, steep = bent(share)
+    half_width = np.cbrt(3 * FORCES * share * steep / (pi * YOUNG / (2 * (1 - 0.09)) * high))
+    return np.asarray(
+        1.5 * FORCES * share * whole / (pi * YOUNG / (2 * (1 - 0.09)) * np.where(half_width, half_width, 1))
+    )
+
+
+def shared(ways: Array, laws: Array, load: Array) -> tuple[Array, Array]:
+    """Loads of threads, N, that stand by ``ways`` (n, k) apart, mm, and how far the bodies come together for that."""
+
+    def each(near: Array) -> Array:
+        return np.asarray(np.interp(near + ways, laws, FORCES))
+
+    ends = np.full_like(load, -0.2), np.full_like(load, 2.0)
+    near = halved(lambda to: each(to).sum(axis=1, keepdims=True) > load, *ends, 44)
+    return each(near), near
+
+
+def giving_way(rows: Rows, hidden: Hidden) -> Array:
+    """Way of the screw against the nut, um, under the axial load, from where the first threads touch."""
+    load = np.maximum(1e3 * np.abs(rows.axial_load), 1e-3)[:, None] / ROLLERS
+    along = SLANT / np.hypot(1.0, LEAD / (pi * 30.0))
+    soft = 1e-6 * of(hidden, "soft_threads", "compliance") * FORCES
+    on_screw, on_nut = (
+        np.interp(FORCES / along, FORCES, pressing(2 * SLANT / 10, 2 * SLANT * (1 / 10 + sign / size))) / along + soft
+        for sign, size in ((1, 30.0), (-1, NUT))
+    )
+    areas = (30.0**2 / ROLLERS, 10.0**2, (WALL**2 - NUT**2) / ROLLERS)
+    soft_bars = [PITCH / (YOUNG * pi / 4 * area) for area in areas]
+    ahead = 1e-3 * of(hidden, "roller_pitch_error", "deviation") * (np.arange(THREADS) - (THREADS - 1) / 2)
+    screw = nut = np.broadcast_to(load / THREADS, (len(rows), THREADS))
+    together = np.zeros(len(rows))
+    for _ in range(14):
+        behind = (load - np.cumsum(screw, axis=1), np.cumsum(nut - screw, axis=1), load - np.cumsum(nut, axis=1))
+        bodies = [soft_bar * np.cumsum(np.pad(force[:, :-1], ((0, 0), (1, 0))), axis=1)
+                  for soft_bar, force in zip(soft_bars, behind, strict=True)]  # fmt: skip
+        screw, near = shared(-bodies[0] - bodies[1] - ahead, on_screw, load)
+        nut, far = shared(bodies[1] - bodies[2] + ahead, on_nut, load)
+        together = (near + far)[:, 0]
+    return np.where(rows.axial_load == 0.0, 0.0, 1e3 * (together + 2 * np.abs(ahead[0])))
 
 
 # Geometry
@@ -227,6 +297,7 @@ def shown(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> dict[str, Arr
         "transmission_error": error(rows, hidden),
         "wear_depth": depth,
         "axial_shift": creep(rows, hidden),
+        "thread_deflection": giving_way(rows, hidden),
         "friction_torque": friction(rows, off, hidden),
         "backlash": play(rows, off, hidden) + gap / np.cos(mounted(rows, off, hidden)[1]),
     }
@@ -237,9 +308,19 @@ def shown(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> dict[str, Arr
 
 ROLLER, RING, ERROR = "root_stress_roller", "root_stress_ring", "transmission_error"
 WEAR, AXIAL, TORQUE, BACKLASH = "wear_depth", "axial_shift", "friction_torque", "backlash"
+DEFLECTION = "thread_deflection"
 STRESSES = (ROLLER, RING)
-UNIT = {ROLLER: "MPa", RING: "MPa", ERROR: "um", WEAR: "um", AXIAL: "um", TORQUE: "N*m", BACKLASH: "um"}
-NOISE = {ROLLER: 1.5, RING: 2.0, ERROR: 0.5, WEAR: 0.1, AXIAL: 2.0, TORQUE: 5e-4, BACKLASH: 0.4}
+UNIT = {
+    DEFLECTION: "um",
+    ROLLER: "MPa",
+    RING: "MPa",
+    ERROR: "um",
+    WEAR: "um",
+    AXIAL: "um",
+    TORQUE: "N*m",
+    BACKLASH: "um",
+}
+NOISE = {DEFLECTION: 0.1, ROLLER: 1.5, RING: 2.0, ERROR: 0.5, WEAR: 0.1, AXIAL: 2.0, TORQUE: 5e-4, BACKLASH: 0.4}
 LOADS: Mapping[str, tuple[float, float]] = {"bench": (2.0, 20.0), "loaded": (12.0, 20.0), "endurance": (5.0, 20.0)}
 
 

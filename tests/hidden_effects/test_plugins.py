@@ -20,7 +20,7 @@ from hidden_effects.harmonic_surface import STRUCTURE, surface
 from hidden_effects.rigs import Wish, demand_named
 from hidden_effects.rows import Array
 from hidden_effects.rv_machine import WEAR, reducer
-from hidden_effects.screw_machine import ROLLER, TORQUE, screw
+from hidden_effects.screw_machine import DEFLECTION, ROLLER, TORQUE, screw
 from truing.diagnosis.result import APART
 
 
@@ -55,6 +55,7 @@ NAMED = [
     reducer(seed=15, hidden={"runout": {"offset": 1.2, "direction": 310}}, kind="autocorrelated"),
     TILTED_ROLLER,
     screw(seed=7, hidden={"mesh_resonance": RESONANCE}, results=(ROLLER,), count=120),
+    screw(seed=11, hidden={"roller_pitch_error": {"deviation": 0.2}}, results=(DEFLECTION,), count=40),
     drive(
         seed=31,
         hidden={"hysteresis": {"loop": 200, "torque_scale": 0.16}, "eccentricity": {"cosine": -12, "sine": 16}},

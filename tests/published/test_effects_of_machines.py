@@ -168,6 +168,9 @@ SCREWS: list[tuple[Unknowns, float]] = [
     ({"roller_load_sharing": {"lead": -0.4}}, SLOPE),  # it lifts off under small loads
     ({"interrupted_tooth": {"lost": 0.3, "phase": 300}}, HARMONIC),
     ({"rim_compliance": {"softness": 0.6}}, SLOPE),
+    ({"soft_threads": {"compliance": 20.0}}, SLOPE),
+    ({"roller_pitch_error": {"deviation": 0.3}}, SLOPE),
+    ({"roller_pitch_error": {"deviation": 0.1}, "soft_threads": {"compliance": 1.0}}, SLOPE),
     ({"thermal_centre_distance": {"expansion": 11.5}}, EXACT),
     ({"roller_runout": {"cosine": 3, "sine": -2}}, SUMMED),
     ({"carrier_runout": {"cosine": 3, "sine": -2}}, SUMMED),

@@ -10,7 +10,7 @@ from traced_gears import ALPHA, Flanks, line_of_action_meets, swept_root
 
 from gear_geometry.roots import Cutter, cut_ring_arm, cut_ring_root, form_factor, stress_correction
 from roller_screw_shift import objectives
-from roller_screw_shift.calculation import MARGINS, meshing_of, undercut_limit
+from roller_screw_shift.calculation import MARGINS, OF_THREADS, meshing_of, undercut_limit
 from roller_screw_shift.geometry import geometry_of
 from roller_screw_shift.model import ROLLER_SCREW_SHIFT
 from roller_screw_shift.objectives import normalised
@@ -80,7 +80,7 @@ def test_a_ring_that_a_cutter_makes(teeth: float, shift: float, addendum: float 
     assert float(answer.root_stress_ring) / 1e6 == pytest.approx(float(expected), rel=1e-12)
     values = {**ROLLER_SCREW_SHIFT.read_inputs(pair), **ROLLER_SCREW_SHIFT.read_results(answer)}
     for name, item in ROLLER_SCREW_SHIFT.own_result_fields.items():
-        if text := getattr(item.spec, "formula", ""):
+        if (text := getattr(item.spec, "formula", "")) and not item.spec.numeric:
             missed = evaluate(parse(text), values)
             wanted = 0.0 if parse(text).left is not None else float(values[name])
             assert missed == pytest.approx(wanted, rel=1e-9, abs=1e-12), name
@@ -113,7 +113,13 @@ def test_no_load_gives_no_stress_and_all_else_as_before() -> None:
     loaded, idle = answer_of(pair_of()), answer_of(pair_of(axial_load=0.0))
     stresses = {each.name for each in fields(loaded) if "stress_r" in each.name or each.name == "nominal_stress_ring"}
     stresses |= {"nominal_stress_roller", "stress_difference", "tangential_force"}
+    stresses |= {"mean_thread_force", "thread_deflection"}
+    least = {name for name in OF_THREADS if "thread_" in name or "life" in name} - stresses  # of 1 mN
+    least |= {"margin_pressure", "axial_stiffness", "acting_load"}
     for each in fields(loaded):
+        if each.name in least:
+            assert np.isfinite(getattr(idle, each.name))
+            continue
         changes = each.name in stresses and "correction" not in each.name
         assert float(getattr(idle, each.name)) == (0.0 if changes else float(getattr(loaded, each.name)))
 

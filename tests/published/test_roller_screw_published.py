@@ -18,7 +18,7 @@ from drawn import words
 from roller_screw_shift import sheet
 from roller_screw_shift.model import MARGINS, ROLLER_SCREW_SHIFT
 from roller_screw_shift.objectives import equal_sliding, intervals_of, weights_of
-from roller_screw_shift.optimum import READINGS, Field, Plan, Shifting, box_optimum, field_of, grid_optimum
+from roller_screw_shift.optimum import READINGS, Field, Plan, Shifting, box_optimum, field_of, grid_optimum, over_ratios
 from roller_screw_shift.published import FINDINGS
 from roller_screw_shift.quantities import Pair
 from truing import Table, TruingError
@@ -286,11 +286,85 @@ def test_an_optimum_at_a_limit_leaves_nothing_for_scatter() -> None:
         ({"span": (1.0, 1.0)}, "lowest and the highest"), ({"points": 5}, "points = 5"),
         ({"ratios": (0.9,)}, "least contact ratios"), ({"vertices": 2}, "vertices = 2"),
         ({"reflection": 0.5}, "reflection"), ({"spread": -1.0}, "spread"),
+        ({"probability": 0.3}, "probability = 0.3"), ({"probability": 1.0}, "probability = 1"),
     ],
 )  # fmt: skip
 def test_options_that_make_no_sense_are_refused(options: dict[str, Any], said: str) -> None:
     with pytest.raises(TruingError, match=said):
         Shifting(**options)
+
+
+# The shift that scatter leaves
+
+
+def mounted_ratio(shift: float, deviation: float) -> float:
+    """Contact ratio of a pair made for CENTRES and mounted ``deviation`` mm farther apart."""
+    working = acos(0.5 * MODULE * (RING - ROLLER) * cos(ALPHA) / (CENTRES + deviation))
+    ring = by_hand(shift)["ring"]
+    tip = acos(0.5 * ROLLER * cos(ALPHA) / (0.5 * ROLLER + ADDENDUM + shift))
+    ring_tip = acos(0.5 * RING * cos(ALPHA) / (0.5 * RING - ADDENDUM + ring))
+    return (ROLLER * (tan(tip) - tan(working)) - RING * (tan(ring_tip) - tan(working))) / (2 * pi)
+
+
+@pytest.mark.parametrize("probability", [0.9, 0.99])
+def test_the_robust_shift_is_where_the_quantile_of_the_centres_keeps_the_ratio(probability: float) -> None:
+    """Centres of ±10 um, six standard deviations: the ratio falls with one sense, so its quantile is that of them."""
+    done = run(study=Shifting(points=POINTS, ratios=(), probability=probability, gives=GIVES))
+    sense = np.sign(mounted_ratio(0.21, -1e-3) - mounted_ratio(0.21, 1e-3))
+    spread = sense * 10e-3 / 3
+
+    def shift(quantile: float) -> float:
+        return float(brentq(lambda at: mounted_ratio(at, quantile * spread) - 1.4, -0.2, 0.4, xtol=1e-14))
+
+    wanted = shift(NormalDist().inv_cdf(probability))
+    error = sqrt(probability * (1 - probability) / 8192)  # of a share; four of them in places of the shift
+    ends = (shift(NormalDist().inv_cdf(probability + sign * 4 * error)) for sign in (1, -1))
+    low, high = ends
+    found = done.answers["robust_shift_roller"]
+    assert low < found < high
+    assert high - low < 0.2 * abs(wanted - shift_at(1.4))
+    assert probability <= done.answers["kept_at_robust"] < probability + 2 / 8192
+    assert done.answers["robust_contact_ratio"] == pytest.approx(by_hand(found)["ratio"], rel=1e-9)
+    assert f"{100 * probability:g} % do is {found:.4f} for the roller" in words(sheet.choice(done.record))
+
+
+def test_screws_of_another_draw_keep_the_robust_shift_too() -> None:
+    shift, count = run().answers["robust_shift_roller"], 100_000
+    deviations = 10e-3 / 3 * np.random.default_rng(77).standard_normal(count)
+    reach = np.array([mounted_ratio(shift, deviation) for deviation in (-20e-3, 0.0, 20e-3)])
+    ratios = np.polyval(np.polyfit([-20e-3, 0.0, 20e-3], reach, 2), deviations)
+    assert np.mean(ratios >= 1.4) == pytest.approx(0.99, abs=4 * sqrt(0.0099 * (1 / 8192 + 1 / count)))
+
+
+def test_an_optimum_within_its_interval_stays_and_one_that_nothing_keeps_is_named() -> None:
+    study = Shifting(points=POINTS, ratios=(), probability=0.9, gives=GIVES)
+    inside = run(least_contact_ratio=1.2, sliding_reading="roots", study=study).answers
+    assert inside["kept_at_optimum"] > 0.98
+    assert inside["robust_shift_roller"] == pytest.approx(inside["optimal_shift_roller"], abs=1e-3)
+    nowhere = run(most_sliding_difference=difference_of_sliding(shift_at(1.4) - 1e-3))
+    assert isnan(nowhere.answers["robust_shift_roller"])
+    assert "There is no shift at which 99 % of them do." in words(sheet.choice(nowhere.record))
+
+
+def test_the_largest_sliding_is_least_where_both_roots_slide_alike() -> None:
+    """That of the roller falls with the shift and that of the ring rises; both by the path, place by place."""
+    answers = run(least_contact_ratio=1.2).answers
+    assert answers["gentlest_shift"] == pytest.approx(answers["equal_sliding_roller"], abs=5e-4)
+    hand = by_hand(answers["gentlest_shift"])
+    assert answers["gentlest_sliding"] == pytest.approx(max(hand["roller_sliding"], hand["ring_sliding"]), rel=1e-9)
+
+
+def test_the_chart_over_the_contact_ratio_holds_the_optima_of_every_limit() -> None:
+    chosen: Any = run(study=Shifting(points=POINTS, ratios=(1.2, 1.42), gives=GIVES)).outcomes["shift"]
+    ratios = np.array([1.2, 1.4, 1.42, 1.46])
+    for reading in READINGS:
+        shifts = over_ratios(chosen, ratios, reading, robust=False)
+        found = {each.least_contact_ratio: each.shift for each in chosen.variants if each.weights == reading}
+        assert shifts[:3] == pytest.approx([found[ratio] for ratio in ratios[:3]], abs=2e-3)
+        assert shifts[3] == pytest.approx(shift_at(1.46), abs=2e-3)
+    robust = over_ratios(chosen, ratios, "own_ranges", robust=True)
+    assert robust[1] == pytest.approx(chosen.robust, abs=3e-3)
+    assert (robust[1:] < shifts[1:]).all()
 
 
 # The front of the three objectives
@@ -309,7 +383,7 @@ def test_the_front_is_the_interval(optimum: Any) -> None:
     shifts = np.array([design.inputs["roller_shift"] for design in optimum.front])
     low = brentq(lambda shift: difference_of_sliding(shift) - 3.08, -0.15, 0.1)
     assert [aim.sense for aim in optimum.aims] == ["maximise", "minimise", "minimise"]
-    assert {bound.name for bound in optimum.bounds} == set(MARGINS)
+    assert {bound.name for bound in optimum.bounds} == {*MARGINS, "margin_pressure"}
     assert shifts.max() <= shift_at(1.4) < shifts.max() + 0.01
     assert shifts.min() >= low > shifts.min() - 0.01
     for design in optimum.front:

@@ -58,7 +58,7 @@ GROUPS = (GroupSearch(sort_by="contact_safety_sun"), Capacity(), Safeties(over="
 DISCS = (Modifications(points=3), NewMachines(draws=50))
 ALONE: list[tuple[Drawn, int]] = [  # without any study, and how many figures are known then
     (Drawn(plugin="press_linkage", inputs={"rod_length": "1.2 m"}), 3),
-    (Drawn(plugin="roller_screw_shift"), 2),
+    (Drawn(plugin="roller_screw_shift"), 3),
     (Drawn(plugin="rv_gearing"), 3),
     (Drawn(plugin="rv_wear"), 4),
     (Drawn(plugin="harmonic_fractal"), 2),
@@ -68,7 +68,7 @@ ALONE: list[tuple[Drawn, int]] = [  # without any study, and how many figures ar
 UNUSUAL: list[tuple[Drawn, int]] = [
     (Drawn(plugin="press_linkage", inputs={"crank_angle": "-60 deg", "ground_pivot_angle": "0.117 rad"},
            declared=("sweep", "sensitivity", "allocation")), 5),
-    (Drawn(plugin="roller_screw_shift", inputs={"least_contact_ratio": 1.2}, studies=(Shifting(points=501),)), 6),
+    (Drawn(plugin="roller_screw_shift", inputs={"least_contact_ratio": 1.2}, studies=(Shifting(points=501),)), 8),
     # The pair of module 8 mm fits no window: no group, and nothing to draw of groups.
     (Drawn(plugin="rv_gearing", studies=GROUPS, inputs={
         "sun_teeth": 17, "planet_teeth": 103, "module": "8 mm", "helix_angle": "15.8 deg", "shift_sun": 0.145}), 4),
