@@ -6,6 +6,7 @@ from rv_wear.calculation import rv_wear
 from rv_wear.costs import TOLERANCES, Costs, cost
 from rv_wear.discs import DiscValidity, Modifications, trend
 from rv_wear.effects import EFFECTS
+from rv_wear.exact_play import ExactPlay, answered
 from rv_wear.machines import NewMachines, chances, history, indices
 from rv_wear.optimum import LeastCosts, bought, ends, front, learnt
 from rv_wear.published import FINDINGS, PUBLISHED
@@ -46,6 +47,7 @@ RV_WEAR = Model(
         Sensitivity(of="backlash", gives=indices),
         Reliability(over="working_time", at="0..6000 h", points=25, gives=chances),
         NewMachines(),
+        ExactPlay(gives=answered),
         Costs(gives=cost),
         Surrogate(
             of="max_wear",

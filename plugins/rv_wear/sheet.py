@@ -6,6 +6,7 @@ from functools import partial
 from rv_wear import figures
 from rv_wear.costs import Bill
 from rv_wear.discs import Ground
+from rv_wear.exact_play import ExactAnswers, Played
 from rv_wear.machines import FACTORS, Chances, Newborn, SobolIndices
 from rv_wear.optimum import Bought, Front, FrontEnds, Fronts, Learnt
 from truing import Block, Drawing, Odds, Optimum, Section, Sensitivities, Swept, Words
@@ -100,6 +101,19 @@ def reliability(record: figures.ReducerRun) -> "Sequence[Block]":
         caption = "As Fig. 5 of the paper. It says that the reliability begins to fall after 4000 h."
         blocks.append(Drawing("Reliability over the working time", partial(figures.reliability_figure, odds), caption))
     return blocks
+
+
+def exact_play(record: figures.ReducerRun) -> "Sequence[Block]":
+    """The exact backlash over the turn beside equation 21, and how the discs share the load."""
+    played = record.outcome(Played)
+    if played is None:
+        return []
+    caption = (
+        "Left: backlash over the angle of the crank; shaded: nine of ten machines. Above right: the same machine over "
+        "a turn of the output. Below right: how the two discs share the torque in all machines and positions; "
+        "dashed: torque_share."
+    )
+    return [Drawing("The exact backlash over the turn", partial(figures.play_figure, played), caption)]
 
 
 def costs(record: figures.ReducerRun) -> "Sequence[Block]":
@@ -215,6 +229,14 @@ SECTIONS = [
         text="Machines are drawn from the zones, and those within the permitted backlash are counted. Equation 21 is "
         "a sum, so the normal distribution stands beside the count as a check.",
         blocks=reliability,
+    ),
+    Section(
+        "Exact play of both discs",
+        *ExactAnswers.__dataclass_fields__,
+        text="Equation 21 adds one worst error of each kind at the longest arm. Here every pin and every tooth of both "
+        "discs has its own error, and the output turns until the first of them touches. Errors of many pins then "
+        "average, runout of the discs takes play instead of giving it, and how the discs share the load comes out.",
+        blocks=exact_play,
     ),
     Section(
         "Cost of the tolerances",
