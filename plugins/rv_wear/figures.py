@@ -20,6 +20,7 @@ from rv_wear.machines import Newborn
 from rv_wear.optimum import CostFront, Fronts
 from rv_wear.published import CHOSEN, COST, INDICES, RELIABILITY, WEAR
 from rv_wear.quantities import Reducer, Wear
+from rv_wear.spectrum import Spectrum
 from truing import Array, Odds, Optimum, Record, Swept
 
 ReducerRun = Record[Reducer, Wear]
@@ -357,6 +358,21 @@ def play_figure(played: "Played") -> "Figure":
     below.hist(100.0 * played.worse.reshape(-1), bins=30, color=BLUE, alpha=0.75)
     below.axvline(100.0 * played.torque_share, color=ORANGE, linestyle="--")
     quiet(below, "torque on the worse disc, %", "positions", axis="y")
+    return figure
+
+
+def life_figure(spectrum: "Spectrum") -> "Figure":
+    """Draw the deepest wear of both flanks and the share of machines within the permitted backlash over the hours."""
+    figure, (upper, lower) = panels(2, 4.4, sharex=True)
+    times = spectrum.hours
+    for worn, colour, words in zip(spectrum.flanks, (BLUE, ORANGE), ("forward", "back"), strict=True):
+        upper.plot(times / HOUR, worn.after(times) / MICRO, color=colour, label=words)
+    lower.plot(times / HOUR, 100.0 * np.asarray(spectrum.surviving(times)), color=BLUE)
+    lower.axvline(float(spectrum.reducer.working_time) / HOUR, color=INK, linestyle="--", linewidth=0.9)
+    over_hours(upper, times / HOUR, "deepest wear, µm")
+    over_hours(lower, times / HOUR, "machines within the limit, %")
+    upper.set_xlabel("")
+    upper.legend(loc="upper left")
     return figure
 
 

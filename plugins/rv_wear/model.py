@@ -11,6 +11,7 @@ from rv_wear.machines import NewMachines, chances, history, indices
 from rv_wear.optimum import LeastCosts, bought, ends, front, learnt
 from rv_wear.published import FINDINGS, PUBLISHED
 from rv_wear.sheet import SECTIONS
+from rv_wear.spectrum import LoadSpectrum, lived
 from truing import Allocation, Minimise, Model, Optimise, Reliability, Require, Sensitivity, Surrogate, Sweep, Vary
 
 LITERATURE = [
@@ -48,6 +49,7 @@ RV_WEAR = Model(
         Reliability(over="working_time", at="0..6000 h", points=25, gives=chances),
         NewMachines(),
         ExactPlay(gives=answered),
+        LoadSpectrum(gives=lived),
         Costs(gives=cost),
         Surrogate(
             of="max_wear",
@@ -55,11 +57,12 @@ RV_WEAR = Model(
             logarithmic=("output_torque", "output_speed", "working_time"),
             log_result=True,
             along="working_time",
+            compare=1000,
             gives=learnt,
         ),
         Allocation(of="backlash", tightest=1.0, widest=2.0, gives=bought),
         LeastCosts(gives=ends),
-        Optimise(chance="first_order", generations=200, gives=front),
+        Optimise(chance="first_order", generations=100, gives=front),
     ],
     sheet=SECTIONS,
     published=PUBLISHED,

@@ -102,7 +102,7 @@ class LeastCosts:
         at = ground(bench, modification, required_reliability=goal)
         if at is None:
             return None
-        study = Allocation(of="backlash", tightest=1.0, widest=self.widest, draws=1, name=self.name)
+        study = Allocation(of="backlash", tightest=1.0, widest=self.widest, starts=1, draws=1, name=self.name)
         plan = study.run(at).least
         if not plan.reached:
             return None

@@ -9,6 +9,7 @@ from rv_wear.discs import Ground
 from rv_wear.exact_play import ExactAnswers, Played
 from rv_wear.machines import FACTORS, Chances, Newborn, SobolIndices
 from rv_wear.optimum import Bought, Front, FrontEnds, Fronts, Learnt
+from rv_wear.spectrum import Lived, Spectrum
 from truing import Block, Drawing, Odds, Optimum, Section, Sensitivities, Swept, Words
 
 # The figures by section of the sheet: each is there where its study ran, and drawn when the sheet is written
@@ -114,6 +115,15 @@ def exact_play(record: figures.ReducerRun) -> "Sequence[Block]":
         "dashed: torque_share."
     )
     return [Drawing("The exact backlash over the turn", partial(figures.play_figure, played), caption)]
+
+
+def load_spectrum(record: figures.ReducerRun) -> "Sequence[Block]":
+    """Wear of both flanks over the hours, and the share of machines within the permitted backlash."""
+    spectrum = record.outcome(Spectrum)
+    if spectrum is None:
+        return []
+    caption = "Every torque wears the flank on which it presses, on the profile that all loads of that sense have left."
+    return [Drawing("Wear of both flanks and life", partial(figures.life_figure, spectrum), caption)]
 
 
 def costs(record: figures.ReducerRun) -> "Sequence[Block]":
@@ -229,6 +239,13 @@ SECTIONS = [
         text="Machines are drawn from the zones, and those within the permitted backlash are counted. Equation 21 is "
         "a sum, so the normal distribution stands beside the count as a check.",
         blocks=reliability,
+    ),
+    Section(
+        "Life under a load spectrum",
+        *Lived.__dataclass_fields__,
+        text="Loads with their sense: each wears one flank only, and the backlash feels both. The machines are those "
+        "of the reliability; each reaches the permitted backlash after hours of its own.",
+        blocks=load_spectrum,
     ),
     Section(
         "Exact play of both discs",
