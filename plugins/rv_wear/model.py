@@ -8,7 +8,8 @@ from rv_wear.discs import DiscValidity, Modifications, trend
 from rv_wear.effects import EFFECTS
 from rv_wear.exact_play import ExactPlay, answered
 from rv_wear.machines import NewMachines, chances, history, indices
-from rv_wear.optimum import LeastCosts, bought, ends, front, learnt
+from rv_wear.optimum import LeastCosts, bought, ends, free_ends, front, learnt
+from rv_wear.paper_route import PaperRoute, routed
 from rv_wear.published import FINDINGS, PUBLISHED
 from rv_wear.sheet import SECTIONS
 from rv_wear.spectrum import LoadSpectrum, lived
@@ -62,6 +63,8 @@ RV_WEAR = Model(
         ),
         Allocation(of="backlash", tightest=1.0, widest=2.0, gives=bought),
         LeastCosts(gives=ends),
+        LeastCosts(name="both_free", goals=(), clearances=(0.0, 2.0, 4.0), gives=free_ends),
+        PaperRoute(gives=routed),
         Optimise(chance="first_order", generations=100, gives=front),
     ],
     sheet=SECTIONS,

@@ -8,7 +8,8 @@ from rv_wear.costs import Bill
 from rv_wear.discs import Ground
 from rv_wear.exact_play import ExactAnswers, Played
 from rv_wear.machines import FACTORS, Chances, Newborn, SobolIndices
-from rv_wear.optimum import Bought, Front, FrontEnds, Fronts, Learnt
+from rv_wear.optimum import Bought, FreeEnds, Front, FrontEnds, Fronts, Learnt
+from rv_wear.paper_route import RouteAnswers
 from rv_wear.spectrum import Lived, Spectrum
 from truing import Block, Drawing, Odds, Optimum, Section, Sensitivities, Swept, Words
 
@@ -270,10 +271,16 @@ SECTIONS = [
     ),
     Section(
         "Better tolerances",
-        *Bought.__dataclass_fields__, *FrontEnds.__dataclass_fields__,
+        *Bought.__dataclass_fields__, *FrontEnds.__dataclass_fields__, *FreeEnds.__dataclass_fields__,
         text="Which modification and which widths of the zones are worth their money? The cost of the zones and the "
         "deepest wear are to be small, while the required share of machines stays within the permitted backlash.",
         blocks=better_tolerances,
+    ),
+    Section(
+        "The paper's own route",
+        *RouteAnswers.__dataclass_fields__,
+        text="The paper counts machines and searches on the Gaussian process alone. Done so here, with the same "
+        "machines and designs by full physics beside it.",
     ),
     Section(
         "Better tolerances by search",
