@@ -9,16 +9,18 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Circle
 from numpy.typing import ArrayLike, NDArray
 
-from gear_geometry.drawing import BLUE, GREEN, GREY, INK, ORANGE, PALE, panels, quiet, signed
+from gear_geometry.drawing import BLUE, GREEN, GREY, INK, ORANGE, PALE, WIDTH, panels, quiet, signed
 from rv_wear import geometry
 from rv_wear.calculation import rv_wear
 from rv_wear.costs import PRICED, Bill, price
 from rv_wear.discs import Ground, clearance_over_angle, flank
+from rv_wear.exact_play import Played
 from rv_wear.geometry import Mesh, longest_arm_angle, mesh_of, relative_arm
 from rv_wear.machines import Newborn
 from rv_wear.optimum import CostFront, Fronts
 from rv_wear.published import CHOSEN, COST, INDICES, RELIABILITY, WEAR
 from rv_wear.quantities import Reducer, Wear
+from rv_wear.spectrum import Spectrum
 from truing import Array, Odds, Optimum, Record, Swept
 
 ReducerRun = Record[Reducer, Wear]
@@ -330,6 +332,47 @@ def machines_figure(born: "Newborn") -> "Figure":
     right.set_xlabel("number of machines")
     right.legend(loc="lower right")
     right.grid(axis="y", alpha=0.4)
+    return figure
+
+
+def play_figure(played: "Played") -> "Figure":
+    """Draw the exact backlash over the crank, over a turn of the output, and the shares of the discs."""
+    figure = Figure(figsize=(WIDTH, 4.4), layout="constrained")
+    grid = figure.add_gridspec(2, 2, width_ratios=(3, 2))
+    left, above, below = (figure.add_subplot(cell) for cell in (grid[:, 0], grid[0, 1], grid[1, 1]))
+    crank = degrees(np.append(played.crank, 2.0 * np.pi))
+    closed = np.concatenate([played.worn, played.worn[:1]]) / ARCMIN
+    left.fill_between(crank, *np.percentile(closed, (5, 95), axis=1), color=BLUE, alpha=0.2, linewidth=0)
+    left.plot(crank, np.append(played.alike, played.alike[:1]) / ARCMIN, color=INK, label="exact, all parts alike")
+    left.plot(crank, closed[:, 0], color=BLUE, label="exact, one machine")
+    left.axhline(played.linear / ARCMIN, color=ORANGE, linestyle="--", label="equation 21")
+    left.set_xlim(0, 360)
+    left.set_xticks(range(0, 361, 90))
+    left.margins(y=0.25)
+    left.legend(loc="upper right", fontsize=8)
+    quiet(left, "angle of the crank, °", "backlash, arc minutes")
+    above.plot(np.linspace(0, 360, len(played.whole), endpoint=False), played.whole / ARCMIN, color=BLUE, linewidth=0.5)
+    above.set_xlim(0, 360)
+    above.set_xticks(range(0, 361, 90))
+    quiet(above, "angle of the output, °", "arc minutes")
+    below.hist(100.0 * played.worse.reshape(-1), bins=30, color=BLUE, alpha=0.75)
+    below.axvline(100.0 * played.torque_share, color=ORANGE, linestyle="--")
+    quiet(below, "torque on the worse disc, %", "positions", axis="y")
+    return figure
+
+
+def life_figure(spectrum: "Spectrum") -> "Figure":
+    """Draw the deepest wear of both flanks and the share of machines within the permitted backlash over the hours."""
+    figure, (upper, lower) = panels(2, 4.4, sharex=True)
+    times = spectrum.hours
+    for worn, colour, words in zip(spectrum.flanks, (BLUE, ORANGE), ("forward", "back"), strict=True):
+        upper.plot(times / HOUR, worn.after(times) / MICRO, color=colour, label=words)
+    lower.plot(times / HOUR, 100.0 * np.asarray(spectrum.surviving(times)), color=BLUE)
+    lower.axvline(float(spectrum.reducer.working_time) / HOUR, color=INK, linestyle="--", linewidth=0.9)
+    over_hours(upper, times / HOUR, "deepest wear, µm")
+    over_hours(lower, times / HOUR, "machines within the limit, %")
+    upper.set_xlabel("")
+    upper.legend(loc="upper left")
     return figure
 
 

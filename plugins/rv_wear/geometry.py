@@ -3,7 +3,8 @@
 One entry per distinct mesh of a batch; what geometry fixes is calculated once, before any force is known.
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -382,6 +383,13 @@ def teeth_of(mesh: Mesh, angle: Float | None = None) -> Teeth:
         torque=torque,
         nothing=np.zeros_like(arm),
     )
+
+
+def some_pins(teeth: Teeth, pins: slice) -> Teeth:
+    """The contacts of some of the pins, in the same positions."""
+    along = ("angle", "relative_arm", "per_arm", "weight", "slack", "relative_radius", "nothing")
+    kept: dict[str, Any] = {name: np.ascontiguousarray(getattr(teeth, name)[pins]) for name in along}
+    return replace(teeth, **kept)
 
 
 def pitch_number(mesh: Mesh) -> Float:

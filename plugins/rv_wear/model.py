@@ -6,10 +6,13 @@ from rv_wear.calculation import rv_wear
 from rv_wear.costs import TOLERANCES, Costs, cost
 from rv_wear.discs import DiscValidity, Modifications, trend
 from rv_wear.effects import EFFECTS
+from rv_wear.exact_play import ExactPlay, answered
 from rv_wear.machines import NewMachines, chances, history, indices
-from rv_wear.optimum import LeastCosts, bought, ends, front, learnt
+from rv_wear.optimum import LeastCosts, bought, ends, free_ends, front, learnt
+from rv_wear.paper_route import PaperRoute, routed
 from rv_wear.published import FINDINGS, PUBLISHED
 from rv_wear.sheet import SECTIONS
+from rv_wear.spectrum import LoadSpectrum, lived
 from truing import Allocation, Minimise, Model, Optimise, Reliability, Require, Sensitivity, Surrogate, Sweep, Vary
 
 LITERATURE = [
@@ -46,6 +49,8 @@ RV_WEAR = Model(
         Sensitivity(of="backlash", gives=indices),
         Reliability(over="working_time", at="0..6000 h", points=25, gives=chances),
         NewMachines(),
+        ExactPlay(gives=answered),
+        LoadSpectrum(gives=lived),
         Costs(gives=cost),
         Surrogate(
             of="max_wear",
@@ -53,11 +58,15 @@ RV_WEAR = Model(
             logarithmic=("output_torque", "output_speed", "working_time"),
             log_result=True,
             along="working_time",
+            restarts=1,
+            compare=1000,
             gives=learnt,
         ),
         Allocation(of="backlash", tightest=1.0, widest=2.0, gives=bought),
         LeastCosts(gives=ends),
-        Optimise(chance="first_order", generations=200, gives=front),
+        LeastCosts(name="both_free", goals=(), clearances=(0.0, 2.0, 4.0), gives=free_ends),
+        PaperRoute(gives=routed),
+        Optimise(chance="first_order", generations=60, gives=front),
     ],
     sheet=SECTIONS,
     published=PUBLISHED,

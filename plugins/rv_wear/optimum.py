@@ -34,6 +34,7 @@ from truing import (
 MICRO, HOUR = 1e-6, 3600.0
 STEP = 1.0  # um of the equidistant modification from one design to the next
 HALVINGS = 10
+MOST_CLEARANCE = 20.0  # um
 ALL_WIDEST = 1e-6  # of the cost: the next design is no cheaper
 POINTS = 25
 
@@ -42,12 +43,16 @@ POINTS = 25
 class LeastCosts:
     """Find the least cost for every wear, with each of ``goals`` for the reliability and with that of the inputs.
 
-    Widths run from those in force to ``widest`` times as much, the equidistant modification over ``span`` (um).
+    Widths run from those in force to ``widest`` times as much, the equidistant modification over ``span`` (um) in steps
+    of ``step``. With ``clearances`` (um) both modifications are free: of the designs of all these radial clearances
+    those remain that no other beats. Without them the design clearance is kept.
     """
 
     goals: tuple[float, ...] = (0.95, 0.999)
     widest: float = 2.0
     span: tuple[float, float] = (-45.0, 4.0)
+    step: float = STEP
+    clearances: tuple[float, ...] = ()
     name: str = "least_costs"
     gives: Callable[[Any], Any] | None = None
 
@@ -56,6 +61,10 @@ class LeastCosts:
             raise TruingError(f"study '{self.name}': goals lie between 0 and 1")
         if len(self.span) != 2 or not self.span[0] < self.span[1]:
             raise TruingError(f"study '{self.name}': span is the lowest and the highest modification in um")
+        if not self.step > 0 or not all(0 <= clearance <= MOST_CLEARANCE for clearance in self.clearances):
+            raise TruingError(
+                f"study '{self.name}': step lies above 0, and clearances between 0 and {MOST_CLEARANCE:g} um"
+            )
         if not self.widest > 1:
             raise TruingError(f"study '{self.name}': widest = {self.widest:g} must lie above 1")
 
@@ -65,21 +74,38 @@ class LeastCosts:
         goals = sorted({*self.goals, own} if own < 1 else {*self.goals})
         fronts = []
         for place, goal in enumerate(goals):
-            fronts.append(self._front(bench, goal, bench.part(self.name, place / len(goals), (place + 1) / len(goals))))
+            done = bench.part(self.name, place / len(goals), (place + 1) / len(goals))
+            designs = self._free(bench, goal, done) if self.clearances else self._designs(bench, goal, done)
+            fronts.append(CostFront(goal, tuple(designs), *self._knee(bench, designs)))
         return Fronts(tuple(fronts), bench.inputs)
 
-    def _front(self, bench: Bench, goal: float, done: Callable[[int, int], None]) -> "CostFront":
+    def _free(self, bench: Bench, goal: float, done: Callable[[int, int], None]) -> "list[Design]":
+        """The designs of all radial clearances that no other beats, from the smallest wear on."""
+        designs: list[Design] = []
+        for place, clearance in enumerate(self.clearances):
+            done(place, len(self.clearances))
+            at = bench.changed({"design_clearance": clearance * MICRO})
+            designs += self._designs(at, goal, lambda step, steps: None)
+        designs.sort(key=lambda design: (design.wear, design.cost))
+        kept: list[Design] = []
+        for design in designs:
+            if not kept or design.cost < (1 - ALL_WIDEST) * kept[-1].cost:
+                kept.append(design)
+        return kept
+
+    def _designs(self, bench: Bench, goal: float, done: Callable[[int, int], None]) -> "list[Design]":
+        """Designs at one radial clearance, from the smallest wear to the least cost."""
         designs: list[Design] = []
         modification = self._first(bench, goal)
-        steps = 1 if modification is None else ceil((modification - self.span[0]) / STEP) + 1
+        steps = 1 if modification is None else ceil((modification - self.span[0]) / self.step) + 1
         while modification is not None and modification >= self.span[0]:
             done(len(designs), steps)
             design = self._design(bench, modification, goal)
             if design is None or (designs and design.cost > (1 - ALL_WIDEST) * designs[-1].cost):
                 break
             designs.append(design)
-            modification = STEP * ceil(modification / STEP - 1.0)
-        return CostFront(goal, tuple(designs), *self._knee(bench, designs))
+            modification = self.step * ceil(modification / self.step - 1.0)
+        return designs
 
     def _first(self, bench: Bench, goal: float) -> float | None:
         """The largest modification at which the widths in force reach the goal, um; None where there is none."""
@@ -102,11 +128,12 @@ class LeastCosts:
         at = ground(bench, modification, required_reliability=goal)
         if at is None:
             return None
-        study = Allocation(of="backlash", tightest=1.0, widest=self.widest, draws=1, name=self.name)
+        study = Allocation(of="backlash", tightest=1.0, widest=self.widest, starts=1, draws=1, name=self.name)
         plan = study.run(at).least
         if not plan.reached:
             return None
-        return Design(modification * MICRO, float(at.answers["max_wear"]), plan.cost, dict(plan.widths))
+        clearance = float(bench.setup.inputs.design_clearance)
+        return Design(modification * MICRO, clearance, float(at.answers["max_wear"]), plan.cost, dict(plan.widths))
 
     def _knee(self, bench: Bench, designs: Sequence["Design"]) -> tuple[int | None, Any, Any]:
         """The knee's place, and its reliability over the working time to first order."""
@@ -114,7 +141,8 @@ class LeastCosts:
             return None, np.empty(0), np.empty(0)
         place = farthest_from_chord(np.array([[design.cost, design.wear / MICRO] for design in designs]))
         found = designs[place]
-        at = ground(bench, found.modification / MICRO, widths=found.widths)
+        own = bench.changed({"design_clearance": found.clearance}) if self.clearances else bench
+        at = ground(own, found.modification / MICRO, widths=found.widths)
         hours = float(bench.setup.inputs.working_time) / HOUR
         if at is None or hours <= 0.0:
             return place, np.empty(0), np.empty(0)
@@ -151,9 +179,10 @@ def farthest_from_chord(front: "Array") -> int:
 
 @dataclass(frozen=True)
 class Design:
-    """Equidistant modification and deepest wear (m), cost (yuan), and the width of every priced zone (m)."""
+    """Equidistant modification, radial clearance and deepest wear (m), cost (yuan), width of every priced zone (m)."""
 
     modification: float
+    clearance: float
     wear: float
     cost: float
     widths: Mapping[str, float]
@@ -195,6 +224,7 @@ def _front_json(front: CostFront) -> dict[str, Any]:
         "goal": front.goal,
         "knee": front.knee,
         "equidistant_modification": {"unit": "um", "values": [item.modification / MICRO for item in front.designs]},
+        "radial_clearance": {"unit": "um", "values": [item.clearance / MICRO for item in front.designs]},
         "max_wear": {"unit": "um", "values": [item.wear / MICRO for item in front.designs]},
         "cost": {"unit": "yuan", "values": [item.cost for item in front.designs]},
         "widths": [
@@ -260,6 +290,29 @@ class FrontEnds:
     least_wear_2: Float = end(2, "smallest wear of the front", "um", "h_f")
     corner_cost_2: Float = end(2, "cost at its knee", "yuan", "C_k")
     corner_wear_2: Float = end(2, "deepest wear at its knee", "um", "h_k")
+
+
+@results
+class FreeEnds:
+    """The front where both modifications are free, for the reliability that the inputs ask for."""
+
+    free_wear: Float = found("um", symbol="h_f,0", note="smallest wear of the front, both modifications free",
+                             method="least cost at every modification and radial clearance")  # fmt: skip
+    free_knee_wear: Float = found("um", symbol="h_k,0", note="deepest wear at its knee", method=KNEE)
+    free_knee_cost: Float = found("yuan", symbol="C_k,0", note="cost at its knee", method=KNEE)
+    free_clearance: Float = found("um", symbol="Delta r_k,0", note="radial clearance at its knee", method=KNEE)
+
+
+def free_ends(fronts: Fronts) -> FreeEnds:
+    """The ends of the first front; none where its goal cannot be reached."""
+    front = fronts.fronts[0]
+    knee = front.designs[front.knee] if front.knee is not None else None
+    return FreeEnds(
+        free_wear=front.designs[0].wear if front.designs else nan,
+        free_knee_wear=knee.wear if knee else nan,
+        free_knee_cost=knee.cost if knee else nan,
+        free_clearance=knee.clearance if knee else nan,
+    )
 
 
 @results

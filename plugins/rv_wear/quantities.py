@@ -24,6 +24,11 @@ def deviation(value: float, symbol: str, note: str) -> Any:
     return given(value, "um", symbol=symbol, note=note, source=ZONE, at_least=-LARGEST, at_most=LARGEST)
 
 
+def own_error(value: float, symbol: str, note: str, source: str) -> Any:
+    """Declare how single parts differ, as a standard deviation; below 50 um the exact play is exact."""
+    return given(value, "um", symbol=symbol, note=note, source=source, at_least=0, at_most=50)
+
+
 @inputs
 class Reducer:
     """Gearing, load and lubricant, the sixteen error factors, and what is asked of the backlash."""
@@ -94,6 +99,16 @@ class Reducer:
     bearing_clearance: Float = deviation(11.1, "delta_b", "16: clearance of the crank bearings")
     runout_gap: Float = given(0.0, "um", symbol="delta_R", at_least=0, at_most=LARGEST,
                               note="neutral 0: gap of both flanks that runout of the pin circle takes")  # fmt: skip
+    # What is each part's own: read by the study of the exact play
+    pin_position_spread: Float = own_error(0.6, "sigma_t", "scatter of the place of a single pin, both ways",
+                                           "one worst error is printed")  # fmt: skip
+    pin_radius_spread: Float = own_error(
+        0.17, "sigma_rrp", "scatter of the radius of a single pin", "a sixth of zone 7"
+    )
+    tooth_pitch_spread: Float = own_error(0.33, "sigma_pc", "scatter of the place of a single tooth, at the pin circle",
+                                          "a sixth of zone 11")  # fmt: skip
+    disc_phase_error: Float = given(0.0, "arcmin", symbol="delta_phi", at_least=-600, at_most=600,
+                                    note="crank of the second disc ahead of half a turn")  # fmt: skip
     # What is asked
     permitted_backlash: Float = given(1.0, "arcmin", symbol="Delta phi_per", note="permitted backlash", source=PAPER,
                                       above=0)  # fmt: skip

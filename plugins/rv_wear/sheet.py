@@ -6,8 +6,11 @@ from functools import partial
 from rv_wear import figures
 from rv_wear.costs import Bill
 from rv_wear.discs import Ground
+from rv_wear.exact_play import ExactAnswers, Played
 from rv_wear.machines import FACTORS, Chances, Newborn, SobolIndices
-from rv_wear.optimum import Bought, Front, FrontEnds, Fronts, Learnt
+from rv_wear.optimum import Bought, FreeEnds, Front, FrontEnds, Fronts, Learnt
+from rv_wear.paper_route import RouteAnswers
+from rv_wear.spectrum import Lived, Spectrum
 from truing import Block, Drawing, Odds, Optimum, Section, Sensitivities, Swept, Words
 
 # The figures by section of the sheet: each is there where its study ran, and drawn when the sheet is written
@@ -100,6 +103,28 @@ def reliability(record: figures.ReducerRun) -> "Sequence[Block]":
         caption = "As Fig. 5 of the paper. It says that the reliability begins to fall after 4000 h."
         blocks.append(Drawing("Reliability over the working time", partial(figures.reliability_figure, odds), caption))
     return blocks
+
+
+def exact_play(record: figures.ReducerRun) -> "Sequence[Block]":
+    """The exact backlash over the turn beside equation 21, and how the discs share the load."""
+    played = record.outcome(Played)
+    if played is None:
+        return []
+    caption = (
+        "Left: backlash over the angle of the crank; shaded: nine of ten machines. Above right: the same machine over "
+        "a turn of the output. Below right: how the two discs share the torque in all machines and positions; "
+        "dashed: torque_share."
+    )
+    return [Drawing("The exact backlash over the turn", partial(figures.play_figure, played), caption)]
+
+
+def load_spectrum(record: figures.ReducerRun) -> "Sequence[Block]":
+    """Wear of both flanks over the hours, and the share of machines within the permitted backlash."""
+    spectrum = record.outcome(Spectrum)
+    if spectrum is None:
+        return []
+    caption = "Every torque wears the flank on which it presses, on the profile that all loads of that sense have left."
+    return [Drawing("Wear of both flanks and life", partial(figures.life_figure, spectrum), caption)]
 
 
 def costs(record: figures.ReducerRun) -> "Sequence[Block]":
@@ -217,6 +242,21 @@ SECTIONS = [
         blocks=reliability,
     ),
     Section(
+        "Life under a load spectrum",
+        *Lived.__dataclass_fields__,
+        text="Loads with their sense: each wears one flank only, and the backlash feels both. The machines are those "
+        "of the reliability; each reaches the permitted backlash after hours of its own.",
+        blocks=load_spectrum,
+    ),
+    Section(
+        "Exact play of both discs",
+        *ExactAnswers.__dataclass_fields__,
+        text="Equation 21 adds one worst error of each kind at the longest arm. Here every pin and every tooth of both "
+        "discs has its own error, and the output turns until the first of them touches. Errors of many pins then "
+        "average, runout of the discs takes play instead of giving it, and how the discs share the load comes out.",
+        blocks=exact_play,
+    ),
+    Section(
         "Cost of the tolerances",
         "tolerance_price", "manufacturing_cost",
         text="Six zones are priced by their width, in the form of the cost functions that the inputs state. The "
@@ -231,10 +271,16 @@ SECTIONS = [
     ),
     Section(
         "Better tolerances",
-        *Bought.__dataclass_fields__, *FrontEnds.__dataclass_fields__,
+        *Bought.__dataclass_fields__, *FrontEnds.__dataclass_fields__, *FreeEnds.__dataclass_fields__,
         text="Which modification and which widths of the zones are worth their money? The cost of the zones and the "
         "deepest wear are to be small, while the required share of machines stays within the permitted backlash.",
         blocks=better_tolerances,
+    ),
+    Section(
+        "The paper's own route",
+        *RouteAnswers.__dataclass_fields__,
+        text="The paper counts machines and searches on the Gaussian process alone. Done so here, with the same "
+        "machines and designs by full physics beside it.",
     ),
     Section(
         "Better tolerances by search",

@@ -1,7 +1,7 @@
 """Wear of the flank, step by step, for many meshes at once, and the largest wear after the working time."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import islice
 from threading import Lock
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from rv_wear import geometry
 from rv_wear.forces import Loads, holding, refuse, shared, start_scale
-from rv_wear.geometry import NUMBERS, Choices, Mesh, Teeth, columns_of, mesh_of, teeth_of
+from rv_wear.geometry import NUMBERS, Choices, Mesh, Teeth, columns_of, mesh_of, some_pins, teeth_of
 from rv_wear.quantities import Reducer
 from truing import Array, Float, either, feasible
 
@@ -72,9 +72,11 @@ WearNode = tuple[Array, Array, Array]
 class WearState:
     """The disc at the beginning of a step: exposure (m,), wear and its growth (pins, phases, m), how long it lasts.
 
-    ``lasts`` is an exposure (m,), ``grown`` and ``after`` what wears in the step and what is worn at its end.
+    ``lasts`` is an exposure (m,), ``grown`` and ``after`` what wears in the step and what is worn at its end. Pins that
+    bear nothing and have not worn are left out at both ends: the first one told of is number ``pin``.
     """
 
+    pin: int
     loads: Loads
     exposure: Array
     wear: Array
@@ -142,20 +144,48 @@ def _at_pitch_point(teeth: Teeth, unworn: Loads) -> Array:
 
 
 def states(teeth: Teeth) -> Iterator[WearState]:
-    """The disc at the beginning of every step, without end."""
-    loads = shared(teeth, teeth.slack, start_scale(teeth))
-    rate_of = growth(teeth, loads)
-    wear, exposure, last = np.zeros_like(teeth.slack), np.zeros(teeth.count), loads.scale
+    """The disc at the beginning of every step, without end. Only pins that bear are calculated, as they become more."""
+    whole = shared(teeth, teeth.slack, start_scale(teeth))
+    rows = _bearing(teeth, whole, slice(len(teeth.slack), 0))
+    part, rest = some_pins(teeth, rows), _slack_beside(teeth, rows)
+    loads = replace(whole, force=whole.force[rows])
+    rate_of = growth(part, whole)
+    wear, exposure, last = np.zeros_like(part.slack), np.zeros(teeth.count), whole.scale
     while True:
         rate = rate_of(loads.force)
-        lasts = _lasts(teeth, rate)
+        lasts = _lasts(part, rate)
         grown = rate * lasts
         after = wear + grown
-        yield WearState(loads, exposure, wear, rate, lasts, grown, after)
+        yield WearState(rows.start, loads, exposure, wear, rate, lasts, grown, after)
         wear = after
         exposure = exposure + lasts
         guess, last = np.maximum(2.0 * loads.scale - last, 0.5 * loads.scale), loads.scale
-        loads = shared(teeth, _slack(teeth, wear), guess)
+        loads = shared(part, _slack(part, wear), guess)
+        if (loads.approach + loads.taken > rest).any():
+            full = _padded(wear, rows, len(teeth.slack))
+            loads = shared(teeth, _slack(teeth, full), guess)
+            rows = _bearing(teeth, loads, rows)
+            part, rest = some_pins(teeth, rows), _slack_beside(teeth, rows)
+            rate_of, wear = growth(part, whole), full[rows]
+            loads = replace(loads, force=loads.force[rows])
+
+
+def _bearing(teeth: Teeth, loads: Loads, rows: slice) -> slice:
+    """The pins that bear in some mesh and position, one more at either end, and those of ``rows``."""
+    bears = np.flatnonzero(loads.force.any(axis=(1, 2)))
+    first, last = (int(bears[0]), int(bears[-1])) if len(bears) else (0, len(teeth.slack) - 1)
+    return slice(min(max(first - 1, 0), rows.start), max(min(last + 2, len(teeth.slack)), rows.stop))
+
+
+def _slack_beside(teeth: Teeth, rows: slice) -> Array:
+    """Least slack (phases, m) of the pins beside these, which have not worn."""
+    beside = np.concatenate([teeth.slack[: rows.start], teeth.slack[rows.stop :]])
+    return np.asarray(beside.min(axis=0, initial=np.inf))
+
+
+def _padded(wear: Array, rows: slice, pins: int) -> Array:
+    """The wear of these pins among all of them."""
+    return np.pad(wear, ((rows.start, pins - rows.stop), (0, 0), (0, 0)))
 
 
 def _slack(teeth: Teeth, wear: Array) -> Array:
@@ -171,11 +201,11 @@ def _lasts(teeth: Teeth, rate: Array) -> Array:
 
 def nodes_of(teeth: Teeth) -> Iterator[WearNode]:
     """Exposure (m,), largest wear and phase angle of its place: of the new disc, then twice in every step."""
-    angle = teeth.angle.reshape(-1)
+    angle, phases = teeth.angle.reshape(-1), teeth.slack.shape[1]
     deepest: NDArray[np.intp] | None = None
     for state in islice(states(teeth), MOST_STEPS):
         if deepest is None:
-            deepest = _flat(state.rate).argmax(axis=0)
+            deepest = _flat(state.rate).argmax(axis=0) + state.pin * phases
             yield state.exposure, np.zeros(teeth.count), angle[deepest]
         deepest, added = _step(state, deepest, angle)
         yield from added
@@ -191,7 +221,8 @@ def _step(state: WearState, leader: NDArray[np.intp], angle: Array) -> tuple[NDA
     Points are counted over all pins and positions.
     """
     before, grown, after = _flat(state.wear), _flat(state.grown), _flat(state.after)
-    meshes = np.arange(len(state.lasts))
+    meshes, left_out = np.arange(len(state.lasts)), state.pin * state.wear.shape[1]
+    leader = leader - left_out
     start, lead, top = before[leader, meshes], grown[leader, meshes], after.max(axis=0)
     part, new = np.full(len(meshes), 0.5), leader
     passed = np.flatnonzero(after[leader, meshes] < top)
@@ -201,8 +232,8 @@ def _step(state: WearState, leader: NDArray[np.intp], angle: Array) -> tuple[NDA
         behind = start[passed] - before[new[passed], passed]
         share = behind / (grown[new[passed], passed] - lead[passed])
         part[passed] = np.minimum(np.maximum(share, 0.0), 1.0)
-    middle = (state.exposure + part * state.lasts, start + part * lead, angle[leader])
-    return new, [middle, (state.exposure + state.lasts, top, angle[new])]
+    middle = (state.exposure + part * state.lasts, start + part * lead, angle[left_out + leader])
+    return left_out + new, [middle, (state.exposure + state.lasts, top, angle[left_out + new])]
 
 
 def wear_at(teeth: Teeth, exposure: Array) -> Array:
@@ -212,7 +243,8 @@ def wear_at(teeth: Teeth, exposure: Array) -> Array:
         left = exposure - state.exposure
         within = (left >= 0.0) & ((left < state.lasts) | (count == MOST_STEPS))
         if within.any():
-            found = np.where(within, state.wear + state.rate * left, found)
+            pins = slice(state.pin, state.pin + len(state.wear))
+            found[pins] = np.where(within, state.wear + state.rate * left, found[pins])
         if np.all(exposure < state.exposure + state.lasts) or count == MOST_STEPS:
             break
     return found
@@ -221,6 +253,7 @@ def wear_at(teeth: Teeth, exposure: Array) -> Array:
 # Forces and histories of many meshes, which each are calculated once; those of the latest groups are remembered
 
 CHUNK = 256  # meshes at a time: their contacts stay in the cache of a core
+FEW_ROWS = 20  # of a mesh: looked up one by one they take longer
 GROUPS_REMEMBERED = 16  # a fit asks for the same rows again and again
 
 
@@ -368,12 +401,13 @@ def _of_many(meshes: Meshes, place: NDArray[np.intp], new: Unworn, rows: Array) 
     depth, angle = np.full(rows.shape, np.nan), np.full(rows.shape, np.nan)
     order = np.argsort(place, kind="stable")
     ends = np.searchsorted(place[order], np.arange(meshes.count + 1))
-    is_alone = bool(np.all(np.diff(ends) == 1))
     for places, history in all_histories(meshes.mesh, _reach(rows, place, meshes.count), new.first_step):
-        if is_alone:  # one row of each mesh: all of them at once
-            mine = order[ends[places]]
-            after = np.sum(~(history.exposure >= rows[mine]), axis=0)
-            depth[mine], angle[mine] = _between(history, np.arange(len(mine)), rows[mine], after)
+        counts = np.diff(ends)[places]
+        if counts.sum() <= FEW_ROWS * len(places):  # all meshes at once
+            columns = np.repeat(np.arange(len(places)), counts)
+            mine = np.concatenate([order[ends[mesh] : ends[mesh + 1]] for mesh in places])
+            after = np.sum(~(history.exposure[:, columns] >= rows[mine]), axis=0)
+            depth[mine], angle[mine] = _between(history, columns, rows[mine], after)
             continue
         for column, mesh in enumerate(places):
             mine = order[ends[mesh] : ends[mesh + 1]]

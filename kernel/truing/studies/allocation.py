@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
+from itertools import islice
 from math import exp, inf
 from typing import Any, Literal
 
@@ -32,6 +33,7 @@ from truing.studies.sampling import BATCH, Scatter, Tally, goal_checks, sample, 
 from truing.units import unit_text
 
 BALANCED_TO = 1e-4
+STARTS = 8  # four that are known and four by chance: in a smooth problem of widths all end alike
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,7 +45,8 @@ class Allocation:
     parts (empty: that of the first goal). ``weights`` are those of sensitivity and cost. ``loosen`` lets the least-cost
     solution take coarser grades than those of the start. A tolerance that is no grade but has a price is a width
     between ``tightest`` and ``widest`` times the one in force; with the grades of a design chosen, its widths are those
-    of least cost. All designs are verified by ``draws`` machines on the exact model.
+    of least cost, the best of ``starts`` searches, of which the first begins with what is in force. All designs are
+    verified by ``draws`` machines on the exact model.
     """
 
     rule: Literal["balanced"] = "balanced"
@@ -53,6 +56,7 @@ class Allocation:
     loosen: bool = False
     tightest: float = 0.25
     widest: float = 4.0
+    starts: int = STARTS
     draws: int = 100_000
     batch: int = BATCH
     name: str = "allocation"
@@ -69,8 +73,8 @@ class Allocation:
             raise UsageError(
                 f"tightest = {self.tightest:g} and widest = {self.widest:g}, but widths need a range above 0 that rises"
             )
-        if self.draws < 1 or self.batch < 1:
-            raise UsageError("draws and batch are at least 1")
+        if min(self.starts, self.draws, self.batch) < 1:
+            raise UsageError("starts, draws and batch are at least 1")
 
     def run(self, bench: Bench) -> Allotted:
         """Allocate by the rule and by least cost, and verify both. Raises UsageError without a grade or a goal."""
@@ -540,6 +544,7 @@ class AllocationProblem:
     priced: bool
     span: tuple[float, float]
     shared: tuple[SharedVariance, ...] = ()
+    starts: int = STARTS
 
     @property
     def tolerances(self) -> dict[str, Any]:
@@ -630,7 +635,7 @@ def open_problem(
     units = [price.unit for price in (*prices, *(own.price for own in variables.values())) if price is not None]
     known = priced or bool(variables)
     unit = units[0] if known else RECIPROCAL
-    return AllocationProblem(parts, variables, tuple(wanted), means, fixed, unit, known, span, shared)
+    return AllocationProblem(parts, variables, tuple(wanted), means, fixed, unit, known, span, shared, study.starts)
 
 
 def _shared(scatter: Scatter, straight: Mapping[str, Straight], chosen: Collection[str]) -> Iterator[SharedVariance]:
@@ -929,7 +934,6 @@ class _Together:
 
 MARGINS = (0.0, 1e-10, 1e-8, 1e-6)
 ROUNDING = 1e-13
-STARTS = 4
 FEASIBLE = 1e-9
 AT_END = 1e-7
 CHEAPER = 1e-9
@@ -1016,7 +1020,7 @@ def bought(problem: AllocationProblem, plan: AllocationPlan) -> AllocationPlan:
     if not problem.variables or any(demand.goal is not None and demand.goal >= 1.0 for demand in problem.demands):
         return plan
     search = AllocationSearch(problem, plan.grades)
-    starts = list(_starts(search))
+    starts = list(islice(_starts(search), problem.starts))
     with one_thread():
         optimum = _cheapest(search, starts)
         if optimum is None:
@@ -1051,12 +1055,12 @@ def _steps_from(problem: AllocationProblem, plan: AllocationPlan) -> Iterator[Al
 
 
 def _starts(search: AllocationSearch) -> Iterator[Matrix]:
-    """Yield the widths in force, the narrowest, the widest, those between, and some by chance, always the same."""
+    """Yield the widths in force, the narrowest, the widest, those between, then some by chance, without end."""
     low, high = search.ends()
     yield np.clip(np.zeros(len(low)), low, high)
     yield from (low, high, (low + high) / 2)
     rng = np.random.default_rng(0)
-    for _ in range(STARTS):
+    while True:
         yield rng.uniform(low, high)
 
 
