@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from workbench_browser import Workbench, axe, serving, sideways
+from workbench_browser import Workbench, axe, serving_warm, sideways
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -186,7 +186,7 @@ def test_two_tabs_and_two_servers_lose_nothing(page: Any, file: Path, workbench:
     tab = page.context.new_page()
     tab.goto(page.url)
     tab.wait_for_selector("summary .stated:not(:empty)")
-    with serving(workbench.folder) as other:
+    with serving_warm(workbench.folder) as other:
         elsewhere = edited(other, browser)
         page.fill(RADIUS, "0.31 m")
         elsewhere.fill(RADIUS, "0.32 m")

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from shared import ROOT
-from workbench_browser import Workbench, axe, serving, sideways
+from workbench_browser import Workbench, axe, serving_warm, sideways
 
 sys.path.append(str(ROOT / "tests" / "unit"))
 
@@ -61,7 +61,7 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Workbench]:
         inputs={"force": {**force, "value": 60.0}},
     )  # fmt: skip
     run(folder / "runs" / "beam", check("sag", 5.0, 10.0, 0.5), date="2026-11-01T08:00:00+0000")
-    with serving(folder) as served:
+    with serving_warm(folder) as served:
         yield served
 
 

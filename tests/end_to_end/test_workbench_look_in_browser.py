@@ -192,7 +192,7 @@ def test_a_page_says_that_the_server_has_stopped_and_keeps_what_was_typed(browse
     page = filled.page(browser, "runs")
     seen(page, filled.address + PAGES["edit"])
     page.locator("#text").press_sequentially("# mine")
-    filled.process.terminate()
+    filled.stop()
     page.locator("#gone", has_text="The server has stopped").wait_for()
     saving = "async () => (await import('/static/workbench.js')).call('/api/save', {}).catch(error => error.message)"
     assert page.evaluate(saving).startswith("The server has stopped. Start calc serve again")
