@@ -53,8 +53,7 @@ def page(browser: Browser, workbench: Workbench, file: Path) -> Iterator[Any]:
 
 def edited(workbench: Workbench, browser: Browser) -> Any:
     """Return a page of the file once it has its first answer, every group open."""
-    page = workbench.page(browser)
-    page.goto(workbench.address + "edit?file=press.toml")
+    page = workbench.page(browser, "edit?file=press.toml")
     page.wait_for_selector("summary .stated:not(:empty)")
     page.evaluate("document.querySelectorAll('#form details').forEach(part => { part.open = true; })")
     return page

@@ -239,7 +239,7 @@ def test_a_calculation_is_made_and_opens(served: Workbench, page: Any) -> None:
 
 
 def test_pages_on_a_phone_in_the_dark_are_no_wider_and_legible(served: Workbench, browser: Browser) -> None:
-    page = served.page(browser, width=390, colours="dark")
+    page = served.page(browser, "new", width=390, colours="dark")
     for path in ("", "runs", "run?folder=runs/press", "compare?before=runs/press&after=runs/press-2", "new"):
         page.goto(served.address + path)
         assert (path, sideways(page), axe(page)) == (path, [], [])
