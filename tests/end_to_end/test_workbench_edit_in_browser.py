@@ -41,22 +41,30 @@ def file(workbench: Workbench) -> Path:
     return path
 
 
-@pytest.fixture
-def page(browser: Browser, workbench: Workbench, file: Path) -> Iterator[Any]:
-    """The page of that file."""
-    opened = edited(workbench, browser)
+@pytest.fixture(scope="module")
+def window(browser: Browser, workbench: Workbench) -> Iterator[Any]:
+    """One window for all tests; each opens the file in it anew."""
+    opened = workbench.page(browser, "runs")
     yield opened
-    assert opened.said == []
-    assert opened.outside == []
     opened.context.close()
 
 
-def edited(workbench: Workbench, browser: Browser) -> Any:
-    """Return a page of the file once it has its first answer, every group open."""
-    page = workbench.page(browser, "edit?file=press.toml")
+@pytest.fixture
+def page(window: Any, workbench: Workbench, file: Path) -> Iterator[Any]:
+    """The page of that file."""
+    for seen in (window.said, window.outside):
+        seen.clear()
+    edited(window, workbench)
+    yield window
+    assert window.said == []
+    assert window.outside == []
+
+
+def edited(page: Any, workbench: Workbench) -> None:
+    """Open the file, wait for its first answer, and open every group."""
+    page.goto(workbench.address + "edit?file=press.toml")
     page.wait_for_selector("summary .stated:not(:empty)")
     page.evaluate("document.querySelectorAll('#form details').forEach(part => { part.open = true; })")
-    return page
 
 
 def text(page: Any) -> str:
@@ -186,7 +194,8 @@ def test_two_tabs_and_two_servers_lose_nothing(page: Any, file: Path, workbench:
     tab.goto(page.url)
     tab.wait_for_selector("summary .stated:not(:empty)")
     with serving_warm(workbench.folder) as other:
-        elsewhere = edited(other, browser)
+        elsewhere = other.page(browser, "runs")
+        edited(elsewhere, other)
         page.fill(RADIUS, "0.31 m")
         elsewhere.fill(RADIUS, "0.32 m")
         for each, answer in ((page, "0.31"), (elsewhere, "0.32")):
@@ -202,6 +211,7 @@ def test_two_tabs_and_two_servers_lose_nothing(page: Any, file: Path, workbench:
         page.click("#undo")
         valued(page, "0.31 m")
         elsewhere.context.close()
+    tab.close()
     assert file.read_text() == TEXT.replace("0.36 m", "0.32 m")
 
 
