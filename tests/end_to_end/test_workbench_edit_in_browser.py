@@ -72,20 +72,25 @@ def text(page: Any) -> str:
     return str(page.input_value("#text"))
 
 
+def until(page: Any, holds: str, words: Any) -> None:
+    """Wait until a function of the page holds of some words; asked at every frame, it costs each of them."""
+    page.wait_for_function(holds, arg=words, polling=50)
+
+
 def valued(page: Any, typed: str) -> None:
     """Wait until the field of the crank radius holds this."""
-    page.wait_for_function("typed => document.getElementById('inputs/crank_radius').value === typed", arg=typed)
+    until(page, "typed => document.getElementById('inputs/crank_radius').value === typed", typed)
 
 
 def written(page: Any, whole: str) -> None:
     """Wait until the text is this."""
-    page.wait_for_function("whole => document.getElementById('text').value === whole", arg=whole)
+    until(page, "whole => document.getElementById('text').value === whole", whole)
 
 
 def told(page: Any, selector: str, words: str) -> None:
     """Wait until an element says this."""
-    page.wait_for_function(
-        "([selector, words]) => document.querySelector(selector).textContent.includes(words)", arg=[selector, words]
+    until(
+        page, "([selector, words]) => document.querySelector(selector).textContent.includes(words)", [selector, words]
     )
 
 
