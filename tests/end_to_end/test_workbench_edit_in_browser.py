@@ -73,7 +73,10 @@ def text(page: Any) -> str:
 
 
 def until(page: Any, holds: str, words: Any) -> None:
-    """Wait until a function of the page holds of some words; asked at every frame, it costs each of them."""
+    """Wait until a function of the page holds of some words.
+
+    It is asked 20 times a second; at every frame, as is usual, it has the page drawn 60 times.
+    """
     page.wait_for_function(holds, arg=words, polling=50)
 
 
