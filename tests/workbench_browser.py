@@ -6,16 +6,20 @@ A test takes the fixture ``workbench`` (one server over an empty folder for a wh
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
+
+from warm import LONGEST, WARM_WORKERS, Running
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
@@ -33,7 +37,7 @@ class Workbench:
     folder: Path
     address: str
     opening: str
-    process: subprocess.Popen[str]
+    stop: Callable[[], None]
 
     def page(
         self, browser: Browser, at: str = "", *, width: int = 1280, height: int = 900, colours: str = "light"
@@ -57,7 +61,9 @@ class Workbench:
         page.on("console", lambda said: page.said.append(f"{said.type}: {said.text}") if said.type == "error" else None)
         page.on("pageerror", lambda error: page.said.append(f"error: {error}"))
         context.route(lambda address: not address.startswith(self.address), lambda route: route.abort())
-        page.goto(self.opening.replace("/?", f"/{at}?"))
+        if at:  # let in without the first page, whose figures would be drawn
+            context.request.get(self.opening, max_redirects=0)
+        page.goto(self.address + at if at else self.opening)
         return page
 
 
@@ -72,8 +78,7 @@ def serving(folder: Path, *arguments: str) -> Iterator[Workbench]:
         assert errors is not None
         line = output.readline()
         assert "http://" in line, line + errors.read()
-        opening = line[line.index("http://") :].strip()
-        yield Workbench(folder.resolve(), opening.partition("?")[0], opening, process)
+        yield _said_by(line, folder, process.terminate)
     finally:
         process.send_signal(signal.SIGTERM if sys.platform == "win32" else signal.SIGINT)
         try:
@@ -83,10 +88,37 @@ def serving(folder: Path, *arguments: str) -> Iterator[Workbench]:
             process.communicate()
 
 
+def _said_by(line: str, folder: Path, stop: Callable[[], None]) -> Workbench:
+    opening = line[line.index("http://") :].strip()
+    return Workbench(folder.resolve(), opening.partition("?")[0], opening, stop)
+
+
+@contextmanager
+def serving_warm(folder: Path) -> Iterator[Workbench]:
+    """Serve a folder so, by a server and workers that need not import first: they are forked, see ``warm.py``."""
+    if not hasattr(os, "fork"):
+        with serving(folder) as served:
+            yield served
+        return
+    words = ["-m", "truing", "serve", str(folder), "--no-browser", "--port", "0"]
+    running = Running(words, folder, {WARM_WORKERS: "", "PYTHONUNBUFFERED": "1"})
+    try:
+        end = time.monotonic() + LONGEST
+        while not running.said[0].endswith("\n"):
+            assert running.poll() is None, running.said
+            assert time.monotonic() < end, running.said
+            time.sleep(0.02)
+        yield _said_by(running.said[0], folder, lambda: running.signal(signal.SIGTERM))
+    finally:
+        with suppress(ProcessLookupError):
+            running.signal(signal.SIGINT)
+        running.ended()
+
+
 @pytest.fixture(scope="module")
 def workbench(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Workbench]:
     """A workbench over a folder that is empty, for all tests of a file: what one writes there, the next one sees."""
-    with serving(tmp_path_factory.mktemp("press")) as served:
+    with serving_warm(tmp_path_factory.mktemp("press")) as served:
         yield served
 
 
@@ -95,7 +127,7 @@ def axe(page: Any, *rules_left_out: str) -> list[str]:
     from axe_playwright_python.sync_playwright import Axe
 
     rules = {rule: {"enabled": False} for rule in rules_left_out}
-    found = Axe().run(page, options={"runOnly": {"type": "tag", "values": EASY_TO_READ}, "rules": rules})
+    found = Axe().run(page, options={"resultTypes": ["violations"], "runOnly": EASY_TO_READ, "rules": rules})
     return [
         f"{violation['id']}: {node['html'][:120]} – {' '.join(node['failureSummary'].split())[:300]}"
         for violation in found.response["violations"]

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from own_pins import write_pin
+
 from warm import FORKED_WORKERS, LONGEST, Running
 
 FREE, ROWS, BATCHES = 6, 1024, 24

@@ -42,6 +42,7 @@ from pathlib import Path
 from typing import Any
 
 from read_in_docs import read
+
 from warm import FORKED_WORKERS, Running
 
 ROOT = Path(__file__).parents[2]

@@ -16,12 +16,12 @@ from pathlib import Path
 
 import pytest
 from gated import BATCHES, FREE, Gated, run_of, wait_until
-from warm import Running
 
 from shared import Answer, Calc
 from truing.errors import LostWorkersError, UsageError
 from truing.executors import cluster as on_cluster
 from truing.executors import in_order, open_executor
+from warm import Running
 
 distributed = pytest.importorskip("distributed", reason="the extra [cluster] is not installed")
 

@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 from gated import FREE, Gated, wait_until
 from own_pins import write_pin
-from warm import Running
 
 from shared import Answer, Calc
+from warm import Running
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="a console signal there stops the test too")
 

@@ -24,22 +24,23 @@ LARGEST = 100_000
 BAR = """
 import time
 from truing import progress
-progress.PATIENCE = 0.2
+progress.PATIENCE = 0.1
 with progress.progress_bar(True) as report:
-    for step in range(8):
+    for step in (2, 4):
         report("reliability", step, 8)
-        time.sleep(0.3)
+        time.sleep(0.25 * step)
 """
 
 
 def executed(folder: Path, *blocked: str) -> tuple[Any, list[str]]:
-    """Run the notebook, and last some long work, in a kernel that does not find some packages.
+    """Run the notebook, and where it has pandas some long work last, in a kernel that does not find some packages.
 
     Return it with what its displays drew, one after the other.
     """
     notebook = nbformat.read(NOTEBOOK, as_version=4)
     notebook.cells.insert(0, nbformat.v4.new_code_cell(ALONE.format(blocked=blocked)))
-    notebook.cells.append(nbformat.v4.new_code_cell(BAR))
+    if "pandas" not in blocked:  # a bar is one whatever the frames
+        notebook.cells.append(nbformat.v4.new_code_cell(BAR))
     client = nbclient.NotebookClient(
         notebook, timeout=300, kernel_name="python3", resources={"metadata": {"path": str(folder)}}
     )
@@ -95,9 +96,10 @@ def test_the_notebook_runs_in_a_fresh_kernel(tmp_path: Path, blocked: tuple[str,
     assert "12.9 %" in shown
     low, high = map(float, re.findall(r"95 %: (\S+) to (\S+)", "\n".join(texts(notebook)))[0])
     assert low < 2.5e-4 < high
-    assert any("reliability" in html and "50 %" in html for html in drawn)
-    assert drawn[-1] == ""
-    assert [shown["data"] for shown in notebook.cells[-1].outputs] == [{"text/plain": ""}]
+    if "pandas" not in blocked:
+        assert any("reliability" in html and "50 %" in html for html in drawn)
+        assert drawn[-1] == ""
+        assert [shown["data"] for shown in notebook.cells[-1].outputs] == [{"text/plain": ""}]
 
 
 def test_the_notebook_is_kept_without_output() -> None:

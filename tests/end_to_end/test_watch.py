@@ -16,10 +16,10 @@ from typing import Any
 
 import pytest
 from gated import wait_until
-from warm import LONGEST, Running
 
 from shared import Calc
 from truing.watching import PATIENCE, WatchedFiles
+from warm import LONGEST, Running
 
 PIN = Path(__file__).parents[1] / "data" / "pin_wear.py"
 INPUTS = '[inputs]\nload = "120 N"\n[studies]\nrun = ["reliability"]\n'

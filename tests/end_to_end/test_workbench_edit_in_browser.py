@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from workbench_browser import Workbench, axe, serving, sideways
+from workbench_browser import Workbench, axe, serving_warm, sideways
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -41,23 +41,30 @@ def file(workbench: Workbench) -> Path:
     return path
 
 
-@pytest.fixture
-def page(browser: Browser, workbench: Workbench, file: Path) -> Iterator[Any]:
-    """The page of that file."""
-    opened = edited(workbench, browser)
+@pytest.fixture(scope="module")
+def window(browser: Browser, workbench: Workbench) -> Iterator[Any]:
+    """One window for all tests; each opens the file in it anew."""
+    opened = workbench.page(browser, "runs")
     yield opened
-    assert opened.said == []
-    assert opened.outside == []
     opened.context.close()
 
 
-def edited(workbench: Workbench, browser: Browser) -> Any:
-    """Return a page of the file once it has its first answer, every group open."""
-    page = workbench.page(browser)
+@pytest.fixture
+def page(window: Any, workbench: Workbench, file: Path) -> Iterator[Any]:
+    """The page of that file."""
+    for seen in (window.said, window.outside):
+        seen.clear()
+    edited(window, workbench)
+    yield window
+    assert window.said == []
+    assert window.outside == []
+
+
+def edited(page: Any, workbench: Workbench) -> None:
+    """Open the file, wait for its first answer, and open every group."""
     page.goto(workbench.address + "edit?file=press.toml")
     page.wait_for_selector("summary .stated:not(:empty)")
     page.evaluate("document.querySelectorAll('#form details').forEach(part => { part.open = true; })")
-    return page
 
 
 def text(page: Any) -> str:
@@ -65,20 +72,28 @@ def text(page: Any) -> str:
     return str(page.input_value("#text"))
 
 
+def until(page: Any, holds: str, words: Any) -> None:
+    """Wait until a function of the page holds of some words.
+
+    It is asked 20 times a second; at every frame, as is usual, it has the page drawn 60 times.
+    """
+    page.wait_for_function(holds, arg=words, polling=50)
+
+
 def valued(page: Any, typed: str) -> None:
     """Wait until the field of the crank radius holds this."""
-    page.wait_for_function("typed => document.getElementById('inputs/crank_radius').value === typed", arg=typed)
+    until(page, "typed => document.getElementById('inputs/crank_radius').value === typed", typed)
 
 
 def written(page: Any, whole: str) -> None:
     """Wait until the text is this."""
-    page.wait_for_function("whole => document.getElementById('text').value === whole", arg=whole)
+    until(page, "whole => document.getElementById('text').value === whole", whole)
 
 
 def told(page: Any, selector: str, words: str) -> None:
     """Wait until an element says this."""
-    page.wait_for_function(
-        "([selector, words]) => document.querySelector(selector).textContent.includes(words)", arg=[selector, words]
+    until(
+        page, "([selector, words]) => document.querySelector(selector).textContent.includes(words)", [selector, words]
     )
 
 
@@ -186,8 +201,9 @@ def test_two_tabs_and_two_servers_lose_nothing(page: Any, file: Path, workbench:
     tab = page.context.new_page()
     tab.goto(page.url)
     tab.wait_for_selector("summary .stated:not(:empty)")
-    with serving(workbench.folder) as other:
-        elsewhere = edited(other, browser)
+    with serving_warm(workbench.folder) as other:
+        elsewhere = other.page(browser, "runs")
+        edited(elsewhere, other)
         page.fill(RADIUS, "0.31 m")
         elsewhere.fill(RADIUS, "0.32 m")
         for each, answer in ((page, "0.31"), (elsewhere, "0.32")):
@@ -203,6 +219,7 @@ def test_two_tabs_and_two_servers_lose_nothing(page: Any, file: Path, workbench:
         page.click("#undo")
         valued(page, "0.31 m")
         elsewhere.context.close()
+    tab.close()
     assert file.read_text() == TEXT.replace("0.36 m", "0.32 m")
 
 

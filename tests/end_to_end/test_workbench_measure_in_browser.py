@@ -22,9 +22,7 @@ def measured(workbench: Workbench, browser: Browser) -> Any:
     """A page over the shipped inputs file of the screw."""
     if not (workbench.folder / "inputs.toml").exists():
         shutil.copy(SCREW / "inputs.toml", workbench.folder)
-    page = workbench.page(browser)
-    page.goto(f"{workbench.address}measure?file=inputs.toml")
-    return page
+    return workbench.page(browser, "measure?file=inputs.toml")
 
 
 def test_from_a_file_with_names_of_its_own_to_an_accepted_cause(

@@ -55,7 +55,7 @@ def pins(workbench: Workbench) -> Workbench:
 @pytest.fixture(scope="module")
 def window(browser: Browser, pins: Workbench) -> Iterator[Any]:
     """One page for all tests of this file, one after another."""
-    page = pins.page(browser)
+    page = pins.page(browser, "runs")
     page.evaluate("async () => (await import('/static/workbench.js')).call('/api/confirm', { file: 'own_pin.py' })")
     page.goto(f"{pins.address}edit?file=pin.toml&plugin=own_pin.py")
     page.locator(".see-slider").first.wait_for()

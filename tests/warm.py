@@ -9,19 +9,24 @@ import signal
 import sys
 from collections.abc import Mapping, Sequence
 from itertools import count
+from multiprocessing import forkserver
 from pathlib import Path
 
 import pytest
 
 from truing.testing import Answer
+from truing.workbench.tasks import MODULES
 
-TESTS = Path(__file__).parents[1]
+TESTS = Path(__file__).parent
 IMPORTED = ["truing.cli.run", "truing.cli.diagnose", "truing.cli.table", "truing.cli.watch", "truing.testing", "pytest"]
+IMPORTED += ["truing.workbench.listening", *(f"truing.workbench.tasks.{module}" for module in MODULES)]
 """What the process has imported that all of them are forked from."""
 LONGEST = 120.0
 """Seconds for what takes one or two on a quiet machine."""
 FORKED_WORKERS = "FORKED_WORKERS"
 """With this in its environment a command forks its workers, in place of starting them afresh."""
+WARM_WORKERS = "WARM_WORKERS"
+"""With this in its environment a command that has threads has its workers forked from where it was forked itself."""
 _numbers = count()
 
 
@@ -91,6 +96,10 @@ def _become(words: list[str], folder: Path, environment: Mapping[str, str], said
     signal.signal(signal.SIGINT, signal.default_int_handler)
     if FORKED_WORKERS in environment:
         context = multiprocessing.get_context("fork")
+        multiprocessing.get_context = lambda method=None: context  # type: ignore[assignment]
+    if WARM_WORKERS in environment:
+        forkserver._forkserver.ensure_running = lambda: None  # type: ignore[attr-defined]  # it runs: this is its child
+        context = multiprocessing.get_context("forkserver")
         multiprocessing.get_context = lambda method=None: context  # type: ignore[assignment]
     first = str(Path(words[0]).resolve().parent) if words[0] not in {"-m", "-c"} else str(folder)
     others = [place for place in sys.path if not Path(place).is_relative_to(TESTS)]
