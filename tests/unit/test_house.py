@@ -27,7 +27,8 @@ from truing.runs.new_effect import new_effect_source
 
 CODE = [*sorted((ROOT / "kernel").rglob("*.py")), *sorted((ROOT / "plugins").rglob("*.py"))]
 PACKAGES = sorted(path.parent.name for path in (ROOT / "plugins").glob("*/__init__.py"))
-EXTRAS = {"harmonic_fractal": {"SurfaceTopography"}}  # optional: imported inside a function, missed with a sentence
+# optional: imported inside a function, missed with a sentence
+EXTRAS = {"harmonic_fractal": {"ContactMechanics", "SurfaceTopography"}}
 SHARED = {"gear_geometry"}  # what several gear papers share: no hooks, and every plugin may import it
 FOR_AUTHORS = {"truing"}
 NEVER_MISSED = {"IPython", "typing_extensions", "_typeshed"}  # there in a notebook, and for type checkers, alone
