@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from gear_geometry.drawing import BLUE, GREEN, GREY, INK, ORANGE, PALE, WIDTH, panels, quiet, signed
 from harmonic_fractal import contact as rough_contact
-from harmonic_fractal.calculation import Polyline, around_of, polyline_of, ratio_of
+from harmonic_fractal.calculation import Polyline, around_of, polyline_of, ratio_of, wave_torsion
 from harmonic_fractal.contact import Rough, contact_of, flanks_of, interface_of, pressed
 from harmonic_fractal.estimate import HIGHEST, LOWEST, Estimate
 from harmonic_fractal.flank import Flank
@@ -555,7 +555,7 @@ def torsions(drive: "Drive", printed: Polyline, torque: Array) -> tuple[Array, A
     mesh = mesh_of(drive, contact_of(drive, interface_of(drive)))
     whole, rough = mesh_torsion(torque, drive.reference_torque, mesh)
     beyond = np.maximum(torque - drive.reference_torque, 0.0)
-    model = whole + around_of(drive)["series_compliance"] * beyond
+    model = whole + around_of(drive)["series_compliance"] * beyond + wave_torsion(drive, torque)
     return np.asarray(rough), np.asarray(model), np.asarray(printed.torsion(torque))
 
 
@@ -583,8 +583,29 @@ def torsion(record: "DriveRun") -> "Sequence[Block]":
             ("torque", "roughness alone", "this model", f"catalogue, {name}", "share of roughness"), rows,
             ("N*m", "urad", "urad", "urad", "%"),
         ),
+        _parts(drive, torque, known),
         Words(_conclusion(100.0 * float(np.max(rough / known)), float(around_of(drive)["series_compliance"]))),
     ]  # fmt: skip
+
+
+def _parts(drive: "Drive", torque: Array, known: Array) -> Table:
+    """Whose torsion it is: each part's share of the catalogue's, at each torque."""
+    mesh = mesh_of(drive, contact_of(drive, interface_of(drive)))
+    whole, rough = mesh_torsion(torque, drive.reference_torque, mesh)
+    beyond = np.maximum(torque - drive.reference_torque, 0.0)
+    around = around_of(drive)
+    cup = drive.cup_length / (around["shear_modulus"] * around["cup_moment"]) * beyond
+    rest = drive.drive_compliance / drive.modulus_factor * beyond
+    parts = np.array([rough, whole - rough, cup, wave_torsion(drive, torque), rest])
+    shares = 100.0 * np.concatenate([parts, parts.sum(axis=0, keepdims=True)]) / known
+    names = ("rough contacts", "teeth and line contact", "tube of the cup", "wave generator", "drive_compliance",
+             "all together")  # fmt: skip
+    rows = [(name, *each) for name, each in zip(names, shares.tolist(), strict=True)]
+    return Table(
+        "Whose torsion it is, in parts of the catalogue's", ("part", *(f"{each:.4g} N m" for each in torque)), rows,
+        ("", *["%"] * len(torque)),
+        "At 100 % all together meet the catalogue. A part that is 0 is taken as rigid here.",
+    )  # fmt: skip
 
 
 def _conclusion(most: float, compliance: float) -> str:

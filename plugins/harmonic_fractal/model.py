@@ -87,8 +87,9 @@ SECTIONS = [
     ),
     Section(
         "Torsion of the drive",
-        "shear_modulus", "cup_moment", "cup_stiffness", "series_compliance", "torsional_stiffness", "torsion",
-        "rough_torsion", "catalogue_torsion", "catalogue_stiffness", "rough_share",
+        "shear_modulus", "cup_moment", "cup_stiffness", "series_compliance", "wave_torsion", "wave_compliance",
+        "torsional_stiffness", "torsion", "rough_torsion", "catalogue_torsion", "catalogue_stiffness",
+        "catalogue_ratio", "rough_share",
         text="Torsion is the integral of compliance over torque, from the reference torque on. Beside it stands what "
         "the maker's catalogue says of a drive of this size.",
         blocks=figures.torsion,
