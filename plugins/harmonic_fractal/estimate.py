@@ -594,13 +594,22 @@ def _means_of_lines(curve: StructureFunction, weights: Array, settings: Estimati
 # lags of the fit, (B, 2): there the two are nearly independent, and ln G follows from both without approximation.
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False)
 class _Unbiased:
-    """D and G without the bias of levelling, deviations (B, 2) of such surfaces, and by how much D follows the fit."""
+    """D and G without the bias of levelling, deviations (B, 2) of such fits, and what they are once it is taken out.
+
+    D follows the fit by ``gain``, and the level that D by ``shift``: the smoother a surface, the more levelling took.
+    """
 
     fit: _Fit
     deviations: Array
     gain: float
+    shift: float
+
+    def of_surfaces(self, deviations: Array) -> Array:
+        """Return the deviations (B, 2) of surfaces from those of their fits."""
+        dimension = self.gain * deviations[:, 0]
+        return np.stack([dimension, deviations[:, 1] + self.shift * dimension], axis=1)
 
 
 TURNS = 3  # of the search for the dimension that would be found as this one was
@@ -632,14 +641,20 @@ def _unbiased(lines: Lines, curve: StructureFunction, found: _Fit, settings: Est
         for _ in range(TURNS):
             off = found.dimension - (2.0 - float(law(dimension, spread).slope) / 2.0)
             dimension = float(np.clip(dimension + off, *NEAR))
-    change = float(law(dimension - APART, spread).slope - law(dimension + APART, spread).slope) / (4.0 * APART)
-    gain = float(np.clip(1.0 / change, 1.0, 2.0))
-    expected = _levels(_pairs(law(dimension, spread)), curve.lags)[1]
-    level = _levels(_pair(found), curve.lags)[1] - expected + (4.0 - 2.0 * dimension) * np.log(curve.lags).mean()
+    middle = float(np.log(curve.lags).mean())
+
+    def seen_and_lost(of: float) -> Array:
+        seen = _levels(_pairs(law(of, spread)), curve.lags)
+        return np.array([seen[0], (4.0 - 2.0 * of) * middle - seen[1]])
+
+    change = (seen_and_lost(dimension + APART) - seen_and_lost(dimension - APART)) / (2.0 * APART)
+    gain, shift = float(np.clip(1.0 / change[0], 1.0, 2.0)), float(change[1])
+    level = _levels(_pair(found), curve.lags)[1] + seen_and_lost(dimension)[1]
     if len(lines.heights) > 1:
         fit = _at(found, dimension, level, curve.lags)
-        return _Unbiased(fit=fit, deviations=_of_patches(curve, found, covariance, settings), gain=gain)
-    return _by_making(lines, curve, found, (dimension, level), gain, settings)
+        return _Unbiased(fit, _of_patches(curve, found, covariance, settings), gain, shift)
+    start = _Unbiased(_at(found, dimension, level, curve.lags), np.empty((0, 2)), gain, shift)
+    return _by_making(lines, curve, found, start, settings)
 
 
 def _of_one_line(dimension: float, steps: Steps, taken: Levelling) -> Array:
@@ -652,16 +667,16 @@ MADE = 200  # lines that are made like one
 
 
 def _by_making(
-    lines: Lines, curve: StructureFunction, found: _Fit, start: tuple[float, float], gain: float, settings: Estimation
+    lines: Lines, curve: StructureFunction, found: _Fit, start: _Unbiased, settings: Estimation
 ) -> _Unbiased | None:
     """Return D and G of one line by Gaussian lines that are levelled, judged and fitted as it was.
 
-    ``start`` is D_s and ln S in the middle of the lags of the fit. Lines that are refused do not count.
+    Lines that are refused do not count.
     """
     if lines.levelling is None:
         return None
     rng = np.random.default_rng(settings.seed)
-    dimension, level = start
+    dimension, level = (float(each) for each in _levels(_pair(start.fit), curve.lags))
     middle = float(np.log(curve.lags).mean())
     plain = replace(settings, bias="kept", resamples=0)
     wanted = _levels(_pair(found), curve.lags)
@@ -679,9 +694,9 @@ def _by_making(
             return None
         off = np.mean(seen, axis=0) - wanted
         deviations = np.array(seen) - np.mean(seen, axis=0)
-        dimension = float(np.clip(dimension - gain * off[0], *NEAR))
+        dimension = float(np.clip(dimension - start.gain * off[0], *NEAR))
         level = level - float(off[1])
-    return _Unbiased(fit=_at(found, dimension, level, curve.lags), deviations=deviations, gain=gain)
+    return replace(start, fit=_at(found, dimension, level, curve.lags), deviations=deviations)
 
 
 def _pair(fit: _Fit) -> Array:
@@ -732,12 +747,12 @@ def _sampled(
     apart = 2.0 - windows.slopes(sizes, mean_squares(weights @ sums, weights @ counts)) - pairs[:, 0]
     deviations = _levels(pairs[np.isfinite(pairs).all(axis=1)], curve.lags)
     deviations = deviations - deviations.mean(axis=0)
-    widening, middle, gain = 1.0, found, 1.0
+    widening, middle = 1.0, found
     if law is not None:
-        middle, gain = law.fit, law.gain
+        middle = law.fit
         widening = max(1.0, float(law.deviations[:, 0].std() / deviations[:, 0].std()))
-        deviations = law.deviations if widening > 1.0 else deviations
-    levels = _levels(_pair(middle), curve.lags) + deviations * np.array([gain, 1.0])
+        deviations = law.of_surfaces(law.deviations if widening > 1.0 else deviations)
+    levels = _levels(_pair(middle), curve.lags) + deviations
     found_pairs = _roughnesses(levels, curve.lags)
     return _Samples(
         pairs=found_pairs[np.isfinite(found_pairs).all(axis=1)] + np.array([1.0, 0.0]),
