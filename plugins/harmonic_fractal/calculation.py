@@ -203,7 +203,8 @@ def wave_torsion(drive: Drive, torque: Float) -> Float:
     """
     scale = drive.wave_torsion_stated * drive.modulus_factor ** (-2.0 / 3.0) / np.power(drive.wave_torque, 2.0 / 3.0)
     beyond = np.maximum(np.abs(torque), drive.reference_torque)
-    return scale * (np.power(beyond, 2.0 / 3.0) - np.power(drive.reference_torque, 2.0 / 3.0))
+    value: Float = scale * (np.power(beyond, 2.0 / 3.0) - np.power(drive.reference_torque, 2.0 / 3.0))
+    return value
 
 
 def wave_compliance(drive: Drive) -> Float:

@@ -71,7 +71,7 @@ def scatter(exponent: float, steps: Steps, levelling: Levelling) -> Array:
         fewer = np.maximum(1, np.rint(steps / coarse)).astype(np.int64)
         parts.append(weight[:, None] * _scatter(exponent, fewer, reduced, levelling) * weight)
     if len(parts) == 1:
-        return parts[0]
+        return np.asarray(parts[0])
     shared = _across(exponent, steps, levelling.shapes[0])
     sds = [np.sqrt(np.diagonal(part)) for part in parts]
     common = sds[0][:, None] * shared * sds[1]
@@ -179,14 +179,14 @@ def _squared(level: Array, steps: Steps) -> Array:
 
 def _distances(lines: int) -> tuple[Array, Array]:
     """Return some distances of two lines, and how often they stand for those about them; together 1."""
-    apart: Array = np.unique(np.round(np.geomspace(1.0, lines, APART)) - 1.0).astype(np.float64)
+    apart = np.unique(np.round(np.geomspace(1.0, lines, APART)) - 1.0)
     every = np.arange(lines, dtype=float)
     often = np.where(every > 0, 2.0, 1.0) * (lines - every) / lines**2
     after = np.minimum(np.searchsorted(apart, every, side="right"), len(apart) - 1)
     before = np.maximum(after - 1, 0)
     way = np.where(after > before, (every - apart[before]) / np.maximum(apart[after] - apart[before], 1.0), 0.0)
-    share: Array = np.bincount(before, often * (1.0 - way), len(apart)) + np.bincount(after, often * way, len(apart))
-    return apart, share.astype(np.float64)
+    share = np.bincount(before, often * (1.0 - way), len(apart)) + np.bincount(after, often * way, len(apart))
+    return np.asarray(apart, dtype=np.float64), np.asarray(share, dtype=np.float64)
 
 
 def _across(exponent: float, steps: Steps, shape: tuple[int, int]) -> Array:

@@ -14,7 +14,6 @@ import numpy as np
 
 from gear_geometry.drawing import signed
 from harmonic_fractal.contact import approach, contact_of, equivalent_modulus, interface_of, pressed
-from harmonic_fractal.flank import Flank
 from harmonic_fractal.quantities import Drive
 from truing import Array, Bench, Block, Outcome, Table, TruingError, Words
 
@@ -52,19 +51,16 @@ def heights_of(drive: Drive) -> tuple[Array, float] | None:
     Of two maps the part that both have; holes are filled along the lines. None where no patch was measured. Raises
     TruingError where spacings differ.
     """
-    patches = [flank for flank in (drive.surface, drive.mating_surface) if _is_patch(flank)]
+    flanks = (drive.surface, drive.mating_surface)
+    patches = [flank.surface for flank in flanks if flank is not None and not flank.surface.is_profile]
     if not patches:
         return None
-    spacings = [spacing for flank in patches for spacing in (flank.surface.spacing_x, flank.surface.spacing_y)]
+    spacings = [spacing for patch in patches for spacing in (patch.spacing_x, patch.spacing_y)]
     if max(spacings) > 1.01 * min(spacings):
         raise TruingError("flanks are pressed on one square grid: measure both with the same spacing along x and y")
-    rows, points = np.min([flank.surface.heights.shape for flank in patches], axis=0)
-    cut = [_filled(flank.surface.heights[:rows, :points]) for flank in patches]
+    rows, points = np.min([patch.heights.shape for patch in patches], axis=0)
+    cut = [_filled(patch.heights[:rows, :points]) for patch in patches]
     return sum(cut[1:], cut[0]), float(spacings[0])
-
-
-def _is_patch(flank: Flank | None) -> bool:
-    return flank is not None and not flank.surface.is_profile
 
 
 def _filled(heights: Array) -> Array:
