@@ -1,7 +1,7 @@
 """From the lines of a surface to fractal dimension and roughness: settings, fits, and what was found."""
 
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -422,15 +422,11 @@ def estimate_of(lines: Lines, direction: Direction, settings: Estimation) -> Est
     reason = _refusal(lines.heights.shape[1], local, curve.lags, found)
     law = None if reason or settings.bias == "kept" else _unbiased(lines, curve, found, settings)
     noise_dimension, noise_share = _with_noise(curve)
-    whole = np.unique(np.concatenate([coarse.lags, curve.lags]), return_index=True)[1]
     samples = _Samples() if reason else _sampled(lines, curve, found, law, settings)
     better = found if law is None else law.fit
     return Estimate(
+        **_seen(lines, coarse, local, curve),
         direction=direction,
-        lags=curve.lags,
-        values=curve.pooled,
-        local_lags=local.lags,
-        local_dimensions=local.dimensions,
         dimension=better.dimension,
         roughness=_exponential(better.logarithm),
         r_squared=found.r_squared,
@@ -439,10 +435,6 @@ def estimate_of(lines: Lines, direction: Direction, settings: Estimation) -> Est
         range=NONE if reason else local.range,
         reason=reason,
         resampled=samples.pairs,
-        spacing=lines.spacing,
-        all_lags=np.concatenate([coarse.lags, curve.lags])[whole],
-        all_values=np.concatenate([coarse.pooled, curve.pooled])[whole],
-        window_dimension=windows.roughness_length_of(lines.heights, lines.spacing),
         noise_dimension=noise_dimension,
         noise_share=noise_share,
         levelled_dimension=found.dimension,
@@ -450,6 +442,21 @@ def estimate_of(lines: Lines, direction: Direction, settings: Estimation) -> Est
         window_disagreement=samples.window_dimension - better.dimension,
         window_scatter=samples.window_scatter,
     )
+
+
+def _seen(lines: Lines, coarse: StructureFunction, local: _Local, curve: StructureFunction) -> dict[str, Any]:
+    """Return what is shown of the lines whatever the fit, by the names of the estimate."""
+    whole = np.unique(np.concatenate([coarse.lags, curve.lags]), return_index=True)[1]
+    return {
+        "lags": curve.lags,
+        "values": curve.pooled,
+        "local_lags": local.lags,
+        "local_dimensions": local.dimensions,
+        "spacing": lines.spacing,
+        "all_lags": np.concatenate([coarse.lags, curve.lags])[whole],
+        "all_values": np.concatenate([coarse.pooled, curve.pooled])[whole],
+        "window_dimension": windows.roughness_length_of(lines.heights, lines.spacing),
+    }
 
 
 def _exponential(logarithm: float) -> float:
