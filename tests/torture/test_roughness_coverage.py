@@ -1,4 +1,4 @@
-"""Whether the stated intervals of D, G, K and b hold the truth, on surfaces of seeds that decided nothing.
+"""Whether the stated intervals of D, G, K and a_L hold the truth, on surfaces of seeds that decided nothing.
 
     pytest tests/torture/test_roughness_coverage.py
 
@@ -20,7 +20,7 @@ CASES = [((1, 500), ""), ((1, 1500), ""), ((100, 200), "x"), ((150, 150), "auto"
 
 
 def pair_of(dimension: object, roughness: object) -> np.ndarray:
-    """Stiffness and clearance of equation 7 of one pair under 25 N, of profiles of these dimensions."""
+    """Stiffness and radius of the largest contact, which sets b, of one pair under 25 N."""
     drive = Drive()
     contact = contact_of(drive, Rough(dimension=np.asarray(dimension) + 1.0, roughness=np.asarray(roughness)))
     one = pressed(25.0, contact)
