@@ -109,9 +109,9 @@ def require_surface(drive: Drive, rough: rough_contact.Rough) -> None:
 
 CLOSED = ("approach", "closing_clearance", "free_play")
 """The results that count the way of the pair from the reference load."""
-TURNED = ("mesh_torsion", "torsion", "rough_torsion", "rough_share")
+TURNED = ("mesh_torsion", "torsion", "rough_torsion", "rough_share", "catalogue_ratio")
 """The results that count the torsion from the reference torque."""
-COMPARED = ("catalogue_torsion", "catalogue_stiffness", "rough_share")
+COMPARED = ("catalogue_torsion", "catalogue_stiffness", "rough_share", "catalogue_ratio")
 """The results that need the catalogue."""
 
 
@@ -196,6 +196,29 @@ def around_of(drive: Drive) -> dict[str, Float]:
     return {"shear_modulus": shear, "cup_moment": moment, "cup_stiffness": cup, "series_compliance": compliance}
 
 
+def wave_torsion(drive: Drive, torque: Float) -> Float:
+    """Return the torsion, rad, of the wave generator's balls in their races from the reference to a size of torque.
+
+    Hertz: they close as load^(2/3) and as modulus^(-2/3).
+    """
+    scale = drive.wave_torsion_stated * drive.modulus_factor ** (-2.0 / 3.0) / np.power(drive.wave_torque, 2.0 / 3.0)
+    beyond = np.maximum(np.abs(torque), drive.reference_torque)
+    value: Float = scale * (np.power(beyond, 2.0 / 3.0) - np.power(drive.reference_torque, 2.0 / 3.0))
+    return value
+
+
+def wave_compliance(drive: Drive) -> Float:
+    """Return the slope of that torsion at the torque, rad/(N m), from torque 0 on as if it had no reference; 0 at 0."""
+    size = np.abs(np.asarray(drive.torque, dtype=float))
+    scale = drive.wave_torsion_stated * drive.modulus_factor ** (-2.0 / 3.0) / np.power(drive.wave_torque, 2.0 / 3.0)
+    return np.where(size > 0.0, 2.0 / 3.0 * scale * np.where(size > 0.0, size, 1.0) ** (-1.0 / 3.0), 0.0)
+
+
+def over(value: Float, whole: Float) -> Float:
+    """Return a value in parts of a whole; 0 where that is 0."""
+    return np.where(np.asarray(whole) == 0.0, 0.0, value / np.where(np.asarray(whole) == 0.0, 1.0, whole))
+
+
 def _seen(drive: Drive, rough: rough_contact.Rough) -> Float:
     """Return the structure function over the lags, as an instrument that averages over a spot sees it."""
     lags, dimension = np.asarray(drive.lags), column(rough.dimension) - 1.0
@@ -264,6 +287,8 @@ def _mesh(drive: Drive, contact: rough_contact.Contact, mesh: DriveMesh) -> dict
     normal = normal_stiffness(drive.torque, mesh)
     stiffness, in_catalogue = normal * mesh.radius**2, printed.torsion(drive.torque)
     beyond = np.maximum(np.abs(drive.torque) - drive.reference_torque, 0.0)
+    wave, wave_slope = sense * wave_torsion(drive, drive.torque), wave_compliance(drive)
+    torsion = whole + sense * compliance * beyond + wave
     return {
         "effective_radius": mesh.radius,
         "pairs_factor": more,
@@ -275,10 +300,13 @@ def _mesh(drive: Drive, contact: rough_contact.Contact, mesh: DriveMesh) -> dict
         "mesh_stiffness": stiffness,
         "mesh_torsion": whole,
         **around,
-        "torsional_stiffness": stiffness / (1.0 + compliance * stiffness),
-        "torsion": whole + sense * compliance * beyond,
+        "wave_torsion": wave,
+        "wave_compliance": wave_slope,
+        "torsional_stiffness": stiffness / (1.0 + (compliance + wave_slope) * stiffness),
+        "torsion": torsion,
         "rough_torsion": rough,
         "catalogue_torsion": in_catalogue,
         "catalogue_stiffness": printed.stiffness(drive.torque),
-        "rough_share": np.where(in_catalogue == 0.0, 0.0, rough / np.where(in_catalogue == 0.0, 1.0, in_catalogue)),
+        "catalogue_ratio": over(torsion, in_catalogue),
+        "rough_share": over(rough, in_catalogue),
     }

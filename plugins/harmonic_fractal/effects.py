@@ -167,7 +167,7 @@ def creep(drive: Drive, results: Stiffness, *, share: Float, time_scale: Float, 
     Only what is elastic creeps: the mesh and what is in series with it.
     """
     beyond = np.sign(drive.torque) * np.maximum(np.abs(drive.torque) - drive.reference_torque, 0.0)
-    elastic = results.mesh_torsion + results.series_compliance * beyond
+    elastic = results.mesh_torsion + results.series_compliance * beyond + results.wave_torsion
     return turned(results, share * elastic * np.log1p(np.maximum(time, 0.0) / time_scale))
 
 

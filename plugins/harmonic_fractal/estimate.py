@@ -1,12 +1,14 @@
 """From the lines of a surface to fractal dimension and roughness: settings, fits, and what was found."""
 
-from dataclasses import dataclass, field
-from typing import Literal
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal
 
 import numpy as np
 
-from harmonic_fractal import structure
-from harmonic_fractal.structure import CACHED, SHARE, Steps, StructureFunction, mean_squares
+from harmonic_fractal import levelling, structure, windows
+from harmonic_fractal.generators import brownian_profiles
+from harmonic_fractal.levelling import Levelling
+from harmonic_fractal.structure import SHARE, Steps, StructureFunction, mean_squares
 from harmonic_fractal.surface import Direction, Lines
 from truing import Array
 
@@ -127,7 +129,19 @@ FEWEST_BLOCKS = 4
 MOST_UNITS = 2000  # more lines are taken together by neighbours, so that samples of any map fit into memory
 
 
-def units_of(heights: Array, curve: StructureFunction, steps: Steps, block: int) -> tuple[StructureFunction, int]:
+@dataclass(frozen=True, eq=False)
+class Units:
+    """What is resampled: structure function (units, k), how many neighbours are drawn together, and what they are.
+
+    ``lines`` is how many lines a unit holds, 0 where the units are pieces across all lines.
+    """
+
+    curve: StructureFunction
+    block: int
+    lines: int
+
+
+def units_of(heights: Array, curve: StructureFunction, steps: Steps, block: int) -> Units:
     """Return what is resampled, its structure function (units, k), and how many neighbours are drawn together.
 
     Blocks of ``block`` lines where that is asked for (not 0). Else of ten lines, where there are twenty lines or more
@@ -136,15 +150,21 @@ def units_of(heights: Array, curve: StructureFunction, steps: Steps, block: int)
     quarter of the units, so that there are four blocks to draw.
 
     Lines of one patch are seldom independent, and blocks of ten of them then see half of the scatter only: a fractal
-    patch is correlated over its whole height. Pieces as long as the longest lag see 0.6 to 0.9 of it.
+    patch is correlated over its whole height. Pieces as long as the longest lag see 0.6 to 0.9 of it, so the scatter of
+    a Gaussian patch of this size stands beside (``levelling.scatter``), and the larger of both counts.
     """
-    if block or (len(curve.sums) >= ENOUGH_LINES and are_independent(curve)):
+    if block or know_nothing(curve):
         together = -(-len(curve.sums) // MOST_UNITS)
         groups = _grouped(curve, together)
-        return groups, _at_most(-(-(block or LINES_TOGETHER) // together), len(groups.sums))
+        return Units(groups, _at_most(-(-(block or LINES_TOGETHER) // together), len(groups.sums)), together)
     pieces = StructureFunction(curve.lags, *structure.piece_sums(heights, steps, PIECES))
     reach = steps[-1] * len(pieces.sums) / (heights.shape[1] - steps[-1])
-    return pieces, _at_most(int(np.ceil(reach)), len(pieces.sums))
+    return Units(pieces, _at_most(int(np.ceil(reach)), len(pieces.sums)), 0)
+
+
+def know_nothing(curve: StructureFunction) -> bool:
+    """Tell whether lines are many and know nothing of one another."""
+    return len(curve.sums) >= ENOUGH_LINES and are_independent(curve)
 
 
 def are_independent(curve: StructureFunction) -> bool:
@@ -180,56 +200,6 @@ def _grouped(curve: StructureFunction, together: int) -> StructureFunction:
 
 def _at_most(block: int, units: int) -> int:
     return max(1, min(block, units // FEWEST_BLOCKS))
-
-
-# The roughness-length method: how the roughness of a piece of a line grows with its length (Malinverno 1990)
-
-SHORTEST = 8  # points of a window
-WINDOW_SHARE = 0.1  # of a line: the longest window
-COUNT = 12
-
-
-def roughness_length_of(heights: Array, spacing: float) -> float:
-    """Read the profile dimension from lines (lines, points), m, by the roughness-length method.
-
-    Of every window of w points the straight line is removed, rho = sqrt(sum r^2/(w-2)); its mean over all windows
-    grows as w^(2-D_s). Windows of 8 points to a tenth of a line, evenly in their logarithm; those that hold a point
-    that was not measured are left out, and windows that overlap by half count too. It gives no G: that comes from
-    the structure function. NaN where a line is too short for two lengths of windows.
-    """
-    sizes = window_sizes(heights.shape[1])
-    roughness = np.array([_mean_roughness(heights, int(size)) for size in sizes])
-    known = np.isfinite(roughness) & (roughness > 0)
-    if known.sum() < 2:
-        return float("nan")
-    return 2.0 - float(
-        np.polyfit(np.log(np.asarray(sizes[known] * spacing, dtype=float)), np.log(roughness[known]), 1)[0]
-    )
-
-
-def window_sizes(points: int) -> Steps:
-    """Return the lengths of windows, in points, for a line of so many points."""
-    longest = int(WINDOW_SHARE * points * (1 + 1e-9))
-    if longest < SHORTEST:
-        return np.empty(0, dtype=np.int64)
-    return np.unique(np.round(np.geomspace(SHORTEST, longest, COUNT))).astype(np.int64)
-
-
-def _mean_roughness(heights: Array, size: int) -> float:
-    """Return the mean over all windows of the standard deviation about each window's own straight line, m."""
-    views = np.lib.stride_tricks.sliding_window_view(heights, size, axis=1)[:, :: size // 2]
-    x = np.arange(size) - (size - 1) / 2.0
-    total, count = 0.0, 0
-    rows = max(1, CACHED // (views.shape[1] * size))
-    for first in range(0, len(views), rows):
-        window = views[first : first + rows].reshape(-1, size)
-        left = window - window.mean(axis=1, keepdims=True)
-        left -= ((left @ x) / (x @ x))[:, None] * x
-        rough = np.sqrt(np.einsum("ij,ij->i", left, left) / (size - 2))
-        known = np.isfinite(rough)
-        total += float(rough[known].sum())
-        count += int(known.sum())
-    return float(mean_squares(np.array(total), np.array(count)))
 
 
 # Whether there is a self-affine range: a decade of lags over which the local dimension stays the same
@@ -312,7 +282,8 @@ class Estimation:
     ``lags`` replaces the even choice of ``count`` lags from ``shortest_lag`` (else one point) to ``longest_lag`` (else
     a tenth of a line). The ``fit`` is over the part of them that is self-affine, or over all of them whatever their
     local slopes. ``resamples`` bootstrap samples are drawn with ``seed``, of blocks of ``block`` neighbouring lines or,
-    if that is 0, of what the lines need.
+    if that is 0, of what the lines need. ``bias`` is that of levelling, and of the logarithm of a mean of few: it is
+    taken out where the lines say how they were levelled.
     """
 
     method: Literal["pooled", "per_line"] = "pooled"
@@ -325,6 +296,7 @@ class Estimation:
     resamples: int = 400
     block: int = 0
     seed: int = 1
+    bias: Literal["taken_out", "kept"] = "taken_out"
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -335,11 +307,16 @@ class Estimate:
     ``lags`` (k,) in m and ``values`` (k,) in m^2 are those of the fit; ``local_lags`` and ``local_dimensions`` (j,) the
     slopes between neighbouring lags. ``range`` is the longest self-affine range, m, NaN where there is none; then
     ``reason`` says why and the fit is for comparison only. ``resampled`` (B, 2) holds D of the surface and ln G of
-    bootstrap samples of blocks of lines, as pairs because their errors go together. ``all_lags`` and ``all_values``
-    are the whole structure function, those between which the local slopes are taken included.
+    bootstrap samples of blocks of lines, or of Gaussian patches of this size where these scatter more, as pairs because
+    their errors go together. ``all_lags`` and ``all_values`` are the whole structure function, those between which the
+    local slopes are taken included. ``levelled_dimension`` and ``levelled_roughness`` are those of the fit before the
+    bias of levelling was taken out.
     For comparison: ``window_dimension`` is the profile dimension by the roughness-length method; ``noise_dimension``
     that of a fit with noise at the same lags, and ``noise_share`` what this fit takes for noise of S at the shortest
     of them, 0 to 1: where that is much, D and G of the plain fit are partly those of the instrument.
+    ``window_disagreement`` is by how much the roughness-length method, its own bias taken out and its windows within
+    the lags of the fit, finds a larger dimension, and ``window_scatter`` the standard deviation that this difference
+    has by chance; NaN where there is no range.
     """
 
     direction: Direction
@@ -361,6 +338,27 @@ class Estimate:
     window_dimension: float = float("nan")
     noise_dimension: float = float("nan")
     noise_share: float = float("nan")
+    levelled_dimension: float = float("nan")
+    levelled_roughness: float = float("nan")
+    window_disagreement: float = float("nan")
+    window_scatter: float = float("nan")
+
+    @property
+    def dimension_interval(self) -> tuple[float, float]:
+        """The 95 % interval of the profile dimension; NaN without samples."""
+        low, high = _interval(self.resampled[:, 0])
+        return low - 1.0, high - 1.0
+
+    @property
+    def roughness_interval(self) -> tuple[float, float]:
+        """The 95 % interval of G, m; NaN without samples."""
+        low, high = np.exp(_interval(self.resampled[:, 1]))
+        return float(low), float(high)
+
+    @property
+    def window_sds(self) -> float:
+        """By how many standard deviations the roughness-length method finds a larger dimension."""
+        return self.window_disagreement / self.window_scatter
 
     @property
     def is_accepted(self) -> bool:
@@ -378,6 +376,13 @@ class Estimate:
             f"a fit with noise (noise_aware = true) at the same lags has the profile dimension "
             f"{self.noise_dimension:.3f}, not {self.dimension:.3f}",
         )
+
+
+def _interval(values: Array) -> tuple[float, float]:
+    if not len(values):
+        return NONE
+    low, high = np.percentile(values, (2.5, 97.5))
+    return float(low), float(high)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -415,30 +420,47 @@ def estimate_of(lines: Lines, direction: Direction, settings: Estimation) -> Est
     coarse, local, curve = _curves(lines, settings)
     found = _fit(curve, settings)
     reason = _refusal(lines.heights.shape[1], local, curve.lags, found)
+    law = None if reason or settings.bias == "kept" else _unbiased(lines, curve, found, settings)
     noise_dimension, noise_share = _with_noise(curve)
-    roughness = float(np.exp(found.logarithm)) if abs(found.logarithm) < 700.0 else float("nan")  # no such number
-    whole = np.unique(np.concatenate([coarse.lags, curve.lags]), return_index=True)[1]
+    samples = _Samples() if reason else _sampled(lines, curve, found, law, settings)
+    better = found if law is None else law.fit
     return Estimate(
+        **_seen(lines, coarse, local, curve),
         direction=direction,
-        lags=curve.lags,
-        values=curve.pooled,
-        local_lags=local.lags,
-        local_dimensions=local.dimensions,
-        dimension=found.dimension,
-        roughness=roughness,
+        dimension=better.dimension,
+        roughness=_exponential(better.logarithm),
         r_squared=found.r_squared,
         line_scatter=found.scatter,
         noise=found.noise,
         range=NONE if reason else local.range,
         reason=reason,
-        resampled=np.empty((0, 2)) if reason else _resampled(lines, curve, found, settings),
-        spacing=lines.spacing,
-        all_lags=np.concatenate([coarse.lags, curve.lags])[whole],
-        all_values=np.concatenate([coarse.pooled, curve.pooled])[whole],
-        window_dimension=roughness_length_of(lines.heights, lines.spacing),
+        resampled=samples.pairs,
         noise_dimension=noise_dimension,
         noise_share=noise_share,
+        levelled_dimension=found.dimension,
+        levelled_roughness=_exponential(found.logarithm),
+        window_disagreement=samples.window_dimension - better.dimension,
+        window_scatter=samples.window_scatter,
     )
+
+
+def _seen(lines: Lines, coarse: StructureFunction, local: _Local, curve: StructureFunction) -> dict[str, Any]:
+    """Return what is shown of the lines whatever the fit, by the names of the estimate."""
+    whole = np.unique(np.concatenate([coarse.lags, curve.lags]), return_index=True)[1]
+    return {
+        "lags": curve.lags,
+        "values": curve.pooled,
+        "local_lags": local.lags,
+        "local_dimensions": local.dimensions,
+        "spacing": lines.spacing,
+        "all_lags": np.concatenate([coarse.lags, curve.lags])[whole],
+        "all_values": np.concatenate([coarse.pooled, curve.pooled])[whole],
+        "window_dimension": windows.roughness_length_of(lines.heights, lines.spacing),
+    }
+
+
+def _exponential(logarithm: float) -> float:
+    return float(np.exp(logarithm)) if abs(logarithm) < 700.0 else float("nan")  # no such number
 
 
 def _curves(lines: Lines, settings: Estimation) -> tuple[StructureFunction, _Local, StructureFunction]:
@@ -575,17 +597,193 @@ def _means_of_lines(curve: StructureFunction, weights: Array, settings: Estimati
     return mean_squares(weights[:, known] @ pairs[known], weights[:, known].sum(axis=1, keepdims=True) * np.ones(2))
 
 
-def _resampled(lines: Lines, curve: StructureFunction, found: _Fit, settings: Estimation) -> Array:
-    """Return D of the surface and ln G (B, 2) of samples of blocks of lines, or of pieces of them."""
-    if settings.resamples < 1:
-        return np.empty((0, 2))
+# The bias of levelling taken out, and how far D and G scatter. Deviations are of D_s and of ln S in the middle of the
+# lags of the fit, (B, 2): there the two are nearly independent, and ln G follows from both without approximation.
+
+
+@dataclass(frozen=True, eq=False)
+class _Unbiased:
+    """D and G without the bias of levelling, deviations (B, 2) of such fits, and what they are once it is taken out.
+
+    D follows the fit by ``gain``, and the level that D by ``shift``: the smoother a surface, the more levelling took.
+    """
+
+    fit: _Fit
+    deviations: Array
+    gain: float
+    shift: float
+
+    def of_surfaces(self, deviations: Array) -> Array:
+        """Return the deviations (B, 2) of surfaces from those of their fits."""
+        dimension = self.gain * deviations[:, 0]
+        return np.stack([dimension, deviations[:, 1] + self.shift * dimension], axis=1)
+
+
+TURNS = 3  # of the search for the dimension that would be found as this one was
+NEAR = 1.02, 1.98  # bounds of it
+APART = 0.01  # of two dimensions of which it is looked at by how much what is found differs
+
+
+def _unbiased(lines: Lines, curve: StructureFunction, found: _Fit, settings: Estimation) -> _Unbiased | None:
+    """Return D and G of the Gaussian surface of which, on the average, this fit is to be expected; None if not known.
+
+    Levelling takes long lags from S, and a mean of few squares has a logarithm too low by half its variance. The range
+    of the fit is that which was chosen: of one line, whose slopes scatter, the choice has a bias of its own, so such
+    lines are made and judged like it.
+    """
+    if lines.levelling is None:
+        return None
+    taken = lines.levelling.apart() if know_nothing(curve) else lines.levelling
     steps = np.rint(curve.lags / lines.spacing).astype(np.int64)
-    units, block = units_of(lines.heights, curve, steps, settings.block)
-    weights = block_weights(len(units.sums), block, settings.resamples, settings.seed)
-    if settings.method == "per_line" and units is curve:
-        pairs = _means_of_lines(curve, weights, settings)
-    else:
-        pairs = _pairs(_law(curve.lags, mean_squares(weights @ units.sums, weights @ units.counts), settings))
-        pairs += np.array([found.dimension, found.logarithm]) - _pairs(_law(curve.lags, curve.pooled, settings))
-    value: Array = pairs[np.isfinite(pairs).all(axis=1)] + np.array([1.0, 0.0])
+
+    def law(dimension: float, covariance: Array) -> PowerLaw:
+        exponent = 4.0 - 2.0 * dimension
+        seen = levelling.expected(exponent, steps, taken) * np.exp(-0.5 * np.diagonal(covariance))
+        return _law(curve.lags, lines.spacing**exponent * seen, settings)
+
+    dimension = found.dimension
+    for _ in range(2):
+        covariance = levelling.scatter(4.0 - 2.0 * dimension, steps, taken)
+        spread = covariance if settings.method == "pooled" else _of_one_line(dimension, steps, taken)
+        for _ in range(TURNS):
+            off = found.dimension - (2.0 - float(law(dimension, spread).slope) / 2.0)
+            dimension = float(np.clip(dimension + off, *NEAR))
+    middle = float(np.log(curve.lags).mean())
+
+    def seen_and_lost(of: float) -> Array:
+        seen = _levels(_pairs(law(of, spread)), curve.lags)
+        return np.array([seen[0], (4.0 - 2.0 * of) * middle - seen[1]])
+
+    change = (seen_and_lost(dimension + APART) - seen_and_lost(dimension - APART)) / (2.0 * APART)
+    gain, shift = float(np.clip(1.0 / change[0], 1.0, 2.0)), float(change[1])
+    level = _levels(_pair(found), curve.lags)[1] + seen_and_lost(dimension)[1]
+    if len(lines.heights) > 1:
+        fit = _at(found, dimension, level, curve.lags)
+        return _Unbiased(fit, _of_patches(curve, found, covariance, settings), gain, shift)
+    start = _Unbiased(_at(found, dimension, level, curve.lags), np.empty((0, 2)), gain, shift)
+    return _by_making(lines, curve, found, start, settings)
+
+
+def _of_one_line(dimension: float, steps: Steps, taken: Levelling) -> Array:
+    """Return the covariance (k, k) of ln S of a single line."""
+    single = replace(taken, shapes=tuple((1, points) for _, points in taken.shapes[:1]))
+    return levelling.scatter(4.0 - 2.0 * dimension, steps, single)
+
+
+MADE = 200  # lines that are made like one
+
+
+def _by_making(
+    lines: Lines, curve: StructureFunction, found: _Fit, start: _Unbiased, settings: Estimation
+) -> _Unbiased | None:
+    """Return D and G of one line by Gaussian lines that are levelled, judged and fitted as it was.
+
+    Lines that are refused do not count.
+    """
+    if lines.levelling is None:
+        return None
+    rng = np.random.default_rng(settings.seed)
+    dimension, level = (float(each) for each in _levels(_pair(start.fit), curve.lags))
+    middle = float(np.log(curve.lags).mean())
+    plain = replace(settings, bias="kept", resamples=0)
+    wanted = _levels(_pair(found), curve.lags)
+    for _ in range(2):
+        step = float(np.exp(level + (4.0 - 2.0 * dimension) * (np.log(lines.spacing) - middle)))
+        made = brownian_profiles(dimension, step, (MADE, lines.heights.shape[1]), rng)
+        made = lines.levelling.taken_from(np.where(np.isfinite(lines.heights), made, np.nan))
+        seen = []
+        for line in made:
+            _, local, own = _curves(Lines(line[None], lines.spacing), plain)
+            fit = _fit(own, plain)
+            if not _refusal(len(line), local, own.lags, fit):
+                seen.append(_levels(_pair(fit), curve.lags))
+        if len(seen) < MADE // 4:
+            return None
+        off = np.mean(seen, axis=0) - wanted
+        deviations = np.array(seen) - np.mean(seen, axis=0)
+        dimension = float(np.clip(dimension - start.gain * off[0], *NEAR))
+        level = level - float(off[1])
+    return replace(start, fit=_at(found, dimension, level, curve.lags), deviations=deviations)
+
+
+def _pair(fit: _Fit) -> Array:
+    return np.array([fit.dimension, fit.logarithm])
+
+
+def _levels(pairs: Array, lags: Array) -> Array:
+    """Return D_s and ln S in the middle of these lags (..., 2) in place of D_s and ln G."""
+    dimension = pairs[..., 0]
+    level = structure.log_level_of(pairs[..., 1], dimension) + (4.0 - 2.0 * dimension) * np.log(lags).mean()
+    return np.stack([dimension, level], axis=-1)
+
+
+def _roughnesses(levels: Array, lags: Array) -> Array:
+    """Return D_s and ln G (..., 2) in place of D_s and ln S in the middle of these lags; NaN where there is no G."""
+    dimension = levels[..., 0]
+    intercept = levels[..., 1] - (4.0 - 2.0 * dimension) * np.log(lags).mean()
+    return np.stack([dimension, structure.log_roughness_of(intercept, dimension)], axis=-1)
+
+
+def _at(found: _Fit, dimension: float, level: float, lags: Array) -> _Fit:
+    pair = _roughnesses(np.array([dimension, level]), lags)
+    return replace(found, dimension=dimension, logarithm=float(pair[1]))
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class _Samples:
+    """Pairs (B, 2) of D of the surface and ln G; dimension by the roughness-length method, sd of its difference."""
+
+    pairs: Array = field(default_factory=lambda: np.empty((0, 2)))
+    window_dimension: float = float("nan")
+    window_scatter: float = float("nan")
+
+
+def _sampled(
+    lines: Lines, curve: StructureFunction, found: _Fit, law: _Unbiased | None, settings: Estimation
+) -> _Samples:
+    """Return samples of blocks of lines or of pieces of them, or of Gaussian surfaces where these scatter more."""
+    steps = np.rint(curve.lags / lines.spacing).astype(np.int64)
+    sizes = windows.sizes_within(lines.heights.shape[1], int(steps[0]), int(steps[-1]))
+    units = units_of(lines.heights, curve, steps, settings.block)
+    sums, counts = windows.sums_of(lines.heights, sizes, len(units.curve.sums), units.lines)
+    dimension = windows.calibrated(sizes, mean_squares(sums.sum(axis=0), counts.sum(axis=0)))
+    if settings.resamples < 2:
+        return _Samples(window_dimension=dimension)
+    weights = block_weights(len(units.curve.sums), units.block, settings.resamples, settings.seed)
+    pairs = _of_blocks(curve, units, weights, settings)
+    apart = 2.0 - windows.slopes(sizes, mean_squares(weights @ sums, weights @ counts)) - pairs[:, 0]
+    deviations = _levels(pairs[np.isfinite(pairs).all(axis=1)], curve.lags)
+    deviations = deviations - deviations.mean(axis=0)
+    widening, middle = 1.0, found
+    if law is not None:
+        middle = law.fit
+        widening = max(1.0, float(law.deviations[:, 0].std() / deviations[:, 0].std()))
+        deviations = law.of_surfaces(law.deviations if widening > 1.0 else deviations)
+    levels = _levels(_pair(middle), curve.lags) + deviations
+    found_pairs = _roughnesses(levels, curve.lags)
+    return _Samples(
+        pairs=found_pairs[np.isfinite(found_pairs).all(axis=1)] + np.array([1.0, 0.0]),
+        window_dimension=dimension,
+        window_scatter=widening * float(np.nanstd(apart, ddof=1)),
+    )
+
+
+def _of_blocks(curve: StructureFunction, units: Units, weights: Array, settings: Estimation) -> Array:
+    """Return D_s and ln G (B, 2) of units drawn so often (B, units)."""
+    if settings.method == "per_line" and units.curve is curve:
+        return _means_of_lines(curve, weights, settings)
+    drawn = mean_squares(weights @ units.curve.sums, weights @ units.curve.counts)
+    return _pairs(_law(curve.lags, drawn, settings))
+
+
+def _of_patches(curve: StructureFunction, found: _Fit, covariance: Array, settings: Estimation) -> Array:
+    """Return deviations (B, 2) of patches whose ln S has this covariance (k, k)."""
+    values, vectors = np.linalg.eigh(covariance)
+    normal = np.random.default_rng(settings.seed).standard_normal((max(settings.resamples, 2), len(values)))
+    scattered = normal @ (np.sqrt(np.maximum(values, 0.0))[:, None] * vectors.T)
+    level = structure.log_level_of(found.logarithm, found.dimension)
+    line = level + (4.0 - 2.0 * found.dimension) * np.log(curve.lags)
+    pairs = _pairs(_law(curve.lags, np.exp(line + scattered) + 2.0 * found.noise**2, settings))
+    levels = _levels(pairs[np.isfinite(pairs).all(axis=1)], curve.lags)
+    value: Array = levels - levels.mean(axis=0)
     return value

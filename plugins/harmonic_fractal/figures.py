@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from gear_geometry.drawing import BLUE, GREEN, GREY, INK, ORANGE, PALE, WIDTH, panels, quiet, signed
 from harmonic_fractal import contact as rough_contact
-from harmonic_fractal.calculation import Polyline, around_of, polyline_of, ratio_of
+from harmonic_fractal.calculation import Polyline, around_of, polyline_of, ratio_of, wave_torsion
 from harmonic_fractal.contact import Rough, contact_of, flanks_of, interface_of, pressed
 from harmonic_fractal.estimate import HIGHEST, LOWEST, Estimate
 from harmonic_fractal.flank import Flank
@@ -175,7 +175,8 @@ def verdict(flank: "Flank", body: str, instead: str) -> "Iterator[Block]":
 def _used(flank: "Flank", used: "Estimate") -> str:
     found = (
         f"Its profiles have the dimension {used.dimension:.3f} and G = {signed(used.roughness)} m over lags of "
-        f"{microns(used.range[0])} to {microns(used.range[1])}."
+        f"{microns(used.range[0])} to {microns(used.range[1])}. Structure function and roughness-length method: "
+        f"{judged(used)}."
     )
     if flank.surface.is_profile:
         return f"{found} It is one profile: that the flank is the same in all directions is assumed, not measured."
@@ -232,8 +233,44 @@ def tables(flank: "Flank") -> "Iterator[Block]":
         state = "used" if found.direction == flank.chosen else state
         rows.append((ALONG[found.direction], *ends, *fit, *[NANO * found.noise] * has_noise, state))
     yield Table(f"{name}: what each direction says", columns, rows, units)
+    if any(found.is_accepted for found in flank.estimates):
+        yield _intervals(flank)
     yield _others(flank)
     yield _slopes(flank)
+
+
+def _intervals(flank: "Flank") -> Table:
+    """D and G with what levelling did to them taken out, and how sure they are."""
+    rows: list[tuple[str | float | None, ...]] = []
+    for found in flank.estimates:
+        if found.is_accepted:
+            dimension, roughness = found.dimension_interval, found.roughness_interval
+            numbers = (found.levelled_dimension, found.dimension, *dimension, found.roughness, *roughness)
+            rows.append((ALONG[found.direction], *(or_none(each) for each in numbers)))
+    note = (
+        "Levelling takes long lags from S and so raises D_s; the bias is that of a Gaussian surface of this size, and "
+        "it is taken out. The intervals are those of Gaussian patches of this size, alike in all directions, or of "
+        "blocks of the measured lines where these scatter more."
+    )
+    columns = ("direction", "D_s as levelled", "D_s", "2.5 %", "97.5 %", "G, areal", "2.5 %", "97.5 %")
+    return Table(
+        f"{flank.surface.name}: how sure D and G are", columns, rows, ("", "", "", "", "", "m", "m", "m"), note
+    )
+
+
+APART = 2.0
+"""Standard deviations of their difference from which two methods disagree: by chance 5 % of surfaces do."""
+
+
+def judged(found: "Estimate") -> str:
+    """Say whether the roughness-length method agrees with the structure function."""
+    if not found.is_accepted:
+        return "no range: neither means anything"
+    if not np.isfinite(found.window_sds):
+        return "not known: the lags of the fit are too few for windows"
+    if abs(found.window_sds) <= APART:
+        return "agree within their scatter"
+    return "disagree: S is no power law within the windows, or heights are not Gaussian"
 
 
 def _others(flank: "Flank") -> Table:
@@ -241,17 +278,25 @@ def _others(flank: "Flank") -> Table:
     rows = [
         (
             ALONG[found.direction],
-            *(or_none(value) for value in (found.dimension, found.window_dimension, found.noise_dimension)),
+            *(or_none(value) for value in (found.dimension, found.window_dimension)),
+            or_none(found.window_disagreement),
+            or_none(found.window_sds),
+            judged(found),
+            or_none(found.noise_dimension),
             or_none(100.0 * found.noise_share),
         )
         for found in flank.estimates
     ]
-    columns = ("direction", "fit of S", "roughness-length", "fit of S with noise", "noise in S at the shortest lag")
+    columns = ("direction", "D_s by S", "by roughness-length", "less that by S, windows calibrated", "in sd", "judged",
+               "D_s by S with noise", "noise in S at the shortest lag")  # fmt: skip
     note = (
-        "The roughness-length method, which the patent names, looks at windows of a line; the fit with noise takes a "
-        "constant beside the power law. Where they differ much, D and G are partly those of instrument and window."
+        "The roughness-length method, which the patent names, looks at windows of a line. Its difference is judged "
+        "with windows within the lags of the fit, after what short windows miss was put back, in standard deviations "
+        "that it has by chance. The fit with noise takes a constant beside the power law; where it differs much, D and "
+        "G are partly those of the instrument."
     )
-    return Table(f"{flank.surface.name}: D_s by other ways, for comparison", columns, rows, ("", "", "", "", "%"), note)
+    units = ("", "", "", "", "", "", "", "%")
+    return Table(f"{flank.surface.name}: D_s by other ways, for comparison", columns, rows, units, note)
 
 
 def or_none(value: float) -> float | None:
@@ -510,7 +555,7 @@ def torsions(drive: "Drive", printed: Polyline, torque: Array) -> tuple[Array, A
     mesh = mesh_of(drive, contact_of(drive, interface_of(drive)))
     whole, rough = mesh_torsion(torque, drive.reference_torque, mesh)
     beyond = np.maximum(torque - drive.reference_torque, 0.0)
-    model = whole + around_of(drive)["series_compliance"] * beyond
+    model = whole + around_of(drive)["series_compliance"] * beyond + wave_torsion(drive, torque)
     return np.asarray(rough), np.asarray(model), np.asarray(printed.torsion(torque))
 
 
@@ -538,8 +583,29 @@ def torsion(record: "DriveRun") -> "Sequence[Block]":
             ("torque", "roughness alone", "this model", f"catalogue, {name}", "share of roughness"), rows,
             ("N*m", "urad", "urad", "urad", "%"),
         ),
+        _parts(drive, torque, known),
         Words(_conclusion(100.0 * float(np.max(rough / known)), float(around_of(drive)["series_compliance"]))),
     ]  # fmt: skip
+
+
+def _parts(drive: "Drive", torque: Array, known: Array) -> Table:
+    """Whose torsion it is: each part's share of the catalogue's, at each torque."""
+    mesh = mesh_of(drive, contact_of(drive, interface_of(drive)))
+    whole, rough = mesh_torsion(torque, drive.reference_torque, mesh)
+    beyond = np.maximum(torque - drive.reference_torque, 0.0)
+    around = around_of(drive)
+    cup = drive.cup_length / (around["shear_modulus"] * around["cup_moment"]) * beyond
+    rest = drive.drive_compliance / drive.modulus_factor * beyond
+    parts = np.array([rough, whole - rough, cup, wave_torsion(drive, torque), rest])
+    shares = 100.0 * np.concatenate([parts, parts.sum(axis=0, keepdims=True)]) / known
+    names = ("rough contacts", "teeth and line contact", "tube of the cup", "wave generator", "drive_compliance",
+             "all together")  # fmt: skip
+    rows = [(name, *each) for name, each in zip(names, shares.tolist(), strict=True)]
+    return Table(
+        "Whose torsion it is, in parts of the catalogue's", ("part", *(f"{each:.4g} N m" for each in torque)), rows,
+        ("", *["%"] * len(torque)),
+        "At 100 % all together meet the catalogue. A part that is 0 is taken as rigid here.",
+    )  # fmt: skip
 
 
 def _conclusion(most: float, compliance: float) -> str:

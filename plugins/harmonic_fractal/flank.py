@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from harmonic_fractal import surface as surfaces
 from harmonic_fractal.estimate import FEWEST_POINTS, Estimate, Estimation, estimate_of
+from harmonic_fractal.levelling import Levelling
 from harmonic_fractal.surface import Direction, Form, Lines, Surface
 from harmonic_fractal.surface_files import FileLayout, Reading, length, metres_per_unit, read_surface
 
@@ -20,6 +21,7 @@ FILTERS = 3.0  # widths of the instrument's lateral filter below which a lag is 
 WORDS: Mapping[str, tuple[str, ...]] = {
     "form": ("second_order", "plane", "none"), "spikes": ("remove", "keep"), "direction": ("auto", "x", "y", "both"),
     "sliding": ("x", "y"), "method": ("pooled", "per_line"), "fit": ("self_affine", "all"),
+    "bias": ("taken_out", "kept"),
 }  # fmt: skip
 
 
@@ -80,7 +82,7 @@ def _estimation(given: Mapping[str, Any]) -> Estimation:
         raise ValueError(f"longest_lag = {given['longest_lag']} must be above shortest_lag = {given['shortest_lag']}")
     return Estimation(
         method=given["method"], noise_aware=given["noise_aware"], shortest_lag=shortest, longest_lag=longest,
-        fit=given["fit"],
+        fit=given["fit"], bias=given["bias"],
     )  # fmt: skip
 
 
@@ -235,8 +237,9 @@ def with_choice(clean: Flank, options: Options) -> Flank:
     if surface.is_profile:
         if options.direction in {"y", "both"} or options.sliding == "y":
             raise ValueError("one profile has the direction x alone: leave out direction and sliding")
-        return _asked(clean, (estimate_of(surface.lines("x"), "x", settings),), "x")
-    lines: dict[Direction, Lines] = {"x": _level(surface.lines("x")), "y": _level(surface.lines("y"))}
+        return _asked(clean, (estimate_of(_level(surface.lines("x"), options.form), "x", settings),), "x")
+    axes: tuple[Direction, Direction] = "x", "y"
+    lines = {axis: _level(surface.lines(axis), options.form) for axis in axes}
     alone = _with_relief(tuple(estimate_of(each, axis, settings) for axis, each in lines.items()))
     said = _anisotropy(alone)
     if options.direction == "both":
@@ -250,8 +253,11 @@ def with_choice(clean: Flank, options: Options) -> Flank:
     return _best(clean, alone, options, said)
 
 
-def _level(lines: Lines) -> Lines:
-    return Lines(surfaces.without_line(lines.heights), lines.spacing)
+def _level(lines: Lines, form: Form) -> Lines:
+    """Take its straight line from each line, but for a profile, which lost its form, and say what was taken."""
+    is_profile = len(lines.heights) == 1
+    taken = Levelling((lines.heights.shape,), line=not is_profile or form != "none", curved=form == "second_order")
+    return Lines(lines.heights if is_profile else surfaces.without_line(lines.heights), lines.spacing, taken)
 
 
 def _together(lines: dict[Direction, Lines], settings: Estimation) -> Estimate:
@@ -367,6 +373,7 @@ def read_flank(  # the signature is the list of options of the inputs file
     method: str = "pooled",
     noise_aware: bool = False,
     fit: str = "self_affine",
+    bias: str = "taken_out",
     direction: str = "auto",
     sliding: str = "x",
 ) -> Flank:

@@ -197,6 +197,28 @@ def is_possible(made: Made, truth: Truth) -> bool:
     return all(holds for holds, _ in found)
 
 
+def is_a_flank(made: Made) -> bool:
+    """State what each number must be alone, as differences about a nominal value leave its bounds, and say if it is."""
+    sizes, shares = (made.length, made.spacing), (made.spikes, made.holes)
+    least = (made.width, made.filter_cutoff, made.noise, made.height_step, made.spike_height)
+    found = (
+        (all(0.0 < float(size) < np.inf for size in sizes), "length and spacing must be above 0"),
+        (
+            all(0.0 <= float(size) < np.inf for size in least),
+            "width, filter_cutoff, noise, height_step and spike_height must be 0 or more",
+        ),
+        (all(0.0 <= float(share) <= 1.0 for share in shares), "spikes and holes are shares of the points, 0 to 1"),
+        (float(made.fractal_roughness) > 0.0 and float(made.density) > 1.0, "G must be above 0 and density above 1"),
+        (
+            not any(float(wave) <= 0.0 for wave in (made.longest_wave, made.shortest_wave)),
+            "a wave has a length above 0",
+        ),
+    )
+    for holds, sentence in found:
+        feasible(holds, sentence)
+    return all(holds for holds, _ in found)
+
+
 def _demands(made: Made, truth: Truth) -> Iterator[tuple[bool, str]]:
     margin = 2 * margin_of(made)
     lines, points = truth.shape
@@ -224,8 +246,7 @@ ROWS = 20  # lags of the table
 
 def made_flank(made: Made) -> MadeFlank:
     """Make one flank and find its truth again; numbers only, SI: the kernel calls it once per row of a batch."""
-    truth = truth_of(made)
-    if not is_possible(made, truth):
+    if not is_a_flank(made) or not is_possible(made, truth := truth_of(made)):
         return _nothing()
     surface = surface_of(made)
     level = without_form(surface.heights, "plane")

@@ -5,6 +5,7 @@ from pathlib import Path
 from harmonic_fractal import figures
 from harmonic_fractal.calculation import harmonic_fractal
 from harmonic_fractal.effects import EFFECTS
+from harmonic_fractal.pressed import PressedFlanks
 from harmonic_fractal.published import FINDINGS, PUBLISHED
 from harmonic_fractal.uncertainty import SOURCES, TOLERANCES, SurfaceValidity, Uncertainty, slopes
 from truing import Maximise, Model, Optimise, Reliability, Require, Section, Sensitivity, Sweep, Vary
@@ -26,6 +27,8 @@ LITERATURE = [
     "contact models of fractal rough surfaces, Wear 262 (2007), p. 624.",
     "Persson, B. N. J., Relation between interfacial separation and load: a general theory of contact mechanics, "
     "Physical Review Letters 99 (2007), 125502.",
+    "Polonsky, I. A., Keer, L. M., A numerical method for solving rough contact problems based on the multi-level "
+    "multi-summation and conjugate gradient techniques, Wear 231 (1999), p. 206.",
     "Malinverno, A., A simple method to estimate the fractal dimension of a self-affine series, Geophysical Research "
     "Letters 17 (1990), p. 1953: the roughness-length method.",
     "Yang, D. C. H., Sun, Z. S., A rotary model for spur gear dynamics, Journal of Mechanisms, Transmissions and "
@@ -84,8 +87,9 @@ SECTIONS = [
     ),
     Section(
         "Torsion of the drive",
-        "shear_modulus", "cup_moment", "cup_stiffness", "series_compliance", "torsional_stiffness", "torsion",
-        "rough_torsion", "catalogue_torsion", "catalogue_stiffness", "rough_share",
+        "shear_modulus", "cup_moment", "cup_stiffness", "series_compliance", "wave_torsion", "wave_compliance",
+        "torsional_stiffness", "torsion", "rough_torsion", "catalogue_torsion", "catalogue_stiffness",
+        "catalogue_ratio", "rough_share",
         text="Torsion is the integral of compliance over torque, from the reference torque on. Beside it stands what "
         "the maker's catalogue says of a drive of this size.",
         blocks=figures.torsion,
@@ -109,6 +113,7 @@ HARMONIC_FRACTAL = Model(
         SurfaceValidity(),
         Sensitivity(of=("stiffness", "torsion"), at_inputs=SOURCES, gives=slopes),
         Uncertainty(),
+        PressedFlanks(),
         Reliability(draws=20_000),
         Sweep(over="torque", at="0..50 N*m", points=51),
         Optimise(population=40, generations=50, chance="first_order", verify=20_000),

@@ -67,6 +67,44 @@ def with_teeth() -> Iterator[Published]:
         )  # fmt: skip
 
 
+# The whole drive: all parts that give way, and two numbers of them chosen so that size 20 has its K_1 and K_2
+#
+# Drives of a series are alike in shape, so that lengths go with the size, compliances with its power -3, and the
+# torque under which a part turns by the same angle with its cube. So the numbers of size 20 predict the other sizes.
+
+CHOSEN = "two numbers chosen at size 20; all other sizes by similarity"
+SMALLEST = "the smallest size is softer than a small size 20: its parts are not alike in shape"
+AS_A_SERIES = 0.1  # of the printed stiffness: two digits are printed, so 5 % of a small number is rounding
+
+
+def whole_drive(size: str, torque: float) -> Mapping[str, str]:
+    """Settings of a drive of ratio 100 at a torque, N m, whose cup, teeth and wave generator give way too."""
+    scale = float(size) / 20.0
+    lengths = {"face_width": 10.0, "flank_height": 0.4, "cup_radius": 24.5, "cup_wall": 0.35, "cup_length": 28.0}
+    return {
+        **drive(size, "above 50", torque),
+        **{name: f"{scale * length:.6g} mm" for name, length in lengths.items()},
+        "line_contact": "true",
+        "tooth_stiffness": f"{2e7 * scale:.6g} N/m",
+        "drive_compliance": f"{3.568 / scale**3:.6g} urad/(N*m)",
+        "wave_torsion_stated": "751.6 urad",
+        "wave_torque": f"{25.0 * scale**3:.6g} N*m",
+    }
+
+
+def whole_drives() -> Iterator[Published]:
+    """K_2 and K_3 of every size, in the middle of their ranges of torque."""
+    for size, (first, second, by_column) in TABLE.items():
+        for number, torque in ((2, (first + second) / 2.0), (3, 1.5 * second)):
+            value = UNIT * by_column["above 50"][number - 1]
+            yield Published(
+                name=f"K_{number}, size {size}, ratio above 50, whole drive", result="torsional_stiffness",
+                value=value, unit="N*m/rad", where=AG, settings=whole_drive(size, torque), kind="words",
+                within=AS_A_SERIES * value, verdict="differs" if size == "14" else "matches",
+                why=SMALLEST if size == "14" else CHOSEN,
+            )  # fmt: skip
+
+
 PUBLISHED = [
     Published(
         name="torsion at T_1, size 20, ratio 50", result="catalogue_torsion", value=5.2e-4, unit="rad", where=LLC,
@@ -76,6 +114,7 @@ PUBLISHED = [
     *stiffnesses("50", (2,)),
     *stiffnesses("30", (2,)),
     *with_teeth(),
+    *whole_drives(),
 ]  # fmt: skip
 
 

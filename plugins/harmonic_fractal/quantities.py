@@ -104,6 +104,11 @@ class Drive:
     drive_compliance: Float = given(0.0, "urad/(N*m)", symbol="c_s",
                                     note="compliance in series with the mesh: cup, wave generator, bearing, rig",
                                     at_least=0, at_most=1e6)  # fmt: skip
+    wave_torsion_stated: Float = given(0.0, "urad", symbol="theta_w0", note="torsion at wave_torque by the wave "
+                                       "generator with its bearing, which grows as contacts of balls do, T^(2/3); 0: "
+                                       "rigid", at_least=0, at_most=1e6)  # fmt: skip
+    wave_torque: Float = given(25.0, "N*m", symbol="T_w", note="torque at which that torsion is stated", above=0,
+                               at_most=1e6)  # fmt: skip
     # What is asked
     required_stiffness: Float = given(None, "N/m", symbol="K_req", note="stiffness asked of the pair; not given: none",
                                       above=0, at_most=1e15)  # fmt: skip
@@ -294,14 +299,25 @@ class Stiffness:
         "urad/(N*m)", symbol="c_d", note="compliance of all that is in series with the mesh",
         formula="drive_compliance / modulus_factor + cup_length / (shear_modulus * cup_moment)",
     )  # fmt: skip
+    wave_torsion: Float = found(
+        "urad", symbol="theta_w", note="torsion by the contacts of the wave generator, from the reference torque on",
+        formula="sign(torque) * wave_torsion_stated * modulus_factor**(-2/3)"
+        " * (max(abs(torque), reference_torque)**(2/3) - reference_torque**(2/3)) / wave_torque**(2/3)",
+    )  # fmt: skip
+    wave_compliance: Float = found(
+        "urad/(N*m)", symbol="c_w", note="compliance of these contacts at the torque; 0 without torque",
+        formula="cases(2/3 * wave_torsion_stated * modulus_factor**(-2/3) * abs(torque)**(-1/3) / wave_torque**(2/3),"
+        " abs(torque) > 0, 0)",
+    )  # fmt: skip
     torsional_stiffness: Float = found(
         "N*m/rad", symbol="K_theta", note="stiffness of the mesh in series with the drive, at the torque",
         formula="normal_stiffness * effective_radius**2"
-        " / (1 + series_compliance * normal_stiffness * effective_radius**2)", key=True,
+        " / (1 + (series_compliance + wave_compliance) * normal_stiffness * effective_radius**2)", key=True,
     )  # fmt: skip
     torsion: Float = found(
         "urad", symbol="theta", note="torsion of the drive, from the reference torque on; 0 below",
-        formula="mesh_torsion + sign(torque) * series_compliance * max(abs(torque) - reference_torque, 0)", key=True,
+        formula="mesh_torsion + sign(torque) * series_compliance * max(abs(torque) - reference_torque, 0)"
+        " + wave_torsion", key=True,
     )  # fmt: skip
     rough_torsion: Float = found("urad", symbol="theta_r", note="torsion of the rough contacts alone, all else rigid",
                                  method="as that of the mesh")  # fmt: skip
@@ -309,6 +325,9 @@ class Stiffness:
                                      method="three straight pieces", source=CATALOGUES)  # fmt: skip
     catalogue_stiffness: Float = found("N*m/rad", symbol="K_cat", note="stiffness of such a drive at the torque",
                                        method="the piece in which the torque lies", source=CATALOGUES)  # fmt: skip
+    catalogue_ratio: Float = found("", symbol="q_cat", note="torsion of this model over that of the catalogue; 0 "
+                                   "without torque",
+                                   formula="cases(torsion / catalogue_torsion, abs(torque) > 0, 0)")  # fmt: skip
     rough_share: Float = found("%", symbol="q_theta",
                                note="share of the catalogue's torsion that the rough contacts explain",
                                formula="cases(rough_torsion / catalogue_torsion, abs(torque) > 0, 0)",

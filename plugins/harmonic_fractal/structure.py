@@ -236,6 +236,12 @@ def log_roughness_of(
     return np.where(inside, logarithm, np.nan)[()]
 
 
+def log_level_of(logarithm: Float, dimension: Float) -> Float:
+    """Return ln S, S in m^2, at a lag of 1 m, from ln G (areal convention) and D_s: what log_roughness_of takes."""
+    level: Float = 2.0 * (dimension - 1.0) * logarithm + np.log(constant(dimension, 1.5, "areal"))
+    return level
+
+
 def structure_function(lag: Float, dimension: Float, roughness: Float) -> Float:
     """Return S, m^2, at a lag in m, of a profile dimension D_s (1 to 2) and G in m in the areal convention."""
     exponent = 4.0 - 2.0 * np.asarray(dimension)

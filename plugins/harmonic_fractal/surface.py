@@ -1,12 +1,13 @@
 """A measured or made surface, its lines along either direction, and how its heights become those of roughness."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from harmonic_fractal.levelling import Levelling
 from truing import Array
 
 Direction = Literal["x", "y", "both"]
@@ -15,10 +16,14 @@ EQUAL = 0.01  # relative difference up to which two spacings are the same
 
 @dataclass(frozen=True, eq=False)
 class Lines:
-    """Parallel lines of one direction: heights (lines, points) in m, NaN where not measured, and their spacing in m."""
+    """Parallel lines of one direction: heights (lines, points) in m, NaN where not measured, and their spacing in m.
+
+    ``levelling`` says what was taken from them, where that is known: then its bias can be taken out.
+    """
 
     heights: NDArray[np.float64]
     spacing: float
+    levelling: Levelling | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +69,11 @@ def pooled(first: Lines, second: Lines) -> Lines:
         np.pad(lines.heights, ((0, 0), (0, points - lines.heights.shape[1])), constant_values=np.nan)
         for lines in (first, second)
     ]
-    return Lines(np.concatenate(filled), first.spacing)
+    taken = first.levelling, second.levelling
+    both = None
+    if taken[0] is not None and taken[1] is not None:
+        both = replace(taken[0], shapes=(*taken[0].shapes, *taken[1].shapes))
+    return Lines(np.concatenate(filled), first.spacing, both)
 
 
 # From the heights of a file to those of roughness: rectangle, form, spikes, the straight line of each line

@@ -47,7 +47,7 @@ def flank_samples(rng: np.random.Generator, rows: int, **flanks: Any) -> Mapping
     """Draw pairs of D and ln G of both flanks together, each from the bootstrap pairs of its measured lines.
 
     Returns deviations (rows,) from the estimate by name of their input; nothing where no flank was measured. Errors of
-    D and ln G hang together closely, so they are never drawn apart. The mean of the pairs counts as the estimate.
+    D and ln G hang together closely, so they are never drawn apart.
     """
     measured = flanks["surface"], flanks["mating_surface"]
     if not any(flank is not None and len(flank.resampled) for flank in measured):
@@ -66,7 +66,9 @@ def _redrawn(rough: Rough | None, flank: Flank | None, rng: np.random.Generator,
     """Return a flank with as many deviations of D and ln G as rows, from its pairs less their mean; or as it is."""
     if rough is None or flank is None or not len(flank.resampled):
         return rough
-    pairs = (flank.resampled - flank.resampled.mean(axis=0))[rng.integers(len(flank.resampled), size=rows)]
+    used = flank.used
+    middle = np.array([rough.dimension, np.log(rough.roughness)]) if used is not None else 0.0
+    pairs = (flank.resampled - middle)[rng.integers(len(flank.resampled), size=rows)]
     return Rough(dimension=rough.dimension + pairs[:, 0], roughness=rough.roughness * np.exp(pairs[:, 1]))
 
 
@@ -133,7 +135,7 @@ def slopes(found_by: Sensitivities) -> LocalSlopes:
 
 # A study of our own: how far the finite number of measured lines leaves stiffness and torsion open
 
-OF = ("stiffness", "clearance", "mesh_stiffness", "torsion")
+OF = ("stiffness", "clearance", "closing_clearance", "dimension", "roughness", "mesh_stiffness", "torsion")
 PAIR = ("dimension_deviation", "roughness_deviation")
 MOST = 100_000
 TOGETHER = 1024
@@ -274,11 +276,12 @@ class Propagated(Outcome):
                 "What the measured lines leave open",
                 ("result", "at the estimate", "median", "2.5 %", "97.5 %", "unit", "sd", "sd if independent"), rows,
                 ("", "", "", "", "", "", "%", "%"),
-                "Of D and G alone; hardness and moduli scatter beside. Model errors are not in it.",
+                "Of D and G alone, as far as one patch of this size leaves them open; hardness and moduli scatter "
+                "beside. Model errors are not in it.",
             ),
             Drawing(
                 "Pairs of D and ln G", partial(pairs_figure, self.pairs),
-                "Each point is one set of resampled lines: where D is found larger, so is G.",
+                "Each point is one set of lines, or one patch: where D is found larger, so is G.",
             ),
         ]  # fmt: skip
 
@@ -286,7 +289,7 @@ class Propagated(Outcome):
         sd, (first, summary) = self.pairs.std(axis=0, ddof=1), next(iter(self.summaries.items()))
         ratio = summary.independent_sd / summary.relative_sd if summary.relative_sd else float("nan")
         return (
-            f"{len(self.pairs)} pairs of D and ln G from resampled blocks of lines: standard deviations {sd[0]:.2g} "
+            f"{len(self.pairs)} pairs of D and ln G, as other patches would have them: standard deviations {sd[0]:.2g} "
             f"and {sd[1]:.2g}, correlation {self.correlation:.4f}".replace("-", "−")
             + f". Their errors go together: the {first.replace('_', ' ')} has a standard deviation of "
             f"{100 * summary.relative_sd:.2g} %. Two independent error bars would claim "
@@ -408,7 +411,23 @@ def _estimate_json(found: Any) -> dict[str, Any]:
         "profile_dimension": dimension,
         "roughness": {"value": roughness, "unit": "m", "convention": "areal"},
         "r_squared": r_squared,
-        "for_comparison": {"roughness_length": window, "with_noise": with_noise, "noise_share": share},
+        "interval95": {
+            "profile_dimension": list_of(found.dimension_interval),
+            "roughness": list_of(found.roughness_interval),
+        },
+        "as_levelled": dict(
+            zip(
+                ("profile_dimension", "roughness"),
+                list_of((found.levelled_dimension, found.levelled_roughness)),
+                strict=True,
+            )
+        ),
+        "for_comparison": {
+            "roughness_length": window,
+            "with_noise": with_noise,
+            "noise_share": share,
+            **dict(zip(("disagreement", "in_sd"), list_of((found.window_disagreement, found.window_sds)), strict=True)),
+        },
         "range": {"unit": "um", "values": list_of(found.range, 1e6)},
         "lags": {"unit": "um", "values": list_of(found.lags, 1e6)},
         "structure_function": {"unit": "um^2", "values": list_of(found.values, 1e12)},

@@ -67,6 +67,7 @@ class Response(Mesh):
     hysteresis: Float = found("rpm", symbol="n_h", note="speeds between the two jumps", formula="jump_up - jump_down")
 
 
+ALONG = tuple(f"{name}_{way}" for name in ("amplitude", "force", "impacts", "multiplier") for way in ("up", "down"))
 BLOCK = 128
 """Machines at a time, so that memory stays flat."""
 
@@ -138,11 +139,21 @@ def answers(machines: response.Oscillators, ratio: Array) -> dict[str, Array]:
 
 
 def in_blocks(machines: response.Oscillators, ratio: Array) -> dict[str, Array]:
-    """Return what ``answers`` does, block by block of machines."""
-    rows = np.arange(len(ratio))
+    """Return what ``answers`` does, block by block of machines; NaN for one that is none, without stiffness say."""
+    numbers = np.column_stack([*vars(machines).values(), ratio])
+    rows = np.flatnonzero(np.isfinite(numbers).all(axis=1))
     blocks = np.split(rows, range(BLOCK, len(rows), BLOCK))
-    parts = [answers(machines.part(block), ratio[block]) for block in blocks]
-    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    parts = [answers(machines.part(block), ratio[block]) for block in blocks if len(block)]
+    if not parts:
+        return {name: np.full(len(ratio), np.nan) for name in ("is_whole", "jump_up", "jump_down")} | {
+            name: np.full(ratio.shape, np.nan) for name in ALONG
+        }
+    values = {}
+    for name in parts[0]:
+        found = np.concatenate([part[name] for part in parts])
+        values[name] = np.full((len(ratio), *found.shape[1:]), np.nan)
+        values[name][rows] = found
+    return values
 
 
 def run_up(pair: RunUp) -> Response:

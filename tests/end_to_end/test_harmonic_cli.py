@@ -148,13 +148,22 @@ def test_noise_of_the_instrument_is_named_from_its_structure_function(diagnosed:
         # the first contact turns elastic at 2.3 and 4.2 mN m, above the 1 mN m from which the torsion counts
         (
             ["fractal_dimension = 2.444", 'fractal_roughness = "3.3421e-10 m"'],
-            ["torsion", "rough_torsion", "mesh_torsion", "approach", "closing_clearance", "free_play", "rough_share"],
+            [
+                "torsion",
+                "rough_torsion",
+                "mesh_torsion",
+                "approach",
+                "closing_clearance",
+                "free_play",
+                "rough_share",
+                "catalogue_ratio",
+            ],
             "raise reference_torque above plastic_torque",
         ),
         # the catalogues print 30 as the ratio of sizes up to 32
         (
             ['catalogue_size = "40"', "flexspline_teeth = 60", "engaged_pairs = 18"],
-            ["catalogue_torsion", "catalogue_stiffness", "rough_share"],
+            ["catalogue_torsion", "catalogue_stiffness", "rough_share", "catalogue_ratio"],
             "print no size 40",
         ),
     ],

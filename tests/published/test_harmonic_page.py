@@ -2,6 +2,7 @@
 
 import inspect
 import re
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -16,9 +17,12 @@ from harmonic_fractal.flank import read_flank
 from harmonic_fractal.generators import Waves, brownian_profiles, profile_sum
 from harmonic_fractal.micro import domain_factor
 from harmonic_fractal.model import HARMONIC_FRACTAL
+from harmonic_fractal.pressed import PressedFlanks
+from harmonic_fractal.quantities import Drive
 from harmonic_fractal.structure import log_roughness_of, structure_function, structure_sums
 from harmonic_fractal.surface import without_line
 from pages import EXPLAINED, Page
+from published.test_harmonic_printed import pieces
 from shared import TESTS
 
 SURFACES = TESTS / "data" / "surfaces"
@@ -146,11 +150,52 @@ def test_a_good_fit_proves_nothing(name: str, file: str, direction: str) -> None
     if file.endswith(".al3d"):
         pytest.importorskip("SurfaceTopography")
     options = {"height_unit": "2.91818e-8 m", "spacing": "0.369862 um"} if file.endswith(".txt") else {}
-    flank = read_flank(SURFACES / file, fit="all", spikes="keep", filter_width="0 um", **options)
+    flank = read_flank(SURFACES / file, fit="all", spikes="keep", filter_width="0 um", bias="kept", **options)
     found = next(item for item in flank.estimates if item.direction == direction)
     slopes = " ".join(f"{value:.2f}" for value in found.local_dimensions)
     assert PAGE.row(name) == [f"{found.dimension:.3f}", f"{found.r_squared:.3f}", slopes]
     assert found.is_accepted is (name == "phase map, y")
+
+
+PHASE_MAP = {"height_unit": "2.91818e-8 m", "spacing": "0.369862 um"}
+
+
+def test_bias_interval_and_verdict_of_the_phase_map() -> None:
+    used = read_flank(SURFACES / "matrix-4.txt", **PHASE_MAP).used
+    assert used is not None
+    low, high = used.dimension_interval
+    PAGE.says(f"$D_s$ = {used.dimension:.3f} ({low:.2f} to {high:.2f}) and had {used.levelled_dimension:.3f} before")
+    PAGE.says(f"lower by {-used.window_disagreement:.2f}, {-used.window_sds:.1f} standard deviations")
+
+
+def test_the_interferogram_agrees_with_its_windows() -> None:
+    pytest.importorskip("SurfaceTopography")
+    square = {"rectangle": ["280 um", "280 um"], "fit": "all"}
+    found = read_flank(SURFACES / "metropro-1.dat", **square).estimates[-1]
+    PAGE.says(f"agrees ({found.window_disagreement:.3f} apart, {found.window_sds:.1f} standard deviations)")
+
+
+def test_measured_heights_are_pressed() -> None:
+    pytest.importorskip("ContactMechanics")
+    pressing = Drive(surface=read_flank(SURFACES / "matrix-4.txt", **PHASE_MAP))
+    found = PressedFlanks().run(SimpleNamespace(inputs=pressing))  # type: ignore[arg-type]
+    assert found.numbers is not None
+    ratio, scaled = found.fractal / found.numbers.stiffness, found.numbers.between / found.numbers.stiffness
+    scaled = scaled / found.height
+    dimension, load, off, height = PAGE.row("phase map, along y")
+    assert dimension == f"{pressing.surface.used.dimension + 1:.2f}"  # type: ignore[union-attr]
+    assert load == f"{found.numbers.between[-1]:.1f}"
+    assert off == f"{ratio.min():.2f} to {ratio.max():.2f}"
+    assert height == f"{scaled.min():.2f} to {scaled.max():.2f}"
+    title, stiffness, gap = found.blocks()
+    assert "times the stiffness of the measured heights" in title.text  # type: ignore[union-attr]
+    assert len(stiffness.rows) == len(gap.rows) - 1 == 5  # type: ignore[union-attr]
+
+
+def test_a_whole_drive_and_the_weight_of_its_parts() -> None:
+    for size in TABLE:
+        name = "20 (two of them chosen)" if size == "20" else size
+        assert PAGE.row(name, after="over the catalogue's") == [", ".join(f"{ratio:.2f}" for ratio in pieces(size))]
 
 
 def test_errors_of_dimension_and_roughness_go_together() -> None:

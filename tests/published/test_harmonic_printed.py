@@ -4,16 +4,22 @@ They were calculated by quadrature for steel on steel, E = 113.19 GPa and H = 3 
 last printed digit unless a line says otherwise. What the theory page and the findings repeat of them is tested there.
 """
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from harmonic_fractal import contact as rough_contact
-from harmonic_fractal.calculation import column_of, harmonic_fractal, polyline_of
+from harmonic_fractal.calculation import TABLE, UNIT, column_of, harmonic_fractal, polyline_of
 from harmonic_fractal.contact import Rough
 from harmonic_fractal.model import HARMONIC_FRACTAL
+from harmonic_fractal.published import whole_drive
 from harmonic_fractal.quantities import Drive
+from truing.inputs_file import setup_from_settings
+from truing.kernel import Offer
+from truing.setup import default_setup
 
 # D, G in m; then under 25 N: a_c and a_L in m^2, K in N/m, b in nm, rms of a patch of 0.2 mm in nm; None: not printed
 PAIRS = [
@@ -69,6 +75,51 @@ def test_pieces_of_size_20_above_50(torque: float, expected: float, stiffness: f
         found = harmonic_fractal(drive_of(torque=sense * torque))
         assert found.catalogue_torsion == pytest.approx(sense * expected, rel=1e-12)
         assert found.catalogue_stiffness == stiffness
+
+
+def drive_with(settings: Mapping[str, str]) -> Drive:
+    """The drive of these settings, as texts of an inputs file."""
+    setup = default_setup(HARMONIC_FRACTAL)
+    offer = Offer(setup.model.name, setup.model, setup.origin, setup.source.added)
+    made: Drive = setup_from_settings(offer, settings).inputs
+    return made
+
+
+def pieces(size: str) -> list[float]:
+    """K_1, K_2, K_3 of the whole drive over those of the catalogue: differences of torsion over each piece to 2 T_2."""
+    first, second, by_column = TABLE[size]
+    ends = [0.0, first, second, 2.0 * second]
+    drives = [drive_with(whole_drive(size, torque)) for torque in ends[1:]]
+    torsions = [0.0, *(float(harmonic_fractal(drive).torsion) for drive in drives)]
+    ours = np.diff(ends) / np.diff(torsions)
+    return list(ours / (UNIT * np.array(by_column["above 50"])))
+
+
+@pytest.mark.parametrize(("size", "most"), [("17", 0.09), ("20", 0.025), ("25", 0.025), ("32", 0.062), ("40", 0.03),
+                                            ("50", 0.051), ("58", 0.026)])  # fmt: skip
+def test_two_numbers_of_size_20_meet_the_catalogue_of_the_other_sizes(size: str, most: float) -> None:
+    """By similarity alone. A drive twice as large with the same two numbers unscaled would be off by factors."""
+    assert max(abs(ratio - 1.0) for ratio in pieces(size)) < most
+
+
+def test_size_14_is_softer_than_a_small_size_20() -> None:
+    """By 12, 35 and 38 %."""
+    assert pieces("14") == pytest.approx([1.12, 1.35, 1.38], abs=0.005)
+
+
+def test_torsion_is_the_sum_of_its_parts_and_the_stiffness_its_slope() -> None:
+    """Rough contacts 0.26 %, teeth 4 %, tube 24 %, wave generator 65 %, the rest 8 % of the catalogue at T_2."""
+    inputs = drive_with(whole_drive("20", 25.0))
+    found = harmonic_fractal(inputs)
+    torsions = [float(harmonic_fractal(replace(inputs, torque=25.0 + way)).torsion) for way in (-1e-3, 1e-3)]
+    assert 2e-3 / np.diff(torsions)[0] == pytest.approx(float(found.torsional_stiffness), rel=1e-6)
+    cup = 25.0 / float(found.cup_stiffness)
+    parts = [found.rough_torsion, found.mesh_torsion - found.rough_torsion, cup, found.wave_torsion, 25.0 * 3.568e-6]
+    shares = np.array([float(part) for part in parts]) / float(found.catalogue_torsion)
+    assert shares == pytest.approx([0.0026, 0.037, 0.236, 0.648, 0.077], abs=0.002)
+    assert float(found.catalogue_ratio) == pytest.approx(shares.sum(), abs=1e-4)
+    backwards = harmonic_fractal(replace(inputs, torque=-25.0))
+    assert backwards.torsion == pytest.approx(-float(found.torsion), rel=1e-12)
 
 
 @pytest.mark.parametrize(("teeth", "column"), [(60, "30"), (79, "30"), (80, "50"), (100, "50"), (101, "above 50"),

@@ -21,7 +21,7 @@ SURFACES = Path(__file__).parents[1] / "data" / "surfaces"
 NEEDED: dict[str, dict[str, Any]] = {
     "matrix-4.txt": {"spacing": "0.369862 um", "height_unit": "2.91818e-8 m"},
 }
-PRINTED = {"spikes": "keep", "fit": "all", "filter_width": "0 um"}
+PRINTED = {"spikes": "keep", "fit": "all", "filter_width": "0 um", "bias": "kept"}
 
 
 @cache

@@ -12,10 +12,10 @@ from harmonic_fractal.estimate import (
     block_weights,
     estimate_of,
     noise_fit,
-    roughness_length_of,
 )
 from harmonic_fractal.generators import brownian_profiles, brownian_surface
 from harmonic_fractal.surface import Lines
+from harmonic_fractal.windows import roughness_length_of
 
 SPACING = 0.4e-6
 STEP = 1e-16  # S at one spacing: 10 nm

@@ -18,6 +18,7 @@ from harmonic_fractal.made_sheet import MADE_FLANK, SECTIONS
 from harmonic_fractal.structure import structure_function
 from truing import Drawing, Kernel, Record, Table, Words
 from truing.calculation import calculate
+from truing.declare.batch import watching
 from truing.errors import InfeasibleError
 from truing.inputs_file import setup_from_text
 from truing.setup import default_setup
@@ -265,6 +266,15 @@ def test_heights_are_told_without_the_mean_plane() -> None:
 def test_what_cannot_be_made_is_refused_by_name(values: dict[str, Any], sentence: str) -> None:
     with pytest.raises(InfeasibleError, match=sentence):
         made_flank(made(**values))
+
+
+@pytest.mark.parametrize("name", ["filter_cutoff", "spikes", "width", "noise", "length", "shortest_wave"])
+def test_steps_of_a_derivative_beyond_a_bound_fail_alone(name: str) -> None:
+    """Differences about 0 go below it; such a row has a reason and raises nothing."""
+    with watching(1) as failed:
+        answer = made_flank(replace(made(), **{name: -1e-7}))
+    assert np.isnan(answer.dimension_error)
+    assert name.partition("_")[2 if name == "shortest_wave" else 0] in failed.reasons(1)[0]
 
 
 @pytest.mark.parametrize("unit", ["m", "mm", "um", "nm"])

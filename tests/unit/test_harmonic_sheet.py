@@ -96,7 +96,7 @@ def test_a_good_surface_is_used_and_shown(measured: Calculation, good: Flank) ->
     assert "agree and are pooled" in words(blocks)
     assert [title.split(": ")[1] for title in titles(blocks)] == [
         "from above", "profiles", "structure function and local dimension", "what each direction says",
-        "D_s by other ways, for comparison", "local slopes",
+        "how sure D and G are", "D_s by other ways, for comparison", "local slopes",
     ]  # fmt: skip
     rows = table(blocks, "what each direction says").rows
     assert [row[0] for row in rows] == ["along x", "along y", "x and y together"]

@@ -13,6 +13,7 @@ from harmonic_fractal import flank
 from harmonic_fractal import surface as surfaces
 from harmonic_fractal.estimate import Estimate
 from harmonic_fractal.flank import Flank, read_flank
+from harmonic_fractal.generators import brownian_surface
 from harmonic_fractal.surface import Direction, Lines, Surface, cut
 from harmonic_fractal.surface_files import FileLayout, Reading, read_surface
 
@@ -434,10 +435,8 @@ def write(folder: Path, heights: Array, *lines: str, name: str = "flank.csv") ->
 
 
 def rough(seed: int = 1, shape: tuple[int, int] = (150, 180)) -> Array:
-    """A surface of dimension 2.5 by its spectrum: power falls with the cube of the wave number."""
-    waves = np.hypot(np.fft.fftfreq(shape[0])[:, None], np.fft.fftfreq(shape[1])[None, :])
-    filtered = np.fft.fft2(noise(shape, seed)) * np.where(waves > 0, np.maximum(waves, 1e-9) ** -1.5, 0.0)
-    heights = np.real(np.fft.ifft2(filtered))
+    """A Brownian surface of dimension 2.5: an exact power law, and waves longer than itself as a real one has."""
+    heights = brownian_surface(1.5, 1.0, shape, np.random.default_rng(seed))
     return np.asarray(heights / heights.std())
 
 

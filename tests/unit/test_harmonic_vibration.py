@@ -9,11 +9,12 @@ from scipy.optimize import fsolve
 
 from harmonic_fractal import vibration_response as response
 from harmonic_fractal.vibration import RECORD, Running, Turned, loaded_at_rest, mesh_quantities
-from harmonic_fractal.vibration_run import RunUp
+from harmonic_fractal.vibration_run import RunUp, run_up
 from harmonic_fractal.vibration_sheet import RUN_UP, VIBRATION
 from hidden_effects.vibration_in_steps import Machines, run
 from truing import FrequencyAnswer
 from truing.calculation import calculate
+from truing.declare.batch import watching
 from truing.evaluate import evaluate
 from truing.setup import default_setup
 
@@ -284,3 +285,17 @@ def test_a_curve_beyond_all_steps_is_not_set_out_on() -> None:
     curve = response.traced(several, first, last)
     assert curve.is_whole.tolist() == [True, False, False]
     assert np.ptp(curve.ratio[1:], axis=1).tolist() == [0, 0]
+
+
+def test_machines_that_are_all_plastic_fail_alone_in_a_batch() -> None:
+    """The others have what they have without them; a batch of none but such machines has no answer and no error."""
+    with watching(3) as failed, np.errstate(all="ignore"):
+        some = run_up(pair(fractal_roughness=np.array([1e-11, 1e-6, 1e-11]), speeds=(3000.0, 4000.0)))
+    with watching(2), np.errstate(all="ignore"):
+        none = run_up(pair(fractal_roughness=np.array([1e-6, 1e-6]), speeds=(3000.0, 4000.0)))
+    alone = run_up(pair(fractal_roughness=1e-11, speeds=(3000.0, 4000.0)))
+    assert list(failed.reasons(3)) == [1]
+    assert some.largest_amplitude[[0, 2]] == pytest.approx(float(alone.largest_amplitude), rel=1e-12)
+    assert np.isnan([some.largest_amplitude[1], *none.largest_amplitude]).all()
+    assert np.isnan(none.amplitude_up).all()
+    assert none.amplitude_up.shape == (2, 2)
