@@ -340,7 +340,7 @@ def acting_inputs(case: Case) -> Any:
 
 
 def taken_values(case: Case) -> dict[str, Any]:
-    """Return by flat name what inputs take from other calculations (SI), as these answer with their effects that are on.
+    """Return by flat name what inputs take from other calculations (SI), as these answer with their effects on.
 
     Empty of a calculation that takes nothing; what is stated in place of a link is left out.
     """

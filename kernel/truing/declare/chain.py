@@ -20,7 +20,7 @@ import numpy as np
 from truing.declare.batch import either, feasible, reasons_of_part
 from truing.declare.correlations import Correlated
 from truing.declare.dynamics import Dynamics
-from truing.declare.fields import KEY, Given, InputField, Part, hints_of, make, read, spec_of, with_values
+from truing.declare.fields import KEY, Given, InputField, Part, ResultField, hints_of, make, read, spec_of, with_values
 from truing.declare.goals import Objective, PriceByChoice, Require
 from truing.declare.model import Model, Record, Section
 from truing.declare.near_miss import near_miss
@@ -49,7 +49,8 @@ class Link:
 
 def declared_links(model: AnyModel) -> tuple[list[Link], dict[str, dict[str, Any]]]:
     """Return the links that a model declares by ``from_model``, and what it states of its sources, by source."""
-    links, settings = [], {}
+    links: list[Link] = []
+    settings: dict[str, dict[str, Any]] = {}
     for name, field in model.input_fields.items():
         taken = getattr(field.spec, "taken", None)
         if taken is not None:
@@ -98,7 +99,7 @@ class Chain:
         return getattr(inputs, _attribute(name)) if name else inputs
 
     def filled(self, inputs: Any, upto: str | None = None) -> Any:
-        """Return the inputs of the chain with every input that is taken from a source: all, or those of one calculation.
+        """Return the inputs of the chain with all that is taken from sources, or what one calculation takes.
 
         Sources are calculated for it, as the inputs have them. A row in which a source has no answer fails.
         """
@@ -158,7 +159,9 @@ def _demand_fitting(field: InputField, value: Any, link: Link) -> None:
             slack = 1e-12 * abs(limit) * {"at least": -1, "at most": 1}.get(words, 0)
             feasible(holds(value, limit + slack), f"{said} must be {words} {bound:g} {unit_text(field.unit)}".rstrip())
     if spec.whole:
-        feasible(np.abs(value - np.round(value)) < 1e-9 * np.maximum(1, np.abs(value)), f"{said} must be a whole number")
+        feasible(
+            np.abs(value - np.round(value)) < 1e-9 * np.maximum(1, np.abs(value)), f"{said} must be a whole number"
+        )
 
 
 # What is wrong with links, each with the link that is to blame
@@ -179,7 +182,7 @@ def _of_link(link: Link, owner: AnyModel, source: AnyModel) -> Iterator[str]:
     field = owner.input_fields.get(link.input)
     if field is None:
         yield f"{owner.name} has no input '{link.input}'.{near_miss(link.input, owner.input_fields)}"
-    taken = source.own_result_fields.get(link.result) or source.input_fields.get(link.result)
+    taken: Any = source.own_result_fields.get(link.result) or source.input_fields.get(link.result)
     if taken is None:
         yield _unknown_result(link, source)
     if field is None or taken is None:
@@ -187,12 +190,18 @@ def _of_link(link: Link, owner: AnyModel, source: AnyModel) -> Iterator[str]:
     said = f"'{link.input}' cannot be '{link.result}' of {link.source}: "
     if not field.varies:
         yield f"{said}'{link.input}' is {_kind(field)}, and only a number can be taken from another calculation"
-    elif taken.spec.along or (isinstance(taken, InputField) and not taken.varies) or link.result in source.axes.values():
+    elif (
+        taken.spec.along or (isinstance(taken, InputField) and not taken.varies) or link.result in source.axes.values()
+    ):
         yield f"{said}that is {_kind(taken)}, and '{link.input}' takes one number"
     elif not same_dimension(taken.unit, field.unit):
         yield f"{said}that is {human_dimension(taken.unit)}, and '{link.input}' is {human_dimension(field.unit)}"
     elif (taken.unit in LEVELS) != (field.unit in LEVELS):
         yield f"{said}one is a temperature level and the other a difference"
+
+
+def _is_series(field: InputField | ResultField) -> bool:
+    return bool(field.along) if isinstance(field, ResultField) else field.kind == "series"
 
 
 def _unknown_result(link: Link, source: AnyModel) -> str:
@@ -314,8 +323,7 @@ def _function(chain: Chain) -> Any:
     dynamics = chain.last.dynamics
     if dynamics is not None:
         named = {each.name: getattr(dynamics, each.name) for each in dataclasses.fields(Dynamics)}
-        moving = _MovingChain(**named, chain=chain, classes=(inputs, results))
-        return moving
+        return _MovingChain(**named, chain=chain, classes=(inputs, results))
 
     def calculate(given: Any) -> Any:
         own, answers = chain.answers(given)
@@ -401,7 +409,9 @@ def _part(of: type[Any], prefix: str, *, results: bool = False) -> tuple[type[An
 def _with_parts(cls: type[Any], parts: Mapping[str, tuple[type[Any], Any]]) -> type[Any]:
     taken = {each.name for each in dataclasses.fields(cls)} & set(parts)
     if taken:
-        raise DeclarationError(f"'{min(taken)}' is a calculation of the chain and the name of a field of {cls.__name__}")
+        raise DeclarationError(
+            f"'{min(taken)}' is a calculation of the chain and the name of a field of {cls.__name__}"
+        )
     return _subclass(cls, parts)
 
 
@@ -423,8 +433,11 @@ def _redeclared(cls: type[Any], specs: Mapping[tuple[str, ...], Given]) -> type[
         of = _redeclared(part.of, inner)
         left = {key: value for key, value in part.defaults.items() if (key,) not in inner}
         made = functools.partial(make, of, {}, left)
-        changed[name] = of, dataclasses.field(
-            default_factory=made, metadata={KEY: replace(part, of=of, defaults=left, suffix=part.suffix)}
+        changed[name] = (
+            of,
+            dataclasses.field(
+                default_factory=made, metadata={KEY: replace(part, of=of, defaults=left, suffix=part.suffix)}
+            ),
         )
     return _subclass(cls, changed)
 
@@ -515,9 +528,10 @@ def _effect_of(chain: Chain, name: str, effect: Effect[Any, Any]) -> Effect[Any,
     named = [each.replace(name=new_names.get(each.name, each.name), annotation=each.empty) for each in parameters]
     acting.__signature__ = inspect.Signature(named)  # type: ignore[attr-defined]
     unknowns = tuple(replace(each, along=rename(each.along)) if each.along else each for each in effect.unknowns)
+    where: dict[str, Any] = {f"on_{effect.place}": acting}
     return replace(
         effect, name=prefix_of(name) + effect.name, needs=needs, unknowns=unknowns,
-        reads=[rename(each) for each in effect.reads], **{f"on_{effect.place}": acting},
+        reads=[rename(each) for each in effect.reads], **where,
     )  # fmt: skip
 
 
@@ -566,7 +580,9 @@ def _limits_of(chain: Chain, name: str) -> Iterator[Objective]:
     rename, model = renamed_in(chain, name), chain.sources[name]
     for objective in model.objectives:
         if isinstance(objective, Require) and objective.result in model.own_result_fields:
-            sides = {side: rename(getattr(objective, side)) for side in ("at_most", "at_least", "within")}
+            sides: dict[str, Any] = {
+                side: rename(getattr(objective, side)) for side in ("at_most", "at_least", "within")
+            }
             reliability = objective.reliability
             chance = rename(reliability) if isinstance(reliability, str) else reliability
             yield replace(objective, result=rename(objective.result), reliability=chance, **sides)

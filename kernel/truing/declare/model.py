@@ -687,7 +687,9 @@ def formula_scope(model: Model[Any, Any], result: ResultField) -> Mapping[str, I
         **model.input_fields, **(model.own_result_fields if own_result else model.result_fields),
     }  # fmt: skip
     if result.prefix:
-        known = {name.removeprefix(result.prefix): each for name, each in known.items() if name.startswith(result.prefix)}
+        known = {
+            name.removeprefix(result.prefix): each for name, each in known.items() if name.startswith(result.prefix)
+        }
     if not result.scope:
         return known
     ending = "_" + result.scope

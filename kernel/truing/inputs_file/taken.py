@@ -85,17 +85,24 @@ def with_sources(document: InputsDocument, offer: Offer, folder: Path) -> Offer:
     _read_inputs(chain, document, "", folder)
     _read_sources(chain, document, folder, owner="")
     chain.links = {_with_owner(chain, link): place for link, place in chain.links.items()}
+    linked = _linked(chain, list(chain.links))
+    _tell(chain, linked.model)
+    return linked
+
+
+def _linked(chain: _Chain, links: list[Link]) -> Offer:
+    """Return the calculation with these links; those with faults are left out, so that the rest is still checked."""
     try:
-        linked = chained_offer(offer, list(chain.links))
+        return chained_offer(chain.offer, links)
     except ChainError as error:
         for link, sentence in error.faults:
             chain.fault(sentence, _place_of(chain, link))
-        return offer
+        wrong = {(link.owner, link.input) for link, _ in error.faults}
+        left = [link for link in links if (link.owner, link.input) not in wrong]
+        return _linked(chain, left) if len(left) < len(links) else chain.offer
     except DeclarationError as error:
-        chain.fault(str(error), document.place(("inputs",)))
-        return offer
-    _tell(chain, linked.model)
-    return linked
+        chain.fault(str(error), chain.document.place(("inputs",)))
+        return chain.offer
 
 
 def _with_owner(chain: _Chain, link: Link) -> Link:
@@ -117,8 +124,9 @@ def _place_of(chain: _Chain, link: Link) -> tuple[str, int | None]:
 
 def _read_inputs(chain: _Chain, document: InputsDocument, owner: str, folder: Path) -> None:
     """Gather the inputs of one calculation: links, and for a source what is stated."""
-    inputs = document.data.get("inputs")
-    for name, raw in list(inputs.items()) if isinstance(inputs, dict) else ():
+    section = document.data.get("inputs")
+    inputs: dict[str, Any] = section if isinstance(section, dict) else {}
+    for name, raw in list(inputs.items()):
         path = ("inputs", name)
         if is_taken(raw):
             _read_link(chain, owner, name, raw, document.place(path), folder)
@@ -153,7 +161,9 @@ def _read_sources(chain: _Chain, document: InputsDocument, folder: Path, owner: 
         path = (FROM, word)
         name = chain.name_of(word)
         if not isinstance(said, dict):
-            chain.fault(f"{shown(word)} is a section; write [from.{word}] and its inputs below it", document.place(path))
+            chain.fault(
+                f"{shown(word)} is a section; write [from.{word}] and its inputs below it", document.place(path)
+            )
             continue
         for key, raw in said.items():
             place = document.place((*path, key))
@@ -219,7 +229,8 @@ def _state(
 
 def _tell(chain: _Chain, model: Model[Any, Any]) -> None:
     made = chain_of(model)
-    assert made is not None
+    if made is None:
+        return
     for name, told in chain.told.items():
         if name not in made.sources:
             continue

@@ -238,8 +238,8 @@ class Kernel:
                 offers[key] = chained_offer(offer)
             except DeclarationError as error:
                 hook = next(hook for _, hook, model in accepted if model.name == offer.model.name)
-                fault = DeclarationError(f"model '{offer.model.name}': {error}")
-                self._note(self._left_out, offer.origin, fault, line_of(hook.function))
+                said = DeclarationError(f"model '{offer.model.name}': {error}")
+                self._note(self._left_out, offer.origin, said, line_of(hook.function))
         return offers
 
     @staticmethod
@@ -291,7 +291,9 @@ def chained_offer(offer: Offer, stated: Sequence[Link] = ()) -> Offer:
     while waiting:
         owner, current = waiting.pop(0)
         declared, asked = declared_links(current.model)
+        order = {name: place for place, name in enumerate(current.model.input_fields)}
         own = [replace(link, owner=owner) for link in declared] + [link for link in stated if link.owner == owner]
+        own.sort(key=lambda link: order.get(link.input, len(order)))  # equal files give equal chains
         for link in own:
             source = offer_beside(offer, link.source)
             if source is None:
@@ -323,10 +325,10 @@ def _setting_faults(
 ) -> Iterator[tuple[Link, str]]:
     """Say which inputs are stated of a source that it does not have."""
     for link in links:
-        model = sources.get(link.source)
-        for name in settings.get(link.source, {}) if model is not None else ():
-            if name not in model.input_fields:
-                yield link, f"{link.source} has no input '{name}'.{near_miss(name, model.input_fields)}"
+        known = sources[link.source].input_fields if link.source in sources else {}
+        for name in settings.get(link.source, {}) if known else ():
+            if name not in known:
+                yield link, f"{link.source} has no input '{name}'.{near_miss(name, known)}"
 
 
 def demand_readable(offer: Offer) -> None:

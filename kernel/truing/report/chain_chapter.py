@@ -1,22 +1,18 @@
-"""A chain of calculations on the sheet: which of them goes on with what of which other one, as a drawing and a table."""
+"""A chain of calculations on the sheet: which of them goes on with what of which other, as a drawing and a table."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+from matplotlib.figure import Figure
 
 from truing.declare.chain import Chain, chain_of, prefix_of
 from truing.evaluate import taken_values
-from truing.heavy import Later
 from truing.numbers import RESULT_DIGITS, format_value
 from truing.report.document import Chapter, Column, Paragraph, TableView, label_of
 from truing.setup import Setup
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-else:
-    matplotlib_figure = Later("matplotlib.figure")
 
 TITLE = "Chain of calculations"
 BOX_WIDTH, BOX_HEIGHT, GAP = 2.0, 0.62, 1.9
@@ -79,7 +75,7 @@ def graph_figure(chain: Chain) -> Figure:
         taken.setdefault((link.source, link.owner), []).append(word)
     row = BOX_HEIGHT + 2 * MARGIN + LINE * max(map(len, taken.values()))
     high, wide = row * max(map(len, columns)), len(columns) * BOX_WIDTH + (len(columns) - 1) * GAP + 2 * MARGIN
-    figure = matplotlib_figure.Figure(figsize=(wide, high))
+    figure = Figure(figsize=(wide, high))
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0), xlim=(0, wide), ylim=(0, high))
     axes.set_axis_off()
     centres: dict[str, tuple[float, float]] = {}

@@ -85,9 +85,10 @@ def input_blocks(setup: Setup, detail: str) -> Iterator[BlockView]:
 def _input_row(setup: Setup, name: str, value: Value, more: tuple[Text, ...]) -> tuple[Text, ...]:
     field = setup.model.input_fields[name]
     note = "; ".join(part for part in (field.spec.note, halving_in_words(field)) if part)
+    given = _given_how(setup, name)
     return (
-        symbol_cell(field.symbol), label_of(note, name), value.text, value.unit, *more, _given_how(setup, name),
-        field.spec.source,
+        symbol_cell(field.symbol), label_of(note, name), value.text, value.unit, *more, given,
+        "" if given.startswith("from ") else field.spec.source,
     )  # fmt: skip
 
 
