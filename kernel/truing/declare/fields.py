@@ -401,14 +401,14 @@ class _Place:
 
 
 def _walk(cls: type[Any], path: tuple[str, ...] = (), suffixes: tuple[str, ...] = (), index: str = "",
-          defaults: Mapping[str, Any] | None = None, prefix: str = "") -> Iterator[_Place]:  # fmt: skip
+          defaults: Mapping[str, Any] | None = None, *, prefix: str = "") -> Iterator[_Place]:  # fmt: skip
     hints = hints_of(cls)
     for name, spec in _specs(cls).items():
         here = (*path, name)
         if isinstance(spec, Part):
             suffix = name if spec.suffix is None else spec.suffix
             inner = (*suffixes, suffix) if suffix else suffixes
-            yield from _walk(spec.of, here, inner, index + spec.index, spec.defaults, prefix + spec.prefix)
+            yield from _walk(spec.of, here, inner, index + spec.index, spec.defaults, prefix=prefix + spec.prefix)
             continue
         if isinstance(spec, Given) and defaults and name in defaults:
             spec = replace(spec, default=defaults[name])

@@ -8,14 +8,13 @@ comes to stand where the chain has it: its power under [inputs] as ``rv_gearing_
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from truing.declare.chain import Link, chain_of, prefix_of, renamed_in
 from truing.declare.model import Model
-from truing.declare.near_miss import near_miss
 from truing.errors import DeclarationError, Fault, UsageError
 from truing.inputs_file.document import InputsDocument, KeyPath, read_document
 from truing.inputs_file.files import read_text
@@ -31,34 +30,40 @@ OWN_CONCERN = {"plugin", "sheet", "studies", "columns"}
 """Sections of a source's own file that a chain leaves out: the last calculation decides these."""
 
 
-@dataclass
-class _Told:
-    """What the files of a chain say of one source: entries by section and name, each with its place and its folder."""
+Place = tuple[str, int | None]
 
-    entries: dict[KeyPath, Any] = field(default_factory=dict)
-    places: dict[KeyPath, tuple[str, int | None]] = field(default_factory=dict)
-    folders: dict[KeyPath, Path] = field(default_factory=dict)
+
+@dataclass(frozen=True)
+class _Said:
+    """One value as a file has it, where it stands, and the folder from which its data files are seen."""
+
+    value: Any
+    place: Place
+    folder: Path
 
 
 @dataclass
 class _Chain:
-    """What was gathered of a chain so far, by the name of the calculation; links with their places."""
+    """What was gathered of a chain so far: links with their places, and by calculation what is said of each source."""
 
     offer: Offer
     document: InputsDocument
-    told: dict[str, _Told] = field(default_factory=dict)
-    links: dict[Link, tuple[str, int | None]] = field(default_factory=dict)
+    told: dict[str, dict[KeyPath, _Said]] = field(default_factory=dict)
+    links: dict[Link, Place] = field(default_factory=dict)
+    words: dict[str, str] = field(default_factory=dict)
     files: int = 0
 
-    def fault(self, sentence: str, place: tuple[str, int | None]) -> None:
+    def fault(self, sentence: str, place: Place) -> None:
+        """Note a fault of the file."""
         self.document.faults.append(Fault(sentence, *place))
 
     def name_of(self, word: str) -> str:
-        """Return the whole name of a calculation, or the word where there is none."""
+        """Return the word that first named this calculation; a dot may be written as a line below."""
         offers = self.offer.beside
         meant = offer_beside(self.offer, word)
-        written = [name for name in offers if prefix_of(name)[:-1] == word]
-        return meant.name if meant is not None else written[0] if len(written) == 1 else word
+        alike = [offers[name] for name in offers if name.replace(".", "_") == word]
+        meant = meant or (alike[0] if len(alike) == 1 else None)
+        return word if meant is None else self.words.setdefault(meant.name, meant.name if alike else word)
 
 
 def is_taken(raw: Any) -> bool:
@@ -117,7 +122,7 @@ def _with_owner(chain: _Chain, link: Link) -> Link:
     return link
 
 
-def _place_of(chain: _Chain, link: Link) -> tuple[str, int | None]:
+def _place_of(chain: _Chain, link: Link) -> Place:
     alike = (place for each, place in chain.links.items() if (each.owner, each.input) == (link.owner, link.input))
     return next(alike, chain.document.place((FROM, link.owner)))
 
@@ -128,27 +133,28 @@ def _read_inputs(chain: _Chain, document: InputsDocument, owner: str, folder: Pa
     inputs: dict[str, Any] = section if isinstance(section, dict) else {}
     for name, raw in list(inputs.items()):
         path = ("inputs", name)
+        said = _Said(raw, document.place(path), folder)
         if is_taken(raw):
-            _read_link(chain, owner, name, raw, document.place(path), folder)
+            _read_link(chain, owner, name, said)
             if not owner:
                 del inputs[name]
         elif owner:
-            _state(chain, owner, path, raw, document.place(path), folder)
+            _state(chain, owner, path, said)
 
 
-def _read_link(
-    chain: _Chain, owner: str, name: str, raw: Mapping[str, Any], place: tuple[str, int | None], folder: Path
-) -> None:
-    source, result = raw[FROM], raw.get("result", name)
+def _read_link(chain: _Chain, owner: str, name: str, said: _Said) -> None:
+    source, result = said.value[FROM], said.value.get("result", name)
     if not isinstance(source, str) or not isinstance(result, str):
         like = f'{name} = {{ from = "rv_gearing", result = "output_torque" }}'
-        chain.fault(f"{name} is taken from a calculation by its name, and from a result of it; write {like}", place)
+        chain.fault(
+            f"{name} is taken from a calculation by its name, and from a result of it; write {like}", said.place
+        )
         return
     source = chain.name_of(source)
-    chain.links[Link(owner, name, source, result)] = place
-    for key, value in raw.items():
+    chain.links[Link(owner, name, source, result)] = said.place
+    for key, value in said.value.items():
         if key not in {FROM, "result"}:
-            _state(chain, source, ("inputs", key), value, place, folder)
+            _state(chain, source, ("inputs", key), replace(said, value=value))
 
 
 def _read_sources(chain: _Chain, document: InputsDocument, folder: Path, owner: str) -> None:
@@ -157,39 +163,40 @@ def _read_sources(chain: _Chain, document: InputsDocument, folder: Path, owner: 
     if not isinstance(section, dict):
         chain.fault("[from] holds calculations; write [from.NAME] and its inputs below it", document.place((FROM,)))
         return
-    for word, said in section.items():
-        path = (FROM, word)
-        name = chain.name_of(word)
-        if not isinstance(said, dict):
-            chain.fault(
-                f"{shown(word)} is a section; write [from.{word}] and its inputs below it", document.place(path)
-            )
+    for word, content in section.items():
+        path, name = (FROM, word), chain.name_of(word)
+        if not isinstance(content, dict):
+            sentence = f"{shown(word)} is a section; write [from.{word}] and its inputs below it"
+            chain.fault(sentence, document.place(path))
             continue
-        for key, raw in said.items():
-            place = document.place((*path, key))
-            if key == INPUTS_FILE:
-                _read_file(chain, name, raw, place, folder)
-            elif is_taken(raw):
-                _read_link(chain, name, key, raw, place, folder)
-            else:
-                _state(chain, name, ("inputs", key), raw, place, folder)
+        for key, raw in content.items():
+            _read_entry_of(chain, name, key, _Said(raw, document.place((*path, key)), folder))
         if not any(link.source == name for link in chain.links) and not owner:
             sources = sorted({link.source for link in chain.links})
             named = f"; inputs are taken from {', '.join(sources)}" if sources else ""
-            chain.fault(f"no input is taken from {shown(word)}{near_miss(word, sources)}{named}", document.place(path))
+            chain.fault(f"no input is taken from {shown(word)}{named}", document.place(path))
 
 
-def _read_file(chain: _Chain, name: str, raw: Any, place: tuple[str, int | None], folder: Path) -> None:
-    """Gather the inputs file of a source; what stands beside it wins, for that came first."""
+def _read_entry_of(chain: _Chain, name: str, key: str, said: _Said) -> None:
+    if key == INPUTS_FILE:
+        _read_file(chain, name, said)
+    elif is_taken(said.value):
+        _read_link(chain, name, key, said)
+    else:
+        _state(chain, name, ("inputs", key), said)
+
+
+def _read_file(chain: _Chain, name: str, said: _Said) -> None:
+    """Gather the inputs file of a source; what stands beside it wins, wherever it stands."""
     chain.files += 1
-    if not isinstance(raw, str) or chain.files > MOST_FILES:
-        chain.fault(f'{INPUTS_FILE} is the inputs file of {name}; write {INPUTS_FILE} = "{name}.toml"', place)
+    if not isinstance(said.value, str) or chain.files > MOST_FILES:
+        chain.fault(f'{INPUTS_FILE} is the inputs file of {name}; write {INPUTS_FILE} = "{name}.toml"', said.place)
         return
-    file = folder / raw
+    file = said.folder / said.value
     try:
         text = read_text(file, instead=f"`calc init {name}` writes an example")
     except UsageError as error:
-        chain.fault(f"{name}: {error}", place)
+        chain.fault(f"{INPUTS_FILE} of {name}: {error}", said.place)
         return
     own = read_document(text, str(file))
     chain.document.faults += own.faults
@@ -199,29 +206,34 @@ def _read_file(chain: _Chain, name: str, raw: Any, place: tuple[str, int | None]
         return
     _read_inputs(chain, own, name, file.parent)
     _read_sources(chain, own, file.parent, owner=name)
-    for section, content in own.data.items():
+    for path, value in _entries_of(own):
+        _state(chain, name, path, _Said(value, own.place(path), file.parent))
+
+
+def _entries_of(document: InputsDocument) -> Iterator[tuple[KeyPath, Any]]:
+    """Yield what the other sections of a source's own file say; an effect by its unknowns."""
+    for section, content in document.data.items():
         if section in OWN_CONCERN or section == "inputs":
             continue
-        for key, value in content.items() if isinstance(content, dict) else [("", content)]:
-            if isinstance(value, dict) and section == "effects":
-                for inner, stated in value.items():
-                    _state(chain, name, (section, key, inner), stated, own.place((section, key, inner)), file.parent)
+        for key, value in content.items() if isinstance(content, dict) else ():
+            if section == "effects" and isinstance(value, dict):
+                yield from (((section, key, inner), stated) for inner, stated in value.items())
             else:
-                path = (section, key) if key else (section,)
-                _state(chain, name, path, value, own.place(path), file.parent)
+                yield (section, key), value
 
 
-def _state(
-    chain: _Chain, name: str, path: KeyPath, value: Any, place: tuple[str, int | None], folder: Path
-) -> None:  # fmt: skip
-    """Note one thing that is said of a source; the first word counts, and two that differ in one file are a fault."""
-    told = chain.told.setdefault(name, _Told())
-    if path not in told.entries:
-        told.entries[path], told.places[path], told.folders[path] = value, place, folder
-    elif told.entries[path] != value and told.places[path][0] == place[0]:
-        line = told.places[path][1]
-        before = f"{told.entries[path]!r} in line {line}" if line else repr(told.entries[path])
-        chain.fault(f"{path[-1]} of {name} is {value!r} here and {before}; a source is calculated once", place)
+def _state(chain: _Chain, name: str, path: KeyPath, said: _Said) -> None:
+    """Note one thing that is said of a source: twice in one file is a fault, and its own file says it last."""
+    told = chain.told.setdefault(name, {})
+    before = told.get(path)
+    if before is None or (said.place[0] == chain.document.file != before.place[0]):
+        told[path] = said
+    elif before.value != said.value and before.place[0] == said.place[0]:
+        line = f" in line {before.place[1]}" if before.place[1] else ""
+        sentence = (
+            f"{path[-1]} of {name} is {said.value!r} here and {before.value!r}{line}; a source is calculated once"
+        )
+        chain.fault(sentence, said.place)
 
 
 # What is said of sources, told in the names that the chain has for it
@@ -235,11 +247,11 @@ def _tell(chain: _Chain, model: Model[Any, Any]) -> None:
         if name not in made.sources:
             continue
         rename = renamed_in(made, name)
-        for path, value in told.entries.items():
-            renamed = _renamed_path(path, prefix_of(name), rename)
+        for path, said in told.items():
+            value = said.value
             if path[0] == "inputs":
-                value = _from_folder(value, made.sources[name], path[-1], told.folders[path])
-            _put(chain.document, renamed, value, told.places[path])
+                value = _from_folder(value, made.sources[name], path[-1], said.folder)
+            _put(chain.document, _renamed_path(path, prefix_of(name), rename), replace(said, value=value))
 
 
 def _renamed_path(path: KeyPath, prefix: str, rename: Callable[[str], str]) -> KeyPath:
@@ -265,15 +277,15 @@ def _from_folder(value: Any, model: Model[Any, Any], name: str, folder: Path) ->
     return value
 
 
-def _put(document: InputsDocument, path: KeyPath, value: Any, place: tuple[str, int | None]) -> None:
-    """Put a value where the chain has it, unless the file itself says it there."""
+def _put(document: InputsDocument, path: KeyPath, said: _Said) -> None:
+    """Put a value where the chain has it; what the file itself says there stays, but not against ``--set``."""
     inner: Any = document.data
     for name in path[:-1]:
         inner = inner.setdefault(name, {})
         if not isinstance(inner, dict):
             return
-    if path[-1] not in inner:
-        inner[path[-1]] = value
-        document.places[path] = place
+    if path[-1] not in inner or said.place[0] in document.overrides:
+        inner[path[-1]] = said.value
+        document.places[path] = said.place
         for length in range(1, len(path)):
-            document.places.setdefault(path[:length], place)
+            document.places.setdefault(path[:length], said.place)

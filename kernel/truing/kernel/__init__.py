@@ -279,44 +279,57 @@ def offer_beside(offer: Offer, name: str) -> Offer | None:
 def chained_offer(offer: Offer, stated: Sequence[Link] = ()) -> Offer:
     """Return a calculation with all that its inputs are taken from, as declared and as stated besides.
 
-    Links that are stated win over those declared of the same input. Raises ChainError with what is wrong with links,
-    those of sources included.
+    Links that are stated win over those declared of the same input. A source goes by the word that first names it.
+    Raises ChainError with what is wrong with links, those of sources included.
     """
     last = offer.beside.get(offer.name, offer)
-    links: dict[tuple[str, str], Link] = {}
-    settings: dict[str, dict[str, Any]] = {}
-    sources: dict[str, Model[Any, Any]] = {}
-    faults: list[tuple[Link, str]] = []
-    waiting = [("", last)]
-    while waiting:
-        owner, current = waiting.pop(0)
-        declared, asked = declared_links(current.model)
-        order = {name: place for place, name in enumerate(current.model.input_fields)}
-        own = [replace(link, owner=owner) for link in declared] + [link for link in stated if link.owner == owner]
-        own.sort(key=lambda link: order.get(link.input, len(order)))  # equal files give equal chains
-        for link in own:
-            source = offer_beside(offer, link.source)
-            if source is None:
-                faults.append((link, _no_source(offer, link)))
-                continue
-            links[owner, link.input] = link = replace(link, source=source.name)
-            if source.name not in {*sources, last.name}:
-                sources[source.name] = source.model
-                waiting.append((source.name, source))
-        for name, values in asked.items():
-            source = offer_beside(offer, name)
-            settings.setdefault(source.name if source else name, {}).update(values)
-    faults += link_faults(last.name, last.model, sources, list(links.values()))
-    faults += _setting_faults(sources, settings, list(links.values()))
+    gathered = _gathered(offer, last, stated)
+    links = list(gathered.links.values())
+    models = {word: source.model for word, source in gathered.sources.items()}
+    faults = [*gathered.faults, *link_faults(last.model.name, last.model, models, links)]
+    faults += _setting_faults(models, gathered.settings, links)
     if faults:
         raise ChainError(faults)
-    if not links:
-        return last
-    return replace(last, model=chained(last.model, sources, list(links.values()), settings))
+    return replace(last, model=chained(last.model, models, links, gathered.settings)) if links else last
+
+
+@dataclass
+class _Gathered:
+    """What belongs to a chain: links by owner and input, sources and what is stated of them by word, and faults."""
+
+    links: dict[tuple[str, str], Link] = field(default_factory=dict)
+    sources: dict[str, Offer] = field(default_factory=dict)
+    settings: dict[str, dict[str, Any]] = field(default_factory=dict)
+    faults: list[tuple[Link, str]] = field(default_factory=list)
+
+
+def _gathered(offer: Offer, last: Offer, stated: Sequence[Link]) -> _Gathered:
+    gathered, waiting = _Gathered(), [("", last)]
+    words = {last.name: last.model.name}
+    for link in stated:
+        named = offer_beside(offer, link.source)
+        words.setdefault(named.name if named is not None else "", link.source)
+    while waiting:
+        owner, current = waiting.pop(0)
+        declared, settings = declared_links(current.model)
+        order = {name: place for place, name in enumerate(current.model.input_fields)}
+        own = [replace(link, owner=owner) for link in declared] + [link for link in stated if link.owner == owner]
+        for link in sorted(own, key=lambda link: order.get(link.input, len(order))):  # equal files give equal chains
+            source = offer_beside(offer, link.source)
+            if source is None:
+                gathered.faults.append((link, _no_source(offer, link)))
+                continue
+            word = words.setdefault(source.name, link.source)
+            gathered.links[owner, link.input] = replace(link, source=word)
+            gathered.settings.setdefault(word, {}).update(settings.get(link.source, {}))
+            if word not in gathered.sources and source is not last:
+                gathered.sources[word] = source
+                waiting.append((word, source))
+    return gathered
 
 
 def _no_source(offer: Offer, link: Link) -> str:
-    near = near_miss(link.source[:80], offer.beside)
+    near = near_miss(link.source[:80], [*offer.beside, *(other.model.name for other in offer.beside.values())])
     return f"'{link.input}' is taken from {shown(link.source)}, which no plugin offers.{near}"
 
 

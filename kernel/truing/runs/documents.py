@@ -37,21 +37,13 @@ def results_document(
     """
     setup = calculation.setup
     model = setup.model
-    inputs = {**model.read_inputs(setup.inputs), **taken_values(setup)}
     return {
         "schema": SCHEMA,
         "plugin": {"name": provenance.plugin, "version": provenance.plugin_version, "model": model.name},
         "kernel": provenance.kernel,
         "input_hash": provenance.input_hash,
         "seed": provenance.seed,
-        "inputs": {
-            name: {
-                **_input_value(setup, model.input_fields[name], value),
-                **_as_stated(setup, name, value),
-                **_from(setup, name),
-            }
-            for name, value in inputs.items()
-        },
+        "inputs": _inputs(setup),
         "tolerances": _tolerances(setup),
         "correlations": _correlations(setup),
         "conditions": {
@@ -69,6 +61,14 @@ def results_document(
         "warnings": list(calculation.warnings),
         **({} if cases is None else _cases(setup, cases)),
         **_chain(setup),
+    }
+
+
+def _inputs(setup: Setup) -> dict[str, Any]:
+    fields, values = setup.model.input_fields, setup.model.read_inputs(setup.inputs)
+    return {
+        name: {**_input_value(setup, fields[name], value), **_as_stated(setup, name, value), **_from(setup, name)}
+        for name, value in {**values, **taken_values(setup)}.items()
     }
 
 
