@@ -40,6 +40,7 @@ class Winding:
     """A part, so that names of parts are tried too."""
 
     resistance: Float = given(0.5, "ohm", above=0)
+    current: Float = given(10.0, "A", above=0)
 
 
 @inputs
@@ -58,7 +59,7 @@ class Turning:
 
     shaft_power: Float = found("W", formula="power - loss")
     torque: Float = found("N*m", symbol="T", formula="shaft_power / (2 * pi * speed)", note="torque of the motor")
-    heat_winding: Float = found("W", formula="resistance_winding * 100")
+    heat_winding: Float = found("W", formula="resistance_winding * current_winding**2")
     hum: Float = found("W", formula="0.01 * power")
 
 
@@ -68,7 +69,7 @@ def motor(given_motor: Motor) -> Turning:
     feasible(power > 0, "the motor loses all its power")
     return Turning(
         shaft_power=power, torque=power / (2 * np.pi * given_motor.speed),
-        heat_winding=given_motor.winding.resistance * 100, hum=0.01 * given_motor.power,
+        heat_winding=given_motor.winding.resistance * given_motor.winding.current**2, hum=0.01 * given_motor.power,
     )  # fmt: skip
 
 
@@ -130,7 +131,7 @@ class Peg:
     torque: Float = given(10.0, "N*m", above=0)
     radius: Float = given(50.0, "mm", above=0)
     angle: Float = given(0.001, "rad", note="by which it is turned")
-    exponent: Float = given(1.0, "")
+    softness: Float = given(1.0, "nm/N", above=0)
     teeth: int = given(4)
     noise: Float = given(0.0, "W", note="heard, and nothing else")
 
@@ -140,13 +141,13 @@ class Worn:
     """How far it wears."""
 
     load: Float = found("N", formula="force + torque / radius * (1 + angle)")
-    depth: Float = found("um", formula="1e-9 * load**exponent", numeric=False, method="1 nm per newton")
+    depth: Float = found("um", formula="load * softness")
 
 
 def peg(given_peg: Peg) -> Worn:
     """Wear grows with the load."""
     load = given_peg.force + given_peg.torque / given_peg.radius * (1 + given_peg.angle)
-    return Worn(load=load, depth=1e-9 * load**given_peg.exponent)
+    return Worn(load=load, depth=load * given_peg.softness)
 
 
 def bent(given_peg: Peg, *, force: Float) -> Peg:

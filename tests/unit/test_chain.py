@@ -194,7 +194,7 @@ angle = { from = "shafd" }
 radius = { from = "motor", result = "tork", power = "4 kW" }
 teeth = { from = "shaft", result = "angle" }
 force = { from = "wheel", result = "speed_left" }
-exponent = { from = "peg", result = "exponent" }
+softness = { from = "peg", result = "softness" }
 
 [from.wheel]
 inertia = "3 mm"
@@ -213,7 +213,7 @@ def test_all_faults_of_a_chain_are_told_at_once(kernel: Kernel, tmp_path: Path) 
         5: "'teeth' cannot be 'angle' of shaft: 'teeth' is a whole number that does not vary, and only a number can be "
         "taken from another calculation",
         6: "'force' cannot be 'speed_left' of wheel: that is a series along 'time', and 'force' takes one number",
-        7: "a circle: 'exponent' of peg from peg; leave one of these out",
+        7: "a circle: 'softness' of peg from peg; leave one of these out",
     }
     twice = [fault for fault in raised.value.faults if "calculated once" in fault.message]
     assert [(fault.line, fault.message) for fault in twice] == [
@@ -302,7 +302,8 @@ def test_the_names_of_a_chain_are_all_its_calculations(kernel: Kernel) -> None:
     """A declared link needs no file: the shaft is a chain wherever it is asked for."""
     model = kernel.offer("shaft").model
     assert [*model.input_fields] == [
-        "torque", "stiffness", "motor_power", "motor_speed", "motor_loss", "motor_resistance_winding"
+        "torque", "stiffness", "motor_power", "motor_speed", "motor_loss", "motor_resistance_winding",
+        "motor_current_winding"
     ]  # fmt: skip
     assert [*model.effects] == ["motor_friction", "motor_rumble"]
     assert model.inputs().motor.speed == pytest.approx(10.0)  # 600 rpm, as from_model states it

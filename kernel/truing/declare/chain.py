@@ -21,7 +21,7 @@ from truing.declare.batch import either, feasible, reasons_of_part
 from truing.declare.correlations import Correlated
 from truing.declare.dynamics import Dynamics
 from truing.declare.fields import KEY, Given, InputField, Part, ResultField, hints_of, make, read, spec_of, with_values
-from truing.declare.goals import Objective, PriceByChoice, Require
+from truing.declare.goals import Objective, PriceByChoice, Require, Vary
 from truing.declare.model import Model, Record, Section
 from truing.declare.near_miss import near_miss
 from truing.declare.sources import Condition, Effect, ErrorSource, Tolerance
@@ -258,7 +258,8 @@ def chained(
     """Return the model of a chain whose links have no faults: see ``link_faults``.
 
     It has the name, goals, studies and sheet of the last calculation, the error sources of all, and of the sources
-    their limits and the sections of their sheets. Raises DeclarationError where names meet.
+    their limits and the sections of their sheets. What is taken is not varied.
+    Raises DeclarationError where names meet.
     """
     chain = Chain(last, _in_order(sources, links), tuple(links), settings or {})
     function = _function(chain)
@@ -268,7 +269,7 @@ def chained(
         function=function,
         errors=[source for name in [*chain.sources, ""] for source in _errors_of(chain, name)],
         objectives=[
-            *last.objectives,
+            *(each for each in last.objectives if not (isinstance(each, Vary) and each.input in chain.taken)),
             *(limit for name in chain.sources for limit in _limits_of(chain, name)),
         ],
         studies=last.studies,
@@ -294,6 +295,14 @@ class ChainModel(Model[Any, Any]):
 def chain_of(model: AnyModel) -> Chain | None:
     """Return what a model is made of that is a chain, None of any other."""
     return model.chain if isinstance(model, ChainModel) else None
+
+
+def calculation_of(model: AnyModel, effect: str) -> str:
+    """Return the source of a chain whose effect this is, by its name in the chain; "" of the last one's."""
+    sources = model.chain.sources if isinstance(model, ChainModel) else {}
+    return next(
+        (name for name, source in sources.items() for own in source.effects if prefix_of(name) + own == effect), ""
+    )
 
 
 def filled(model: AnyModel, inputs: Any) -> Any:

@@ -112,7 +112,8 @@ def _linked(chain: _Chain, links: list[Link]) -> Offer:
 
 def _with_owner(chain: _Chain, link: Link) -> Link:
     """Return a link whose input is named with the prefix of a source as one of that source."""
-    if link.owner or link.input in chain.offer.model.input_fields:
+    last = chain.offer.beside.get(chain.offer.name, chain.offer)
+    if link.owner or link.input in last.model.input_fields:
         return link
     for name in {each.source for each in chain.links}:
         offer = offer_beside(chain.offer, name)

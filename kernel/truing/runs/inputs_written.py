@@ -99,7 +99,12 @@ def _sections(setup: Setup, folder: Path | None) -> Iterator[tuple[str, dict[str
         {
             name: spread.text
             for name, spread in setup.spreads.items()
-            if name in setup.model.tolerances and spread.text and not isinstance(spread, (ByChoice, Drawn))
+            if name in setup.model.tolerances
+            and spread.text
+            and not isinstance(spread, (ByChoice, Drawn))
+            and not all(
+                _taken(setup, each) and math.isnan(setup.nominal(each)) for each in setup.model.tolerances[name].on
+            )
         },
     )
     yield "correlations", {pair.name: pair.coefficient for pair in setup.scattering_together()}
