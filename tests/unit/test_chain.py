@@ -22,6 +22,7 @@ from truing.evaluate import evaluate, evaluate_rows, taken_values
 from truing.packed import pack, unpack
 from truing.runs.inputs_written import complete_inputs, input_hash
 from truing.studies.sampling import scatter_of
+from truing.testing.kit import failures
 
 TURN = 2 * np.pi / 60
 """A revolution per minute in rad/s: power over this times a speed in rpm is a torque."""
@@ -307,6 +308,13 @@ def test_the_names_of_a_chain_are_all_its_calculations(kernel: Kernel) -> None:
     ]  # fmt: skip
     assert [*model.effects] == ["motor_friction", "motor_rumble"]
     assert model.inputs().motor.speed == pytest.approx(10.0)  # 600 rpm, as from_model states it
+
+
+def test_chains_keep_what_every_model_keeps(kernel: Kernel) -> None:
+    """The kit of plugin authors: units of formulas, batches, seeds, processes, files, effects; of two chains."""
+    assert failures(kernel.offer("shaft").model) == {}
+    taken = {"torque": from_model("motor").torque, "angle": from_model("shaft").angle}
+    assert failures(loaded(kernel, "peg").taking(taken).offer.model) == {}
 
 
 def test_the_gear_stage_loads_the_discs_of_the_reducer() -> None:
