@@ -290,7 +290,14 @@ def chained_offer(offer: Offer, stated: Sequence[Link] = ()) -> Offer:
     faults += _setting_faults(models, gathered.settings, links)
     if faults:
         raise ChainError(faults)
-    return replace(last, model=chained(last.model, models, links, gathered.settings)) if links else last
+    if not links:
+        return last
+    whose = [
+        (Added(word, each.origin.name, each.origin.version, each.origin.file), *each.added)
+        for word, each in gathered.sources.items()
+    ]
+    model = chained(last.model, models, links, gathered.settings)
+    return replace(last, model=model, added=(*last.added, *(added for each in whose for added in each)))
 
 
 @dataclass

@@ -39,7 +39,7 @@ def links_table(setup: Setup, chain: Chain) -> TableView:
     """List what is taken from where, with its value; what is stated in its place says so."""
     values = taken_values(setup)
     columns = (
-        Column("Input", kind="name"), Column("of"), Column("is", kind="name"), Column("of"),
+        Column("Input", kind="name"), Column("Calculation"), Column("Taken", kind="name"), Column("From"),
         Column("Value", kind="number"), Column("Unit", kind="units"),
     )  # fmt: skip
     rows = []
@@ -71,7 +71,7 @@ def graph_figure(chain: Chain) -> Figure:
     columns = [[name for name in depth if depth[name] == column] for column in range(max(depth.values()) + 1)]
     taken: dict[tuple[str, str], list[str]] = {}
     for link in chain.links:
-        word = link.input if link.input == link.result else f"{link.result} as {link.input}"
+        word = link.input if link.input == link.result else f"{link.result} → {link.input}"
         taken.setdefault((link.source, link.owner), []).append(word)
     row = BOX_HEIGHT + 2 * MARGIN + LINE * max(map(len, taken.values()))
     high, wide = row * max(map(len, columns)), len(columns) * BOX_WIDTH + (len(columns) - 1) * GAP + 2 * MARGIN
