@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from truing.declare.published import Finding, Published
     from truing.declare.sources import Condition, Effect, ErrorSource, Tolerance, Unknown
     from truing.declare.spreads import by_choice, drawn, grade, lognormal, normal, off, plus_minus, uniform, zone
+    from truing.declare.taken import from_model
     from truing.errors import TruingError
     from truing.hookspecs import hookimpl, hookspec
     from truing.kernel import Kernel
@@ -57,6 +58,7 @@ _HOMES = {
     "truing.declare.spreads": (
         "by_choice", "drawn", "grade", "lognormal", "normal", "off", "plus_minus", "uniform", "zone",
     ),
+    "truing.declare.taken": ("from_model",),
     "truing.errors": ("TruingError",),
     "truing.kernel": ("Kernel",),
     "truing.hookspecs": ("hookimpl", "hookspec"),
@@ -77,7 +79,8 @@ _HOME = {name: module for module, names in _HOMES.items() for name in names}
 __all__ = [  # noqa: RUF022  # what a user calls; then what a plugin needs, in the order of its story
     "load", "LoadedModel", "Run", "StudyResult", "read", "record", "Diagnosis", "Plan",
     "compare", "Differences",
-    "inputs", "results", "given", "found", "axis", "rows", "part", "loaded", "quantity", "Float", "Array",
+    "inputs", "results", "given", "found", "axis", "rows", "part", "loaded", "from_model", "quantity", "Float",
+    "Array",
     "feasible", "either", "column",
     "states", "state", "Dynamics", "Motion", "Event",
     "Tolerance", "Effect", "Unknown", "Condition", "ErrorSource",

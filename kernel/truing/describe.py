@@ -77,6 +77,7 @@ def _motion(model: Model[Any, Any]) -> dict[str, Any]:
 def _input(field: InputField) -> dict[str, Any]:
     spec = field.spec
     default = spec.default if isinstance(spec, Given) else None
+    taken = spec.taken if isinstance(spec, Given) else None
     return {
         **_named(field, ("name", "symbol", "kind", "unit")),
         "default": list(default) if isinstance(default, tuple) else default,
@@ -86,6 +87,7 @@ def _input(field: InputField) -> dict[str, Any]:
         "bounds": bounds_in_words(field, with_unit=False),
         "role": getattr(spec, "role", ""),
         **_named(spec, ("note", "source")),
+        **({"from": {"calculation": taken.model, "result": taken.result}} if taken is not None else {}),
     }
 
 
@@ -198,7 +200,9 @@ def _unit(unit: str) -> str:
 
 def _input_row(described: dict[str, Any]) -> tuple[str, ...]:
     default = described["default"]
-    if default == [] or (default is None and described["optional"]):
+    if "from" in described:
+        default = f"from {described['from']['calculation']}"
+    elif default == [] or (default is None and described["optional"]):
         default = "optional"
     elif isinstance(default, list) and len(default) > LONGEST_SERIES:
         default = f"{default[0]} .. {default[-1]}, {len(default)} values"

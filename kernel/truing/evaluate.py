@@ -6,7 +6,7 @@ Columns of a batch are named by input, by condition, or by ``effects.NAME.UNKNOW
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
 
@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from truing.declare.batch import FailedRows, watching
-from truing.declare.fields import Axis, InputKind, with_values
+from truing.declare.chain import chain_of, filled
+from truing.declare.fields import Axis, InputKind, read, with_values
 from truing.declare.near_miss import near_miss
 from truing.declare.sources import Unknown
 from truing.errors import InfeasibleError, PluginError, TruingError, UsageError
@@ -327,12 +328,31 @@ def _inputs(case: Case, columns: Mapping[str, Any]) -> Any:
 
 
 def acting_inputs(case: Case) -> Any:
-    """Return the inputs as the effects that are on leave them: what the calculation itself is called with."""
+    """Return the inputs as the effects that are on leave them: what the calculation itself is called with.
+
+    Those that are taken from other calculations are filled.
+    """
     inputs = case.inputs
     for active in case.effects:
         if active.effect.place == "inputs":
             inputs = active.effect.function(inputs, **_keywords(active, case, {}))
-    return inputs
+    return filled(case.model, inputs)
+
+
+def taken_values(case: Case) -> dict[str, Any]:
+    """Return by flat name what inputs take from other calculations (SI), as these answer with their effects on.
+
+    Empty of a calculation that takes nothing; what is stated in place of a link is left out.
+    """
+    chain = chain_of(case.model)
+    if chain is None:
+        return {}
+    fields, behind = case.model.input_fields, chain.last.effects
+    open_names = [name for name in chain.taken if np.isnan(read(case.inputs, fields[name].path))]
+    before = replace(case, effects=tuple(active for active in case.effects if active.effect.name not in behind))
+    with np.errstate(all="ignore"):
+        acting = acting_inputs(before)
+    return {name: float(read(acting, fields[name].path)) for name in open_names}
 
 
 def _keywords(active: SwitchedOn, case: Case, columns: Mapping[str, Any]) -> dict[str, Any]:

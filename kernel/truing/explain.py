@@ -17,6 +17,7 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 
 from truing.calculation import Calculation, calculate
+from truing.declare.chain import chain_of, prefix_of
 from truing.declare.correlations import Correlated
 from truing.declare.fields import Axis, Found, ResultField
 from truing.declare.goals import Maximise, Minimise, Require, Vary, prices_in
@@ -24,7 +25,7 @@ from truing.declare.model import Model, Study, formula_scope
 from truing.declare.near_miss import near_miss
 from truing.declare.sources import Condition, Effect, Tolerance, Unknown
 from truing.errors import InfeasibleError, TruingError, UsageError
-from truing.evaluate import acting_inputs, evaluate
+from truing.evaluate import acting_inputs, evaluate, taken_values
 from truing.formulas import parse, symbol_text
 from truing.formulas.layout import substituted, symbolic
 from truing.formulas.tree import walk
@@ -124,7 +125,9 @@ def of_input(setup: Setup, name: str) -> dict[str, Any]:
     """Explain an input: value, bounds, scatter, the results it moves, limits and effects that have to do with it."""
     model = setup.model
     field = model.input_fields[name]
-    direct, further = following(made_from(model), name)
+    links = made_from(model)
+    direct, further = following(links, name)
+    known = {**model.read_inputs(setup.inputs), **taken_values(setup)}
     scattering = [tolerance for tolerance in model.tolerances.values() if name in tolerance.on]
     changed = [effect for effect in model.effects.values() if name in touched(setup, effect).inputs]
     moves = _moves(setup, [name]) if field.kind == "float" and _is_given(setup, name) else None
@@ -134,7 +137,8 @@ def of_input(setup: Setup, name: str) -> dict[str, Any]:
         "symbol": symbol_text(field.symbol) if field.symbol else "",
         "note": field.spec.note,
         "source": field.spec.source,
-        **amount(setup, name, model.read_inputs(setup.inputs)[name]),
+        **amount(setup, name, known[name]),
+        "taken_from": [*links.get(name, ())],
         "stated": name in setup.source.stated,
         "choices": list(field.choices),
         "bounds": bounds_in_words(field),
@@ -349,7 +353,7 @@ def of_result(setup: Setup, name: str, *, offer: Offer, progress: Progress) -> d
     answers = calculation.answers
     links = made_from(model)
     direct, further = following(links, name)
-    known = {**model.read_inputs(setup.inputs), **answers}
+    known = {**model.read_inputs(setup.inputs), **taken_values(setup), **answers}
     return {
         "symbol": symbol_text(field.symbol) if field.symbol else "",
         "note": field.spec.note,
@@ -676,7 +680,7 @@ def _changed(before: Mapping[str, Any], after: Mapping[str, Any]) -> Iterator[tu
 
 def _moved(bare: Setup, acting: Setup) -> Iterator[tuple[str, tuple[float, float]]]:
     model = bare.model
-    before, after = model.read_inputs(bare.inputs), model.read_inputs(acting_inputs(acting))
+    before, after = model.read_inputs(acting_inputs(bare)), model.read_inputs(acting_inputs(acting))
     for name, field in model.input_fields.items():
         if field.varies and before[name] == before[name] and before[name] != after[name]:
             yield name, (float(before[name]), float(after[name]))
@@ -686,8 +690,13 @@ def _moved(bare: Setup, acting: Setup) -> Iterator[tuple[str, tuple[float, float
 
 
 def made_from(model: Model[Any, Any]) -> Mapping[str, tuple[str, ...]]:
-    """Return, for every result with a formula, the inputs and results that it names, in the order of its text."""
-    links: dict[str, tuple[str, ...]] = {}
+    """Return, for every result with a formula, the inputs and results that it names, in the order of its text.
+
+    Of an input that is taken from another calculation it is what is taken.
+    """
+    made = chain_of(model)
+    taken = {} if made is None else made.taken
+    links: dict[str, tuple[str, ...]] = {name: (prefix_of(link.source) + link.result,) for name, link in taken.items()}
     for name, field in model.result_fields.items():
         if not isinstance(field.spec, Found) or not field.spec.formula:
             continue
@@ -701,7 +710,7 @@ def made_from(model: Model[Any, Any]) -> Mapping[str, tuple[str, ...]]:
 
 
 def following(links: Mapping[str, tuple[str, ...]], name: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Return the results whose formulas name this one, and those that follow further down."""
+    """Return the results whose formulas name this one, inputs that take it, and those that follow further down."""
     direct = [result for result, sources in links.items() if name in sources]
     found = list(direct)
     for last in found:  # which grows

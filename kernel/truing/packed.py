@@ -10,10 +10,11 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
+from truing.declare.chain import Link, chain_of
 from truing.declare.fields import make
 from truing.declare.model import Model
 from truing.errors import PluginError
-from truing.kernel import Kernel, Origin, kernel_for
+from truing.kernel import Kernel, Origin, chained_offer, kernel_for
 from truing.kernel.loading import code_hash
 from truing.setup import Setup, SwitchedOn
 
@@ -30,6 +31,8 @@ class Packed:
     plugin: str
     model: str
     content: bytes
+    links: tuple[Link, ...] = ()
+    """What inputs of a chain are taken from."""
     code: str = ""
     """The hash of a plugin in one file: a worker may find another one there, or have loaded it before it changed."""
 
@@ -52,8 +55,9 @@ def pack(setup: Setup, *, studies: bool = False) -> Packed:
         "units": dict(setup.units),
         "studies": [replace(study, gives=None) for study in running],
     }
-    origin = setup.origin
-    return Packed(origin.ref, origin.name, setup.model.name, _plain(content), _file_hash(origin.ref))
+    origin, chain = setup.origin, chain_of(setup.model)
+    links = () if chain is None else chain.links
+    return Packed(origin.ref, origin.name, setup.model.name, _plain(content), links, _file_hash(origin.ref))
 
 
 def _plain(content: Any) -> bytes:
@@ -72,7 +76,7 @@ def unpack(packed: Packed) -> Setup:
             raise PluginError(
                 f"a worker has another {packed.ref.partition(':')[2]}; bring the same file there and start it again"
             )
-        model, origin = _model(packed.ref, packed.plugin, packed.model)
+        model, origin = _model(packed.ref, packed.plugin, packed.model, packed.links)
     content = pickle.loads(packed.content)  # after the plugin was loaded: its classes can be found now
     spreads = {name: tolerance.spread for name, tolerance in model.tolerances.items()}
     values = {model.input_fields[name].path: value for name, value in content["inputs"].items()}
@@ -132,10 +136,11 @@ def _kernel(ref: str) -> Kernel:
     return kernel_for(ref)
 
 
-def _model(ref: str, plugin: str, name: str) -> tuple[Model[Any, Any], Origin]:
+@lru_cache(maxsize=8)
+def _model(ref: str, plugin: str, name: str, links: tuple[Link, ...]) -> tuple[Model[Any, Any], Origin]:
     for offer in _kernel(ref).offers.values():
         if offer.model.name == name and offer.origin.name == plugin:
-            return offer.model, offer.origin
+            return chained_offer(offer, links).model, offer.origin
     broken = [str(left_out) for left_out in _kernel(ref).broken if left_out.plugin == plugin]
     raise PluginError(
         f"a worker process found no model '{name}' in {ref}: {broken[0] if broken else 'not offered there'}"

@@ -89,7 +89,7 @@ def content_of(path: Path) -> str:
 
 
 def files_named_in(inputs: Path, offer: Offer) -> Iterator[Path]:
-    """Yield the data files and the logo that an inputs file names, as far as that can be read now."""
+    """Yield the data files, the files of sources and the logo that an inputs file names, as far as it can be read."""
     try:
         is_book = is_workbook(inputs)
         document = read_book(inputs, offer).data if is_book else tomllib.loads(inputs.read_text(encoding="utf-8-sig"))
@@ -98,6 +98,9 @@ def files_named_in(inputs: Path, offer: Offer) -> Iterator[Path]:
     stated = document.get("inputs")
     head = document.get("sheet")
     names = [head.get("logo")] if isinstance(head, Mapping) else []
+    sources = document.get("from")
+    told = sources.values() if isinstance(sources, Mapping) else ()
+    names += [said.get("inputs_file") for said in told if isinstance(said, Mapping)]
     for name, input_field in offer.model.input_fields.items():
         if input_field.kind == "file" and isinstance(stated, Mapping):
             value: Any = stated.get(name)

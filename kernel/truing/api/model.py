@@ -15,17 +15,19 @@ from truing.api.notebook import bullets, fold, heading, html_table, joined, para
 from truing.api.run import Run, demand_files, performed
 from truing.api.study import StudyResult
 from truing.api.tables import LABEL, beside, frame_text, settings_of, text_of
+from truing.declare.chain import Link
 from truing.declare.correlations import Correlated
 from truing.declare.model import Study
 from truing.declare.near_miss import near_miss
-from truing.errors import Fault, InputError, UsageError
+from truing.declare.taken import Taken
+from truing.errors import DeclarationError, Fault, InputError, UsageError
 from truing.example_file import example_of, text_to_fill_in
 from truing.experiments import BUDGET
 from truing.heavy import Later
 from truing.inputs_file import read_setup, setup_from_text
 from truing.inputs_file.assemble import toml_value
 from truing.inputs_file.sentences import told_by_line
-from truing.kernel import Offer, offer_of
+from truing.kernel import Offer, chained_offer, offer_of
 from truing.measurements import RowsFile, read_rows
 from truing.progress import progress_bar
 from truing.published import ComparedRow, compare_published
@@ -112,6 +114,23 @@ class LoadedModel:
         """
         pairs = {f"correlations.{pair.name}": pair.coefficient for pair in together}
         return replace(self, stated=(*self.stated, *self._settings({**pairs, **(set or {})}, values)))
+
+    def taking(self, set: Mapping[str, Taken] | None = None, /, **inputs: Taken) -> LoadedModel:
+        """Return the model with inputs that are taken from others: ``from_model("rv_gearing").output_torque``.
+
+        It is a chain: inputs, results and effects of the others have their name before their own, ``rv_gearing_power``.
+        ``set`` is a mapping of the same. Raises UsageError with everything that does not fit.
+        """
+        taken = {**(set or {}), **inputs}
+        for name, value in taken.items():
+            if not isinstance(value, Taken):
+                raise UsageError(f'{name}: {value!r:.60} is no result of a model; write from_model("NAME").RESULT')
+        links = [Link("", name, value.model, value.result) for name, value in taken.items()]
+        try:
+            offer = chained_offer(self.offer, links)
+        except DeclarationError as error:
+            raise UsageError(str(error)) from None
+        return replace(self, offer=offer, stated=(*self.stated, *self._settings(taken, {})))
 
     def setup(self, inputs: str | Path | None = None, *, set: Mapping[str, Any] | None = None, **values: Any) -> Setup:
         """Return what a run would calculate: the inputs file, or the shipped example, and values in place of its own.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -12,6 +12,7 @@ import numpy as np
 
 from truing.api.notebook import heading, html_table, joined, paragraphs
 from truing.api.tables import frame_of, frame_text
+from truing.declare.model import Model
 from truing.declare.near_miss import near_miss
 from truing.diagnosis.data_rows import DataRows, read_data_files
 from truing.errors import UsageError
@@ -100,7 +101,10 @@ def read(files: str | Path | Sequence[str | Path], model: HasOffer, inputs: str 
     paths = tuple(Path(file) for file in ([files] if isinstance(files, (str, Path)) else files))
     if not paths:
         raise UsageError("no file is named; a record is one measured file or several")
-    return _known(paths, model, {} if inputs is None else read_setup(Path(inputs), model.offer).columns)
+    if inputs is None:
+        return _known(paths, model.offer)
+    setup = read_setup(Path(inputs), model.offer)
+    return _known(paths, replace(model.offer, model=setup.model), setup.columns)
 
 
 def record(
@@ -113,22 +117,22 @@ def record(
     """
     if Path(name).name != name or not name:
         raise UsageError(f"'{name}' is no name for a record; write a word without a folder")
-    return _known((frame_text(frame, units or {}, gaps=True, name=name),), model)
+    return _known((frame_text(frame, units or {}, gaps=True, name=name),), model.offer)
 
 
 def _known(
-    sources: tuple[TableSource, ...], model: HasOffer, named: Mapping[str, NamedColumn] = NOT_NAMED
+    sources: tuple[TableSource, ...], offer: Offer, named: Mapping[str, NamedColumn] = NOT_NAMED
 ) -> MeasuredRecord:
-    files = read_data_files(sources, model.offer, named)
+    files = read_data_files(sources, offer, named)
     columns = tuple(tuple(_columns(file)) for file in files)
-    for text in dict.fromkeys(text for each in columns for text in _misspelt(each, model)):
+    for text in dict.fromkeys(text for each in columns for text in _misspelt(each, offer.model)):
         warnings.warn(text, stacklevel=4)
     return MeasuredRecord(sources, sum(map(len, files)), columns)
 
 
-def _misspelt(columns: tuple[RecordColumn, ...], model: HasOffer) -> Iterator[str]:
+def _misspelt(columns: tuple[RecordColumn, ...], declared: Model[Any, Any]) -> Iterator[str]:
     """Say which columns are no word of the model and are called nearly like one that is not measured."""
-    declared, names = model.offer.model, {column.name for column in columns}
+    names = {column.name for column in columns}
     known = [*declared.measurable, *declared.known_conditions, *declared.input_fields]
     for column in columns:
         hint = near_miss(column.name[:80], [name for name in known if name not in names])

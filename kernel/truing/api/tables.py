@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from truing.declare.model import Model
+from truing.declare.taken import Taken
 from truing.errors import UsageError
 from truing.heavy import narwhals, pint
 from truing.inputs_file.assemble import toml_value
@@ -138,6 +139,11 @@ def text_of(model: Model[Any, Any], name: str, value: Any) -> str:
     unit = declared.unit if declared is not None else ""
     if isinstance(value, str):
         return value
+    if isinstance(value, Taken):
+        said = {
+            each: one if isinstance(one, (str, bool, int, float)) else str(one) for each, one in value.settings.items()
+        }
+        return toml_value({"from": value.model, "result": value.result, **said})
     if hasattr(value, "dimensionality"):
         if value.dimensionality != pint_quantity(1.0, unit).dimensionality:
             raise UsageError(f"{name}: {value} cannot be written in {unit or 'a number without a unit'}")

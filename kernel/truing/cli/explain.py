@@ -205,7 +205,8 @@ def _followed(told: Told) -> ToldParts:
 
 
 def _input(told: Told) -> ToldParts:
-    stated = "stated by the inputs file" if told["stated"] else "the default"
+    taken = f"taken from {told['taken_from'][0]}" if told["taken_from"] else "the default"
+    stated = "stated by the inputs file" if told["stated"] else taken
     allowed = " | ".join(told["choices"]) or told["bounds"]
     yield f"{stated}; {allowed}" if allowed else stated
     yield from _said("Source", told["source"])

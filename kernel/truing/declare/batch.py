@@ -41,6 +41,11 @@ class FailedRows:
             self.sentences.append(sentence)
             self.codes[fresh] = len(self.sentences)
 
+    def take(self, other: FailedRows) -> None:
+        """Note what failed in another log of the same rows."""
+        for number, sentence in enumerate(other.sentences, start=1):
+            self.add(other.codes == number, sentence)
+
     def reasons(self, rows: int) -> dict[int, str]:
         """Return why rows failed, by row; what holds for a batch of one answer holds for all its ``rows``."""
         codes = np.broadcast_to(self.codes, (rows,))
@@ -59,6 +64,24 @@ def watching(rows: int, *, is_single: bool = False) -> Iterator[FailedRows]:
         yield failed
     finally:
         _WATCH.reset(token)
+
+
+@contextmanager
+def reasons_of_part(prefix: str) -> Iterator[None]:
+    """Collect what ``feasible`` finds in one calculation of several, whose results have a prefix in the whole."""
+    failed = _WATCH.get()
+    if failed is None:
+        yield
+        return
+    own = FailedRows(len(failed.codes), is_single=failed.is_single)
+    token = _WATCH.set(own)
+    try:
+        yield
+    finally:
+        _WATCH.reset(token)
+        failed.take(own)
+        for name, lacking in own.of.items():
+            failed.of.setdefault(prefix + name, FailedRows(len(failed.codes))).take(lacking)
 
 
 def feasible(

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from truing.declare.near_miss import near_miss
+from truing.declare.taken import Taken
 from truing.errors import DeclarationError, UsageError
 from truing.units import read_quantity, to_si
 from truing.units.names import PURE
@@ -33,7 +34,10 @@ InputKind = Literal["float", "whole", "integer", "switch", "choice", "text", "se
 
 @dataclass(frozen=True, kw_only=True)
 class Given:
-    """One input as declared; ``default`` and the bounds are in ``unit``."""
+    """One input as declared; ``default`` and the bounds are in ``unit``.
+
+    One that is ``taken`` from another calculation has no default of its own.
+    """
 
     default: Any
     unit: str | None
@@ -51,6 +55,7 @@ class Given:
     halving: float | None = None
     halving_but: Mapping[str, str] = field(default_factory=dict)
     role: Role | Literal[""] = ""
+    taken: Taken | None = None
 
     def initial(self) -> Any:
         """Return the default as the function sees it: SI, NaN where nothing is given."""
@@ -103,12 +108,16 @@ class Axis:
 
 @dataclass(frozen=True, kw_only=True)
 class Part:
-    """A nested group of fields: one gear, one side."""
+    """A nested group of fields: one gear, one side.
+
+    ``prefix`` stands before every flat name: the part is a calculation of its own, and its names know each other.
+    """
 
     of: type[Any]
     index: str
     suffix: str | None
     defaults: Mapping[str, Any]
+    prefix: str = ""
 
 
 Spec: TypeAlias = Given | Loaded | Found | Axis | Part
@@ -150,9 +159,11 @@ def given(
     halving: float | None = None,
     halving_but: Mapping[str, str] | None = None,
     role: Role | Literal[""] = "",
+    taken: Taken | None = None,
 ) -> Any:
     """Declare an input with its default and unit; ``None`` makes it optional (NaN inside).
 
+    ``from_model("rv_gearing").output_torque`` in place of a default takes it from another calculation.
     Bounds are in ``unit``. ``whole`` asks for whole numbers. ``along`` names the axis of an input that is a series,
     ``between`` what a motion sees between its points: "linear", or "hold" where each is held until the next.
     ``stated_with`` names the input that tells what this one means: a file that states one must state the other too.
@@ -160,8 +171,10 @@ def given(
     changes at the most wherever the model answers; ``halving_but`` gives quantities for results that move otherwise.
     ``role`` says of what a measurement varies how it gets there, as that of a ``Condition`` does.
     """
+    if isinstance(default, Taken):
+        default, taken = None, default
     spec = Given(
-        default=default, unit=unit, symbol=symbol, note=note, source=source, above=above, below=below,
+        default=default, taken=taken, unit=unit, symbol=symbol, note=note, source=source, above=above, below=below,
         at_least=at_least, at_most=at_most, whole=whole, along=along, between=between, stated_with=stated_with,
         halving=halving, halving_but=halving_but or {}, role=role,
     )  # fmt: skip
@@ -349,13 +362,17 @@ class InputField:
 
 @dataclass(frozen=True, kw_only=True)
 class ResultField:
-    """One result by its flat name; ``scope`` is the suffix of its part, tried first when a formula names something."""
+    """One result by its flat name; ``scope`` is the suffix of its part, tried first when a formula names something.
+
+    ``prefix`` is that of the calculation of a chain to which it belongs.
+    """
 
     name: str
     path: tuple[str, ...]
     spec: Found | Axis
     symbol: str
     scope: str = ""
+    prefix: str = ""
 
     @property
     def unit(self) -> str:
@@ -370,7 +387,7 @@ class ResultField:
     @property
     def along(self) -> str:
         """The axis this result runs along, by its name, or nothing."""
-        return self.spec.along if isinstance(self.spec, Found) else self.path[-1]
+        return self.spec.along if isinstance(self.spec, Found) else self.prefix + self.path[-1]
 
 
 @dataclass(frozen=True)
@@ -380,43 +397,56 @@ class _Place:
     symbol: str
     spec: Any
     annotation: Any
+    prefix: str
 
 
 def _walk(cls: type[Any], path: tuple[str, ...] = (), suffixes: tuple[str, ...] = (), index: str = "",
-          defaults: Mapping[str, Any] | None = None) -> Iterator[_Place]:  # fmt: skip
+          defaults: Mapping[str, Any] | None = None, *, prefix: str = "") -> Iterator[_Place]:  # fmt: skip
     hints = hints_of(cls)
     for name, spec in _specs(cls).items():
         here = (*path, name)
         if isinstance(spec, Part):
             suffix = name if spec.suffix is None else spec.suffix
             inner = (*suffixes, suffix) if suffix else suffixes
-            yield from _walk(spec.of, here, inner, index + spec.index, spec.defaults)
+            yield from _walk(spec.of, here, inner, index + spec.index, spec.defaults, prefix=prefix + spec.prefix)
             continue
         if isinstance(spec, Given) and defaults and name in defaults:
             spec = replace(spec, default=defaults[name])
         mark = index if "_" in spec.symbol or not index else f"_{index}"
-        yield _Place(here, "_".join(suffixes), spec.symbol and spec.symbol + mark, spec, hints[name])
+        symbol = spec.symbol and spec.symbol + mark
+        yield _Place(here, "_".join(suffixes), symbol, _prefixed(spec, prefix), hints[name], prefix)
+
+
+def _prefixed(spec: Any, prefix: str) -> Any:
+    """Return a declaration whose names of other fields have the prefix of their calculation."""
+    if not prefix:
+        return spec
+    named = ("along", "follows", "stated_with")
+    changed: dict[str, Any] = {name: prefix + getattr(spec, name) for name in named if getattr(spec, name, "")}
+    if getattr(spec, "halving_but", None):
+        changed["halving_but"] = {prefix + name: most for name, most in spec.halving_but.items()}
+    return replace(spec, **changed)
 
 
 def _flat(cls: type[Any], word: str, allowed: tuple[type[Any], ...]) -> dict[str, _Place]:
     """Return the fields of a class and its parts by flat name, refusing those that are no inputs, or no results."""
     fields: dict[str, _Place] = {}
     for visited in _walk(cls):
-        name = "_".join(filter(None, (visited.path[-1], visited.scope)))
+        name = visited.prefix + "_".join(filter(None, (visited.path[-1], visited.scope)))
         if name in fields:
             what = f"the flat name '{name}' occurs twice"
             raise DeclarationError(f"{what}; rename the field or give the part another suffix")
         if not isinstance(visited.spec, allowed):
             raise DeclarationError(f"'{name}' of {_spoken(cls)} is no {word}: the class must be declared by @{word}s")
         fields[name] = visited
-    notes = Counter(visited.spec.note for visited in fields.values() if not isinstance(visited.spec, Part))
+    notes = Counter(visited.prefix + visited.spec.note for visited in fields.values())
     return {name: _told_apart(visited, notes) for name, visited in fields.items()}
 
 
 def _told_apart(visited: _Place, notes: Mapping[str, int]) -> _Place:
     """Say of which part a field is, where fields of several parts have the same note."""
     spec = visited.spec
-    if isinstance(spec, Part) or not spec.note or not visited.scope or notes[spec.note] < 2:
+    if not spec.note or not visited.scope or notes[visited.prefix + spec.note] < 2:
         return visited
     return replace(visited, spec=replace(spec, note=f"{spec.note}, {visited.scope.replace('_', ' ')}"))
 
@@ -472,7 +502,9 @@ def input_fields(cls: type[Any]) -> dict[str, InputField]:
 def result_fields(cls: type[Any]) -> dict[str, ResultField]:
     """Return every result by its flat name, in the order of declaration."""
     return {
-        name: ResultField(name=name, path=place.path, spec=place.spec, symbol=place.symbol, scope=place.scope)
+        name: ResultField(
+            name=name, path=place.path, spec=place.spec, symbol=place.symbol, scope=place.scope, prefix=place.prefix
+        )
         for name, place in _flat(cls, "result", (Found, Axis)).items()
     }
 

@@ -114,6 +114,7 @@ class Section:
 
     ``figure(record)`` returns a matplotlib Figure; ``blocks(record)`` a sequence of words, tables and drawings. The
     first figure of a ``key`` section stands on page one; where none is marked, that of the first section with one.
+    In a chain ``of`` names the source to whose chapter it belongs.
     """
 
     title: str
@@ -124,6 +125,7 @@ class Section:
     level: Level
     caption: str
     key: bool
+    of: str
 
     def __init__(
         self,
@@ -135,9 +137,10 @@ class Section:
         level: Level = "normal",
         caption: str = "",
         key: bool = False,
+        of: str = "",
     ) -> None:
         values = {"title": title, "names": names, "text": text, "figure": figure, "blocks": blocks, "level": level}
-        for name, value in {**values, "caption": caption, "key": key}.items():
+        for name, value in {**values, "caption": caption, "key": key, "of": of}.items():
             object.__setattr__(self, name, value)
 
 
@@ -514,7 +517,7 @@ def _of_effect(source: Effect[Any, Any], model: Model[Any, Any]) -> Iterator[str
             given = hints_of(source.function).get(parameter.name)
         except TypeError:  # a callable without annotations, such as a partial: nothing to compare
             return
-        if isinstance(given, type) and is_dataclass(given) and given is not wanted:
+        if isinstance(given, type) and is_dataclass(given) and not issubclass(wanted, given):
             yield f"effect '{source.name}' acts on {given.__qualname__}, but the model has {wanted.__qualname__}"
 
 
@@ -683,6 +686,10 @@ def formula_scope(model: Model[Any, Any], result: ResultField) -> Mapping[str, I
     known: dict[str, InputField | ResultField] = {
         **model.input_fields, **(model.own_result_fields if own_result else model.result_fields),
     }  # fmt: skip
+    if result.prefix:
+        known = {
+            name.removeprefix(result.prefix): each for name, each in known.items() if name.startswith(result.prefix)
+        }
     if not result.scope:
         return known
     ending = "_" + result.scope

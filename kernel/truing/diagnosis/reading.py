@@ -168,7 +168,7 @@ def read_records(paths: Sequence[TableSource], offer: Offer, setup: Setup, *, wi
     an error may depend on. Raises InputError with every fault of every file: nothing measured, a unit that is unknown
     or of another dimension, cells that are no numbers, columns without any value, fewer than three rows.
     """
-    files = _read(paths, offer, setup)
+    files = _read(paths, replace(offer, model=setup.model), setup)
     joined = join(files, setup)
     _demand_rows(joined)
     joined = complete_rows(settle_conditions(joined, files, setup), setup)

@@ -14,6 +14,7 @@ from truing.inputs_file.document import InputsDocument, apply_overrides, read_do
 from truing.inputs_file.entries import whole_file
 from truing.inputs_file.files import read_text
 from truing.inputs_file.sentences import in_order, read_entries
+from truing.inputs_file.taken import is_link, with_sources
 from truing.inputs_file.values import FileEntry, FileSection, InputsRead
 from truing.inputs_file.workbook import read_book
 from truing.kernel import Offer
@@ -36,24 +37,20 @@ def read_setup(path: Path, offer: Offer, *, overrides: Sequence[str] = (), label
     else:
         text = read_text(path, instead=f"`calc init {offer.name}` writes an example")
         document = read_document(text, str(path))
-    apply_overrides(document, offer.model, overrides, label)
-    return _setup(document, offer, path.parent)
+    return _setup(document, offer, path.parent, overrides, label)
 
 
 def setup_from_text(
     text: str, offer: Offer, *, file: str, folder: Path, overrides: Sequence[str] = (), label: str = "--set"
 ) -> Setup:
     """Read the text of an inputs file; data files are looked for in ``folder``. Raises InputError with every fault."""
-    document = read_document(text, file)
-    apply_overrides(document, offer.model, overrides, label)
-    return _setup(document, offer, folder)
+    return _setup(read_document(text, file), offer, folder, overrides, label)
 
 
 def setup_from_settings(offer: Offer, settings: Mapping[str, str]) -> Setup:
     """Return the defaults with these settings, named as with ``--set``. Raises InputError with every fault."""
-    document = InputsDocument("settings")
-    apply_overrides(document, offer.model, [f"{name}={value}" for name, value in settings.items()], "settings")
-    return _setup(document, offer, Path())
+    overrides = [f"{name}={value}" for name, value in settings.items()]
+    return _setup(InputsDocument("settings"), offer, Path(), overrides, "settings")
 
 
 def json_schema(offer: Offer) -> dict[str, Any]:
@@ -83,7 +80,11 @@ def _schema(name: str, entry: FileEntry | FileSection, known: dict[str, Any]) ->
     return {"$ref": f"#/$defs/{title}", "description": entry.words, "title": name}
 
 
-def _setup(document: InputsDocument, offer: Offer, folder: Path) -> Setup:
+def _setup(document: InputsDocument, offer: Offer, folder: Path, overrides: Sequence[str], label: str) -> Setup:
+    links = [text for text in overrides if is_link(text)]
+    apply_overrides(document, offer.model, links, label)
+    offer = with_sources(document, offer, folder)
+    apply_overrides(document, offer.model, [text for text in overrides if text not in links], label)
     reading = InputsRead(folder, stated=names_stated(document.data))
     document.data.setdefault("inputs", {})
     listed, more = read_entries(document, offer.model, reading)

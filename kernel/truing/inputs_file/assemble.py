@@ -92,7 +92,12 @@ def _unresolved(spread: Spread, name: str, model: Model[Any, Any], nominals: Map
         return ""
     nominal = float(nominals[name])
     if math.isnan(nominal):
-        return f"'{name}' is not given, so it has no tolerance; state it or write \"off\"" if stated else ""
+        if not stated or isinstance(spread, Off):
+            return ""
+        taken = getattr(model.input_fields[name].spec, "taken", None) if name in model.input_fields else None
+        if taken is not None:
+            return f"'{name}' is taken from {taken.model} and scatters as that does; write \"off\" or leave it out"
+        return f"'{name}' is not given, so it has no tolerance; state it or write \"off\""
     field = model.input_fields.get(name)
     unit = field.unit if field is not None else model.conditions[name].unit
     resolved = spread.resolve(Target(name, nominal, unit, nominals.__getitem__))

@@ -329,6 +329,7 @@ def _line(error: ValueError | RecursionError) -> int | None:
 SECTIONS = {
     "sheet": "What the head of the sheet says, and how much the sheet shows.",
     "inputs": "The inputs of the calculation; what is left out is as declared.",
+    "from": "Other calculations from which inputs are taken, by name: inputs of them, or their own inputs file.",
     "tolerances": "How inputs scatter about their nominals.",
     "correlations": "Which inputs scatter together, and how much.",
     "conditions": "What is measured but no input of the model.",
@@ -377,6 +378,8 @@ def path_of(name: str, model: Model[Any, Any]) -> tuple[str, ...]:
     """
     first, _, rest = name.partition(".")
     if rest and first in SECTIONS:
+        if first == "from":
+            return (first, *rest.rsplit(".", 1))
         if first in {"effects", "studies"}:
             return (first, *rest.split(".", 1))
         return (first, rest)
@@ -392,7 +395,7 @@ def path_of(name: str, model: Model[Any, Any]) -> tuple[str, ...]:
 def value_of(path: tuple[str, ...], text: str, model: Model[Any, Any]) -> Any:
     """Return the TOML value that a text on the command line means in this place."""
     input_field = model.input_fields.get(path[1]) if path[0] in {"inputs", "calibrated"} else None
-    as_toml = path[0] in {"studies", "correlations"} or (
+    as_toml = path[0] in {"studies", "correlations", "from"} or (
         input_field is not None and input_field.kind in {"switch", "integer", "series", "file"}
     )
     if not as_toml and not text.startswith(("{", "[", '"', "'")):

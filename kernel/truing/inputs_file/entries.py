@@ -63,7 +63,15 @@ def sections(model: Model[Any, Any]) -> dict[str, FileSection]:
     known["correlations"] = FileSection("Correlations", SECTIONS["correlations"], {}, partial(entry_of_pair, model))
     column = _column(model)
     known["columns"] = FileSection("Columns", SECTIONS["columns"], {}, lambda name: column)
+    known["from"] = FileSection("From", SECTIONS["from"], {}, _source)
     return {name: known[name] for name in SECTIONS}
+
+
+def _source(name: str) -> FileEntry:
+    """Return the entry of a calculation that inputs are taken from; what it says is read beforehand."""
+    file = {"type": "string", "description": "Its own inputs file; what stands beside it wins."}
+    schema = {"type": "object", "properties": {"inputs_file": file}, "description": "Inputs of this calculation."}
+    return FileEntry(lambda raw, _: raw, schema)
 
 
 def whole_file(model: Model[Any, Any]) -> FileSection:
@@ -155,7 +163,11 @@ def described(field: InputField) -> str:
 
 
 def _type_of(field: InputField) -> dict[str, Any]:
-    if field.kind in {"float", "whole", "integer"}:
+    if field.varies:
+        number = _number_type(field)
+        kinds = number["type"] if isinstance(number["type"], list) else [number["type"]]
+        return {**number, "type": [*kinds, "object"], "required": ["from"]}  # a table names another calculation
+    if field.kind == "integer":
         return _number_type(field)
     if field.kind == "choice":
         return {"enum": list(field.choices)}

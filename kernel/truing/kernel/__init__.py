@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import importlib.util
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from importlib import import_module, metadata
 from pathlib import Path
 from types import ModuleType
@@ -14,6 +14,7 @@ import pluggy
 from pluggy import HookImpl
 
 from truing import hookspecs
+from truing.declare.chain import Link, chained, declared_links, link_faults
 from truing.declare.correlations import Correlated
 from truing.declare.model import Model, Section
 from truing.declare.near_miss import near_miss
@@ -70,12 +71,24 @@ class Added:
 
 @dataclass(frozen=True)
 class Offer:
-    """A model ready to run: equipped with what guests add, and whose it is."""
+    """A model ready to run: equipped with what guests add, and whose it is.
+
+    ``beside`` are all offers of its kernel by name, each by itself: those that it may take inputs from.
+    """
 
     name: str
     model: Model[Any, Any]
     origin: Origin
     added: tuple[Added, ...] = ()
+    beside: Mapping[str, Offer] = field(default_factory=dict, repr=False, compare=False)
+
+
+class ChainError(DeclarationError):
+    """Calculations that cannot be chained: the sentences, each with the link that is to blame."""
+
+    def __init__(self, faults: Sequence[tuple[Link, str]]) -> None:
+        self.faults = tuple(faults)
+        super().__init__("; ".join(sentence for _, sentence in faults))
 
 
 class Kernel:
@@ -208,6 +221,7 @@ class Kernel:
                     self._note(self._left_out, origin, DeclarationError(fault), line_of(hook.function))
                 else:
                     accepted.append((origin, hook, model))
+        alone: dict[str, Offer] = {}
         offers: dict[str, Offer] = {}
         for origin, hook, model in accepted:
             owners = [owner for owner, _, twin in accepted if twin.name == model.name]
@@ -218,7 +232,14 @@ class Kernel:
             is_main = model.name == origin.name and len(owners) == 1
             key = model.name if is_main else f"{origin.name}.{model.name}"
             equipped, added = self._equip(model, origin)
-            offers[key] = Offer(key, equipped, origin, added)
+            alone[key] = Offer(key, equipped, origin, added, alone)
+        for key, offer in alone.items():
+            try:
+                offers[key] = chained_offer(offer)
+            except DeclarationError as error:
+                hook = next(hook for _, hook, model in accepted if model.name == offer.model.name)
+                said = DeclarationError(f"model '{offer.model.name}': {error}")
+                self._note(self._left_out, offer.origin, said, line_of(hook.function))
         return offers
 
     @staticmethod
@@ -242,6 +263,92 @@ class Kernel:
                     if origin != owner:
                         added.append(Added(_name_of(addition), origin.name, origin.version, origin.file))
         return model, tuple(added)
+
+
+# Calculations that take inputs from others
+
+
+def offer_beside(offer: Offer, name: str) -> Offer | None:
+    """Return the calculation that one beside this offer is called, by its whole name or that of its model."""
+    if name in offer.beside:
+        return offer.beside[name]
+    named = [other for other in offer.beside.values() if other.model.name == name]
+    return named[0] if len(named) == 1 else None
+
+
+def chained_offer(offer: Offer, stated: Sequence[Link] = ()) -> Offer:
+    """Return a calculation with all that its inputs are taken from, as declared and as stated besides.
+
+    Links that are stated win over those declared of the same input. A source goes by the word that first names it.
+    Raises ChainError with what is wrong with links, those of sources included.
+    """
+    last = offer.beside.get(offer.name, offer)
+    gathered = _gathered(offer, last, stated)
+    links = list(gathered.links.values())
+    models = {word: source.model for word, source in gathered.sources.items()}
+    faults = [*gathered.faults, *link_faults(last.model.name, last.model, models, links)]
+    faults += _setting_faults(models, gathered.settings, links)
+    if faults:
+        raise ChainError(faults)
+    if not links:
+        return last
+    whose = [
+        (Added(word, each.origin.name, each.origin.version, each.origin.file), *each.added)
+        for word, each in gathered.sources.items()
+    ]
+    model = chained(last.model, models, links, gathered.settings)
+    return replace(last, model=model, added=(*last.added, *(added for each in whose for added in each)))
+
+
+@dataclass
+class _Gathered:
+    """What belongs to a chain: links by owner and input, sources and what is stated of them by word, and faults."""
+
+    links: dict[tuple[str, str], Link] = field(default_factory=dict)
+    sources: dict[str, Offer] = field(default_factory=dict)
+    settings: dict[str, dict[str, Any]] = field(default_factory=dict)
+    faults: list[tuple[Link, str]] = field(default_factory=list)
+
+
+def _gathered(offer: Offer, last: Offer, stated: Sequence[Link]) -> _Gathered:
+    gathered, waiting = _Gathered(), [("", last)]
+    words = {last.name: last.model.name}
+    for link in stated:
+        named = offer_beside(offer, link.source)
+        words.setdefault(named.name if named is not None else "", link.source)
+    while waiting:
+        owner, current = waiting.pop(0)
+        declared, settings = declared_links(current.model)
+        order = {name: place for place, name in enumerate(current.model.input_fields)}
+        own = [replace(link, owner=owner) for link in declared] + [link for link in stated if link.owner == owner]
+        for link in sorted(own, key=lambda link: order.get(link.input, len(order))):  # equal files give equal chains
+            source = offer_beside(offer, link.source)
+            if source is None:
+                gathered.faults.append((link, _no_source(offer, link)))
+                continue
+            word = words.setdefault(source.name, link.source)
+            gathered.links[owner, link.input] = replace(link, source=word)
+            gathered.settings.setdefault(word, {}).update(settings.get(link.source, {}))
+            if word not in gathered.sources and source is not last:
+                gathered.sources[word] = source
+                waiting.append((word, source))
+    return gathered
+
+
+def _no_source(offer: Offer, link: Link) -> str:
+    near = near_miss(link.source[:80], [*offer.beside, *(other.model.name for other in offer.beside.values())])
+    return f"'{link.input}' is taken from {shown(link.source)}, which no plugin offers.{near}"
+
+
+def _setting_faults(
+    sources: Mapping[str, Model[Any, Any]], settings: Mapping[str, Mapping[str, Any]], links: Sequence[Link]
+) -> Iterator[tuple[Link, str]]:
+    """Say which inputs are stated of a source that it does not have."""
+    for link in links:
+        known = sources[link.source].input_fields if link.source in sources else {}
+        for name in settings.get(link.source, {}) if known else ():
+            if name not in known:
+                yield link, f"{link.source} has no input '{name}'.{near_miss(name, known)}"
 
 
 def demand_readable(offer: Offer) -> None:

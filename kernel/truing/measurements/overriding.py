@@ -122,7 +122,7 @@ def _no_input(header: Header, setup: Setup, offer: Offer) -> str:
     meant = near_miss(header.name[:80], [*setup.model.input_fields, *setup.conditions])
     if header.name in setup.model.result_fields:
         meant = " It is a result; cases change inputs."
-    return f"{offer.model.name} has no input {shown(header.name)}.{meant}"
+    return f"{setup.model.name} has no input {shown(header.name)}.{meant}"
 
 
 def _known(setup: Setup) -> dict[str, Known]:

@@ -13,12 +13,14 @@ import numpy as np
 from truing.arrays import Matrix
 from truing.calculation import Calculation
 from truing.declare.blocks import Block, Drawing, Table, Words
+from truing.declare.chain import chain_of
 from truing.declare.fields import Axis, Found, InputField, ResultField
 from truing.declare.model import Model, Section
 from truing.errors import PluginError
 from truing.evaluate import acting_inputs
 from truing.kernel.blame import spoken_place
 from truing.numbers import RESULT_DIGITS, format_ends, format_number, format_value, pretty
+from truing.report.chain_chapter import chain_chapter, head_of_calculation
 from truing.report.document import (
     BlockView,
     Chapter,
@@ -100,14 +102,14 @@ class Writing:
     detail: str
     figures: Figures
     made: dict[str, list[Block]] = field(default_factory=dict)
-    """The blocks of a section, by its title."""
+    """The blocks of a section, by its title; in a chain by the title behind the calculation."""
     front: list[Any] = field(default_factory=list)
     """The figure or drawing that stands on page one."""
 
 
 def front_figure(writing: Writing) -> Chapter | None:
     """Draw the figure of page one: the first of a section that is marked, else of all sections of normal detail."""
-    sections = writing.calculation.setup.model.sheet
+    sections = [section for section in writing.calculation.setup.model.sheet if not section.of]
     marked = [section for section in sections if section.key]
     for section in marked or [section for section in sections if RANK[section.level] <= 1]:
         drawing = _first_drawing(writing, section)
@@ -128,9 +130,10 @@ def _first_drawing(writing: Writing, section: Section) -> Drawing | None:
 
 def _blocks_of(writing: Writing, section: Section) -> list[Block]:
     """Return the blocks of a section, which are made once."""
-    if section.blocks is not None and section.title not in writing.made:
-        writing.made[section.title] = list(section.blocks(writing.calculation.record))
-    return writing.made.get(section.title, [])
+    title = f"{section.of}: {section.title}"
+    if section.blocks is not None and title not in writing.made:
+        writing.made[title] = list(section.blocks(writing.calculation.record))
+    return writing.made.get(title, [])
 
 
 def result_chapters(writing: Writing) -> Iterator[Chapter]:
@@ -138,14 +141,21 @@ def result_chapters(writing: Writing) -> Iterator[Chapter]:
     rank = RANK.get(writing.detail, 1)
     if rank:
         yield from _state_equation(writing)
+    model = writing.calculation.setup.model
+    chain, begun = chain_of(model), None
+    yield from chain_chapter(writing.calculation.setup, writing.figures.view)
     named: set[str] = set()
-    for section in writing.calculation.setup.model.sheet:
+    for section in model.sheet:
         named.update(section.names)
         if RANK[section.level] <= rank:
             chapter = _of_section(writing, section)
             says = len(chapter.blocks) > bool(section.text)
             if says or not (section.names or section.figure or section.blocks):
-                yield chapter  # one that has nothing to say because its study did not run has no heading either
+                if chain is not None and begun != section.of:
+                    yield head_of_calculation(chain, section.of)
+                    begun = section.of
+                yield replace(chapter, inside=chain is not None)
+                # one that has nothing to say because its study did not run has no heading either
     if rank == 0:
         yield from _main_results(writing)
         return
@@ -413,8 +423,11 @@ def _is_numeric(cell: Any) -> bool:
 
 
 def numbered(chapters: Iterable[Chapter]) -> tuple[Chapter, ...]:
-    """Give chapters their numbers and identifiers, in order."""
-    return tuple(
-        replace(chapter, number=str(index), ident=chapter.ident or f"chapter-{index}")
-        for index, chapter in enumerate(chapters, 1)
-    )
+    """Give chapters their numbers and identifiers, in order; one inside another is numbered behind it: 4.1."""
+    done: list[Chapter] = []
+    outer = inner = 0
+    for chapter in chapters:
+        outer, inner = (outer, inner + 1) if chapter.inside and outer else (outer + 1, 0)
+        number = f"{outer}.{inner}" if inner else str(outer)
+        done.append(replace(chapter, number=number, ident=chapter.ident or f"chapter-{number.replace('.', '-')}"))
+    return tuple(done)

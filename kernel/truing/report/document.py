@@ -255,6 +255,8 @@ class Chapter:
     blocks: tuple[BlockView, ...]
     ident: str = ""
     number: str = ""
+    inside: bool = False
+    """Whether it belongs to the chapter before it: one calculation of several has a chapter of chapters."""
     lines: tuple[str, ...] = ()
     """What a terminal and a notebook print of it; a line that begins with spaces belongs to the one above."""
 

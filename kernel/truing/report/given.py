@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from pathlib import PurePath
 from typing import Any
 
+from truing.declare.chain import chain_of
 from truing.declare.fields import Given, InputField
-from truing.evaluate import acting_inputs
+from truing.evaluate import acting_inputs, taken_values
 from truing.inputs_file.values import halving_in_words
 from truing.numbers import (
     ABSENT,
@@ -48,7 +49,7 @@ FEW = 6
 def input_blocks(setup: Setup, detail: str) -> Iterator[BlockView]:
     """Say every input; of many that are not given or at a default of 0 only the names, but on a full sheet."""
     fields = setup.model.input_fields
-    numbers = setup.model.read_inputs(setup.inputs)
+    numbers = {**setup.model.read_inputs(setup.inputs), **taken_values(setup)}
     values = {name: input_value(setup, fields[name], value) for name, value in numbers.items()}
     idle = [
         name
@@ -84,10 +85,19 @@ def input_blocks(setup: Setup, detail: str) -> Iterator[BlockView]:
 def _input_row(setup: Setup, name: str, value: Value, more: tuple[Text, ...]) -> tuple[Text, ...]:
     field = setup.model.input_fields[name]
     note = "; ".join(part for part in (field.spec.note, halving_in_words(field)) if part)
+    given = _given_how(setup, name)
     return (
-        symbol_cell(field.symbol), label_of(note, name), value.text, value.unit, *more,
-        "stated" if name in setup.source.stated else "default", field.spec.source,
+        symbol_cell(field.symbol), label_of(note, name), value.text, value.unit, *more, given,
+        "" if given.startswith("from ") else field.spec.source,
     )  # fmt: skip
+
+
+def _given_how(setup: Setup, name: str) -> str:
+    """Say whether an input is stated, taken from another calculation, or at its default."""
+    if name in setup.source.stated:
+        return "stated"
+    chain = chain_of(setup.model)
+    return f"from {chain.taken[name].source}" if chain is not None and name in chain.taken else "default"
 
 
 def _fitted(setup: Setup, name: str) -> Text:
@@ -237,6 +247,7 @@ def _changed_inputs(setup: Setup) -> Iterator[Text]:
     if not any(active.effect.place == "inputs" for active in setup.effects):
         return
     stated, acting = (setup.model.read_inputs(inputs) for inputs in (setup.inputs, acting_inputs(setup)))
+    stated |= taken_values(setup)
     for name, field in setup.model.input_fields.items():
         before, after = stated[name], acting[name]
         if field.varies and before != after and not (before != before and after != after):

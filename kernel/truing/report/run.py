@@ -12,6 +12,7 @@ from typing import Any
 from truing.atomic import write_files
 from truing.calculation import Calculation
 from truing.cases import CasesTable
+from truing.declare.chain import chain_of
 from truing.errors import OutputError, TruingError
 from truing.inputs_file import read_setup
 from truing.kernel import Offer
@@ -38,15 +39,17 @@ def sheet_of(
 ) -> Document:
     """Return the sheet of a finished calculation, the numbers that the paper prints compared.
 
-    Of a study that was asked ``alone`` it is what that one has found.
+    Of a study that was asked ``alone`` it is what that one has found, and a chain is not compared: neither with printed
+    numbers nor with an example.
     """
     provenance = provenance_of(calculation.setup, date=time.strftime("%Y-%m-%d", time.localtime(started)))
     if alone:
         progress("sheet", 0, 0)
         return study_sheet(calculation, provenance=provenance)
-    verified = compare_published(offer, progress=progress, known=calculation)
+    is_chain = chain_of(calculation.setup.model) is not None  # what a source prints is of one calculation alone
+    verified = () if is_chain else compare_published(offer, progress=progress, known=calculation)
     progress("sheet", 0, 0)
-    example = example_setup(offer)
+    example = None if is_chain else example_setup(offer)
     return make_sheet(calculation, provenance=provenance, verified=verified, cases=cases, example=example)
 
 

@@ -12,7 +12,9 @@ import numpy as np
 
 from truing.calculation import Calculation
 from truing.cases import CasesTable
+from truing.declare.chain import chain_of, prefix_of
 from truing.declare.fields import InputField
+from truing.evaluate import taken_values
 from truing.numbers import STATED_DIGITS
 from truing.runs.provenance import Provenance
 from truing.setup import Setup, SwitchedOn
@@ -37,17 +39,13 @@ def results_document(
     """
     setup = calculation.setup
     model = setup.model
-    inputs = model.read_inputs(setup.inputs)
     return {
         "schema": SCHEMA,
         "plugin": {"name": provenance.plugin, "version": provenance.plugin_version, "model": model.name},
         "kernel": provenance.kernel,
         "input_hash": provenance.input_hash,
         "seed": provenance.seed,
-        "inputs": {
-            name: {**_input_value(setup, model.input_fields[name], value), **_as_stated(setup, name, value)}
-            for name, value in inputs.items()
-        },
+        "inputs": _inputs(setup),
         "tolerances": _tolerances(setup),
         "correlations": _correlations(setup),
         "conditions": {
@@ -64,7 +62,42 @@ def results_document(
         "added": [{"what": what, "plugin": plugin, "version": version} for what, plugin, version in provenance.added],
         "warnings": list(calculation.warnings),
         **({} if cases is None else _cases(setup, cases)),
+        **_chain(setup),
     }
+
+
+def _inputs(setup: Setup) -> dict[str, Any]:
+    fields, values = setup.model.input_fields, setup.model.read_inputs(setup.inputs)
+    return {
+        name: {**_input_value(setup, fields[name], value), **_as_stated(setup, name, value), **_from(setup, name)}
+        for name, value in {**values, **taken_values(setup)}.items()
+    }
+
+
+def _from(setup: Setup, name: str) -> dict[str, Any]:
+    """Say of which calculation an input is a result, where it is taken from one and not stated."""
+    chain = chain_of(setup.model)
+    if chain is None or name not in chain.taken or not np.isnan(setup.nominal(name)):
+        return {}
+    link = chain.taken[name]
+    return {"from": {"calculation": link.source, "result": link.result}}
+
+
+def _chain(setup: Setup) -> dict[str, Any]:
+    """Return the calculations of a chain, in the order of calculation, and what each takes; nothing of one alone."""
+    chain = chain_of(setup.model)
+    if chain is None:
+        return {}
+    links = [
+        {"input": name, "calculation": link.source, "result": prefix_of(link.source) + link.result}
+        for name, link in chain.taken.items()
+    ]
+    names = [*chain.sources, ""]
+    calculations = [
+        {"name": name or chain.last.name, "title": chain.model_of(name).title, "prefix": prefix_of(name)}
+        for name in names
+    ]
+    return {"chain": {"calculations": calculations, "links": links}}
 
 
 def _check(check: Check) -> dict[str, Any]:

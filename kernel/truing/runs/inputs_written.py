@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+from truing.declare.chain import chain_of
 from truing.declare.fields import InputField
 from truing.declare.model import Study
 from truing.declare.spreads import ByChoice, Drawn
@@ -98,7 +99,12 @@ def _sections(setup: Setup, folder: Path | None) -> Iterator[tuple[str, dict[str
         {
             name: spread.text
             for name, spread in setup.spreads.items()
-            if name in setup.model.tolerances and spread.text and not isinstance(spread, (ByChoice, Drawn))
+            if name in setup.model.tolerances
+            and spread.text
+            and not isinstance(spread, (ByChoice, Drawn))
+            and not all(
+                _taken(setup, each) and math.isnan(setup.nominal(each)) for each in setup.model.tolerances[name].on
+            )
         },
     )
     yield "correlations", {pair.name: pair.coefficient for pair in setup.scattering_together()}
@@ -186,7 +192,14 @@ def _input(setup: Setup, field: InputField, value: Any, folder: Path | None) -> 
         if getattr(field.spec, "unit", None) is None:
             return [_plain(one) for one in value]
         return [_as_stated(float(one), _units(setup, field.name, folder)) for one in value] or None
-    return None if value != value else _as_stated(value, _units(setup, field.name, folder))
+    return _taken(setup, field.name) if value != value else _as_stated(value, _units(setup, field.name, folder))
+
+
+def _taken(setup: Setup, name: str) -> dict[str, str] | None:
+    """Return what an input that is not given is taken from, or None."""
+    chain = chain_of(setup.model)
+    link = None if chain is None else chain.taken.get(name)
+    return None if link is None else {"from": link.source, "result": link.result}
 
 
 def _units(setup: Setup, name: str, folder: Path | None) -> list[str]:
@@ -260,7 +273,7 @@ def _left_open(setup: Setup, section: str) -> Iterator[str]:
     """Say what stands in no entry, and why."""
     if section == "inputs":
         for name, value in setup.model.read_inputs(setup.inputs).items():
-            if isinstance(value, float) and value != value:
+            if isinstance(value, float) and value != value and _taken(setup, name) is None:
                 yield f"{name} is not given"
     if section == "tolerances":
         for name, spread in setup.spreads.items():

@@ -11,6 +11,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import IO, Any
 
+from truing.declare.chain import chain_of
 from truing.errors import OutputError
 from truing.executors.kept import BatchLog
 from truing.kernel.loading import code_hash
@@ -45,7 +46,10 @@ def code_of(setup: Setup) -> tuple[str, ...]:
     A single file stands with the modules that were imported from its folder, all of them by path.
     """
     file = Path(setup.origin.file).resolve()
-    functions = [setup.model.function, *(effect.function for effect in setup.model.known_effects.values())]
+    chain = chain_of(setup.model)
+    sources = () if chain is None else tuple(source.function for source in chain.sources.values())
+    effects = (effect.function for effect in setup.model.known_effects.values())
+    functions = [setup.model.function, *sources, *effects]
     packages = {function.__module__.partition(".")[0] for function in functions}
     if not setup.origin.ref.startswith("file:"):
         own = file.parent.name if file.name == "__init__.py" else file.stem

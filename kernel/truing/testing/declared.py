@@ -15,7 +15,7 @@ from truing.declare.goals import Vary
 from truing.declare.model import formula_scope, rate_scope
 from truing.declare.quantities import has_dimension, rate_unit, unread_goals, unread_units
 from truing.errors import DeclarationError, InputError, TruingError, UnitError
-from truing.evaluate import evaluate
+from truing.evaluate import acting_inputs, evaluate
 from truing.example_file import example_text
 from truing.formulas import Formula, evaluate_quantities, parse
 from truing.formulas.evaluation import value_of
@@ -199,7 +199,7 @@ def _values(subject: Subject, point: Mapping[str, float]) -> dict[str, Any]:
     """Return every input and result at a point by flat name, SI."""
     setup = subject.at(point)
     results = subject.model.read_results(evaluate(setup))
-    return {**subject.model.read_inputs(setup.inputs), **results, **_of_motion(subject, setup)}
+    return {**subject.model.read_inputs(acting_inputs(setup)), **results, **_of_motion(subject, setup)}
 
 
 def _of_motion(subject: Subject, setup: Setup) -> dict[str, Any]:
@@ -207,8 +207,9 @@ def _of_motion(subject: Subject, setup: Setup) -> dict[str, Any]:
     dynamics = subject.model.dynamics
     if dynamics is None:
         return {}
-    motion = dynamics.followed(setup.inputs)
-    rates = {f"rate of {name}": rate for name, rate in dynamics.rates(setup.inputs, motion).items()}
+    inputs = acting_inputs(setup)
+    motion = dynamics.followed(inputs)
+    rates = {f"rate of {name}": rate for name, rate in dynamics.rates(inputs, motion).items()}
     states = {f"state {name}": getattr(motion.states, name) for name in dynamics.state_fields}
     return {**rates, **states, "state time": motion.time}
 

@@ -19,7 +19,7 @@ from truing.declare.fields import Axis, Given, InputField, read, with_values
 from truing.declare.model import Model
 from truing.declare.sources import Condition
 from truing.errors import InfeasibleError, PluginError, TruingError
-from truing.evaluate import Rows, evaluate, evaluate_rows
+from truing.evaluate import Rows, acting_inputs, evaluate, evaluate_rows
 from truing.executors import in_order, open_executor
 from truing.heavy import integrate
 from truing.inputs_file import setup_from_settings
@@ -227,7 +227,7 @@ def _slopes_are_its_own(subject: Subject, dynamics: Dynamics[Any, Any, Any]) -> 
     setup, step = subject.setup, max(dynamics.tolerance, 1e-12) ** (1 / 3)
     values = {name: float(setup.nominal(name)) for name in subject.scattering if name in setup.model.input_fields}
     names = [name for name, value in values.items() if np.isfinite(value) and value != 0][:FEW_INPUTS]
-    inputs, several = dynamics.begun(setup.inputs, FEW_STAMPS), len(names)
+    inputs, several = dynamics.begun(acting_inputs(setup), FEW_STAMPS), len(names)
     moved = _moved_inputs(setup.model, inputs, {name: values[name] for name in names}, (step, 2 * step))
     with watching(4 * several + 1) as log:
         motion = dynamics.followed(moved)

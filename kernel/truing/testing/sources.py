@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from truing.declare.chain import calculation_of
 from truing.declare.goals import prices_in
 from truing.declare.sources import Effect, Unknown
 from truing.errors import InfeasibleError, TruingError
@@ -134,6 +135,8 @@ def order_is_free(subject: Subject) -> None:
     on = {effect.name: switched(setup, effect) for effect in subject.model.effects.values()}
     for first, second in combinations(subject.model.effects.values(), 2):
         one, other = on[first.name], on[second.name]
+        if calculation_of(setup.model, first.name) != calculation_of(setup.model, second.name):
+            continue  # what is calculated before is acted on before
         if first.place != second.place or one is None or other is None:
             continue
         both = (*one.effects, *other.effects)

@@ -13,6 +13,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 
+from truing.declare.chain import chain_of
 from truing.declare.fields import Given, InputField, with_values
 from truing.declare.model import Model
 from truing.errors import InfeasibleError, TruingError, UsageError
@@ -46,7 +47,10 @@ class Subject:
         """The model as the command line would offer it."""
         name = self.model.name
         origin = self.home or Origin(name, "", "", "", f"entry:{name}")
-        return Offer(name if origin.name == name else f"{origin.name}.{name}", self.model, origin)
+        name, chain = name if origin.name == name else f"{origin.name}.{name}", chain_of(self.model)
+        parts = {} if chain is None else {**chain.sources, name: chain.last}
+        beside = {part: Offer(part, model, origin) for part, model in parts.items()}
+        return Offer(name, self.model, origin, beside=beside)
 
     @cached_property
     def home(self) -> Origin | None:
