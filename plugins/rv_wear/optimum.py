@@ -36,7 +36,6 @@ STEP = 1.0  # um of the equidistant modification from one design to the next
 HALVINGS = 10
 MOST_CLEARANCE = 20.0  # um
 ALL_WIDEST = 1e-6  # of the cost: the next design is no cheaper
-POINTS = 25
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,7 +44,8 @@ class LeastCosts:
 
     Widths run from those in force to ``widest`` times as much, the equidistant modification over ``span`` (um) in steps
     of ``step``. With ``clearances`` (um) both modifications are free: of the designs of all these radial clearances
-    those remain that no other beats. Without them the design clearance is kept.
+    those remain that no other beats. Without them the design clearance is kept. ``points`` are those of the knee's
+    reliability over time.
     """
 
     goals: tuple[float, ...] = (0.95, 0.999)
@@ -53,6 +53,7 @@ class LeastCosts:
     span: tuple[float, float] = (-45.0, 4.0)
     step: float = STEP
     clearances: tuple[float, ...] = ()
+    points: int = 25
     name: str = "least_costs"
     gives: Callable[[Any], Any] | None = None
 
@@ -65,6 +66,8 @@ class LeastCosts:
             raise TruingError(
                 f"study '{self.name}': step lies above 0, and clearances between 0 and {MOST_CLEARANCE:g} um"
             )
+        if not 2 <= self.points <= 1000:
+            raise TruingError(f"study '{self.name}': points = {self.points}, but a curve has 2 to 1000 points")
         if not self.widest > 1:
             raise TruingError(f"study '{self.name}': widest = {self.widest:g} must lie above 1")
 
@@ -122,7 +125,7 @@ class LeastCosts:
     def _chance(self, bench: Bench, modification: float) -> float:
         """Reliability to first order with the widths in force; 0 where the disc cannot be."""
         at = ground(bench, modification)
-        return 0.0 if at is None else _odds(at, "", "")
+        return 0.0 if at is None else _odds(at)
 
     def _design(self, bench: Bench, modification: float, goal: float) -> "Design | None":
         at = ground(bench, modification, required_reliability=goal)
@@ -146,13 +149,13 @@ class LeastCosts:
         hours = float(bench.setup.inputs.working_time) / HOUR
         if at is None or hours <= 0.0:
             return place, np.empty(0), np.empty(0)
-        times, chances = _odds(at, "working_time", f"0..{hours!r} h")
+        times, chances = _odds(at, "working_time", f"0..{hours!r} h", self.points)
         return place, times, chances
 
 
-def _odds(bench: Bench, over: str, at: str) -> Any:
+def _odds(bench: Bench, over: str = "", at: str = "", points: int = 2) -> Any:
     """The reliability of the backlash to first order, or times and reliabilities along the working time."""
-    odds = Reliability(method=("first_order",), over=over, at=at, points=POINTS).run(bench)
+    odds = Reliability(method=("first_order",), over=over, at=at, points=points).run(bench)
     if odds.curve is None:
         return float(odds.analytic["backlash"])
     return odds.curve.axis, odds.curve.analytic["backlash"]

@@ -93,7 +93,8 @@ def said(row: tuple[str, str, float, str, float], where: str, *, why: str, setti
 
 def at(hours: int) -> Mapping[str, str]:
     """The paper's reducer after another working time, without its curve over the time."""
-    return only("reliability", working_time=f"{hours} h", **{"studies.reliability.points": "2"})
+    plain = {"studies.reliability.over": '""', "studies.reliability.at": '""'}
+    return only("reliability", working_time=f"{hours} h", **plain)
 
 
 def ground(equidistant: int, shift: int) -> Mapping[str, str]:
@@ -119,7 +120,8 @@ def optima() -> Iterator[Published]:
         for result, value, unit in (("cost", cost, "yuan"), ("wear", wear, "um")):
             name = f"{result} at optimum {number}, knee of the front"
             yield differing((name, f"corner_{result}_{number}", value, unit), KNEE, whole)
-    narrow = only("least_costs", **{"studies.least_costs.widest": "1.2", "studies.least_costs.step": "0.25"})
+    options = {"widest": "1.2", "step": "0.25", "points": "2"}
+    narrow = only("least_costs", **{f"studies.least_costs.{name}": value for name, value in options.items()})
     for number, _, cost, wear, _ in CHOSEN:
         for result, value, unit in (("cost", cost, "yuan"), ("wear", wear, "um")):
             row = (f"{result} at optimum {number}, zones up to 20 % wider", f"corner_{result}_{number}", value, unit)

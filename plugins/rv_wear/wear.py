@@ -255,6 +255,7 @@ def wear_at(teeth: Teeth, exposure: Array) -> Array:
 CHUNK = 256  # meshes at a time: their contacts stay in the cache of a core
 FEW_ROWS = 20  # of a mesh: looked up one by one they take longer
 GROUPS_REMEMBERED = 16  # a fit asks for the same rows again and again
+SINGLES_REMEMBERED = 256  # a search for the least cost comes back to the same designs
 
 
 @dataclass(frozen=True)
@@ -316,6 +317,12 @@ def unworn_of_group(key: HistoryKey) -> Unworn:
     return unworn(mesh_from(key))
 
 
+@lru_cache(maxsize=SINGLES_REMEMBERED)
+def unworn_of_single(key: HistoryKey) -> Unworn:
+    """Solve the one new mesh of a key."""
+    return unworn(mesh_from(key))
+
+
 class GrowingHistory:
     """The histories of some meshes, which go on as far as they are asked for; threads may share them."""
 
@@ -346,6 +353,18 @@ def history_of_group(key: HistoryKey) -> GrowingHistory:
     return GrowingHistory(teeth_of(mesh_from(key)))
 
 
+@lru_cache(maxsize=SINGLES_REMEMBERED)
+def history_of_single(key: HistoryKey) -> GrowingHistory:
+    """The history of the one mesh of a key."""
+    return GrowingHistory(teeth_of(mesh_from(key)))
+
+
+def forget() -> None:
+    """Forget all that was calculated."""
+    for remembered in (unworn_of_group, unworn_of_single, history_of_group, history_of_single):
+        remembered.cache_clear()
+
+
 def groups(order: NDArray[np.intp]) -> list[NDArray[np.intp]]:
     """Part meshes into groups that are calculated at once."""
     return [order[start : start + CHUNK] for start in range(0, len(order), CHUNK)]
@@ -353,7 +372,8 @@ def groups(order: NDArray[np.intp]) -> list[NDArray[np.intp]]:
 
 def all_unworn(mesh: Mesh, count: int) -> Unworn:
     """The new meshes, all of them."""
-    parts = [unworn_of_group(key_of(mesh, places)) for places in groups(np.arange(count))]
+    solved = unworn_of_single if count == 1 else unworn_of_group
+    parts = [solved(key_of(mesh, places)) for places in groups(np.arange(count))]
     return Unworn(**{
         name: np.concatenate([np.empty(0), *(getattr(part, name) for part in parts)])
         for name in Unworn.__dataclass_fields__
@@ -363,8 +383,9 @@ def all_unworn(mesh: Mesh, count: int) -> Unworn:
 def all_histories(mesh: Mesh, reach: Array, first_step: Array) -> Iterator[tuple[NDArray[np.intp], Histories]]:
     """Histories to an exposure (m,) each, in groups of about the same length: the places of their meshes, and they."""
     order = np.argsort(reach / first_step, kind="stable") if len(reach) > CHUNK else np.arange(len(reach))
+    told = history_of_single if len(reach) == 1 else history_of_group
     for places in groups(order):
-        yield places, history_of_group(key_of(mesh, places)).up_to(reach[places])
+        yield places, told(key_of(mesh, places)).up_to(reach[places])
 
 
 # Reading wear off the histories: which exposure of which mesh a row of a batch has, and how deep it has worn

@@ -24,7 +24,7 @@ from roller_screw_shift.optimum import READINGS, Plan, box_optimum, field_of, gr
 from rv_gearing.groups import candidates, search
 from rv_gearing.model import RV_GEARING
 from rv_wear.model import BOX, RV_WEAR
-from rv_wear.wear import history_of_group, unworn_of_group, worn
+from rv_wear.wear import forget, worn
 from truing import Model, Optimise, Surrogate
 from truing.calculation import calculate
 from truing.setup import Setup, default_setup
@@ -141,8 +141,7 @@ SOME = slice(None, None, 100)
 
 def wear_at_once() -> np.ndarray:
     """All of them in one call that remembers nothing; those that are worn by hand."""
-    for remembered in (unworn_of_group, history_of_group):
-        remembered.cache_clear()
+    forget()
     discs = RV_WEAR.inputs(equidistant_modification=GROUND, shift_modification=GROUND - 4e-6)
     return np.asarray(worn(discs)["max_wear"])[SOME]
 
@@ -228,8 +227,7 @@ TRAINED = Surrogate(
 
 def calculated_anew(setup: Setup) -> None:
     """The studies of a setup, nothing being remembered from before."""
-    for kept in (history_of_group, unworn_of_group):
-        kept.cache_clear()
+    forget()
     calculate(setup)
 
 

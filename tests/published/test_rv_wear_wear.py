@@ -139,7 +139,7 @@ def test_order_of_questions_does_not_matter(designs: int) -> None:
     discs = ground(np.linspace(-40e-6, 5e-6, designs))
 
     def asked(times: list[float]) -> list[Any]:
-        wear.history_of_group.cache_clear()
+        wear.forget()
         return [of(working_time=time * HOUR, **discs).tolist() for time in times]
 
     assert asked(hours) == asked(hours[::-1])[::-1]

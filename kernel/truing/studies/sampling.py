@@ -37,6 +37,8 @@ BLOCK = 2**14
 
 Where a batch is made of whole blocks, a machine has the same numbers whatever the batch; any other is a block itself.
 """
+NORMALS_REMEMBERED = 64
+"""So many arrays of at most ``BATCH`` values, half a megabyte each."""
 WORDS = 8
 """A name is mixed into a seed by so many words of 32 bits, its SHA-256."""
 
@@ -236,6 +238,12 @@ class ScatterSource:
     mixing: Matrix | None = None
     function: Callable[[Any, int], Mapping[str, Any]] | None = None
 
+    @property
+    def is_one_normal(self) -> bool:
+        """Whether one standard normal value for each machine tells all."""
+        plain = self.function is None and self.mixing is None and len(self.columns) == 1
+        return plain and self.distributions[0].shape != "uniform"
+
     def draw(self, stream: Stream) -> Iterator[tuple[str, float, Matrix]]:
         """Yield column, nominal value and the values of all machines, in the order of the columns."""
         if self.function is not None:
@@ -323,6 +331,8 @@ class Scatter:
         for cause in self.causes:
             if cause.name in mixed:
                 gather(columns, cause.from_standard(mixed[cause.name]))
+            elif cause.is_one_normal and rows <= BATCH:
+                gather(columns, cause.from_standard(_normals(seed, first, cause.name, rows, block or rows)))
             else:
                 gather(columns, cause.draw(streams[cause.name]))
         return columns
@@ -424,6 +434,14 @@ def stream_of(seed: int, first: int, name: str, rows: int, block: int) -> Stream
     """Make the generators of one cause for so many machines from the first of a block on."""
     parts = [slice(start, min(start + block, rows)) for start in range(0, rows, block)]
     return Stream(rows, [(generator(seed, first + number, name), part) for number, part in enumerate(parts)])
+
+
+@lru_cache(maxsize=NORMALS_REMEMBERED)
+def _normals(seed: int, first: int, name: str, rows: int, block: int) -> Matrix:
+    """Standard normal values (1, rows) of one cause: a curve, a plan and the knee of a front ask for the same ones."""
+    values = stream_of(seed, first, name, rows, block).standard_normal()[None]
+    values.flags.writeable = False
+    return values
 
 
 def generator(seed: int, block: int, name: str) -> np.random.Generator:
