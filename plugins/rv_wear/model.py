@@ -66,7 +66,7 @@ RV_WEAR = Model(
         LeastCosts(gives=ends),
         LeastCosts(name="both_free", goals=(), clearances=(0.0, 2.0, 4.0), gives=free_ends),
         PaperRoute(gives=routed),
-        Optimise(chance="first_order", generations=120, gives=front),
+        Optimise(chance="first_order", generations=110, gives=front),
     ],
     sheet=SECTIONS,
     published=PUBLISHED,
