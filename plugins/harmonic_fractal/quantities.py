@@ -300,7 +300,8 @@ class Stiffness:
         formula="drive_compliance / modulus_factor + cup_length / (shear_modulus * cup_moment)",
     )  # fmt: skip
     wave_torsion: Float = found(
-        "urad", symbol="theta_w", note="torsion by the contacts of the wave generator, from the reference torque on",
+        "urad", symbol="theta_w", note="torsion by the contacts of the wave generator, from the reference torque on, "
+        "with an amplitude that is stated and not calculated",
         formula="sign(torque) * wave_torsion_stated * modulus_factor**(-2/3)"
         " * (max(abs(torque), reference_torque)**(2/3) - reference_torque**(2/3)) / wave_torque**(2/3)",
     )  # fmt: skip
