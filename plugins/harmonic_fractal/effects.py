@@ -207,6 +207,24 @@ def series_compliance(drive: Drive, *, compliance: Float) -> Drive:
     return replace(drive, drive_compliance=drive.drive_compliance + compliance)
 
 
+def thin_cup(drive: Drive, *, lost: Float) -> Drive:
+    """The wall of the cup is thinner than stated, by the share ``lost`` of it: the tube twists 1/(1 - lost) as much.
+
+    A crack that leaves so much of the wall is alike. Without a cup_length the cup is rigid, and nothing of this shows.
+    """
+    return replace(drive, cup_wall=drive.cup_wall * (1.0 - lost))
+
+
+def soft_wave_generator(drive: Drive, *, torsion: Float) -> Drive:
+    """Balls and races of the wave generator give way more than stated: ``torsion`` more under T_2, as torque^(2/3).
+
+    T_2 is 25 N m for size 20. Contacts of balls as Hertz has them, all of them loaded from the first torque on: a
+    clearance between them is a play, which is ``lost_motion``.
+    """
+    more = torsion * np.power(drive.wave_torque / rated_torque(drive), 2.0 / 3.0)
+    return replace(drive, wave_torsion_stated=drive.wave_torsion_stated + more)
+
+
 def engaged_pairs(drive: Drive, *, gain: Float, torque_scale: Float) -> Drive:
     """The flexspline gives way until more pairs touch: the share ``gain`` more of them at a large torque.
 
@@ -298,6 +316,21 @@ EFFECTS: list[Effect[Drive, Stiffness]] = [
            why="cup, wave generator, its bearing and the test rig are springs in series with the mesh, and much "
                "softer",
            source=CATALOGUE),
+    Effect("thin_cup", on_inputs=thin_cup,
+           unknowns=[Unknown("lost", 0, 0.6, "", "share of the wall; 0.05 to 0.3 from turning, a crack or corrosion")],
+           looks_like="the torsion grows in proportion to the torque, alike in both senses, as by any spring in series",
+           remedy="Measure the wall of the cup and look for a crack with dye; state the wall as cup_wall, or replace "
+                  "the cup, and the torsion fits.",
+           why="the wall is turned too thin, or cracked, so that less of it carries the shear",
+           source="Bredt: a thin tube twists as 1 over its wall"),
+    Effect("soft_wave_generator", on_inputs=soft_wave_generator,
+           unknowns=[Unknown("torsion", 0, 2000, "urad", "more than stated, under T_2 of the size in the catalogue")],
+           looks_like="the torsion grows as the torque to the power 2/3, alike in both senses: soft at small torques, "
+                      "but without a jump",
+           remedy="Replace the bearing of the wave generator where its torsion has grown; of a drive that is new, "
+                  "state the whole as wave_torsion_stated.",
+           why="its races bend and its balls flatten more than stated, or fewer balls carry, as after wear",
+           source="Hertz: balls close as load^(2/3)"),
     Effect("engaged_pairs", on_inputs=engaged_pairs,
            unknowns=[Unknown("gain", 0, 2, "", "of pairs at a large torque, over those stated; 1.7 from 15 to 40 %"),
                      Unknown("torque_scale", 0.04, 8, "",

@@ -300,7 +300,8 @@ class Stiffness:
         formula="drive_compliance / modulus_factor + cup_length / (shear_modulus * cup_moment)",
     )  # fmt: skip
     wave_torsion: Float = found(
-        "urad", symbol="theta_w", note="torsion by the contacts of the wave generator, from the reference torque on",
+        "urad", symbol="theta_w", note="torsion by the contacts of the wave generator, from the reference torque on, "
+        "with an amplitude that is stated and not calculated",
         formula="sign(torque) * wave_torsion_stated * modulus_factor**(-2/3)"
         " * (max(abs(torque), reference_torque)**(2/3) - reference_torque**(2/3)) / wave_torque**(2/3)",
     )  # fmt: skip
@@ -325,9 +326,11 @@ class Stiffness:
                                      method="three straight pieces", source=CATALOGUES)  # fmt: skip
     catalogue_stiffness: Float = found("N*m/rad", symbol="K_cat", note="stiffness of such a drive at the torque",
                                        method="the piece in which the torque lies", source=CATALOGUES)  # fmt: skip
-    catalogue_ratio: Float = found("", symbol="q_cat", note="torsion of this model over that of the catalogue; 0 "
-                                   "without torque",
-                                   formula="cases(torsion / catalogue_torsion, abs(torque) > 0, 0)")  # fmt: skip
+    catalogue_ratio: Float = found(
+        "", symbol="q_cat", note="torsion of all parts of this model over that of the catalogue; 0 without torque",
+        formula="cases((mesh_torsion + sign(torque) * series_compliance * max(abs(torque) - reference_torque, 0)"
+        " + wave_torsion) / catalogue_torsion, abs(torque) > 0, 0)",
+    )  # fmt: skip
     rough_share: Float = found("%", symbol="q_theta",
                                note="share of the catalogue's torsion that the rough contacts explain",
                                formula="cases(rough_torsion / catalogue_torsion, abs(torque) > 0, 0)",

@@ -1,10 +1,8 @@
 """Every effect that can be hidden in the machines of each plugin, at a clear size, in results in which it shows."""
 
-from math import inf
-
 from hidden_effects import gearing_machine, harmonic_machine, rv_machine, screw_machine
 from hidden_effects.gearing_machine import CONTACT, ERROR, LOSS, PLAY, SUN_ROOT, WARMTH
-from hidden_effects.harmonic_machine import MESH
+from hidden_effects.harmonic_machine import MESH, RIGID, WHOLE, Body
 from hidden_effects.harmonic_surface import surface
 from hidden_effects.rigs import Wish
 
@@ -19,14 +17,14 @@ def screw(results: tuple[str, ...], design: str = "bench", **hidden: dict[str, f
     return screw_machine.screw(hidden=hidden, results=results, design=design)
 
 
-def drive(**hidden: dict[str, float]) -> Wish:
+def drive(body: Body = RIGID, **hidden: dict[str, float]) -> Wish:
     """A drive of which the torsion is measured."""
-    return harmonic_machine.drive(hidden=hidden)
+    return harmonic_machine.drive(body, hidden=hidden)
 
 
-def mesh(tooth: float = inf, **hidden: dict[str, float]) -> Wish:
+def mesh(body: Body = RIGID, **hidden: dict[str, float]) -> Wish:
     """A drive of which the stiffness of the mesh is measured."""
-    return harmonic_machine.drive(tooth, hidden=hidden, results=(MESH,), design="points")
+    return harmonic_machine.drive(body, hidden=hidden, results=(MESH,), design="points")
 
 
 STAGES = [
@@ -82,7 +80,9 @@ SCREWS = [
 ]
 DRIVES = [
     drive(series_compliance={"compliance": 12}),
-    mesh(2e7, engaged_pairs={"gain": 1.8, "torque_scale": 0.8}),
+    drive(WHOLE, thin_cup={"lost": 0.3}),
+    drive(soft_wave_generator={"torsion": 200}),
+    mesh(Body(tooth=2e7), engaged_pairs={"gain": 1.8, "torque_scale": 0.8}),
     mesh(oil_film={"stiffness": 0.03}),
     mesh(asperity_smoothing={"dimension": 0.03, "roughness": 0.6, "cycle_scale": 2e5}),
     drive(modulus_temperature={"softening": 8e-4}),

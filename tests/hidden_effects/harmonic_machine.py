@@ -2,8 +2,8 @@
 
 Nothing of the plugin is imported. Rough flanks are added up contact by contact on a fine grid (lengths m, forces N),
 and the torsion of the mesh is the area below its compliance. Friction is a row of sliders behind springs, creep a row
-of dampers, play closes tooth by tooth, runout is the reach of a circle about a point. Torques N m, angles urad, times
-h, degC, r/min.
+of dampers, play closes tooth by tooth, runout is the reach of a circle about a point. The cup is a row of rings, the
+wave generator a row of balls. Torques N m, angles urad, times h, degC, r/min.
 """
 
 from dataclasses import dataclass
@@ -134,7 +134,21 @@ TORSION, MESH = "torsion", "mesh_stiffness"
 COMPLIANCE = 36.0  # urad/(N m), of all that is in series with the mesh, as the inputs have it
 RATED, PITCH, ALPHA = 25.0, 25.4e3, np.radians(20)  # N m, um
 SLIDERS = 400
+CUP, WALL, RINGS = 24.5e-3, 0.35e-3, 50  # m
+BALLS = 23
 SCATTER = 0.056  # of asperities, over the film at 1000 rpm: their load falls by e over a fifth of a tenth
+
+
+@dataclass(frozen=True)
+class Body:
+    """What gives way beside the flanks: bending of a tooth, N/m, length of the cup, m, the wave generator under 25 N m.
+
+    That one in urad.
+    """
+
+    tooth: float = inf
+    cup: float = 0.0
+    wave: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -225,6 +239,38 @@ def mesh(rows: Rows, hidden: Hidden, tooth: float) -> tuple[Array, Array]:
     return stiffness, torsion
 
 
+# Cup and wave generator
+
+
+def cup(length: float, hidden: Hidden) -> float:
+    """Twist of the cup, urad/(N m), ring by ring: each a bar with a hole, whose wall is thinner on both sides alike."""
+    wall = WALL * (1 - of(hidden, "thin_cup", "lost"))
+    shear = MODULUS / (2 * (1 + POISSON))
+    twist = 0.0
+    for _ in range(RINGS):
+        twist += length / RINGS / (shear * np.pi / 2 * ((CUP + wall / 2) ** 4 - (CUP - wall / 2) ** 4))
+    return 1e6 * twist
+
+
+@cache
+def balls() -> tuple[Array, Array]:
+    """Torque over the way of the race, each in a unit of its own: every ball is closed by its share of it, as Hertz."""
+    moved = np.geomspace(1e-4, 20, 20000)
+    places = 2 * np.pi * np.arange(BALLS) / BALLS
+    closed = np.maximum(np.cos(places), 0.0)
+    return np.asarray((moved[:, None] * closed) ** 1.5 @ closed), moved
+
+
+def pressed_balls(torque: Array, at_rated: float) -> Array:
+    """How far the wave generator gives way from the first torque on, urad, if it is ``at_rated`` under 25 N m."""
+    force, moved = balls()
+    rated = float(np.interp(1.0, moved, force))
+    first, size = (
+        np.interp(np.maximum(each, FIRST_TORQUE) / RATED * rated, force, moved) for each in (0, np.abs(torque))
+    )
+    return np.asarray(np.sign(torque) * at_rated * (size - first))
+
+
 # Angles
 
 
@@ -311,14 +357,15 @@ def stiffened(rows: Rows, hidden: Hidden) -> Array:
     return np.asarray((1 + again) * (1 + lobes))
 
 
-def shown(rows: Rows, tooth: float, hidden: Hidden) -> dict[str, Array]:
-    """What the gauges would show without noise: urad and N m/rad; teeth bend with ``tooth`` N/m."""
-    stiffness, torsion = mesh(rows, hidden, tooth)
-    softness = COMPLIANCE + of(hidden, "series_compliance", "compliance")
+def shown(rows: Rows, body: Body, hidden: Hidden) -> dict[str, Array]:
+    """What the gauges would show without noise: urad and N m/rad."""
+    stiffness, torsion = mesh(rows, hidden, body.tooth)
+    softness = COMPLIANCE + of(hidden, "series_compliance", "compliance") + cup(body.cup, hidden)
     warmer = rows.temperature - 20
     soft = of(hidden, "modulus_temperature", "softening") * warmer * (1 + warmer / 2000)
     beyond = np.sign(rows.torque) * np.maximum(np.abs(rows.torque) - FIRST_TORQUE, 0)
-    elastic = torsion + beyond * softness / (1 - soft)
+    wave = pressed_balls(rows.torque, body.wave + of(hidden, "soft_wave_generator", "torsion"))
+    elastic = torsion + beyond * softness / (1 - soft) + wave / (1 - soft) ** (2 / 3)
     elastic = elastic * (1 + crept(rows, hidden))
     angle = elastic + friction(rows, hidden) + play(rows, hidden) + turning(rows, hidden) + set_of(rows, hidden)
     drift = of(hidden, "rig_drift", "rate") * rows.time
@@ -337,29 +384,39 @@ fractal_roughness = "1e-9 m"
 convention = "areal"
 reference_torque = "20 mN*m"
 drive_compliance = "36 urad/(N*m)"
-{tooth}
+{body}
 [studies.diagnose]
 box = {{ torque = "-40..40 N*m" }}
 """
 PAST = {"torque": "N*m", "reversal_torque": "N*m", "peak_torque": "N*m", "direction": "1"}
 LOGS = {"time": "h", "wave_angle": "deg", "temperature": "degC", "cycles": "1", "speed": "r/min"}
+RIGID, WHOLE = Body(), Body(cup=28e-3, wave=752.0)
 PEAKS = (8.0, 16.0, 24.0, 32.0, 12.0, 40.0)
 
 
-def drive(tooth: float = inf, logs: tuple[str, ...] = tuple(LOGS), **wish: Any) -> Wish:
+def stated(body: Body) -> str:
+    """The lines of an inputs file that say what gives way."""
+    lines = [
+        f'tooth_stiffness = "{body.tooth:g} N/m"' if isfinite(body.tooth) else "",
+        f'cup_length = "{1e3 * body.cup:g} mm"' if body.cup else "",
+        f'wave_torsion_stated = "{body.wave:g} urad"' if body.wave else "",
+    ]
+    return "\n".join(filter(None, lines)) + "\n"
+
+
+def drive(body: Body = RIGID, logs: tuple[str, ...] = tuple(LOGS), **wish: Any) -> Wish:
     """What a drive is to be like whose fitted readings and others know the whole past.
 
-    ``tooth`` is the stiffness of a tooth in bending, N/m: a mesh that bends is ten times as soft. ``logs`` is what the
-    rig writes down beside the torque and its past.
+    A mesh whose teeth bend is ten times as soft. ``logs`` is what the rig writes down beside the torque and its past.
     """
-    noise = {TORSION: 5.0, MESH: 6e4 * (0.1 if isfinite(tooth) else 1.0)}
+    noise = {TORSION: 5.0, MESH: 6e4 * (0.1 if isfinite(body.tooth) else 1.0)}
     rig = Rig(
         plugin="harmonic_fractal",
-        inputs=INPUTS.format(tooth=f'tooth_stiffness = "{tooth:g} N/m"\n' if isfinite(tooth) else ""),
+        inputs=INPUTS.format(body=stated(body)),
         written=PAST | {name: LOGS[name] for name in logs},
         measured=UNIT,
         make=Bench(
-            stream=61, held=None, measured=measured, machine=lambda _: tooth, shown=shown,
+            stream=61, held=None, measured=measured, machine=lambda _: body, shown=shown,
             spread=lambda rows: 0.4 + np.abs(rows.torque) / 25, noise=noise, parted=of_both, is_path=True,
         ),
     )  # fmt: skip

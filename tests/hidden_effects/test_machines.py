@@ -11,7 +11,8 @@ from hidden_effects.clear import CLEAR
 from hidden_effects.gearing_machine import CONTACT, PLANET_ROOT, SUN_ROOT, Stage, spread
 from hidden_effects.gearing_machine import Rows as StageRows
 from hidden_effects.gearing_machine import shown as shown_by_stage
-from hidden_effects.harmonic_machine import Flanks, table
+from hidden_effects.harmonic_machine import COMPLIANCE, RADIUS, RIGID, TORSION, WHOLE, Flanks, measured, table
+from hidden_effects.harmonic_machine import shown as shown_by_drive
 from hidden_effects.harmonic_surface import power, surface, true_structure
 from hidden_effects.rigs import Wish, model_of
 from hidden_effects.rv_machine import RATED, ROUGHNESS, Wearing, wear_after
@@ -92,6 +93,20 @@ def test_a_pair_has_the_stiffness_of_the_closed_form(dimension: float, roughness
 def test_the_mesh_has_the_stiffness_of_its_design() -> None:
     """60 pairs of size 20 under 25 N m: 6.56e6 N m/rad by the closed form."""
     assert Flanks().stiffness(np.array([25.0]))[0] == pytest.approx(6.56e6, rel=2e-3)
+
+
+def test_a_whole_drive_turns_as_the_catalogue_prints() -> None:
+    """Size 20, ratio 100: 25 kN m/rad from 7 to 25 N m and 29 from there on; rough contacts are taken off again.
+
+    60 teeth of 2e7 N/m bend by 1/(60 k r^2), and diaphragm and seats give way by 3.57 urad/(N m).
+    """
+    torque = np.array([7.0, 25.0, 40.0])
+    rows = replace(measured("points", 3, np.random.default_rng(0)), torque=torque, temperature=0 * torque + 20)
+    others = 3.57 + 1e6 / (60 * 2e7 * RADIUS**2)
+    softness = {"series_compliance": {"compliance": others - COMPLIANCE}}
+    found = shown_by_drive(rows, WHOLE, softness)[TORSION]
+    flanks = shown_by_drive(rows, RIGID, {"series_compliance": {"compliance": -COMPLIANCE}})[TORSION]
+    assert np.diff(found - flanks) == pytest.approx([18 / 25e-3, 15 / 29e-3], rel=0.01)
 
 
 def test_a_surface_has_the_structure_function_of_its_power_law() -> None:

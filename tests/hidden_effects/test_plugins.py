@@ -7,7 +7,7 @@ sizes, on other noise and in other designs is measured by ``tests/benchmarks/ben
 
 from collections.abc import Mapping
 from dataclasses import replace
-from math import acos, cos, radians, tan
+from math import acos, cos, pi, radians, tan
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,7 @@ import pytest
 
 from hidden_effects import rv_machine, screw_machine
 from hidden_effects.gearing_machine import ERROR, PLAY, stage
-from hidden_effects.harmonic_machine import MESH, TORSION, drive
+from hidden_effects.harmonic_machine import MESH, TORSION, WHOLE, drive
 from hidden_effects.harmonic_surface import STRUCTURE, surface
 from hidden_effects.rigs import Wish, demand_named
 from hidden_effects.rows import Array
@@ -62,6 +62,7 @@ NAMED = [
         logs=("wave_angle", "temperature"),
         count=30,
     ),
+    drive(WHOLE, seed=78, hidden={"soft_wave_generator": {"torsion": 200}}, logs=(), count=30),
     surface(seed=3, hidden={"instrument_noise": {"variance": 60}}),
     surface(seed=4, hidden={"waviness": {"square": 0.01, "wavelength": 25}}),
 ]
@@ -214,6 +215,20 @@ def test_a_gauge_that_drifts_and_a_screw_that_grows_have_one_size() -> None:
     true = -2 * 19807.78 * tan(working) * 11.5e-6
     low, high = cause["unknowns"]["backlash"]["interval95"]
     assert low <= true <= high
+
+
+def test_a_thin_cup_is_a_spring_in_series_and_no_gain_of_the_gauge() -> None:
+    """Wave generators are soft as T^(2/3), which a gain enlarges too; only the wall tells a cup from other springs.
+
+    Bredt: a tube twists L/(2 pi r^3 t G) per torque, 10.9 urad/(N m) here, and 0.3/0.7 of it more without 0.3 of t.
+    """
+    document = drive(WHOLE, seed=54, hidden={"thin_cup": {"lost": 0.3}}, logs=(), count=30).answered.document
+    assert (document["verdict"], document["remainder"]) == ("one_of", None)
+    assert names_of(document) == [{"series_compliance", "thin_cup"}]
+    assert document["next"][0]["measure"] == ["cup_moment"]
+    twist = 1e6 * 28e-3 / (2 * pi * 24.5e-3**3 * 0.35e-3 * 206e9 / 2.6)
+    low, high = document["causes"][0]["unknowns"]["compliance"]["interval95"]
+    assert low <= 0.3 / 0.7 * twist <= high
 
 
 def test_at_small_loads_a_tilt_is_no_roller_that_leads() -> None:

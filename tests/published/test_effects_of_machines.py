@@ -7,7 +7,6 @@ a case says how far both may be apart, as a share of the largest change: what th
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from math import inf
 from typing import Any
 
 import numpy as np
@@ -124,10 +123,14 @@ SCREW = Machine(
 )  # fmt: skip
 DRIVE = Machine(
     plugin="harmonic_fractal", rows=lambda design: harmonic_machine.measured(design, COUNT, np.random.default_rng(3)),
-    shown=lambda rows, hidden: harmonic_machine.shown(rows, inf, hidden),
+    shown=lambda rows, hidden: harmonic_machine.shown(rows, harmonic_machine.RIGID, hidden),
     columns=harmonic_machine.PAST | harmonic_machine.LOGS, results=harmonic_machine.UNIT,
     inputs={"fractal_dimension": 2.5, "fractal_roughness": "1e-9 m", "reference_torque": "20 mN*m",
             "drive_compliance": "36 urad/(N*m)"},
+)  # fmt: skip
+WHOLE_DRIVE = replace(
+    DRIVE, shown=lambda rows, hidden: harmonic_machine.shown(rows, harmonic_machine.WHOLE, hidden),
+    inputs={**DRIVE.inputs, "cup_length": "28 mm", "wave_torsion_stated": "752 urad"},
 )  # fmt: skip
 HEAT = {"link_heating": {"expansion": 1.15e-5}}
 HANGING = {"slider_mass": "20 t", "counterbalance": "150 kN"}
@@ -208,6 +211,10 @@ CASES: list[tuple[Machine, Unknowns, float, str, dict[str, str]]] = [
     (REDUCER, DISCS, EXACT, "fleet", {}),
     *((SCREW, hidden, within, "endurance" if "flank_wear" in hidden else "bench", {}) for hidden, within in SCREWS),
     *((DRIVE, hidden, within, design, {}) for hidden, within, design in DRIVES),
+    (WHOLE_DRIVE, {"thin_cup": {"lost": 0.3}}, 1e-4, "loops", {}),  # the wall is thin beside its radius
+    (WHOLE_DRIVE, {"modulus_temperature": {"softening": 8e-4}}, HARMONIC, "loops", {}),
+    (WHOLE_DRIVE, {"creep": {"share": 0.03, "time_scale": 0.1}}, 3e-5, "loops", {}),
+    (WHOLE_DRIVE, {"soft_wave_generator": {"torsion": 200}}, SLOPE, "loops", {}),
 ]
 
 

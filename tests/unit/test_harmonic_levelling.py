@@ -42,7 +42,7 @@ def whole(exponent: float, shape: tuple[int, int], steps: np.ndarray, form: str)
 
 
 @pytest.mark.parametrize(
-    ("shape", "form"), [((1, 50), "second_order"), ((1, 50), "plane"), ((7, 26), "second_order"), ((7, 26), "plane")]
+    ("shape", "form"), [((1, 50), "second_order"), ((1, 50), "plane"), ((5, 20), "second_order"), ((5, 20), "plane")]
 )
 @pytest.mark.parametrize("dimension", [1.25, 1.6])
 def test_bias_and_scatter_are_those_of_the_whole_matrix(shape: tuple[int, int], form: str, dimension: float) -> None:
@@ -51,7 +51,7 @@ def test_bias_and_scatter_are_those_of_the_whole_matrix(shape: tuple[int, int], 
     mean, covariance = whole(exponent, shape, steps, form)
     levelling = Levelling((shape,), line=True, curved=form == "second_order")
     assert expected(exponent, steps, levelling) == pytest.approx(mean, rel=1e-9)
-    assert scatter(exponent, steps, levelling) == pytest.approx(covariance, rel=0.08)
+    assert scatter(exponent, steps, levelling) == pytest.approx(covariance, rel=0.01)
 
 
 def test_heights_as_they_are_have_no_bias() -> None:
@@ -123,7 +123,7 @@ def test_two_methods_agree_on_a_power_law_and_disagree_on_ridges() -> None:
     assert sum(judged(each).startswith("disagree") for each in found) <= 3
     assert 0.5 < np.std([each.window_sds for each in found]) < 1.5
     rng = np.random.default_rng(1)
-    steps = np.cumsum(np.where(rng.random((60, 400)) < 0.01, rng.standard_normal((60, 400)), 0.0), axis=1)
+    steps = np.cumsum(np.where(rng.random((40, 300)) < 0.01, rng.standard_normal((40, 300)), 0.0), axis=1)
     settings = options_of({**DEFAULTS, "direction": "x", "spikes": "keep", "fit": "all"})
     used = with_choice(prepared(Surface(1e-7 * steps, SPACING, SPACING, "steps"), settings), settings).used
     assert used is not None

@@ -279,6 +279,16 @@ def test_torsion_beside_the_catalogue(stated: Calculation) -> None:
     assert table(torsion(run(torque="-25 N*m").record), "torques of the catalogue").rows == rows
 
 
+def test_the_share_of_the_wave_generator_says_that_it_is_fitted(stated: Calculation) -> None:
+    """Where an amplitude is stated; where it is rigid there is nothing to say."""
+    whole = table(torsion(run(wave_torsion_stated="752 urad").record), "Whose torsion")
+    (share,) = [row[2] for row in whole.rows if row[0] == "wave generator"]
+    assert share == pytest.approx(65.0, abs=0.5)
+    assert "not calculated" in whole.note
+    assert "fitted, with drive_compliance, to two numbers of the catalogue" in whole.note
+    assert "fitted" not in table(torsion(stated.record), "Whose torsion").note
+
+
 def test_torsion_figure_goes_through_the_results() -> None:
     found = run(drive_compliance="40 urad/(N*m)")
     (drawing,) = (block for block in torsion(found.record) if isinstance(block, Drawing))
