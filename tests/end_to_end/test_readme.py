@@ -86,7 +86,7 @@ def test_the_tour_visits_what_it_promises() -> None:
     assert any("./bolt.py" in words for words in typed)
 
 
-NUMBERS = {11: "eleven", 16: "sixteen", 17: "seventeen", 18: "eighteen"}
+NUMBERS = {11: "eleven", 13: "thirteen", 16: "sixteen", 18: "eighteen"}
 
 
 def test_it_lists_every_verb_and_every_plugin_with_its_effects() -> None:
