@@ -4,10 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from gear_geometry import cycloid
 from gear_geometry.mesh_load import shaken_by_error, viscosity_at, wave, wave_unknowns
 from rv_gearing.flank import TURN, blok, softness_of
 from rv_gearing.geometry import ToothLoad, load_of
-from rv_gearing.groups import centre_distance_of
+from rv_gearing.groups import centre_distance_of, mesh_efficiency
 from rv_gearing.quantities import Gearing
 from rv_gearing.rating import Strength
 from truing import Condition, Effect, Float, Unknown
@@ -181,6 +182,22 @@ def centre_distance_growth(stage: Gearing, *, expansion: Float) -> Gearing:
     return replace(stage, centre_distance_deviation=stage.centre_distance_deviation + growth)
 
 
+def pin_drag(stage: Gearing, strength: Strength, *, friction: Float, film_speed: Float) -> Strength:
+    """Pins that do not roll slide on the discs, and the oil carries the less of it the slower and the warmer it is.
+
+    Their friction beyond that of ``cycloid_efficiency`` is friction exp(-nu n/(nu n)_0), nu n by the viscosity and the
+    turning of the output, (nu n)_0 by 100 mm²/s and ``film_speed``, the same at all pins. The stresses keep the torque
+    of the sun that was calculated without it, so the loss is meant to be small.
+    """
+    load, second = load_of(stage), strength.second
+    product = viscosity_at(stage.oil_temperature, stage.viscosity / MM2_S) * load.duty.sun_speed / load.duty.ratio
+    share = cycloid.sliding_share(second.short_width_coefficient, load.duty.pins, (second.pin_circle, second.pin_size))
+    lost = friction * np.exp(-product / (100.0 * film_speed)) * share
+    dragging = replace(stage, cycloid_efficiency=stage.cycloid_efficiency - lost)
+    passed = mesh_efficiency(dragging, load.planet / load.sun, load.duty.pins) / load.duty.mesh_efficiency
+    return replace(strength, efficiency=strength.efficiency * passed)
+
+
 def speed_dependent_loss(stage: Gearing, strength: Strength, *, constant: Float, viscous: Float) -> Strength:
     """Seals, bearings and oil hold the sun back at any torque: efficiency less M_0/T_1, not below 0.
 
@@ -241,6 +258,11 @@ STIFFNESS = "ISO 6336-1, clause 9: stiffness of a tooth pair, and its fall below
 PALMGREN = (
     "Palmgren, A., Ball and roller bearing engineering, 3rd ed., Burbank 1959: torque of an idle bearing; viscosity of "
     "the oil after ASTM D341"
+)
+STRIBECK = (
+    "pins at rest: gear geometry, cycloid disc; mixed friction that falls exponentially with the speed: Andersson, S., "
+    "Söderberg, A., Björklund, S., Friction models for sliding dry, boundary and mixed lubricated contacts, Tribology "
+    "International 40 (2007) 580"
 )
 BLOK = (
     "Blok, H., Theoretical study of temperature rise at surfaces of actual contact under oiliness lubricating "
@@ -303,6 +325,15 @@ EFFECTS: list[Effect[Gearing, Strength]] = [
                   "readings of warm and cold days then agree.",
            why="the parts that hold the gears apart expand more than the gears, or get warmer",
            source="linear expansion; backlash of an involute pair on its working centre distance, ISO 21771"),
+    Effect("pin_drag", on_results=pin_drag,
+           unknowns=[Unknown("friction", 0, 0.5, "", "of pins at rest, beyond that of cycloid_efficiency; 0.01 to 0.1"),
+                     Unknown("film_speed", 0.5, 200, "rpm", "of the output at 100 mm²/s; there 1/e of it is left")],
+           looks_like="efficiency too low by nearly the same amount at any torque, the more so the slower and the "
+                      "warmer; if at any speed, like an offset of the gauge",
+           remedy="Check that the pins turn in their grooves, and take a thicker oil for slow work; the efficiency at "
+                  "low speed is then higher.",
+           why="pins stick in their grooves, and the discs slide over them in mixed friction",
+           source=STRIBECK),
     Effect("speed_dependent_loss", on_results=speed_dependent_loss,
            unknowns=[Unknown("constant", 0, 50, "N*m", "holding back the sun at any speed: seals, preload"),
                      Unknown("viscous", 0, 50, "N*m",

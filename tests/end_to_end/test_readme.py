@@ -86,7 +86,7 @@ def test_the_tour_visits_what_it_promises() -> None:
     assert any("./bolt.py" in words for words in typed)
 
 
-NUMBERS = {11: "eleven", 13: "thirteen", 16: "sixteen", 17: "seventeen", 20: "twenty"}
+NUMBERS = {11: "eleven", 13: "thirteen", 16: "sixteen", 18: "eighteen", 20: "twenty"}
 
 
 def test_it_lists_every_verb_and_every_plugin_with_its_effects() -> None:

@@ -43,6 +43,7 @@ STAGES = [
     stage((ERROR,), mesh_ripple={"second_cosine": 1.2, "second_sine": -0.8}),
     stage((ERROR,), output_eccentricity={"cosine": 2.5, "sine": 1.5}),
     stage((ERROR,), output_eccentricity={"tooth_cosine": 1.2, "tooth_sine": -0.8}),
+    stage((LOSS,), "one_way", pin_drag={"friction": 0.02, "film_speed": 6.0}),
     stage((LOSS,), "one_way", speed_dependent_loss={"constant": 0.4, "viscous": 0.4}),
     stage((WARMTH,), flash_temperature={"friction": 0.06}),
     stage((ERROR,), wind_up={"compliance": 0.6}),
@@ -107,6 +108,6 @@ CLEAR = {
 }  # fmt: skip
 SHAPES = {
     "resonance_speed", "damping", "phase", "torque_scale", "run_in_time", "direction", "thinning", "exponent",
-    "time_scale", "cycle_scale", "wavelength",
+    "time_scale", "film_speed", "cycle_scale", "wavelength",
 }  # fmt: skip
 """Unknowns that are no size: they stay as they are. The exponent of a load is one, that of a set is not."""

@@ -195,6 +195,8 @@ def stresses(stage: Stage, loaded: Loaded, wrong: Wrong) -> dict[str, Array]:
 # The rig
 
 RATIO, MESHES = 111.0, 0.920941
+OF_SUN, OF_DISC = 0.992, 0.998  # efficiencies of the meshes of sun and planet, and of disc and pins
+WIDTH, GAP = 0.75, 1.6  # of the cycloid: throw times pins over pin circle, pitch over diameter of the pins
 VOGEL = 95  # degC, of mineral oils
 CONDUCTING = sqrt(50 * 3.8e6)  # of steel, N/(m s^0.5 K)
 BASE = MODULE * SUN / 2 * cos(ANGLE)  # radius of the base circle of the sun, mm
@@ -267,6 +269,30 @@ def held_back(rows: Rows, hidden: Hidden) -> Array:
     return np.asarray(
         of(hidden, "speed_dependent_loss", "constant") + of(hidden, "speed_dependent_loss", "viscous") * viscous
     )
+
+
+def dragging(rows: Rows, hidden: Hidden) -> Array:
+    """Efficiency over that without pins that drag: what friction takes of the work of the cranks, pin by pin.
+
+    The disc turns about its pitch point as a body that is rolled along, so every pin is slid over by its own speed,
+    and in its own film. Lengths in radii of the pin circle, a torque of the pins of 1, and a turning of the output of
+    1. The cranks give what the pins hold and all that is lost, of which some was lost before.
+    """
+    friction = of(hidden, "pin_drag", "friction")
+    if not friction:
+        return np.ones(len(rows))
+    angles = 2 * pi * (np.arange(PINS) + 0.5) / PINS
+    distance = np.hypot(np.cos(angles) - WIDTH, np.sin(angles))
+    arms = np.maximum(WIDTH * np.sin(angles) / distance, 0.0)  # about the centre of the pin circle; pushed, not pulled
+    force = arms / (arms @ arms)
+    slid = distance - np.sin(pi / PINS) / GAP
+    film = (viscosity(rows.oil_temperature) / 100 * rows.input_speed / RATIO / hidden["pin_drag"]["film_speed"])[
+        :, None
+    ]
+    lost = friction * np.exp(-film * slid) @ (force * slid)
+    before = (PINS - 1) * (1 - OF_DISC)
+    held = PLANET / SUN * OF_SUN * PINS / (1 + before + np.array([lost, np.zeros(len(rows))]))
+    return np.asarray((1 + held[0]) / (1 + held[1]))
 
 
 def contact_heat(force: float, sun: float, planet: float, turning: float) -> float:
@@ -351,7 +377,7 @@ def shown(rows: Rows, stage: Stage, hidden: Hidden) -> dict[str, Array]:
     read = strength(rows, stage, hidden)
     read["transmission_error"] = error
     read["backlash"] = play_between(stage, apart(rows, hidden)) + play + 2 * depth
-    read["efficiency"] = efficiency(stage) - held_back(rows, hidden) / torque
+    read["efficiency"] = efficiency(stage) * dragging(rows, hidden) - held_back(rows, hidden) / torque
     read["flank_temperature"] = rows.oil_temperature + flash(rows, stage, hidden)
     return read
 

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from hidden_effects import rv_machine, screw_machine
-from hidden_effects.gearing_machine import ERROR, PLAY, stage
+from hidden_effects.gearing_machine import ERROR, LOSS, PLAY, stage
 from hidden_effects.harmonic_machine import MESH, TORSION, WHOLE, drive
 from hidden_effects.harmonic_surface import STRUCTURE, surface
 from hidden_effects.rigs import Wish, demand_named
@@ -51,6 +51,7 @@ NOTHING = [
 ]
 NAMED = [
     stage(seed=31, hidden={"centre_distance_growth": {"expansion": 12}}, results=(PLAY,), kind="autocorrelated"),
+    stage(seed=41, hidden={"pin_drag": {"friction": 0.02, "film_speed": 6}}, results=(LOSS,), design="one_way"),
     stage(seed=13, hidden={"sun_runout": {"cosine": 1.2, "sine": -0.9}}, results=(ERROR,), kind="heavy"),
     reducer(seed=15, hidden={"runout": {"offset": 1.2, "direction": 310}}, kind="autocorrelated"),
     TILTED_ROLLER,
@@ -165,6 +166,15 @@ def test_what_draws_nearly_one_curve_has_several_names() -> None:
     point = document["next"][0]
     assert point["measure"] or "load_torque" in point["settings"]
     assert set(" + ".join(point["separates"]).split(" + ")) <= LIKE_A_SPRING
+
+
+def test_pins_that_drag_without_a_film_are_an_offset_of_the_gauge() -> None:
+    """The same share at any load, speed and warmth is no more than an offset, or a gain: it is 2.6 % of 0.894."""
+    dry = {"pin_drag": {"friction": 0.02, "film_speed": 1e4}}
+    document = stage(seed=42, hidden=dry, results=(LOSS,), design="one_way", count=40).answered.document
+    assert (document["verdict"], names_of(document)) == ("one_of", [{"sensor_offset", "sensor_gain"}])
+    low, high = document["causes"][0]["unknowns"][LOSS]["interval95"]
+    assert low <= -0.0256 <= high
 
 
 LESS_SLIDING = {"pin_rolling", "duty_share"}

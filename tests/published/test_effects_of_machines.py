@@ -137,7 +137,7 @@ HANGING = {"slider_mass": "20 t", "counterbalance": "150 kN"}
 LOOSE = {"joint_clearance": {"clearance": 2e-5}}
 SOFT = {"elastic_deflection": {"compliance": 1e-9}}
 AHEAD = {"encoder_eccentricity": {"sine": 0.003, "cosine": -0.007}}
-EXACT, SLOPE, SUMMED, WORN, HARMONIC, WAVE = 1e-9, 1.5e-5, 1e-3, 0.01, 0.02, 0.045
+EXACT, SLOPE, SUMMED, WORN, HARMONIC, WAVE, FILMS = 1e-9, 1.5e-5, 1e-3, 0.01, 0.02, 0.045, 0.05
 PRESSES: list[tuple[Unknowns, float, dict[str, str]]] = [
     (HEAT, EXACT, {}),
     ({"side_heating": {"expansion_1": 1.4e-5, "expansion_2": -3e-6}}, EXACT, {}),
@@ -158,10 +158,14 @@ WITHIN = {
     **dict.fromkeys(("sun_runout", "planet_runout", "mesh_ripple", "output_eccentricity", "film_lubrication"), WAVE),
     **dict.fromkeys(("structural_resonance", "planet_load_sharing", "crowned_contact", "relief_error"), SUMMED),
     **dict.fromkeys(("face_misalignment", "centre_distance_growth", "wind_up", "wear_drift"), SUMMED),
-    **dict.fromkeys(("ratio_drift", "mesh_stiffening"), SUMMED), "lost_motion": 0.02,
+    **dict.fromkeys(("ratio_drift", "mesh_stiffening"), SUMMED), "lost_motion": 0.02, "pin_drag": FILMS,
     **dict.fromkeys(("running_in", "bearing_wear", "stiffening", "pin_pass_ripple", "friction_hysteresis"), EXACT),
 }  # fmt: skip
-"""How near the machine comes to the plugin, over the largest change; 1 % where heat or wear is summed otherwise."""
+"""How near the machine comes to the plugin, over the largest change; 1 % where heat or wear is summed otherwise.
+
+5 % where each pin has a film of its own; pins without a film are within the sum over them.
+"""
+DRY_PINS = {"pin_drag": {"friction": 0.02, "film_speed": 1e5}}
 DISCS = {"pin_pass_ripple": {"disc_cosine": 0.03, "disc_sine": -0.02}}
 SCREWS: list[tuple[Unknowns, float]] = [
     ({"face_misalignment": {"misalignment": 1.5}}, SUMMED),
@@ -203,6 +207,7 @@ DRIVES: list[tuple[Unknowns, float, str]] = [
 CASES: list[tuple[Machine, Unknowns, float, str, dict[str, str]]] = [
     *((PRESS, hidden, within, "", stated) for hidden, within, stated in PRESSES),
     *((GEARING, wish.hidden, WITHIN.get(*wish.hidden, WORN), wish.design, {}) for wish in STAGES),
+    (GEARING, DRY_PINS, SUMMED, "one_way", {}),
     *(
         (REDUCER, wish.hidden, (WITHIN | {"wind_up": EXACT}).get(*wish.hidden, WORN), "fleet", {})
         for wish in REDUCED

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from switched import shown
 
 from pages import Page, number
 from rv_gearing import groups as searched
@@ -193,10 +194,13 @@ def test_heat_second_stage_and_shifts_of_the_example() -> None:
     fields = RV_GEARING.own_result_fields
     answers = RV_GEARING.read_results(rv_gearing(RV_GEARING.inputs(group=1)))
     told = {name: float(np.asarray(from_si(answers[name], fields[name].unit))) for name in fields if name in answers}
+    dragging = shown(RV_GEARING, "pin_drag", RV_GEARING.inputs(group=1), friction=0.02, film_speed=1e6)
+    dragged = told["efficiency"] - dragging["efficiency"]
     page = " ".join(PAGE.text.split())
     for words in (
         f"contact {told['contact_rise']:.1f} K above the oil, where {told['permitted_contact_rise']:.0f} K are "
         "permitted",
+        f"$\\mu = 0.02$ takes {dragged:.3f} of the efficiency {told['efficiency']:.3f} of the example",
         f"it is {told['integral_rise']:.1f} K of {told['scuffing_integral_rise']:.0f} K",
         f"film is {told['film_ratio']:.3f} of the roughness", f"with 0.05 it is {told['pin_loss_efficiency']:.4f}",
         f"has {told['crank_load'] / 1e3:.1f} kN at most and $P$ = {told['equivalent_load'] / 1e3:.2f} kN at "
