@@ -7,7 +7,7 @@ power law says, by an amount that is known for a Gaussian line: ``calibrated`` t
 from functools import lru_cache
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 from scipy.special import gammaln
 
 from harmonic_fractal.structure import CACHED, Steps, mean_squares
@@ -109,7 +109,7 @@ def calibrated(sizes: Steps, roughness: Array) -> float:
         return float("nan")
     if off(ends[0]) * off(ends[1]) >= 0.0:
         return ends[0] if abs(off(ends[0])) < abs(off(ends[1])) else ends[1]
-    return float(brentq(off, *ends, xtol=1e-5))
+    return float(scipy.optimize.brentq(off, *ends, xtol=1e-5))
 
 
 @lru_cache(maxsize=256)

@@ -155,7 +155,10 @@ def test_an_interrupted_run_leaves_the_cluster_at_once(cluster: Cluster, tmp_pat
     assert not (tmp_path / "run").exists()
 
 
-def test_a_worker_that_is_killed_changes_nothing_but_the_warning(cluster: Cluster, calc: Calc, tmp_path: Path) -> None:
+def test_a_worker_that_is_killed_changes_nothing_but_the_warning(
+    cluster: Cluster, calc: Calc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delitem(sys.modules, "pin_wear", raising=False)  # that of another test is another file
     address = cluster.with_workers(2).address
     pin = Gated.in_folder(tmp_path)
 

@@ -178,10 +178,11 @@ def test_torque_is_held_in_every_position_and_step(pins: int, load_sharing: str)
     arm = reducer.eccentricity * (pins - 1) / 0.0022 / 39 * lever(teeth.angle)
     wanted = 0.55 * torques
     for step, state in zip(range(40), states(teeth), strict=False):
-        held = (state.loads.force * arm).sum(axis=0)
+        told = slice(state.pin, state.pin + len(state.loads.force))  # the others bear nothing
+        held = (state.loads.force * arm[told]).sum(axis=0)
         assert held / wanted == pytest.approx(np.ones_like(held), rel=1e-9), step
         assert np.all(state.loads.force >= 0)
-        assert np.all(state.loads.force[teeth.angle[:, :, 0] >= pi] == 0)
+        assert np.all(state.loads.force[teeth.angle[told, :, 0] >= pi] == 0)
 
 
 @pytest.mark.parametrize("hertz", [False, True])
