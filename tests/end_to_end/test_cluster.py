@@ -159,6 +159,7 @@ def test_a_worker_that_is_killed_changes_nothing_but_the_warning(
     cluster: Cluster, calc: Calc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delitem(sys.modules, "pin_wear", raising=False)  # that of another test is another file
+    monkeypatch.syspath_prepend(tmp_path)
     address = cluster.with_workers(2).address
     pin = Gated.in_folder(tmp_path)
 

@@ -137,7 +137,7 @@ def _live(visitor: Visitor, folder: Path, server: int) -> None:
         status, saved = visitor.ask("/api/save", file="bar.toml", text=text, base=base)
         assert status == 200
         base = saved["digest"]
-        assert visitor.ask("/api/save", file="bar.toml", text="lost", base=stale)[0] == 409
+        assert visitor.ask("/api/save", file="bar.toml", text="lost", base=stale)[1]["conflict"]
         assert file.read_text(encoding="utf-8") == text
         if number in KILLED_AFTER:
             killed += _killed(workers_of(server)[0])

@@ -32,7 +32,7 @@ CHAPTERS = ("inputs", "results", "tolerances", "effects", "conditions", "goals",
 """Anchors of the chapters, which a section of the sheet may not take."""
 RELATIONS = {"at_most": "≤", "at_least": "≥"}
 """Kinds of limits, by their sign; any other is called by its name."""
-MOST_RESULTS = 150
+MOST_RESULTS = 100
 """The sections of a model with more results are folded, so that its page stays within a dozen screens."""
 _DRAWING = re.compile(r'<div class="drawing">(<svg .*?</svg>)', re.DOTALL)
 
