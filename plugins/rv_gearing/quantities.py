@@ -127,7 +127,7 @@ class Gearing:
     pin_friction: Float = positive(0.05, "", "mu_p", "of discs on pins that do not turn")
     bearing_rating: Float = given(None, "kN", symbol="C", note="dynamic rating of one bearing between crank and disc; "
                                   "without it what lasts the working time", above=0)  # fmt: skip
-    bearing_exponent: Float = given(3.333333333333333, "", symbol="p", note="of the life: 10/3 rollers and needles, 3 balls",
+    bearing_exponent: Float = given(3.333333333333333, "", symbol="p", note="of the life: 10/3 rollers, 3 balls",
                                     source="ISO 281:2007", at_least=1, at_most=10)  # fmt: skip
     stated_crank_load: Float = given(None, "N", symbol="P_st", note="equivalent load of a crank bearing; calculated "
                                      "where it is not stated", above=0)  # fmt: skip
