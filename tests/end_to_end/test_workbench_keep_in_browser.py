@@ -214,7 +214,7 @@ def test_a_calculation_is_made_and_opens(served: Workbench, page: Any) -> None:
     page.get_by_role("button", name="Make the calculation").click()
     page.locator(".answer", has_text="there is no input and no result 'laod'. Did you mean 'load'?").wait_for()
     page.locator(".answer", has_text="unknown unit 'Nn'").wait_for()
-    page.wait_for_function("document.activeElement.dataset.key === 'unit'")
+    until(page, lambda: page.evaluate("document.activeElement.dataset.key") == "unit")
     assert not (served.folder / "pin.py").exists()
     page.get_by_label("Unit of input 1").fill("N")
     page.get_by_label("Formula of result 1").fill("load / area")
