@@ -30,7 +30,11 @@ def relative_radius(short_width: Float, pins: Float, sizes: tuple[Float, Float],
 
 
 def least_convex_radius(short_width: Float, pins: Float, pin_circle: Float) -> Float:
-    """Return the least radius of the path of the pin centre where the tooth is convex, m; a larger pin undercuts."""
+    """Return the least radius of the path of the pin centre where the tooth is convex, m; a larger pin undercuts.
+
+    In u = S^2 the radius is 2 r_p u^1.5 / ((z_p + 1) u - (z_p - 1) q^2) with q^2 = 1 - K^2, least at
+    u = 3 q^2 (z_p - 1) / (z_p + 1) or at the end of the flank.
+    """
     square = 1.0 - np.square(short_width)
     at = np.clip(3.0 * square * (pins - 1.0) / (pins + 1.0), (1.0 - short_width) ** 2, (1.0 + short_width) ** 2)
     return pin_circle * 2.0 * at**1.5 / ((pins + 1.0) * at - (pins - 1.0) * square)

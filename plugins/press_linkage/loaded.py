@@ -189,18 +189,19 @@ def _free(press: LoadedPress, half: Half) -> Array:
 def _misplaced(press: LoadedPress, off: PressSide, sign: float, warm: Float, frame: Float) -> dict[str, Vector]:
     """Where the joints on platform, slider and frame lie beside their place: by their errors and by heat."""
 
-    def joint(kind: str, cosine: Float, sine: Float, growth: Float) -> Vector:
-        length = getattr(press, kind[0])
-        along = getattr(off, f"{kind[0]}_deviation") + growth * length
-        across = length * getattr(off, f"{kind[1]}_deviation")
+    def joint(kinds: tuple[str, str], cosine: Float, sine: Float, growth: Float) -> Vector:
+        radius, angle = kinds
+        length = getattr(press, radius)
+        along = getattr(off, f"{radius}_deviation") + growth * length
+        across = length * getattr(off, f"{angle}_deviation")
         return along * sign * cosine - across * sine, along * sine + across * sign * cosine
 
     ground = np.cos(press.ground_pivot_angle), np.sin(press.ground_pivot_angle)
     return {
-        "A": joint(("crank_pivot_radius", "crank_pivot_angle"), 1.0, 0.0, frame),  # type: ignore[arg-type]
-        "E": joint(("platform_half_width", "platform_joint_angle"), 1.0, 0.0, warm),  # type: ignore[arg-type]
-        "M": joint(("ground_pivot_radius", "ground_pivot_angle"), *ground, frame),  # type: ignore[arg-type]
-        "H": joint(("slider_half_width", "slider_joint_angle"), 1.0, 0.0, warm),  # type: ignore[arg-type]
+        "A": joint(("crank_pivot_radius", "crank_pivot_angle"), 1.0, 0.0, frame),
+        "E": joint(("platform_half_width", "platform_joint_angle"), 1.0, 0.0, warm),
+        "M": joint(("ground_pivot_radius", "ground_pivot_angle"), *ground, frame),
+        "H": joint(("slider_half_width", "slider_joint_angle"), 1.0, 0.0, warm),
         "B5": (0.0, press.platform_arm_deviation + warm * press.platform_arm),
     }
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gear_geometry import cycloid
 from rv_wear.quantities import Reducer
 from truing import Array, Float
 
@@ -78,7 +79,7 @@ class Mesh:
     @property
     def start_force(self) -> Float:
         """Largest force between disc and pins without any clearance, equation 1."""
-        return 4.0 * self.torque / (self.short_width * (self.choices.pin_count - 1) * self.pin_circle_radius)
+        return cycloid.largest_force(self.torque, self.short_width, self.choices.pin_count, self.pin_circle_radius)
 
 
 NUMBERS = tuple(each.name for each in fields(Mesh) if each.name != "choices")
@@ -158,8 +159,7 @@ def many(mesh: Mesh) -> Mesh:
 
 def pin_distance(mesh: Mesh, angle: Float) -> Float:
     """S(psi): distance of the pin from the pitch point over the radius of the pin circle."""
-    short_width = mesh.short_width
-    return np.sqrt(1.0 + short_width**2 - 2.0 * short_width * np.cos(angle))
+    return cycloid.pin_distance(mesh.short_width, angle)
 
 
 def relative_arm(mesh: Mesh, angle: Float) -> Float:
@@ -174,9 +174,7 @@ def longest_arm_angle(mesh: Mesh) -> Float:
 
 def centre_path_curvature(mesh: Mesh, angle: Float) -> Float:
     """Curvature 1/rho_0 of the path of the pin centre in the disc, 1/m; below 0 where the tooth is convex."""
-    short_width, pins = mesh.short_width, mesh.choices.pin_count
-    bend = short_width * (pins + 1) * np.cos(angle) - (1.0 + pins * short_width**2)
-    return bend / (mesh.pin_circle_radius * pin_distance(mesh, angle) ** 3)
+    return cycloid.path_curvature(mesh.short_width, mesh.choices.pin_count, mesh.pin_circle_radius, angle)
 
 
 def profile_radius(mesh: Mesh, angle: Float) -> Float:
@@ -186,19 +184,13 @@ def profile_radius(mesh: Mesh, angle: Float) -> Float:
 
 def relative_radius(mesh: Mesh, angle: Float) -> Float:
     """Radius R' of the equivalent cylinder on a plane: |rho r_rp / (rho - r_rp)|, finite throughout."""
-    return mesh.pin_radius * np.abs(1.0 + mesh.pin_radius * centre_path_curvature(mesh, angle))
+    sizes = mesh.pin_circle_radius, mesh.pin_radius
+    return cycloid.relative_radius(mesh.short_width, mesh.choices.pin_count, sizes, angle)
 
 
 def smallest_convex_radius(mesh: Mesh) -> Float:
-    """Least radius of the path of the pin centre where the tooth is convex; a larger pin undercuts the disc.
-
-    In u = S^2 the radius is 2 r_p u^1.5 / ((z_p + 1) u - (z_p - 1) q^2), least at u = 3 q^2 (z_p - 1) / (z_p + 1) or
-    at the end of the flank.
-    """
-    pins, square = mesh.choices.pin_count, 1.0 - mesh.short_width**2
-    lowest, highest = (1.0 - mesh.short_width) ** 2, (1.0 + mesh.short_width) ** 2
-    at = np.clip(3.0 * square * (pins - 1) / (pins + 1), lowest, highest)
-    return mesh.pin_circle_radius * 2.0 * at**1.5 / ((pins + 1) * at - (pins - 1) * square)
+    """Least radius of the path of the pin centre where the tooth is convex; a larger pin undercuts the disc."""
+    return cycloid.least_convex_radius(mesh.short_width, mesh.choices.pin_count, mesh.pin_circle_radius)
 
 
 def clearance(mesh: Mesh, angle: Float) -> Float:

@@ -297,6 +297,11 @@ def chain_of(model: AnyModel) -> Chain | None:
     return model.chain if isinstance(model, ChainModel) else None
 
 
+def link_of(model: AnyModel, name: str) -> Link | None:
+    """Return what an input of a model is taken from, by its flat name; None of one that is not taken."""
+    return model.chain.taken.get(name) if isinstance(model, ChainModel) else None
+
+
 def calculation_of(model: AnyModel, effect: str) -> str:
     """Return the source of a chain whose effect this is, by its name in the chain; "" of the last one's."""
     sources = model.chain.sources if isinstance(model, ChainModel) else {}

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import PurePath
 from typing import Any
 
-from truing.declare.chain import chain_of
+from truing.declare.chain import link_of
 from truing.declare.fields import Given, InputField
 from truing.evaluate import acting_inputs, taken_values
 from truing.inputs_file.values import halving_in_words
@@ -96,8 +96,8 @@ def _given_how(setup: Setup, name: str) -> str:
     """Say whether an input is stated, taken from another calculation, or at its default."""
     if name in setup.source.stated:
         return "stated"
-    chain = chain_of(setup.model)
-    return f"from {chain.taken[name].source}" if chain is not None and name in chain.taken else "default"
+    link = link_of(setup.model, name)
+    return "default" if link is None else f"from {link.source}"
 
 
 def _fitted(setup: Setup, name: str) -> Text:

@@ -12,7 +12,7 @@ import numpy as np
 
 from truing.calculation import Calculation
 from truing.cases import CasesTable
-from truing.declare.chain import chain_of, prefix_of
+from truing.declare.chain import chain_of, link_of, prefix_of
 from truing.declare.fields import InputField
 from truing.evaluate import taken_values
 from truing.numbers import STATED_DIGITS
@@ -76,10 +76,9 @@ def _inputs(setup: Setup) -> dict[str, Any]:
 
 def _from(setup: Setup, name: str) -> dict[str, Any]:
     """Say of which calculation an input is a result, where it is taken from one and not stated."""
-    chain = chain_of(setup.model)
-    if chain is None or name not in chain.taken or not np.isnan(setup.nominal(name)):
+    link = link_of(setup.model, name)
+    if link is None or not np.isnan(setup.nominal(name)):
         return {}
-    link = chain.taken[name]
     return {"from": {"calculation": link.source, "result": link.result}}
 
 

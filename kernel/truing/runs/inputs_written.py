@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from truing.declare.chain import chain_of
+from truing.declare.chain import link_of
 from truing.declare.fields import InputField
 from truing.declare.model import Study
 from truing.declare.spreads import ByChoice, Drawn
@@ -197,8 +197,7 @@ def _input(setup: Setup, field: InputField, value: Any, folder: Path | None) -> 
 
 def _taken(setup: Setup, name: str) -> dict[str, str] | None:
     """Return what an input that is not given is taken from, or None."""
-    chain = chain_of(setup.model)
-    link = None if chain is None else chain.taken.get(name)
+    link = link_of(setup.model, name)
     return None if link is None else {"from": link.source, "result": link.result}
 
 

@@ -155,7 +155,7 @@ function roleOf(column, number) {
   const select = made("select", { id: `role-${number}-${column.index}` });
   select.setAttribute("aria-label", `${column.text} is to the model`);
   select.append(made("option", { value: "", textContent: "nothing of the model (an error may depend on it)" }), made("option", { value: "run", textContent: "run label" }));
-  const known = answer.roles.flatMap(({ of }) => of), alike = known.filter((each) => each.name in column.of_this_unit);
+  const alike = quantities().filter((each) => each.name in column.of_this_unit);
   for (const { group, of } of [...(alike.length ? [{ group: `In ${Object.values(column.of_this_unit)[0]}`, of: alike }] : []), ...answer.roles]) {
     select.append(made("optgroup", { label: group }, ...of.map((each) => made("option", { value: each.name, title: each.note, textContent: each.name }))));
   }
@@ -170,7 +170,8 @@ function roleOf(column, number) {
   return select;
 }
 
-function unitDeclared(name) { return answer.roles.flatMap(({ of }) => of).find((each) => each.name === name)?.unit ?? ""; }
+function quantities() { return answer.roles.flatMap(({ of }) => of); }
+function unitDeclared(name) { return quantities().find((each) => each.name === name)?.unit ?? ""; }
 
 function unitOf(column, number) {
   const input = made("input", { id: `unit-${number}-${column.index}`, value: column.unit ?? "", size: 9, spellcheck: false, autocomplete: "off", placeholder: column.declared });

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 from truing.kernel import Offer, offer_of
 
@@ -28,12 +30,17 @@ def _loaded(plugin: str, version: tuple[int, int]) -> Offer:
     return offer_of(plugin, lambda text: None)
 
 
-def changed_since(plugin: str, run: Path) -> bool:
-    """Whether the file of a calculation was written after a run of it; no installed one is."""
-    document = run / "results.json"
-    if not plugin.endswith(".py") or not document.is_file():
-        return False
-    return stamp_of(Path(plugin))[0] > document.stat().st_mtime_ns
+def changed_since(plugin: str, run: Path, document: Mapping[str, Any]) -> str:
+    """Say that a calculation is another than in a run, whose results.json is ``document``; nothing where it is not.
+
+    An installed one is known by its version, one in a file also by the time at which that was written.
+    """
+    then, now = (document.get("plugin") or {}).get("version"), loaded(plugin).origin.version
+    if then != now:
+        return f"the calculation was {then} then and is {now}"
+    results = run / "results.json"
+    is_newer = plugin.endswith(".py") and results.is_file() and stamp_of(Path(plugin))[0] > results.stat().st_mtime_ns
+    return f"{Path(plugin).name} has changed since" if is_newer else ""
 
 
 def stamp_of(path: Path) -> tuple[int, int]:

@@ -80,9 +80,8 @@ def run_of(setup: Setup, plugin: str, folder: Path) -> dict[str, Any] | None:
         document = load_either(folder)
     except UnknownPluginError:
         return None
-    same = (document.get("plugin") or {}).get("version") == loaded(plugin).origin.version
-    same = same and document.get("input_hash") == input_hash(setup) and not changed_since(plugin, folder)
-    return document if same else None
+    is_same = document.get("input_hash") == input_hash(setup) and not changed_since(plugin, folder, document)
+    return document if is_same else None
 
 
 def whole(plugin: str, file: str, folder: str, text: str) -> dict[str, str]:

@@ -62,11 +62,8 @@ def _older(plugin: str, file: str, folder: str, text: str, run: Path) -> tuple[b
         return True, ["the text cannot be read as it stands"]
     document = load_either(run)
     if document.get("input_hash") == input_hash(now):
-        version = (document.get("plugin") or {}).get("version")
-        if version != offer.origin.version:
-            return True, [f"the calculation was {version} then and is {offer.origin.version}"]
-        changed = changed_since(plugin, run)
-        return changed, [f"{Path(plugin).name} has changed since"] if changed else []
+        changed = changed_since(plugin, run, document)
+        return bool(changed), [changed] if changed else []
     try:
         differing = stated_differences(read_setup(run / "inputs.toml", offer), now)
     except TruingError:
