@@ -27,6 +27,8 @@ FORKED_WORKERS = "FORKED_WORKERS"
 """With this in its environment a command forks its workers, in place of starting them afresh."""
 WARM_WORKERS = "WARM_WORKERS"
 """With this in its environment a command that has threads has its workers forked from where it was forked itself."""
+PATHS = [place for place in sys.path if not Path(place).is_relative_to(TESTS)]
+"""Where modules are looked for before any test: one that loads a program of its own leaves its folder among them."""
 _numbers = count()
 
 
@@ -52,7 +54,7 @@ class Running:
         self.out, self.err = (Path(f"{beside}.{name}") for name in ("out", "out" if together else "err"))
         dropped = ("PYTHONPATH", "COLUMNS", "PYTEST", "COV")
         kept = {name: value for name, value in os.environ.items() if not name.startswith(dropped)}
-        arguments = ([str(word) for word in words], folder, {**kept, **(more or {})}, (self.out, self.err))
+        arguments = ([str(word) for word in words], folder, {**kept, **(more or {})}, (self.out, self.err), PATHS)
         self._process = context.Process(target=_become, args=arguments)
         self._process.start()
         self.pid = self._process.pid or 0
@@ -81,7 +83,9 @@ class Running:
         os.killpg(self.pid, number)
 
 
-def _become(words: list[str], folder: Path, environment: Mapping[str, str], said: tuple[Path, Path]) -> None:
+def _become(
+    words: list[str], folder: Path, environment: Mapping[str, str], said: tuple[Path, Path], paths: list[str]
+) -> None:
     """Be this command, in a process that was just forked."""
     os.setsid()
     for number, file in enumerate(said, start=1):
@@ -102,8 +106,7 @@ def _become(words: list[str], folder: Path, environment: Mapping[str, str], said
         context = multiprocessing.get_context("forkserver")
         multiprocessing.get_context = lambda method=None: context  # type: ignore[assignment]
     first = str(Path(words[0]).resolve().parent) if words[0] not in {"-m", "-c"} else str(folder)
-    others = [place for place in sys.path if not Path(place).is_relative_to(TESTS)]
-    sys.path[:] = [first, *filter(None, environment.get("PYTHONPATH", "").split(os.pathsep)), *others]
+    sys.path[:] = [first, *filter(None, environment.get("PYTHONPATH", "").split(os.pathsep)), *paths]
     sys.argv = [words[0], *words[2:]] if words[0] in {"-m", "-c"} else words
     if words[0] == "-m":
         runpy.run_module(words[1], run_name="__main__", alter_sys=True)

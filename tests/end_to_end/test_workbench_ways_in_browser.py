@@ -34,6 +34,8 @@ load = "120 N"
 [studies]
 run = ["reliability"]
 """
+PROBE = 'probe_C = { name = "probe_temperature", unit = "degC" }'
+"""What [columns] says of the probe of the workbook."""
 COLD = 60_000
 """Milliseconds that an answer may take on a machine that does more."""
 SLOPE = 0.8
@@ -81,6 +83,12 @@ def page(served: Workbench, browser: Browser) -> Iterator[Any]:
     page.context.close()
 
 
+@pytest.fixture
+def confirmed(page: Any) -> None:
+    """Let the program run; the first test does so in its dialog, and need not be the first that this process does."""
+    page.evaluate("async () => (await import('/static/workbench.js')).call('/api/confirm', { file: 'pin_wear.py' })")
+
+
 def test_a_program_is_confirmed_edited_run_and_changed_while_its_page_is_open(served: Workbench, page: Any) -> None:
     program = served.folder / "pin_wear.py"
     page.get_by_role("link", name="pin.toml").click()
@@ -116,6 +124,7 @@ def two_versions(served: Workbench, page: Any, mine: str, theirs: str) -> Any:
     return shown
 
 
+@pytest.mark.usefixtures("confirmed")
 def test_of_two_versions_of_a_text_either_may_be_kept_and_neither_is_lost(served: Workbench, page: Any) -> None:
     file, text = served.folder / "pin.toml", page.locator("#text")
     page.goto(served.address + "edit?file=pin.toml")
@@ -143,6 +152,7 @@ def test_of_two_versions_of_a_text_either_may_be_kept_and_neither_is_lost(served
     page.locator("#saved", has_text=re.compile("^saved")).wait_for()
 
 
+@pytest.mark.usefixtures("confirmed")
 def test_a_file_of_the_same_name_replaces_the_other_one_only_on_request(
     served: Workbench, page: Any, tmp_path: Path
 ) -> None:
@@ -165,13 +175,19 @@ def test_a_file_of_the_same_name_replaces_the_other_one_only_on_request(
     page.get_by_text("No file is chosen yet.").wait_for()
 
 
+def write_two_days(folder: Path) -> None:
+    """Write a workbook and a recording of one machine; the workbook calls the probe otherwise."""
+    heads, columns = columns_of(measured(1), probe_temperature="probe_C")
+    rows = [list(map(float, row)) for row in zip(*columns, strict=True)]
+    (folder / "monday.xlsx").write_bytes(workbook_bytes([SheetTable("bench", heads, rows)]))
+    write_tdms(folder / "tuesday.tdms", measured(2))
+
+
+@pytest.mark.usefixtures("confirmed")
 def test_a_workbook_and_a_recording_are_one_record_and_their_columns_reach_a_text_that_changed(
     served: Workbench, page: Any, tmp_path: Path
 ) -> None:
-    heads, columns = columns_of(measured(1), probe_temperature="probe_C")
-    rows = [list(map(float, row)) for row in zip(*columns, strict=True)]
-    (tmp_path / "monday.xlsx").write_bytes(workbook_bytes([SheetTable("bench", heads, rows)]))
-    write_tdms(tmp_path / "tuesday.tdms", measured(2))
+    write_two_days(tmp_path)
     page.goto(served.address + "measure?file=pin.toml")
     page.set_input_files("#upload", [tmp_path / "monday.xlsx", tmp_path / "tuesday.tdms"])
     for name in ("data/monday.xlsx", "data/tuesday.tdms"):
@@ -186,7 +202,7 @@ def test_a_workbook_and_a_recording_are_one_record_and_their_columns_reach_a_tex
     page.locator("#kept", has_text="kept in pin.toml").wait_for()
     kept = file.read_text(encoding="utf-8")
     assert kept.startswith("# by another hand\n")
-    assert 'probe_C = { name = "probe_temperature", unit = "degC" }' in kept
+    assert PROBE in kept
     page.set_viewport_size({"width": 390, "height": 844})
     assert [*axe(page), *sideways(page)] == []
     scrolled = "[...document.querySelectorAll('.scroll:has(.stacked)')].map(box => box.scrollWidth - box.clientWidth)"
@@ -194,7 +210,12 @@ def test_a_workbook_and_a_recording_are_one_record_and_their_columns_reach_a_tex
     page.set_viewport_size({"width": 1280, "height": 900})
 
 
+@pytest.mark.usefixtures("confirmed")
 def test_a_suspicion_is_tried_alone_and_a_cause_is_accepted_and_run(served: Workbench, page: Any) -> None:
+    (served.folder / "data").mkdir(exist_ok=True)
+    write_two_days(served.folder / "data")
+    (served.folder / "pin.toml").write_text(f"{INPUTS}\n[columns]\n{PROBE}\n", encoding="utf-8")
+    page.goto(served.address + "measure?file=pin.toml&data=data/monday.xlsx&data=data/tuesday.tdms")
     page.get_by_text("Switch candidates off").click()
     page.locator("#candidate-list").get_by_label("running in").uncheck()
     page.get_by_role("button", name="Diagnose", exact=True).click()
