@@ -204,6 +204,17 @@ def test_measured_heights_are_pressed(name: str, file: str, options: dict[str, A
     assert len(stiffness.rows) == len(gap.rows) - 1 == 5  # type: ignore[union-attr]
 
 
+def test_the_whole_interferogram_is_pressed(full_torture: bool) -> None:
+    """640 by 480 points."""
+    if not full_torture:
+        pytest.skip("half a minute; with --torture=full only")
+    pytest.importorskip("ContactMechanics")
+    flank = read_flank(SURFACES / "metropro-1.dat")
+    assert flank.used is not None
+    found = PressedFlanks().run(SimpleNamespace(inputs=Drive(surface=flank)))  # type: ignore[arg-type]
+    assert PAGE.row("interferogram, whole") == pressed_row(found, flank.used.dimension + 1.0)
+
+
 def test_a_profile_is_compared_by_its_rms_height() -> None:
     flank = read_flank(SURFACES / "hfm-1.hfm")
     found = PressedFlanks().run(SimpleNamespace(inputs=Drive(surface=flank)))  # type: ignore[arg-type]
