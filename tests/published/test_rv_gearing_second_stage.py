@@ -1,4 +1,4 @@
-"""The second stage against pins summed one by one, another calculation of the repository, and published lives."""
+"""The second stage against pins summed one by one, a flank drawn point by point, and published lives."""
 
 from typing import Any
 
@@ -10,7 +10,6 @@ from gear_geometry import cycloid
 from rv_gearing.model import RV_GEARING
 from rv_gearing.rating import rv_gearing
 from rv_gearing.second_stage import mean_load
-from rv_wear import geometry as wear_geometry
 from truing.errors import InfeasibleError
 from truing.units import from_si
 
@@ -66,17 +65,23 @@ def test_flank_and_pin_touch_as_the_drawn_profile_does() -> None:
     assert cycloid.least_convex_radius(K, PINS, CIRCLE) == pytest.approx(convex.min(), rel=1e-6)
 
 
-def test_the_wear_calculation_of_the_same_disc_has_the_same_geometry() -> None:
-    mesh = wear_geometry.Mesh(
-        pin_circle_radius=CIRCLE, pin_radius=PIN, eccentricity=K * CIRCLE / PINS, width=0.01, equidistant=0.0,
-        shift=0.0, torque=500.0, young_modulus=206e9, poisson_ratio=0.3, threshold=1e-6,
-    )  # fmt: skip
-    angle = np.linspace(0.05, 3.0, 30)
-    own = cycloid.relative_radius(K, PINS, (CIRCLE, PIN), angle)
-    assert np.allclose(own, np.asarray(wear_geometry.relative_radius(mesh, angle)), rtol=1e-12)
-    assert cycloid.largest_force(500.0, K, PINS, CIRCLE) == pytest.approx(
-        float(np.asarray(mesh.start_force)), rel=1e-12
-    )
+def test_the_gap_between_flank_and_pin_opens_as_between_a_plane_and_the_cylinder_in_its_place() -> None:
+    """The flank drawn point by point, a pin radius inside the path of the pin: the gap to the pin beside the contact.
+
+    A cylinder of radius R on a plane has a gap of s²/(2 R) at a distance s.
+    """
+    turn = np.linspace(0.0, 2 * np.pi / 39, 400_001)
+    throw = K * CIRCLE / PINS
+    path = CIRCLE * np.exp(1j * turn) - throw * np.exp(1j * PINS * turn)
+    along = CIRCLE * np.exp(1j * turn) - throw * PINS * np.exp(1j * PINS * turn)
+    flank = path - PIN * along / np.abs(along)
+    for place in (20_000, 60_000, 150_000):  # concave, convex, convex
+        to_contact = (flank[place] - path[place]) / PIN
+        seen = (flank[place - 1000 : place + 1001] - path[place]) / to_contact
+        gap, aside = np.abs(seen) - PIN, np.abs(seen.imag)
+        measured = np.polyfit(aside**2, gap, 1)[0]
+        own = cycloid.relative_radius(K, PINS, (CIRCLE, PIN), (PINS - 1) * turn[place])
+        assert 1 / (2 * abs(measured)) == pytest.approx(float(own), rel=5e-3)
 
 
 def test_torque_of_the_discs_is_what_power_says() -> None:
