@@ -22,16 +22,16 @@ def rated(**stated: Any) -> dict[str, float]:
     return {name: float(np.asarray(from_si(value, fields[name].unit))) for name, value in answers.items()}
 
 
-def pin_by_pin(torque: float, turn: float) -> tuple[float, float, float]:
+def pin_by_pin(torque: float, turn: float, pins: int = PINS, short: float = K) -> tuple[float, float, float]:
     """Equal springs at all pins: force by arm about the disc's centre; sum across and along, and the largest force.
 
     Coordinates: pin circle at the origin, disc centre at (e, 0), pitch point at (e z_p, 0); pins at ``turn`` and on.
     """
-    throw = K * CIRCLE / PINS
-    angle = (np.arange(PINS) + turn) * 2 * np.pi / PINS
-    towards = np.stack([CIRCLE * np.cos(angle) - throw * PINS, CIRCLE * np.sin(angle)])
+    throw = short * CIRCLE / pins
+    angle = (np.arange(pins) + turn) * 2 * np.pi / pins
+    towards = np.stack([CIRCLE * np.cos(angle) - throw * pins, CIRCLE * np.sin(angle)])
     towards /= np.hypot(*towards)  # a contact force points from the pitch point to the pin
-    arm = towards[1] * (throw * PINS - throw)  # about the disc's centre
+    arm = towards[1] * (throw * pins - throw)  # about the disc's centre
     arm = np.maximum(arm, 0.0)
     force = torque * arm / np.sum(arm**2)
     along, across = towards @ force
@@ -48,6 +48,14 @@ def test_the_resultant_of_all_pins_is_that_of_a_sum_over_pins(turn: float) -> No
     whole = quad(lambda x: np.sin(x) * (np.cos(x) - K) / (1 + K * K - 2 * K * np.cos(x)), 0, np.pi)[0]
     exact = cycloid.largest_force(500.0, K, PINS, CIRCLE) * PINS / 2 / np.pi * whole
     assert closed[1] == pytest.approx(exact, rel=1e-9)
+
+
+@pytest.mark.parametrize(("pins", "short", "off"), [(20, 0.85, 1e-3), (40, 0.75, 1e-5), (10, 0.85, 7e-3)])
+def test_the_integrals_are_the_mean_of_the_sums_over_a_pitch(pins: int, short: float, off: float) -> None:
+    sums = np.mean([pin_by_pin(500.0, turn, pins, short) for turn in (np.arange(100) + 0.5) / 100], axis=0)
+    across, along = cycloid.resultant(500.0, short, pins, CIRCLE)
+    assert sums[0] == pytest.approx(float(across), rel=1e-12)
+    assert sums[1] == pytest.approx(float(along), rel=off)
 
 
 def test_flank_and_pin_touch_as_the_drawn_profile_does() -> None:
