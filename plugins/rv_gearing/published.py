@@ -261,12 +261,12 @@ TOLD = {
     "are not bent to both sides in each turn. A robot that goes to and fro bends them to both sides all the same; ISO "
     "6336-3 then takes about 0.7 of the endurance limit for bending. State stress_ratio_sun and stress_ratio_planet, "
     "-1 where the torque is the same both ways.",
-    "Scuffing and micropitting are held against test gears, not against worked examples": "The worked examples of ISO/TS "
-    "6336-21, ISO/TR 15144-2 and AGMA 925 could not be had, nor reports of programs with all inputs. The gears of the FZG "
-    "tests stand in for them: at the load stage that names a lubricant they must scuff, which they do within 17 %, and "
-    "their film at the stage at which they turn grey must be the one that is permitted by that stage: 0.75 to 1.01 of "
-    "the eight values that could be read off the figure. Where the factor (1 + planets)/2 of the bulk temperature is "
-    "public, it is so for one mate only.",
+    "Scuffing and micropitting are held against test gears, not against worked examples": "The worked examples of "
+    "ISO/TS 6336-21, ISO/TR 15144-2 and AGMA 925 could not be had, nor reports of programs with all inputs. The gears "
+    "of the FZG tests stand in for them: at the load stage that names a lubricant they must scuff, which they do "
+    "within 17 %, and their film at the stage at which they turn grey must be the one that is permitted by that "
+    "stage: 0.75 to 1.01 of the eight values that could be read off the figure. Where the factor (1 + planets)/2 of "
+    "the bulk temperature is public, it is so for one mate only.",
     "The first group of the list is the one that is built": "Of the 25 groups the smallest, 20/55/40, has the centre "
     "distance of the maker's catalogue and the ratio 111. The paper prefers larger ones by accuracy and sharing of "
     "load. Larger groups carry more: contact stress falls from 1087 to 709 MPa from the first to the last, and the "
