@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any, Literal
 
 import numpy as np
@@ -653,9 +654,7 @@ def _unbiased(lines: Lines, curve: StructureFunction, found: _Fit, settings: Est
         seen = levelling.expected(exponent, steps, taken) * np.exp(-0.5 * np.diagonal(covariance))
         return _law(curve.lags, lines.spacing**exponent * seen, settings)
 
-    def scatter(of: float) -> Array:
-        return levelling.scatter(4.0 - 2.0 * of, steps, taken)
-
+    scatter = partial(_scatter_of, steps=steps, taken=taken)
     dimension = found.dimension
     for _ in range(2):
         covariance = scatter(dimension)
@@ -674,23 +673,27 @@ def _unbiased(lines: Lines, curve: StructureFunction, found: _Fit, settings: Est
     level = _levels(_pair(found), curve.lags)[1] + seen_and_lost(dimension)[1]
     if len(lines.heights) > 1:
         fit = _at(found, dimension, level, curve.lags)
-        growth = _growth(dimension, curve, found, scatter, settings)
+        growth = _growth(curve, found, settings, about=dimension, covariance=scatter)
         return _Unbiased(fit, _of_patches(curve, found, covariance, settings), gain, shift, growth)
     start = _Unbiased(_at(found, dimension, level, curve.lags), np.empty((0, 2)), gain, shift)
     return _by_making(lines, curve, found, start, settings)
 
 
 def _growth(
-    dimension: float, curve: StructureFunction, found: _Fit, covariance: Callable[[float], Array], settings: Estimation
+    curve: StructureFunction, found: _Fit, settings: Estimation, *, about: float, covariance: Callable[[float], Array]
 ) -> Array:
     """Return the matrix (2, 2) by which deviations of fits change per unit of the D of the surface."""
-    ends = np.clip([dimension - BESIDE, dimension + BESIDE], *NEAR)
-    roots = []
+    ends = np.clip([about - BESIDE, about + BESIDE], *NEAR)
+    settings, roots = replace(settings, resamples=Estimation.resamples), []
     for end in ends.tolist():
         scattered = _of_patches(curve, found, covariance(end), settings)
         roots.append(np.linalg.cholesky(np.cov(scattered.T)))
     change: Array = (roots[1] - roots[0]) / (ends[1] - ends[0]) @ np.linalg.inv(0.5 * (roots[0] + roots[1]))
     return change
+
+
+def _scatter_of(dimension: float, *, steps: Steps, taken: Levelling) -> Array:
+    return levelling.scatter(4.0 - 2.0 * dimension, steps, taken)
 
 
 def _of_one_line(dimension: float, steps: Steps, taken: Levelling) -> Array:

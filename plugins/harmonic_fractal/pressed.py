@@ -180,11 +180,11 @@ class PressedFlanks:
             found = heights_of(drive)
             if found is None:
                 return replace(known, reason=PROFILE)
-            return self._pressed(*found, rough, drive, known)
+            return self._pressed(*found, drive, rough=rough, known=known)
         except TruingError as error:
             return replace(known, reason=str(error), is_missing=True)
 
-    def _pressed(self, heights: Array, spacing: float, rough: Rough, drive: Drive, known: "Compared") -> "Compared":
+    def _pressed(self, heights: Array, spacing: float, drive: Drive, *, rough: Rough, known: "Compared") -> "Compared":
         modulus = float(equivalent_modulus(drive))
         area = heights.size * spacing**2
         loads = np.geomspace(LEAST, MOST, self.loads) * modulus * slope_of(heights, spacing) * area
