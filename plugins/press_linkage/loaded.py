@@ -426,7 +426,7 @@ def press_under_load(given: LoadedPress) -> LoadedAnswers:
         crank_angle=crank.angle,
         press_force=force,
         slider_position=face[..., :count],
-        **over_the_stroke(press, balance.within(slice(count)), force),
+        **of_the_stroke(press, np.asarray(half.upper.sine)[..., :count], balance.within(slice(count)), force),
         **tested(press, face[..., count:], balance.within(slice(count, None)), rated, beside),
         total_clearance=clearance(press, half)[..., count],
     )
@@ -439,9 +439,13 @@ def _in_a_row(one: Float, other: Float) -> Array:
     return np.concatenate(parts, axis=-1)
 
 
-def over_the_stroke(press: LoadedPress, balance: Balance, force: Float) -> dict[str, Float]:
-    """What is read over the times by the names of the results, and the largest of it."""
+def of_the_stroke(press: LoadedPress, upright: Array, balance: Balance, force: Float) -> dict[str, Float]:
+    """What is read over the times by the names of the results, and the largest of it.
+
+    ``upright`` is the sine of the upper knee link: a link that is pressed pushes the frame at M up by it.
+    """
     pushed = -balance.tension
+    raised = upright / press.ground_stiffness_vertical
     tilt = inclined(press, balance, force * press.load_offset)
     guides = [-pushed[..., guide] for guide in SLIDER_GUIDES]
     largest = np.maximum(*(np.max(np.abs(guide), axis=-1) for guide in guides))
@@ -454,6 +458,8 @@ def over_the_stroke(press: LoadedPress, balance: Balance, force: Float) -> dict[
         "lower_guide_force": guides[1],
         "platform_guide_upper": balance.tension[..., PLATFORM_GUIDES[0]],
         "platform_guide_lower": balance.tension[..., PLATFORM_GUIDES[1]],
+        "ground_rise_1": pushed[..., UPPERS[1]] * raised,
+        "ground_rise_2": pushed[..., UPPERS[2]] * raised,
         "lower_link_1": pushed[..., LOWERS[1]],
         "lower_link_2": pushed[..., LOWERS[2]],
         "upper_link_1": pushed[..., UPPERS[1]],

@@ -106,7 +106,7 @@ SECTIONS = [
     Section(
         "Over the stroke",
         "time", "crank_angle", "press_force", "slider_position", "deflection", "slider_tilt", "slider_shift",
-        "platform_tilt", "largest_tilt",
+        "platform_tilt", "ground_rise_1", "ground_rise_2", "largest_tilt",
         text="Force, weights, counterbalance and inertia act on the press with its play, its errors and its "
         "temperature; the potential energy is least. Deflection and tilt are those against the bolster.",
         blocks=giving_way,
