@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from hidden_effects.loaded_press import LoadedMachine
+from hidden_effects.rigs import demand_first
 from hidden_effects.test_loaded_press import (
     HIDDEN,
     PARTS,
@@ -29,19 +30,22 @@ MORE = {"soft_frame": ("ground_rise_1", "ground_rise_2"), "worn_platform_guides"
 single one with a wrong gain would look as a soft frame does."""
 WHOLE = float(np.radians(-150.0))
 """A stroke from far above parts links that are warm from a frame that has cooled."""
-WITHIN = {"off_centre": 0.2, "loose_joints": 0.3, "worn_guides": 0.15, "soft_frame": 0.3, "inclined_guides": 0.15}
+WITHIN = {"off_centre": 0.2, "loose_joints": 0.3, "worn_guides": 0.15, "inclined_guides": 0.15}
 """How far a size may be off: two to three standard deviations of what scatters in the same place (10 mm of 150 mm, 20 %
-of 15 um, 20 % of 50 um, 10 % of a stiffness, 7 urad of 200) and of the noise; else 5 %."""
+of 15 um, 20 % of 50 um, 7 urad of 200) and of the noise; else 5 %."""
 
 
-def drawn(seed: int) -> LoadedMachine:
-    """A press whose load, play, guides, joints and frame are off by as much as the tolerances say."""
+def drawn(seed: int, effect: str = "") -> LoadedMachine:
+    """A press whose load, play, guides, joints and frame are off by as much as the tolerances say.
+
+    Whether a frame has become soft is asked of one whose stiffness was measured when it was new.
+    """
     rng, press = np.random.default_rng([seed, 21]), LoadedMachine()
 
     def about(value: float, share: float) -> float:
         return float(value * np.exp(share * rng.standard_normal()))
 
-    return replace(
+    scattered = replace(
         press,
         offset=press.offset + 10e-3 * rng.standard_normal(),
         play=about(press.play, 0.2),
@@ -51,6 +55,8 @@ def drawn(seed: int) -> LoadedMachine:
         ground=(about(press.ground[0], 0.1), about(press.ground[1], 0.1)),
         columns=(about(press.columns[0], 0.1), press.columns[1]),
     )
+    known = {"ground": press.ground, "columns": press.columns} if effect == "soft_frame" else {}
+    return replace(scattered, **known)
 
 
 @cache
@@ -58,7 +64,8 @@ def answered(effect: str, seed: int) -> Any:
     """What a diagnosis says to a stroke of such a press."""
     start = WHOLE if effect.startswith("warm") else START
     gauges = (*SLIDER, *MORE.get(effect, ()))
-    return diagnosed(record(with_hidden(drawn(seed), effect), gauges, seed=seed, start=start), PARTS)
+    known = (*PARTS, "frame_stiffness") if effect == "soft_frame" else PARTS
+    return diagnosed(record(with_hidden(drawn(seed, effect), effect), gauges, seed=seed, start=start), known)
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -66,19 +73,19 @@ def answered(effect: str, seed: int) -> Any:
 def test_what_is_wrong_is_named_with_its_size(effect: str, seed: int, full_torture: bool) -> None:
     if not full_torture:
         pytest.skip("takes a few seconds for each press")
+    demand_first(answered(effect, seed), effect)
     holds_the_truth(answered(effect, seed), effect, within=WITHIN.get(effect, 0.05))
 
 
-def test_intervals_hold_the_truth_as_often_as_they_say(full_torture: bool) -> None:
-    """Of 24 intervals of 95 % five or more miss in less than 1 of 100 such rounds."""
+def test_few_are_named_beside_another_and_intervals_hold_the_truth_as_often_as_they_say(full_torture: bool) -> None:
+    """Of 24 events of 95 % five or more fail to come in less than 1 of 100 such rounds."""
     if not full_torture:
         pytest.skip("takes a few seconds for each press")
-    held = [
-        holds_the_truth(answered(effect, seed), effect, within=WITHIN.get(effect, 0.05))
-        for effect in HIDDEN
-        for seed in SEEDS
-    ]
-    assert len(held) == 24
+    cases = [(effect, seed) for effect in HIDDEN for seed in SEEDS]
+    assert len(cases) == 24
+    alone = [demand_first(answered(*case), case[0]) for case in cases]
+    held = [holds_the_truth(answered(*case), case[0], within=WITHIN.get(case[0], 0.05)) for case in cases]
+    assert alone.count(False) < 5
     assert held.count(False) < 5
 
 
@@ -100,11 +107,17 @@ def test_near_the_dead_centre_warm_links_and_a_frame_that_cools_are_one_curve(ef
     assert sorted(document["explanations"]) == [["warm_frame"], ["warm_links"]]
 
 
-def test_a_soft_frame_hides_in_the_scatter_of_the_joints_without_a_gauge_of_its_own(full_torture: bool) -> None:
-    """Deflection and tilt alone do not tell it: it is named or not, but never another."""
+@pytest.mark.parametrize("gauges", [SLIDER, (*SLIDER, *MORE["soft_frame"])], ids=["slider", "bearings"])
+def test_a_soft_frame_is_one_with_a_frame_that_was_never_measured(gauges: Any, full_torture: bool) -> None:
+    """It is named or not, but never another; where it is not, its stiffness as built is called what may stand for it.
+
+    Gauges at the slider alone do not even part it from soft joints.
+    """
     if not full_torture:
         pytest.skip("takes a few seconds for each press")
     for seed in SEEDS:
-        document = diagnosed(record(with_hidden(drawn(seed), "soft_frame"), SLIDER, seed=seed), PARTS)
+        document = diagnosed(record(with_hidden(drawn(seed), "soft_frame"), gauges, seed=seed), PARTS)
         assert "soft_frame" in document["hidden_in_tolerances"]
-        assert {cause["effect"] for cause in document["causes"]} <= {"soft_frame"}
+        assert all("soft_frame" in names for names in document["explanations"])
+        if document["explanations"] and document["verdict"] == "undecided":
+            assert any("ground_stiffness_vertical" in reason for reason in document["undecided"])
