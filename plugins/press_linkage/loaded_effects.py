@@ -82,7 +82,7 @@ EFFECTS: list[Effect[LoadedPress, LoadedAnswers]] = [
            unknowns=[Unknown("loss", 0, 95, "%", "share of the stiffness at the ground joints that is missing")],
            looks_like="the slider gives way more, in proportion to the force, and tilts more under one beside the "
                       "middle; so it does with soft joints, until gauges at both ground joints, ground_rise_1 and "
-                      "ground_rise_2, show the frame, and with a frame built softer, until its stiffness as new is known",
+                      "ground_rise_2, show the frame, and with a frame built softer, until its stiffness is known",
            remedy="Tighten the tie rods and look for cracks at the bearings of the upper knee links.",
            why="tie rods have lost their preload, or the frame is cracked at a bearing",
            source="frame and link as springs in series"),
