@@ -109,15 +109,17 @@ def test_near_the_dead_centre_warm_links_and_a_frame_that_cools_are_one_curve(ef
 
 @pytest.mark.parametrize("gauges", [SLIDER, (*SLIDER, *MORE["soft_frame"])], ids=["slider", "bearings"])
 def test_a_soft_frame_is_one_with_a_frame_that_was_never_measured(gauges: Any, full_torture: bool) -> None:
-    """It is named or not, but never another; where it is not, its stiffness as built is called what may stand for it.
+    """It is named or not, but never another; with gauges at the bearings, the stiffness as built may stand for it.
 
     Gauges at the slider alone do not even part it from soft joints.
     """
     if not full_torture:
         pytest.skip("takes a few seconds for each press")
+    reasons: list[str] = []
     for seed in SEEDS:
         document = diagnosed(record(with_hidden(drawn(seed), "soft_frame"), gauges, seed=seed), PARTS)
         assert "soft_frame" in document["hidden_in_tolerances"]
         assert all("soft_frame" in names for names in document["explanations"])
-        if document["explanations"] and document["verdict"] == "undecided":
-            assert any("ground_stiffness_vertical" in reason for reason in document["undecided"])
+        reasons += document["undecided"]
+    assert reasons
+    assert gauges == SLIDER or all("ground_stiffness_vertical" in reason for reason in reasons)
