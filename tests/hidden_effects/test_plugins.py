@@ -57,6 +57,7 @@ NAMED = [
     TILTED_ROLLER,
     screw(seed=7, hidden={"mesh_resonance": RESONANCE}, results=(ROLLER,), count=120),
     screw(seed=11, hidden={"roller_pitch_error": {"deviation": 0.2}}, results=(DEFLECTION,), count=40),
+    screw(seed=12, hidden={"soft_threads": {"compliance": 20}}, results=(DEFLECTION,), count=30),
     drive(
         seed=31,
         hidden={"hysteresis": {"loop": 200, "torque_scale": 0.16}, "eccentricity": {"cosine": -12, "sine": 16}},
