@@ -304,10 +304,12 @@ def measured(design: str, count: int, rng: np.random.Generator) -> Rows:
 
     warm = rng.uniform(20, 45, count)
     crank = np.random.default_rng(count).uniform(0, 360, count)
-    disc = warm + rng.uniform(-2, 8, count)
-    turns = np.floor(TEETH * rng.uniform(0, 1, count)) * (
-        design != "one_turn"
-    )  # of the crank, before the one in which the backlash is read
+
+    def within_turns(crank: Array) -> Array:
+        """Output angles at which the crank stands so, in any of its turns that the design allows."""
+        turns = np.floor(TEETH * rng.uniform(0, 1, count)) * (design != "one_turn")
+        return np.asarray((-(crank + 360 * turns) / TEETH) % 360)
+
     return Rows(
         time=hours + LIFE * set_of * 1.02,
         working_time=hours,
@@ -315,8 +317,8 @@ def measured(design: str, count: int, rng: np.random.Generator) -> Rows:
         output_speed=by_set(8, 20, SPEED),
         oil_temperature=by_set(35, 60, 47.0),
         housing_temperature=warm,
-        disc_temperature=disc,
-        output_angle=(-(crank + 360 * turns) / TEETH) % 360,
+        disc_temperature=warm + rng.uniform(-2, 8, count),
+        output_angle=within_turns(crank),
         crank_angle=crank,
         measuring_torque=rng.uniform(0, 300, count),
         direction=rng.choice([-1.0, 1.0], count),
