@@ -70,6 +70,13 @@ def runout(reducer: Reducer, *, offset: Float, direction: Float, crank_angle: Fl
     return _taken(reducer, off, crank_angle, stands, moved)
 
 
+def disc_phase(reducer: Reducer, *, phase: Float, crank_angle: Float) -> Reducer:
+    """The crank of the second disc is not half a turn ahead: one disc stops each end of the play before the other."""
+    off = replace(reducer, disc_phase_error=reducer.disc_phase_error + phase)
+    pins = pin_circle_offset(reducer)
+    return _taken(reducer, off, crank_angle, pins, pins)
+
+
 def toothing_runout(
     reducer: Reducer, *, offset: Float, direction: Float, crank_angle: Float, output_angle: Float
 ) -> Reducer:
@@ -79,13 +86,6 @@ def toothing_runout(
     off = replace(reducer, toothing_x=moved.real, toothing_y=moved.imag)
     pins, turned = pin_circle_offset(reducer), np.exp(1j * output_angle)
     return _taken(reducer, off, crank_angle, pins - stands * turned, pins - moved * turned)
-
-
-def disc_phase(reducer: Reducer, *, phase: Float, crank_angle: Float) -> Reducer:
-    """The crank of the second disc is not half a turn ahead: one disc stops each end of the play before the other."""
-    off = replace(reducer, disc_phase_error=reducer.disc_phase_error + phase)
-    pins = pin_circle_offset(reducer)
-    return _taken(reducer, off, crank_angle, pins, pins)
 
 
 def _taken(reducer: Reducer, off: Reducer, crank: Float, before: OffsetArray, after: OffsetArray) -> Reducer:
@@ -196,8 +196,9 @@ def duty_share(reducer: Reducer, *, idle: Float) -> Reducer:
     return replace(reducer, loaded_share=reducer.loaded_share * (1.0 - idle))
 
 
-# They act in the order declared: first what changes the clearance, then what changes the wear and what is felt of it,
-# then what is in the reading alone. A new effect is a function beside the others and one more entry in EFFECTS.
+# They act in the order declared: first what changes the clearance (toothing_runout after runout and disc_phase, as it
+# alone knows where the output stands), then what changes the wear and what is felt of it, then what is in the reading
+# alone. A new effect is a function beside the others and one more entry in EFFECTS.
 
 REGRESSION = (
     "Janakiraman, V., Li, S., Kahraman, A., An investigation of the impacts of contact parameters on wear coefficient, "
@@ -226,6 +227,13 @@ EFFECTS: list[Effect[Reducer, Wear]] = [
            why="the circle of the pins, or the bore of the housing that holds it, is off the axis of the output; two "
                "opposite discs then touch at opposite ends of the play",
            source="geometry of two opposite cycloid discs, derived on the theory page of the calculation"),
+    Effect("disc_phase", on_inputs=disc_phase, needs=[CRANK_ANGLE], acts_at_reference=True,
+           unknowns=[Unknown("phase", -60, 60, "arcmin", "of the second crank, beyond half a turn")],
+           looks_like="alone a constant, like an offset of the gauge; beside runout the two dips per turn of the crank "
+                      "become unlike",
+           remedy="Measure the angle between the throws of the crankshafts, and replace shafts that are off.",
+           why="both throws of a crankshaft are ground one after the other",
+           source="geometry of two opposite cycloid discs, derived on the theory page of the calculation"),
     Effect("toothing_runout", on_inputs=toothing_runout, needs=[CRANK_ANGLE, OUTPUT_ANGLE], acts_at_reference=True,
            unknowns=[Unknown("offset", -10, 10, "um",
                              "of the toothing from the bores, mean of both discs; alone either sign looks the same"),
@@ -235,13 +243,6 @@ EFFECTS: list[Effect[Reducer, Wear]] = [
            remedy="Grind the toothing true to the bores for the crank bearings, or measure both discs and mount them "
                   "with their offsets opposite.",
            why="the toothing of the discs is off the bores that hold them, and both discs come from one setting",
-           source="geometry of two opposite cycloid discs, derived on the theory page of the calculation"),
-    Effect("disc_phase", on_inputs=disc_phase, needs=[CRANK_ANGLE], acts_at_reference=True,
-           unknowns=[Unknown("phase", -60, 60, "arcmin", "of the second crank, beyond half a turn")],
-           looks_like="alone a constant, like an offset of the gauge; beside runout the two dips per turn of the crank "
-                      "become unlike",
-           remedy="Measure the angle between the throws of the crankshafts, and replace shafts that are off.",
-           why="both throws of a crankshaft are ground one after the other",
            source="geometry of two opposite cycloid discs, derived on the theory page of the calculation"),
     Effect("bearing_wear", on_inputs=bearing_wear,
            unknowns=[Unknown("wear", 0, 10, "um",

@@ -82,6 +82,23 @@ def test_a_crank_out_of_phase_takes_a_constant_and_makes_the_dips_unlike(minutes
     assert found == pytest.approx(taken(CRANKS, pins, ahead=phase) - taken(CRANKS, pins), abs=4 * 0.0012)
 
 
+def test_all_three_together_are_one_machine() -> None:
+    """They act one after another, and what they take together is no sum: it is that of the whole geometry."""
+    cranks = np.linspace(0, 2 * pi * 39, 300)
+    on = {
+        "runout": {"offset": 2 * UM, "direction": 5.2}, "disc_phase": {"phase": 3 * MINUTE},
+        "toothing_runout": {"offset": 1.5 * UM, "direction": 0.9},
+    }  # fmt: skip
+    at = {"crank_angle": cranks % (2 * pi), "output_angle": -cranks / 39 % (2 * pi)}
+    moved = reducer()
+    for name in (name for name in RV_WEAR.effects if name in on):
+        effect = RV_WEAR.effects[name]
+        moved = effect.on_inputs(moved, **on[name], **{need.name: at[need.name] for need in effect.needs})
+    pins, bores = (across(size, float(np.degrees(way))) for size, way in ((2.0, 5.2), (1.5, 0.9)))
+    exact = taken(cranks, pins, toothing=np.stack([bores] * 2), ahead=3 * MINUTE)
+    assert -np.asarray(moved.runout_gap) / ARM / MINUTE == pytest.approx(exact, abs=2 * 0.0012 * (1 + 3.5 / 30) ** 2)
+
+
 OFF = {"offset": np.hypot(2, 1) * UM, "direction": -np.arctan2(1, 2)}  # 2 um along x and -1 um along y
 REACHES = [  # the effect, its unknowns, the inputs that say the same, and the parts of the machine
     ("runout", OFF, {"pin_circle_x": "2 um", "pin_circle_y": "-1 um"}, {"pins": (2e-3, -1e-3)}),
