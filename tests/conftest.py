@@ -13,12 +13,15 @@ from xdist.scheduler import WorkStealingScheduling
 
 from one_browser import browser, chromium, firefox, player  # noqa: F401
 from shared import GUESTS, ROOT, TESTS, build_wheels, copied_guest, made_once
+from truing.cli import MOST_NEW
 from truing.executors import WorkerPool, open_executor
 from workbench_browser import workbench  # noqa: F401
 
 collect_ignore = ["third_party", "data"]
 sys.path.append(str(TESTS / "data"))
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # the commands that tests run compile the kernel once, not each
+sys.dont_write_bytecode = False  # and pytest rewrites the assertions of a test file once, not in every process
+gc.set_threshold(MOST_NEW)  # as the program does; at 700 a worker spends a tenth of its time looking for rings
 os.environ.setdefault("MYPY_CACHE_DIR", str(ROOT / ".mypy_cache"))  # one check of types reads what another has
 for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")  # the workers of the suite share the cores; a test of threads sets its own

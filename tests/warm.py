@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import multiprocessing
 import os
 import runpy
@@ -87,6 +88,7 @@ def _become(
     words: list[str], folder: Path, environment: Mapping[str, str], said: tuple[Path, Path], paths: list[str]
 ) -> None:
     """Be this command, in a process that was just forked."""
+    gc.freeze()  # else it looks through all that was imported, and copies every page of it
     os.setsid()
     for number, file in enumerate(said, start=1):
         opened = os.open(file, os.O_WRONLY | os.O_CREAT | os.O_APPEND)

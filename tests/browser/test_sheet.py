@@ -196,9 +196,16 @@ def test_the_dark_sheet_is_dark_and_the_printed_one_never(page: Any) -> None:
 
 
 def test_every_figure_has_a_title_for_those_who_cannot_see_it(page: Any) -> None:
-    figures = page.evaluate("""() => [...document.querySelectorAll('.drawing > svg')].map(node => [
-        node.getAttribute('role'), document.getElementById(node.getAttribute('aria-labelledby'))?.textContent || '',
-        node.getBoundingClientRect().width, node.getBoundingClientRect().height])""")
+    """What is folded is opened to be measured, and folded again."""
+    figures = page.evaluate("""() => {
+        const folded = [...document.querySelectorAll('details:not([open])')];
+        folded.forEach(node => node.open = true);
+        const found = [...document.querySelectorAll('.drawing > svg')].map(node => [
+            node.getAttribute('role'), document.getElementById(node.getAttribute('aria-labelledby'))?.textContent || '',
+            node.getBoundingClientRect().width, node.getBoundingClientRect().height]);
+        folded.forEach(node => node.open = false);
+        return found;
+    }""")
     assert figures
     assert [figure for figure in figures if figure[0] != "img" or not figure[1].strip()] == []
     assert [figure for figure in figures if figure[2] < 200 or figure[3] < 60] == []

@@ -147,6 +147,13 @@ def nodes_of(file: Path) -> list[ast.AST]:
     return list(ast.walk(ast.parse(file.read_text(encoding="utf-8"))))
 
 
+@pytest.fixture(scope="module", autouse=True)
+def _nodes_are_let_go() -> Iterator[None]:
+    """A million of them would be looked through, whenever Python looks for rings of objects, in all later tests."""
+    yield
+    nodes_of.cache_clear()
+
+
 def _libraries_of(file: Path) -> Iterator[str]:
     for node in nodes_of(file):
         names: list[str] = []

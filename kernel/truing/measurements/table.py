@@ -8,8 +8,9 @@ import re
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
+from functools import cache, partial
 from io import StringIO
-from itertools import chain
+from itertools import chain, groupby
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, TypeGuard
@@ -405,6 +406,9 @@ EXCEL = TableStyle(MARK, ";", ",", "\r\n", is_guarded=True)
 """What a spreadsheet with a decimal comma opens by a double click."""
 
 
+LINE_ENDS = re.compile(r"[\r\n]+")
+
+
 def table_text(headers: Sequence[str], columns: Sequence[Iterable[Any]], *, form: TableStyle = PLAIN) -> str:
     """Return columns under headers such as "depth [um]" as the text of a file; the numbers are in these units already.
 
@@ -420,23 +424,28 @@ def table_text(headers: Sequence[str], columns: Sequence[Iterable[Any]], *, form
         for quoting in (csv.QUOTE_MINIMAL, csv.QUOTE_ALL)
     )
     alone = [""] if form.delimiter != "," and len(headers) == 1 else []
-    # plain Python values are written much faster than numpy's
-    plain = (column.tolist() if hasattr(column, "tolist") else column for column in columns)
-    for values in chain([headers], zip(*plain, strict=True)):
-        row = [_cell(value, form) for value in values]
+    cells = [_cells(headers, form)], zip(*(_cells(each, form) for each in columns), strict=True)
+    for like_a_comment, rows in groupby(chain(*cells), lambda row: bool(row) and row[0].lstrip()[:1] == "#"):
         # a line that begins with # would be a comment; a column alone must show what parts the cells
-        (everything if row and row[0].lstrip().startswith("#") else minimal).writerow(row + alone)
+        (everything if like_a_comment else minimal).writerows([*row, *alone] if alone else row for row in rows)
     return stream.getvalue()
 
 
+def _cells(column: Iterable[Any], form: TableStyle) -> list[str]:
+    """Return the cells of a column; a word that comes again is made once, and plain values instead of numpy's."""
+    words: Callable[[str], str] = cache(partial(_cell, form=form))
+    values = column.tolist() if hasattr(column, "tolist") else column
+    return ["" if value is None else words(value) if type(value) is str else _cell(value, form) for value in values]
+
+
 def _cell(value: Any, form: TableStyle) -> str:
-    if value is None:
-        return ""
-    if isinstance(value, bool):
-        return str(value).lower()
     if isinstance(value, float):
         text = repr(value) if math.isfinite(value) else "" if math.isnan(value) else str(value)
+        if form.decimal == ".":
+            return text
         text = text.replace(".", form.decimal)
         return f"{text}0" if EITHER.fullmatch(text) else text
-    text = " ".join(re.split(r"[\r\n]+", str(value)))  # a cell ends in the line in which it begins
+    if isinstance(value, bool):
+        return str(value).lower()
+    text = LINE_ENDS.sub(" ", str(value))  # a cell ends in the line in which it begins
     return guarded(text) if form.is_guarded and isinstance(value, str) else text

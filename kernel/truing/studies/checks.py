@@ -352,7 +352,7 @@ def as_number(value: Any) -> Any:
     array = np.asarray(value, dtype=float)
     if array.ndim == 0:
         return float(array) if np.isfinite(array) else None
-    return [as_number(member) for member in array]
+    return array.tolist() if np.isfinite(array).all() else [as_number(member) for member in array]
 
 
 # The four verdicts and their words, apart from what calculates: the command line knows them before it loads that
