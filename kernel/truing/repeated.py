@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from truing.declare.batch import FailedRows, watching
+from truing.declare.chain import carried_by
 from truing.declare.fields import read, with_values
 from truing.declare.model import Model
 
@@ -40,9 +41,11 @@ _ANSWERS: OrderedDict[bytes, _Known] = OrderedDict()
 def results_of(model: Model[Any, Any], inputs: Any, repeats: int, failed: FailedRows) -> Any:
     """Return the results of a model for rows that come ``repeats`` times, one copy of all behind another.
 
-    It is called for one copy, and not at all where it was called with these inputs before. Where the copies differ it
-    is called for all. What fails is noted in ``failed``.
+    It is called for one copy, and not at all where it was called with these inputs before. Where the copies differ, or
+    effects act inside a chain, it is called for all. What fails is noted in ``failed``.
     """
+    if carried_by(inputs).acting:
+        return model.function(inputs)
     rows = len(failed.codes)
     values = {field.path: read(inputs, field.path) for field in model.input_fields.values()}
     arrays = {path: value for path, value in values.items() if isinstance(value, np.ndarray)}

@@ -84,7 +84,14 @@ def graph_figure(chain: Chain) -> Figure:
             x = MARGIN + BOX_WIDTH / 2 + place * (BOX_WIDTH + GAP)
             centres[name] = x, high * (1 - (index + 0.5) / len(names))
             box = {"boxstyle": "round,pad=0.5", "facecolor": "#eef2f6", "edgecolor": "#333333", "linewidth": 0.8}
-            axes.text(*centres[name], name or chain.last.name, ha="center", va="center", bbox=box, fontsize=9)
+            axes.text(
+                *centres[name],
+                chain.name_in_words(name).replace(", ", "\n"),
+                ha="center",
+                va="center",
+                bbox=box,
+                fontsize=9,
+            )
     for (source, owner), words in taken.items():
         (x, y), (to_x, to_y) = centres[source], centres[owner]
         start, end = (x + BOX_WIDTH / 2 - 0.1, y), (to_x - BOX_WIDTH / 2 + 0.1, to_y)
@@ -99,4 +106,4 @@ def head_of_calculation(chain: Chain, of: str) -> Chapter:
     own = chain.model_of(of)
     said = f"Names begin with {prefix_of(of)} in files." if of else "Names stand in files as they are."
     words = [Paragraph(own.summary)] if own.summary else []
-    return Chapter(f"{own.title} ({own.name})", (*words, Paragraph(said, "aside")))
+    return Chapter(f"{own.title} ({chain.name_in_words(of)})", (*words, Paragraph(said, "aside")))
