@@ -18,7 +18,7 @@ from typing import Any, Final, TypeVar
 
 import numpy as np
 
-from truing.declare.batch import either, feasible, reasons_of_part
+from truing.declare.batch import FailedRows, either, feasible, reasons_of_part
 from truing.declare.correlations import Correlated
 from truing.declare.dynamics import Dynamics
 from truing.declare.fields import (
@@ -37,6 +37,7 @@ from truing.declare.fields import (
 from truing.declare.goals import Objective, PriceByChoice, Require, Vary
 from truing.declare.model import Model, Record, Section
 from truing.declare.near_miss import near_miss
+from truing.declare.remembered import OF_SOURCES, answered_before
 from truing.declare.sources import ActsOn, Condition, Effect, ErrorSource, Tolerance
 from truing.declare.spreads import Band, ByChoice, Drawn, Grade, Spread
 from truing.declare.taken import Taken
@@ -162,11 +163,23 @@ class Chain:
         inputs, results = carried.known.get(name, (None, None))
         if inputs is own:
             return results
-        with reasons_of_part(prefix_of(name)):
-            results = self.sources[name].function(own)
-        for act in carried.acting.get(name, ()):
+        acting = carried.acting.get(name, ())
+        with reasons_of_part(prefix_of(name)) as failed:
+            results = self._calculated(name, own, None if acting else failed)
+        for act in acting:
             results = act(own, results)
         return results
+
+    def _calculated(self, name: str, own: Any, failed: FailedRows | None) -> Any:
+        """Calculate a source; of many rows, whose failures are noted in ``failed``, what it answered is remembered."""
+        source = self.sources[name]
+        values = {field.path: read(own, field.path) for field in source.input_fields.values() if failed is not None}
+        if failed is None or not any(isinstance(value, np.ndarray) and value.ndim for value in values.values()):
+            return source.function(own)
+        rows, results = len(failed.codes), len(source.own_result_fields)
+        known = answered_before(OF_SOURCES, source.function, own, values, rows, results)
+        failed.take(known.failed)
+        return known.results
 
     def _taken_in(self, own: Any, name: str, answers: Mapping[str, tuple[Any, Any]]) -> Any:
         """Fill the inputs of one calculation with what those before it answered; what is stated stays."""
