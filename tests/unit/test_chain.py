@@ -460,3 +460,23 @@ def test_the_gear_stage_loads_the_discs_of_the_reducer() -> None:
     both = [setup.model.read_results(evaluate(setup)) for setup in (chain, alone)]
     assert both[0]["backlash"] == pytest.approx(both[1]["backlash"], rel=1e-12)
     assert both[0]["rv_gearing_output_torque"] == pytest.approx(known["output_torque"], rel=1e-12)
+
+
+def test_a_source_is_calculated_once_for_all_points_of_a_curve() -> None:
+    """The radius runs over three values; the motor, which knows nothing of it, is called once for the same machines."""
+    calls: list[int] = []
+
+    def counted(given_motor: chained_pins.Motor) -> chained_pins.Turning:
+        calls.append(np.size(given_motor.power))
+        return chained_pins.motor(given_motor)
+
+    guest = ModuleType("guest")
+    models = [replace(chained_pins.MOTOR, function=counted), chained_pins.PEG]
+    guest.truing_models = hookimpl(lambda: models)  # type: ignore[attr-defined]
+    peg = loaded(Kernel([guest]), "guest.peg").taking(torque=from_model("motor").torque)
+    curve = {"over": "radius", "at": "40..60 mm", "points": "3", "draws": "5000"}
+    asked = {"studies.run": '["reliability"]'} | {f"studies.reliability.{name}": text for name, text in curve.items()}
+    run = peg.run(set=asked, progress=False)
+    assert [rows for rows in calls if rows > 500] == [5000, 2048, 2048, 904]
+    said = run.document["studies"]["reliability"]["load"]
+    assert said["curve"]["probability"][1] == said["probability"]  # the radius is 50 mm
