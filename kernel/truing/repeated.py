@@ -39,7 +39,7 @@ def results_of(model: Model[Any, Any], inputs: Any, repeats: int, failed: Failed
     one = {path: value[:count] for path, value in columns.items()}
     of_one = with_values(inputs, one)
     results = len(model.own_result_fields)
-    known = answered_before(OF_MODELS, model.function, of_one, {**values, **one}, count, results)
+    known = answered_before(OF_MODELS, model.function, of_one, {**values, **one}, rows=count, results=results)
     _note(failed, known.failed, repeats)
     flat, fields = model.read_results(known.results), model.own_result_fields
     answers = {name: value for name, value in flat.items() if isinstance(value, np.ndarray) and value.ndim}

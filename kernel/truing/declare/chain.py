@@ -177,7 +177,7 @@ class Chain:
         if failed is None or not any(isinstance(value, np.ndarray) and value.ndim for value in values.values()):
             return source.function(own)
         rows, results = len(failed.codes), len(source.own_result_fields)
-        known = answered_before(OF_SOURCES, source.function, own, values, rows, results)
+        known = answered_before(OF_SOURCES, source.function, own, values, rows=rows, results=results)
         failed.take(known.failed)
         return known.results
 

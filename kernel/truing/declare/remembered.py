@@ -34,7 +34,7 @@ OF_SOURCES: Final[Memory] = OrderedDict()
 
 
 def answered_before(
-    memory: Memory, function: Callable[[Any], Any], inputs: Any, values: Mapping[tuple[str, ...], Any],
+    memory: Memory, function: Callable[[Any], Any], inputs: Any, values: Mapping[tuple[str, ...], Any], *,
     rows: int, results: int,
 ) -> Known:  # fmt: skip
     """Return what a calculation answers for so many rows, called anew only where it is not remembered.
