@@ -155,7 +155,9 @@ def of_input(setup: Setup, name: str) -> dict[str, Any]:
             require_words(require, "") for require in _requires(setup) if name in {require.limit, require.reliability}
         ],
         "varied": [
-            f"follows {vary.by}" if vary.by else f"may be chosen from {vary.low} to {vary.high}"
+            f"follows {vary.by}"
+            if vary.by
+            else f"may be chosen from {vary.low} to {vary.high}" + (f" in steps of {vary.step}" if vary.step else "")
             for vary in model.objectives
             if isinstance(vary, Vary) and vary.input == name
         ],

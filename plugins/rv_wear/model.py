@@ -35,7 +35,7 @@ RV_WEAR = Model(
     function=rv_wear,
     errors=[*TOLERANCES, *EFFECTS],
     objectives=[
-        Vary("equidistant_modification", "-0.045 mm", "0.004 mm"),
+        Vary("equidistant_modification", "-0.045 mm", "0.004 mm", step="0.1 um"),
         Vary("shift_modification", by="equidistant_modification - design_clearance"),
         Minimise("tolerance_price"),
         Minimise("max_wear"),

@@ -1,17 +1,18 @@
 """Wear of the flank, step by step, for many meshes at once, and the largest wear after the working time."""
 
+from collections import OrderedDict
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from itertools import islice
 from threading import Lock
+from typing import Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rv_wear import geometry
 from rv_wear.forces import Loads, holding, refuse, shared, start_scale
-from rv_wear.geometry import NUMBERS, Choices, Mesh, Teeth, columns_of, mesh_of, some_pins, teeth_of
+from rv_wear.geometry import Choices, Mesh, Teeth, columns_of, mesh_of, some_of, some_pins, teeth_of
 from rv_wear.quantities import Reducer
 from truing import Array, Float, either, feasible
 
@@ -254,8 +255,12 @@ def wear_at(teeth: Teeth, exposure: Array) -> Array:
 
 CHUNK = 256  # meshes at a time: their contacts stay in the cache of a core
 FEW_ROWS = 20  # of a mesh: looked up one by one they take longer
-GROUPS_REMEMBERED = 16  # a fit asks for the same rows again and again
-SINGLES_REMEMBERED = 256  # a search for the least cost comes back to the same designs
+MOST_REMEMBERED = 4096  # meshes: a fit and a search come back to the same ones
+NEW = -1
+
+Answer = TypeVar("Answer")
+MeshKey = tuple[bytes, Choices]
+"""A mesh as something to remember an answer by: its numbers as bytes, and its choices."""
 
 
 @dataclass(frozen=True)
@@ -273,23 +278,6 @@ class Unworn:
     contact_part: Array
     lowest_equidistant: Array
     first_step: Array
-
-
-HistoryKey = tuple[bytes, int, Choices]
-"""Meshes as something to remember an answer by: their numbers as bytes, how many they are, and their choices."""
-
-
-def key_of(mesh: Mesh, places: NDArray[np.intp]) -> HistoryKey:
-    """Some of many meshes (m,)."""
-    table = np.stack([np.asarray(column)[places] for column in columns_of(mesh)])
-    return table.tobytes(), len(places), mesh.choices
-
-
-def mesh_from(key: HistoryKey) -> Mesh:
-    """The meshes of a key."""
-    numbers, count, choices = key
-    columns: list[Float] = list(np.frombuffer(numbers).reshape(-1, count))
-    return Mesh(**dict(zip(NUMBERS, columns, strict=True)), choices=choices)
 
 
 def unworn(mesh: Mesh) -> Unworn:
@@ -311,18 +299,6 @@ def unworn(mesh: Mesh) -> Unworn:
     )
 
 
-@lru_cache(maxsize=GROUPS_REMEMBERED)
-def unworn_of_group(key: HistoryKey) -> Unworn:
-    """Solve the new meshes of a key."""
-    return unworn(mesh_from(key))
-
-
-@lru_cache(maxsize=SINGLES_REMEMBERED)
-def unworn_of_single(key: HistoryKey) -> Unworn:
-    """Solve the one new mesh of a key."""
-    return unworn(mesh_from(key))
-
-
 class GrowingHistory:
     """The histories of some meshes, which go on as far as they are asked for; threads may share them."""
 
@@ -332,60 +308,100 @@ class GrowingHistory:
         self._told = Histories(*(values[None] for values in self._nodes[0]))
         self._lock = Lock()
 
-    def up_to(self, exposure: Array) -> Histories:
-        """Return the histories to at least an exposure (m,) each, or over the most steps."""
+    def up_to(self, columns: NDArray[np.intp], exposure: Array) -> Histories:
+        """Return the histories, those of ``columns`` to at least an exposure each, or over the most steps."""
         with self._lock:
-            if (self._nodes[-1][0] < exposure).any():
-                self._nodes.extend(self._until(exposure))
+            if (self._nodes[-1][0][columns] < exposure).any():
+                self._nodes.extend(self._until(columns, exposure))
                 self._told = Histories(*(np.array(column) for column in zip(*self._nodes, strict=True)))
             return self._told
 
-    def _until(self, exposure: Array) -> Iterator[WearNode]:
+    def _until(self, columns: NDArray[np.intp], exposure: Array) -> Iterator[WearNode]:
         for node in self._more:
             yield node
-            if (node[0] >= exposure).all():
+            if (node[0][columns] >= exposure).all():
                 return
 
 
-@lru_cache(maxsize=GROUPS_REMEMBERED)
-def history_of_group(key: HistoryKey) -> GrowingHistory:
-    """The histories of the meshes of a key."""
-    return GrowingHistory(teeth_of(mesh_from(key)))
+class Remembered(Generic[Answer]):
+    """What is known of meshes: each is calculated once, with the others that were asked for at the same time.
+
+    The groups asked for longest ago are forgotten first. Threads may share it.
+    """
+
+    def __init__(self, calculate: Callable[[Mesh], Answer]) -> None:
+        self._calculate = calculate
+        self._groups: OrderedDict[int, tuple[list[MeshKey], Answer]] = OrderedDict()
+        self._group_of: dict[MeshKey, tuple[int, int]] = {}
+        self._calculated, self._lock = 0, Lock()
+
+    def of(self, mesh: Mesh, order: NDArray[np.intp]) -> Iterator[tuple[NDArray[np.intp], NDArray[np.intp], Answer]]:
+        """Give the meshes (m,) in groups: their places, their columns in the answer of the group, and that answer.
+
+        New meshes are calculated in this order, ``CHUNK`` at a time.
+        """
+        table = np.stack([np.asarray(column) for column in columns_of(mesh)], axis=1)
+        keys = [(row.tobytes(), mesh.choices) for row in table]
+        with self._lock:
+            known = [self._group_of.get(key, (NEW, 0)) for key in keys]
+            answers = {group: self._groups[group][1] for group in {group for group, _ in known} - {NEW}}
+            for group in answers:
+                self._groups.move_to_end(group)
+        groups, columns = np.array(known, dtype=np.intp).reshape(-1, 2).T
+        for group, answer in answers.items():
+            places = np.flatnonzero(groups == group)
+            yield places, columns[places], answer
+        rest = order[groups[order] == NEW]
+        for start in range(0, len(rest), CHUNK):
+            places = rest[start : start + CHUNK]
+            answer = self._calculate(some_of(mesh, places))
+            self._keep([keys[place] for place in places], answer)
+            yield places, np.arange(len(places)), answer
+
+    def _keep(self, keys: list[MeshKey], answer: Answer) -> None:
+        with self._lock:
+            group, self._calculated = self._calculated, self._calculated + 1
+            self._groups[group] = keys, answer
+            self._group_of.update((key, (group, column)) for column, key in enumerate(keys))
+            while sum(len(own) for own, _ in self._groups.values()) > MOST_REMEMBERED:
+                oldest, (own, _) = self._groups.popitem(last=False)
+                for key in own:
+                    if self._group_of[key][0] == oldest:
+                        del self._group_of[key]
+
+    def forget(self) -> None:
+        """Forget all that was calculated."""
+        with self._lock:
+            self._groups.clear()
+            self._group_of.clear()
 
 
-@lru_cache(maxsize=SINGLES_REMEMBERED)
-def history_of_single(key: HistoryKey) -> GrowingHistory:
-    """The history of the one mesh of a key."""
-    return GrowingHistory(teeth_of(mesh_from(key)))
+UNWORN = Remembered(unworn)
+HISTORIES = Remembered(lambda mesh: GrowingHistory(teeth_of(mesh)))
 
 
 def forget() -> None:
     """Forget all that was calculated."""
-    for remembered in (unworn_of_group, unworn_of_single, history_of_group, history_of_single):
-        remembered.cache_clear()
-
-
-def groups(order: NDArray[np.intp]) -> list[NDArray[np.intp]]:
-    """Part meshes into groups that are calculated at once."""
-    return [order[start : start + CHUNK] for start in range(0, len(order), CHUNK)]
+    UNWORN.forget()
+    HISTORIES.forget()
 
 
 def all_unworn(mesh: Mesh, count: int) -> Unworn:
     """The new meshes, all of them."""
-    solved = unworn_of_single if count == 1 else unworn_of_group
-    parts = [solved(key_of(mesh, places)) for places in groups(np.arange(count))]
-    return Unworn(**{
-        name: np.concatenate([np.empty(0), *(getattr(part, name) for part in parts)])
-        for name in Unworn.__dataclass_fields__
-    })  # fmt: skip
+    solved = {name: np.empty(count) for name in Unworn.__dataclass_fields__}
+    for places, columns, new in UNWORN.of(mesh, np.arange(count)):
+        for name, values in solved.items():
+            values[places] = getattr(new, name)[columns]
+    return Unworn(**solved)
 
 
-def all_histories(mesh: Mesh, reach: Array, first_step: Array) -> Iterator[tuple[NDArray[np.intp], Histories]]:
-    """Histories to an exposure (m,) each, in groups of about the same length: the places of their meshes, and they."""
-    order = np.argsort(reach / first_step, kind="stable") if len(reach) > CHUNK else np.arange(len(reach))
-    told = history_of_single if len(reach) == 1 else history_of_group
-    for places in groups(order):
-        yield places, told(key_of(mesh, places)).up_to(reach[places])
+def all_histories(
+    mesh: Mesh, reach: Array, first_step: Array
+) -> Iterator[tuple[NDArray[np.intp], NDArray[np.intp], Histories]]:
+    """Histories to an exposure (m,) each, in groups of about the same length: places of meshes, their columns, they."""
+    order = np.argsort(reach / first_step, kind="stable")
+    for places, columns, history in HISTORIES.of(mesh, order):
+        yield places, columns, history.up_to(columns, reach[places])
 
 
 # Reading wear off the histories: which exposure of which mesh a row of a batch has, and how deep it has worn
@@ -412,8 +428,8 @@ def depth_at(meshes: Meshes, new: Unworn, exposure: Float) -> tuple[Float, Float
     if meshes.place is not None:
         return _of_many(meshes, meshes.place, new, np.broadcast_to(rows, meshes.place.shape))
     depth = angle = np.full(rows.shape, np.nan)
-    for _, history in all_histories(meshes.mesh, _reach(rows, None, meshes.count), new.first_step):
-        depth, angle = _read(history, 0, rows)
+    for _, columns, history in all_histories(meshes.mesh, _reach(rows, None, meshes.count), new.first_step):
+        depth, angle = _read(history, int(columns[0]), rows)
     return (depth, angle) if np.ndim(exposure) else (np.float64(depth[0]), np.float64(angle[0]))
 
 
@@ -422,15 +438,15 @@ def _of_many(meshes: Meshes, place: NDArray[np.intp], new: Unworn, rows: Array) 
     depth, angle = np.full(rows.shape, np.nan), np.full(rows.shape, np.nan)
     order = np.argsort(place, kind="stable")
     ends = np.searchsorted(place[order], np.arange(meshes.count + 1))
-    for places, history in all_histories(meshes.mesh, _reach(rows, place, meshes.count), new.first_step):
+    for places, columns, history in all_histories(meshes.mesh, _reach(rows, place, meshes.count), new.first_step):
         counts = np.diff(ends)[places]
         if counts.sum() <= FEW_ROWS * len(places):  # all meshes at once
-            columns = np.repeat(np.arange(len(places)), counts)
+            own = np.repeat(columns, counts)
             mine = np.concatenate([order[ends[mesh] : ends[mesh + 1]] for mesh in places])
-            after = np.sum(~(history.exposure[:, columns] >= rows[mine]), axis=0)
-            depth[mine], angle[mine] = _between(history, columns, rows[mine], after)
+            after = np.sum(~(history.exposure[:, own] >= rows[mine]), axis=0)
+            depth[mine], angle[mine] = _between(history, own, rows[mine], after)
             continue
-        for column, mesh in enumerate(places):
+        for column, mesh in zip(columns, places, strict=True):
             mine = order[ends[mesh] : ends[mesh + 1]]
             depth[mine], angle[mine] = _read(history, column, rows[mine])
     return depth, angle

@@ -416,7 +416,8 @@ BOUNDS = {"low": "1 mm", "high": "2 mm"}
 
 
 def test_vary_takes_bounds_or_a_formula_and_require_one_limit() -> None:
-    for arguments in ({}, {"low": "1 mm"}, {**BOUNDS, "by": "b"}, {"low": "1 mm", "by": "b"}):
+    wrong = [{}, {"low": "1 mm"}, {**BOUNDS, "by": "b"}, {"low": "1 mm", "by": "b"}, {"step": "1 mm", "by": "b"}]
+    for arguments in wrong:
         with pytest.raises(DeclarationError, match="takes either low and high or by="):
             Vary("width", **arguments)
     for arguments in ({}, {"at_most": "1 MPa", "at_least": "0 MPa"}):

@@ -149,6 +149,18 @@ def test_whole_numbers_stay_whole_and_the_best_gear_is_found() -> None:
         assert all(design.inputs[name] == round(design.inputs[name]) for name in ("teeth", "starts"))
 
 
+def test_sizes_in_steps_are_whole_multiples_of_them() -> None:
+    steps = [Vary("module", "0.95 mm", "2.6 mm", step="0.25 mm"), Vary("teeth", "20", "23", step="2")]
+    goals = [*steps, Minimise("weight"), Maximise("ratio")]
+    best = optimum(setup_of(replace(GEAR, objectives=goals, errors=[])), SMALL)
+    chosen = {(round(design.inputs["module"] * 1e3, 9), design.inputs["teeth"]) for design in best.front}
+    assert chosen <= {(module, teeth) for module in (1, 1.25, 1.5, 1.75, 2, 2.25, 2.5) for teeth in (20, 22)}
+    assert chosen == {(1.75, 20), (1.75, 22)}  # 35 mm are asked for: 22 teeth of 1.5 mm are 33 mm
+    said = json.loads(written(best))["variables"]
+    assert said["module"] == {"kind": "input", "low": 1, "high": 2.5, "unit": "mm", "step": 0.25}
+    assert (said["teeth"]["low"], said["teeth"]["high"]) == (20, 22)
+
+
 def test_a_search_ends_when_every_design_was_tried() -> None:
     levels = [Vary("teeth", "20", "22"), Minimise("weight"), Maximise("ratio")]
     best = optimum(setup_of(replace(GEAR, objectives=levels, errors=[], studies=[])), SMALL)
@@ -436,6 +448,15 @@ WRONG = [
             ("count", "1.2", "1.8", " runs from 1.2 to 1.8"),
             ("size", "1 kg", "2 kg", ": '1 kg'"),
             ("force", "0 kN", "2 kN", ": force is 0 kN; it must"),
+        ]
+    ),
+    *(
+        ([Vary(name, low, high, step=step), Minimise("stress")], {}, f"study 'optimise': Vary('{name}'){words}")
+        for name, low, high, step, words in [
+            ("size", "1 mm", "2 mm", "3 mm", " runs from 1 mm to 2 mm in steps of 3 mm, which leaves nothing"),
+            ("size", "1 mm", "2 mm", "1 kg", ": '1 kg'"),
+            ("size", "1 mm", "2 mm", "-1 mm", ": step = -1 mm must lie above 0"),
+            ("count", "1", "5", "1.5", ": step = 1.5, but 'count' takes whole numbers"),
         ]
     ),
     (None, {"vary": ("spam",)}, "vary names 'spam', which parts may not choose. Did you mean 'span'"),

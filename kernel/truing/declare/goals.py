@@ -60,16 +60,20 @@ def prices_in(price: Price | PriceByChoice | None) -> tuple[Price, ...]:
 
 @dataclass(frozen=True)
 class Vary:
-    """An input that may be chosen between ``low`` and ``high`` (texts with units), or that a formula makes follow."""
+    """An input that may be chosen between ``low`` and ``high`` (texts with units), or that a formula makes follow.
+
+    With ``step``, a text with a unit, only whole multiples of it are chosen: what can be ordered or set.
+    """
 
     input: str
     low: str = ""
     high: str = ""
     by: str = ""
+    step: str = ""
 
     def __post_init__(self) -> None:
         bounds = [self.low, self.high]
-        if any(bounds) if self.by else not all(bounds):
+        if any([*bounds, self.step]) if self.by else not all(bounds):
             raise DeclarationError(f"Vary('{self.input}') takes either low and high or by=\"formula\"")
 
 

@@ -133,6 +133,8 @@ def unread_goals(model: Model[Any, Any]) -> Iterator[Unread]:
         if isinstance(goal, Vary) and not goal.by:
             for text in (goal.low, goal.high):
                 yield from _quantity(goal.input, text, known[goal.input].unit, f"Vary('{goal.input}')")
+            if goal.step and _is_known(unit := known[goal.input].unit):
+                yield from _quantity(goal.input, goal.step, difference_unit(unit), f"Vary('{goal.input}')")
         elif isinstance(goal, Require) and goal.result in known:
             unit, what = known[goal.result].unit, f"Require('{goal.result}')"
             unit = difference_unit(unit) if goal.kind == "within" and _is_known(unit) else unit

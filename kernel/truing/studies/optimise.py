@@ -74,7 +74,7 @@ from truing.studies.sampling import (
     scatter_of,
     with_tolerances,
 )
-from truing.units import read_quantity, to_si, unit_text
+from truing.units import difference_unit, read_quantity, to_si, unit_text
 
 ALGORITHMS = ("nsga2",)
 CHANCES = ("draws", "first_order")
@@ -398,12 +398,14 @@ def _by_aim(optimum: Optimum, values: Sequence[float]) -> dict[str, Any]:
 def _variable_json(variable: Any) -> dict[str, Any]:
     if variable.kind == "grade":
         return {"kind": "grade", "finest": variable.chosen(variable.low), "coarsest": variable.chosen(variable.high)}
-    return {
+    said = {
         "kind": {"number": "input", "whole": "whole", "width": "width"}[variable.kind],
         "low": printed(variable.low, variable.unit),
         "high": printed(variable.high, variable.unit),
         "unit": variable.unit,
     }
+    stepped = variable.step > 0 and variable.kind == "number"
+    return said | ({"step": printed(variable.step, difference_unit(variable.unit))} if stepped else {})
 
 
 def _kinds(optimum: Optimum) -> dict[str, dict[str, tuple[str, str]]]:
@@ -809,9 +811,9 @@ def _first(problem: Problem) -> Matrix:
 
 
 def _operators(problem: Problem) -> tuple[Any, Any]:
-    """Return the mutation and the repair that know whole variables."""
+    """Return the mutation and the repair that know variables with steps."""
     space = problem.space
-    discrete = np.flatnonzero([variable.discrete for variable in space.variables])
+    discrete = np.flatnonzero([variable.step > 0 for variable in space.variables])
 
     class Mutation(pymoo.PM):  # type: ignore[misc]  # pymoo has no types
         def _do(self, shell: Any, places: Any, *args: Any, random_state: Any = None, **kwargs: Any) -> Any:
@@ -1253,7 +1255,10 @@ ConstantAnswers = tuple[tuple[str, float], ...]
 
 @dataclass(frozen=True)
 class Variable:
-    """One thing that may be chosen, between ``low`` and ``high`` (SI, or places of grades), and where it starts."""
+    """One thing that may be chosen, between ``low`` and ``high`` (SI, or places of grades), and where it starts.
+
+    With a ``step`` above 0 it takes whole multiples of it only.
+    """
 
     name: str
     kind: VariableKind
@@ -1261,11 +1266,7 @@ class Variable:
     high: float
     unit: str
     start: float
-
-    @property
-    def discrete(self) -> bool:
-        """Whether it takes whole numbers only."""
-        return self.kind in {"whole", "grade"}
+    step: float = 0.0
 
     @property
     def is_input(self) -> bool:
@@ -1306,20 +1307,21 @@ class Space:
         return np.array([variable.start for variable in self.variables])
 
     def designs(self, units: Matrix) -> Matrix:
-        """Return designs (m, v) from places in the unit cube; whole variables are at their steps."""
-        low, high, discrete = self._ends()
+        """Return designs (m, v) from places in the unit cube; variables with steps are at one of them."""
+        low, high = self._ends()
         values = low + units * (high - low)
-        return np.where(discrete, np.rint(values), np.clip(values, low, high))
+        steps = np.array([variable.step for variable in self.variables])
+        stepped = steps * np.rint(values / np.where(steps > 0, steps, 1.0))
+        return np.where(steps > 0, stepped, np.clip(values, low, high))
 
     def units(self, designs: Matrix) -> Matrix:
         """Return the places of designs in the unit cube, where they lie outside of it those nearest to them."""
-        low, high, _ = self._ends()
+        low, high = self._ends()
         return np.clip((designs - low) / (high - low), 0.0, 1.0)
 
-    def _ends(self) -> tuple[Matrix, Matrix, NDArray[np.bool_]]:
+    def _ends(self) -> tuple[Matrix, Matrix]:
         low = np.array([variable.low for variable in self.variables])
-        high = np.array([variable.high for variable in self.variables])
-        return low, high, np.array([variable.discrete for variable in self.variables])
+        return low, np.array([variable.high for variable in self.variables])
 
     def columns(self, designs: Matrix, *, as_stated: bool = False) -> dict[str, Any]:
         """Return the nominal inputs (m,) that differ; ``as_stated`` leaves followers as the file states them."""
@@ -1381,14 +1383,31 @@ def _of_input(setup: Setup, vary: Vary, study: Optimise) -> Variable:
     what = f"study '{study.name}': Vary('{vary.input}')"
     low, high = (_end(input_field, text, what) for text in (vary.low, vary.high))
     whole = input_field.kind in {"whole", "integer"}
-    if whole:
-        low, high = float(ceil(low)), float(floor(high))
+    step = _step(input_field, vary.step, what) if vary.step else float(whole)
+    if step:
+        low, high = max(low, step * ceil(low / step - SLACK)), min(high, step * floor(high / step + SLACK))
     if not low < high:
-        raise UsageError(f"{what} runs from {vary.low} to {vary.high}, which leaves nothing to choose")
+        raise UsageError(
+            f"{what} runs from {vary.low} to {vary.high}"
+            f"{f' in steps of {vary.step}' if vary.step else ''}, which leaves nothing to choose"
+        )
     start = float(setup.nominal(vary.input))
     if isnan(start):
         raise UsageError(f"{what} has no value to start from; give '{vary.input}' in the inputs")
-    return Variable(vary.input, "whole" if whole else "number", low, high, setup.print_unit(vary.input), start)
+    return Variable(vary.input, "whole" if whole else "number", low, high, setup.print_unit(vary.input), start, step)
+
+
+def _step(input_field: InputField, text: str, what: str) -> float:
+    """Read a step in SI. Raises UsageError for a text that is none, and for one that no value or no whole one meets."""
+    try:
+        step = read_quantity(text, difference_unit(input_field.unit))
+    except UnitError as error:
+        raise UsageError(f"{what}: {error}") from None
+    if not step > 0:
+        raise UsageError(f"{what}: step = {text} must lie above 0")
+    if input_field.kind in {"whole", "integer"} and not step.is_integer():
+        raise UsageError(f"{what}: step = {text}, but '{input_field.name}' takes whole numbers")
+    return step
 
 
 def _end(input_field: InputField, text: str, what: str) -> float:
@@ -1429,7 +1448,7 @@ def _of_grade(setup: Setup, tolerance: Tolerance, spread: Grade, study: Optimise
             places.append(index)
     if len(places) < 2:
         return None
-    return Variable(tolerance.name, "grade", float(min(places)), float(max(places)), "", float(start))
+    return Variable(tolerance.name, "grade", float(min(places)), float(max(places)), "", float(start), 1.0)
 
 
 def _followers(stated: list[Vary], study: Optimise) -> dict[str, Formula]:
