@@ -92,10 +92,10 @@ def graph_figure(chain: Chain) -> Figure:
         ends = {"patchA": start.get_bbox_patch(), "patchB": end.get_bbox_patch()}
         style = {"arrowstyle": "-|>", "color": "#333333", "linewidth": 1.0, **ends}
         axes.annotate("", xy=end.get_position(), xytext=start.get_position(), arrowprops=style)
-        middle = np.mean([start.get_position(), end.get_position()], axis=0)
+        x, y = np.mean([start.get_position(), end.get_position()], axis=0)
         label = {"boxstyle": "square,pad=0.15", "facecolor": "white", "edgecolor": "none"}
         listed = "\n".join(word.replace("_", " ") for word in words)
-        axes.text(*middle, listed, ha="center", va="center", fontsize=7.5, bbox=label)
+        axes.text(x, y, listed, ha="center", va="center", fontsize=7.5, bbox=label)
     return figure
 
 
